@@ -200,7 +200,7 @@ def read(path: Path) -> dict[str, list[float]]:
     with open_reader(str(path), format_of(str(path), None)) as source:
         for block in source:
             for name in RESULTS:
-                cells = block.kept(name)
+                cells = block.columns[name]
                 whole[name] += [np.nan if cell is None else float(str(cell)) for cell in cells]
     return whole
 

@@ -13,7 +13,8 @@ from impact88.cli import main
 from impact88.doubles import double, doubles, is_number
 from impact88.errors import UserError
 from impact88.scene import check_value
-from impact88.tables.rows import Rows, numbers
+from impact88.tables.cells import TableUnits, numbers
+from impact88.tables.rows import Rows
 from impact88.uncertainty import uncertain
 
 ODD = {".": 0.0, "1E": 1.0, "+": 0.0, "-": 0.0, "1 0": 10.0, " 7": 7.0, "E": 0.0, "1e2": 100.0}
@@ -48,8 +49,8 @@ def test_every_room_takes_the_same_texts(text: str) -> None:
         else:
             with pytest.raises(UserError):
                 reads()
-    rows = Rows(1, 1, {"E": [text]}, {})
-    numbers(rows)
+    rows = Rows(1, {"E": [text]})
+    numbers(rows, TableUnits())
     assert (not rows.bad) == (taken or text == "inf")
 
 

@@ -301,7 +301,7 @@ def in_base(
 def converted(name: str, text: str, system: System) -> str:
     """One entry in base units; its bare numbers are the system's. Raises UserError."""
     layout, values = _taken_apart(name, text, "")
-    return layout.format(*(value.based(system, False) for value in values))
+    return layout.format(*(v.based(system, False) for v in values)) if values else text
 
 
 def shown_text(name: str, text: str, system: System) -> str:

@@ -181,7 +181,7 @@ def read_theirs(rows: Rows, name: str, factor: float = 1.0) -> tuple[Floats, Flo
         try:
             values[index] = double(text)
         except ValueError:
-            rows.bad.append(rows.cell(index, name, f"{quoted(text)} is not a number"))
+            rows.bad.append((index, name, f"{quoted(text)} is not a number"))
         if written := _WRITTEN.fullmatch(text):
             decimals, exponent = written.groups(default="")
             power = float(exponent or 0) - len(decimals)

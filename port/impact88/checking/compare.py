@@ -24,9 +24,9 @@ from ..mappings import texts
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..plaintable import plain
 from ..progress import progress
-from ..tables.rows import BadCell, Rows, check_scene_columns, numbers
+from ..tables.cells import TableUnits, check_scene_columns, numbers
+from ..tables.rows import BadCell, Rows
 from ..tables.table import format_of, open_reader
-from ..tables.tableunits import TableUnits
 from . import agreement
 from .agreement import ABSENT, DIFFER, DIGITS, DOUBLE, ELIMINATION, Bools, Case
 from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, Diagnosis
@@ -225,7 +225,7 @@ def compare(
             hint = f" ({', '.join(hints)}?)" if hints else ""
             says = f"no column of results{hint}; expected some of {' '.join(RESULTS)}, beside the "
             raise UserError(f"{says}scene's", where)
-        check_scene_columns([name for name in reader.names if name in SCENE], list(values), ("M",))
+        check_scene_columns({*reader.names, *values})
         comparison.tallies = {name: Tally() for name in wanted}
         with progress(reader.total, "compare", "B") as meter:
             before = 0
@@ -233,8 +233,8 @@ def compare(
             for rows in reader:
                 table = table or TableUnits(reader.names, units, rows, wanted, where)
                 kept.append(_compare_block(rows, values, comparison, rtol, table))
-                meter.update(reader.position() - before)
-                before = reader.position()
+                meter.update(rows.place - before)
+                before = rows.place
     if not any(tally.compared for tally in comparison.tallies.values()):
         raise UserError("no result could be compared", where)
     if causes and comparison.differing:
@@ -269,7 +269,7 @@ def _compare_block(
         name: agreement.read_theirs(rows, name, units.factor(name)) for name in comparison.tallies
     }
     readable = np.ones(rows.count, bool)
-    readable[[bad.row - rows.first for bad in rows.bad]] = False
+    readable[[index for index, *_ in rows.bad]] = False
     for given, _ in theirs.values():
         given[~readable] = np.nan
     case = agreement.case_of(scene, theirs, rtol)
@@ -280,7 +280,7 @@ def _compare_block(
         tally.add(grades[place], relative[place])
         tally.missing += int((solved[place] & (grades[place] == ABSENT)).sum())
     comparison.rows += rows.count
-    comparison.bad += rows.bad
+    comparison.bad += rows.complaints()
     comparison.agreeing += int((compared & ~wrong).sum())
     comparison.differing += int(wrong.sum())
     for reason, which in _skipped(rows, readable, case):
@@ -304,7 +304,7 @@ def _compare_block(
 
 def _skipped(rows: Rows, readable: Bools, case: Case) -> Iterator[tuple[str, Bools]]:
     solvable, answered = np.isfinite(case.ours).any(0), np.isfinite(case.values).any(0)
-    kinds = rows.others.get("class")
+    kinds = rows.columns.get("class")
     may = np.array([str(kind) == FAILURE for kind in kinds], bool) if kinds is not None else False
     yield UNREADABLE, ~readable
     yield NO_RESULT, readable & ~solvable & ~answered
@@ -316,7 +316,7 @@ def _skipped(rows: Rows, readable: Bools, case: Case) -> Iterator[tuple[str, Boo
 def _differing(
     rows: Rows, places: NDArray[np.intp], worst: Any, relative: Any, case: Case
 ) -> Iterator[Row]:
-    ids = rows.one_per_row("id") if "id" in rows.others else None
+    ids = rows.one_per_row("id") if "id" in rows.columns else None
     written = [rows.one_per_row(name) for name in case.names]
     for index in places.tolist():
         place = int(worst[index])

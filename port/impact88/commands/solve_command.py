@@ -51,11 +51,10 @@ from ..names import DEFAULT_M, RESULTS, SCENE, check_names
 from ..progress import progress
 from ..scene import VALUE_LIMIT, Entries, Scene, entries_in, sample
 from ..status import Status
-from ..tables.overlap import ahead, behind, may_wait
-from ..tables.rows import BadCell, Rows, check_scene_columns, filled, numbers, point_masses
+from ..tables.cells import TableUnits, check_scene_columns, filled, numbers, point_masses
+from ..tables.rows import BadCell, Rows
 from ..tables.sweep import read_ranges, read_sweep
-from ..tables.table import format_of, open_reader, open_writer
-from ..tables.tableunits import TableUnits
+from ..tables.table import ahead, behind, format_of, may_wait, open_reader, open_writer
 from . import options
 
 __doc__ = (__doc__ or "").format(
@@ -124,8 +123,7 @@ def main(args: options.Args) -> int:
         if filling:
             given = {n: t for n, t in filling.values.items() if n not in source.names} | given
         points = given.get("M", "4" if "M" in source.names else "6") == "4"
-        optional = ["M", *(UNUSED_BY_POINTS if points else ())]
-        check_scene_columns(source.names, list(given), optional)
+        check_scene_columns({*source.names, *given}, points)
         if swept:  # the rest is the same in every row
             source.names = [name for name in source.names if name in swept]
         elif units.strict:
@@ -134,32 +132,30 @@ def main(args: options.Args) -> int:
         headings = units.headings([*wanted, *added])
         scene_too = bool(swept) or not args.results_only
         writer = open_writer(args.output, result_format, source, headings, scene_too)
-        write = stack.enter_context(writer).write
+        write = stack.enter_context(writer)
         complain = stack.enter_context(_complaints(args.errors))
         meter = stack.enter_context(progress(source.total, "solve", "B"))
         if not may_wait(args.output):
             write = stack.enter_context(behind(write))
         if not may_wait(path or ""):
             blocks = stack.enter_context(ahead(blocks))
-        adverse = position = 0
+        adverse = place = 0
         for rows in blocks:
             for name, text in given.items():
                 rows.columns.pop(name, None)  # and with it the heading of another unit
                 rows.columns[name] = [text] * rows.count
-                rows.others.pop(name, None)
             # a name without a column has empty cells: a complaint where a row looks at them
             nothing = [None] * rows.count
             rows.columns |= {name: nothing for name in SCENE if name not in rows.columns}
             rows.columns["M"] = filled(rows.columns["M"], DEFAULT_M)
             results = arithmetic(rows, units.given(given), wanted)
             write(rows, units.shown(results))
-            adverse += complain(rows.bad)
+            adverse += complain(rows.complaints())
             if "ERROR" in results:
                 ended = results["ERROR"]
                 adverse += int(np.count_nonzero((ended != "") & (ended != ZERO_DETERMINANT)))
-            now = source.position()
-            meter.update(now - position)
-            position = now
+            meter.update(rows.place - place)
+            place = rows.place
     return int(adverse > 0)
 
 
@@ -176,7 +172,7 @@ def _float64(rows: Rows, units: TableUnits, wanted: Sequence[str]) -> Results:
     """The closed form in double precision."""
     columns = numbers(rows, units)
     _read_shares(rows, columns)
-    unread = {bad.row - rows.first for bad in rows.bad}
+    unread = {index for index, *_ in rows.bad}
     refused = rows.count > 0 and examine(columns).refused is not None
     for refusal in refusals(columns) if refused else ():
         for index in np.flatnonzero(np.broadcast_to(refusal.where, rows.count)).tolist():
@@ -184,7 +180,7 @@ def _float64(rows: Rows, units: TableUnits, wanted: Sequence[str]) -> Results:
                 unread.add(index)
                 value = float(np.broadcast_to(columns[refusal.column], rows.count)[index])
                 reason = f"{value!r} {refusal.reason}"
-                rows.bad.append(rows.cell(index, refusal.column, reason))
+                rows.bad.append((index, refusal.column, reason))
     return _blanked(solve(columns, wanted), unread)
 
 
@@ -199,7 +195,7 @@ def _blanked(results: Results, unread: set[int]) -> Results:
 def _read_shares(rows: Rows, columns: dict[str, NDArray[np.float64]]) -> None:
     """Read the cells of MU that are shares of the critical friction, and withdraw the complaints
     about them."""
-    places = [bad.row - rows.first for bad in rows.bad if bad.column == "MU"]
+    places = [index for index, column, _ in rows.bad if column == "MU"]
     cells = {at: share_of(rows.columns["MU"][at]) for at in places}
     found = {at: share for at, share in cells.items() if share is not None}
     if found:
@@ -207,9 +203,7 @@ def _read_shares(rows: Rows, columns: dict[str, NDArray[np.float64]]) -> None:
         shared = {n: np.broadcast_to(x, (rows.count,))[at] for n, x in columns.items()}
         columns["MU"] = columns["MU"].copy()
         columns["MU"][at] = share_typed(shared, list(found.values()))
-        rows.bad[:] = [
-            bad for bad in rows.bad if bad.column != "MU" or bad.row - rows.first not in found
-        ]
+        rows.bad = [bad for bad in rows.bad if bad[1] != "MU" or bad[0] not in found]
 
 
 def _applesoft(rows: Rows, units: TableUnits, wanted: Sequence[str]) -> Results:
@@ -217,7 +211,7 @@ def _applesoft(rows: Rows, units: TableUnits, wanted: Sequence[str]) -> Results:
     from ..replay import replay
 
     points = point_masses(rows)
-    columns = {n: _texts(n, column, units) for n, column in rows.columns.items()}
+    columns = {n: _texts(n, column, units) for n, column in rows.scene().items()}
     for name in UNUSED_BY_POINTS if points.any() else ():
         # the program reads them all the same
         default = "1" if name in INERTIAS else "0"
@@ -229,7 +223,7 @@ def _applesoft(rows: Rows, units: TableUnits, wanted: Sequence[str]) -> Results:
             scene = {name: column[index] for name, column in columns.items() if name in SCENE}
             with suppress(UserError, ValueError, TypeError):  # the cell's complaint follows
                 columns["MU"][index] = resolved(scene, "")[0]
-    unread = {bad.row - rows.first for bad in rows.bad}
+    unread = {index for index, *_ in rows.bad}
     try:
         # nearly always all cells can be read, and looking at each takes as long as solving
         replayed = None if unread else replay(columns)
@@ -275,7 +269,7 @@ def _complain(rows: Rows, columns: dict[str, list[Any]], unread: set[int]) -> No
             else:
                 continue
             unread.add(index)
-            rows.bad.append(rows.cell(index, name, reason))
+            rows.bad.append((index, name, reason))
 
 
 @contextmanager

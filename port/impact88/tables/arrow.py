@@ -3,15 +3,12 @@
 Cells of a column of texts become Python strings only when they are looked at.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-from ..errors import library
 
 _PLAIN = np.zeros(256, bool)
 _PLAIN[np.frombuffer(b"0123456789+-.eE", np.uint8)] = True
@@ -20,14 +17,7 @@ _PLAIN[np.frombuffer(b"0123456789+-.eE", np.uint8)] = True
 
 def available() -> bool:
     """Whether pyarrow is installed."""
-    from importlib.util import find_spec
-
     return find_spec("pyarrow") is not None
-
-
-def pyarrow(what: str) -> Any:
-    """The module pyarrow. Raises UserError, naming the extra, when it is not installed."""
-    return library("pyarrow", "arrow", what)
 
 
 class ArrowColumn(Sequence[Any]):
@@ -69,19 +59,17 @@ class ArrowTexts(ArrowColumn):
             return None
         return values
 
-    def replaced(self, old: str, new: str) -> ArrowTexts:
+    def replaced(self, old: str, new: str) -> "ArrowTexts":
         """The column with every ``old`` a ``new``."""
-        import pyarrow.compute as compute
+        from pyarrow import compute
 
         return ArrowTexts(compute.replace_substring(self.array, old, new))
 
-    def filled(self, text: str) -> ArrowTexts:
+    def filled(self, text: str) -> "ArrowTexts":
         """The column with ``text`` where there is none."""
-        import pyarrow as pa
-        import pyarrow.compute as compute
+        from pyarrow import compute
 
-        empty = compute.equal(self.array, pa.scalar(""))
-        return ArrowTexts(compute.if_else(empty, pa.scalar(text), self.array))
+        return ArrowTexts(compute.if_else(compute.equal(self.array, ""), text, self.array))
 
 
 def texts_of(values: NDArray[Any]) -> Any:

@@ -6,20 +6,20 @@ import io
 import math
 import os
 import zipfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import islice
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import UserError, library, quoted
 from ..files import replacing
 from ..names import SCENE
+from .cells import typed
 from .jsontext import plain
 from .npztable import check_unpacked
-from .rows import BLOCK_ROWS, Reader, Rows, Writer, scene_names, typed
+from .rows import BLOCK_ROWS, Column, Reader, Rows, heading, scene_names
 
 LONGEST_CELL = 32_767
 """Characters that Excel has in a cell."""
@@ -38,7 +38,7 @@ def _names(lines: Iterator[tuple[int, tuple[Any, ...]]], where: str) -> list[str
 def _blocks(
     names: list[str], lines: Iterator[tuple[int, tuple[Any, ...]]], where: str
 ) -> Iterator[Rows]:
-    first, width, trusted = 1, len(names), False
+    width, trusted = len(names), False
     while block := list(islice(lines, BLOCK_ROWS)):
         for number, row in block:
             if any(cell is not None for cell in row[width:]):
@@ -47,19 +47,11 @@ def _blocks(
             _check_computed(where, width)
             trusted = True
         full = ((*row[:width], *[None] * (width - len(row))) for _, row in block)
-        cells = zip(names, zip(*full, strict=True), strict=True)
-        columns = (
-            (
-                n,
-                [
-                    _text(c) if not isinstance(c, bool) else c if n in SCENE else plain(c)
-                    for c in cs
-                ],
-            )
-            for n, cs in cells
-        )
-        yield Rows.of(first, len(block), columns, [number for number, _ in block])
-        first += len(block)
+        columns: dict[str, Column] = {}
+        for name, cells in zip(names, zip(*full, strict=True), strict=True):
+            keep = bool if name in SCENE else ()  # a truth value is no number
+            columns[name] = [cell if isinstance(cell, keep) else _text(cell) for cell in cells]
+        yield Rows(len(block), columns, [number for number, _ in block])
 
 
 def _check_computed(path: str, width: int) -> None:
@@ -84,9 +76,7 @@ def _check_computed(path: str, width: int) -> None:
 
 def _text(cell: Any) -> str:
     """What stands in a cell: a number by its shortest digits."""
-    if cell is None:
-        return ""
-    return repr(cell).removesuffix(".0") if isinstance(cell, float) else str(cell)
+    return repr(cell).removesuffix(".0") if isinstance(cell, float) else plain(cell)
 
 
 @contextmanager
@@ -126,26 +116,6 @@ def _parsing(path: str) -> Iterator[None]:
         raise UserError(f"is not an .xlsx workbook: {quoted(str(error))}", path) from None
 
 
-class _ExcelWriter(Writer):
-    kind = "a workbook"
-
-    def __init__(self, sheet: Any, *columns: Any) -> None:
-        super().__init__(*columns)
-        self._sheet = sheet
-        self._rows = 1
-        sheet.append([_cell(text) for text in self.headings])
-
-    def put(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
-        self._rows += rows.count
-        if self._rows > 1_048_576:
-            raise UserError("a sheet has at most 1,048,576 rows; expected to write CSV")
-        columns = [typed(name, rows.one_per_row(name)) for name in self.kept]
-        columns += [results[name] for name in self.results]
-        cells = [c.tolist() if isinstance(c, np.ndarray) else c for c in columns]
-        for row in zip(*cells, strict=True):
-            self._sheet.append([_cell(cell) for cell in row])
-
-
 def _cell(value: Any) -> Any:
     """What Excel can hold of a value: no number is an empty cell, no text is a formula."""
     if isinstance(value, float) and not math.isfinite(value):
@@ -157,19 +127,35 @@ def _cell(value: Any) -> Any:
 
 
 @contextmanager
-def write(path: str, form: str, delimiter: str, *columns: Any) -> Iterator[Writer]:
+def write(
+    path: str, form: str, delimiter: str, names: Sequence[str]
+) -> Iterator[Callable[[Sequence[tuple[str, Column]]], None]]:
     """Write a workbook."""
     openpyxl = library("openpyxl", "excel", "an .xlsx")
     book = openpyxl.Workbook(write_only=True)
-    writer = _ExcelWriter(book.create_sheet("impact88"), *columns)
+    sheet = book.create_sheet("impact88")
+    sheet.append([_cell(heading(name)) for name in names])
+    count = 1
+
+    def put(columns: Sequence[tuple[str, Column]]) -> None:
+        nonlocal count
+        cells = (typed(*column) for column in columns)
+        rows = list(
+            zip(*(c.tolist() if isinstance(c, np.ndarray) else c for c in cells), strict=True)
+        )
+        count += len(rows)
+        if count > 1_048_576:
+            raise UserError("a sheet has at most 1,048,576 rows; expected to write CSV")
+        for row in rows:
+            sheet.append([_cell(cell) for cell in row])
+
     with replacing(path, "wb") as file:
         packed = io.BytesIO()  # a zip file that cannot be finished complains on stderr
         try:
             try:
-                yield writer
+                yield put
             finally:  # and so does a sheet left open
-                for sheet in book.worksheets:
-                    sheet.close()
+                sheet.close()
             book.save(packed)
         except OSError as error:  # openpyxl's own temporary files have no name of the user's
             raise UserError(f"cannot be written: {error.strerror or error}", path) from None

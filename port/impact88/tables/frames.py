@@ -10,12 +10,11 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ..closedform.columns import UNUSED_BY_POINTS
 from ..closedform.solve import solve
 from ..errors import UserError, library
 from ..names import DEFAULT_M, SCENE
-from .rows import Column, Rows, check_scene_columns, heading, numbers, scene_names
-from .tableunits import TableUnits
+from .cells import TableUnits, check_scene_columns, numbers
+from .rows import Column, Rows, heading, scene_names
 
 Frame = TypeVar("Frame")
 Array = NDArray[Any]
@@ -66,14 +65,13 @@ def solve_frame(
         arrays = {n: np.asanyarray(c) for n, c in given.items()}
         texts: dict[str, Column]
         texts = {n: list(np.ravel(a)) for n, a in arrays.items() if a.dtype.kind not in "fiu"}
-        table = TableUnits(found, units or getattr(scene, "units", None), Rows(1, 0, texts, {}))
+        table = TableUnits(found, units or getattr(scene, "units", None), Rows(0, texts))
         columns = {n: _numbers(n, values, table) for n, values in given.items()}
         for name, value in (scene or {}).items():
             if name in SCENE:
                 columns.setdefault(name, _numbers(name, [value], table.given([name]))[0])
         all_points = "M" in columns and bool(np.all(np.asarray(columns["M"]) == 4))
-        optional = ("M", *(UNUSED_BY_POINTS if all_points else ()))
-        check_scene_columns(list(columns), (), optional, "scene=")
+        check_scene_columns(columns, all_points, "scene=")
         results = table.shown(solve(columns, outputs, threads=threads))
         return {heading(name): results[name] for name in table.headings(list(results))}
 
@@ -97,8 +95,7 @@ def _numbers(name: str, values: Any, units: TableUnits) -> Array:
     array = np.asarray(values)
     cells = array.reshape(-1)
     column = cells if array.dtype.kind in "fiu" else list(map(_cell, cells.tolist()))
-    rows = Rows(1, array.size, {name: column}, {})
-    return numbers(rows, units)[name].reshape(array.shape)
+    return numbers(Rows(array.size, {name: column}), units)[name].reshape(array.shape)
 
 
 def _cell(cell: Any) -> Any:

@@ -7,86 +7,70 @@ to the same, NaN is null, and infinity 1e999, which readers take for it.
 
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import IO, Any
+from itertools import chain, islice
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..names import SCENE
 from . import jsontext
+from .cells import is_infinite
 from .lines import Lines, open_text, writing
 from .rows import (
     ABSENT,
     BLOCK_CELLS,
     BLOCK_CHARACTERS,
     BLOCK_ROWS,
-    BadCell,
     Column,
     Reader,
     Rows,
-    Writer,
     heading,
-    is_infinite,
     scene_names,
 )
 
 
-class _JsonReader:
-    def __init__(self, lines: Lines) -> None:
-        self._lines = lines
-        self._known: set[str] = set()
-        self._matched: dict[str, str] = {}  # key -> the column's name
-        self._first = self._block(1)
-        self._known = set(self._matched)
-        self.names = list(self._first.late) if self._first else []
-
-    def blocks(self) -> Iterator[Rows]:
-        block = self._first
-        while block is not None:
-            if block.first == 1:
-                block.late = {}
-            yield block
-            block = self._block(block.first + block.count)
-
-    def _block(self, first: int) -> Rows | None:
+def _blocks(lines: Lines) -> Iterator[Rows]:
+    matched: dict[str, str] = {}  # key -> the column's name
+    known: set[str] | None = None  # the first block's columns
+    while True:
         objects: list[dict[str, Any]] = []
-        lines: list[int] = []
-        bad: list[BadCell] = []
-        names: dict[str, int] = {}  # name -> the line that has it first
-        self._lines.taken = 0
+        numbers: list[int] = []
+        bad: list[tuple[int, str, str]] = []
+        keys: dict[str, int] = {}  # key -> the line that has it first
+        lines.taken = 0
         while (
             len(objects) < BLOCK_ROWS
-            and len(objects) * len(names) < BLOCK_CELLS
-            and self._lines.taken < BLOCK_CHARACTERS
+            and len(objects) * len(keys) < BLOCK_CELLS
+            and lines.taken < BLOCK_CHARACTERS
+            and (text := next(lines, None)) is not None
         ):
-            text = next(self._lines, None)
-            if text is None:
-                break
             if not text.strip():
                 continue
-            line = self._lines.number
             try:
                 value, reason = jsontext.read(text), "is not a JSON object"
             except ValueError as error:
                 value, reason = None, str(error)
             if not isinstance(value, dict):
-                bad.append(BadCell(first + len(objects), line, "", reason))
+                bad.append((len(objects), "", reason))
                 value = {}
-            for name in value:
-                names.setdefault(name, line)
-            lines.append(line)
+            for key in value:
+                keys.setdefault(key, lines.number)
+            numbers.append(lines.number)
             objects.append(value)
-        if not lines:
-            return None
-        new = [key for key in names if key not in self._matched]
-        found = scene_names([*self._matched.values(), *new])[len(self._matched) :]
-        self._matched |= zip(new, found, strict=True)
-        late = {self._matched[n]: line for n, line in names.items() if n not in self._known}
-        columns = ((self._matched[key], [o.get(key, ABSENT) for o in objects]) for key in names)
-        texts = ((n, list(map(_text, c)) if n in SCENE else c) for n, c in columns)
-        return Rows.of(first, len(objects), texts, lines, bad, late)
+        if not objects:
+            return
+        new = [key for key in keys if key not in matched]
+        matched |= zip(new, scene_names([*matched.values(), *new])[len(matched) :], strict=True)
+        columns: dict[str, Column] = {}
+        for key in keys:
+            cells = [value.get(key, ABSENT) for value in objects]
+            name = matched[key]
+            columns[name] = list(map(_text, cells)) if name in SCENE else cells
+        known = set(columns) if known is None else known
+        late = {name: keys[key] for key in keys if (name := matched[key]) not in known}
+        yield Rows(len(objects), columns, numbers, bad, late)
 
 
 def _text(cell: Any) -> Any:
@@ -96,9 +80,11 @@ def _text(cell: Any) -> Any:
 @contextmanager
 def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
     """Open a JSON Lines table. Raises UserError if it cannot be read."""
-    with open_text(path, encoding) as file:
-        table = _JsonReader(Lines(file))
-        yield Reader(table.names, table.blocks(), *file.source.extent)
+    with open_text(path, encoding) as lines:
+        blocks = _blocks(lines)
+        first = list(islice(blocks, 1))
+        names = [name for rows in first for name in rows.columns]
+        yield Reader(names, chain(first, blocks), *lines.source.extent)
 
 
 def _double(cell: Any) -> str:
@@ -116,36 +102,22 @@ def _cells(name: str, column: Column) -> list[str]:
             # whole numbers too: where one is missing, a later block of them is of doubles
             return list(map(jsontext.number, column.astype(np.float64, copy=False).tolist()))
         return list(map(jsontext.written, column.tolist()))
-    return [
-        "" if cell is ABSENT else _double(cell) if name in SCENE else jsontext.written(cell)
-        for cell in column
-    ]
-
-
-class _JsonWriter(Writer):
-    def __init__(self, file: IO[str], *columns: Any) -> None:
-        super().__init__(*columns)
-        self._file = file
-
-    def put(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
-        # a later block may hold names that the first did not, and a row need not hold all
-        names = [
-            name
-            for name in (*self.kept, *(n for n in rows.late if n not in self.dropped))
-            if name in rows.columns or name in rows.others
-        ]
-        headings = map(heading, (*names, *self.results))
-        keys = [json.dumps(text, ensure_ascii=False) for text in headings]
-        columns = [_cells(name, rows.one_per_row(name)) for name in names]
-        columns += [_cells("", results[name]) for name in self.results]
-        self._file.writelines(
-            "{" + ", ".join(f"{k}: {v}" for k, v in zip(keys, row, strict=True) if v) + "}\n"
-            for row in zip(*columns, strict=True)
-        )
+    write = _double if name in SCENE else jsontext.written
+    return ["" if cell is ABSENT else write(cell) for cell in column]
 
 
 @contextmanager
-def write(path: str, form: str, delimiter: str, *columns: Any) -> Iterator[Writer]:
-    """Write a JSON Lines table."""
+def write(
+    path: str, form: str, delimiter: str, names: Sequence[str]
+) -> Iterator[Callable[[Sequence[tuple[str, Column]]], None]]:
+    """Write a JSON Lines table, of blocks that need not all have the same columns."""
     with writing(path) as file:
-        yield _JsonWriter(file, *columns)
+
+        def put(columns: Sequence[tuple[str, Column]]) -> None:
+            keys = [json.dumps(heading(name), ensure_ascii=False) for name, _ in columns]
+            file.writelines(
+                "{" + ", ".join(f"{k}: {v}" for k, v in zip(keys, row, strict=True) if v) + "}\n"
+                for row in zip(*(_cells(*column) for column in columns), strict=True)
+            )
+
+        yield put

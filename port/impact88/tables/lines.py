@@ -6,35 +6,31 @@ import sys
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
-from typing import IO, Any, NamedTuple, cast
+from typing import IO, Any, cast
 
 from ..errors import UserError, printable, quoted
-from ..files import ESCAPED, LONGEST_LINE, Source, called, encoding_of, replacing
-
-
-class TextFile(NamedTuple):
-    """A text file open for reading: its bytes, unpacked; what they encode; where they come from."""
-
-    binary: Any
-    encoding: str
-    source: Source
+from ..files import ESCAPED, LONGEST_LINE, Source, encoding_of, replacing
 
 
 class Lines:
-    """An iterator over lines as they stand, their ends included. ``first``: lines already taken off
-    the file; ``before``: how many lines came before those; ``number``: of the line last given, from
-    1; ``taken``: the characters given since a block began. Raises UserError, naming file and line,
-    for bytes that are not text, and for a line longer than `LONGEST_LINE` characters."""
+    """An iterator over lines as they stand, their ends included. ``source``: the file as it is;
+    ``binary``: its bytes, unpacked; ``encoding``: what they encode; ``number``: of the line last
+    given, from 1; ``taken``: the characters given since a block began. Raises UserError, naming
+    file and line, for bytes that are not text, and for a line longer than `LONGEST_LINE`."""
 
-    def __init__(self, file: TextFile, first: bytes = b"", before: int = 0) -> None:
-        self.where = file.source.name
-        self.number = before
-        self.taken = 0
-        self._encoding = file.encoding
-        self._open = partial(io.TextIOWrapper, encoding=file.encoding, newline="")
-        self._rest = [file.binary]  # closed with what reads it: opened when its turn comes
-        self._text = self._open(io.BytesIO(first))
+    def __init__(self, source: Source, binary: Any, encoding: str) -> None:
+        self.source, self.binary, self.encoding = source, binary, encoding
+        self.where, self.number, self.taken = source.name, 0, 0
+        self.go_on(b"", 0)
+
+    def go_on(self, data: bytes, number: int) -> None:
+        """Have ``data`` read before what is left of the file; ``number``: of the line before."""
+        self.number = number
+        self._text = self._opened(io.BytesIO(data))
+        self._left = [self.binary]  # closed with what reads it: opened when its turn comes
+
+    def _opened(self, binary: Any) -> io.TextIOWrapper:
+        return io.TextIOWrapper(binary, self.encoding, newline="")
 
     def __iter__(self) -> Iterator[str]:
         return self
@@ -42,33 +38,33 @@ class Lines:
     def __next__(self) -> str:
         try:
             line = self._text.readline(LONGEST_LINE)
-            if not line and self._rest:
-                self._text = self._open(self._rest.pop())
+            if not line and self._left:
+                self._text = self._opened(self._left.pop())
                 line = self._text.readline(LONGEST_LINE)
         except UnicodeError:
-            what = f"contains bytes that are not {self._encoding.removesuffix('-sig').upper()} text"
+            what = f"contains bytes that are not {self.encoding.removesuffix('-sig').upper()} text"
             raise UserError(
                 f"{what}, in line {self.number + 1} or after it; expected UTF-8, or the encoding "
                 "named, such as --encoding cp1252 for older Excel",
                 self.where,
             ) from None
         except (EOFError, zlib.error, OSError) as error:
-            raise self.error(f"cannot be unpacked: {error}") from None
+            raise self._error(f"cannot be unpacked: {error}") from None
         if not line:
             raise StopIteration
         if len(line) >= LONGEST_LINE:
-            raise self.error(f"is longer than {LONGEST_LINE:,} characters; expected a table's row")
+            raise self._error(f"is longer than {LONGEST_LINE:,} characters; expected a table's row")
         self.number += 1
         self.taken += len(line)
         return line
 
-    def error(self, message: str) -> UserError:
+    def _error(self, message: str) -> UserError:
         """A UserError about the line after the last one given."""
         return UserError(f"line {self.number + 1} {message}", self.where)
 
 
 @contextmanager
-def open_text(path: str, encoding: str | None = None) -> Iterator[TextFile]:
+def open_text(path: str, encoding: str | None = None) -> Iterator[Lines]:
     """A text file: UTF-8, or UTF-16 with its mark, or of the ``encoding`` given; unpacked when its
     name ends in ``.gz``; ``-`` is standard input. Raises UserError if it cannot be opened."""
     if encoding is not None:
@@ -80,18 +76,17 @@ def open_text(path: str, encoding: str | None = None) -> Iterator[TextFile]:
                 "as cp1252"
             ) from None
     with Source(path) as source:
-        binary: Any = io.BufferedReader(source)
+        binary = io.BufferedReader(source)
         if path.lower().endswith(".gz"):
             import gzip
 
-            packed: Any = gzip.GzipFile(fileobj=binary)
-            binary = io.BufferedReader(packed)
+            binary = io.BufferedReader(cast(Any, gzip.GzipFile(fileobj=binary)))
         try:
             start = binary.peek(3)[:3]
         except (EOFError, zlib.error, OSError) as error:
-            raise UserError(f"cannot be unpacked: {error}", called(path)) from None
+            raise UserError(f"cannot be unpacked: {error}", source.name) from None
         name = encoding or encoding_of(start)
-        yield TextFile(binary, "utf-8-sig" if name == "utf-8" else name, source)
+        yield Lines(source, binary, "utf-8-sig" if name == "utf-8" else name)
 
 
 class _Terminal(io.TextIOBase):
@@ -107,13 +102,14 @@ def writing(path: str) -> Iterator[IO[str]]:
     bytes); ``-`` is standard output. It appears under its name when all is written."""
     if path == "-":
         yield cast(IO[str], _Terminal()) if sys.stdout.isatty() else sys.stdout
-    elif path.lower().endswith(".gz"):
-        import gzip
+        return
+    packed = path.lower().endswith(".gz")
+    with replacing(path, "wb" if packed else "w") as file:
+        if packed:
+            import gzip
 
-        with replacing(path, "wb") as file:
-            packed: Any = gzip.GzipFile("", "wb", 6, file, mtime=0)
-            with io.TextIOWrapper(packed, "utf-8", ESCAPED, newline="\n") as text:
+            zipped: Any = gzip.GzipFile("", "wb", 6, file, mtime=0)
+            with io.TextIOWrapper(zipped, "utf-8", ESCAPED, newline="\n") as text:
                 yield text
-    else:
-        with replacing(path) as file:
+        else:
             yield file

@@ -8,10 +8,10 @@ import io
 import os
 import sys
 import zipfile
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
 from math import prod
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from ..errors import UserError, quoted
 from ..files import ESCAPED, replacing
 from ..names import SCENE
-from .rows import Column, Reader, Rows, Writer, scene_names, typed
+from .cells import typed
+from .rows import Column, Reader, Rows, heading, scene_names
 
 MOST_ARRAYS = 10_000
 """A table has some fifty columns."""
@@ -103,18 +104,6 @@ def _member(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: str) -> NDA
     return np.lib.format.read_array(data, allow_pickle=False)
 
 
-def write_arrays(file: IO[bytes], arrays: Mapping[str, NDArray[Any]]) -> None:
-    """An .npz file as numpy.savez writes it, but of arrays with any name."""
-    with zipfile.ZipFile(file, "w") as archive:
-        for name, array in arrays.items():
-            # a fixed date: the same arrays give the same bytes
-            member = zipfile.ZipInfo(f"{name}.npy".encode("utf-8", ESCAPED).decode())
-            with archive.open(member, "w", force_zip64=True) as out:
-                np.lib.format.write_array(out, np.asanyarray(array), allow_pickle=False)
-
-
-_NUMBERS = "fiu"
-_TEXT = "U"
 LARGEST_TEXTS = 256_000_000
 """Bytes of the largest column of texts that is written: numpy gives each the longest one's."""
 
@@ -127,7 +116,7 @@ def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
     columns: dict[str, Any] = dict(zip(names, arrays.values(), strict=True))
     scene = {name: array for name, array in columns.items() if name in SCENE}
     for name, array in scene.items():
-        if array.dtype.kind not in _NUMBERS + _TEXT:
+        if array.dtype.kind not in "fiuU":
             raise UserError(f"{name} holds {array.dtype}; expected numbers", path)
         if array.size != 1 and array.ndim != 1:
             shape = " by ".join(map(str, array.shape))
@@ -139,29 +128,8 @@ def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
     count = next(iter(lengths.values()), 1)
     for name, array in scene.items():
         spread = np.broadcast_to(array.reshape(-1), (count,))
-        columns[name] = spread if spread.dtype.kind in _NUMBERS else spread.tolist()
-    yield Reader(names, [Rows.of(1, count, columns.items())], count)
-
-
-class _NpzWriter(Writer):
-    kind = "an .npz table"
-
-    def __init__(self, *columns: Any) -> None:
-        super().__init__(*columns)
-        self._parts: list[list[NDArray[Any]]] = []
-
-    def put(self, rows: Rows, results: Mapping[str, NDArray[Any]]) -> None:
-        columns = [(name, rows.kept(name)) for name in self.kept]
-        arrays = [c if isinstance(c, np.ndarray) else _array(name, c) for name, c in columns]
-        self._parts.append([*arrays, *(results[name] for name in self.results)])
-
-    def arrays(self) -> dict[str, NDArray[Any]]:
-        """The whole columns by heading."""
-        if not self._parts:
-            return {}
-        columns = zip(*self._parts, strict=True)
-        whole = (parts[0] if len(parts) == 1 else np.concatenate(parts) for parts in columns)
-        return dict(zip(self.headings, whole, strict=True))
+        columns[name] = spread.tolist() if spread.dtype.kind == "U" else spread
+    yield Reader(names, [Rows(count, columns)], count)
 
 
 def _array(name: str, column: Column) -> NDArray[Any]:
@@ -178,12 +146,19 @@ def _array(name: str, column: Column) -> NDArray[Any]:
 
 
 @contextmanager
-def write(path: str, form: str, delimiter: str, *columns: Any) -> Iterator[Writer]:
-    """Write an .npz table."""
-    writer = _NpzWriter(*columns)
-    yield writer
-    if path == "-":
-        write_arrays(sys.stdout.buffer, writer.arrays())
-        return
-    with replacing(path, "wb") as file:
-        write_arrays(file, writer.arrays())
+def write(
+    path: str, form: str, delimiter: str, names: Sequence[str]
+) -> Iterator[Callable[[Sequence[tuple[str, Column]]], None]]:
+    """Write an .npz table as numpy.savez does, but of arrays with any name."""
+    parts: list[list[NDArray[Any]]] = []
+    yield lambda columns: parts.append([_array(*column) for column in columns])
+    with (
+        replacing(path, "wb") if path != "-" else nullcontext(sys.stdout.buffer) as file,
+        zipfile.ZipFile(file, "w") as archive,
+    ):
+        for name, column in zip(names, zip(*parts, strict=True), strict=bool(parts)):
+            # a fixed date: the same arrays give the same bytes
+            escaped = f"{heading(name)}.npy".encode("utf-8", ESCAPED).decode()
+            with archive.open(zipfile.ZipInfo(escaped), "w", force_zip64=True) as out:
+                whole = column[0] if len(column) == 1 else np.concatenate(column)
+                np.lib.format.write_array(out, np.asanyarray(whole), allow_pickle=False)

@@ -55,12 +55,10 @@ def read_ranges(texts: Mapping[str, str], units: str | None = None) -> dict[str,
 
 def _blocks(scene: Mapping[str, str], ranges: Mapping[str, Range]) -> Iterator[Rows]:
     grid = product(*(map(digits, r.values()) for r in ranges.values()))
-    first = 1
     while block := list(islice(grid, BLOCK_ROWS)):
         columns: dict[str, Column] = {n: [t] * len(block) for n, t in scene.items()}
         columns |= dict(zip(ranges, zip(*block, strict=True), strict=True))
-        yield Rows(first, len(block), columns, {})
-        first += len(block)
+        yield Rows(len(block), columns)
 
 
 @contextmanager

@@ -1,36 +1,42 @@
-"""Tables of scenes: CSV, JSON Lines, .npz and others, read and written a block of rows at a time.
+"""Tables of scenes: CSV, JSON Lines, .npz and others, read and written a block of rows at a time,
+the next block read and the last one written while a block is solved.
 
 A reader yields `tables.rows.Rows`; a writer takes them back with their results. Memory does not
 grow with the file (but for .npz and .xlsx).
 """
 
+import os
 import sys
-from collections.abc import Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import AbstractContextManager, contextmanager
 from importlib import import_module
 from types import ModuleType
+from typing import Any
 
-from ..errors import UserError
+from numpy.typing import NDArray
+
+from ..errors import UserError, quoted
 from ..names import SCENE
-from .rows import Reader, Writer
+from .rows import Reader, Rows
 
 FORMATS = {
-    ".csv": "csv",
-    ".tsv": "csv",
-    ".txt": "csv",
-    ".jsonl": "jsonl",
-    ".ndjson": "jsonl",
-    ".npz": "npz",
-    ".parquet": "parquet",
-    ".feather": "feather",
-    ".arrow": "feather",
+    **dict.fromkeys((".csv", ".tsv", ".txt"), "csv"),
+    **dict.fromkeys((".jsonl", ".ndjson"), "jsonl"),
+    **{".npz": "npz", ".parquet": "parquet", ".feather": "feather", ".arrow": "feather"},
     ".xlsx": "xlsx",
 }
 """File name ending -> format."""
 _MODULES = {
-    **{"csv": "csvtable", "jsonl": "jsontable", "npz": "npztable", "xlsx": "excel"},
-    **dict.fromkeys(("parquet", "feather"), "arrowtable"),
+    "csv": ("csvtable", "a CSV table"),
+    "jsonl": ("jsontable", ""),
+    "npz": ("npztable", "an .npz table"),
+    "xlsx": ("excel", "a workbook"),
+    **dict.fromkeys(("parquet", "feather"), ("arrowtable", "a table of typed columns")),
 }
+"""Format -> its module, and what it is called where its columns are those of the first block. A
+module has ``read(path, form, encoding)`` and ``write(path, form, delimiter, names)``, which gives a
+function that takes a block's columns by name; each imports what it needs."""
 _TEXTS = ("csv", "jsonl")
 
 
@@ -40,12 +46,14 @@ def format_of(path: str, given: str | None) -> str:
         return given
     if path == "-":
         return "csv"
-    if path.lower().endswith(".gz"):
-        path = path[:-3]
-    ending = "." + path.lower().rpartition(".")[2] if "." in path else ""
+    ending = "".join(path.lower().removesuffix(".gz").rpartition(".")[1:])
     if ending not in FORMATS:
         raise UserError(f"unknown format; expected a name ending in {' '.join(FORMATS)}", path)
     return FORMATS[ending]
+
+
+def _module(form: str) -> ModuleType:
+    return import_module(f"{__package__}.{_MODULES[form][0]}")
 
 
 def open_reader(
@@ -61,25 +69,70 @@ def open_reader(
     return opened
 
 
+@contextmanager
 def open_writer(
     path: str, form: str, source: Reader, results: Sequence[str], scene_too: bool
-) -> AbstractContextManager[Writer]:
+) -> Iterator[Callable[[Rows, Mapping[str, NDArray[Any]]], None]]:
     """Open a table for writing ``results`` after the columns of ``source`` (its scene columns only
-    if ``scene_too``; a column named like a result gives way to it). The file appears under its name
-    when all is written."""
+    if ``scene_too``; a column named like a result gives way to it): a function that writes a block
+    and its results. The file appears under its name when all is written."""
     if path == "-" and form not in _TEXTS and (form != "npz" or sys.stdout.isatty()):
         place = "a terminal" if form == "npz" else "standard output"
         raise UserError(f"{form} is not for {place}; expected -o FILE.{form}")
     dropped = {*results, *(() if scene_too else SCENE)}
     kept = [name for name in source.names if name not in dropped]
-    write = _module(form).write
-    opened: AbstractContextManager[Writer] = write(
-        path, form, source.delimiter, kept, results, dropped
-    )
-    return opened
+    with _module(form).write(path, form, source.delimiter, [*kept, *results]) as put:
+
+        def write(rows: Rows, found: Mapping[str, NDArray[Any]]) -> None:
+            late = [name for name in rows.late if name not in dropped]
+            if late and form != "jsonl":
+                raise UserError(
+                    f"line {rows.late[late[0]]} has the key {quoted(late[0])}, which no row before "
+                    f"it has, and {_MODULES[form][1]} begins with its columns; expected to write "
+                    "JSON Lines, or the key in the first row too"
+                )
+            names = [*kept, *late]
+            if form == "jsonl":  # a row need not hold all
+                names = [name for name in names if name in rows.columns]
+            cell = rows.columns.__getitem__ if form == "npz" else rows.one_per_row
+            put([*((name, cell(name)) for name in names), *((n, found[n]) for n in results)])
+
+        yield write
 
 
-def _module(form: str) -> ModuleType:
-    """The module of a format, which has ``read(path, form, encoding)`` and ``write(path, form,
-    delimiter, *columns)``; each imports what it needs."""
-    return import_module(f"{__package__}.{_MODULES[form]}")
+def may_wait(path: str) -> bool:
+    """Whether reading or writing ``path`` can take for ever: standard input or output, a pipe. A
+    thread that waits there would keep a terminated command from ending."""
+    return path == "-" or (os.path.exists(path) and not os.path.isfile(path))
+
+
+@contextmanager
+def ahead(blocks: Iterable[Any]) -> Iterator[Iterator[Any]]:
+    """The blocks, each read while the one before it is in use; what reading raises, they raise.
+    pyarrow and numpy let go of the interpreter's lock: two processors are of use."""
+    iterator = iter(blocks)
+    with ThreadPoolExecutor(1, "read") as pool:
+
+        def taken() -> Iterator[Any]:
+            waiting = pool.submit(next, iterator, None)
+            while (block := waiting.result()) is not None:
+                waiting = pool.submit(next, iterator, None)
+                yield block
+
+        yield taken()
+
+
+@contextmanager
+def behind(write: Callable[..., object]) -> Iterator[Callable[..., None]]:
+    """A function that has ``write`` done in order, later (more than one call that waits gains
+    nothing); what it raises is raised by the next call, or at the end."""
+    with ThreadPoolExecutor(1, "write") as pool:
+        waiting: Future[object] = pool.submit(bool)
+
+        def later(*arguments: Any) -> None:
+            nonlocal waiting
+            waiting.result()
+            waiting = pool.submit(write, *arguments)
+
+        yield later
+        waiting.result()

@@ -1,0 +1,236 @@
+"""The cells of a table as numbers in base units: by the units of its headings (``UX [mph]``, ``MA
+(lb)``) and of the cells themselves; and its results in the same units."""
+
+import math
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from copy import copy
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import doubles
+from ..amounts import converted, units_in
+from ..closedform.columns import UNUSED_BY_POINTS
+from ..errors import UserError, quoted
+from ..names import RESULTS, SCENE, quantity
+from ..units import NUMBER, RULES, SYSTEMS, System, check_unit, size_of, system_named, system_using
+from . import arrow, jsontext
+from .rows import Column, Heading, Rows, heading
+
+_MEASURING = ("length", "length/time", "mass", "mass·length²", "mass·length²/time²")
+"""What a bare column beside others with units leaves open."""
+_RATIOS = ("1", "-", "–", "—", "")
+
+
+class TableUnits:
+    """What the columns of one table are in. ``system``: what results are shown in, `RULES` where
+    nothing names a unit. Raises UserError for a heading whose unit does not measure its quantity,
+    and for bare columns beside such with units where ``given`` names no system."""
+
+    def __init__(
+        self,
+        names: Iterable[str] = (),
+        given: str | None = None,
+        first: Rows | None = None,
+        results: Iterable[str] = (),
+        where: str = "",
+    ) -> None:
+        self.units: dict[str, str] = {}
+        self.based: Collection[str] = ()
+        self.strict = False
+        compared = [name for name in names if name in SCENE or name in results]
+        for name in compared:
+            unit, rule = getattr(name, "unit", ""), quantity(name).unit
+            if unit and unit != rule and not (rule == NUMBER and unit in _RATIOS):
+                check_unit(unit, rule, f"column {quoted(heading(name))}", where)
+                self.units[name] = unit
+        used = [(unit, quantity(name).unit) for name, unit in self.units.items()]
+        self.system = system_named(given, "--units") if given else system_using(used, where)
+        if self.system is RULES and first is not None:
+            self.system = system_using(_units_in_cells(first), where)
+            self.strict = self.system is not RULES
+        elif not given and (bare := [name for name in compared if self._open(name)]):
+            if self.system is not RULES:
+                # beside ft, slug and ft/s, or m, kg and m/s, bare numbers are such too
+                self.system = SYSTEMS["si" if self.system.base == SYSTEMS["si"].base else "chapter"]
+            if any(self.factor(name) != 1 for name in self.units):
+                usual = self.system.label(quantity(bare[0]).unit)
+                raise UserError(
+                    f"column {bare[0]} has no unit, and others have; expected {bare[0]} [{usual}], "
+                    f"or --units {self.system.name}",
+                    where,
+                )
+
+    def _open(self, name: str) -> bool:
+        return name not in self.units and quantity(name).unit in _MEASURING
+
+    def _unit(self, name: str) -> str:
+        return self.units.get(name) or self.system.usual.get(quantity(name).unit, "")
+
+    def factor(self, name: str) -> float:
+        """What a column's bare numbers are multiplied with to be in base units."""
+        rule, unit = quantity(name).unit, self._unit(name)
+        size = size_of(unit, rule) if unit and name not in self.based else None
+        return float(size[0] / self.system.scale(rule)) if size else 1.0
+
+    def given(self, names: Collection[str]) -> "TableUnits":
+        """The same of columns of which some are replaced by base units."""
+        result = copy(self)
+        result.based = names
+        return result
+
+    def converts(self, name: str) -> bool:
+        """Whether a column's texts have to be looked at."""
+        return name not in self.based and (self.system is not RULES or name in self.units)
+
+    def refuses_bare(self, name: str) -> bool:
+        """Whether bare numbers of a column leave their unit open."""
+        return self.strict and self.converts(name) and self._open(name)
+
+    def cell(self, name: str, text: str) -> str:
+        """One cell in base units, exactly. Raises UserError for what is not an amount."""
+        unit = self._unit(name)
+        usual = {quantity(name).unit: unit} if unit else {}
+        if self.system is RULES and (found := system_using(units_in(name, text), "")) is not RULES:
+            raise UserError(
+                f"{quoted(text)}: expected its unit in the heading, or --units {found.name}"
+            )
+        return converted(name, text, System("", self.system.base, usual, {}))
+
+    def headings(self, results: Sequence[str]) -> list[str]:
+        """Names with the headings they have here: ``DVA [mph]``."""
+        known = (*SCENE, *RESULTS)
+        return [Heading(n, self.system.heading(n)) if n in known else n for n in results]
+
+    def shown(self, results: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+        """Results in base units as they are shown."""
+        factors = {n: self.system.factor(n) for n in results if n in RESULTS}
+        return {n: v * factors[n] if factors.get(n, 1.0) != 1 else v for n, v in results.items()}
+
+
+def _units_in_cells(rows: Rows) -> list[tuple[str, str]]:
+    """The units that cells have, each with what it measures."""
+    found: set[tuple[str, str]] = set()
+    for name, column in rows.scene().items():
+        if not isinstance(column, np.ndarray):
+            # "lb" and "45 deg", but not 1E5 or inf
+            worth = (c for c in column if isinstance(c, str) and c.strip("0123456789+-.eE \t"))
+            for text in worth:
+                found.update(units_in(name, text))
+    return list(found)
+
+
+def check_scene_columns(
+    names: Collection[str], points: bool = False, advice: str = "--set NAME=VALUE"
+) -> None:
+    """Raise UserError unless ``names`` are a scene; ``points``: of point masses only."""
+    unneeded = ("M", *(UNUSED_BY_POINTS if points else ()))
+    missing = [name for name in SCENE if name not in names and name not in unneeded]
+    if missing:
+        raise UserError(
+            f"no column {' '.join(missing)}; expected columns named {' '.join(SCENE)} "
+            f"(M may be missing; {advice} gives one value for all rows)"
+        )
+
+
+def filled(column: Column, text: str) -> Column:
+    """A column with ``text`` where it has nothing."""
+    if isinstance(column, np.ndarray):
+        return column
+    if isinstance(column, arrow.ArrowTexts):
+        return column.filled(text)
+    return [text if cell in (None, "") else cell for cell in column]
+
+
+def typed(name: str, column: Column) -> NDArray[Any] | list[str]:
+    """A column as a typed table holds it: doubles for a scene's name, NaN where a cell is no
+    number; otherwise what the array has, or texts."""
+    if isinstance(column, np.ndarray):
+        return column
+    if name not in SCENE:
+        return [jsontext.plain(cell) for cell in column]
+    if isinstance(column, arrow.ArrowTexts) and (found := column.doubles()) is not None:
+        return found
+    return np.array([np.nan if isinstance(n := _number(c), str) else n for c in column], float)
+
+
+def numbers(rows: Rows, units: TableUnits) -> dict[str, NDArray[np.float64]]:
+    """The scene columns of ``rows`` as doubles in base units. A cell that is not a number is NaN,
+    and a complaint is added to ``rows.bad`` (unless its row has one already, or is a point mass
+    that does not look at the cell)."""
+    asked, every = ~point_masses(rows), np.ones(rows.count, np.bool_)
+    return {
+        name: _numbers(rows, name, column, units, asked if name in UNUSED_BY_POINTS else every)
+        for name, column in rows.scene().items()
+    }
+
+
+def point_masses(rows: Rows) -> NDArray[np.bool_]:
+    """Which rows have M = 4. Complaints about cells that these do not look at are withdrawn."""
+    every = np.ones(rows.count, np.bool_)
+    if "M" not in rows.columns:
+        return ~every
+    is_four = _numbers(rows, "M", rows.columns["M"], TableUnits(), every) == 4
+    points = np.broadcast_to(is_four, every.shape)
+    rows.bad = [bad for bad in rows.bad if bad[1] not in UNUSED_BY_POINTS or not points[bad[0]]]
+    return points
+
+
+def _numbers(
+    rows: Rows, name: str, column: Column, units: TableUnits, asked: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    factor, bare_refused = units.factor(name), units.refuses_bare(name)
+    values = None if bare_refused else _plain_numbers(column)
+    if values is not None:
+        return values if factor == 1 else values * factor
+    values = np.full(rows.count, np.nan)
+    cells = list(column)
+    already = {index for index, *_ in rows.bad}
+    for index, cell in enumerate(cells):
+        if index in already or not asked[index]:
+            continue
+        number = _number(cell)
+        try:
+            if not isinstance(number, str):
+                values[index] = number * factor
+                if bare_refused and number:
+                    raise UserError(f"{cell} has no unit, and others have")
+            elif isinstance(cell, str) and any(map(str.isdigit, cell)):
+                values[index] = doubles.double(units.cell(name, cell))
+                cells[index] = f"{values[index] / factor:.15g}"
+                rows.columns[name] = cells
+            else:
+                raise UserError(number)
+        except ValueError as error:
+            values[index] = np.nan
+            rows.bad.append((index, name, str(error).removeprefix(": ")))
+    return values
+
+
+def _plain_numbers(column: Column) -> NDArray[np.float64] | None:
+    """The numbers of a column that holds nothing else."""
+    if isinstance(column, np.ndarray) and column.dtype.kind in "fiub":
+        return column.astype(np.float64, copy=False)
+    if isinstance(column, arrow.ArrowTexts) and (values := column.doubles()) is not None:
+        return values
+    try:
+        return np.array(doubles.doubles(list(column)))
+    except (TypeError, ValueError):  # some cell is not a number
+        return None
+
+
+def _number(cell: object) -> float | str:
+    """The double that a cell is, or why it is none."""
+    if cell is None or (isinstance(cell, str) and not cell.strip()):
+        return "is empty; expected a number"
+    if isinstance(cell, str) and is_infinite(cell):
+        return math.inf
+    if isinstance(cell, str) and doubles.is_number(cell):
+        return doubles.double(cell)
+    return f"{quoted(cell)} is not a number"
+
+
+def is_infinite(text: str) -> bool:
+    """Whether a cell says inf, the mass and the inertia of a barrier; INPUT has no such number."""
+    return text.strip().lower() == "inf"
