@@ -19,7 +19,7 @@ from impact88.closedform.solve import solve
 from impact88.commands import figure_command as command
 from impact88.commands.figure_command import solved
 from impact88.errors import UserError
-from impact88.figures import axes, canvas, charts, freebody
+from impact88.figures import axes, canvas, charts, views
 from impact88.figures.canvas import svg
 from impact88.figures.drawing import (
     Box,
@@ -29,12 +29,12 @@ from impact88.figures.drawing import (
     Text,
     arrow,
     pieces,
+    place,
     text_box,
     text_runs,
     text_width,
     unit,
 )
-from impact88.figures.labels import place
 from impact88.figures.scenegeometry import plan
 from impact88.figures.sceneview import scene_drawing, scene_svg
 from impact88.figures.views import configurations
@@ -476,10 +476,10 @@ class TestFreeBodies:
     @pytest.mark.parametrize(
         "drawing",
         [
-            freebody.colinear(),
-            freebody.planar(),
-            freebody.planar(sample(3)),
-            freebody.planar(staged_scene(11)),
+            views.colinear(),
+            views.planar(),
+            views.planar(sample(3)),
+            views.planar(staged_scene(11)),
             configurations(),
         ],
         ids=["colinear", "planar", "planar 3", "planar head-on", "configurations"],
@@ -490,7 +490,7 @@ class TestFreeBodies:
         assert drawing.width == 85
 
     def test_impulses_are_opposite(self):
-        for drawing in (freebody.colinear(), freebody.planar()):
+        for drawing in (views.colinear(), views.planar()):
             texts = {text.text for text in drawing.texts()}
             assert {"P_n", "P_t", "−P_n", "−P_t"} <= texts
             shafts = [i for i in drawing.items if isinstance(i, Path) and i.role == "impulse"]
@@ -499,14 +499,14 @@ class TestFreeBodies:
             assert all(-way in directions for way in directions)
 
     def test_planar_of_point_masses_has_no_arms_and_no_moment(self):
-        texts = {text.text for text in freebody.planar(sample(2)).texts()}
+        texts = {text.text for text in views.planar(sample(2)).texts()}
         assert {"P_n", "P_t", "−P_n", "−P_t", "n", "t", "Γ", "x", "y"} <= texts
         assert not {"M", "−M", "d_a", "d_b", "φ_a", "φ_b", "θ_b"} & texts
-        roles = {item.role for item in freebody.planar(sample(2)).items}
+        roles = {item.role for item in views.planar(sample(2)).items}
         assert not any(role.startswith("moment") for role in roles)
 
     def test_planar_names_every_quantity_of_figure_3(self):
-        texts = {text.text for text in freebody.planar().texts()}
+        texts = {text.text for text in views.planar().texts()}
         assert {"M", "−M", "d_a", "d_b", "φ_a", "φ_b", "θ_b", "Γ", "n", "t"} <= texts
 
     def test_configurations_are_the_four_of_figure_4(self):

@@ -27,16 +27,17 @@ examples:
   impact88 figure staged -o figure5.pdf
 """
 
+import argparse
 from collections.abc import Callable
 from typing import Any
 
 from ..chapter.barrier import BARRIER, VEHICLE, barrier
 from ..closedform.solve import solve
 from ..errors import UserError
-from ..figures import charts, freebody
+from ..figures import charts
 from ..figures.drawing import Drawing
 from ..figures.sceneview import scene_drawing
-from ..figures.views import configurations, strip_drawing
+from ..figures.views import colinear, configurations, planar, strip_drawing
 from ..names import FINAL_VELOCITIES, RESULTS, missing
 from ..scene import Scene, entries_in, numbers_of
 from ..tables.sweep import read_ranges
@@ -65,7 +66,8 @@ ARGUMENTS = (
 )
 
 
-def main(args: options.Args) -> None:
+def main(args: argparse.Namespace) -> int:
+    """Draw one figure."""
     from ..figures.canvas import check_ending, save
 
     check_ending(args.output)
@@ -73,15 +75,16 @@ def main(args: options.Args) -> None:
     if args.width:
         drawn.enlarged = args.width / drawn.width
     save(drawn, args.output)
+    return 0
 
 
-def _drawn(args: options.Args) -> Drawing:
+def _drawn(args: argparse.Namespace) -> Drawing:
     kind = args.kind
     given = bool(args.scene or args.sample)
     alone: dict[str, Callable[[], Drawing]] = {
         "staged": charts.figure_5,
         "force": charts.force_and_impulse,
-        "colinear": freebody.colinear,
+        "colinear": colinear,
         "configurations": configurations,
     }
     if kind in alone:
@@ -104,7 +107,7 @@ def _drawn(args: options.Args) -> Drawing:
     if kind == "barrier":
         return _barrier(args)
     if kind == "planar":
-        return freebody.planar(options.one_scene(args) if given or args.set else None)
+        return planar(options.one_scene(args) if given or args.set else None)
     scene = options.one_scene(args)
     if kind == "friction":
         return charts.friction_sweep(scene)
@@ -113,7 +116,7 @@ def _drawn(args: options.Args) -> Drawing:
     return scene_drawing(scene, solved(scene), title=scene.title or "Scene from above")
 
 
-def _barrier(args: options.Args) -> Drawing:
+def _barrier(args: argparse.Namespace) -> Drawing:
     """A vehicle against a barrier, its approach and its rebound."""
     known, units = options.known_values(args, (*VEHICLE, "M"))
     if absent := [name for name in VEHICLE if name not in known]:
@@ -134,7 +137,7 @@ def _barrier(args: options.Args) -> Drawing:
     )
 
 
-def _swept(args: options.Args) -> Drawing:
+def _swept(args: argparse.Namespace) -> Drawing:
     """One result a panel, along the one value swept."""
     if args.ranges:
         raise UserError("sweep takes --sweep NAME=LOW:HIGH:COUNT, not --range")

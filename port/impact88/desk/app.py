@@ -6,24 +6,28 @@ question replaced by a newer one is 409.
 """
 
 import json
+import re
 import threading
 from base64 import b64decode
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from typing import Any
 
 import flask
 from flask import Blueprint, Flask, Response, abort, request
 from jinja2 import ChoiceLoader, PackageLoader
+from markupsafe import Markup, escape
 from werkzeug.exceptions import HTTPException
 
 from ..errors import UserError
 from ..files import packaged_text
-from ..names import SCENE
+from ..names import DEFAULT_M, SCENE, quantity
+from ..plaintable import number
 from ..reconstruction.state import KNOWABLE
+from ..scene import SAMPLES, SIGNS, sample
 from ..version import __version__
-from . import collision, page, reconstruction
-from .forms import filled_in
+from . import collision, reconstruction
+from .forms import digits, filled_in
 from .guard import HEADERS, LARGEST_BODY, refusal
 from .workers import Bench, BrokenError, SupersededError
 
@@ -33,6 +37,41 @@ BENCHES = {
 }
 """What takes long, and the module that does it; the text being edited overtakes papers waiting."""
 _FORM = ("values", "units")
+
+GROUPS = {
+    "Vehicle A": "MA IA DA PA TA",
+    "Vehicle B": "MB IB DB PB TB",
+    "Before the impact, A": "UX UY WA",
+    "Before the impact, B": "VX VY WB",
+    "Contact and coefficients": "GA E MU EM M",
+}
+"""The form's parts: heading and quantities."""
+KNOWN_GROUPS = {
+    **dict(list(GROUPS.items())[:4]),
+    "After the impact, A": "VAX VAY WAF",
+    "After the impact, B": "VBX VBY WBF",
+    "Contact": "GA M",
+    "Coefficients": "E MU MUP EM",
+}
+MORE_GROUPS = {
+    "Speed and course, A": "SA HA SAF HAF",
+    "Speed and course, B": "SB HB SBF HBF",
+    "Velocity change, A": "DVA DVAF DVAR",
+    "Velocity change, B": "DVB DVBF DVBR",
+    "Energy": "KI KF EL LOSS",
+}
+ALWAYS_KNOWN = frozenset("MA IA DA PA TA MB IB DB PB TB GA M".split())
+"""What a reconstruction cannot do without."""
+
+SYSTEMS = (
+    ("us", "lb, mph, ft"),
+    ("chapter", "slug, ft/s, ft"),
+    ("metric", "kg, km/h, m"),
+    ("si", "kg, m/s, m"),
+)
+"""The systems of units (`impact88.units`), and what bare numbers are in them."""
+PUBLISHED = ("run1-as-printed.txt", "run2-as-printed.txt", "table3-as-printed.txt")
+"""The published printouts, as they stand in the chapter."""
 
 
 class Desk:
@@ -53,11 +92,51 @@ class Desk:
             bench.close()
 
 
+def symbol(text: str) -> Markup:
+    """A symbol of the chapter as HTML: what follows ``_`` is a subscript."""
+    return Markup(re.sub("_([A-Za-z0-9]+)", r"<sub>\1</sub>", str(escape(text))))
+
+
+def unit(label: str) -> str:
+    """How a unit is written."""
+    return {"1": "", "degree": "°", "deg": "°", "percent": "%"}.get(label, label)
+
+
+def drivers(bound: Mapping[str, Any]) -> str:
+    """The two inputs that move a result most, each with how far."""
+    swings = {n: (d["highest"] or 0) - (d["lowest"] or 0) for n, d in bound["drives"].items()}
+    least = 1e-9 * abs((bound["upper"] or 0) - (bound["lower"] or 0))
+    ranked = sorted(swings.items(), key=lambda entry: -entry[1])[:2]
+    return ", ".join(f"{name} {number(swing, 3)}" for name, swing in ranked if swing > least)
+
+
+FILTERS: dict[str, Callable[..., Any]]
+FILTERS = {"quantity": quantity, "symbol": symbol, "unit": unit}
+FILTERS |= {"digits": digits, "drivers": drivers}
+
+
+def contents() -> dict[str, Any]:
+    """The template's values."""
+    return {
+        "version": __version__,
+        "groups": GROUPS,
+        "known_groups": KNOWN_GROUPS,
+        "more_groups": MORE_GROUPS,
+        "always_known": ALWAYS_KNOWN,
+        "report_fields": [("case", "Case"), ("examiner", "Examiner"), ("date", "Date")],
+        "published": PUBLISHED,
+        "systems": SYSTEMS,
+        "default_m": DEFAULT_M,
+        "signs": [re.split("   +", line)[-1] for line in SIGNS.splitlines() if line.strip()],
+        "samples": [(number, sample(number).title) for number in SAMPLES],
+    }
+
+
 def application(desk: Desk, port: int, token: str) -> Flask:
     """The WSGI application that answers for ``desk`` at 127.0.0.1:``port``, below ``token``."""
     app = Flask(__name__, static_url_path=f"/{token}/static")
     app.config["MAX_CONTENT_LENGTH"] = LARGEST_BODY
-    app.jinja_env.filters |= page.FILTERS
+    app.jinja_env.filters |= FILTERS
     packages = (__package__ or "", "impact88.report")
     app.jinja_loader = ChoiceLoader([PackageLoader(name) for name in packages])
 
@@ -108,12 +187,12 @@ def _addresses(desk: Desk) -> Blueprint:
     @routes.get("/")
     def whole_page() -> str:
         desk.warm()  # while the page is sent
-        return flask.render_template("desk.html", **page.contents())
+        return flask.render_template("desk.html", **contents())
 
     @routes.get("/signs.svg")
     def signs() -> Response:
         from ..figures.canvas import svg
-        from ..figures.freebody import planar
+        from ..figures.views import planar
 
         return Response(svg(planar()), content_type="image/svg+xml")
 
@@ -125,7 +204,7 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/published/<name>")
     def published(name: str) -> Response:
-        if name not in page.PUBLISHED:
+        if name not in PUBLISHED:
             abort(404)
         return _saved(packaged_text("impact88.legacy", name), "text/plain", name)
 
@@ -235,7 +314,7 @@ def _parts(*names: str) -> dict[str, Any]:
         kind, fits = _KINDS[name]
         if not fits(whole.get(name)):
             raise UserError(f"{name!r} is not {kind}")
-    known = dict(page.SYSTEMS)
+    known = dict(SYSTEMS)
     if "units" in names and (units := whole.get("units")) and units not in known:
         raise UserError(f"{units!r} is not a system of units; expected {', '.join(known)}")
     return {name: "" if whole.get(name) is None else whole[name] for name in names}

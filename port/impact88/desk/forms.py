@@ -8,6 +8,7 @@ from ..errors import UserError
 from ..estimates import SIZES, WORD
 from ..files import decode
 from ..names import CHAPTER, RESULTS, SCENE, check_names, quantity
+from ..plaintable import number
 from ..scene import OWN_AXES, SOURCE, entries_of, in_base_units, toml_texts
 from ..units import base_of, system_of
 
@@ -103,3 +104,8 @@ def filled_in(data: bytes, name: str, allowed: Collection[str]) -> dict[str, Any
 def outline_lines(values: Mapping[str, str]) -> str:
     """The lines of a file for the lengths and widths among some values."""
     return "".join(f'{name} = "{values[name]}"\n' for name in OUTLINES if values.get(name))
+
+
+def digits(value: float | None, count: int) -> str:
+    """A number of a table; nothing for None."""
+    return "" if value is None else number(value, count)

@@ -14,8 +14,7 @@ from ..schemas import stamped
 from ..uncertainty import uncertain
 from ..uncertainty.uncertain import Uncertain
 from ..units import system_of
-from .forms import OUTLINES, Entries, entries, outline_lines, units_shown, without_rounding
-from .page import digits
+from .forms import OUTLINES, Entries, digits, entries, outline_lines, units_shown, without_rounding
 
 DRAWS, _DIGITS, _DIGITS_TO_GO_ON = 20_000, 6, 12
 """Random draws for the quantiles, as many as for a collision's bounds; digits of a value shown, as
@@ -43,40 +42,34 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     ``units`` as `units_shown`; ``object``, what `impact88 reconstruct --json` prints;
     ``solutions``, each with the command's text (``printed``), ``rows`` and ``columns`` of a table,
     ``adjusted`` values, ``warnings`` and the ``scene`` (texts by name, or None)."""
-    given = entries(values, units)
-    known: dict[str, Uncertain] = {}
-    problems = given.problems
-    for name, text in given.texts.items():
-        try:
-            known[name] = _read(name, text, given.units)
-        except UserError as error:
-            problems[name] = str(error)
-    whole: dict[str, Any] = {"problems": problems, "waiting": "", "object": None, "solutions": []}
-    whole["units"] = units_shown(given.units)
-    try:
-        if problems:
-            raise UserError(f"To be corrected: {' '.join(problems)}.")
-        solutions = _solved(known, given.units)
-    except UserError as error:
-        return {**whole, "waiting": str(error)}
-    whole["object"] = stamped("reconstruct", {"solutions": [numbers for numbers, _ in solutions]})
-    whole["solutions"] = [_solution(given, numbers, printed) for numbers, printed in solutions]
-    return whole
-
-
-def _solved(known: Mapping[str, Uncertain], named: str | None) -> list[tuple[dict[str, Any], str]]:
-    """Each solution as the command gives it, as an object and as text. Raises UserError."""
     from ..reconstruction import adjustment
     from ..reconstruction.solutiontable import Exact, Impact
     from ..uncertainty.reconstructedtable import Measured
 
-    found: Sequence[Impact]
-    if adjustment.needs_adjustment(known):
-        found = [Measured(impact, DRAWS) for impact in adjustment.reconstruct(known)]
-    else:
-        found = Exact.all_of({name: item.nominal for name, item in known.items()})
-    units = system_of(named)
-    return [(one.as_json(units), one.as_text(units)) for one in found]
+    given = entries(values, units)
+    system = system_of(given.units)
+    known: dict[str, Uncertain] = {}
+    for name, text in given.texts.items():
+        try:
+            known[name] = _read(name, text, given.units)
+        except UserError as error:
+            given.problems[name] = str(error)
+    whole: dict[str, Any] = {"problems": given.problems, "units": units_shown(given.units)}
+    whole |= {"waiting": "", "object": None, "solutions": []}
+    try:
+        if given.problems:
+            raise UserError(f"To be corrected: {' '.join(given.problems)}.")
+        found: Sequence[Impact]
+        if adjustment.needs_adjustment(known):
+            found = [Measured(impact, DRAWS) for impact in adjustment.reconstruct(known)]
+        else:
+            found = Exact.all_of({name: item.nominal for name, item in known.items()})
+        solutions = [(one.as_json(system), one.as_text(system)) for one in found]
+    except UserError as error:
+        return {**whole, "waiting": str(error)}
+    whole["object"] = stamped("reconstruct", {"solutions": [numbers for numbers, _ in solutions]})
+    whole["solutions"] = [_solution(given, *solution) for solution in solutions]
+    return whole
 
 
 def _read(name: str, text: str, units: str | None) -> Uncertain:

@@ -1,12 +1,4 @@
-"""The emulated machine as a Python object: load, type, run, feed keys, take output, read variables.
-
-machine = Applesoft()
-machine.load("10 INPUT A\\n20 PRINT A / 3")
-machine.feed("1")
-machine.run()
-machine.take_output()          # '?\\x001\\n.333333333\\n'
-machine.reals()                # {'A': '8100000000'}
-"""
+"""The emulated machine as a Python object."""
 
 from collections import deque
 from collections.abc import Callable
@@ -35,9 +27,13 @@ class Applesoft:
     ``statements_left`` and ``interrupted`` of `machine` are there to be set.
 
     >>> apple = impact88.Applesoft()
-    >>> apple.enter("PRINT INT (100 * 14.52)")
+    >>> apple.load("10 INPUT A: PRINT INT (100 * A)")
+    >>> apple.feed("14.52")
+    >>> apple.run()
     >>> apple.take_output()
-    '1451\\n'
+    '?\\x0014.52\\n1451\\n'
+    >>> apple.reals()
+    {'A': '846851eb85'}
     """
 
     def __init__(
@@ -54,7 +50,7 @@ class Applesoft:
         self._keyboard = keyboard
         self._output: list[str] = []
         shown = screen or self._output.append
-        self.machine = Machine(self._next_line, shown, printer, dos=dos, echo=echo, blanks=blanks)
+        self.machine = Machine(self._next_line, shown, printer, blanks, dos=dos, echo=echo)
 
     def _next_line(self) -> str | None:
         if self._queue:
@@ -174,7 +170,7 @@ class Applesoft:
     def reals(self) -> dict[str, str]:
         """Every real variable that exists, oldest first: five stored bytes in hexadecimal."""
         return {
-            _name(key): self._shown(key, address)
+            key.to_bytes(2, "big").rstrip(b"\0").decode(): self._shown(key, address)
             for key, address in self.machine.simple.items()
             if not key & INTEGER
         }
@@ -205,8 +201,3 @@ def _key(name: str) -> int:
     letters = name.rstrip("%$").encode("ascii")
     two = letters[:2].ljust(2, b"\0")
     return int.from_bytes(two, "big") | MARKS[name.encode()[len(letters) :]]
-
-
-def _name(key: int) -> str:
-    """The name of a real, from its bytes."""
-    return (chr(key >> 8) + chr(key & 0x7F)).rstrip("\0")

@@ -1,10 +1,9 @@
 """Formulas: FRMEVL, its operators and elements, and the functions that are built in.
 
 The ROM reads and computes in one go, and so does this: the order of events is the same, errors
-included, and the room on the 6502's stack, whose pointer at a routine's entry is ``sp``. A value is
-what the accumulator (FAC) holds, a triple of `real`; ``valtyp`` says whether that is a string.
-Where the ROM takes the one for the other, so does this: most functions are computed before it sees
-that the argument was a string; CHR$, PEEK, FRE and POS never look.
+included, and the 6502's stack pointer at a routine's entry, ``sp``. A value is what the accumulator
+holds, a triple of `real`. Where the ROM takes a string for a number, so does this: most functions
+are computed before it sees what the argument was; CHR$, PEEK, FRE and POS never look.
 """
 
 from collections.abc import Callable
@@ -46,7 +45,6 @@ LOOKING_FOR_INT = ("SQR", "EXP", "COS", "SIN", "TAN")
 FUNCTION_DEPTHS = {"SQR": 8, "EXP": 7}
 """How far below a formula's entry they find their errors; others 5."""
 WORDS = {token: word for word, token in TOKENS.items()}
-FIRST_SLICE, SCREEN_DOT = TOKENS["LEFT$"], TOKENS["SCRN("]
 
 
 def address_of(x: Number, sp: int) -> int:
@@ -72,10 +70,7 @@ def shifted_out(x: Number) -> int:
 
 
 class Expressions(Variables):
-    """FRMEVL and UNARY. ``cprtyp``: what a formula left of its last relation, which the next
-    string's + takes for a relation's signs."""
-
-    cprtyp = 0
+    """FRMEVL and UNARY."""
 
     def number(self, sp: int) -> Number:
         """FRMNUM: a formula that must be a number. Raises TYPE MISMATCH."""
@@ -206,8 +201,7 @@ class Expressions(Variables):
             sp -= PENDING
 
     def element(self, sp: int) -> Number:
-        """FRM_ELEMENT of a formula with this ``sp``: a constant, a variable, a string, a function
-        or a parenthesis."""
+        """FRM_ELEMENT: a constant, a variable, a string, a function or a parenthesis."""
         ram = self.ram
         pos = self.txtptr
         byte = ram[pos]
@@ -297,9 +291,9 @@ class Expressions(Variables):
 
     def function(self, token: int, sp: int) -> Number:
         """UNARY: a function in a formula with this ``sp``."""
-        if token >= FIRST_SLICE:
+        if token >= TOKENS["LEFT$"]:
             return self._slice(token, sp)
-        if token == SCREEN_DOT:
+        if token == TOKENS["SCRN("]:
             self.refuse("SCRN")
         fac = self.parenthesis(sp - 6)
         word = WORDS[token]

@@ -1,5 +1,4 @@
-"""What comes next: GOTO, FOR and NEXT, ONERR, END and CONT; and the program as it is typed: lines
-put in and taken out, NEW, DEL.
+"""What comes next: GOTO, FOR and NEXT, ONERR, END and CONT; the program's lines, NEW and DEL.
 
 FOR and GOSUB put 18 and 7 bytes on the 6502's stack, and are found only from the stack pointer on,
 frame upon frame: what an error that ONERR caught left there hides all below it. In memory a line is
@@ -43,7 +42,6 @@ class Flow(InputOutput):
     """The statements that say what comes next, and the program between TXTTAB and PRGEND."""
 
     execute: Callable[[], None]
-    broken = False
 
     def set_stack(self, sp: int) -> None:
         """TXS: what lay below is gone."""
@@ -59,8 +57,12 @@ class Flow(InputOutput):
         self.oldtext &= 0xFF
         self.subflg = 0
 
+    def set_pointers(self) -> None:
+        """SETPTRS: TXTPTR before the program; and CLEARC: no variables, DATA from the beginning."""
+        self.txtptr = self.txttab - 1
+        self.clear()
+
     def clear(self) -> None:
-        """CLEARC: no variables, DATA from the beginning."""
         self.fretop = self.memsiz
         self.arytab = self.strend = self.vartab
         self.simple.clear()
@@ -68,17 +70,11 @@ class Flow(InputOutput):
         self.restore_()
         self.clear_stack()
 
-    def set_pointers(self) -> None:
-        """SETPTRS: TXTPTR before the program, no variables."""
-        self.txtptr = self.txttab - 1
-        self.clear()
-
     def _find_loop(self) -> tuple[int, int]:
         """GTFORPNT: the loop with FORPNT's variable, or the innermost one if FORPNT's high byte is
         0, or -1; where the stack pointer came to in looking."""
         sp, frames = self.sp, self.frames
-        for n in range(len(frames) - 1, -1, -1):
-            frame = frames[n]
+        for n, frame in reversed(list(enumerate(frames))):
             if frame.sp != sp or frame.variable == NO_VARIABLE:
                 break
             if not self.forpnt >> 8:
@@ -280,14 +276,13 @@ class Flow(InputOutput):
         self.end(BREAK)
 
     def message(self, text: bytes) -> None:
-        """What stands before the prompt: a text, the bell, the line if there is one."""
+        """A text, the bell, the line if there is one."""
         self.show_message(text + b"\a")
         if self.curlin < DIRECT:
             self.show_message(b" IN ")
             self.show_number(integer(self.curlin))
 
     def cont(self) -> None:
-        """CONT."""
         if not self.oldtext >> 8:
             raise Fault("CAN'T CONTINUE", self.sp - 2)
         self.txtptr, self.curlin = self.oldtext, self.oldlin

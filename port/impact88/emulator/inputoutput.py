@@ -1,9 +1,8 @@
 """PRINT, LIST and the messages; READ, INPUT and GET.
 
 READ, INPUT and GET take values by the same routine: TXTPTR changes places between the variables and
-the values. Each variable is found, its value read and stored, then what follows the value is
-judged; so values before a bad one stay. A string ends at a comma or colon unless it began with a
-quote; after a number only a comma, a colon or the end will do.
+the values. Each variable is found, its value read and stored, then what follows the value judged:
+values before a bad one stay. Only a comma, a colon or the end may follow.
 """
 
 from ..applesoft.console import CONTROL_C

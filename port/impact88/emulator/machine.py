@@ -1,8 +1,8 @@
 """The machine that runs a program: NEWSTT, and the statements that fit nowhere else.
 
-One method a routine of the ROM, named in its docstring by the label that the published listings of
-the ROM give it; a statement's is named for its keyword, with an underscore. `memory` holds the
-state; `variables`, `expressions`, `inputoutput` and `flow` add a part each.
+One method a routine of the ROM, its docstring beginning with its label in the published listings of
+the ROM; a statement's is named for its keyword, with an underscore. `memory` holds the state;
+`variables`, `expressions`, `inputoutput` and `flow` add a part each.
 """
 
 from collections.abc import Callable

@@ -38,21 +38,16 @@ REFUSALS, MORE_REFUSED = 8, "more of the kind"
 _BEYOND = 0x200
 """Zeros behind the last address, so that text that runs on to the end of memory ends there."""
 
-WORDS = (
-    "67 txttab 69 vartab 6B arytab 6D strend 6F fretop 73 memsiz 75 curlin 77 oldlin 79 oldtext "
-    "7B datlin 7D datptr 83 varpnt 85 forpnt AF prgend B8 txtptr DA errlin DC errpos F4 txtpsv "
-    "F6 cursv"
-)
-BYTES = (
-    "14 subflg 52 temppt 53 lastpt D6 lock D8 errflg DE errnum DF errstk F2 trcflg F3 flash "
-    "F8 remstk"
-)
+_PAGE_ZERO = """14 subflg 52 temppt 53 lastpt 67 txttab+ 69 vartab+ 6B arytab+ 6D strend+ 6F fretop+
+73 memsiz+ 75 curlin+ 77 oldlin+ 79 oldtext+ 7B datlin+ 7D datptr+ 83 varpnt+ 85 forpnt+ AF prgend+
+B8 txtptr+ D6 lock D8 errflg DA errlin+ DC errpos+ DE errnum DF errstk F2 trcflg F3 flash
+F4 txtpsv+ F6 cursv+ F8 remstk"""
 POINTERS: dict[int, tuple[str, int, int]] = {}
 """By address of page 0: an attribute, its shift, and the bits of it that stand elsewhere."""
-for _address, _name in re.findall(r"(\w+) (\w+)", BYTES):
-    POINTERS[int(_address, 16)] = _name, 0, 0
-for _address, _name in re.findall(r"(\w+) (\w+)", WORDS):
-    POINTERS |= {int(_address, 16): (_name, 0, 0xFF00), int(_address, 16) + 1: (_name, 8, 0x00FF)}
+for _address, _name, _word in re.findall(r"(\w+) (\w+)(\+?)", _PAGE_ZERO):
+    POINTERS[int(_address, 16)] = _name, 0, 0xFF00 if _word else 0
+    if _word:
+        POINTERS[int(_address, 16) + 1] = _name, 8, 0x00FF
 OF_SCREEN = {32: "left", 33: "width", 34: "top", 35: "bottom", 36: "column", 37: "row", 50: "mask"}
 
 GOTO, PLUS, MINUS = (TOKENS[word] for word in ("GOTO", "+", "-"))
@@ -76,22 +71,18 @@ Name = tuple[int, int, bool]
 class Memory:
     """``ram``, the pointers, the devices, and the program's bytes from ``txtptr`` on.
 
-    ``statements_left`` limits what a program may do; ``interrupted`` is control-C; ``fac``: what
-    the accumulator held last; ``refused``: what was asked for and is not done here (drawing, tape,
-    machine code); ``charac``: CHARAC, in which INT leaves a byte too, or the function and its
-    operands whose INT left it.
+    ``statements_left`` limits what a program may do; ``interrupted`` is control-C; ``refused``:
+    what was asked for and is not done here (drawing, tape, machine code); ``fac``: what the
+    accumulator held last, ``valtyp``: `IS_STRING` when it is a string; ``cprtyp``: what a formula
+    left of its last relation, which the next string's + takes for a relation's signs; ``charac``:
+    CHARAC, in which INT leaves a byte too, or the function and its operands whose INT left it.
     """
 
     variables_changed: Callable[[], None]
+    charac: int | tuple[str, Number, Number]
 
     def __init__(
-        self,
-        keyboard: Keyboard,
-        screen: Device,
-        printer: Device | None,
-        *,
-        blanks: bool,
-        **dos: bool,
+        self, keyboard: Keyboard, screen: Device, printer: Device | None, blanks: bool, **dos: bool
     ) -> None:
         self.ram = bytearray(ADDRESSES + _BEYOND)
         self.ram[: len(PAGE_ZERO)] = PAGE_ZERO
@@ -109,8 +100,9 @@ class Memory:
         self.oldlin = self.oldtext = self.datlin = self.varpnt = self.forpnt = self.remstk = 0
         self.errflg = self.errlin = self.errpos = self.errnum = self.errstk = self.lastpt = 0
         self.txtpsv = self.cursv = self.subflg = self.trcflg = self.flash = self.lock = 0
-        self.temppt = TEMPORARIES
-        self.interrupted = False
+        self.temppt, self.charac = TEMPORARIES, 0
+        self.valtyp = self.cprtyp = self.strng2 = 0
+        self.interrupted = self.inttyp = self.broken = False
         self.statements_left: int | None = None
         self.refused: list[str] = []
 
@@ -169,8 +161,6 @@ class Memory:
     def put_word(self, address: int, value: int) -> None:
         self.ram[address] = value & 0xFF
         self.ram[address + 1] = value >> 8 & 0xFF
-
-    charac: int | tuple[str, Number, Number] = 0
 
     def text_changed(self) -> None:
         """Forget what stands at addresses of the program: names; reals and constants, each with

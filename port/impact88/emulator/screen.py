@@ -1,10 +1,9 @@
 """The text screen: 40 columns and 24 rows in memory, the cursor, and the text window.
 
-Characters arrive with their high bit dropped and go on to a device in the same form; columns that
-the cursor skipped (comma zones, HTAB) may be passed on as blanks when a character follows on the
-line. Rows have no newline at column 40. The monitor computes a row's address when the cursor enters
-it, for any row number and with the window's left edge added: a change of the window takes effect
-only then, and unusual windows write outside the rows.
+Characters arrive with their high bit dropped and go on to a device; columns that the cursor skipped
+(comma zones, HTAB) may be passed on as blanks when a character follows on the line, and rows have
+no newline at column 40. The monitor computes a row's address when the cursor enters it, for any row
+number and left edge: a change of the window takes effect only then, perhaps outside the rows.
 """
 
 import re
@@ -45,10 +44,9 @@ class Screen(Editor):
         self.column = self._expected = 0
         self.left, self.width, self.top, self.bottom = 0, WIDTH, 0, HEIGHT
         self.mask = NORMAL
-        self.row = 1
         ram[BASE:END] = bytes([_BLANK]) * (END - BASE)
         ram[BASE + _TITLE_COLUMN : BASE + _TITLE_COLUMN + len(_TITLE)] = _TITLE
-        self._go_to_row(1)
+        self.move_to_row(1)
 
     def write(self, text: str) -> None:
         """Show characters, and pass them on."""
@@ -84,9 +82,6 @@ class Screen(Editor):
         codes = codes[: max(END - address, 0)]
         self._ram[address : address + len(codes)] = codes
 
-    def _go_to_row(self, row: int) -> None:
-        self._address = row_address(row, self.left)
-
     def _line_feed(self) -> None:
         row = self.row + 1 & 0xFF
         if row < self.bottom:
@@ -102,9 +97,9 @@ class Screen(Editor):
         ram, bottom = self._ram, max(self.bottom, self.top + 1)
         for upper, lower in row_moves(self.top, bottom, self.left, self.width):
             ram[upper] = ram[lower]
-        self._go_to_row(bottom - 1)
+        self._address = row_address(bottom - 1, self.left)
         self._clear_from(0)
-        self._go_to_row(self.row)
+        self.move_to_row(self.row)
 
     def _clear_from(self, column: int) -> None:
         """Blanks to the end of the window's row; one at least."""
@@ -112,13 +107,10 @@ class Screen(Editor):
         self._fill(self._address + column, bytes([_BLANK]) * columns)
 
     def _clear_rows(self, row: int, column: int) -> None:
-        while True:
-            self._go_to_row(row)
-            self._clear_from(column)
-            row, column = row + 1, 0
-            if row >= self.bottom:
-                break
-        self._go_to_row(self.row)
+        for place in range(row, max(row + 1, self.bottom)):
+            self._address = row_address(place, self.left)
+            self._clear_from(column if place == row else 0)
+        self.move_to_row(self.row)
 
     def rows(self) -> list[bytes]:
         """The 24 rows as they lie in memory, 40 bytes each."""
@@ -167,7 +159,7 @@ class Screen(Editor):
     def move_to_row(self, row: int) -> None:
         """VTAB. A POKE of ``row`` alone does not move the cursor until it changes rows."""
         self.row = row
-        self._go_to_row(row)
+        self._address = row_address(row, self.left)
 
     def stay_at(self, column: int) -> None:
         """After a line feed: the column is unchanged, and nothing has been skipped."""

@@ -1,9 +1,9 @@
 """Keywords and tokens: how a typed line becomes the bytes a program is made of.
 
-A keyword is one byte from 0x80 on; everything else stays as typed, without its blanks. Keywords are
-found anywhere, with or without blanks inside, the first in the table's order that fits: so TOTAL
-begins with TO and SCORE holds OR. REM and DATA keep their text, and so does a string. Two words are
-special: AT followed at once by N or O is not AT, so that ATN and A TO are found instead.
+A keyword is one byte from 0x80 on; all else stays as typed, without its blanks, and with them in
+strings, REM and DATA. Keywords are found anywhere, with or without blanks inside, the first in the
+table's order that fits: TOTAL begins with TO, SCORE holds OR. AT followed at once by N or O is not
+AT, so that ATN and A TO are found instead.
 """
 
 from collections.abc import Iterable

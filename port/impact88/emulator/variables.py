@@ -1,13 +1,11 @@
 """Strings, variables and arrays in memory.
 
-A descriptor is three bytes, a length and an address. The characters of a string in the program lie
-in its text, all others in the string area, which grows down from MEMSIZ to FRETOP. A string in the
-accumulator is a number as it lies there: the length of one just made for the exponent, its address
-in two bytes of the mantissa, in two more that of the descriptor, which is all that counts.
-
-A simple variable: two bytes of name, five of value. An array: two of name, two of length, the
-number of dimensions, their sizes, the last first and high byte first, the elements, the first
-subscript fastest. Assignment makes them; where names lie is remembered while none is moved.
+A descriptor is three bytes, a length and an address: into the program's text, or the string area,
+which grows down from MEMSIZ to FRETOP. A string in the accumulator: the length of one just made for
+the exponent, its address in two bytes of the mantissa, in two more that of the descriptor, which is
+all that counts. A variable: two bytes of name, five of value. An array: two of name, two of length,
+the number of dimensions, their sizes, the last first and high byte first, the elements, the first
+subscript fastest. Where names lie is remembered while none is moved.
 """
 
 from collections.abc import Callable, Iterator
@@ -48,9 +46,9 @@ class Array(NamedTuple):
 
 
 class Variables(Memory):
-    """Strings and variables. ``valtyp``: `IS_STRING` when the accumulator holds a string."""
+    """Strings and variables."""
 
-    valtyp = strng2 = 0
+    formula: Callable[[int], Number]
 
     def collect_garbage(self) -> None:
         """GARBAG: move the strings that variables hold together below MEMSIZ, the highest first.
@@ -193,9 +191,6 @@ class Variables(Memory):
         self.move(source + first, address, length)
         return self.temporary(length, address, extension)
 
-    inttyp = False
-    formula: Callable[[int], Number]
-
     def variables_changed(self) -> None:
         ram = self.ram
         self.simple: dict[int, int] = {}
@@ -271,13 +266,7 @@ class Variables(Memory):
             known = self.atoms.get(self.txtptr + 1)
             if known and ram[known[0]] in AFTER_SUBSCRIPT and depth >= DEEPEST:
                 self.txtptr, simple, constant = known
-                if constant:
-                    e, m, s = self.fac = constant
-                else:
-                    e, m = stored_at(ram, self.simple.get(simple, EMPTY))
-                    s = m >> 31
-                    m = (m | 0x80000000) << 8 if e else 0
-                    self.fac = e, m, s
+                e, m, s = self.fac = constant or self.value(self.simple.get(simple, EMPTY))
             else:
                 self.txtptr += 1
                 e, m, s = self.formula(depth - 4)

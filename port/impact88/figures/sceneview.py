@@ -9,8 +9,7 @@ from ..reconstruction.geometry import clock
 from ..units import RULES, System, system_of
 from . import drawing as d
 from .canvas import Svg, svg
-from .drawing import ROW, Box, Drawing, Label, Path, Text, View, short
-from .labels import place
+from .drawing import ROW, Box, Drawing, Label, Path, Text, View, place, short
 from .scenegeometry import Plan, Vehicle, plan
 
 COLOURS = {"A": d.BLUE, "B": d.VERMILION}
