@@ -16,12 +16,14 @@ exit status: 0 done; 2 bad input
 """
 
 import json
-import sys
 from typing import Any
 
+from ..bench import figure, measure, tables
 from ..bench.populations import BENCHMARK, POPULATIONS
 from ..errors import library
+from ..figures.canvas import check_ending, save
 from ..plaintable import plain
+from ..progress import progress
 from . import options
 
 __doc__ = (__doc__ or "").format(
@@ -53,23 +55,27 @@ ARGUMENTS = (
 )
 
 
-def main(args: options.Args) -> int:
-    from ..figures.canvas import check_ending, save
-
+def main(args: options.Args) -> None:
     for picture in filter(None, (args.figure, args.errors_figure)):
         check_ending(picture)
-    if args.sizes:
-        return _growth(args)
-    from ..bench import figure, measure, tables
-    from ..progress import progress
-
-    library("mpmath", "bench", "the reference")
     machine = measure.machine()
+    if args.sizes:
+        sizes = measure.sizes(SIZES, args.repeats)
+        record, texts = {"machine": machine, "sizes": sizes}, [tables.listing(sizes)]
+    else:
+        record, texts = _measured(args, machine)
+    if args.json:
+        print(json.dumps(plain(record), indent=1))
+    else:
+        print("\n\n".join([tables.machine(machine), *texts]))
+
+
+def _measured(args: options.Args, machine: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    library("mpmath", "bench", "the reference")
     finite = [name for name in POPULATIONS if name != "barriers"]
     populations = options.names_given(args.populations, finite, "--populations", "population")
     populations = populations or list(BENCHMARK)
-    total = measure.steps(populations, args.repeats)
-    with progress(total, "bench") as meter:
+    with progress(measure.steps(populations, args.repeats), "bench") as meter:
         share = QUICK if args.quick else 1.0
         sizes = (args.scenes, args.seed, args.repeats)
         rows = measure.measure(populations, *sizes, meter, share)
@@ -79,28 +85,7 @@ def main(args: options.Args) -> int:
         save(figure.work_precision(rows, machine["memory_roof"]), args.figure)
     if args.errors_figure:
         save(figure.error_distribution(rows), args.errors_figure)
-    if args.json:
-        record = {"machine": machine, "seed": args.seed, "results": measure.as_json(rows)}
-        _print_json({**record, "components": by_result})
-    else:
-        print(tables.machine(machine), end="\n\n")
-        print(tables.results(rows))
-        print("\n" + tables.components(by_result))
-        print("\n" + tables.ratios(rows, machine["memory_roof"]))
-    return 0
-
-
-def _growth(args: options.Args) -> int:
-    from ..bench import measure, tables
-
-    sizes, machine = measure.sizes(SIZES, args.repeats), measure.machine()
-    if args.json:
-        _print_json({"machine": machine, "sizes": sizes})
-    else:
-        print(f"{tables.machine(machine)}\n\n{tables.listing(sizes)}")
-    return 0
-
-
-def _print_json(record: dict[str, Any]) -> None:
-    json.dump(plain(record), sys.stdout, indent=1)
-    print()
+    record = {"machine": machine, "seed": args.seed, "results": measure.as_json(rows)}
+    texts = [tables.results(rows), tables.components(by_result)]
+    texts.append(tables.ratios(rows, machine["memory_roof"]))
+    return {**record, "components": by_result}, texts

@@ -12,6 +12,7 @@ exit status: 0 solved; 2 bad input, or E = 0 in the inverse problem
 """
 
 import math
+from collections.abc import Iterator
 
 from ..chapter.colinear import colinear, colinear_inverse
 from ..errors import UserError
@@ -19,7 +20,7 @@ from ..names import quantity
 from ..plaintable import decimals_for, fixed, paragraph, quantities, table
 from ..reconstruction.outcome import forces
 from ..status import sentences
-from ..units import System, system_of, written
+from ..units import system_of, written
 from . import options
 
 COMMON = ("MA", "MB", "E", "MUP")
@@ -52,28 +53,26 @@ def main(args: options.Args) -> None:
         values["P"] = math.hypot(values["PN"], values["PT"])
         values["TF"] = args.contact_time
         values |= {n: float(v) for n, v in forces(values["P"], args.contact_time).items()}
-    show(values, BEFORE if after else AFTER, args.json, system_of(named))
-
-
-def show(
-    values: dict[str, float], solved_for: tuple[str, ...], as_json: bool, system: System
-) -> None:
-    """Print the table or the JSON object."""
     warnings = sentences(int(values.pop("STATUS")), values)
+    system = system_of(named)
     values = written(values, system)
-    if as_json:
-        units = {name: system.label(quantity(name).unit) for name in values}
-        whole = {"solved_for": solved_for, "values": values, "units": units, "warnings": warnings}
-        options.print_json("colinear", whole)
-        return
-    decimals = decimals_for([values[name] for name in (*BEFORE, *AFTER)])
-    rows = []
-    for label, names in (("n", ("UN", "VAN", "VN", "VBN")), ("t", ("UT", "VAT", "VT", "VBT"))):
-        cells = [f"{fixed(values[n], decimals)}{'*' if n in solved_for else ' '}" for n in names]
-        rows.append([label, *cells, system.label("length/time")])
-    heading = ["velocity", "A before ", "A after ", "B before ", "B after ", "unit"]
-    print("\n".join([*table(rows, heading, left=(0, 5)), "* solved for", ""]))
-    others = {n: v for n, v in values.items() if n not in (*BEFORE, *AFTER) and math.isfinite(v)}
-    print("\n".join(quantities(others, system, {"MUP": "signed P_t/P_n, as given"})))
-    for warning in warnings:
-        print("\n".join(paragraph(f"! {warning}")))
+    solved_for = BEFORE if after else AFTER
+    units = {name: system.label(quantity(name).unit) for name in values}
+    whole = {"solved_for": solved_for, "values": values, "units": units, "warnings": warnings}
+
+    def lines() -> Iterator[str]:
+        decimals = decimals_for([values[name] for name in KNOWABLE[4:]])
+        rows = []
+        for label, names in (("n", ("UN", "VAN", "VN", "VBN")), ("t", ("UT", "VAT", "VT", "VBT"))):
+            cells = [f"{fixed(values[n], decimals)}{' *'[n in solved_for]}" for n in names]
+            rows.append([label, *cells, units["UN"]])
+        heading = ["velocity", "A before ", "A after ", "B before ", "B after ", "unit"]
+        yield from (*table(rows, heading, left=(0, 5)), "* solved for", "")
+        others = {
+            n: v for n, v in values.items() if n not in (*BEFORE, *AFTER) and math.isfinite(v)
+        }
+        yield from quantities(others, system, {"MUP": "signed P_t/P_n, as given"})
+        for warning in warnings:
+            yield from paragraph(f"! {warning}")
+
+    options.show(args, "colinear", lambda: whole, lines)

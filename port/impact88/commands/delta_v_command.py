@@ -18,7 +18,7 @@ exit status: 0 done; 2 bad input
 
 from collections.abc import Iterable, Mapping
 from math import hypot, isfinite, nan
-from typing import Any, NamedTuple
+from typing import Any
 
 from ..chapter import deltav
 from ..errors import BEYOND_DOUBLES, UserError
@@ -28,6 +28,7 @@ from ..units import System, system_of, written
 from . import options
 
 AFTER = FINAL_VELOCITIES[:4]
+GIVEN = deltav.GIVEN[:4]
 KNOWABLE = (*SCENE, "SA", "SB", "LOSS", "DT", "EL", "DVA", "DVB", *AFTER)
 CATEGORIES = {
     "60-side": "60° FRONT TO SIDE",
@@ -48,13 +49,6 @@ ARGUMENTS = (
 )
 
 
-class _Question(NamedTuple):
-    known: dict[str, float]
-    like: str | None
-    factor: float
-    units: System
-
-
 Answer = tuple[dict[str, Any], list[str]]
 """What ``--json`` prints, and the lines for people."""
 
@@ -63,7 +57,7 @@ def main(args: options.Args) -> None:
     known, named = options.known_values(args, KNOWABLE)
     factor = deltav.AS_PRINTED if args.as_printed else deltav.AS_USED
     try:
-        found, lines = _answer(_Question(known, args.like, factor, system_of(named)))
+        found, lines = _answer(known, args.like, factor, system_of(named))
     except UserError as error:
         raise UserError(str(error), args.scene) from None
     equation = deltav.described(factor)
@@ -72,49 +66,42 @@ def main(args: options.Args) -> None:
     options.show(args, "delta-v", lambda: whole, lambda: [*lines, equation, caution])
 
 
-def _answer(asked: _Question) -> Answer:
-    known = asked.known
+def _answer(known: dict[str, float], like: str | None, factor: float, units: System) -> Answer:
     for name in ("MA", "MB"):
         if not known.get(name, 0) > 0:
             raise UserError(f"{name} is missing or not positive; expected a mass")
     if set(AFTER) <= set(known) and not {"UX", "VY"} <= set(known):
-        return _speeds_before(asked)
-    given = {
-        **{"MA": known["MA"], "MB": known["MB"]},
-        **{"SA": _speed(known, "SA", "UX", "UY"), "SB": _speed(known, "SB", "VX", "VY")},
-    }
+        return _speeds_before(known, like, factor, units)
+    known |= {"SA": _speed(known, "SA", "UX", "UY"), "SB": _speed(known, "SB", "VX", "VY")}
     if "DVA" in known or "DVB" in known:
-        return _loss(asked, given)
-    return _velocity_changes(asked, given)
-
-
-def _velocity_changes(asked: _Question, given: dict[str, float]) -> Answer:
-    units, estimates = asked.units, []
-    losses, source = _losses({**asked.known, **given}, asked.like)
+        return _loss(known, like, factor, units)
+    estimates = []
+    losses, source = _losses(known, like)
     for loss in losses:
-        change = deltav.delta_v({**given, "LOSS": loss}, asked.factor)
+        change = deltav.delta_v({**{n: known[n] for n in GIVEN}, "LOSS": loss}, factor)
         estimate = {"LOSS": loss, **{name: float(value) for name, value in change.items()}}
         _check_finite(estimate.values())
         estimates.append(written(estimate, units))
-    speeds = written(given, units)
+    speeds = written({n: known[n] for n in GIVEN}, units)
     label = units.label("length/time")
     rows = [[number(estimate[n]) for n in ("LOSS", "DVA", "DVB")] for estimate in estimates]
     heading = ["loss [percent]", f"DVA [{label}]", f"DVB [{label}]"]
     lines = [*quantities(speeds, units), "", *table(rows, heading, left=()), "", f"loss: {source}"]
-    whole = {"factor": asked.factor, "given": speeds, "loss_from": source, "estimates": estimates}
-    return {**whole, "units": _labels((*given, "DVA", "DVB", "LOSS"), units)}, lines
+    whole = {"factor": factor, "given": speeds, "loss_from": source, "estimates": estimates}
+    return {**whole, "units": _labels((*GIVEN, "DVA", "DVB", "LOSS"), units)}, lines
 
 
-def _speeds_before(asked: _Question) -> Answer:
+def _speeds_before(
+    known: dict[str, float], like: str | None, factor: float, units: System
+) -> Answer:
     """From final velocities and the loss, as in Section VII."""
-    known, units = asked.known, asked.units
-    losses, source = _losses(known, asked.like)
+    losses, source = _losses(known, like)
     taken = "SA and SB as given" if {"SA", "SB"} <= set(known) else "those of Equations 13 and 14"
     found: list[dict[str, Any]] = []
     for loss in losses:
         for repeat, speeds in ((False, taken), (True, "those found, until they stay")):
             try:
-                row = deltav.speeds_before(known, loss, asked.factor, repeat)
+                row = deltav.speeds_before(known, loss, factor, repeat)
             except UserError:
                 if not repeat:
                     raise
@@ -128,17 +115,18 @@ def _speeds_before(asked: _Question) -> Answer:
     return {"loss_from": source, "estimates": found, "units": labels}, lines
 
 
-def _loss(asked: _Question, given: dict[str, float]) -> Answer:
-    if asked.like or {"LOSS", "DT", "EL"} & set(asked.known):
+def _loss(known: dict[str, float], like: str | None, factor: float, units: System) -> Answer:
+    if like or {"LOSS", "DT", "EL"} & set(known):
         raise UserError("both a loss and a velocity change are given; expected one")
-    changes: dict[str, float] = {n: asked.known[n] for n in ("DVA", "DVB") if n in asked.known}
-    found = {n: deltav.loss_of({**given, n: x}, asked.factor) for n, x in changes.items()}
+    given = {name: known[name] for name in GIVEN}
+    changes = {name: value for name, value in known.items() if name in ("DVA", "DVB")}
+    found = {n: deltav.loss_of({**given, n: x}, factor) for n, x in changes.items()}
     _check_finite(found.values())
-    displayed = written(changes, asked.units)
+    displayed = written(changes, units)
     rows = [[name, number(displayed[name]), number(loss)] for name, loss in found.items()]
-    heading = ["from", f"velocity change [{asked.units.label('length/time')}]", "loss [percent]"]
-    whole = {"given": written(given, asked.units), "LOSS_from": found}
-    return {**whole, "units": _labels(given, asked.units)}, [*table(rows, heading), ""]
+    heading = ["from", f"velocity change [{units.label('length/time')}]", "loss [percent]"]
+    whole = {"given": written(given, units), "LOSS_from": found, "units": _labels(given, units)}
+    return whole, [*table(rows, heading), ""]
 
 
 def _check_finite(numbers: Iterable[float]) -> None:
@@ -180,12 +168,13 @@ def _losses(known: Mapping[str, float], like: str | None) -> tuple[list[float], 
         if not 0 <= loss <= 100:
             raise UserError(f"EL is {loss:.4g} percent of the initial kinetic energy")
         return [loss], "the energy EL"
+    loss, most, what = known.get("LOSS", 0.0), 100, "percent of the initial kinetic energy"
     if given == ["DT"]:
-        if not 0 <= known["DT"] <= 1:
-            raise UserError("DT is outside 0 ... 1; expected a fraction of the kinetic energy")
-        return [100 * known["DT"]], "given"
-    if not 0 <= (loss := known["LOSS"]) <= 100:
-        raise UserError("LOSS is outside 0 ... 100; expected percent of the initial kinetic energy")
+        loss, most, what = known["DT"], 1, "a fraction of the kinetic energy"
+    if not 0 <= loss <= most:
+        raise UserError(f"{given[0]} is outside 0 ... {most}; expected {what}")
+    if given == ["DT"]:
+        return [100 * loss], "given"
     if 0 < loss < 1:
         raise UserError(
             f"LOSS = {loss:g} would be less than one percent; the chapter writes the fraction, "

@@ -20,18 +20,15 @@ ARGUMENTS = (options.JSON, options.OUTPUT)
 
 def main(args: options.Args) -> int:
     numbers = [number for step in steps() for number in step.numbers]
-    if args.json:
-        described = [
-            {**asdict(step), "numbers": [asdict(n) | {"agrees": n.agrees} for n in step.numbers]}
-            for step in steps()
-        ]
-        options.print_json("example", {"steps": described})
-    else:
-        print(_text())
+    described = [
+        {**asdict(step), "numbers": [asdict(n) | {"agrees": n.agrees} for n in step.numbers]}
+        for step in steps()
+    ]
+    options.show(args, "example", lambda: {"steps": described}, _lines)
     return int(any(number.agrees is False for number in numbers))
 
 
-def _text() -> str:
+def _lines() -> list[str]:
     verdicts = {None: "", True: "agrees", False: "DIFFERS"}
     lines = ["Section VII: a reconstruction, step by step", ""]
     for at, step in enumerate(steps()):
@@ -48,4 +45,4 @@ def _text() -> str:
             *(paragraph(step.remark, "  ") if step.remark else []),
             "",
         ]
-    return "\n".join(lines[:-1])
+    return lines[:-1]

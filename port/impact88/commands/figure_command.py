@@ -27,7 +27,6 @@ examples:
   impact88 figure staged -o figure5.pdf
 """
 
-import argparse
 from collections.abc import Callable
 from typing import Any
 
@@ -35,6 +34,7 @@ from ..chapter.barrier import BARRIER, VEHICLE, barrier
 from ..closedform.solve import solve
 from ..errors import UserError
 from ..figures import charts
+from ..figures.canvas import check_ending, save
 from ..figures.drawing import Drawing
 from ..figures.sceneview import scene_drawing
 from ..figures.views import colinear, configurations, planar, strip_drawing
@@ -44,10 +44,14 @@ from ..tables.sweep import read_ranges
 from ..units import system_of
 from . import options
 
-OF_A_SCENE = ("scene", "strip", "friction", "sweep")
 OF_RANGES = ("histogram", "tornado")
-OF_NOTHING = ("staged", "force", "colinear", "configurations")
-KINDS = (*OF_A_SCENE, "barrier", *OF_RANGES, "planar", *OF_NOTHING)
+OF_NOTHING: dict[str, Callable[[], Drawing]] = {
+    "staged": charts.figure_5,
+    "force": charts.force_and_impulse,
+    "colinear": colinear,
+    "configurations": configurations,
+}
+KINDS = ("scene", "strip", "friction", "sweep", "barrier", *OF_RANGES, "planar", *OF_NOTHING)
 
 ARGUMENTS = (
     options.value("kind", "KIND", "see kinds below", choices=KINDS),
@@ -66,31 +70,20 @@ ARGUMENTS = (
 )
 
 
-def main(args: argparse.Namespace) -> int:
-    """Draw one figure."""
-    from ..figures.canvas import check_ending, save
-
+def main(args: options.Args) -> None:
     check_ending(args.output)
     drawn = _drawn(args)
     if args.width:
         drawn.enlarged = args.width / drawn.width
     save(drawn, args.output)
-    return 0
 
 
-def _drawn(args: argparse.Namespace) -> Drawing:
-    kind = args.kind
-    given = bool(args.scene or args.sample)
-    alone: dict[str, Callable[[], Drawing]] = {
-        "staged": charts.figure_5,
-        "force": charts.force_and_impulse,
-        "colinear": colinear,
-        "configurations": configurations,
-    }
-    if kind in alone:
-        if given or args.set or args.ranges:
+def _drawn(args: options.Args) -> Drawing:
+    kind, given = args.kind, args.scene or args.sample or args.set
+    if kind in OF_NOTHING:
+        if given or args.ranges:
             raise UserError(f"{kind} is drawn from the chapter alone and takes no scene")
-        return alone[kind]()
+        return OF_NOTHING[kind]()
     if kind in OF_RANGES:
         draw = charts.histograms if kind == "histogram" else charts.tornado
         outputs = args.outputs
@@ -106,9 +99,11 @@ def _drawn(args: argparse.Namespace) -> Drawing:
         )
     if kind == "barrier":
         return _barrier(args)
-    if kind == "planar":
-        return planar(options.one_scene(args) if given or args.set else None)
+    if kind == "planar" and not given:
+        return planar(None)
     scene = options.one_scene(args)
+    if kind == "planar":
+        return planar(scene)
     if kind == "friction":
         return charts.friction_sweep(scene)
     if kind == "strip":
@@ -116,7 +111,7 @@ def _drawn(args: argparse.Namespace) -> Drawing:
     return scene_drawing(scene, solved(scene), title=scene.title or "Scene from above")
 
 
-def _barrier(args: argparse.Namespace) -> Drawing:
+def _barrier(args: options.Args) -> Drawing:
     """A vehicle against a barrier, its approach and its rebound."""
     known, units = options.known_values(args, (*VEHICLE, "M"))
     if absent := [name for name in VEHICLE if name not in known]:
@@ -125,9 +120,8 @@ def _barrier(args: argparse.Namespace) -> Drawing:
     result = {name: value.item() for name, value in found.items()}
     # as heavy as a drawing needs it: an infinite mass has no outline
     wall = {"MB": 1e9 * known["MA"], "IB": 1e9 * known["IA"]}
-    sizes = (
-        entries_in(args.scene, args.units, True).outlines if args.scene not in (None, "-") else {}
-    )
+    file = args.scene not in (None, "-")
+    sizes = entries_in(args.scene, args.units, True).outlines if file else {}
     return scene_drawing(
         {**BARRIER, **known, **wall},
         {**result, "VBX": 0.0, "VBY": 0.0, "WBF": 0.0},
@@ -137,7 +131,7 @@ def _barrier(args: argparse.Namespace) -> Drawing:
     )
 
 
-def _swept(args: argparse.Namespace) -> Drawing:
+def _swept(args: options.Args) -> Drawing:
     """One result a panel, along the one value swept."""
     if args.ranges:
         raise UserError("sweep takes --sweep NAME=LOW:HIGH:COUNT, not --range")

@@ -70,30 +70,22 @@ def _wrapped(line: str, width: int, indent: int) -> list[str]:
 
 def overview() -> str:
     """The first page: every command in its group."""
+    groups = "\n\n".join(f"{group or '-' * 11}\n{_listed(GROUPS[group])}" for group in GROUPS)
+    text = (
+        "usage: impact88 COMMAND [options]\n\nR. M. Brach's 1988 program for the planar impact of "
+        "two vehicles, digit for digit, and the same mechanics for today's work.\n\n"
+        f"{groups}\n\nimpact88 help COMMAND lists a command's options."
+    )
+    status = "exit status: 0 done, 1 adverse result, 2 unusable input, 3 a bug of impact88"
     width = terminal_width()
-    lines = ["usage: impact88 COMMAND [options]", ""]
-    lines += textwrap.wrap(
-        "R. M. Brach's 1988 program for the planar impact of two vehicles, digit for digit, and "
-        "the same mechanics for today's work.",
-        width,
-    )
-    for group, names in GROUPS.items():
-        lines += ["", group or "-" * 11, *_listed(names, width)]
-    lines += ["", *textwrap.wrap("impact88 help COMMAND lists a command's options.", width)]
-    lines += textwrap.wrap(
-        "exit status: 0 done, 1 adverse result, 2 unusable input, 3 a bug of impact88", width
-    )
-    return "\n".join(lines)
+    return f"{fitted(text, width)}\n{fitted(status, width)}"
 
 
 def chapter_overview() -> str:
     """What follows ``impact88 chapter``."""
-    lines = ["usage: impact88 chapter PROBLEM [options]", "", *_listed(CHAPTER, terminal_width())]
-    return "\n".join([*lines, "", "impact88 help chapter PROBLEM lists its options."])
+    text = f"usage: impact88 chapter PROBLEM [options]\n\n{_listed(CHAPTER)}\n\n"
+    return fitted(f"{text}impact88 help chapter PROBLEM lists its options.", terminal_width())
 
 
-def _listed(names: Iterable[str], width: int) -> list[str]:
-    lines: list[str] = []
-    for name in names:
-        lines += _hanging(f"  {name:<13}{COMMANDS.get(name, CHAPTER_MEANING)}", width)
-    return lines
+def _listed(names: Iterable[str]) -> str:
+    return "\n".join(f"  {name:<13}{COMMANDS.get(name, CHAPTER_MEANING)}" for name in names)

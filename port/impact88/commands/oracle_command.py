@@ -29,8 +29,8 @@ import sys
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from ..checking.oracle import Request, answer
-from ..checking.vectors import CLASSES
+from ..checking import kit, vectors
+from ..checking.oracle import BATCH, LONGEST_LINE, Request, answer
 from ..errors import UserError
 from ..files import called, encoding_of, open_bytes
 from . import options
@@ -41,7 +41,7 @@ ARGUMENTS = (
     options.flag("--no-reference", "leave out the 30 digits"),
     options.count("--vectors", 1, 10**7, "write N test vectors"),
     options.seed("of the test vectors"),
-    options.choice("--class", CLASSES, "vectors of this class only", dest="only"),
+    options.choice("--class", vectors.CLASSES, "vectors of this class only", dest="only"),
     options.choice("--to", ("jsonl", "csv"), "csv: the scenes of --vectors as a flat table"),
     # what is typed for --to csv; in the help --csv names a file, that of `report`
     options.value("--csv", None, argparse.SUPPRESS, dest="to", action="store_const", const="csv"),
@@ -57,8 +57,6 @@ ARGUMENTS = (
 
 
 def main(args: options.Args) -> int:
-    from ..checking import kit, vectors
-
     wanted = args.vectors is not None
     if (wanted or args.published) and args.scenes != "-":
         raise UserError("vectors have their own scenes; expected no file beside them")
@@ -92,19 +90,14 @@ def main(args: options.Args) -> int:
             print(json.dumps(line, ensure_ascii=False))
         sys.stdout.flush()
     if refused == total:
-        raise UserError(
-            f"no line could be used ({refused} refused)"
-            if refused
-            else 'nothing to answer; expected lines such as {"id": 1, "scene": {...}}'
-        )
+        nothing = 'nothing to answer; expected lines such as {"id": 1, "scene": {...}}'
+        raise UserError(f"no line could be used ({refused} refused)" if refused else nothing)
     return int(refused > 0)
 
 
 def _batches(path: str, units: str | None) -> Iterator[list[Request]]:
     """The requests that have arrived, some at a time: a program that asks line by line over a pipe
     is answered line by line, a file in larger batches."""
-    from ..checking.oracle import BATCH, LONGEST_LINE
-
     number, rest = 0, ""
     with open_bytes(path) as source:
         encoding = encoding_of(source.peek(3)[:3])

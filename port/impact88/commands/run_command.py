@@ -14,7 +14,7 @@ exit status: 0 the program ended, ZERO DETERMINANT included; 1 an Applesoft erro
 """
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from itertools import chain, repeat
 
@@ -64,21 +64,6 @@ ARGUMENTS = (
 )
 
 
-def chosen_scene(args: options.Args) -> Scene | None:
-    """The scene the options name, changed; None for the listing's own data with prompts."""
-    if (scene := options.scene_given(args, "the program's page")) is not None:
-        return scene
-    changes = options.settings(args.set, units=args.units)
-    missing = [name for name in VELOCITIES if name not in changes]
-    if missing and len(missing) < len(VELOCITIES):
-        given = " ".join(name for name in VELOCITIES if name in changes)
-        raise UserError(
-            f"--set gives {given} but not {' '.join(missing)}; expected all six velocities, "
-            "or none of them to be asked for, or a scene"
-        )
-    return None if missing else Scene(published_data() | changes, source="--set")
-
-
 def check_slot(args: options.Args) -> None:
     """Raises UserError for a slot with nothing in it."""
     if args.slot not in (0, PRINTER_SLOT) and not args.no_dos:
@@ -90,13 +75,34 @@ def check_slot(args: options.Args) -> None:
 
 def main(args: options.Args) -> int:
     check_slot(args)
-    scene = chosen_scene(args)
+    scene = options.scene_given(args, "the program's page")
+    data = dict(scene or published_data() | options.settings(args.set, units=args.units))
+    given = [name for name in VELOCITIES if name in data]
+    if given and len(given) < len(VELOCITIES):
+        missing = " ".join(name for name in VELOCITIES if name not in data)
+        raise UserError(
+            f"--set gives {' '.join(given)} but not {missing}; expected all six velocities, "
+            "or none of them to be asked for, or a scene"
+        )
+    whole = scene or Scene(dict.fromkeys(VELOCITIES, "0") | data, source="--set")
     if args.listing:
-        return _run_copy(args, scene)
-    data = scene or published_data() | options.settings(args.set, units=args.units)
-    (scene or Scene(dict.fromkeys(VELOCITIES, "0") | dict(data), source="--set")).check_typed()
+        run = _run_of_copy(args, whole if given else None)
+    else:
+        whole.check_typed()
+        run = _run(args, data, whole.keyboard() if given else None)
+    if args.json:
+        options.print_json("run", {**run._asdict(), "floats": run.floats})
+    elif args.listing:
+        sys.stdout.write(run.printout if args.raw else run.page)
+    elif run.error and sys.stdout.isatty():
+        print()  # the ROM leaves the cursor there; a shell's prompt wants a line of its own
+    return int(bool(run.error))
+
+
+def _run(args: options.Args, data: Mapping[str, str], typed: Sequence[str] | None) -> Run:
+    """Run the program on its screen; without what is ``typed`` it asks standard input."""
     output: list[str] = []
-    asking = args.json and scene is None and sys.stdin.isatty()
+    asking = args.json and typed is None and sys.stdin.isatty()
 
     def show(text: str) -> None:
         if args.json:
@@ -108,11 +114,8 @@ def main(args: options.Args) -> int:
 
     with ExitStack() as stack:
         printer = stack.enter_context(replacing(args.printer)).write if args.printer else None
-        if scene is not None:
-            replies: Iterator[str | None] = chain(scene.keyboard(), repeat(None))
-            echo = True
-        else:
-            replies, echo = _typed_lines(), args.json or not sys.stdin.isatty()
+        replies = _typed_lines() if typed is None else chain(typed, repeat(None))
+        echo = typed is not None or args.json or not sys.stdin.isatty()
         console = Console(replies.__next__, show, printer, dos=not args.no_dos, echo=echo)
         try:
             run = start(data, console, args.arithmetic, str(args.slot))
@@ -123,14 +126,10 @@ def main(args: options.Args) -> int:
                 "the input ended at a prompt; expected two lines of three numbers: "
                 f"{','.join(VELOCITIES[:3])} and {','.join(VELOCITIES[3:])}"
             ) from None
-    if args.json:
-        _print_run(run._replace(printout="".join(output)))
-    elif run.error and sys.stdout.isatty():
-        print()  # the ROM leaves the cursor there; a shell's prompt wants a line of its own
-    return 1 if run.error else 0
+    return run._replace(printout="".join(output))
 
 
-def _run_copy(args: options.Args, scene: Scene | None) -> int:
+def _run_of_copy(args: options.Args, scene: Scene | None) -> Run:
     """Run a copy of the listing on a scene."""
     from ..program.emulated import ListingCopy
 
@@ -138,17 +137,7 @@ def _run_copy(args: options.Args, scene: Scene | None) -> int:
         raise UserError("--listing runs on a scene; expected a scene file or --sample")
     if args.arithmetic != "applesoft":
         raise UserError("--listing runs in the emulator; expected --arithmetic applesoft")
-    copy = ListingCopy(args.listing)
-    run = copy.run(scene, dos=not args.no_dos)
-    if args.json:
-        _print_run(run)
-    else:
-        sys.stdout.write(run.printout if args.raw else run.page)
-    return 1 if run.error else 0
-
-
-def _print_run(run: Run) -> None:
-    options.print_json("run", {**run._asdict(), "floats": run.floats})
+    return ListingCopy(args.listing).run(scene, dos=not args.no_dos)
 
 
 def _typed_lines() -> Iterator[str | None]:

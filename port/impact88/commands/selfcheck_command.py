@@ -10,7 +10,7 @@ exit status: 0 everything came out as captured; 1 something did not
 
 import sys
 
-from ..checking.selfcheck import CHECKS, Check, checks, record
+from ..checking.selfcheck import Check, checks, record
 from . import options
 
 ARGUMENTS = (options.flag("--json", "print the record as one JSON object"), options.OUTPUT)
@@ -18,14 +18,12 @@ ARGUMENTS = (options.flag("--json", "print the record as one JSON object"), opti
 
 def main(args: options.Args) -> int:
     results: list[Check] = []
-    names = iter(CHECKS)
-    report_on_stderr = args.json and sys.stderr.isatty()
     for check in checks():
         results.append(check)
-        if report_on_stderr:
-            print(f"{next(names)}: {'pass' if check.passed else 'FAIL'}", file=sys.stderr)
-        elif not args.json:
+        if not args.json:
             print(_line(check), flush=True)
+        elif sys.stderr.isatty():
+            print(f"{check.name}: {'pass' if check.passed else 'FAIL'}", file=sys.stderr)
     whole = record(results)
     if args.json:
         options.print_json("selfcheck", whole, indent=2)
@@ -36,7 +34,7 @@ def main(args: options.Args) -> int:
                 print(f"{name + (' SHA-256' if group == 'hashes' else ''):<17} {text}")
         print(f"{'time':<17} {whole['seconds']} s")
         print(f"{'result':<17} {'PASS' if whole['passed'] else 'FAIL'}")
-    return 0 if whole["passed"] else 1
+    return int(not whole["passed"])
 
 
 def _line(check: Check) -> str:

@@ -63,9 +63,8 @@ def main(args: options.Args) -> int:
     for option in _ON_REPORT:
         if getattr(args, option) and not args.report:
             raise UserError(f"--{option} is for the report; expected --report FILE.html with it")
-    given = None
-    if args.scene or args.sample or args.set:
-        given = dict(options.one_scene(args))
+    asked = args.scene or args.sample or args.set
+    given = dict(options.one_scene(args)) if asked else None
     copy = None
     if args.listing:
         from ..program.emulated import ListingCopy

@@ -14,26 +14,21 @@ examples:
 exit status: 0 no difference; 1 a difference; 2 bad input, or a ROM that does not come to a prompt
 """
 
-from __future__ import annotations
-
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ..checking.vectors import scenes
 from ..errors import UserError
 from ..progress import progress
 from ..scene import SAMPLES, Scene, sample
+from ..witness import hearing
+from ..witness.apple import Image, read_image
+from ..witness.session import Session
 from . import options
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from ..witness.apple import Image
-    from ..witness.hearing import Heard
-    from ..witness.session import Session
-
-    Job = Callable[[Session], Heard]
+Job = Callable[[Session], hearing.Heard]
 
 SHOWN, SHOWN_LINES = 10, 24
 """Cases with differences that are shown, and lines of each."""
@@ -61,10 +56,6 @@ ARGUMENTS = (
 
 def main(args: options.Args) -> int:
     jobs = _jobs(args)
-    from ..witness.apple import read_image
-    from ..witness.hearing import record, save
-    from ..witness.session import Session
-
     image = read_image(args.rom, args.any_rom)
     start = time.perf_counter()
     session = Session(image.data)
@@ -73,26 +64,22 @@ def main(args: options.Args) -> int:
         for job in jobs:
             heard.append(job(session))
             meter.update(1)
-    whole = record(image, heard, time.perf_counter() - start)
+    whole = hearing.record(image, heard, time.perf_counter() - start)
     if args.save:
-        save(args.save, heard)
+        hearing.save(args.save, heard)
     options.show(args, "witness", lambda: whole, lambda: _report(image, heard, whole), indent=2)
-    return 0 if whole["passed"] else 1
+    return int(not whole["passed"])
 
 
 def _jobs(args: options.Args) -> list[Job]:
     """What is to be done; all input is read before the machine is started."""
-    from ..witness import hearing
-
     jobs: list[Job] = []
     changes = options.settings(args.set)
     asked = args.scenes or args.captures is not None or args.random or args.programs
     for number in [args.sample] if args.sample else () if asked else SAMPLES:
-        job: Job = partial(hearing.hear_sample, number=number)
-        if changes:
-            scene = sample(number).replaced(changes)
-            job = partial(hearing.hear_scene, name=f"sample {number}", scene=scene)
-        jobs.append(job)
+        scene = sample(number).replaced(changes)
+        changed = partial(hearing.hear_scene, name=f"sample {number}", scene=scene)
+        jobs.append(changed if changes else partial(hearing.hear_sample, number=number))
     for path in args.scenes:
         given = Scene.from_toml(path, args.units)
         scene = given.replaced(options.settings(args.set, units=given.units))
@@ -102,22 +89,18 @@ def _jobs(args: options.Args) -> list[Job]:
         if args.captures != "all" and not args.captures.isdecimal():
             raise UserError(f"--captures {args.captures}; expected a number, or all")
         count = None if args.captures == "all" else int(args.captures)
-        for case in hearing.cases(count, args.seed):
-            jobs.append(partial(hearing.hear, case=case))
+        jobs += [partial(hearing.hear, case=case) for case in hearing.cases(count, args.seed)]
     if args.programs:
         jobs += [partial(hearing.hear, case=case) for case in hearing.own_programs(args.programs)]
-    if args.random:
-        from ..checking.vectors import scenes
-
-        for index, (_, label, texts) in enumerate(scenes(args.random, args.seed)):
-            name = f"{args.seed}-{index:06d} ({label})"
-            jobs.append(partial(hearing.hear_scene, name=name, scene=Scene(texts)))
+    for index, (_, label, texts) in enumerate(scenes(args.random, args.seed)):
+        name = f"{args.seed}-{index:06d} ({label})"
+        jobs.append(partial(hearing.hear_scene, name=name, scene=Scene(texts)))
     if not jobs:
         raise UserError("nothing to do; expected --captures or --random above 0")
     return jobs
 
 
-def _report(image: Image, heard: list[Heard], whole: dict[str, Any]) -> Iterator[str]:
+def _report(image: Image, heard: list[hearing.Heard], whole: dict[str, Any]) -> Iterator[str]:
     wrong = [case for case in heard if case.differences]
     for case in wrong[:SHOWN]:
         lines = [line for difference in case.differences for line in difference.lines()]
