@@ -29,7 +29,7 @@ def small_roof(monkeypatch):
 @pytest.fixture(scope="module")
 def rows():
     with progress(None, "test") as meter:
-        return measure.measure(["casework", "heavy"], 40, 3, 1, meter, effort=0.005)
+        return measure.measure(["casework", "heavy"], 40, 3, 1, meter.update, effort=0.005)
 
 
 def test_every_method_on_every_population(rows):

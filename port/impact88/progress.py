@@ -6,18 +6,12 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from typing import Any, Protocol
+from typing import Any
 
 from .errors import note
 
 SECONDS_BETWEEN_LINES = 2.0
 """In a log: thirty lines a minute at most."""
-
-
-class Meter(Protocol):
-    """Where progress is reported: ``update(n)`` says that ``n`` more units are done."""
-
-    def update(self, n: int) -> object: ...
 
 
 class _Lines:
@@ -50,9 +44,9 @@ class _Lines:
 
 
 @contextmanager
-def progress(total: int | None, what: str, unit: str = "", lines: bool = False) -> Iterator[Meter]:
-    """A meter for work of ``total`` units (None: unknown). Where stderr is not a terminal it is
-    silent, or writes plain ``lines``."""
+def progress(total: int | None, what: str, unit: str = "", lines: bool = False) -> Iterator[Any]:
+    """A meter for work of ``total`` units (None: unknown), whose ``update(n)`` says that ``n`` more
+    are done. Where stderr is not a terminal it is silent, or writes plain ``lines``."""
     terminal = sys.stderr.isatty()
     meter: Any = _Lines(total, what, terminal, lines)
     if terminal:

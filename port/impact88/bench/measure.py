@@ -24,7 +24,6 @@ from ..names import FINAL_VELOCITIES, SCENE
 from ..native.formulas import ExpressionTable
 from ..native.program import Program, addresses
 from ..processors import processors
-from ..progress import Meter
 from ..version import __version__
 from .methods import APPLESOFT, DOUBLE, METHODS, Method, reference, relative_errors
 from .populations import BENCHMARK, POPULATIONS, enlarged, scenes
@@ -93,7 +92,7 @@ def medians(works: Sequence[Callable[[], object]], repeats: int, calls: int = 1)
 
 
 def steps(populations: Sequence[str], repeats: int) -> int:
-    """How often `measure` will tell its meter."""
+    """How often `measure` reports progress."""
     return len(populations) * (1 + len(METHODS) * (1 + repeats))
 
 
@@ -102,7 +101,7 @@ def measure(
     count: int,
     seed: int,
     repeats: int,
-    meter: Meter,
+    progress: Callable[[int], object],
     effort: float = 1.0,
 ) -> list[Row]:
     """All methods on ``populations``, ``count`` scenes of each. Times are medians of ``repeats``
@@ -121,7 +120,7 @@ def measure(
         start = time.process_time()
         hi, lo = reference(columns)
         reference_seconds = (time.process_time() - start) / count
-        meter.update(1)
+        progress(1)
         solved, sensitive = solve(columns), sensitivity(columns)
         by_name = scales(columns, solved)
         sizes = np.stack([by_name[result] for result in ORDER], axis=1)
@@ -149,14 +148,14 @@ def measure(
                     **{"errors": scaled, "conditions": condition},
                 }
             )
-            meter.update(1)
+            progress(1)
         for _ in range(repeats):
             for method, prepared, times in works:
                 now = time.process_time if method.threads == 1 else time.perf_counter
                 start = now()
                 method.run(prepared)
                 times.append(now() - start)
-                meter.update(1)
+                progress(1)
         for row, (_, _, times) in zip(mine, works, strict=True):
             row["seconds"] = statistics.median(times) / row["timed"]
         slow = {"population": name, "method": "mpmath", "name": "mpmath, 50 digits"}

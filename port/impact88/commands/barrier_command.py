@@ -5,9 +5,8 @@ solved for. As everywhere A is on the +n side, n = (cos GA, sin GA): with GA = 0
 -x, and TA = 0 then means that it faces the barrier. M = 4 makes it a point mass.
 
 MU is the number of line 280: friction opposes the sliding (line 400); MU = "85 %" is a share of the
-friction that just ends it. MUP is the signed P_t/P_n.
-Units: any consistent set; angles in degrees, spins in rad per unit of time. PDOF: where the force
-comes from, clockwise from the vehicle's front.
+friction that just ends it. MUP is the signed P_t/P_n. Units: any consistent set; angles in degrees,
+spins in rad per unit of time. PDOF: where the force comes from, clockwise from the vehicle's front.
 
 examples:
   impact88 chapter barrier --set MA=143.5 --set IA=3728 --set DA=7.59 \\

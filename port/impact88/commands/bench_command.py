@@ -78,7 +78,7 @@ def _measured(args: options.Args, machine: dict[str, Any]) -> tuple[dict[str, An
     with progress(measure.steps(populations, args.repeats), "bench") as meter:
         share = QUICK if args.quick else 1.0
         sizes = (args.scenes, args.seed, args.repeats)
-        rows = measure.measure(populations, *sizes, meter, share)
+        rows = measure.measure(populations, *sizes, meter.update, share)
     few = min(args.scenes, COMPONENT_SCENES)
     by_result = measure.components(populations, few, args.seed)
     if args.figure:

@@ -200,11 +200,8 @@ def check_files(parser: argparse.ArgumentParser, args: Args) -> None:
         if action.type is InputPath and isinstance(value, list):
             from glob import glob
 
-            value[:] = [
-                path
-                for text in value
-                for path in ((not os.path.exists(text) and sorted(glob(text))) or [text])
-            ]
+            there = os.path.exists
+            value[:] = [p for v in value for p in ((not there(v) and sorted(glob(v))) or [v])]
             inputs += value
         elif action.type is InputPath and value is not None:
             inputs.append(value)

@@ -63,8 +63,7 @@ from ..reconstruction.adjustment import (
 )
 from ..reconstruction.solutiontable import Exact, Impact
 from ..reconstruction.state import KNOWABLE, QUANTITIES
-from ..scene import shown_texts
-from ..scene import template as scene_template
+from ..scene import shown_texts, template
 from ..uncertainty.reconstructedtable import Measured
 from ..uncertainty.uncertain import Uncertain
 from ..units import System, system_of
@@ -129,5 +128,5 @@ def _write_scene(solutions: list[Reconstruction], args: options.Args, units: Sys
     texts["M"] = "4" if texts["M"] == "4.0" else "6"
     with replacing(args.write_scene) as file:
         title = f"Reconstructed from {options.source_of(args) or '--set'}"
-        file.write(scene_template(shown_texts(texts, units.name or None), title, units.name))
+        file.write(template(shown_texts(texts, units.name or None), title, units.name))
     print(f"scene written to {args.write_scene}", file=sys.stderr)

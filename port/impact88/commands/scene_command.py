@@ -17,6 +17,7 @@ examples:
 """
 
 from ..scene import SIGNS, Scene, sample, template
+from ..units import SYSTEMS, system_named
 from . import options
 
 __doc__ = (__doc__ or "").format(signs=SIGNS)
@@ -25,17 +26,11 @@ ARGUMENTS = (options.SAMPLE, options.UNITS, options.OUTPUT)
 
 
 def main(args: options.Args) -> None:
-    if not args.units:
-        print(sample(args.sample).to_toml() if args.sample else template(), end="")
-        return
-    from ..units import SYSTEMS, system_named
-
-    system = system_named(args.units, "--units").name
-    if not args.sample:
-        print(template(units=system), end="")
-        return
-    # the chapter's samples are in ft, slug and s
-    unit = SYSTEMS["chapter"].unit
-    texts = {name: f"{text} {unit(name)}".strip() for name, text in sample(args.sample).items()}
-    scene = Scene.from_mapping({**texts, "units": system})
-    print(scene.to_toml(), end="")
+    system = system_named(args.units, "--units").name if args.units else None
+    scene = sample(args.sample) if args.sample else None
+    if scene and system:
+        # the chapter's samples are in ft, slug and s
+        unit = SYSTEMS["chapter"].unit
+        texts = {name: f"{text} {unit(name)}".strip() for name, text in scene.items()}
+        scene = Scene.from_mapping({**texts, "units": system})
+    print(scene.to_toml() if scene else template(units=system), end="")

@@ -245,9 +245,7 @@ def _texts(name: str, column: Any, units: TableUnits) -> list[Any]:
     if isinstance(column, np.ndarray):
         column = [repr(x).removesuffix(".0").upper() for x in column.tolist()]
     texts = [text.strip().upper() if isinstance(text, str) else text for text in column]
-    if not units.converts(name):
-        return texts
-    for index, text in enumerate(column):
+    for index, text in enumerate(column) if units.converts(name) else ():
         if isinstance(text, str) and any(map(str.isdigit, text)):
             with suppress(UserError):
                 texts[index] = units.cell(name, text)

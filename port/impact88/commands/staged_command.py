@@ -11,8 +11,7 @@ FILE.toml is another staged collision, with the listing's names: vehicles and ge
 velocities before (UX UY WA VX VY WB) and after (VAX VAY WAF VBX VBY WBF), with or without units.
 Its e, e_m and mu are fitted as Section V's are; --spin-weight says what a squared spin counts
 against a squared velocity (25 ft² for the chapter's; by default the square of the radius of
-gyration).
-impact88 reconstruct fits the same with a tolerance for each velocity.
+gyration). impact88 reconstruct fits the same with a tolerance for each velocity.
 
 examples:
   impact88 chapter staged
@@ -90,7 +89,6 @@ def _fitted(
     known: dict[str, float], weight: float | None, units: str
 ) -> tuple[dict[str, Any], list[str]]:
     """The fit of one collision, as JSON and as lines."""
-
     check_physical(known)
     scene = {name: value for name, value in known.items() if name not in FINAL_STATE}
     here = Geometry.of(scene)
@@ -152,8 +150,9 @@ def _closures(
 ) -> list[str]:
     rows = []
     for number, loss, *changes in (closure.values() for closure in closures):
-        row = [str(number), fixed(loss, 1) or "lost"] if calculated else [fixed(loss, 1)]
-        row += [fixed(calculated[int(number)], 1)] if calculated else []
+        row = [fixed(loss, 1)]
+        if calculated:
+            row = [str(number), row[0] or "lost", fixed(calculated[int(number)], 1)]
         rows.append([*row, *(fixed(x, 0) or "lost" for x in changes)])
     heading = ["no.", "loss %, measured", "calculated"] if calculated else ["loss %, measured"]
     sides = [f"{what}, {vehicle}" for what in ("x", "y", "M") for vehicle in "AB"]
@@ -162,12 +161,12 @@ def _closures(
 
 def _comparison() -> list[str]:
     columns = [c for c in staged.COLUMNS_2 if c not in ("e", "em", "mu")]
-    compared = {(c.collision, c.column): c for c in staged.comparison()}
+    compared = staged.comparison()
     rows: dict[int, list[str]] = {}
-    for (number, _), cell in compared.items():
-        text = f"{cell.printed:.1f} {fixed(cell.value, 2) or 'lost':>5}"
-        rows.setdefault(number, [str(number)]).append(text + (" " if cell.agrees else "!"))
-    agree = sum(cell.agrees for cell in compared.values())
+    for cell in compared:
+        text = f"{cell.printed:.1f} {fixed(cell.value, 2) or 'lost':>5}{'! '[cell.agrees]}"
+        rows.setdefault(cell.collision, [str(cell.collision)]).append(text)
+    agree = sum(cell.agrees for cell in compared)
     lines = [
         "Table 2 beside its recomputation: printed value, recomputed value (! differs).",
         "loss in percent; velocity changes dV of vehicles a and b in ft/s:",
@@ -178,7 +177,7 @@ def _comparison() -> list[str]:
         "",
         f"{agree} of {len(compared)} agree within what the rounding of the printed numbers allows.",
     ]
-    for cell in compared.values():
+    for cell in compared:
         if not cell.agrees:
             lines += paragraph(f"! {cell.collision}, {cell.column}: {cell.explanation}")
     return lines
