@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..equations.edits import CONVENTION, Edit, edits_of, edits_on, readings, variants
-from ..equations.evaluation import Columns, Run, chunks, value
+from ..equations.evaluation import RESIDUAL, Columns, Run, chunks, value
 from ..equations.spelling import (
     A_IMPULSE,
     CONTACT_FRAME,
@@ -176,6 +176,11 @@ class Found(NamedTuple):
         """Whether it explains what there is to explain, and the rows that agree bear it out."""
         return self.stands and self.explains >= BORNE_OUT * self.wrong.sum() > 0
 
+    @property
+    def order(self) -> tuple[int, int, int]:
+        """What sorts the best first; of equals the likeliest."""
+        return -self.explains * self.stands, -int((self.rows & ~self.wrong).sum()), self.rank
+
 
 def run(program: Program, judge: Judge) -> Found:
     """A program over all rows of a judge."""
@@ -183,12 +188,8 @@ def run(program: Program, judge: Judge) -> Found:
 
 
 def ranked(programs: Iterable[Program], judge: Judge) -> list[Found]:
-    """Programs run over all rows, best first; of equals the likeliest."""
-
-    def worth(one: Found) -> tuple[int, int, int]:
-        return -one.explains * one.stands, -int((one.rows & ~one.wrong).sum()), one.rank
-
-    return sorted((run(program, judge) for program in programs), key=worth)
+    """Programs run over all rows, best first."""
+    return sorted((run(program, judge) for program in programs), key=lambda one: one.order)
 
 
 def singles(judge: Judge, unexplained: Bools, on: Program | None = None) -> list[Found]:
@@ -217,7 +218,7 @@ def _tried(judge: Judge, base: Program) -> Iterator[Found]:
         found = start.distinct([spelling.composed(edit.sides) for edit in edits])
         for part in chunks(len(found), size):
             several = [changes for _, changes in found[part]]
-            near = judge.near({**start.names, **start.edited(several).names}, SHOWN)
+            near = judge.near({**start.names, **start.edited(several)}, SHOWN)
             near = np.broadcast_to(near, (len(several), size))
             for k in np.flatnonzero((near & judge.wrong).any(1)):
                 program = Program((*base.edits, edits[found[part][k][0]]))
@@ -246,7 +247,7 @@ def _two_readings(judge: Judge) -> Iterator[Program]:
     common = [one for one in readings() if one.rank == CONVENTION]
     first = [one for one in common if not one.shows]
     spelling = spellings()[IMPULSES]
-    seen = dict(judge.scene) | Run(spelling, judge.scene).edited([one.sides for one in first]).names
+    seen = dict(judge.scene) | Run(spelling, judge.scene).edited([one.sides for one in first])
     for other in common:
         near = judge.near(Run(spelling.edited(other.sides), seen).names, SHOWN)
         for place in np.flatnonzero(near.mean(-1) >= BORNE_OUT) if near.ndim > 1 else ():
@@ -329,16 +330,17 @@ class _Faults:
             return Run(spelling, judge.scene, {n: seen[n] for n in (*FINAL_VELOCITIES, *made)})
 
         self.start = clamped(judge.theirs)
-        self.limits: dict[str, Any] = dict.fromkeys(self.start.residuals, _PRECISION)
+        residuals = {key: x for key, x in self.start.names.items() if key.startswith(RESIDUAL)}
+        self.limits: dict[str, Any] = dict.fromkeys(residuals, _PRECISION)
         for name in FINAL_VELOCITIES:
-            moved = {**judge.theirs, name: judge.theirs[name] + judge.limit[name]}
-            for key, found in clamped(moved).residuals.items():
-                self.limits[key] = self.limits[key] + np.abs(found - self.start.residuals[key])
+            moved = clamped({**judge.theirs, name: judge.theirs[name] + judge.limit[name]}).names
+            for key, residual in residuals.items():
+                self.limits[key] = self.limits[key] + np.abs(moved[key] - residual)
 
     def left(self, several: Sequence[Mapping[str, Any]]) -> Floats:
         """What each of some edits leaves of the equations, by what is allowed, (K, equations,
         rows)."""
-        found = {**self.start.residuals, **self.start.edited(several).residuals}
+        found = {**self.start.names, **self.start.edited(several)}
         shape = (len(several), self.size)
         parts = [np.broadcast_to(found[key] / room, shape) for key, room in self.limits.items()]
         return np.stack(parts, 1)

@@ -6,14 +6,13 @@ All edits run through the program together, statement by statement.
 
 from collections import ChainMap
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..names import SCENE
-from .spelling import COMPARISONS, NEGATIVE, TYPED, Expression, Spelling, nodes
+from .spelling import COMPARISONS, NEGATIVE, TYPED, Expression, Spelling
 
 Floats = NDArray[np.float64]
 Columns = Mapping[str, Any]
@@ -33,16 +32,17 @@ _OPERATIONS: dict[str, Callable[..., Any]] = {
 }
 
 
-def value(node: Expression, names: Columns, known: Mapping[int, Any] = MappingProxyType({})) -> Any:
+def value(node: Expression, names: Columns, known: dict[int, Any] | None = None) -> Any:
     """The value of an expression, or what is a value already. ``known``: values of nodes by id."""
-    if isinstance(node, tuple):
-        if id(node) in known:
-            return known[id(node)]
-        function = _OPERATIONS.get(node[0]) or getattr(np, node[0])
-        return function(*[value(part, names, known) for part in node[1:]])
     if isinstance(node, str):
         return np.pi if node == "pi" else names[node]
-    return node
+    if not isinstance(node, tuple):
+        return node
+    known = {} if known is None else known
+    if id(node) not in known:
+        function = _OPERATIONS.get(node[0]) or getattr(np, node[0])
+        known[id(node)] = function(*[value(part, names, known) for part in node[1:]])
+    return known[id(node)]
 
 
 _ERRORS: dict[str, Callable[..., Any]] = {
@@ -84,19 +84,16 @@ def running_errors(spelling: Spelling, scene: Columns) -> Mapping[str, tuple[Any
     return names
 
 
-class Outcome(NamedTuple):
-    """What edits change: names, and of clamped runs residuals by key, (K, n) each."""
-
-    names: dict[str, Any]
-    residuals: dict[str, Any]
+RESIDUAL = "off_"
+"""Before a statement's key: what is left of it in a clamped run."""
 
 
 class Run:
-    """A spelling run on scenes (columns of n), as it stands: ``names`` and ``residuals``, (1, n).
-    Columns of the rows beside (``before_UX``) are those of the scenes beside where none are given.
+    """A spelling run on scenes (columns of n), as it stands: ``names``, (1, n). Columns of the rows
+    beside (``before_UX``) are those of the scenes beside where none are given.
 
     ``clamped``: name -> values to go on with in place of what is computed; the difference of the
-    two is a residual, and so is that of an equation's sides.
+    two is a residual, one of ``names``, and so is that of an equation's sides.
     """
 
     def __init__(self, spelling: Spelling, scene: Columns, clamped: Columns | None = None) -> None:
@@ -110,20 +107,18 @@ class Run:
         self.size = max(column.shape[-1] for column in columns.values())
         self._own: list[Any] = [None] * len(spelling.statements)
         basis = np.eye(len(spelling.unknown) + 1)[1:, :, None, None]
-        self._unknown = {name: basis[i] for i, name in enumerate(spelling.unknown)}
+        self._unknown = dict(zip(spelling.unknown, basis, strict=True))
         if clamped is not None:
             self._unknown = {name: self.clamped[name] for name in spelling.unknown}
             self.names |= self._unknown
         with np.errstate(all="ignore"):
-            made, self.residuals = self.edited([{}])
-        self.names |= made
+            self.names |= self.edited([{}])
 
-    def edited(self, several: Sequence[Changes]) -> Outcome:
-        """What edits of the program change; at first, all that it computes."""
+    def edited(self, several: Sequence[Changes]) -> dict[str, Any]:
+        """What edits of the program change, (K, n); at first, all that it computes."""
         made: dict[str, Any] = {}
         names = ChainMap(made, self.names)
         changed: set[str] = set()
-        residuals: dict[str, Any] = {}
         equations: dict[int, Any] = {}
         edits: dict[str, list[tuple[int, Sequence[Any]]]] = {}
         for k, changes in enumerate(several):
@@ -141,19 +136,18 @@ class Run:
                 if not one.target and not self.clamped:
                     equations[index] = found
                 elif not one.target:
-                    residuals[one.key] = np.subtract(*found)
+                    made[RESIDUAL + one.key] = np.subtract(*found)
                 elif one.target in self.clamped:
-                    residuals[one.key] = found[0] - self.clamped[one.target]
                     made[one.target] = self.clamped[one.target]
+                    made[RESIDUAL + one.key] = found[0] - made[one.target]
                 else:
                     made[one.target] = np.atleast_2d(found[0])
                     changed.add(one.target)
             if equations and index == self.spelling.equations[-1]:
-                matrix, rest = self.system(equations)
-                solved = np.moveaxis(_solutions(matrix, rest), -1, 0)
+                solved = np.moveaxis(_solutions(*self.system(equations)), -1, 0)
                 made |= zip(self.spelling.unknown, solved, strict=True)
                 changed.update(self.spelling.unknown)
-        return Outcome(made, residuals)
+        return made
 
     def _rows(
         self, own: Sequence[Any], here: Sequence[tuple[int, Sequence[Any]]], count: int, seen: Any
@@ -184,8 +178,7 @@ class Run:
         for row, (left, right) in enumerate(sides):
             for side, sign in ((left, 1.0), (right, -1.0)):
                 if np.ndim(side) > 2:
-                    for column in range(count):
-                        matrix[..., row, column] += sign * (side[column + 1] - side[0])
+                    matrix[..., row, :] += sign * np.moveaxis(side[1:] - side[0], 0, -1)
             left, right = (side[0] if np.ndim(side) > 2 else side for side in (left, right))
             rest[..., row] = np.subtract(right, left)
         return matrix, rest
@@ -202,10 +195,6 @@ class Run:
             one, own = self.spelling.statements[index], self._own[index]
             seen = self.names if one.target else {**self.names, **self._unknown}
             known: dict[int, Any] = {}
-            for side in one.sides:
-                for node in reversed(list(nodes(side))):
-                    if isinstance(node, tuple):
-                        known[id(node)] = value(node, seen, known)
             values = [[value(side, seen, known) for side in edits[place][key]] for place in places]
             wholes = [sides[0] if one.target else np.subtract(*sides) for sides in (own, *values)]
             shape = np.broadcast_shapes((1, self.size), *map(np.shape, wholes))
@@ -222,6 +211,8 @@ class Run:
 
 
 class _Row(dict[str, Any]):
+    """The names as one edit has them."""
+
     def __init__(self, names: Columns, k: int) -> None:
         super().__init__()
         self._names, self._k = names, k

@@ -177,14 +177,12 @@ def _expression(tree: ast.expr) -> Expression:
     raise ValueError(f"{ast.unparse(tree)} is no expression")
 
 
-def statement(line: str, place: str = "") -> Statement:
+def _statement(line: str, place: str) -> Statement:
     """``place | name = expression | subject``, or an equation, parsed."""
     where, text, subject = (part.strip() for part in line.split("|"))
-    if " = " not in text:
-        left, right = text.split("==")
-        return Statement(where or place, subject, "", (expression(left), expression(right)))
-    target, value = text.split(" = ", 1)
-    return Statement(where or place, subject, target.strip(), (expression(value),))
+    target, _, made = text.rpartition(" = ")
+    sides = [made] if target else made.split("==")
+    return Statement(where or place, subject, target, tuple(map(expression, sides)))
 
 
 @cache
@@ -196,8 +194,7 @@ def spellings() -> dict[str, Spelling]:
             lines = sections.setdefault(line.strip("[]"), [])
         else:
             lines.append(line)
-    middle = [title for title in sections if title not in (FIRST, LAST)]
-    return {title: _spelling(title, sections) for title in middle}
+    return {title: _spelling(title, sections) for title in sections if title not in (FIRST, LAST)}
 
 
 def table(name: str) -> list[str]:
@@ -209,29 +206,24 @@ def table(name: str) -> list[str]:
 def _spelling(title: str, sections: Mapping[str, list[str]]) -> Spelling:
     unknown: tuple[str, ...] = ()
     kin: dict[str, set[str]] = {}
-    statements = [statement(f"input | {name} = {TYPED}{name} | {name} as typed") for name in SCENE]
+    statements = [_statement(f"| {n} = {TYPED}{n} | {n} as typed", "input") for n in SCENE]
     begins = []
     for section in (FIRST, title, LAST):
         begins.append(len(statements))
-        known = {one.target for one in statements if one.target} | set(unknown)
+        known = {one.target for one in statements}.union(unknown)
         for line in sections[section]:
             word, *names = line.split()
             if word == "kin":
                 for name in names:
-                    kin.setdefault(name, set()).update(other for other in names if other != name)
+                    kin.setdefault(name, set()).update(names)
             elif word == "unknown":
                 unknown = tuple(names)
             else:
-                one = statement(line, f"{title} form")
+                one = _statement(line, f"{title} form")
                 if section != LAST or one.target not in known:
                     statements.append(one)
-    known = {one.target for one in statements} | set(unknown)
+    known = {one.target for one in statements}.union(unknown)
     shown = [name for name in RESULTS if name in known]
-    statements += [statement(f"output | {SHOWN}{name} = {name} | {name} shown") for name in shown]
-    return Spelling(
-        title,
-        tuple(statements),
-        unknown,
-        {name: tuple(sorted(others)) for name, others in kin.items()},
-        *begins[1:],
-    )
+    statements += [_statement(f"| {SHOWN}{n} = {n} | {n} shown", "output") for n in shown]
+    others = {name: tuple(sorted(alike - {name})) for name, alike in kin.items()}
+    return Spelling(title, tuple(statements), unknown, others, *begins[1:])

@@ -55,7 +55,7 @@ def causes(page: PageEvidence) -> Iterator[Cause]:
     edits = (*edits_of(LISTING), *readings())
     named: list[Edit] = []
     for part in chunks(len(edits), 1):
-        names = run.edited([edit.sides for edit in edits[part]]).names
+        names = run.edited([edit.sides for edit in edits[part]])
         alike = np.flatnonzero(wrong(names, len(edits[part])) == 0)
         named += [edits[part][k] for k in alike]
     if named:
