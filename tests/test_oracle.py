@@ -18,7 +18,7 @@ import captures
 from impact88.accuracy.errorbound import oracle_bounds, scales
 from impact88.bench import populations
 from impact88.bench.populations import POPULATIONS, texts
-from impact88.checking.oracle import Request, answer, exact_decimal, oracle
+from impact88.checking.oracle import answer, exact_decimal, oracle
 from impact88.checking.vectors import (
     CLASSES,
     EDGES,
@@ -44,7 +44,7 @@ SCENE1 = dict(sample(1))
 
 def answered(*lines: object) -> list[dict]:
     texts = [line if isinstance(line, str) else json.dumps(line) for line in lines]
-    return list(answer([Request(number, text) for number, text in enumerate(texts, 1) if text]))
+    return list(answer([(number, text) for number, text in enumerate(texts, 1) if text]))
 
 
 def test_an_answer_has_everything() -> None:

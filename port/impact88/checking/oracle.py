@@ -7,89 +7,79 @@ the Apple (a bound, relative to `errorbound.scales`); what is unphysical about i
 """
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from decimal import Decimal
 from typing import Any
 
 from .. import doubles, status
 from ..accuracy import errorbound
+from ..applesoft.operators import Real
+from ..closedform.solve import solve
 from ..errors import UserError
+from ..mappings import typed
 from ..names import DEFAULT_M, RESULTS, SCENE
+from ..plaintable import plain
+from ..program.run import run
+from ..replay import replay
 from ..scene import Scene
 from ..schemas import stamped
 from ..units import base_of, system_of
 
 BATCH = 256
 """Scenes computed together: enough that reading and replaying them costs little a scene."""
-LONGEST_LINE = 1_000_000
-"""Characters of the longest line that is read."""
 
 _NO_NUMBERS = ("COND", "STATUS")
 _decode = json.JSONDecoder(parse_float=str, parse_int=str).decode
 
 
-class Request:
-    """One line of input: its number, its ``id`` as given, and the scene or what is wrong; bare
-    numbers are in ``units`` where the scene names none."""
-
-    def __init__(self, line: int, text: str, units: str | None = None) -> None:
-        self.line = line
-        self.units = units
-        self.id: Any = None
-        self.extra: dict[str, Any] = {}
-        self.scene: Scene | None = None
-        self.problem = ""
+def answer(
+    lines: Iterable[tuple[int, str]], reference: bool = True, units: str | None = None
+) -> Iterator[dict[str, Any]]:
+    """The answers to lines of JSON with their numbers; one that cannot be used gives
+    ``{"id", "error": {"line", "message"}}``. ``reference``: give 30 digits too; ``units``: of bare
+    numbers where a scene names none."""
+    asked: list[tuple[dict[str, Any], Scene | None]] = []
+    for line, text in lines:
+        head: dict[str, Any] = {"id": None}
         try:
-            self._read(text)
+            asked.append((head, _asked(text, head, units)))
         except (UserError, ValueError, RecursionError) as error:
-            self.problem = str(error) or type(error).__name__
-
-    def _read(self, text: str) -> None:
-        if len(text) > LONGEST_LINE:
-            raise ValueError(f"has more than {LONGEST_LINE:,} characters")
-        try:
-            # ids keep their type; the scene's numbers keep their digits
-            whole = json.loads(text)
-            digits = _decode(text)
-        except ValueError as error:
-            raise ValueError(f"is not JSON: {error}") from None
-        if not isinstance(whole, dict):
-            raise ValueError('is not a JSON object; expected {"id": ..., "scene": {...}}')
-        self.id = whole.get("id")
-        self.extra = {name: whole[name] for name in ("class", "label") if name in whole}
-        values = digits.get("scene")
-        if not isinstance(values, dict):
-            raise ValueError('has no "scene" object')
-        wrong = [name for name, value in values.items() if not isinstance(value, str)]
-        if wrong:
-            raise ValueError(f"{wrong[0]} is not a number; expected a number or its decimal text")
-        scene = Scene.from_mapping({"M": DEFAULT_M, **values}, "scene", self.units)
-        _check_model(scene)
-        self.scene = scene
+            message = str(error) or type(error).__name__
+            asked.append(({"id": head["id"], "error": {"line": line, "message": message}}, None))
+    answers = iter(oracle([scene for _, scene in asked if scene is not None], reference))
+    for whole, scene in asked:
+        if scene is not None:
+            whole |= {"scene": {name: scene[name] for name in SCENE}, **next(answers)}
+            if scene.units:
+                whole["units"] = base_of(system_of(scene.units))
+            if remarks := [*scene.entries.remarks.values()]:
+                whole["remarks"] = remarks
+        yield stamped("oracle", whole)
 
 
-def _check_model(scene: Mapping[str, Any]) -> None:
+def _asked(text: str, head: dict[str, Any], units: str | None) -> Scene:
+    """The scene of a line; ``id``, ``class`` and ``label`` as given go to ``head``."""
+    try:
+        # ids keep their type; the scene's numbers keep their digits
+        whole, digits = json.loads(text), _decode(text)
+    except ValueError as error:
+        raise ValueError(f"is not JSON: {error}") from None
+    if not isinstance(whole, dict):
+        raise ValueError('is not a JSON object; expected {"id": ..., "scene": {...}}')
+    head |= {name: whole[name] for name in ("id", "class", "label") if name in whole}
+    values = digits.get("scene")
+    if not isinstance(values, dict):
+        raise ValueError('has no "scene" object')
+    for name, value in values.items():
+        if not isinstance(value, str):
+            raise ValueError(f"{name} is not a number; expected a number or its decimal text")
+    return _checked(Scene.from_mapping({"M": DEFAULT_M, **values}, "scene", units))
+
+
+def _checked(scene: Scene) -> Scene:
     if doubles.double(scene["M"]) not in (4, 6):
         raise UserError(f"M is {scene['M']}; expected 6 or 4")
-
-
-def answer(batch: Sequence[Request], reference: bool = True) -> Iterator[dict[str, Any]]:
-    """The answers to some requests; one that cannot be used gives
-    ``{"id", "error": {"line", "message"}}``. ``reference``: give 30 digits too."""
-    scenes = [request.scene for request in batch if request.scene is not None]
-    answers = iter(oracle(scenes, reference))
-    for request in batch:
-        if request.scene is None:
-            error = {"line": request.line, "message": request.problem}
-            yield stamped("oracle", {"id": request.id, "error": error})
-        else:
-            scene = {name: request.scene[name] for name in SCENE}
-            whole = {"id": request.id, **request.extra, "scene": scene, **next(answers)}
-            if request.scene.units:
-                whole["units"] = base_of(system_of(request.scene.units))
-            if remarks := [*request.scene.entries.remarks.values()]:
-                whole["remarks"] = remarks
-            yield stamped("oracle", whole)
+    return scene
 
 
 def oracle(
@@ -105,20 +95,11 @@ def oracle(
     >>> answer["results"]["VAX"]["printed"], answer["results"]["VAX"]["stored"]
     ('-13.263', '84d433d66f')
     """
-    from ..mappings import typed
-
     if isinstance(scenes, Mapping) or not isinstance(scenes, Iterable):
         scenes = [scenes]
-    scenes = [typed(scene) for scene in scenes]
-    for scene in scenes:
-        _check_model(scene)
+    scenes = [_checked(typed(scene)) for scene in scenes]
     if not scenes:
         return []
-
-    from ..closedform.solve import solve
-    from ..program.run import run
-    from ..replay import replay
-
     if reference:
         from ..accuracy.digits import thirty_digits
 
@@ -143,9 +124,7 @@ def oracle(
         ported = run(scene)
         digits = thirty_digits(scene) if reference else {}
         results: dict[str, dict[str, Any]] = {}
-        for name in RESULTS:
-            if name in _NO_NUMBERS:
-                continue
+        for name in [name for name in RESULTS if name not in _NO_NUMBERS]:
             present, text, real = (column[index] for column in applesoft.get(name, nothing))
             # line 690 prints LOSS without storing it
             stored = f"{real:010x}" if present and name != "LOSS" else None
@@ -153,32 +132,21 @@ def oracle(
                 "printed": (present and text) or None,
                 "stored": stored,
                 "decimal": exact_decimal(stored) if stored else None,
-                "double": _json_number(solved[name][index]),
+                "double": solved[name][index],
                 "reference": digits.get(name),
             }
-        out.append(
-            {
-                "printout": ported.printout,
-                "ending": "ZERO DETERMINANT" if ported.zero_determinant else ported.error,
-                "results": results,
-                "condition": _json_number(solved["COND"][index]),
-                "error_bound": {
-                    "double": _json_number(double[index]),
-                    "applesoft": _json_number(listing[index]),
-                },
-                "status": status.names(int(solved["STATUS"][index])),
-            }
-        )
+        whole = {
+            "printout": ported.printout,
+            "ending": "ZERO DETERMINANT" if ported.zero_determinant else ported.error,
+            "results": results,
+            "condition": solved["COND"][index],
+            "error_bound": {"double": double[index], "applesoft": listing[index]},
+            "status": status.names(int(solved["STATUS"][index])),
+        }
+        out.append(plain(whole))
     return out
 
 
 def exact_decimal(stored: str) -> str:
     """The value of five stored bytes, which a double holds, as an exact decimal, all its digits."""
-    from ..applesoft.operators import Real
-
     return f"{Decimal(float(Real.from_stored(stored))):f}"
-
-
-def _json_number(value: float) -> float | None:
-    """JSON has no NaN and no infinity."""
-    return value if value == value and abs(value) != float("inf") else None

@@ -30,9 +30,9 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from ..checking import kit, vectors
-from ..checking.oracle import BATCH, LONGEST_LINE, Request, answer
+from ..checking.oracle import BATCH, answer
 from ..errors import UserError
-from ..files import called, encoding_of, open_bytes
+from ..files import LONGEST_LINE, called, encoding_of, open_bytes
 from . import options
 
 ARGUMENTS = (
@@ -81,7 +81,7 @@ def main(args: options.Args) -> int:
     if wanted:
         batches = [vectors.vectors(args.vectors, args.seed, reference, args.only)]
     else:
-        batches = (answer(batch, reference) for batch in _batches(args.scenes, args.units))
+        batches = (answer(batch, reference, args.units) for batch in _batches(args.scenes))
     total = refused = 0
     for found in batches:
         for line in found:
@@ -95,8 +95,8 @@ def main(args: options.Args) -> int:
     return int(refused > 0)
 
 
-def _batches(path: str, units: str | None) -> Iterator[list[Request]]:
-    """The requests that have arrived, some at a time: a program that asks line by line over a pipe
+def _batches(path: str) -> Iterator[list[tuple[int, str]]]:
+    """The lines that have arrived, some at a time: a program that asks line by line over a pipe
     is answered line by line, a file in larger batches."""
     number, rest = 0, ""
     with open_bytes(path) as source:
@@ -114,7 +114,7 @@ def _batches(path: str, units: str | None) -> Iterator[list[Request]]:
                     called(path),
                 )
             numbered = enumerate(map(str.strip, lines), number + 1)
-            batch = [Request(at, text, units) for at, text in numbered if text]
+            batch = [(at, text) for at, text in numbered if text]
             number += len(lines)
             for at in range(0, len(batch), BATCH):
                 yield batch[at : at + BATCH]
