@@ -10,12 +10,16 @@ from hypothesis import strategies as st
 
 from impact88.applesoft.console import EndOfInput
 from impact88.applesoft.errorcodes import ApplesoftError
-from impact88.checking.captured import displayed, session
+from impact88.checking.captured import session
 from impact88.emulator.emulator import Applesoft
 from impact88.emulator.faults import TooManyStatements
 from impact88.emulator.tokens import KEYWORDS, TOKENS, split_number, tokenise, untokenised
 
 BEL = "\a"
+
+
+def displayed(program: str, keys: str = "") -> str:
+    return session(program, keys)[1]
 
 
 @pytest.mark.parametrize(

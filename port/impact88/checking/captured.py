@@ -124,8 +124,8 @@ def left_behind(reals: Mapping[str, str], a: Mapping[str, Any] | None) -> tuple[
 
 def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple[Applesoft, str]:
     """A program typed in and RUN, then the keys at INPUT, GET or the prompt until they are used up:
-    the machine, and all that was displayed after the echo of RUN up to the final prompt.
-    ``blanks``: whether skipped columns are written as blanks."""
+    the machine, and all that was displayed after the echo of RUN up to the final prompt, without
+    the NULs of the prompts. ``blanks``: whether skipped columns are written as blanks."""
     from ..emulator.emulator import Applesoft
 
     def typed() -> Iterator[str]:
@@ -138,9 +138,5 @@ def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple[Apple
     lines = typed()
     machine = Applesoft(lambda: next(lines, None), blanks=blanks)
     machine.prompt()
-    return machine, machine.take_output().removeprefix("RUN\n").removesuffix("\n]")
-
-
-def displayed(program: str, keys: str = "", *, blanks: bool = True) -> str:
-    """What `session` displays as a ``.out`` has it: without the NULs of the prompts."""
-    return session(program, keys, blanks=blanks)[1].replace("\0", "")
+    shown = machine.take_output().removeprefix("RUN\n").removesuffix("\n]")
+    return machine, shown.replace("\0", "")

@@ -93,7 +93,7 @@ def _replay(golden: Any) -> Counted:
 def _programs(golden: Any) -> Counted:
     for kind, name, texts in captured.programs(golden):
         keys, blanks = texts.get("in", ""), kind == captured.PROGRAMS
-        shown = captured.displayed(texts["bas"], keys, blanks=blanks)
+        _, shown = captured.session(texts["bas"], keys, blanks=blanks)
         yield name, shown == texts.get("out", "")
 
 

@@ -5,9 +5,11 @@ special case each), ``failure`` (the 1988 program stops, or goes wrong without a
 number give the same vector on any machine, and no scene comes twice.
 """
 
+import gzip
 from collections.abc import Callable, Iterator
 from itertools import count as count_from
 from itertools import islice
+from math import cos, radians, sin
 from random import Random
 from typing import Any
 
@@ -31,32 +33,31 @@ def vectors(
     count: int, seed: int = 0, reference: bool = True, only: str | None = None
 ) -> Iterator[dict[str, Any]]:
     """``count`` vectors: id, class, label, scene, the oracle's answer. ``only``: of one class."""
-    labelled = islice(
-        ((index, one) for index, one in enumerate(_endless(seed)) if only in (None, one[0])), count
-    )
+    every = ((index, *one) for index, one in enumerate(_endless(seed)) if only in (None, one[0]))
+    labelled = islice(every, count)
     while batch := list(islice(labelled, BATCH)):
-        answers = oracle([scene for _, (_, _, scene) in batch], reference)
-        for (index, (kind, label, scene)), answer in zip(batch, answers, strict=True):
-            head = {"id": f"{seed}-{index:06d}", "class": kind, "label": label}
-            asked = _asked(kind, label, answer)
-            yield stamped("vectors", {**head, **asked, "scene": scene, **answer})
-
-
-def _asked(kind: str, label: str, answer: dict[str, Any]) -> dict[str, Any]:
-    solvable = all(answer["results"][name]["double"] is not None for name in FINAL_VELOCITIES)
-    ending = answer["ending"]
-    return {
-        "expect": ANSWER if kind != FAILURE else EITHER if solvable else REFUSE,
-        "flags": answer["status"],
-        "comment": f"{label}; the 1988 program {f'ends with {ending}' if ending else 'answers'}",
-    }
+        answers = oracle([scene for *_, scene in batch], reference)
+        for (index, kind, label, scene), found in zip(batch, answers, strict=True):
+            solvable = all(
+                found["results"][name]["double"] is not None for name in FINAL_VELOCITIES
+            )
+            ending = found["ending"]
+            head = {
+                "id": f"{seed}-{index:06d}",
+                "class": kind,
+                "label": label,
+                "expect": ANSWER if kind != FAILURE else EITHER if solvable else REFUSE,
+                "flags": found["status"],
+                "comment": f"{label}; the 1988 program "
+                + (f"ends with {ending}" if ending else "answers"),
+                "scene": scene,
+            }
+            yield stamped("vectors", head | found)
 
 
 def published() -> str:
     """The vectors that are packaged, an object a line: the first `PUBLISHED` of seed
     `PUBLISHED_SEED`."""
-    import gzip
-
     return gzip.decompress(packaged_bytes("impact88.golden", "vectors.jsonl.gz")).decode("utf-8")
 
 
@@ -113,8 +114,6 @@ def casework(rng: Random) -> Texts:
 
 def _closing(scene: Texts) -> tuple[float, float]:
     """The relative velocity of the contact points before the impact, A minus B, along n and t."""
-    from math import cos, radians, sin
-
     g = doubles_of(scene)
     a, b = radians(g["TA"] + g["PA"]), radians(g["TB"] + g["PB"])
     dx = g["UX"] + g["DA"] * sin(a) * g["WA"] - g["VX"] + g["DB"] * sin(b) * g["WB"]

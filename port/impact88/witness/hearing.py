@@ -235,7 +235,7 @@ def _hear_program(session: Session, case: Case) -> Heard:
         rom["displayed"] = session.run_program(program, keys, blanks=blanks)
         rom["screen"] = apple.screen_text()
         machine, shown = captured.session(program, keys, blanks=blanks)
-        others[EMULATOR] = {"displayed": shown.replace("\0", "")}
+        others[EMULATOR] = {"displayed": shown}
         if case.kind == OWN:
             others[EMULATOR]["screen"] = machine.screen_text()
     except Lost as lost:
