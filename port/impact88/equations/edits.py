@@ -35,7 +35,6 @@ MODEL, CONVENTION, RARE_CONVENTION, LIKELY, LESS, RARE = range(6)
 CONDITIONS = ("point", "pivot", "stick")
 """Names that are true or false."""
 _SECTIONS = {"[likely]": LIKELY, "[less likely]": LESS, "[rare]": RARE}
-_NO_NAMES = (*CONDITIONS, "pi")
 
 
 class Edit(NamedTuple):
@@ -66,7 +65,7 @@ class Edit(NamedTuple):
         return "; and ".join(said)
 
 
-def _node_edits(spelling: Spelling, places: Iterable[int]) -> Iterator[Edit]:
+def _node_edits(spelling: Spelling, places: range) -> Iterator[Edit]:
     """Every edit of one node of statements, of each statement the likeliest first: of those that
     compute the same it stays."""
     for index in places:
@@ -74,34 +73,33 @@ def _node_edits(spelling: Spelling, places: Iterable[int]) -> Iterator[Edit]:
         found = [
             Edit(spelling.title, {one.key: (*one.sides[:at], other, *one.sides[at + 1 :])}, rank)
             for at, side in enumerate(one.sides)
-            for rank, other in variations(side, kin)
+            for rank, other in _variations(side, kin)
         ]
         yield from sorted(found, key=lambda edit: edit.rank)
 
 
-def variations(node: Expression, kin: Kin, whole: bool = True) -> Iterator[tuple[int, Expression]]:
+def _variations(node: Expression, kin: Kin, whole: bool = True) -> Iterator[tuple[int, Expression]]:
     """An expression with one of its nodes edited, and how likely that is; ``whole``: it is all of
     its side."""
-    for rank, pattern, alternatives in _rules().get(_kind(node), ()):
+    rules, kind = _rules(), _kind(node)
+    for rank, pattern, alternatives in rules.get(kind, ()):
         bound: dict[str, Expression] = {}
         if _matches(pattern, node, bound):
-            for made in alternatives:
-                yield rank, _filled(made, bound)
+            yield from ((rank, _filled(made, bound)) for made in alternatives)
+    if node in CONDITIONS:
+        yield LIKELY, False
+        yield LIKELY, True
+        return
     is_name = isinstance(node, str)
     if is_name:
-        if node in CONDITIONS:
-            yield LIKELY, False
-            yield LIKELY, True
-            return
-        for twin in kin.get(node, ()):
-            yield LIKELY, twin
+        yield from ((LIKELY, twin) for twin in kin.get(node, ()))
         yield LESS, 0
     for pattern in ("any", "whole") if whole or is_name else ("any",):
-        for rank, _, alternatives in _rules()[pattern]:
-            if _kind(node) not in COMPARISONS and (rank == LIKELY or isinstance(node, str | tuple)):
+        for rank, _, alternatives in rules[pattern]:
+            if kind not in COMPARISONS and (rank == LIKELY or isinstance(node, str | tuple)):
                 yield from ((rank, _filled(made, {pattern: node})) for made in alternatives)
     for place, part in enumerate(operands(node), 1):
-        for rank, other in variations(part, kin, False):
+        for rank, other in _variations(part, kin, False):
             yield rank, (*node[:place], other, *node[place + 1 :])
 
 
@@ -142,7 +140,7 @@ def _filled(made: Expression, bound: Mapping[str, Expression]) -> Expression:
     return renamed(made, bound)
 
 
-def equation_edits(spelling: Spelling) -> Iterator[Edit]:
+def _equation_edits(spelling: Spelling) -> Iterator[Edit]:
     """The same edit throughout one statement, or all that share a subject up to a comma."""
     groups: dict[str, list[int]] = {}
     for index in range(spelling.own, spelling.results):
@@ -151,20 +149,19 @@ def equation_edits(spelling: Spelling) -> Iterator[Edit]:
         for count in range(1, len(subjects) + 1):
             groups.setdefault(", ".join(subjects[:count]), []).append(index)
         groups[f"{one.text}; {one.subject}"] = [index]
-    groups = {
-        subject: places for subject, places in groups.items() if len(places) > 1 or ";" in subject
-    }
     for subject, places in groups.items():
+        if len(places) == 1 and ";" not in subject:
+            continue
         within = [spelling.statements[index] for index in places]
         parts = (node for one in within for side in one.sides for node in nodes(side))
         names = Counter(node for node in parts if isinstance(node, str))
         kin = spelling.kin_at(places[0])
-        for name in [one for one in names if one not in (*_NO_NAMES, *spelling.unknown)]:
+        for name in [one for one in names if one not in (*CONDITIONS, "pi", *spelling.unknown)]:
             for says, changes in _throughout(name, kin.get(name, ()), names):
                 touched = [one for one in within if not changes.keys().isdisjoint(one.reads)]
                 sides = {one.key: tuple(renamed(x, changes) for x in one.sides) for one in touched}
-                where = dict.fromkeys(one.place for one in touched)
-                yield Edit(spelling.title, sides, LESS, f"{', '.join(where)}: {says} in {subject}")
+                where = ", ".join(dict.fromkeys(one.place for one in touched))
+                yield Edit(spelling.title, sides, LESS, f"{where}: {says} in {subject}")
 
 
 def _throughout(
@@ -189,16 +186,14 @@ def _throughout(
 def edits_of(title: str) -> tuple[Edit, ...]:
     """The edits of a spelling as it stands; what all share is edited in the listing's alone."""
     spelling = spellings()[title]
-    if title == LISTING:
-        return (*edits_on(spelling), *equation_edits(spelling))
     own = _node_edits(spelling, range(spelling.own, spelling.results))
-    return (*own, *equation_edits(spelling))
+    return (*(edits_on(spelling) if title == LISTING else own), *_equation_edits(spelling))
 
 
-def edits_on(spelling: Spelling) -> tuple[Edit, ...]:
+def edits_on(spelling: Spelling) -> Iterator[Edit]:
     """The edits of one node of a spelling, edited or not, its input and output apart."""
     shown = sum(one.target.startswith(SHOWN) for one in spelling.statements)
-    return tuple(_node_edits(spelling, range(len(SCENE), len(spelling.statements) - shown)))
+    return _node_edits(spelling, range(len(SCENE), len(spelling.statements) - shown))
 
 
 @cache
@@ -212,11 +207,9 @@ def _of_one_vehicle(reading: Edit) -> Iterator[Edit]:
     """What a reading changes of A alone, and of B alone, where it changes both."""
     a = {key for key in reading.sides if key.removeprefix(SHOWN) in _OF_A}
     b = reading.sides.keys() - a
-    if len(a) == len(b):
-        for vehicle, keys in (("A's", a), ("B's", b)):
-            sides = {key: made for key, made in reading.sides.items() if key in keys}
-            says = f"{reading.says}, {vehicle} only"
-            yield reading._replace(sides=sides, says=says, rank=RARE_CONVENTION)
+    for vehicle, keys in (("A's", a), ("B's", b)) if len(a) == len(b) else ():
+        sides = {key: made for key, made in reading.sides.items() if key in keys}
+        yield Edit("", sides, RARE_CONVENTION, f"{reading.says}, {vehicle} only")
 
 
 _OF_A = frozenset("DA PA TA MA IA UX UY WA VAX VAY WAF XA YA XAF YAF DVA".split())
@@ -237,16 +230,14 @@ def written_out(lines: Iterable[str]) -> Iterator[str]:
             yield filled.replace(word[0], says) if word else filled
 
 
-_AS_TYPED = {name: f"{TYPED}{name}" for name in SCENE}
-
-
 def _reading(line: str) -> Edit:
     says, rest = line.split(" | ", 1)
     scene, _, results = rest.partition(";;")
+    typed: dict[str, Expression] = {name: f"{TYPED}{name}" for name in SCENE}
     sides: dict[str, Sides] = {}
     for name, made in assigned(scene):
         beside = {row: f"{TYPED}{row}_{name}" for row in BESIDE}
-        sides[name] = (renamed(made, {**_AS_TYPED, **beside, "x": _AS_TYPED[name]}),)
+        sides[name] = (renamed(made, {**typed, **beside, "x": typed[name]}),)
     for name, made in assigned(results):
         sides[f"{SHOWN}{name}"] = (renamed(made, {"x": name}),)
     rank = RARE_CONVENTION if says.startswith("~") else CONVENTION
@@ -269,26 +260,20 @@ def variants() -> tuple[Edit, ...]:
     for line in table("variants.txt"):
         if line.startswith("["):
             spelling = spellings()[line.strip("[]")]
-        else:
-            found.append(_variant(line, spelling))
-    return tuple(found)
-
-
-def _variant(line: str, spelling: Spelling) -> Edit:
-    says, rest = line.split(" | ", 1)
-    sides: dict[str, Sides] = {}
-    new: dict[str, Expression] = {}
-    for part in rest.split(";"):
-        text, _, subject = part.partition("@")
-        if subject:
-            key = next(key for key in spelling.where if key.startswith(f"== {subject.strip()}"))
-            left, right = text.split("==")
-            sides[key] = expression(left), expression(right)
             continue
-        target, made = text.split(" = ", 1)
-        whole = renamed(expression(made), new)
-        if target.strip() in spelling.where:
-            sides[target.strip()] = (whole,)
-        else:
-            new[target.strip()] = whole
-    return Edit(spelling.title, sides, MODEL, says)
+        says, rest = line.split(" | ", 1)
+        sides: dict[str, Sides] = {}
+        new: dict[str, Expression] = {}
+        for text, _, subject in (part.partition("@") for part in rest.split(";")):
+            if subject:
+                key = next(key for key in spelling.where if key.startswith(f"== {subject.strip()}"))
+                sides[key] = tuple(map(expression, text.split("==")))
+                continue
+            target, made = (part.strip() for part in text.split(" = ", 1))
+            whole = renamed(expression(made), new)
+            if target in spelling.where:
+                sides[target] = (whole,)
+            else:
+                new[target] = whole
+        found.append(Edit(spelling.title, sides, MODEL, says))
+    return tuple(found)
