@@ -9,8 +9,6 @@ number of a 6 by 6 matrix as it stands times the largest unknown (measured on th
 contact slides, either way of MU's sign is right.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -76,7 +74,7 @@ class Case(NamedTuple):
     loose: Floats
     per_unit: Floats
 
-    def part(self, rows: NDArray[np.intp]) -> Case:
+    def part(self, rows: NDArray[np.intp]) -> "Case":
         """Some of the rows."""
         return Case(self.names, *(column[..., rows] for column in self[1:]))
 

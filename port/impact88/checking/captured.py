@@ -4,8 +4,6 @@ A folder of captures is laid out as golden/: arithmetic/, programs/, scenes and 
 some things open, such as what bytes stand in a zero.
 """
 
-from __future__ import annotations
-
 import gzip
 import json
 from collections.abc import Callable, Iterator, Mapping
@@ -122,7 +120,7 @@ def left_behind(reals: Mapping[str, str], a: Mapping[str, Any] | None) -> tuple[
     )
 
 
-def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple[Applesoft, str]:
+def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple["Applesoft", str]:
     """A program typed in and RUN, then the keys at INPUT, GET or the prompt until they are used up:
     the machine, and all that was displayed after the echo of RUN up to the final prompt, without
     the NULs of the prompts. ``blanks``: whether skipped columns are written as blanks."""

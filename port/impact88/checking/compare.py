@@ -28,7 +28,7 @@ from ..tables.cells import TableUnits, check_scene_columns, numbers
 from ..tables.rows import BadCell, Rows
 from ..tables.table import format_of, open_reader
 from . import agreement
-from .agreement import ABSENT, DIFFER, DIGITS, DOUBLE, ELIMINATION, Bools, Case
+from .agreement import ABSENT, DIFFER, ELIMINATION, Case
 from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, Diagnosis
 from .trials import Program
 from .vectors import FAILURE
@@ -44,6 +44,7 @@ NOTHING_HERE = "theirs gives numbers where the equations have no solution"
 NOTHING_THERE = "theirs gives nothing where there is a result"
 REFUSED = "theirs refuses a vector of the class failure, as it may"
 UNREADABLE = "the row could not be read"
+REASONS = (UNREADABLE, NO_RESULT, NOTHING_HERE, REFUSED, NOTHING_THERE)
 HARMLESS = (NO_RESULT, REFUSED)
 """Reasons that no program is to be blamed for."""
 
@@ -76,12 +77,12 @@ class Tally:
 
     def add(self, grades: NDArray[np.intp], relative: NDArray[np.float64]) -> None:
         """Count a block's rows."""
-        counts = np.bincount(grades, minlength=DIFFER + 1).tolist()
-        self.compared += sum(counts[DOUBLE:])
-        self.double += counts[DOUBLE]
-        self.digits += counts[DIGITS]
-        self.elimination += counts[ELIMINATION]
-        self.differ += counts[DIFFER]
+        absent, double, digits, elimination, differ = np.bincount(grades, minlength=5).tolist()
+        self.compared += grades.size - absent
+        self.double += double
+        self.digits += digits
+        self.elimination += elimination
+        self.differ += differ
         self.largest = float(relative.max(initial=self.largest, where=grades > ABSENT))
 
 
@@ -157,30 +158,28 @@ class Comparison:
 
     def as_json(self) -> dict[str, Any]:
         """The object `impact88 compare --json` prints."""
-        whole: dict[str, Any] = plain(
-            {
-                "summary": self.summary,
-                "rows": self.rows,
-                "agreeing": self.agreeing,
-                "differing": self.differing,
-                "results": {name: vars(tally) for name, tally in self.tallies.items()},
-                "causes": dict(self.causes.most_common()),
-                "evidence": [one._asdict() for one in self.evidence],
-                "equations": {
-                    number: {"checked": checked, "violated": violated}
-                    for number, (checked, violated) in self.equations.items()
-                },
-                "worst": [one._asdict() for one in self.worst],
-                "differences": [
-                    {"row": one.row, "id": one.id, "cause": one.cause} for one in self.differences
-                ],
-                "elimination": vars(self.elimination),
-                "not_compared": {name: vars(one) for name, one in self.not_compared.items()},
-                "unknown_columns": self.unknown,
-                "bad_rows": [str(bad) for bad in self.bad],
-            }
-        )
-        return whole
+        equations = {
+            number: {"checked": checked, "violated": violated}
+            for number, (checked, violated) in self.equations.items()
+        }
+        found = [{"row": one.row, "id": one.id, "cause": one.cause} for one in self.differences]
+        whole: dict[str, Any] = {
+            "summary": self.summary,
+            "rows": self.rows,
+            "agreeing": self.agreeing,
+            "differing": self.differing,
+            "results": {name: vars(tally) for name, tally in self.tallies.items()},
+            "causes": dict(self.causes.most_common()),
+            "evidence": [one._asdict() for one in self.evidence],
+            "equations": equations,
+            "worst": [one._asdict() for one in self.worst],
+            "differences": found,
+            "elimination": vars(self.elimination),
+            "not_compared": {name: vars(one) for name, one in self.not_compared.items()},
+            "unknown_columns": self.unknown,
+            "bad_rows": list(map(str, self.bad)),
+        }
+        return {name: plain(value) for name, value in whole.items()}
 
 
 def compare(
@@ -283,8 +282,13 @@ def _compare_block(
     comparison.bad += rows.complaints()
     comparison.agreeing += int((compared & ~wrong).sum())
     comparison.differing += int(wrong.sum())
-    for reason, which in _skipped(rows, readable, case):
-        if found := (rows.first + np.flatnonzero(which & ~compared)).tolist():
+    solvable, answered = np.isfinite(case.ours).any(0), np.isfinite(case.values).any(0)
+    kinds = rows.columns.get("class", [""] * rows.count)
+    refused = solvable & ~answered & np.array([str(kind) == FAILURE for kind in kinds], bool)
+    conditions = (~readable, ~solvable & ~answered, ~solvable, refused)
+    reasons = np.select(conditions, REASONS[:-1], REASONS[-1])
+    for reason in REASONS:
+        if found := (rows.first + np.flatnonzero(~compared & (reasons == reason))).tolist():
             skipped = comparison.not_compared.setdefault(reason, Skipped())
             skipped.rows += len(found)
             skipped.first = (skipped.first + found)[:WORST]
@@ -300,17 +304,6 @@ def _compare_block(
     comparison.differences += _differing(rows, np.flatnonzero(wrong), off, relative, case)
     right = np.flatnonzero(compared & ~wrong)[:LOOKED_INTO]
     return case.part(np.concatenate([np.flatnonzero(wrong), right]))
-
-
-def _skipped(rows: Rows, readable: Bools, case: Case) -> Iterator[tuple[str, Bools]]:
-    solvable, answered = np.isfinite(case.ours).any(0), np.isfinite(case.values).any(0)
-    kinds = rows.columns.get("class")
-    may = np.array([str(kind) == FAILURE for kind in kinds], bool) if kinds is not None else False
-    yield UNREADABLE, ~readable
-    yield NO_RESULT, readable & ~solvable & ~answered
-    yield NOTHING_HERE, readable & ~solvable & answered
-    yield REFUSED, readable & solvable & ~answered & may
-    yield NOTHING_THERE, readable & solvable & ~(~answered & may)
 
 
 def _differing(

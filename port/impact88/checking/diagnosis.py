@@ -6,8 +6,6 @@ agree must bear it out, and the bits that it gets right in rows that disagree mu
 choosing among so many programs yields by chance.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -155,7 +153,7 @@ class Diagnosis:
                 part = whole.narrowed(names)
                 fits = run(program, part).rows
                 explained = fits & part.wrong & self._open
-                if _evidence(explained & clear, bits, choices & clear) < _need(program):
+                if not _earned(program, explained & clear, bits, choices & clear):
                     continue
                 stands = (fits & right).sum() >= BORNE_OUT * right.sum()
                 says = program.says + ("" if stands else IN_THESE_ROWS)
@@ -263,17 +261,14 @@ def _parts(program: Program, judge: Judge, explained: Bools) -> dict[str, int]:
     return parts
 
 
-def _evidence(explained: Bools, bits: Floats, choices: Bools) -> float:
-    """The bits that a cause has got right: of a branch taken one a row, and which rows they are of
-    those that would show it."""
+def _earned(program: Program, explained: Bools, bits: Floats, choices: Bools) -> bool:
+    """Whether a cause has got right the bits that it must: of a branch taken one a row, and which
+    rows they are of those that would show it."""
     taken, possible = int((explained & choices).sum()), int(choices.sum())
-    return float(bits[explained & ~choices].sum()) + taken + math.log2(math.comb(possible, taken))
-
-
-def _need(program: Program) -> float:
-    if len(program.edits) > 1:
-        return _NEED_PAIR
-    return _NEED_NAMED if program.edits[0].rank <= RARE_CONVENTION else _NEED
+    right = float(bits[explained & ~choices].sum()) + taken
+    need = _NEED_NAMED if program.edits[0].rank <= RARE_CONVENTION else _NEED
+    need = _NEED_PAIR if len(program.edits) > 1 else need
+    return right + math.log2(math.comb(possible, taken)) >= need
 
 
 def _sample(judge: Judge, clear: Bools) -> NDArray[np.intp]:

@@ -6,8 +6,6 @@ the velocities and another on top of it the rest; *by equations*, with their vel
 two change of the residuals adds up to what mends them; *by rows*, one explains some rows alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -90,19 +88,19 @@ class Judge(NamedTuple):
     limit: Columns
     wrong: Bools
 
-    def part(self, rows: NDArray[np.intp]) -> Judge:
+    def part(self, rows: NDArray[np.intp]) -> "Judge":
         """Some of the rows."""
         scene, theirs, limit = (
             {name: column[rows] for name, column in columns.items()} for columns in self[:3]
         )
         return Judge(scene, theirs, limit, self.wrong[rows])
 
-    def of(self, names: Sequence[str]) -> Judge:
+    def of(self, names: Sequence[str]) -> "Judge":
         """By some of the results only."""
         theirs = {name: column for name, column in self.theirs.items() if name in names}
         return self._replace(theirs=theirs)
 
-    def narrowed(self, names: Sequence[str]) -> Judge:
+    def narrowed(self, names: Sequence[str]) -> "Judge":
         """By some of the results, of which some are wrong, in fewer rows perhaps."""
         part = self.of(names)
         return part._replace(wrong=~run(Program(), part).rows & self.wrong)
@@ -132,7 +130,7 @@ class Judge(NamedTuple):
                 fits = fits & ((np.abs(mine - theirs) <= self.limit[name]) | np.isnan(theirs))
         return np.asarray(fits)
 
-    def few(self, unexplained: Bools, wrong: int = _FIRST_WRONG) -> Judge:
+    def few(self, unexplained: Bools, wrong: int = _FIRST_WRONG) -> "Judge":
         """Some rows of those not explained yet, and some that agree."""
         right = spread(np.flatnonzero(~self.wrong), _FIRST_RIGHT)
         return self.part(np.concatenate([spread(np.flatnonzero(unexplained), wrong), right]))
@@ -236,11 +234,7 @@ def pairs(judge: Judge, alone: Sequence[Found]) -> Iterator[list[Program]]:
     for one in list(enough)[:_FIRSTS]:
         unexplained = judge.wrong & ~one.rows
         if unexplained.any():
-            yield _second(judge, unexplained, one.program)
-
-
-def _second(judge: Judge, unexplained: Bools, first: Program) -> list[Program]:
-    return [one.program for one in singles(judge, unexplained, first)[:2]]
+            yield [more.program for more in singles(judge, unexplained, one.program)[:2]]
 
 
 def _two_readings(judge: Judge) -> Iterator[Program]:
@@ -269,6 +263,38 @@ _SUMS = 200
 """Partners of an edit that are looked at; more have coarse tables only."""
 
 
+class _Faults:
+    """The equations of a spelling that their velocities violate, ``how``: with the impulses by what
+    changes of A or of B."""
+
+    def __init__(self, spelling: Spelling, judge: Judge, how: str) -> None:
+        self.size = judge.wrong.size
+        names = Run(spelling, judge.scene).names
+
+        def clamped(theirs: Columns) -> Run:
+            seen = {**names, **theirs}
+            made = {**_IMPULSES[how], **_ALONG}
+            for name, text in made.items():
+                seen[name] = value(expression(text), seen)
+            return Run(spelling, judge.scene, {n: seen[n] for n in (*FINAL_VELOCITIES, *made)})
+
+        self.start = clamped(judge.theirs)
+        residuals = {key: x for key, x in self.start.names.items() if key.startswith(RESIDUAL)}
+        self.limits: dict[str, Any] = dict.fromkeys(residuals, _PRECISION)
+        for name in FINAL_VELOCITIES:
+            moved = clamped({**judge.theirs, name: judge.theirs[name] + judge.limit[name]}).names
+            for key, residual in residuals.items():
+                self.limits[key] = self.limits[key] + np.abs(moved[key] - residual)
+
+    def left(self, several: Sequence[Mapping[str, Any]]) -> Floats:
+        """What each of some edits leaves of the equations, by what is allowed, (K, equations,
+        rows)."""
+        found = {**self.start.names, **self.start.edited(several)}
+        shape = (len(several), self.size)
+        parts = [np.broadcast_to(found[key] / room, shape) for key, room in self.limits.items()]
+        return np.stack(parts, 1)
+
+
 def _by_equations(judge: Judge, whole: Judge) -> Iterator[list[Program]]:
     """Programs with two mistakes that together mend what their velocities violate; then a reading,
     and a mistake on top of it. ``judge``: a few rows, of which all have all final velocities;
@@ -284,7 +310,8 @@ def _by_equations(judge: Judge, whole: Judge) -> Iterator[list[Program]]:
     violated = (held.mean(-1) < BORNE_OUT).sum(1)
     for place in np.argsort(violated[1:], kind="stable")[:_FIRSTS]:
         if violated[place + 1] < violated[0]:
-            yield _second(whole, whole.wrong, Program((reading[place],)))
+            found = singles(whole, whole.wrong, Program((reading[place],)))
+            yield [one.program for one in found[:2]]
 
 
 def _sums(faults: _Faults, edits: Sequence[Edit]) -> list[Program]:
@@ -312,35 +339,3 @@ def _sums(faults: _Faults, edits: Sequence[Edit]) -> list[Program]:
             found |= {(int(i), int(j)) for j in others[mended.mean(1) >= BORNE_OUT] if i < j}
     programs = [Program((made[i], made[j])) for i, j in sorted(found)]
     return sorted(programs, key=lambda one: one.edits[0].rank + one.edits[1].rank)[:_FIRSTS]
-
-
-class _Faults:
-    """The equations of a spelling that their velocities violate, ``how``: with the impulses by what
-    changes of A or of B."""
-
-    def __init__(self, spelling: Spelling, judge: Judge, how: str) -> None:
-        self.size, self.scene = judge.wrong.size, judge.scene
-        names = Run(spelling, judge.scene).names
-
-        def clamped(theirs: Columns) -> Run:
-            seen = {**names, **theirs}
-            made = {**_IMPULSES[how], **_ALONG}
-            for name, text in made.items():
-                seen[name] = value(expression(text), seen)
-            return Run(spelling, judge.scene, {n: seen[n] for n in (*FINAL_VELOCITIES, *made)})
-
-        self.start = clamped(judge.theirs)
-        residuals = {key: x for key, x in self.start.names.items() if key.startswith(RESIDUAL)}
-        self.limits: dict[str, Any] = dict.fromkeys(residuals, _PRECISION)
-        for name in FINAL_VELOCITIES:
-            moved = clamped({**judge.theirs, name: judge.theirs[name] + judge.limit[name]}).names
-            for key, residual in residuals.items():
-                self.limits[key] = self.limits[key] + np.abs(moved[key] - residual)
-
-    def left(self, several: Sequence[Mapping[str, Any]]) -> Floats:
-        """What each of some edits leaves of the equations, by what is allowed, (K, equations,
-        rows)."""
-        found = {**self.start.names, **self.start.edited(several)}
-        shape = (len(several), self.size)
-        parts = [np.broadcast_to(found[key] / room, shape) for key, room in self.limits.items()]
-        return np.stack(parts, 1)

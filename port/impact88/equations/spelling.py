@@ -1,7 +1,5 @@
 """The planar impact as statements (``mechanics.txt``), parsed: several spellings of one program."""
 
-from __future__ import annotations
-
 import ast
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -114,7 +112,7 @@ class Spelling:
             for key, made in sides.items()
         }
 
-    def edited(self, sides: Mapping[str, Sides]) -> Spelling:
+    def edited(self, sides: Mapping[str, Sides]) -> "Spelling":
         """The spelling with statements written otherwise."""
         made = self.composed(sides)
         statements = (one._replace(sides=made.get(one.key, one.sides)) for one in self.statements)

@@ -11,10 +11,11 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from ..emulator.screen import BASE, HEIGHT, WIDTH, shown_character
-from ..errors import UserError
+from ..errors import UserError, library
 from ..files import read_bytes
 
 START = 0xD000
+"""Where the ROM begins, of the Apple II Plus as of all before it."""
 SIZE = 0x10000 - START
 APPLE_II_PLUS = "33a24f5489ba9195b44be77d9afb2252594cb5c7"
 """SHA-1 of the Apple II Plus set: Applesoft in ROM and the autostart monitor."""
@@ -57,11 +58,11 @@ def read_image(path: str, any_rom: bool = False) -> Image:
     return Image(data, sha1, known)
 
 
-IO_START = 0xC000
-KEYBOARD, STROBE = range(0xC000, 0xC010), range(0xC010, 0xC020)
-COUT = 0xFDED
-"""The monitor's character output: every character displayed goes through it, in the accumulator."""
-CURSOR_COLUMN = 0x24
+IO_START, KEYBOARD, STROBE = 0xC000, range(0xC000, 0xC010), range(0xC010, 0xC020)
+"""Addresses of what is no memory, of the keyboard, and of what clears it."""
+COUT, CURSOR_COLUMN = 0xFDED, 0x24
+"""The monitor's character output: every character displayed goes through it, in the accumulator;
+and where the monitor keeps the cursor's column."""
 RETURN = "\r"
 _WAITING_POLLS, _POLL_CYCLES = 4, 60
 """Polls in a row, and cycles between two at most, while the ROM waits: the monitor asks every 16
@@ -124,14 +125,9 @@ class Apple:
     follows. Raises UserError when py65 is missing."""
 
     def __init__(self, rom: bytes) -> None:
-        try:
-            from py65.devices.mpu6502 import MPU  # type: ignore[import-untyped]
-        except ImportError:
-            raise UserError(
-                "the witness needs py65, which is not installed; pip install 'impact88[witness]'"
-            ) from None
+        processor = library("py65.devices.mpu6502", "witness", "the witness")
         self.memory = Memory(rom)
-        self.cpu = self.memory.cpu = MPU(self.memory, pc=None)
+        self.cpu = self.memory.cpu = processor.MPU(self.memory, pc=None)
         self.instructions = 0
         self.blanks = True
         self._output: list[str] = []
@@ -151,11 +147,9 @@ class Apple:
 
     def call(self, address: int, stops: tuple[int, ...]) -> int:
         """Run from an address until the processor comes to one of ``stops``; returns which one."""
-        cpu = self.cpu
+        cpu, says = self.cpu, f"the routine at ${address:04X} does not return"
         cpu.pc = address
-        self._step(
-            lambda: cpu.pc in stops, PLENTY, f"the routine at ${address:04X} does not return"
-        )
+        self._step(lambda: cpu.pc in stops, PLENTY, says)
         return int(cpu.pc)
 
     def _wait(self, limit: int) -> None:
@@ -176,9 +170,8 @@ class Apple:
                 cpu.step()
                 count += 1
                 if count > limit:
-                    raise Lost(
-                        f"{says} after {count:,} instructions (program counter ${cpu.pc:04X})"
-                    )
+                    place = f"(program counter ${cpu.pc:04X})"
+                    raise Lost(f"{says} after {count:,} instructions {place}")
         except IndexError:  # an address past $FFFF
             raise Lost(f"the machine ran off the end of memory (${cpu.pc:04X})") from None
         self.instructions += count
