@@ -8,13 +8,11 @@ import gzip
 import json
 from collections.abc import Callable, Iterator, Mapping
 from importlib import resources
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..applesoft import decimaltext, functions, real
 from ..applesoft.errorcodes import ApplesoftError
-
-if TYPE_CHECKING:
-    from ..emulator.emulator import Applesoft
+from ..emulator.emulator import Applesoft
 
 PLENTY = 3_000_000
 """Statements that no captured program needs."""
@@ -38,19 +36,13 @@ def golden() -> Any:
 
 def rows(folder: Any, name: str) -> list[dict[str, Any]]:
     """The captured scenes, or fuzz."""
-    data = gzip.decompress(folder.joinpath(f"{name}.jsonl.gz").read_bytes()).decode()
-    return list(map(json.loads, data.splitlines()))
+    return list(map(json.loads, _lines(folder.joinpath(f"{name}.jsonl.gz"))))
 
 
 def calls(folder: Any) -> dict[str, list[list[str]]]:
     """The captured calls of the arithmetic, by file: operation, operands, extension, result."""
-    return {
-        file.name.partition(".")[0]: [
-            row.split("\t") for row in gzip.decompress(file.read_bytes()).decode().splitlines()
-        ]
-        for file in _files(folder, ARITHMETIC)
-        if file.name.endswith(".tsv.gz")
-    }
+    files = [file for file in _files(folder, ARITHMETIC) if file.name.endswith(".tsv.gz")]
+    return {f.name.partition(".")[0]: [row.split("\t") for row in _lines(f)] for f in files}
 
 
 def programs(folder: Any) -> Iterator[tuple[str, str, dict[str, str]]]:
@@ -64,6 +56,10 @@ def programs(folder: Any) -> Iterator[tuple[str, str, dict[str, str]]]:
     for row in rows(folder, FUZZ):
         texts = zip(ENDINGS, (row["program"], row["keyboard"], row["output"]), strict=False)
         yield FUZZ, row["name"], dict(texts)
+
+
+def _lines(file: Any) -> list[str]:
+    return gzip.decompress(file.read_bytes()).decode().splitlines()
 
 
 def _files(folder: Any, name: str) -> list[Any]:
@@ -120,11 +116,10 @@ def left_behind(reals: Mapping[str, str], a: Mapping[str, Any] | None) -> tuple[
     )
 
 
-def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple["Applesoft", str]:
+def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple[Applesoft, str]:
     """A program typed in and RUN, then the keys at INPUT, GET or the prompt until they are used up:
     the machine, and all that was displayed after the echo of RUN up to the final prompt, without
     the NULs of the prompts. ``blanks``: whether skipped columns are written as blanks."""
-    from ..emulator.emulator import Applesoft
 
     def typed() -> Iterator[str]:
         yield from filter(None, program.split("\n"))

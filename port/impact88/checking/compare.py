@@ -260,7 +260,7 @@ def _compare_block(
     rtol: float | None,
     units: TableUnits,
 ) -> Case:
-    """Judge a block and count; the rows that may be looked into are returned."""
+    """Count a block; the rows that may be looked into are returned."""
     whole = {"M": DEFAULT_M, **values}
     scene = {name: np.full(rows.count, double(whole[name])) for name in whole if name in SCENE}
     scene |= numbers(rows, units)

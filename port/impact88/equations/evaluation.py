@@ -211,8 +211,6 @@ class Run:
 
 
 class _Row(dict[str, Any]):
-    """The names as one edit has them."""
-
     def __init__(self, names: Columns, k: int) -> None:
         super().__init__()
         self._names, self._k = names, k

@@ -79,7 +79,6 @@ def _finite(x: float) -> float:
 
 
 def _read_float(text: str, start: int) -> tuple[float, int]:
-    """The double nearest to the decimal text."""
     value, end = doubles.read(text, start)
     return _finite(value), end
 

@@ -54,12 +54,9 @@ class Run(namedtuple("Run", "printout error line reals A zero_determinant")):
     @property
     def floats(self) -> dict[str, float]:
         """The real variables as floats: exactly what the five bytes hold."""
-        return {
-            name: float(Real.from_stored(value))
-            if isinstance(value, str) and len(value) == 10
-            else float(value)
-            for name, value in self.reals.items()
-        }
+        values = self.reals.items()
+        stored = {name for name, value in values if isinstance(value, str) and len(value) == 10}
+        return {n: float(Real.from_stored(x) if n in stored else x) for n, x in values}
 
     def __repr__(self) -> str:
         ending = self.error or ("ZERO DETERMINANT" if self.zero_determinant else "END")
