@@ -8,11 +8,13 @@ import gzip
 import json
 from collections.abc import Callable, Iterator, Mapping
 from importlib import resources
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..applesoft import decimaltext, functions, real
 from ..applesoft.errorcodes import ApplesoftError
-from ..emulator.emulator import Applesoft
+
+if TYPE_CHECKING:
+    from ..emulator.emulator import Applesoft
 
 PLENTY = 3_000_000
 """Statements that no captured program needs."""
@@ -116,7 +118,7 @@ def left_behind(reals: Mapping[str, str], a: Mapping[str, Any] | None) -> tuple[
     )
 
 
-def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple[Applesoft, str]:
+def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple["Applesoft", str]:
     """A program typed in and RUN, then the keys at INPUT, GET or the prompt until they are used up:
     the machine, and all that was displayed after the echo of RUN up to the final prompt, without
     the NULs of the prompts. ``blanks``: whether skipped columns are written as blanks."""
@@ -127,6 +129,8 @@ def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple[Apple
         machine.machine.statements_left = PLENTY
         machine.feed_keys(keys)
         yield "RUN"
+
+    from ..emulator.emulator import Applesoft
 
     lines = typed()
     machine = Applesoft(lambda: next(lines, None), blanks=blanks)
