@@ -17,9 +17,9 @@ from impact88.accuracy.elimination import ORDER, eliminate, listing_rows
 from impact88.accuracy.reference import (
     DIGITS,
     GUARD,
+    Exact,
     impulse,
     number,
-    terms,
     velocities,
     working,
 )
@@ -37,7 +37,7 @@ def equations(scene: Mapping[str, Any], pi: Number | None = None) -> list[list[N
     """The rows of lines 370 to 560 (6 of 7 numbers, or 4 of 5 for M = 4) for a scene of texts or
     numbers, with ``pi`` for pi. Line 510's misreading of MU below -10 is not followed."""
     with working(scene):
-        return listing_rows(terms(scene, pi))
+        return listing_rows(Exact(scene, pi))
 
 
 def exact(scene: Mapping[str, Any], pi: Number | None = None) -> dict[str, Number] | None:
@@ -47,7 +47,7 @@ def exact(scene: Mapping[str, Any], pi: Number | None = None) -> dict[str, Numbe
     are given as ``float("inf")`` and must be at rest.
     """
     with working(scene):
-        t = terms(scene, pi)
+        t = Exact(scene, pi)
         if any(mpmath.isinf(t.g[name]) for name in ("MA", "IA", "MB", "IB") if name in t.g):
             solution = impulse(t)
             values = None if solution is None else velocities(t, solution)
@@ -101,7 +101,7 @@ def listing_elimination(
     ``pi``: the listing's 3.14159265 unless given.
     """
     with working(scene):
-        t = terms(scene, listing_pi() if pi is None else pi)
+        t = Exact(scene, listing_pi() if pi is None else pi)
         solution = eliminate(listing_rows(t), mpmath.mpf("1e-9"))
         if solution is None:
             return None

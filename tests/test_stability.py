@@ -2,7 +2,7 @@
 
 The bound is that of a backward stable method: the error of the final velocities is at most a small
 multiple of the unit roundoff times what the same relative change of the scene's numbers would do
-(`impact88.accuracy.sensitivity`). The true values come from 50-digit arithmetic.
+(`impact88.accuracy.errorbound`). The true values come from 50-digit arithmetic.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ import pytest
 from fiftydigits import exact, listing_elimination, relative_error, split
 from impact88 import solve
 from impact88.accuracy import reference
-from impact88.accuracy.digits import fifty_digits
 from impact88.accuracy.elimination import (
     LISTING_PI,
     ORDER,
@@ -26,7 +25,8 @@ from impact88.accuracy.elimination import (
     fill,
     lapack,
 )
-from impact88.accuracy.sensitivity import movements, sensitivity
+from impact88.accuracy.errorbound import movements, sensitivity
+from impact88.accuracy.reference import fifty_digits
 from impact88.applesoft.operators import Real
 from impact88.bench.populations import POPULATIONS, scenes
 from impact88.closedform.columns import ANGLES
@@ -178,7 +178,7 @@ def test_the_two_references_agree():
             scene = scene_at(g, i)
             six = exact(scene)
             with reference.working(scene):
-                t = reference.terms(scene)
+                t = reference.Exact(scene)
                 found = reference.velocities(t, reference.impulse(t))
             three = dict(zip(ORDER, found, strict=True))
             assert relative_error(six, three) < 1e-38

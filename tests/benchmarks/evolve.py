@@ -17,7 +17,7 @@ import sys
 import numpy as np
 
 from impact88.accuracy.elimination import ORDER
-from impact88.accuracy.sensitivity import sensitivity
+from impact88.accuracy.errorbound import sensitivity
 from impact88.bench.methods import reference, relative_errors
 from impact88.bench.populations import POPULATIONS, scenes
 from impact88.closedform.solve import quantities, solve

@@ -4,7 +4,7 @@
 subroutine (lines 1000 to 1170) for one scene in whatever arithmetic its numbers have.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import reduce
 from operator import add
 from typing import Any
@@ -24,84 +24,36 @@ ORDER = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
 """The unknowns, column by column."""
 
 
-def fill(columns: Mapping[str, Any], pi: float = np.pi) -> tuple[Array, Array]:
-    """The matrices (n, 6, 6) and right-hand sides (n, 6) of n scenes with M = 6.
-
-    ``columns``: scene name -> array of shape (n,) or number. Where line 510 takes for a pivot what
-    is none (MU below -10), this does not.
-    """
-    g = {name: np.asarray(value, dtype=np.float64) for name, value in columns.items()}
-
-    def turn(*degrees: Array) -> tuple[Array, Array]:
-        angle = sum(x * (pi / 180) for x in degrees)
-        return np.sin(angle), np.cos(angle)
-
-    def products(a: Array, x: Sequence[Array], b: Array, y: Sequence[Array]) -> Any:
-        return a * reduce(add, x) + b * reduce(add, y)
-
-    def against(mu: Array, slip: Array) -> Array:
-        return np.where(slip > 0, -mu, mu)
-
-    t = Terms(g, False, False, np.float64(0.0), turn, products, against)
-    rows = listing_rows(t)
-    pivot = g["MU"] == PIVOT
-    if pivot.any():
-        t.pivot = True
-        rows[2] = [np.where(pivot, x, y) for x, y in zip(listing_rows(t)[2], rows[2], strict=True)]
-    shape = np.broadcast_shapes(*(v.shape for v in g.values()))
-    A, b = np.zeros((*shape, 6, 6)), np.zeros((*shape, 6))
-    for i, (*row, right) in enumerate(rows):
-        b[:, i] = right
-        for j, x in enumerate(row):
-            if x is not t.zero:
-                A[:, i, j] = x
-    return A, b
-
-
-def changes(columns: Mapping[str, Any], A: Array) -> tuple[Array, Array]:
-    """Right-hand sides (n, 6) with which the matrices of `fill` give what the velocities *change*,
-    and the velocities before (n, 6). They are small where a body is heavy; the listing's unknowns,
-    the velocities themselves, then lose them."""
-    b, before = np.zeros((2, len(A), 6))
-    for i, name in enumerate(VELOCITIES_OF_BOTH):
-        before[:, i] = columns[name]
-    # gn and, of a pivot, gt are what rows 4 and 3 make of the velocities before
-    approach, slip = (np.einsum("ij,ij->i", A[:, row], before) for row in (3, 2))
-    b[:, 2] = np.where(np.asarray(columns["MU"]) == PIVOT, -slip, 0.0)
-    b[:, 3] = -(1 + np.asarray(columns["E"])) * approach
-    b[:, 5] = (1 - np.asarray(columns["EM"])) * (before[:, 4] - before[:, 5])
-    return b, before
-
-
 class Terms:
-    """A scene's numbers ``g``, in whatever arithmetic, and lines 300 to 340 on them. ``turn``: sine
-    and cosine of a sum of angles; ``products``: (a, terms, b, terms) -> a·terms + b·terms;
-    ``against``: (MU, slip) -> MU by the sign rule of line 400."""
+    """A scene's numbers ``g``, in whatever arithmetic, and lines 300 to 340 on them. How sines and
+    sums are made of them its subclasses say."""
 
-    def __init__(
-        self,
-        g: Mapping[str, Any],
-        point: bool,
-        pivot: bool,
-        zero: Any,
-        turn: Callable[..., tuple[Any, Any]],
-        products: Callable[[Any, Sequence[Any], Any, Sequence[Any]], Any],
-        against: Callable[[Any, Any], Any],
-    ) -> None:
+    def __init__(self, g: Mapping[str, Any], point: bool, pivot: bool, zero: Any) -> None:
         self.g, self.point, self.pivot, self.zero = g, point, pivot, zero
-        self.s, self.c = turn(g["GA"])
+        self.s, self.c = self.turn(g["GA"])
         self.D1 = self.D2 = self.D3 = self.D4 = self.WA = self.WB = zero
         if not point:
-            s, c = turn(g["TB"], g["PB"])
+            s, c = self.turn(g["TB"], g["PB"])
             self.D1, self.D2 = g["DB"] * s, g["DB"] * c
-            s, c = turn(g["TA"], g["PA"])
+            s, c = self.turn(g["TA"], g["PA"])
             self.D3, self.D4 = g["DA"] * s, g["DA"] * c
             self.WA, self.WB = g["WA"], g["WB"]
         across = g["UX"], self.D3 * self.WA, -g["VX"], self.D1 * self.WB
         along = g["UY"], -(self.D4 * self.WA), -g["VY"], -(self.D2 * self.WB)
-        self.gn = products(self.s, along, self.c, across)
-        self.gt = products(self.c, along, -self.s, across)
-        self.mu = g["MU"] if pivot else against(g["MU"], self.gt)
+        self.gn = self.products(self.s, along, self.c, across)
+        self.gt = self.products(self.c, along, -self.s, across)
+        self.mu = g["MU"] if pivot else self.against(g["MU"], self.gt)
+
+    def turn(self, *degrees: Any) -> tuple[Any, Any]:
+        """Sine and cosine of a sum of angles."""
+        raise NotImplementedError
+
+    def products(self, a: Any, x: Sequence[Any], b: Any, y: Sequence[Any]) -> Any:
+        return a * reduce(add, x) + b * reduce(add, y)
+
+    def against(self, mu: Any, slip: Any) -> Any:
+        """MU by the sign rule of line 400."""
+        return -mu if slip > self.zero else mu
 
     def before(self) -> list[Any]:
         """The velocities before the impact, in the order of `ORDER`."""
@@ -137,6 +89,59 @@ def listing_rows(t: Terms) -> list[list[Any]]:
     before = moment[0] * UX + moment[1] * UY + moment[2] * VX + moment[3] * VY
     matrix.append([*moment, 2 * EM - 1, 1 - 2 * EM, before + EM * (WA - WB)])
     return matrix
+
+
+class _Columns(Terms):
+    """Of arrays."""
+
+    def __init__(self, g: Mapping[str, Array], pi: float) -> None:
+        self.pi = pi
+        super().__init__(g, False, False, np.float64(0.0))
+
+    def turn(self, *degrees: Array) -> tuple[Array, Array]:
+        angle = sum(x * (self.pi / 180) for x in degrees)
+        return np.sin(angle), np.cos(angle)
+
+    def against(self, mu: Array, slip: Array) -> Array:
+        return np.where(slip > 0, -mu, mu)
+
+
+def fill(columns: Mapping[str, Any], pi: float = np.pi) -> tuple[Array, Array]:
+    """The matrices (n, 6, 6) and right-hand sides (n, 6) of n scenes with M = 6.
+
+    ``columns``: scene name -> array of shape (n,) or number. Where line 510 takes for a pivot what
+    is none (MU below -10), this does not.
+    """
+    g = {name: np.asarray(value, dtype=np.float64) for name, value in columns.items()}
+    t = _Columns(g, pi)
+    rows = listing_rows(t)
+    pivot = g["MU"] == PIVOT
+    if pivot.any():
+        t.pivot = True
+        rows[2] = [np.where(pivot, x, y) for x, y in zip(listing_rows(t)[2], rows[2], strict=True)]
+    shape = np.broadcast_shapes(*(v.shape for v in g.values()))
+    A, b = np.zeros((*shape, 6, 6)), np.zeros((*shape, 6))
+    for i, (*row, right) in enumerate(rows):
+        b[:, i] = right
+        for j, x in enumerate(row):
+            if x is not t.zero:
+                A[:, i, j] = x
+    return A, b
+
+
+def changes(columns: Mapping[str, Any], A: Array) -> tuple[Array, Array]:
+    """Right-hand sides (n, 6) with which the matrices of `fill` give what the velocities *change*,
+    and the velocities before (n, 6). They are small where a body is heavy; the listing's unknowns,
+    the velocities themselves, then lose them."""
+    b, before = np.zeros((2, len(A), 6))
+    for i, name in enumerate(VELOCITIES_OF_BOTH):
+        before[:, i] = columns[name]
+    # gn and, of a pivot, gt are what rows 4 and 3 make of the velocities before
+    approach, slip = (np.einsum("ij,ij->i", A[:, row], before) for row in (3, 2))
+    b[:, 2] = np.where(np.asarray(columns["MU"]) == PIVOT, -slip, 0.0)
+    b[:, 3] = -(1 + np.asarray(columns["E"])) * approach
+    b[:, 5] = (1 - np.asarray(columns["EM"])) * (before[:, 4] - before[:, 5])
+    return b, before
 
 
 def lapack(A: Array, b: Array) -> Array:

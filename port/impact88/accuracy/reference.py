@@ -1,7 +1,10 @@
-"""The reference: a scene's equations in 50 digits, those of mpmath (extra ``oracle``).
+"""The reference: every result of a scene in 50 digits, those of mpmath (extra ``oracle``).
 
-The three equations in the impulse share nothing with the closed form of `closedform.impact`; the
-tests hold them to the six equations of lines 370 to 560.
+The impulse comes from Equations 15, 16 (or no slip) and 18, which share nothing with the closed
+form of `closedform.impact` (the tests hold them to the six equations of lines 370 to 560), and
+everything else from the impulse, so that none is a difference of numbers that have lost it already,
+and what is zero is written as 0. For point masses (M = 4) the arms count as 0 and the spins stay
+out of the energies.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,7 +13,7 @@ from typing import Any, NamedTuple
 
 from ..errors import UserError
 from ..names import DEFAULT_M, PIVOT
-from .elimination import Terms
+from .elimination import ORDER, Terms
 
 try:
     import mpmath as mpmath  # type: ignore[import-untyped]
@@ -21,8 +24,12 @@ except ImportError:
     ) from None
 
 DIGITS = 50
+WRITTEN = 30
+"""Of the digits, in an oracle's answer: as many as the chapter's reference cases have."""
 GUARD = 15
 """Working digits beyond those promised, besides what the spread of a scene's numbers may cost."""
+LONGEST_EXPONENT = 3
+"""Digits of the largest exponents that are computed with."""
 
 ANGLES = ("GA", "PA", "PB", "TA", "TB")
 
@@ -54,26 +61,24 @@ def total(*terms: Number) -> Number:
     return result if abs(result) > noise else mpmath.mpf(0)
 
 
-def terms(scene: Mapping[str, Any], pi: Number | None = None) -> Terms:
-    """A scene's numbers, with ``pi`` for pi; without, right angles are exact. Made at working
-    precision."""
-    g = {name: number(value) for name, value in scene.items()}
+class Exact(Terms):
+    """A scene's numbers at working precision, with ``pi`` for pi; without, right angles are
+    exact."""
 
-    def turn(*degrees: Number) -> tuple[Number, Number]:
+    def __init__(self, scene: Mapping[str, Any], pi: Number | None = None) -> None:
+        self.pi = pi
+        g = {name: number(value) for name, value in scene.items()}
+        point = number(scene.get("M", DEFAULT_M)) == 4
+        super().__init__(g, point, g["MU"] == PIVOT, mpmath.mpf(0))
+
+    def turn(self, *degrees: Number) -> tuple[Number, Number]:
         angle = sum(degrees[1:], degrees[0])
-        if pi is None:
+        if self.pi is None:
             return mpmath.sinpi(angle / 180), mpmath.cospi(angle / 180)
-        return mpmath.sin(angle * pi / 180), mpmath.cos(angle * pi / 180)
+        return mpmath.sin(angle * self.pi / 180), mpmath.cos(angle * self.pi / 180)
 
-    def products(a: Number, x: Sequence[Number], b: Number, y: Sequence[Number]) -> Number:
+    def products(self, a: Number, x: Sequence[Number], b: Number, y: Sequence[Number]) -> Number:
         return total(*(a * term for term in x), *(b * term for term in y))
-
-    def against(mu: Number, slip: Number) -> Number:
-        return -mu if slip > 0 else mu
-
-    point = number(scene.get("M", DEFAULT_M)) == 4
-    zero = mpmath.mpf(0)
-    return Terms(g, point, g["MU"] == PIVOT, zero, turn, products, against)
 
 
 def _determinant(rows: Sequence[Sequence[Number]]) -> Number:
@@ -167,3 +172,87 @@ def velocities(t: Terms, P: Impulse) -> list[Number]:
         (ib * bn * pn, ib * bt * pt, -ib * m),
     ]
     return [total(u, *change) for u, change in zip(t.before(), changes, strict=True)]
+
+
+def thirty_digits(scene: Mapping[str, str]) -> dict[str, str]:
+    """Result name -> 30 digits; empty when the equations are singular or make no sense. What is no
+    number (LOSS where nothing moves, MUC where a pivot feels no impulse) is not in it."""
+    exponents = (text.upper().replace(" ", "").partition("E")[2] for text in scene.values())
+    if any(len(exponent.lstrip("+-0")) > LONGEST_EXPONENT for exponent in exponents):
+        return {}  # a number of thousands of digits is no measurement
+    try:
+        values = fifty_digits(scene)
+    except (ValueError, ZeroDivisionError):
+        return {}
+    with mpmath.workdps(DIGITS):
+        return {
+            name: mpmath.nstr(value, WRITTEN) if value else "0"
+            for name, value in values.items()
+            if mpmath.isfinite(value)
+        }
+
+
+def fifty_digits(scene: Mapping[str, str | float]) -> dict[str, Any]:
+    """Result name -> mpf; empty when the equations are singular. ``scene``: decimal texts, or
+    floats with their exact values."""
+    texts = {
+        name: value.replace(" ", "") or "0" if isinstance(value, str) else value
+        for name, value in scene.items()
+    }
+    with working(texts):
+        t = Exact(texts)
+        P = impulse(t)
+        if P is None:
+            return {}
+        after = velocities(t, P)
+        f = dict(zip(ORDER, after, strict=True))
+        f |= _contact_velocities(t, t.before(), "") | _contact_velocities(t, after, "F")
+        for name, suffix, sign in (("VC", "", -1), ("VS", "F", 1)):
+            x, y = (total(f[f"{axis}A{suffix}"], -f[f"{axis}B{suffix}"]) for axis in "XY")
+            f[name] = sign * total(t.c * x, t.s * y)
+        f |= _energies(t, P, after)
+        ma, mb, *_ = inverses(t)
+        size = mpmath.hypot(P.normal, P.tangential)
+        f |= {"DVA": ma * size, "DVB": mb * size}
+        f |= {"PN": P.normal, "PT": P.tangential, "PM": P.moment, "MUP": t.mu}
+        if t.point:
+            f |= {"WAF": t.g["WA"], "WBF": t.g["WB"]}
+        pivot = impulse(Exact({**texts, "MU": "-10"}))
+        return f | ({"MUC": pivot.tangential / pivot.normal} if pivot and pivot.normal else {})
+
+
+def _contact_velocities(t: Terms, velocities: list[Any], suffix: str) -> dict[str, Any]:
+    """Lines 340, 700 and 710."""
+    ax, ay, bx, by, wa, wb = velocities
+    return {
+        f"XA{suffix}": total(ax, t.D3 * wa),
+        f"YA{suffix}": total(ay, -t.D4 * wa),
+        f"XB{suffix}": total(bx, -t.D1 * wb),
+        f"YB{suffix}": total(by, t.D2 * wb),
+    }
+
+
+def _energies(t: Terms, P: Impulse, after: list[Any]) -> dict[str, Any]:
+    """Lines 320, 580, 590 and 690; the percentage by the work of the impulse at the mean of the
+    relative velocities before and after."""
+    g, before = t.g, t.before()
+    bodies = ["MA", "MA", "MB", "MB", *([] if t.point else ["IA", "IB"])]
+
+    def energy(velocities: list[Any]) -> Any:
+        pairs = zip(bodies, velocities, strict=False)
+        # an infinite body is at rest
+        return mpmath.fsum(g[x] * v**2 for x, v in pairs if not mpmath.isinf(g[x])) / 2
+
+    initial = energy(before)
+    values = {"KI": initial, "KF": energy(after)}
+    if initial:
+        an, at, bn, bt = arms(t)
+        s, c = t.s, t.c
+        ax, ay, bx, by, wa, wb = (u + v for u, v in zip(before, after, strict=True))
+        if t.point:
+            wa = wb = mpmath.mpf(0)
+        normal = total(c * ax, s * ay, -c * bx, -s * by, an * wa, bn * wb)
+        sliding = total(c * ay, -s * ax, -c * by, s * bx, at * wa, bt * wb)
+        work = total(P.normal * normal, P.tangential * sliding, P.moment * total(wa, -wb))
+        values["LOSS"] = -50 * work / initial
+    return values

@@ -11,22 +11,20 @@ typed no error was above it; it is a thousand times the error of a usual scene.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from functools import reduce
-from operator import add
+from collections.abc import Mapping
 
 from ..applesoft.decimaltext import scan
 from ..names import DEFAULT_M, PIVOT
 from .elimination import LISTING_PI, ORDER, Terms, eliminate, listing_rows
+from .errorbound import APPLESOFT as UNIT
 
-UNIT = 2.0**-32
-"""What rounding a number to five bytes changes of it, at most."""
 PI_ERROR = abs(LISTING_PI / math.pi - 1)
 SMALLEST_PIVOT = 1e-9
 """Line 1080's."""
 WORST_DIVISOR = 0.25
 """Relative error of a divisor from which the first order says nothing; twice as much is unsafe."""
 TWO_BYTES = 2.0**-16
+"""What the bytes below a second and third byte of zeros are worth, of the top one."""
 
 
 class Uncertain(ArithmeticError):
@@ -95,25 +93,29 @@ class Bounded:
         return self.v < other.v
 
 
-def _terms(scene: Mapping[str, str]) -> Terms:
+class _Terms(Terms):
     """A scene's numbers. Raises `Uncertain` where the listing may take another line."""
-    g = {name: _read(text) for name, text in scene.items()}
-    point = g["M"].v == 4 if "M" in g else float(DEFAULT_M) == 4
-    if point and any(g[d].v and g[w].v for d, w in (("DA", "WA"), ("DB", "WB"))):
-        raise Uncertain  # line 340 turns point masses all the same
 
-    def products(a: Bounded, x: Sequence[Bounded], b: Bounded, y: Sequence[Bounded]) -> Bounded:
-        return reduce(add, x) * a + reduce(add, y) * b
+    def __init__(self, scene: Mapping[str, str]) -> None:
+        g = {name: _read(text) for name, text in scene.items()}
+        point = g["M"].v == 4 if "M" in g else float(DEFAULT_M) == 4
+        if point and any(g[d].v and g[w].v for d, w in (("DA", "WA"), ("DB", "WB"))):
+            raise Uncertain  # line 340 turns point masses all the same
+        super().__init__(g, point, g["MU"].v == PIVOT, Bounded(0.0))
+        if not self.pivot and g["MU"].v and not self.gt.e < abs(self.gt.v):
+            raise Uncertain  # line 400 may turn MU, or not
+        if not self.pivot and min(g["MU"].v, self.mu.v) - self.mu.e <= PIVOT:
+            raise Uncertain  # line 390 or 510 takes it for a pivot's
 
-    def against(mu: Bounded, slip: Bounded) -> Bounded:
-        return -mu if slip.v > 0 else mu
-
-    t = Terms(g, point, g["MU"].v == PIVOT, Bounded(0.0), _turn, products, against)
-    if not t.pivot and g["MU"].v and not t.gt.e < abs(t.gt.v):
-        raise Uncertain  # line 400 may turn MU, or not
-    if not t.pivot and min(g["MU"].v, t.mu.v) - t.mu.e <= PIVOT:
-        raise Uncertain  # line 390 or 510 takes it for a pivot's
-    return t
+    def turn(self, *degrees: Bounded) -> tuple[Bounded, Bounded]:
+        """Line 300 makes radians of each angle with a pi of nine digits; SIN takes its argument as
+        a part of a turn, and is off by six units beside."""
+        radian = LISTING_PI / 180
+        angle = sum(x.v for x in degrees) * radian
+        off = sum(x.e + (PI_ERROR + 5 * UNIT) * abs(x.v) for x in degrees) * radian
+        off += 4 * UNIT * (abs(angle) + 2) + 6 * UNIT
+        exact = math.radians(math.fmod(sum(x.v for x in degrees), 360.0))
+        return Bounded(math.sin(exact), off), Bounded(math.cos(exact), off)
 
 
 def _read(text: str) -> Bounded:
@@ -122,17 +124,6 @@ def _read(text: str) -> Bounded:
     _, _, decimals, sign, digits, _ = scan(text.upper())
     steps = abs((int(sign + digits) if digits else 0) - len(decimals))
     return Bounded(float(text), (2 * steps + 2) * UNIT * abs(float(text)))
-
-
-def _turn(*degrees: Bounded) -> tuple[Bounded, Bounded]:
-    """Sine and cosine of a sum of angles. Line 300 makes radians of each with a pi of nine digits;
-    SIN takes its argument as a part of a turn, and is off by six units beside."""
-    radian = LISTING_PI / 180
-    angle = sum(x.v for x in degrees) * radian
-    off = sum(x.e + (PI_ERROR + 5 * UNIT) * abs(x.v) for x in degrees) * radian
-    off += 4 * UNIT * (abs(angle) + 2) + 6 * UNIT
-    exact = math.radians(math.fmod(sum(x.v for x in degrees), 360.0))
-    return Bounded(math.sin(exact), off), Bounded(math.cos(exact), off)
 
 
 def listing_errors(
@@ -145,7 +136,7 @@ def listing_errors(
     by the closed form. None where nothing can be said: uncertain divisors, ZERO DETERMINANT.
     """
     try:
-        t = _terms(scene)
+        t = _Terms(scene)
         solution = eliminate(listing_rows(t), Bounded(SMALLEST_PIVOT))
     except (Uncertain, ZeroDivisionError, OverflowError, ValueError):
         return None

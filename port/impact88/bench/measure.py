@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 
 from .. import native
-from ..accuracy.errorbound import scales
-from ..accuracy.sensitivity import movements, sensitivity
+from ..accuracy.errorbound import APPLESOFT, DOUBLE, movements, scales, sensitivity
 from ..closedform.impactprograms import by_numpy
 from ..closedform.solve import TILE, solve
 from ..names import FINAL_VELOCITIES, SCENE
@@ -25,7 +24,7 @@ from ..native.formulas import ExpressionTable
 from ..native.program import Program, addresses
 from ..processors import processors
 from ..version import __version__
-from .methods import APPLESOFT, DOUBLE, METHODS, Method, reference, relative_errors
+from .methods import METHODS, Method, reference, relative_errors
 from .populations import BENCHMARK, POPULATIONS, enlarged, scenes
 
 Row = dict[str, Any]

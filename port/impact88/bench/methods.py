@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from .. import native
 from ..accuracy.elimination import ORDER, changes, eliminate, fill, lapack
+from ..accuracy.errorbound import APPLESOFT, DOUBLE
 from ..applesoft.operators import Real
 from ..closedform.solve import solve
 from ..figures.drawing import BLACK, BLUE, GREY, ORANGE, VERMILION
@@ -18,9 +19,6 @@ from ..scene import Scene
 from .populations import Columns, texts
 
 Floats = NDArray[np.float64]
-
-DOUBLE = 2.0**-53
-APPLESOFT = 2.0**-32
 
 
 class Method(NamedTuple):
@@ -138,7 +136,7 @@ METHODS: Sequence[Method] = (
 def reference(columns: Columns, names: Sequence[str] = ORDER) -> tuple[Floats, Floats]:
     """Results to 50 digits, a column for each of ``names``, each number as the sum of two doubles
     (hi, lo); NaN where there is none."""
-    from ..accuracy.digits import fifty_digits
+    from ..accuracy.reference import fifty_digits
 
     hi, lo = np.full((2, len(columns["MA"]), len(names)), np.nan)
     for i in range(len(hi)):

@@ -101,7 +101,7 @@ def oracle(
     if not scenes:
         return []
     if reference:
-        from ..accuracy.digits import thirty_digits
+        from ..accuracy.reference import thirty_digits
 
     texts = {name: [scene[name] for scene in scenes] for name in SCENE}
     numbers = {name: doubles.doubles(column) for name, column in texts.items()}
