@@ -14,7 +14,7 @@ import captures
 from impact88 import native
 from impact88.applesoft.decimaltext import scan
 from impact88.replay import compiled, polynomials, textcolumns
-from impact88.replay.reals import ZERO, Reals, compare, constant, from_floats, select
+from impact88.replay.reals import Reals, compare, constant, from_floats
 from impact88.replay.unit import Unit
 
 pytestmark = pytest.mark.captures
@@ -119,7 +119,7 @@ def test_vectors(path: Path, both_machines: None) -> None:
         order = compare(left, right)
         assert [f"{int(x) & 0xFF:02x}" for x in order] == results
         if native.library is not None:
-            below, odd = by_machine(lambda a, b: select(a < b, ONE, ZERO), [left, right])
+            below, odd = by_machine(lambda a, b: compiled.Noted(a < b, None), [left, right])
             less = [result == "01" for result in results]
             wrong = zip(below.v.tolist(), less, odd, strict=True)
             assert all(odd or got == expected for got, expected, odd in wrong)

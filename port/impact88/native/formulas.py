@@ -89,6 +89,10 @@ class Expression:
     def __invert__(self) -> Expression:
         return self.table.combine("not", self)
 
+    def any(self) -> bool:
+        """Whether a condition may hold in some scene."""
+        return True
+
 
 class ExpressionTable:
     """Where the expressions of one plan are kept, each once."""

@@ -22,41 +22,6 @@ ODD = "ODD"
 """The result that marks a scene: 1, else 0."""
 
 
-def _noting(name: str) -> Callable[[Noting, Any], Noting]:
-    def method(self: Noting, other: Any) -> Noting:
-        operand = other.expression if isinstance(other, Noting) else float(np.ravel(other)[0])
-        return Noting(getattr(self.expression, name)(operand))
-
-    return method
-
-
-class Noting:
-    """An expression where an array of numbers or conditions would be; `any` scene may be one where
-    a condition holds."""
-
-    def __init__(self, expression: Expression) -> None:
-        self.expression = expression
-
-    __lt__, __le__, __ge__ = (_noting(name) for name in ("__lt__", "__le__", "__ge__"))
-    __and__, __or__ = (_noting(name) for name in ("__and__", "__or__"))
-
-    def __eq__(self, number: Any) -> Noting:  # type: ignore[override]
-        return Noting(self.expression.table.equals(self.expression, number))
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __invert__(self) -> Noting:
-        return Noting(~self.expression)
-
-    def any(self) -> bool:
-        return True
-
-    def select(self, yes: Reals, no: Reals) -> Noted:
-        table, unit = self.expression.table, yes.unit or no.unit
-        chosen = table.choose(self.expression, noted(table, yes), noted(table, no))
-        return Noted(chosen, unit, yes.stored and no.stored)
-
-
 def _noted(operation: str, stored: bool | None = None) -> Any:
     """The method that notes an operation; what it makes is as it was if ``stored`` does not say."""
     return lambda self, *others: self.made(
@@ -77,7 +42,7 @@ class Noted(Reals):
 
     @property
     def v(self) -> Any:  # type: ignore[override]
-        return Noting(self.expression)
+        return self.expression
 
     def made(self, operation: str, *others: Reals, stored: bool = False) -> Noted:
         table = self.expression.table
@@ -99,7 +64,18 @@ class Noted(Reals):
             operation, left, right = "less", -left, -right
         table = self.expression.table
         made = table.combine(f"real_{operation}", noted(table, left), noted(table, right))
-        return Noting(made) if operation == "less" else Noted(made, self.unit)
+        return made if operation == "less" else Noted(made, self.unit)
+
+    def chosen(self, condition: Any, yes: Reals, no: Reals) -> Noted:
+        table = self.expression.table
+        made = table.choose(condition, noted(table, yes), noted(table, no))
+        return Noted(made, yes.unit or no.unit, yes.stored and no.stored)
+
+    def below(self, limit: Reals) -> Expression:
+        return self.expression < noted(self.expression.table, limit)
+
+    def nothing(self) -> Expression:
+        return self.expression.table.equals(self.expression, 0.0)
 
     def exceeds(self, limit: float) -> bool:
         return False  # else the scene is marked
@@ -133,8 +109,8 @@ class _Notes(Unit):
         """What is marked needlessly is computed all the same."""
 
     def fails(self, failed: Any, code: int) -> bool:
-        if isinstance(failed, Noting):
-            self.marked = self.marked.table.combine("either", self.marked, failed.expression)
+        if isinstance(failed, Expression):
+            self.marked = self.marked | failed
         elif np.any(failed):  # in every scene
             self.marked = self.marked.table.constant(1.0)
         return False

@@ -62,7 +62,7 @@ def square(x: Reals) -> Reals:
     """x ^ 2, which is EXP (2 * LOG (x)) with the sign left out; 0 ^ 2 is 0."""
     if x.zero:
         return x
-    nothing = x.v == 0
+    nothing = x.nothing()
     base = abs(x.rounded())
     if not nothing.any():
         return exp(2 * log(base))

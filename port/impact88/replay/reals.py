@@ -136,6 +136,19 @@ class Reals:
         """What an operator makes of two reals, one of which this is."""
         return _OPERATIONS[operation](left, right)
 
+    def chosen(self, condition: Any, yes: Reals, no: Reals) -> Reals:
+        """`select`, where this is one of the two."""
+        v, zero = np.where(condition, yes.v, no.v), yes.zero and no.zero
+        return Reals(v, yes.unit or no.unit, yes.stored and no.stored, zero)
+
+    def below(self, limit: Reals) -> Any:
+        """Where it is below: the numbers, not as the ROM compares."""
+        return self.v < limit.v
+
+    def nothing(self) -> Any:
+        """Where it is zero."""
+        return self.v == 0
+
     def exceeds(self, limit: float) -> bool:
         """Whether any magnitude is above ``limit``."""
         return bool((np.abs(self.v) > limit).any())
@@ -251,16 +264,9 @@ def zero(unit: Unit | None) -> Reals:
 
 
 def select(condition: Any, yes: Reals, no: Reals) -> Reals:
-    """``yes`` where the condition holds (an array, or one of `compiled`), else ``no``."""
-    if not isinstance(condition, np.ndarray):
-        selected: Reals = condition.select(yes, no)
-        return selected
-    return Reals(
-        np.where(condition, yes.v, no.v),
-        yes.unit or no.unit,
-        yes.stored and no.stored,
-        yes.zero and no.zero,
-    )
+    """``yes`` where the condition holds, else ``no``."""
+    special = no if isinstance(no, type(yes)) else yes
+    return special.chosen(condition, yes, no)
 
 
 def _add(left: Reals, right: Reals, subtract: bool) -> Reals:

@@ -211,7 +211,7 @@ def eliminate(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool)
         for row in range(J, M + 1) if J < M else ():
             if not A[row, J].zero:
                 size = abs(A[row, J])
-                taken = ~(size.v < largest.v)
+                taken = ~size.below(largest)
                 largest = select(taken, size, largest)
                 before = {other: scenes & ~taken for other, scenes in RX.items()}
                 RX = before | {row: before[row] | taken if row in before else taken}
@@ -226,7 +226,7 @@ def eliminate(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool)
                     A[row, column] = select(scenes, mine, theirs)
         unit.at(1160, order=stamp(570, 100 * J))
         AP = A[J, J]
-        none = abs(AP).v < C_1E_9.v
+        none = abs(AP).below(C_1E_9)
         if unit.fails(none, ZERO_DETERMINANT):
             AP = select(none, constant(1), AP)
         cells = [A[row, column] for row in range(1, M + 1) for column in range(J, M + 2)]
