@@ -18,6 +18,7 @@ import impact88
 import kernels
 from impact88 import native
 from impact88.bench.populations import POPULATIONS, enlarged, scenes, texts
+from impact88.closedform import solve as solving
 from impact88.closedform.impactprograms import KERNELS, program_for
 from impact88.closedform.plain import FEW
 from impact88.closedform.solve import TILE, quantities
@@ -97,6 +98,40 @@ def test_kinds_that_change_far_behind_what_was_looked_at():
         columns[name][-5003] = value
         columns["EM"][-7] = -0.25  # a column of one value but for a single scene
         assert_same_bits(*both(columns, threads=1))
+
+
+def test_a_column_of_one_value_that_another_follows_far_behind():
+    columns = {name: values.copy() for name, values in scenes("casework", 3 * FEW, 6).items()}
+    columns["EM"][:] = -0.5
+    columns["EM"][-7] = -0.25
+    assert_same_bits(*both(columns, threads=1))
+
+
+def test_what_varies_may_go_beyond_what_was_looked_at(monkeypatch):
+    """Numbers that are only larger than those looked at make no other kind."""
+    columns = scenes("casework", 3 * FEW, 6)
+    columns["UX"][-7] = 10 * columns["UX"].max()
+    with native.switched_off():
+        expected = impact88.solve(columns, SIX)
+    monkeypatch.setattr(solving, "_solved", None)  # the way of the other kinds
+    assert_same_bits(impact88.solve(columns, SIX), expected)
+
+
+def test_memory_of_results_is_used_again_only_once_nobody_holds_them():
+    columns = scenes("casework", 3 * FEW, 6)
+    other = {**columns, "UX": columns["UX"] + 1}
+    held = impact88.solve(columns, SIX)
+    kept = {name: values.copy() for name, values in held.items()}
+    one = held["VBY"]
+    del held
+    impact88.solve(other, SIX)
+    np.testing.assert_array_equal(one, kept["VBY"])
+    before = one.ctypes.data
+    del one
+    # two blocks take turns: what was held is free by now
+    again = [impact88.solve(columns, SIX)["VBY"].ctypes.data for _ in range(3)]
+    assert len({before, *again}) <= 3
+    assert len(set(again)) == 1
 
 
 def test_slices_types_and_shapes():

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .. import native
 from ..errors import UserError
 from ..names import SCENE
-from ..native.program import Addresses, addresses
+from ..native.program import Addresses, Program, addresses
 from ..processors import processors
 from .columns import ORDINARY, UNUSED_BY_POINTS, alike_kind
 from .impactprograms import CIRCLE, program_for
@@ -26,92 +26,78 @@ NAMES = tuple(SCENE)
 FEW = 2048
 """Scenes up to which copying their columns is cheaper than looking at each; and as many show of
 what kind the next ones are."""
-TOGETHER = 1 << 28
-"""Bytes up to which results are rows of one array, which is paged in twice as fast as arrays of
-their own but is kept as long as one of them."""
 KEPT = 1 << 28
-"""Bytes up to which the memory of results is used again once nobody holds any of them: all results
-of a million scenes, which take 70 instead of 250 to 500 ns a scene; a quarter holds none."""
+"""Bytes up to which results are rows of one array, which is paged in twice as fast as arrays of
+their own but is kept as long as one of them, and up to which that memory is used again once nobody
+holds any of it: all results of a million scenes, which take 70 instead of 250 to 500 ns a scene; a
+quarter holds none."""
 WORTH_KEEPING = 1 << 17
 """Bytes from which fresh memory has to be paged in; less is had from what was freed."""
 WORTH_A_THREAD = 32768
 """Scenes for each thread from which it pays: half a millisecond of the compiled machine."""
 
 
-class _Layout:
-    """Which of a scene's values are columns and which are numbers (``order``: columns first), and
-    room for what the machine finds of them."""
+class _Survey:
+    """Values of some types, of which some are columns and the others numbers (``order``: columns
+    first): ``where`` they are, and what the machine finds of them: the least and the most of each
+    (``found``), its kind."""
 
     def __init__(self, types: tuple[type, ...]) -> None:
         self.columns = [i for i, kind in enumerate(types) if kind is np.ndarray]
         self.numbers = [i for i, kind in enumerate(types) if kind is not np.ndarray]
-        self.order = [NAMES[i] for i in (*self.columns, *self.numbers)]
-        self.limits = np.array([ORDINARY[name] for name in self.order])
+        self.order = tuple(NAMES[i] for i in (*self.columns, *self.numbers))
         many = len(self.columns)
         # of copies side by side: what a scene more moves them by, and where they begin
         self.by_scene = 8 * np.array([*range(many), *[many] * len(self.numbers)])
         self.after = 8 * np.array([*[0] * many, *range(len(self.numbers))])
-        self.free: list[_Look] = []
-
-
-class _Look:
-    """What the machine finds of columns: the least and the most of each (``found``), its kind."""
-
-    def __init__(self, layout: _Layout) -> None:
         self.where = np.empty(len(NAMES), np.int64)
         self.found = np.empty((len(NAMES), 2))
+        self._ordinary = np.array([ORDINARY[name] for name in self.order])
         self._kinds = np.empty(len(NAMES), np.uint8)
-        self._many = self.where.ctypes.data, len(layout.columns), len(NAMES)
-        rooms = self.found, layout.limits, self._kinds
-        self._rooms = tuple(room.ctypes.data for room in rooms)
+        self._columns = self.where.ctypes.data, many, len(NAMES)
+        self._rooms = tuple(x.ctypes.data for x in (self.found, self._ordinary, self._kinds))
 
     def kinds(self, count: int) -> bytes:
         assert native.library is not None
-        native.library.survey_kinds(*self._many, count, *self._rooms)
+        native.library.survey_kinds(*self._columns, count, *self._rooms)
         return self._kinds.tobytes()
+
+    def limits(self) -> Array:
+        """What the columns must keep to beyond the scenes surveyed."""
+        return np.where((self._kinds == ord("a"))[:, np.newaxis], self._ordinary, self.found)
 
 
 @lru_cache(maxsize=256)
-def _layout(types: tuple[type, ...]) -> _Layout | None:
+def _surveys(types: tuple[type, ...]) -> list[_Survey] | None:
+    """Those that no thread uses; None where not all values are arrays and plain numbers."""
     plain = all(kind is np.ndarray or kind in PLAIN for kind in types)
-    return _Layout(types) if plain and np.ndarray in types else None
-
-
-class _Prepared:
-    """A program for columns of some kinds, and where in a layout it finds what it reads."""
-
-    def __init__(self, layout: _Layout, found: Mapping[str, str], wanted: tuple[str, ...]) -> None:
-        kinds = []
-        for name in NAMES:
-            kind = found[name]
-            if found["M"] == "4" and name in UNUSED_BY_POINTS:
-                kinds.append("unused")
-            elif kind in "4p" and name == {"4": "M", "p": "MU"}[kind]:
-                kinds.append("4" if kind == "4" else "pivot")
-            elif kind in "?4p":
-                raise ValueError(name)
-            else:
-                kinds.append({"a": "array", "s": "scalar"}.get(kind) or alike_kind(name, int(kind)))
-        self.program = program_for(tuple(kinds), wanted)
-        place = {name: i for i, name in enumerate(layout.order)}
-        self.read = np.array([place[name] for name in self.program.columns], np.int64)
-        scalars = [x for x in self.program.scalars if isinstance(x, str)]
-        self.fixed = {name: place[name] for name in scalars}
-        kind_of = dict(zip(NAMES, kinds, strict=True))
-        checked = [i for i in range(len(layout.columns)) if kind_of[layout.order[i]] != "unused"]
-        self.checked = np.array(checked, np.int64)
-        self.array = np.array([[kind_of[layout.order[i]] == "array"] for i in checked])
-        self.limits = layout.limits[checked]
-        self.widths = self.program.width[len(self.read) :]
+    return [] if plain and np.ndarray in types else None
 
 
 @lru_cache(maxsize=1024)
-def _prepared(layout: _Layout, kinds: bytes, wanted: tuple[str, ...]) -> _Prepared | None:
-    """None where the numbers have to be looked at."""
-    try:
-        return _Prepared(layout, dict(zip(layout.order, kinds.decode(), strict=True)), wanted)
-    except ValueError:
-        return None
+def _prepared(
+    order: tuple[str, ...], found: bytes, wanted: tuple[str, ...]
+) -> tuple[Program, Addresses, dict[str, int], Addresses] | None:
+    """A program for values in some ``order``; where among them are the columns it reads, the
+    numbers it wants, and what has to stay as found. None where they have to be looked at."""
+    kinds = dict(zip(order, found.decode(), strict=True))
+    point = kinds["M"] == "4"
+    special = {("M", "4"): "4", ("MU", "p"): "pivot"}
+    for name, kind in kinds.items():
+        if point and name in UNUSED_BY_POINTS:
+            kinds[name] = "unused"
+        elif (name, kind) in special:
+            kinds[name] = special[name, kind]
+        elif kind in "?4p":
+            return None
+        else:
+            kinds[name] = {"a": "array", "s": "scalar"}.get(kind) or alike_kind(name, int(kind))
+    program = program_for(tuple(kinds[name] for name in NAMES), wanted)
+    place = {name: i for i, name in enumerate(order)}
+    read = np.array([place[name] for name in program.columns], np.int64)
+    fixed = {x: place[x] for x in program.scalars if isinstance(x, str)}
+    used = np.array([place[name] for name in order if kinds[name] != "unused"], np.int64)
+    return program, read, fixed, used
 
 
 def solve_plain(
@@ -122,56 +108,56 @@ def solve_plain(
 ) -> dict[str, Array] | None:
     """The results ``wanted`` of values in the table's order; None where they are not plain float64
     columns of one shape and numbers, or have to be looked at."""
-    layout = _layout(tuple(map(type, values)))
-    if layout is None:
+    types = tuple(map(type, values))
+    free = _surveys(types)
+    if free is None:
         return None
-    arrays = [values[i] for i in layout.columns]
-    shape, count = arrays[0].shape, arrays[0].size
-    if count < 2 or not all(array.shape == shape for array in arrays):
-        return None
-    numbers = [values[i] for i in layout.numbers]
-    look = layout.free.pop() if layout.free else _Look(layout)
+    survey = free.pop() if free else _Survey(types)
     try:
+        arrays = [values[i] for i in survey.columns]
+        numbers = [values[i] for i in survey.numbers]
+        shape, count, where = arrays[0].shape, arrays[0].size, survey.where
+        if count < 2 or not all(array.shape == shape for array in arrays):
+            return None
         if count <= FEW:
             data = np.concatenate([*arrays, numbers], None, dtype=np.float64, casting="same_kind")
-        else:
+            np.multiply(survey.by_scene, count, out=where)
+            where += survey.after
+            where += data.ctypes.data
+        elif all(x.dtype == np.float64 and x.flags.c_contiguous for x in arrays):
             data = np.array(numbers, np.float64)
-    except (TypeError, OverflowError):  # no numbers
-        return None
-    if count <= FEW:
-        np.multiply(layout.by_scene, count, out=look.where)
-        look.where += layout.after
-        look.where += data.ctypes.data
-    elif all(x.dtype == np.float64 and x.flags.c_contiguous for x in arrays):
-        look.where[: len(arrays)] = addresses(arrays)
-        look.where[len(arrays) :] = data.ctypes.data + 8 * np.arange(len(numbers))
-    else:
-        return None
-    made = _prepared(layout, look.kinds(min(count, FEW)), wanted)
-    if made is None:
-        return None
-    fixed = {name: look.found[i, 0] for name, i in made.fixed.items()}
-    by_name, into = rooms(wanted if out is None else [x for x in wanted if x not in out], shape)
-    if out is not None:
-        check_room(out, wanted, shape, arrays)
-        by_name = {name: out[name] if name in out else by_name[name] for name in wanted}
-        into = addresses(by_name.values())
-    read = look.where[made.read]
-    short: list[int] = []
-    if count <= FEW:  # all have been looked at
-        made.program.run(read, into, count, CIRCLE, fixed)
-    else:
-        checked = look.where[made.checked]
-        limits = np.where(made.array, made.limits, look.found[made.checked])
+            where[: len(arrays)] = addresses(arrays)
+            where[len(arrays) :] = data.ctypes.data + 8 * np.arange(len(numbers))
+        else:
+            return None
+        made = _prepared(survey.order, survey.kinds(min(count, FEW)), wanted)
+        if made is None:
+            return None
+        program, read, places, used = made
+        read, fixed = where[read], {name: survey.found[i, 0] for name, i in places.items()}
+        by_name, into = rooms(wanted if out is None else [x for x in wanted if x not in out], shape)
+        if out is not None:
+            check_room(out, wanted, shape, arrays)
+            by_name = {name: out[name] if name in out else by_name[name] for name in wanted}
+            into = addresses(by_name.values())
+        if count <= FEW:  # all have been looked at
+            program.run(read, into, count, CIRCLE, fixed)
+            return by_name
+        used = used[used < len(arrays)]
+        checked, limits, widths = where[used], survey.limits()[used], program.width[len(read) :]
+        short: list[int] = []
 
         def part(start: int, stop: int) -> None:
-            at, to, seen = read + 8 * start, into + made.widths * start, checked + 8 * start
-            if made.program.run(at, to, stop - start, CIRCLE, fixed, seen, limits) < stop - start:
+            at, to, seen = read + 8 * start, into + widths * start, checked + 8 * start
+            if program.run(at, to, stop - start, CIRCLE, fixed, seen, limits) < stop - start:
                 short.append(start)
 
         shared_out(part, count, workers(count, threads, WORTH_A_THREAD))
-    layout.free.append(look)
-    return None if short else by_name
+        return None if short else by_name
+    except (TypeError, OverflowError):  # no numbers
+        return None
+    finally:
+        free.append(survey)
 
 
 def workers(count: int, threads: int | None, share: int) -> int:
@@ -203,10 +189,19 @@ def shared_out(work: Callable[[int, int], None], count: int, workers: int) -> No
 _kept: list[Array] = []
 
 
+def _taken(blocks: list[Array]) -> tuple[Array, int]:
+    """A block taken from a list, and how many refer to it."""
+    block = blocks.pop()
+    return block, sys.getrefcount(block)
+
+
+_NOBODY_ELSE = _taken([np.empty(0)])[1]
+
+
 def _memory(count: int) -> Array:
     """So many float64, those of an earlier call where no array refers to them any more."""
-    block = _kept.pop() if _kept else None
-    if block is None or block.size != count or sys.getrefcount(block) > 2:  # here, and the argument
+    block, references = _taken(_kept) if _kept else (None, 0)
+    if block is None or block.size != count or references > _NOBODY_ELSE:
         block = np.empty(count)
     if WORTH_KEEPING <= block.nbytes <= KEPT:
         _kept[:] = [block]
@@ -216,7 +211,7 @@ def _memory(count: int) -> Array:
 def rooms(names: Sequence[str], shape: tuple[int, ...]) -> tuple[dict[str, Array], Addresses]:
     """Arrays for results, and where they begin."""
     count = math.prod(shape)
-    many = max(1, TOGETHER // max(1, 8 * count))
+    many = max(1, KEPT // max(1, 8 * count))
     made: dict[str, Array] = {}
     where = np.empty(len(names), np.int64)
     for at in range(0, len(names), many):
