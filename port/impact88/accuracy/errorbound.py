@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..closedform.solve import solve
 from ..names import FINAL_VELOCITIES, PIVOT, RESULTS
+from .runningerror import UNIT, listing_errors
 
 Floats = NDArray[np.float64]
 
@@ -24,8 +25,7 @@ twice the most seen in 10^5 scenes of each of the benchmark's populations and of
 car's (26, of pivots with unrelated masses; 8 of others)."""
 DOUBLE = 2.0**-53
 """Unit roundoff: what rounding a number to 53 bits changes of it, at most."""
-APPLESOFT = 2.0**-32
-"""The same of the five bytes of Applesoft's numbers."""
+APPLESOFT = UNIT
 FACTOR = 16.0
 """Largest error seen over captured and generated scenes: 1.4 in velocities, 11 in spins."""
 STEP = 2.0**-36
@@ -52,8 +52,6 @@ def oracle_bounds(
     (`movements`); the second a running error bound (`accuracy.runningerror`).
     ``scenes``: the texts; ``columns``: their numbers, arrays of n; ``solved``: `impact88.solve`'s.
     """
-    from .runningerror import listing_errors
-
     sizes = scales(columns, solved)
     moved = movements(columns)
     double = {name: DOUBLE * (CLOSED_FORM * moved[name] + abs(solved[name])) for name in moved}

@@ -16,8 +16,9 @@ from collections.abc import Mapping
 from ..applesoft.decimaltext import scan
 from ..names import DEFAULT_M, PIVOT
 from .elimination import LISTING_PI, ORDER, Terms, eliminate, listing_rows
-from .errorbound import APPLESOFT as UNIT
 
+UNIT = 2.0**-32
+"""What rounding a number to five bytes changes of it, at most."""
 PI_ERROR = abs(LISTING_PI / math.pi - 1)
 SMALLEST_PIVOT = 1e-9
 """Line 1080's."""
