@@ -175,8 +175,7 @@ def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, be
         lambda grid, found: [{"MA": np.zeros((1, 1))} for one in found],
     )
     monkeypatch.setattr(sheets, "scene_of", lambda *given: object())
-    monkeypatch.setattr(sheets, "held", lambda *given: [])
-    monkeypatch.setattr(sheets, "_mistaken", lambda cells, found: False)
+    monkeypatch.setattr(sheets, "held", lambda grid, known: [[] for one in known])
     monkeypatch.setattr(sheets, "judged", lambda *given_: next(given))
     monkeypatch.setattr(sheets, "borne_out", lambda one, shown: one)
     grid = SimpleNamespace(odds=lambda: [np.zeros(8)], clarity=0.9)
@@ -201,7 +200,7 @@ def test_no_scene_is_searched_for_where_columns_are_not_clear(monkeypatch, clari
     assert len(asked) == searched
     assert len(leaves) == max(searched, 1)
     assert {leaf.judged.verdict for leaf in leaves} == {Verdict.INCOMPLETE}
-    assert leaves[-1].sheet.gain == 1000.0
+    assert leaves[-1].read.sheet.gain == 1000.0
 
 
 def test_the_hair_of_a_thin_dash_is_ink_and_a_speck_is_none() -> None:
@@ -263,7 +262,7 @@ def test_a_text_layer_must_agree_and_another_readers_words_decide_nothing(monkey
 def cell(name: str, *, distance: float, other_distance: float, hand: str = "") -> Cell:
     """A cell that is clearly not what is predicted, and as far as given from that and another."""
     predicted, other = ("3", "8") if name else ("V", "U")
-    return Cell(0, Place(0, 0), name, predicted, 2.0, other, distance, other_distance, 5, 5, hand)
+    return Cell(Place(0, 0), name, predicted, 2.0, other, distance, other_distance, 5, 5, hand)
 
 
 @pytest.mark.parametrize(

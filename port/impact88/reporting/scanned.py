@@ -94,7 +94,7 @@ def _verification(
     result = Verification(
         file=path,
         number=number,
-        line=min((row.start for row in leaf.sheet.rows.values()), default=0) + 1,
+        line=min((row.start for row in leaf.read.sheet.rows.values()), default=0) + 1,
         page=page,
         basis=RATES,
         verdict=leaf.judged.verdict,

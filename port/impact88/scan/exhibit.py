@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from PIL import Image as Pillow
 
 from .evidence import RATES, THRESHOLDS, state
 from .holding import Cell
@@ -25,23 +26,16 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
     """One of a page's printouts: ``page``, ``width`` and ``height`` of its picture; ``cells``, each
     with its corners on it; ``strips``, those in doubt, and how many ``more`` there are; ``bars``,
     margins in 60 steps from -1.5 to 1.5."""
-    from PIL import Image as Pillow
-
     upright = np.rot90(grey, leaf.grid.turns)
     height, width = upright.shape
     scale = min(1.0, _WIDEST / width)
     size = (max(1, round(width * scale)), max(1, round(height * scale)))
-    kinds = [(cell, state(cell)) for cell in leaf.cells]
-    shown_cells = [
-        (cell, kind, leaf.grid.around(*cell.place))
-        for cell, kind in kinds
-        if kind != "holds" or (cell.name and cell.predicted != BLANK)
-    ]
-    doubted = [one for one in shown_cells if one[1] != "holds"]
+    kinds = [(cell, state(cell), leaf.grid.around(*cell.place)) for cell in leaf.cells]
+    doubted = [one for one in kinds if one[1] != "holds"]
     margins = [cell.margin for cell in leaf.cells if cell.name and cell.predicted != BLANK]
     counts, _ = np.histogram(np.clip(margins, -1.5, 1.499), bins=60, range=(-1.5, 1.5))
     return {
-        "page": _uri(np.asarray(Pillow.fromarray(_grey(upright)).resize(size))),
+        "page": _uri(upright, size),
         "width": size[0],
         "height": size[1],
         "cells": [
@@ -52,7 +46,8 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
                 "state": kind,
                 "corners": (scale * around).tolist(),
             }
-            for cell, kind, around in shown_cells
+            for cell, kind, around in kinds
+            if kind != "holds" or (cell.name and cell.predicted != BLANK)
         ],
         "strips": _strips(upright, leaves, doubted[:_MOST_STRIPS], leaf),
         "more": max(0, len(doubted) - _MOST_STRIPS),
@@ -63,15 +58,10 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
     }
 
 
-def _grey(picture: Image) -> Any:
-    return np.ascontiguousarray(np.clip(picture, 0, 255).astype(np.uint8))
-
-
-def _uri(picture: Image) -> str:
-    from PIL import Image as Pillow
-
-    file = io.BytesIO()
-    Pillow.fromarray(_grey(picture)).save(file, "PNG")
+def _uri(picture: Image, size: tuple[int, int] | None = None) -> str:
+    grey = np.ascontiguousarray(np.clip(picture, 0, 255).astype(np.uint8))
+    shown, file = Pillow.fromarray(grey), io.BytesIO()
+    (shown.resize(size) if size else shown).save(file, "PNG")
     return f"data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}"
 
 
@@ -86,7 +76,7 @@ def _strips(
     typeface = typeface_of(sample, ["" if cell.cut else cell.predicted for cell in everything])
 
     def glyph(character: str, count: int) -> dict[str, Any]:
-        at, picture = typeface.index(character), ""
+        at, picture = typeface.characters.find(character), ""
         if at >= 0:
             mean = typeface.means[at].reshape(typeface.shape)
             picture = _uri(255 - 220 * np.clip(mean, 0, 1))
@@ -94,15 +84,13 @@ def _strips(
 
     strips = []
     for cell, kind, around in doubted:
-        (left, top), (right, bottom) = around.min(axis=0), around.max(axis=0)
-        wide, tall = right - left, bottom - top
-        y = slice(max(0, int(top - 0.2 * tall)), max(1, int(bottom + 0.2 * tall)))
-        x = slice(max(0, int(left - wide)), max(1, int(right + wide)))
-        crop = upright[y, x]
+        beside = np.array([1.0, 0.2]) * np.ptp(around, axis=0)
+        left, top = np.maximum(around.min(axis=0) - beside, 0).astype(int)
+        right, bottom = np.maximum(around.max(axis=0) + beside, 1).astype(int)
+        crop, (line, at) = upright[top:bottom, left:right], cell.place
         strips.append(
             {
-                "place": f"{cell.name or 'label'}, line {cell.place.line + 1}, "
-                f"cell {cell.place.cell + 1}",
+                "place": f"{cell.name or 'label'}, line {line + 1}, cell {at + 1}",
                 "paper": _uri(crop) if crop.size else "",
                 "glyphs": [
                     glyph(cell.predicted, cell.count),

@@ -12,8 +12,9 @@ from itertools import product
 
 import numpy as np
 
+from ..fields import REPLIES
 from .grid import Grid
-from .layout import SPACED, Place, Sheet, parts
+from .layout import SPACED, Place, parts
 from .scenes import Candidate, Read
 from .typeface import BLANK, READABLE, distances, hands_of, sample_of, typeface_of
 
@@ -40,7 +41,6 @@ class Cell:
     from the predicted mean, or alone with it, is in a known style of type, if another digit;
     ``cut``: beyond an edge of the picture; ``lost``: blank on a page whose ink comes and goes."""
 
-    sheet: int
     place: Place
     name: str
     predicted: str
@@ -55,16 +55,14 @@ class Cell:
     lost: bool = False
 
 
-def predicted(sheet: Sheet, read: Read, candidate: Candidate) -> Iterator[tuple[str, str, Place]]:
+def predicted(read: Read, candidate: Candidate) -> Iterator[tuple[str, str, Place]]:
     """The characters of the program's page for a scene: field, character, place."""
-    fields = candidate.outcome.fields
-    for line, row in sheet.rows.items():
+    for line, row in read.sheet.rows.items():
         column = 0
-        for piece, (name, text) in zip(sheet.pieces[line], parts(row.text), strict=True):
+        for piece, (name, text) in zip(read.sheet.pieces[line], parts(row.text), strict=True):
+            shown = candidate.outcome.fields.get(name, "") if name else text
             if name.startswith("REPLY"):
                 shown = reply_of(read, name, candidate.scene)
-            else:
-                shown = fields.get(name, "") if name else text
             if line in SPACED:  # its gaps are what they are
                 column = row.column(piece.places[0]) if piece.places else column
                 longer = bool(name) and len(shown) == len(piece.places) + 1
@@ -75,19 +73,17 @@ def predicted(sheet: Sheet, read: Read, candidate: Candidate) -> Iterator[tuple[
             for character in shown:
                 yield name, character, row.place(column)
                 column += 1
-        for _ in range(_BESIDE):
-            yield "", BLANK, row.place(column)
-            column += 1
+        for beyond in range(column, column + _BESIDE):
+            yield "", BLANK, row.place(beyond)
 
 
 def reply_of(read: Read, name: str, scene: dict[str, str]) -> str:
     """What was typed at a prompt to give the scene's velocities: of the ways to write them as many
     characters as stand there, the one that fits best."""
-    names = ("UX", "UY", "WA") if name == "REPLY_A" else ("VX", "VY", "WB")
-    costs = read.costs[name]
-    written = [_written(scene[one]) for one in names]
+    written = [_written(scene[one]) for one in REPLIES[name[-1]]]
     ways = [comma.join(three) for three in product(*written) for comma in (",", ", ")]
-    return min(ways, key=lambda way: read.cost(name, way) + abs(len(way) - len(costs)))
+    length = len(read.costs[name])
+    return min(ways, key=lambda way: read.cost(name, way) + abs(len(way) - length))
 
 
 def _written(text: str) -> list[str]:
@@ -107,23 +103,19 @@ def _written(text: str) -> list[str]:
     return sorted(ways, key=lambda way: (way != text, way))
 
 
-def held(
-    grid: Grid, sheets: Sequence[Sheet], reads: Sequence[Read], found: Sequence[Candidate]
-) -> list[Cell]:
-    """Every cell of the predicted pages, with its margin."""
-    rows = [
-        (which, *one)
-        for which, (sheet, read, candidate) in enumerate(zip(sheets, reads, found, strict=True))
-        for one in predicted(sheet, read, candidate)
-    ]
+def held(grid: Grid, known: Sequence[tuple[Read, Candidate]]) -> list[list[Cell]]:
+    """Every cell of each printout's predicted page, with its margin."""
+    if not known:
+        return []
+    rows = [(which, *one) for which, pair in enumerate(known) for one in predicted(*pair)]
     every = np.arange(len(rows))
     names = np.array([character for _, _, character, _ in rows])
     of_number = np.array([bool(field) for _, field, _, _ in rows])
-    cut = [not grid.shows(*place) or sheets[which].beyond(place) for which, *_, place in rows]
+    cut = [
+        not grid.shows(*place) or known[which][0].sheet.beyond(place) for which, *_, place in rows
+    ]
     sample = sample_of(grid, [place for *_, place in rows])
-    typeface = typeface_of(
-        sample, ["" if off else str(n) for n, off in zip(names, cut, strict=True)]
-    )
+    typeface = typeface_of(sample, np.where(cut, "", names).tolist())
     characters, counts = [*typeface.characters, BLANK], [*typeface.counts.tolist(), 0]
     index = {character: k for k, character in enumerate(characters)}
     own = np.array([index.get(name, len(characters) - 1) for name in names])
@@ -153,7 +145,7 @@ def held(
     letters = np.array([character.isalpha() or character == BLANK for character in characters])
     far = of_number & ~alone & (relative > _FAR * level)
     hands = hands_of(sample, typeface, names.tolist(), alone & of_number, far)
-    cells = []
+    cells: list[list[Cell]] = [[] for _ in known]
     for cell, (which, name, character, place) in enumerate(rows):
         allowed = (numeric if name or character == BLANK else letters).copy()
         allowed[own[cell]] = False
@@ -171,5 +163,6 @@ def held(
         count = counts[own[cell]], counts[other] if seen == characters[other] else 0
         lost = pale and characters[other] == BLANK
         compared = margin, seen, float(relative[cell] / level), beyond, *count
-        cells.append(Cell(which, place, name, character, *compared, hands[cell], cut[cell], lost))
+        measured = Cell(place, name, character, *compared, hands[cell], cut[cell], lost)
+        cells[which].append(measured)
     return cells

@@ -7,7 +7,6 @@ This is the one module that knows how text is recovered.
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
-from operator import attrgetter
 from types import MappingProxyType
 
 from ..applesoft.decimaltext import is_number
@@ -17,6 +16,7 @@ from ..reading.alignment import LINES
 from ..reading.printout import read_printouts
 from ..recovery.recovered import recover
 from ..recovery.replays import Outcome, run_all
+from ..recovery.typedtext import opposite
 from .ink import Floats
 from .layout import Sheet, parts
 from .typeface import READABLE
@@ -59,7 +59,7 @@ class Read:
             # a faint sign before an angle is taken for a blank
             return WORST + min(self._cost(costs, text[1:]), self._cost(costs, text[:-1]))
         for row, character in zip(costs, text.ljust(len(costs)), strict=False):
-            column = (READABLE).find(character)
+            column = READABLE.find(character)
             total += WORST if column < 0 else min(float(row[column]), WORST)
         return total
 
@@ -93,16 +93,14 @@ def scene_of(read: Read, seeds: Sequence[dict[str, str]] = ()) -> Candidate | No
     best: list[Candidate] = []
     # the text's recovery is asked only where the numbers as read leave doubts
     for recovered in (False, True):
-        first = scenes_in(read.page()[0]) if recovered else [*_direct(read), *seeds]
-        for scene in first:
-            _weigh(read, [scene], known)
-        best = sorted(known.values(), key=_cost)[:_KEPT]
+        for scene in scenes_in(read.page()[0]) if recovered else [*_direct(read), *seeds]:
+            best = _weighed(read, [scene], known)
         for _ in range(_ROUNDS):
             if not best or best[0].cost < _SETTLED:
                 break
+            before = best[0].cost
             for one in best:
-                _weigh(read, list(_neighbours(read, one)), known)
-            before, best = best[0].cost, sorted(known.values(), key=_cost)[:_KEPT]
+                best = _weighed(read, [*_neighbours(read, one)], known)
             if best[0].cost > before - 0.5:
                 break
         if best and best[0].cost < _SETTLED:
@@ -110,7 +108,28 @@ def scene_of(read: Read, seeds: Sequence[dict[str, str]] = ()) -> Candidate | No
     return best[0] if best else None
 
 
-_cost = attrgetter("cost")
+def _weighed(
+    read: Read, scenes: list[dict[str, str]], known: dict[tuple[tuple[str, str], ...], Candidate]
+) -> list[Candidate]:
+    """The best of all scenes that are known, with some more."""
+    keys = {tuple(sorted(scene.items())): scene for scene in scenes}
+    new = {key: scene for key, scene in keys.items() if key not in known}
+    for (key, scene), outcome in zip(new.items(), _outcomes([*new.values()]), strict=False):
+        fields = outcome.fields
+        cost = 2 * WORST * len(set(fields) - set(read.costs))
+        for name in read.costs:
+            if not name.startswith("REPLY"):
+                cost += read.cost(name, fields.get(name))
+        known[key] = Candidate(scene, outcome, cost)
+    return sorted(known.values(), key=lambda one: one.cost)[:_KEPT]
+
+
+def _outcomes(scenes: list[dict[str, str]]) -> list[Outcome]:
+    """What the program prints for scenes, nothing where one of them cannot be run."""
+    try:
+        return run_all(scenes)
+    except (UserError, ValueError, OverflowError):
+        return []
 
 
 def _direct(read: Read) -> Iterator[dict[str, str]]:
@@ -119,8 +138,9 @@ def _direct(read: Read) -> Iterator[dict[str, str]]:
     if all(is_number(texts.get(name, "")) for name in INPUTS):
         direct = {scene_name(name): texts[name] for name in INPUTS}
         # what was typed may have more figures than are printed, or fewer: 5.749 prints 5.74900001
-        for typed, spins, sign in product((_typed(read), {}), ("6", "4"), (1, -1)):
-            yield {**direct, **typed, "M": spins, "MU": _signed(texts["MUP"], sign)}
+        for typed, spins in product((_typed(read), {}), ("6", "4")):
+            for mu in (texts["MUP"], opposite(texts["MUP"])):
+                yield {**direct, **typed, "M": spins, "MU": mu}
 
 
 def scenes_in(text: str) -> list[dict[str, str]]:
@@ -135,66 +155,32 @@ def scenes_in(text: str) -> list[dict[str, str]]:
 def borne_out(one: Candidate, shown: Mapping[str, str]) -> Candidate:
     """The scene with some inputs as the paper shows them, where the program's page is otherwise the
     same: results bear out neither an angle nor an arm that they do not depend on."""
-    typed = {scene_name(name): text for name, text in shown.items()}
-    for outcome in _outcomes([{**one.scene, **typed}]) if shown else ():
+    scene = one.scene | {scene_name(name): text for name, text in shown.items()}
+    for outcome in _outcomes([scene]) if shown else ():
         if outcome.fields == {**one.outcome.fields, **shown}:
-            return Candidate({**one.scene, **typed}, outcome, one.cost)
+            return Candidate(scene, outcome, one.cost)
     return one
-
-
-def _outcomes(scenes: list[dict[str, str]]) -> list[Outcome]:
-    """What the program prints for scenes, nothing where one of them cannot be run."""
-    try:
-        return run_all(scenes)
-    except (UserError, ValueError, OverflowError):
-        return []
-
-
-def _weigh(
-    read: Read,
-    scenes: list[dict[str, str]],
-    known: dict[tuple[tuple[str, str], ...], Candidate],
-) -> None:
-    keys = [tuple(sorted(scene.items())) for scene in scenes]
-    new = [(key, scene) for key, scene in zip(keys, scenes, strict=True) if key not in known]
-    for (key, scene), outcome in zip(new, _outcomes([scene for _, scene in new]), strict=False):
-        fields = outcome.fields
-        cost = 2 * WORST * len(set(fields) - set(read.costs))
-        for name in read.costs:
-            if not name.startswith("REPLY"):
-                cost += read.cost(name, fields.get(name))
-        known[key] = Candidate(scene, outcome, cost)
 
 
 def _neighbours(read: Read, one: Candidate) -> Iterator[dict[str, str]]:
     """Scenes that differ in one character of one input, and those of the reply's numbers."""
-    for name in INPUTS:
-        typed = scene_name(name)
-        if name not in read.costs:
-            continue
-        text = one.outcome.fields.get(name) or read.text(name)
-        opposite = one.scene["MU"].startswith("-") != text.startswith("-")
-        sign = -1 if typed == "MU" and opposite else 1
-        seen = read.text(name)  # its last figure may have been altered to a nought, or erased
-        for shown in {text, seen, seen.ljust(len(read.costs[name]), "0")}:
+    for name in [name for name in INPUTS if name in read.costs]:
+        typed, seen = scene_name(name), read.text(name)
+        text = one.outcome.fields.get(name) or seen
+        turned = typed == "MU" and one.scene["MU"].startswith("-") != text.startswith("-")
+        # its last figure may have been altered to a nought, or erased
+        texts = [seen or "0"]
+        for shown in dict.fromkeys((text, seen, seen.ljust(len(read.costs[name]), "0"))):
             for at, character in enumerate(shown):
-                for other in "0123456789":
-                    if character.isdigit() and other != character:
-                        changed = shown[:at] + other + shown[at + 1 :]
-                        yield {**one.scene, typed: _signed(changed, sign)}
+                for other in "0123456789" if character.isdigit() else "":
+                    texts.append(shown[:at] + other + shown[at + 1 :])
         if name in ANGLES:  # whose last figure, erased, leaves a wider gap
-            for last in "0123456789":
-                yield {**one.scene, typed: seen + last}
-        yield {**one.scene, typed: _signed(read.text(name) or "0", sign)}
-        yield {**one.scene, typed: _signed(text, -1)}
+            texts += [seen + last for last in "0123456789"]
+        for changed in texts:
+            yield {**one.scene, typed: opposite(changed) if turned else changed}
+        yield {**one.scene, typed: opposite(text)}
     yield {**one.scene, "M": "4" if one.scene["M"] == "6" else "6"}
     yield {**one.scene, **_typed(read)}
-
-
-def _signed(text: str, sign: int) -> str:
-    if sign > 0:
-        return text
-    return text[1:] if text.startswith("-") else f"-{text}"
 
 
 def _typed(read: Read) -> dict[str, str]:

@@ -1,7 +1,7 @@
 """A page's picture from ink to verdict."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
 
@@ -30,15 +30,14 @@ printouts that got a verdict the least had .85."""
 
 @dataclass
 class Leaf:
-    """One printout of a page: the grid it stands on and where, what was read, the scene found, its
-    cells held against the program's page, and the verdict."""
+    """One printout of a page: the grid it stands on, what was read and where, the verdict, the
+    scene found, and its cells held against the program's page."""
 
     grid: Grid
-    sheet: Sheet
     read: Read
-    found: Candidate | None
-    cells: list[Cell]
     judged: Judged
+    found: Candidate | None = None
+    cells: list[Cell] = field(default_factory=list)
 
     @cached_property
     def by_name(self) -> dict[str, list[Cell]]:
@@ -56,8 +55,7 @@ def looked(grey: Image, seeds: Sequence[dict[str, str]] = ()) -> list[Leaf]:
     ink = ink_of(grey)
     most, found = 0.0, list[tuple[Grid, list[Sheet]]]()
     for fold, turns in product((1, 2), _turns(ink)):
-        grids = grids_of(ink, turns, fold)
-        laid = [(grid, sheets_of(grid.odds(), grid.tops)) for grid in grids]
+        laid = [(one, sheets_of(one.odds(), one.tops)) for one in grids_of(ink, turns, fold)]
         sheets = [sheet for _, some in laid for sheet in some]
         gain = sum(sheet.gain for sheet in sheets)
         if gain > most:
@@ -77,13 +75,29 @@ def _turns(ink: Image) -> list[int]:
 
 
 def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) -> list[Leaf]:
-    if not sheets:
-        return []
-    if grid.clarity < _REGULAR:
+    if sheets and grid.clarity < _REGULAR:
         likeliest = max(sheets, key=lambda sheet: sheet.gain)
         unread = Judged(Verdict.INCOMPLETE, reason="its type stands in no clear columns")
-        return [Leaf(grid, likeliest, Read(likeliest, {}), None, [], unread)]
-    leaves = _judged(grid, sheets, seeds)
+        return [Leaf(grid, Read(likeliest, {}), unread)]
+    unread = Judged(Verdict.INCOMPLETE, reason="no scene was found")
+    leaves = [Leaf(grid, Read(sheet, {}), unread) for sheet in sheets]
+    legible = [leaf for leaf in leaves if leaf.read.sheet.gain > _LEGIBLE]
+    costs = read_numbers(grid, [leaf.read.sheet for leaf in legible])
+    for leaf, own in zip(legible, costs, strict=True):
+        leaf.read.costs = own
+        leaf.found = scene_of(leaf.read, seeds)
+    known = [leaf for leaf in legible if leaf.found]
+    _hold(grid, known)
+    if sum(map(_mistaken, known)):
+        _hold(grid, known)
+    before = [leaf.found for leaf in known]
+    for leaf in known:
+        leaf.found = leaf.found and borne_out(leaf.found, _shown(leaf.cells))
+    if any(leaf.found is not one for leaf, one in zip(known, before, strict=True)):
+        _hold(grid, known)
+    for leaf in known:
+        if leaf.found:
+            leaf.judged = judged(leaf.read.sheet, leaf.found, leaf.cells)
     # the printouts of a page share their mean characters: one misplaced spoils them for all
     if any(leaf.judged.verdict is Verdict.INCOMPLETE for leaf in leaves):
         for leaf in leaves:
@@ -93,53 +107,36 @@ def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) ->
     return leaves
 
 
-def _judged(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) -> list[Leaf]:
-    costs = iter(read_numbers(grid, [sheet for sheet in sheets if sheet.gain > _LEGIBLE]))
-    reads = [Read(sheet, next(costs) if sheet.gain > _LEGIBLE else {}) for sheet in sheets]
-    found = [scene_of(read, seeds) if read.costs else None for read in reads]
-    known = [
-        (sheet, read, one) for sheet, read, one in zip(sheets, reads, found, strict=True) if one
-    ]
-    cells = held(grid, *zip(*known, strict=True)) if known else []
-    if _mistaken(cells, [sheet for sheet, *_ in known]):
-        cells = held(grid, *zip(*known, strict=True))
-    as_shown = [borne_out(one, _shown(cells, which)) for which, (*_, one) in enumerate(known)]
-    if any(one is not before for one, (*_, before) in zip(as_shown, known, strict=True)):
-        known = [(sheet, read, one) for (sheet, read, _), one in zip(known, as_shown, strict=True)]
-        cells = held(grid, *zip(*known, strict=True))
-    leaves, left = [], enumerate(known)
-    for sheet, read, first in zip(sheets, reads, found, strict=True):
-        if first is None:
-            unread = Judged(Verdict.INCOMPLETE, reason="no scene was found")
-            leaves.append(Leaf(grid, sheet, read, None, [], unread))
-            continue
-        which, (*_, one) = next(left)
-        own = [cell for cell in cells if cell.sheet == which]
-        leaves.append(Leaf(grid, sheet, read, one, own, judged(sheet, one, own)))
-    return leaves
+def _hold(grid: Grid, known: Sequence[Leaf]) -> None:
+    """Holds the cells of all printouts against the pages of their scenes."""
+    cells = held(grid, [(leaf.read, leaf.found) for leaf in known if leaf.found])
+    for leaf, own in zip(known, cells, strict=True):
+        leaf.cells = own
 
 
-def _shown(cells: Sequence[Cell], sheet: int) -> dict[str, str]:
+def _shown(cells: Sequence[Cell]) -> dict[str, str]:
     """The inputs of a printout in which a cell differs, as the paper shows them."""
-    differing = {cell.name for cell in cells if cell.sheet == sheet and state(cell) == "differs"}
+    differing = {cell.name for cell in cells if state(cell) == "differs"}
     texts = dict.fromkeys(differing & set(INPUTS), "")
     for cell in cells:
-        if cell.sheet == sheet and cell.name in texts:
+        if cell.name in texts:
             texts[cell.name] += cell.other if state(cell) == "differs" else cell.predicted
     return {name: text.strip() for name, text in texts.items()}
 
 
-def _mistaken(cells: Sequence[Cell], sheets: Sequence[Sheet]) -> bool:
-    """Takes from the printouts the lines they may lack whose labels are not what stands there: a
-    foot of the page may be as long as a line of the print."""
-    found = False
-    for which, sheet in enumerate(sheets):
-        own = [cell for cell in cells if cell.sheet == which and not cell.name]
-        for line in [line for line in MAY_BE_MISSING if line in sheet.rows]:
-            row = sheet.rows[line]
-            of_line = range(row.start, row.start + row.used)
-            labels = [state(c) for c in own if c.place.line in of_line and c.predicted != BLANK]
-            if labels.count("holds") < 0.5 * len(labels):
-                del sheet.rows[line], sheet.pieces[line]
-                found = True
+def _mistaken(leaf: Leaf) -> bool:
+    """Takes from a printout the lines it may lack whose labels are not what stands there: a foot of
+    the page may be as long as a line of the print."""
+    found, sheet = False, leaf.read.sheet
+    for line in [line for line in MAY_BE_MISSING if line in sheet.rows]:
+        row = sheet.rows[line]
+        states = [
+            state(cell)
+            for cell in leaf.cells
+            if not cell.name and cell.predicted != BLANK
+            if row.start <= cell.place.line < row.start + row.used
+        ]
+        if states.count("holds") < 0.5 * len(states):
+            del sheet.rows[line], sheet.pieces[line]
+            found = True
     return found

@@ -58,9 +58,6 @@ class Sample:
     norms: Vectors
     shape: tuple[int, int]
 
-    def __len__(self) -> int:
-        return len(self.vectors)
-
     def at(self, chosen: NDArray[np.intp]) -> Sample:
         """Some of the cells."""
         return Sample(self.vectors[chosen], self.norms[chosen], self.shape)
@@ -102,16 +99,12 @@ class Typeface:
     """Mean glyphs: ``characters`` in order, ``means`` (characters, pixels), on how many cells each
     rests, and which shifted cells they were made of."""
 
-    characters: list[str]
+    characters: str
     means: Vectors
     counts: NDArray[np.intp]
     names: NDArray[np.intp]
     members: Vectors
     shape: tuple[int, int]
-
-    def index(self, character: str) -> int:
-        """The place of a character, -1 where the page has none."""
-        return self.characters.index(character) if character in self.characters else -1
 
     def between(self) -> Floats:
         """Squared distances of the means from each other, of whatever strength, and from blank
@@ -135,8 +128,8 @@ class Typeface:
 def typeface_of(sample: Sample, names: Sequence[str]) -> Typeface:
     """The mean glyph of each name; cells named "" belong to none. Cells are shifted onto their
     mean as it forms."""
-    characters = sorted(set(names) - {"", BLANK})
-    index = np.array([characters.index(n) if n in characters else -1 for n in names])
+    characters = "".join(sorted(set(names) - {"", BLANK}))
+    index = np.array([characters.find(name or BLANK) for name in names])
     middle = len(_SHIFTS) // 2
     members = sample.vectors[:, middle]
     means = _means(members, index, len(characters))
@@ -145,7 +138,7 @@ def typeface_of(sample: Sample, names: Sequence[str]) -> Typeface:
         own = means[np.maximum(index, 0)]
         inner = np.matmul(sample.vectors, own[:, :, None])[:, :, 0]
         best = np.argmin(sample.norms - 2 * inner, axis=1)
-        members = sample.vectors[np.arange(len(sample)), best]
+        members = sample.vectors[np.arange(len(index)), best]
         means = _means(members, index, len(characters))
     counts = np.array([int(np.sum(index == k)) for k in range(len(characters))])
     return Typeface(characters, means, counts, index, members, sample.shape)
@@ -170,7 +163,7 @@ def prototypes() -> tuple[str, Vectors]:
 def _normal(sample: Sample, typeface: Typeface) -> Vectors:
     """Cells, the height of the page's capitals that of the prototypes': (cells, rows, columns)."""
     height, width = sample.shape
-    capitals = [typeface.index(c) for c in "MABEIDTPUVXYKL" if c in typeface.characters]
+    capitals = [typeface.characters.find(c) for c in "MABEIDTPUVXYKL" if c in typeface.characters]
     profile = typeface.means[capitals].reshape(-1, height, width).sum(axis=(0, 2))
     inked = np.flatnonzero(profile > 0.25 * profile.max())
     top, foot = float(inked[0]), float(inked[-1] + 1)
@@ -289,7 +282,7 @@ def read_numbers(grid: Grid, sheets: Sequence[Sheet]) -> list[dict[str, Floats]]
     for _ in range(_READINGS):
         typeface = typeface_of(sample, names)
         costs = np.full((len(places), len(READABLE)), np.inf)
-        columns = [typeface.index(character) for character in READABLE]
+        columns = [typeface.characters.find(character) for character in READABLE]
         apart, strength = distances(of_numbers, typeface.means)
         weak = np.take_along_axis(strength, apart.argmin(axis=1)[:, None], axis=1)[:, 0] ** 2
         for k, column in enumerate(columns):
