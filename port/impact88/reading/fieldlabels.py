@@ -5,13 +5,13 @@ two must agree. A label that reads as another of the program's, or as a word tha
 contradicts. One that is damaged within the reach of the glyph table, or missing, leaves a doubt.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import StrEnum
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ..fields import ANGLES, FIELDS
-from .glyphs import COSTS, Gap, Page, label_cost
+from .glyphs import COSTS, Gap, Page, label_cost, letters
 
 _REACH = 35
 """From this cost a letter on, a label is none that a reader made of its own: one letter of two read
@@ -22,6 +22,9 @@ READERS = 3
 """So many other marks of an optical reader, and a label that contradicts is the reader's doing: of
 15,300 labels of given scans 373 read as other words, 7 of them on pages of fewer marks. No two of
 one page read as each other: those are exchanged, whoever read the page."""
+
+
+_NO_WORD = frozenset("0123456789=.(),:")
 
 
 class LabelState(StrEnum):
@@ -48,10 +51,6 @@ class LabelCheck(NamedTuple):
     start: int
     stop: int
 
-    def as_json(self) -> dict[str, Any]:
-        """The object `impact88 verify --json` prints for a label."""
-        return {**self._asdict(), "state": str(self.state)}
-
 
 Found = Sequence[tuple[str, str, Sequence[int]]]
 """Of each label the field it names (of a prompt, its reply), its letters, the glyphs taken for
@@ -64,18 +63,13 @@ def words_before(page: Page, slots: Mapping[str, tuple[int, int]]) -> dict[str, 
     glyphs = page.glyphs
     words = {}
     for name, (start, stop) in slots.items():
-        signs = [place for place in range(max(start, 1), stop) if glyphs[place].char == "="]
-        sign = signs[-1] if signs else start - 1
-        first = sign
-        while first > 0 and not glyphs[first].gap and _in_word(glyphs[first - 1].char):
+        signs = (place for place in range(max(start, 1), stop) if glyphs[place].char == "=")
+        first = sign = max(signs, default=start - 1)
+        while first > 0 and not glyphs[first].gap and glyphs[first - 1].char not in _NO_WORD:
             first -= 1
-        if sign > 0 and glyphs[sign].char == "=" and first < sign:
+        if glyphs[sign].char == "=" and first < sign:
             words[name] = (first, sign)
     return words
-
-
-def _in_word(char: str) -> bool:
-    return not char.isdigit() and char not in "=.(),:"
 
 
 def label_checks(
@@ -89,18 +83,15 @@ def label_checks(
     for name, printed, start, stop, read in _seen(page, found, slots):
         others = {text for one, text, _ in found if _kind(one) == _kind(name)} - {printed}
         state, doubt = _state(_kind(name), printed, read, others)
-        place = page.place(start)
-        checks.append(LabelCheck(name, printed, read, state, doubt, *place, start, stop))
+        checks.append(
+            LabelCheck(name, printed, read, state, doubt, *page.place(start), start, stop)
+        )
     marks += sum(one.state is LabelState.DAMAGED for one in checks)
     pairs = {(one.printed, one.read) for one in checks}
-    return [
-        one._replace(state=LabelState.DAMAGED)
-        if marks >= READERS
-        and one.state is LabelState.CONTRADICTORY
-        and (one.read, one.printed) not in pairs
-        else one
-        for one in checks
-    ]
+    for at, one in enumerate(checks if marks >= READERS else ()):
+        if one.state is LabelState.CONTRADICTORY and (one.read, one.printed) not in pairs:
+            checks[at] = one._replace(state=LabelState.DAMAGED)
+    return checks
 
 
 def _kind(name: str) -> str:
@@ -113,50 +104,47 @@ def _seen(
 ) -> Iterator[tuple[str, str, int, int, str]]:
     """What stands in the place of each label whose number was read, or of which letters were: the
     field, what is printed, the offsets, what is read."""
+
+    def read(at: Iterable[int]) -> str:
+        return letters(page.glyphs[index] for index in at)
+
     words = words_before(page, slots)
     of_angles = [one for one in found if one[0] in ANGLES]
     heading, row = of_angles[: len(ANGLES)], of_angles[len(ANGLES) :]
-    angled = any(at for _, _, at in row)
     headed = [index for _, _, at in heading for index in at]
     if headed:
         yield from _heading(page, min(headed), max(headed))
     for one in found:
         name, printed, at = one
-        if one in heading and (headed or angled or name not in slots):
+        retyped = bool(headed) or any(at for _, _, at in row)
+        if (one in heading and (retyped or name not in slots)) or (one in row and not at):
             continue
-        if one in row and not at:
-            continue
-        word = words.get(name)
-        if word and _letters(page, at)[word[0] - word[1] :] != _letters(page, range(*word)):
-            at = range(*word)
+        word = range(*words.get(name, (0, 0)))
+        if word and read(at[-len(word) :]) != read(word):
+            at = word
         if at:
-            yield name, printed, *page.span(at[0], at[-1] + 1), _letters(page, at)
+            yield name, printed, *page.span(at[0], at[-1] + 1), read(at)
         elif name in slots:
             begin = page.span(*slots[name])[0]
             yield name, printed, begin, begin, ""
 
 
-def _letters(page: Page, run: Sequence[int]) -> str:
-    return "".join(page.glyphs[index].char for index in run)
-
-
 def _heading(page: Page, first: int, last: int) -> Iterator[tuple[str, str, int, int, str]]:
     """The five of the heading: the words around what was taken for it, or its letters in pairs."""
-    glyphs = page.glyphs
+    glyphs, end = page.glyphs, last + 1
     while first and glyphs[first].gap is not Gap.LINE and glyphs[first - 1].char.isalpha():
         first -= 1
-    end = last + 1
     while end < len(glyphs) and glyphs[end].gap is not Gap.LINE and glyphs[end].char.isalpha():
         end += 1
     starts = [at for at in range(first, end) if at == first or glyphs[at].gap]
     if len(starts) != len(ANGLES):
         starts = [*range(first, end, 2)]
-    if len(starts) == len(ANGLES):
-        for name, start, stop in zip(ANGLES, starts, [*starts[1:], end], strict=True):
-            yield name, name, *page.span(start, stop), _letters(page, range(start, stop))
-    else:
-        exact = "".join(ANGLES) in _letters(page, range(first, end))
-        for name in ANGLES:
+    exact = "".join(ANGLES) in letters(glyphs[first:end])
+    for number, name in enumerate(ANGLES):
+        if len(starts) == len(ANGLES):
+            start, stop = [*starts, end][number : number + 2]
+            yield name, name, *page.span(start, stop), letters(glyphs[start:stop])
+        else:
             yield name, name, *page.span(first, end), name if exact else ""
 
 
@@ -167,29 +155,21 @@ def _state(kind: str, printed: str, read: str, others: set[str]) -> tuple[LabelS
         return LabelState.EXACT, False
     own = _distance(printed, read)
     other = min(_distance(text, read) for text in others)
-    kept = [own == char for own, char in zip(printed, read, strict=False)]
-    doubt = len(read) != len(printed) or not any(kept)
-    for text in others:
-        same = [own == char for own, char in zip(text, read, strict=False)]
-        doubt |= len(text) == len(printed) and all(s for s, k in zip(same, kept, strict=False) if k)
-    state = LabelState.DAMAGED
+    kept = {(at, char) for at, char in enumerate(read) if printed[at : at + 1] == char}
+    alike = (kept.issubset(enumerate(text)) for text in others if len(text) == len(printed))
+    doubt = len(read) != len(printed) or not kept or any(alike)
     if not any(map(str.isalnum, read)):
-        state = LabelState.MISSING
-    elif kind == "prompt":
-        doubt = False
-        if other < own - COSTS["unseen"]:
-            state = LabelState.CONTRADICTORY
-    elif len(read + printed) > len("EL") and (read in others or not _only_lost(printed, read)):
+        return LabelState.MISSING, doubt
+    if kind == "prompt":
+        contradicts = other < own - COSTS["unseen"]
+        return LabelState.CONTRADICTORY if contradicts else LabelState.DAMAGED, False
+    left = iter(printed)
+    lost = read not in others and all(letter in left for letter in read)  # itself, with gaps
+    if len(read + printed) > len("EL") and not lost:
         word = read.isascii() and read.isalpha()
         if other < own - _CLEARER or (word and own >= _REACH * len(printed)):
-            state = LabelState.CONTRADICTORY
-    return state, doubt
-
-
-def _only_lost(printed: str, read: str) -> bool:
-    """Whether a label was read as itself with letters lost."""
-    letters = iter(printed)
-    return all(letter in letters for letter in read)
+            return LabelState.CONTRADICTORY, doubt
+    return LabelState.DAMAGED, doubt
 
 
 @lru_cache(maxsize=4096)

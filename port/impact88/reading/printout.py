@@ -85,6 +85,14 @@ class Reading:
         """Whether it is a number beyond doubt, character for character."""
         return numerals.clean(self.region) is not None
 
+    def texts(self, most: int) -> dict[str, float]:
+        """The texts as printed that it may be, with what each costs, cheapest first; one where it
+        is clean."""
+        ways = numerals.candidates(self.region, most, self.sign_free)
+        if self.clean and (ways or numerals.value_of(self.text) is not None):
+            return dict(ways[:1] or [(self.text, 0.0)])
+        return dict(ways)
+
 
 class Piece(NamedTuple):
     """Text that belongs to no field and no label: where it is (line and column from 1, offsets),
@@ -290,11 +298,11 @@ class Printout:
         count = len(numbers & labelled)
         return count >= 1 and count + len(self._exact) >= 5
 
-    def _remark(self, name: str, index: int, message: str, read: str = "") -> None:
+    def _remark(self, name: str, index: int, message: str, read: str | None = None) -> None:
         """What could not be read at a glyph: what stands there, and what is wrong with it."""
         line, column = self.page.place(self.page.glyphs[index].offset)
-        read = repr(read if len(read) <= 30 else read[:27] + "...") if read else ""
-        self.remarks.append(f"line {line}, column {column}: {name}: {read}{message}")
+        shown = "" if read is None else repr(read if len(read) <= 30 else read[:27] + "...")
+        self.remarks.append(f"line {line}, column {column}: {name}: {shown}{message}")
 
     def _read_number(self, name: str, start: int, stop: int) -> None:
         signed = self._letter(start - 1) == "=" == self.page.glyphs[start - 1].char

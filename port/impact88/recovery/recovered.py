@@ -11,11 +11,12 @@ from dataclasses import dataclass, replace
 
 from ..fields import ANGLES, FINAL_SPINS, INPUTS, scene_name
 from ..names import SCENE
-from ..reading.numerals import candidates, value_of
+from ..reading.glyphs import letters
+from ..reading.numerals import candidates
 from ..reading.printout import Printout, Reading
 from ..scene import VALUE_LIMIT
 from . import replays
-from .search import Column, Search
+from .search import Column, Search, column_of
 from .typedtext import stored_and_printed
 
 _STAND_INS = ("1.7", "230", "-41000")
@@ -52,11 +53,8 @@ class Recovered:
     @property
     def apart(self) -> list[str]:
         """The inputs, by field, that are neither the page's nor missing: they were given apart."""
-        return [
-            name
-            for name in INPUTS
-            if name not in self.assumed and scene_name(name) not in self.missing
-        ]
+        known = {*self.assumed, *self.missing}
+        return [name for name in INPUTS if name not in known and scene_name(name) not in known]
 
     def scene_or_missing(self) -> dict[str, str | None]:
         """The scene in the table's order, None for what is missing."""
@@ -71,11 +69,8 @@ def recover(shown: Printout, given: Mapping[str, str] | None = None) -> Recovere
     best = search.best(columns)
     unconvincing = len(best.wrong) > _UNCONVINCING
     if unconvincing:  # how many characters marks for the illegible stand for nobody knows
-        lost |= {
-            scene_name(name)
-            for name in set(INPUTS) & set(shown.fields)
-            if {glyph.char for glyph in shown.fields[name].region} == {"?"}
-        } - set(given)
+        marks = (name for name, one in shown.fields.items() if set(letters(one.region)) == {"?"})
+        lost |= {scene_name(name) for name in marks if name in INPUTS} - set(given)
     missing = [name for name in map(scene_name, INPUTS) if name in lost]
     outcome = _independent_of(missing, best.scene, best.outcome) if missing else best.outcome
     m_unknown = not (missing or shown.has_final_spins or shown.ending)
@@ -122,12 +117,11 @@ def _choices(
     """What each input may have been; by field, what was typed for a printed text, where a reply or
     a scene file says so; and the scene's values that nothing determines."""
     columns, typed, missing = [], {}, set()
-    joint = bool(shown.angles) and not any(name in given for name in ANGLES)
-    if joint:
+    alone = list(INPUTS)
+    if shown.angles and given.keys().isdisjoint(ANGLES):
         columns.append(Column(ANGLES, shown.angles))
-    for name in INPUTS:
-        if name in ANGLES and joint:
-            continue
+        alone = [name for name in INPUTS if name not in ANGLES]
+    for name in alone:
         scene = scene_name(name)
         ways, typed[name] = _ways(name, shown)
         if scene in given:
@@ -139,27 +133,21 @@ def _choices(
         if not ways:
             missing.add(scene)
             ways = {_STAND_INS[0]: 0.0}
-        options = sorted(ways.items(), key=lambda way: way[1])[:_MOST]
-        columns.append(Column((name,), [((text,), cost) for text, cost in options]))
-    ms = {"4": 0.0, "6": 0.5 if shown.ended else 0.1}
+        columns.append(column_of(name, sorted(ways.items(), key=lambda way: way[1])[:_MOST]))
+    ms = [("4", 0.0), ("6", 0.5 if shown.ended else 0.1)]
     if "M" in given or shown.has_final_spins:
-        ms = {given.get("M", "6"): 0.0}
-    columns.append(Column(("M",), [((text,), cost) for text, cost in ms.items()], True))
-    return columns, typed, missing
+        ms = [(given.get("M", "6"), 0.0)]
+    return [*columns, column_of("M", ms, True)], typed, missing
 
 
 def _ways(name: str, shown: Printout) -> tuple[dict[str, float], dict[str, str]]:
     """The texts that may be printed for an input, with what each costs; and what was typed for
     those that its reply bears out."""
     reading, reply = shown.fields.get(name), shown.replies.get(name)
+    own = reading.texts(_MOST) if reading else {}
     answers = reply_ways(reply) if reply else []
-    ways = dict(candidates(reading.region, _MOST, reading.sign_free)) if reading else {}
-    if reading and reading.clean:
-        plain = {reading.text: 0.0} if value_of(reading.text) is not None else {}
-        ways = dict([*ways.items()][:1]) or plain
-    disagrees = _REPLY_DISAGREES if ways and answers else 0.0
-    own = frozenset(ways)
-    ways = {text: cost + disagrees for text, cost in ways.items()}
+    disagrees = _REPLY_DISAGREES if own and answers else 0.0
+    ways = {text: cost + disagrees for text, cost in own.items()}
     typed: dict[str, str] = {}
     for answer, printed, price in sorted(answers, key=lambda way: way[2]):
         if printed not in typed:
@@ -175,9 +163,7 @@ def without_mark(reply: Reading) -> Reading | None:
     """A reply without its first glyph, where that may be the prompt's own question mark."""
     if reply.region[0].char not in _PROMPT_MARK or len(reply.region) < 2:
         return None
-    return Reading(
-        reply.text[1:], reply.line, reply.column, reply.start, reply.stop, reply.region[1:]
-    )
+    return replace(reply, text=reply.text[1:], region=reply.region[1:])
 
 
 def reply_ways(reply: Reading) -> list[tuple[str, str, float]]:
@@ -187,8 +173,7 @@ def reply_ways(reply: Reading) -> list[tuple[str, str, float]]:
     for one, cost in ((reply, 0.0), (without_mark(reply), 0.5)):
         if one is not None:
             texts = {one.text: 0.0} if one.clean else dict(candidates(one.region, 8))
-            for text, price in texts.items():
-                ways.setdefault(text, cost + price)
+            ways = {text: cost + price for text, price in texts.items()} | ways
     return [
         (text, seen[1], cost)
         for text, cost in ways.items()

@@ -3,17 +3,14 @@
 Few scenes go through the port itself, many through the array replay, which gives the same digits.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from ..applesoft.operators import Real
 from ..fields import FIELDS, ZERO_DETERMINANT, outcome_fields
 from ..names import SCENE
-
-if TYPE_CHECKING:
-    from ..program.arithmetics import Arithmetic
-    from ..program.run import Run
+from ..program.arithmetics import Arithmetic
+from ..program.run import run
 
 
 class Outcome(NamedTuple):
@@ -34,11 +31,28 @@ def run_whole(
 ) -> tuple[Outcome, dict[str, float]]:
     """The outcome of one scene in the port, and the values of lines 660 to 760 before they are
     floored (none when the run does not reach its end)."""
-    from ..program.run import run
-
     ported = run(scene, arithmetic)
     ending = ZERO_DETERMINANT if ported.zero_determinant else ported.error
-    return Outcome(outcome_fields(ported.printout), ending), _unfloored(ported)
+    outcome = Outcome(outcome_fields(ported.printout), ending)
+    if ending or ported.A is None:
+        return outcome, {}
+    value = ported.floats
+    first = ported.A["dims"][0] * (int(value["M"]) + 1) + 1
+    solution = [
+        float(Real.from_stored(stored)) if isinstance(stored, str) else stored
+        for stored in ported.A["data"][first : first + 6]
+    ]
+    names = "VAX", "VAY", "VBX", "VBY", *("WAF", "WBF")[: 2 * (value["M"] == value["N"])]
+    return outcome, {
+        "XA": value["UX"] + value["D3"] * value["WA"],
+        "YA": value["UY"] - value["D4"] * value["WA"],
+        "XB": value["VX"] - value["D1"] * value["WB"],
+        "YB": value["VY"] + value["D2"] * value["WB"],
+        "KI": value["KI"],
+        "LOSS": 100 * (value["KI"] - value["KF"]) / value["KI"],
+        **{f"{name}F": value[name] for name in ("XA", "YA", "XB", "YB")},
+        **dict(zip(names, solution, strict=False)),
+    }
 
 
 def run_all(scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
@@ -73,31 +87,3 @@ def run_columns(
     for index in replayed.zero_determinant.nonzero()[0].tolist():
         endings[index] = ZERO_DETERMINANT
     return endings, {name: replayed.printed(name) for name in names}
-
-
-def _unfloored(ported: Run) -> dict[str, float]:
-    from ..applesoft.operators import Real
-
-    if ported.error or ported.zero_determinant or ported.A is None:
-        return {}
-
-    def number(stored: str | float) -> float:
-        return float(Real.from_stored(stored)) if isinstance(stored, str) else stored
-
-    value = {name: number(stored) for name, stored in ported.reals.items()}
-    rows = ported.A["dims"][0]
-    column = int(value["M"]) + 1
-    solution = [number(ported.A["data"][row + rows * column]) for row in range(1, 7)]
-    values = {
-        "XA": value["UX"] + value["D3"] * value["WA"],
-        "YA": value["UY"] - value["D4"] * value["WA"],
-        "XB": value["VX"] - value["D1"] * value["WB"],
-        "YB": value["VY"] + value["D2"] * value["WB"],
-        "KI": value["KI"],
-        "LOSS": 100 * (value["KI"] - value["KF"]) / value["KI"],
-        **{f"{name}F": value[name] for name in ("XA", "YA", "XB", "YB")},
-        **dict(zip(("VAX", "VAY", "VBX", "VBY"), solution, strict=False)),
-    }
-    if value["M"] == value["N"]:
-        values |= {"WAF": solution[4], "WBF": solution[5]}
-    return values

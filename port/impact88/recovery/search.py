@@ -6,7 +6,7 @@ and the best of them are replayed in the Apple's own arithmetic. What a scene co
 inputs cost to believe plus what every printed result then costs.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -19,7 +19,7 @@ from ..closedform.solve import solve
 from ..doubles import double
 from ..fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS, scene_name
 from ..names import VELOCITIES
-from ..reading.numerals import candidates
+from ..reading.glyphs import letters
 from ..reading.printout import Printout
 from . import replays
 from .typedtext import mu_turned, opposite, texts_that_print
@@ -75,6 +75,11 @@ class Column:
         }
 
 
+def column_of(name: str, ways: Iterable[tuple[str, float]], typed: bool = False) -> Column:
+    """What one input may be."""
+    return Column((name,), [((text,), cost) for text, cost in ways], typed)
+
+
 class Scored(NamedTuple):
     """A scene tried: what it and its results cost, the texts typed, the texts assumed printed, what
     it prints, and the names in which that is not what the page says."""
@@ -111,27 +116,18 @@ class Expected:
         return costs
 
 
-def expected_results(shown: Printout) -> list[Expected]:
-    """The results of a printout as read."""
-    expected = []
-    for name in RESULTS:
-        if reading := shown.fields.get(name):
-            texts = dict(candidates(reading.region, 60, reading.sign_free))
-            digits = sum(glyph.char.isdigit() for glyph in reading.region)
-            if reading.clean:
-                texts = {**dict([*texts.items()][:1]), reading.text: 0.0}
-            legible = reading.clean or digits >= 2
-            expected.append(Expected(name, texts, MISMATCH if legible else _UNREAD))
-    return expected
-
-
 class Search:
     """The search for one printout's scene. ``typed``: by field what was typed for a printed text,
     where the page or a scene file says so."""
 
     def __init__(self, shown: Printout, typed: Mapping[str, Mapping[str, str]]) -> None:
         self.shown = shown
-        self.expected = expected_results(shown)
+        self.expected: list[Expected] = []
+        for name in RESULTS:
+            if reading := shown.fields.get(name):
+                legible = reading.clean or sum(map(str.isdigit, letters(reading.region))) >= 2
+                default = MISMATCH if legible else _UNREAD
+                self.expected.append(Expected(name, reading.texts(60), default))
         self._typed = typed
         on_row = ANGLES if shown.angles else ()
         self._on_page = {name for name in INPUTS if name in shown.fields or name in on_row}
@@ -250,7 +246,7 @@ class Search:
     def _other_bits(self, best: Scored) -> Scored:
         """The same printed inputs, typed in other ways that enter the equations with other bits."""
         columns = [
-            Column((name,), [((text,), _OTHER_BITS * rank) for rank, text in enumerate(texts)])
+            column_of(name, [(text, _OTHER_BITS * rank) for rank, text in enumerate(texts)])
             for name, texts in _texts_of(best)
         ]
         picks = combinations(columns, _CLOSELY)

@@ -17,7 +17,7 @@ from ..doubles import double
 from ..fields import ANGLES, INPUTS, scene_name
 from ..reading.numerals import is_number, printable
 from .recovered import Recovered
-from .search import Column, Scored, one_each
+from .search import Column, Scored, column_of, one_each
 from .typedtext import opposite
 
 DIGIT = "digit misread"
@@ -89,7 +89,7 @@ class Rereading:
         """Scenes with one input put right, or with up to two, those that explain most first.
         ``exchanged``: texts printed in place of others, by field, and not to be put right."""
         columns = [
-            Column(one.names, [((exchanged[one.names[0]],), 0.0)], one.typed)
+            column_of(one.names[0], [(exchanged[one.names[0]], 0.0)], one.typed)
             if exchanged and one.names[0] in exchanged
             else one
             for one in self._columns
@@ -112,10 +112,10 @@ class Rereading:
         scene, columns = self._recovered.scene, []
         for name in INPUTS:
             text = self._base.get(name, scene[scene_name(name)])
-            slips = [((other,), cost) for cost, other, _ in self._ways.get(name, [])]
+            slips = [(other, cost) for cost, other, _ in self._ways.get(name, [])]
             apart = name not in self._recovered.assumed
-            columns.append(Column((name,), [((text,), 0.0), *slips], apart))
-        return [*columns, Column(("M",), [((scene["M"],), 0.0)], True)]
+            columns.append(column_of(name, [(text, 0.0), *slips], apart))
+        return [*columns, column_of("M", [(scene["M"], 0.0)], True)]
 
     def single(self) -> Iterator[Change]:
         """Every slip in one input."""

@@ -145,7 +145,7 @@ def _plain(value: Any) -> Any:
         return list(map(_plain, value))
     if hasattr(value, "as_json"):
         return value.as_json()
-    return value._asdict() if isinstance(value, Piece) else value
+    return value._asdict() if isinstance(value, Piece | LabelCheck) else value
 
 
 @dataclass
