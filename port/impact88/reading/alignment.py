@@ -105,12 +105,15 @@ def _jumps() -> tuple[Costs, Costs, Costs]:
     """What it costs that a glyph belongs to another state than the one before it: ``(gap, from,
     to)``; that one more glyph of a number follows a gap, ``(gap, state)``; that the text ends after
     a state."""
+
+    def then(first: NDArray[np.int32], second: NDArray[np.int32]) -> NDArray[np.int32]:
+        least = [(row[:, None] + second).min(axis=0) for row in first]
+        return np.array(np.minimum(least, _MOST))
+
     missed = np.cumsum([_missing(one) for one in STATES], dtype=np.int32)
     size = len(STATES)
     between = [place for place, one in enumerate(STATES) if one.kind == "between"]
-    passed = np.triu(missed[None] - missed[:, None]) + np.tril(
-        np.full((size, size), _MOST, np.int32), -1
-    )
+    passed = np.where(np.tri(size, k=-1), _MOST, missed[None] - missed[:, None])
     absent = [COSTS["line may be missing" if n in _OPTIONAL else "line"] for n in range(len(_ROWS))]
     skipped = np.where(np.eye(size), 0, _MOST).astype(np.int32)
     for number, start in enumerate(between):
@@ -118,8 +121,8 @@ def _jumps() -> tuple[Costs, Costs, Costs]:
         for stop in range(number, len(between)):
             skipped[start, between[stop]] = sum(absent[number:stop])
     ends = np.array([COSTS["ends"] if _closes(one) else _MOST for one in STATES])
-    skips = _then(passed[:, [0, *between]], skipped[[0, *between]][:, between])
-    ways = np.minimum(passed, _then(skips, passed[between]))
+    skips = then(passed[:, [0, *between]], skipped[[0, *between]][:, between])
+    ways = np.minimum(passed, then(skips, passed[between]))
     ways = np.minimum(ways, ends[:, None] + ways[0])
     ways[:, 0] = np.minimum(ways[:, 0], ends)
     closing = [place for place, one in enumerate(STATES) if _closes(one) or not place]
@@ -148,12 +151,6 @@ def _jumps() -> tuple[Costs, Costs, Costs]:
     return np.minimum(jumps, _MOST).astype(np.int16), staying, ending.astype(np.int16)
 
 
-def _then(first: NDArray[np.int32], second: NDArray[np.int32]) -> NDArray[np.int32]:
-    """What one step and another cost, from state to state."""
-    least = [(row[:, None] + second).min(axis=0) for row in first]
-    return np.array(np.minimum(least, _MOST))
-
-
 def _missing(state: State) -> int:
     """What it costs to pass over a state without a glyph."""
     if state.kind == "letter":
@@ -172,21 +169,20 @@ def _closes(state: State) -> bool:
 @lru_cache(maxsize=2000)
 def _emitted(char: str) -> tuple[Costs, Costs]:
     """What a glyph costs by state: that opens it, and one more of it; "" is none of the page's."""
-    enter, stay = [], []
+    more = COSTS["inserted figure" if char.isdigit() else "inserted"]
+    costs = []
     for state in STATES:
         if state.kind in ("outside", "between"):
-            figure = COSTS["figure between"] * char.isdigit() * (state.kind == "between")
-            opens = more = (COSTS[state.kind] + figure) * bool(char)
+            figure = COSTS["figure between"] * (char.isdigit() and state.kind == "between")
+            costs.append([(COSTS[state.kind] + figure) * bool(char)] * 2)
         elif not char:
-            opens = more = _MOST
+            costs.append([_MOST] * 2)
         elif state.kind == "number":
-            opens = more = _in_number(char, state.line < PROMPTS)
+            costs.append([_in_number(char, state.line < PROMPTS)] * 2)
         else:
-            opens = label_cost(state.name, char)
-            more = COSTS["inserted figure" if char.isdigit() else "inserted"]
-        enter.append(opens)
-        stay.append(more)
-    return np.array(enter, np.int16), np.array(stay, np.int16)
+            costs.append([label_cost(state.name, char), more])
+    enter, stay = np.array(costs, np.int16).T
+    return enter, stay
 
 
 def _in_number(char: str, reply: bool) -> int:
@@ -195,10 +191,8 @@ def _in_number(char: str, reply: bool) -> int:
         return 0
     if char in NUMERIC or char == "?" or (reply and char in ",;"):
         return COSTS["E in number" if char == "E" else "mark in number"]
-    if char == "=":
-        return COSTS["= in number"]
-    if not printed_for(char):
-        return COSTS["other in number"]
+    if char == "=" or not printed_for(char):
+        return COSTS["= in number" if char == "=" else "other in number"]
     letter = char.isalpha() and char not in "OQLISBZ"
     return COSTS["letter in number" if letter else "look-alike in number"]
 
@@ -246,9 +240,8 @@ def align(
         parts = _parts(start, _states(chars, [glyph.gap for glyph in window]))
         found = parts if last else parts[:-1] or parts[:1]
         numbers = [sum(STATES[one].kind == "number" for one in {*part.values()}) for part in found]
-        budget.left = (
-            Budget.left if max(numbers, default=0) >= _WHOLE else budget.left - len(window)
-        )
+        whole = max(numbers, default=0) >= _WHOLE
+        budget.left = Budget.left if whole else budget.left - len(window)
         yield from found
         if last:
             return

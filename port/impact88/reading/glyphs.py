@@ -35,8 +35,7 @@ NUMERIC = frozenset("0123456789.-+E")
 
 
 class Gap(IntEnum):
-    """What stands before a glyph: nothing, a blank, more of them, the end of a line. The break of
-    a full line parts nothing."""
+    """What stands before a glyph; the break of a full line parts nothing."""
 
     NONE = 0
     BLANK = 1
@@ -62,7 +61,10 @@ class Page:
     def __init__(self, text: str) -> None:
         self.text = text
         self._lines = [0, *(match.end() for match in re.finditer("\n", text))]
-        self.width = _wrapping_width(text)
+        # a screen that wraps fills its lines (40 columns as a rule), several to one length
+        lengths = [len(line.rstrip("\r")) for line in text.split("\n")]
+        full = 0 < max(lengths) <= 80 and lengths.count(max(lengths)) >= 3
+        self.width = max(lengths) if full else 0
         self.glyphs = tuple(self._read())
         starts = [at for at, glyph in enumerate(self.glyphs) if glyph.gap is Gap.LINE]
         self.lines = [range(*one) for one in pairwise([*starts, len(self.glyphs)])]
@@ -98,24 +100,11 @@ class Page:
     def span(self, start: int, stop: int) -> tuple[int, int]:
         """Offsets of the text from glyph ``start`` up to before glyph ``stop``, without the blanks
         after it."""
-        if start >= stop:
-            end = self.glyphs[start].offset if start < len(self.glyphs) else len(self.text)
-            return end, end
         return self.glyphs[start].offset, self.glyphs[stop - 1].offset + 1
 
     def shown(self, start: int, stop: int) -> str:
         """The text from glyph ``start`` up to before glyph ``stop``, blanks as one."""
         return " ".join(self.text[slice(*self.span(start, stop))].split())
-
-
-def _wrapping_width(text: str) -> int:
-    """The width at which a screen broke the lines of a text (40 columns as a rule); 0: nowhere.
-
-    A screen that wraps fills its lines: the longest lines are all of one length, and there are
-    several of them."""
-    lengths = [len(line.rstrip("\r")) for line in text.split("\n")]
-    longest = max(lengths, default=0)
-    return longest if 0 < longest <= 80 and lengths.count(longest) >= 3 else 0
 
 
 @lru_cache(maxsize=4096)
@@ -141,19 +130,13 @@ def letters(region: Iterable[Glyph]) -> str:
 # --- the noisy channel ----------------------------------------------------------------------------
 
 
-def _channel() -> dict[str, list[list[str]]]:
-    """The rows of `channel.txt`, by section."""
-    sections: dict[str, list[list[str]]] = {}
-    text = resources.files(__package__).joinpath("channel.txt").read_text(encoding="utf-8")
-    for line in text.splitlines():
-        if line.startswith("["):
-            rows = sections.setdefault(line.strip("[]"), [])
-        elif line and not line.startswith("# "):
-            rows.append(line.split())
-    return sections
-
-
-_CHANNEL = _channel()
+_CHANNEL: dict[str, list[list[str]]] = {}
+"""The rows of `channel.txt`, by section."""
+for _line in resources.files(__package__).joinpath("channel.txt").read_text("utf-8").splitlines():
+    if _line.startswith("["):
+        _rows = _CHANNEL.setdefault(_line.strip("[]"), [])
+    elif _line and not _line.startswith("# "):
+        _rows.append(_line.split())
 COSTS = {" ".join(name): int(cost) for *name, cost in _CHANNEL["costs"]}
 """What departures from the page cost, in hundredths of one wrong letter."""
 GAP_COSTS = {name: [int(cost) for cost in costs] for name, *costs in _CHANNEL["gaps"]}

@@ -8,8 +8,8 @@ only blanks part.
 """
 
 import re
-from collections.abc import Callable, Iterable, Iterator
-from decimal import Decimal, InvalidOperation
+from collections.abc import Callable, Iterable
+from decimal import Decimal
 from enum import StrEnum
 from functools import cache, lru_cache
 from itertools import product
@@ -83,15 +83,10 @@ def is_number(text: str) -> bool:
 
 
 def value_of(text: str) -> Decimal | None:
-    """The number a text is; None when it is none, or one so large, small or long that no later step
-    could add it to another."""
-    try:
-        value = Decimal(text) if len(text) <= LONGEST and is_number(text) else None
-    except InvalidOperation:
-        return None
-    if value is None or abs(value.adjusted()) > 400 or len(value.as_tuple().digits) > 28:
-        return None
-    return value
+    """The number a text is; None when it is none, or so long that no later step could add it to
+    another."""
+    value = Decimal(text) if len(text) <= LONGEST and is_number(text) else None
+    return None if value is None or len(value.as_tuple().digits) > 28 else value
 
 
 def as_printed(text: str) -> str | None:
@@ -136,17 +131,28 @@ def compare(region: Region, printed: str, cut: bool = False, sign_free: bool = F
 
 @lru_cache(maxsize=20000)
 def _compared(region: Glyphs, printed: str, cut: bool, sign_free: bool) -> Match:
-    """The cheapest explanation, by dynamic programming over glyphs and printed characters."""
+    """The cheapest explanation, by dynamic programming over glyphs and printed characters: a glyph
+    for a character, a glyph too many, a character lost."""
     rows, columns = len(region), len(printed)
     least: dict[tuple[int, int], float] = {(0, 0): 0.0}
     back: dict[tuple[int, int], tuple[int, int, Doubt | None]] = {}
     for i, j in product(range(rows + 1), range(columns + 1)):
-        for di, dj, cost, doubt in _steps(region, i, printed, j, cut, sign_free):
+        steps: list[tuple[int, int, float, Doubt | None]] = []
+        if i < rows and j < columns:
+            cost, doubt = _substitution(region, i, printed[j])
+            blank = j > 0 and region[i][1]
+            steps.append(
+                (1, 1, cost + _SLIGHT * bool(blank), doubt or (Doubt.BLANK if blank else None))
+            )
+        if i < rows:
+            steps.append((1, 0, *_extra(region, i, printed, j, sign_free)))
+        if j < columns:
+            steps.append((0, 1, *_lost(region, i, printed, j, cut)))
+        for di, dj, cost, doubt in steps:
             place = i + di, j + dj
             if place not in least or least[i, j] + cost < least[place]:
                 least[place], back[place] = least[i, j] + cost, (di, dj, doubt)
-    spots = []
-    exact = 0
+    spots, exact = list[Spot](), 0
     i, j = rows, columns
     while i or j:
         di, dj, doubt = back[i, j]
@@ -158,24 +164,10 @@ def _compared(region: Glyphs, printed: str, cut: bool, sign_free: bool) -> Match
     return Match(least[rows, columns], tuple(reversed(spots)), exact)
 
 
-def _steps(
-    region: Glyphs, i: int, printed: str, j: int, cut: bool, sign_free: bool
-) -> Iterator[tuple[int, int, float, Doubt | None]]:
-    """The ways on from a place: a glyph for a character, a glyph too many, a character lost."""
-    if i < len(region):
-        if j < len(printed):
-            cost, doubt = _substitution(region, i, printed[j])
-            if j > 0 and region[i][1]:
-                cost, doubt = cost + _SLIGHT, doubt or Doubt.BLANK
-            yield 1, 1, cost, doubt
-        yield 1, 0, *_extra(region, i, printed, j, sign_free)
-    if j < len(printed):
-        yield 0, 1, *_lost(region, i, printed, j, cut)
-
-
 def _substitution(region: Glyphs, i: int, printed: str) -> tuple[float, Doubt | None]:
     """Reading one printed character as a glyph."""
     char = region[i][0]
+    likely = {} if char == "E" else printed_for(char)
     if char == printed:
         return 0.0, None
     if char == ILLEGIBLE:
@@ -184,8 +176,7 @@ def _substitution(region: Glyphs, i: int, printed: str) -> tuple[float, Doubt | 
         return _MARK, Doubt.LOOK_ALIKE
     if char in NUMERIC and char != "E":
         return _CONTRADICTION, Doubt.CONTRADICTS
-    likely = printed_for(char)
-    if printed in likely and char != "E":
+    if printed in likely:
         return likely[printed], Doubt.LOOK_ALIKE
     if printed in "-." and char in _SPECKS:
         return _MARK, Doubt.LOOK_ALIKE
@@ -203,21 +194,18 @@ def _extra(region: Glyphs, i: int, printed: str, j: int, sign_free: bool) -> tup
     ):
         return _SLIGHT, Doubt.RETYPED
     if char.isdigit():
-        if j == len(printed) and _in_a_note(region, i):
-            return _SPECK, Doubt.LEFT_OVER
-        return _CONTRADICTION, Doubt.CONTRADICTS
-    inside = 0 < j < len(printed)
+        noted = j == len(printed) and _in_a_note(region, i)
+        return (_SPECK, Doubt.LEFT_OVER) if noted else (_CONTRADICTION, Doubt.CONTRADICTS)
     if char == "-":
-        twice = "-" in (after, region[i - 1][0] if i else "")
         if i == j == 0 and sign_free:
             return _SLIGHT, Doubt.LEFT_OVER
-        if twice or j == len(printed):
+        if j == len(printed) or "-" in (after, region[i - 1][0] if i else ""):
             return _SPECK, Doubt.LEFT_OVER
         if (i and gap) or gap_after:
             return _FOREIGN, Doubt.LEFT_OVER
-        return _CONTRADICTION - _FOREIGN / 2, Doubt.CONTRADICTS
+    inside = 0 < j < len(printed)
     full = char in _FULL and inside and not gap and after and not gap_after
-    if full or (char == "." and _between_digits(region, i)):
+    if char == "-" or full or (char == "." and _between_digits(region, i)):
         return _CONTRADICTION - _FOREIGN / 2, Doubt.CONTRADICTS
     speck = char == "." or (char in _SPECKS and not inside)
     return _SPECK if speck else _MARK, Doubt.LEFT_OVER

@@ -9,8 +9,7 @@ of the page's own letters; line and column then count in that text.
 import csv
 import html
 import re
-from collections.abc import Sequence
-from html.parser import HTMLParser
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from statistics import median
 from typing import NamedTuple
@@ -58,16 +57,13 @@ def _decoded(data: bytes) -> str:
         # a mainframe's, and an Apple II's with its high bits set
         ways.append(data.decode("cp037").replace("\x85", "\n"))
         ways.append(bytes(byte & 0x7F for byte in data).decode("ascii"))
-        return max(ways, key=lambda text: (_marks(text), _minus_signs(text)))
+        return max(ways, key=_sense)
 
 
-def _marks(text: str) -> int:
-    return sum(mark in text.upper() for mark in _MARKS)
-
-
-def _minus_signs(text: str) -> int:
-    """How often a dash stands right before a number."""
-    return len(re.findall(r"[–—−\u00ad-]\s?[.0-9]", text)) - 5 * text.count("�")
+def _sense(text: str) -> tuple[int, int]:
+    """How many marks of a printout are in a text, and dashes right before numbers."""
+    dashes = len(re.findall(r"[–—−\u00ad-]\s?[.0-9]", text))
+    return sum(mark in text.upper() for mark in _MARKS), dashes - 5 * text.count("�")
 
 
 # --- markup --------------------------------------------------------------------------------------
@@ -161,6 +157,8 @@ def _groups_joined(text: str) -> str:
 
 # --- words with places ---------------------------------------------------------------------------
 
+_TAG = re.compile(r"""<([\w:]+)((?:"[^"]*"|'[^']*'|[^"'<>])*)>([^<]*)""")
+_ATTRIBUTE = re.compile(r"""\b([\w:]++)\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s"'>]+))""")
 _BOX = re.compile(r"\bbbox +(-?[0-9]+) +(-?[0-9]+) +(-?[0-9]+) +(-?[0-9]+)")
 _TSV_PLACE = ("left", "top", "width", "height")
 _ALTO_PLACE = ("hpos", "vpos", "width", "height")
@@ -185,55 +183,44 @@ def laid_out(text: str, where: str) -> str:
     table = head.startswith("level\tpage_num\t")
     if not table and not re.search("<alto|ocr_page|ocrx_word|ocr-system", head):
         return text
-    document = _Document()
+    pages: dict[str, list[_Word]] = {}
     try:
-        if table:
-            for row in csv.DictReader(text.splitlines(), delimiter="\t", quoting=csv.QUOTE_NONE):
-                document.put(row["page_num"], row["text"] or "", [row[name] for name in _TSV_PLACE])
-        else:
-            document.feed(text)
+        for page, word, *place in _rows(text) if table else _elements(text):
+            if word.strip():
+                pages.setdefault(page, []).append(_Word(word.strip(), *map(float, place)))
     except (KeyError, TypeError, ValueError):
         raise UserError("is damaged: the place of a word is not a number", where) from None
-    if not document.pages:
+    if not pages:
         raise UserError("holds no words with places; expected hOCR, ALTO or TSV of a page", where)
-    return "\n\n".join(map(_lines_of, document.pages.values()))
+    return "\n\n".join(map(_lines_of, pages.values()))
 
 
-class _Document(HTMLParser):
-    """The words of hOCR, ALTO or TSV, by page."""
+def _rows(text: str) -> Iterator[list[str]]:
+    """The words of TSV: page, text, left, top, width, height."""
+    for row in csv.DictReader(text.splitlines(), delimiter="\t", quoting=csv.QUOTE_NONE):
+        yield [row["page_num"], row["text"] or "", *(row[name] for name in _TSV_PLACE)]
 
-    def __init__(self) -> None:
-        super().__init__()
-        self.pages: dict[str, list[_Word]] = {}
-        self._page = 0
-        self._box: list[int] = []
 
-    def put(self, page: str, text: str, place: Sequence[str | int]) -> None:
-        """A word and its place."""
-        if text.strip():
-            word = _Word(text.strip(), *map(float, place))
-            self.pages.setdefault(page, []).append(word)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """A page begins, or a word."""
-        given = {name: value or "" for name, value in attrs}
-        kind = given.get("class", "")
-        element = tag.rpartition(":")[2]
+def _elements(text: str) -> Iterator[list[str]]:
+    """The words of hOCR and ALTO, in the same way."""
+    page, box = 0, None
+    for name, attributes, after in _TAG.findall(text):
+        given = {
+            key.lower(): html.unescape("".join(value))
+            for key, *value in _ATTRIBUTE.findall(attributes)
+        }
+        kind, element = given.get("class", ""), name.lower().rpartition(":")[2]
         if kind == "ocr_page" or element == "page":
-            self._page += 1
+            page += 1
         elif kind in ("ocrx_word", "ocr_word"):
             box = _BOX.search(given.get("title", ""))
-            self._box = [*map(int, box.groups())] if box else []
         elif element == "string" and "content" in given:
-            place = [given.get(name, "0") for name in _ALTO_PLACE]
-            self.put(str(self._page), given["content"], place)
-
-    def handle_data(self, data: str) -> None:
-        """What a word says."""
-        if self._box and data.strip():
-            left, top, right, bottom = self._box
-            self.put(str(self._page), data, (left, top, right - left, bottom - top))
-            self._box = []
+            yield [str(page), given["content"], *(given.get(key, "0") for key in _ALTO_PLACE)]
+        if box and after.strip():
+            left, top, right, bottom = map(int, box.groups())
+            place = left, top, right - left, bottom - top
+            yield [str(page), html.unescape(after), *map(str, place)]
+            box = None
 
 
 def _lines_of(words: Sequence[_Word]) -> str:

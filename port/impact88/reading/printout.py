@@ -520,17 +520,14 @@ def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
                 text, span = page.shown(start, stop), page.span(start, stop)
                 number, column = page.place(span[0])
                 figure = not stars and any(map(str.isdigit, text))
-                beside = _bears(text) if whole else numbered or figure
+                beside = numbered or figure or (whole and _names_a_number(text))
                 above = [one for one in found if one.line <= number] or found[:1]
                 above[-1].left_over.append(Piece(text, number, column, *span, beside, whole))
 
 
-def _bears(text: str) -> bool:
-    """Whether a line that is none of the program's holds a number or one of its labels."""
-    return any(map(str.isdigit, text)) or any(
-        part in _LABEL_WORDS or (len(part) > 2 and part.upper() in _LABEL_WORDS)
-        for part in re.split(r"[^A-Za-z]+", text)
-    )
+def _names_a_number(text: str) -> bool:
+    words = re.split(r"[^A-Za-z]+", text)
+    return not _LABEL_WORDS.isdisjoint(word.upper() if len(word) > 2 else word for word in words)
 
 
 def _normalised(text: str) -> list[str]:
