@@ -9,6 +9,7 @@ inputs cost to believe plus what every printed result then costs.
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -116,6 +117,9 @@ class Expected:
         return costs
 
 
+_cost = attrgetter("cost")
+
+
 class Search:
     """The search for one printout's scene. ``typed``: by field what was typed for a printed text,
     where the page or a scene file says so."""
@@ -207,7 +211,7 @@ class Search:
         value = _values(columns, picks)
         turned = self._typed_mu(value) != value["MU"]
         scenes: list[tuple[dict[str, str], dict[str, str], float]] = []
-        for row, pick in enumerate(picks.tolist()):
+        for pick, turn in zip(picks.tolist(), turned.tolist(), strict=True):
             scene: dict[str, str] = {}
             assumed: dict[str, str] = {}
             cost = 0.0
@@ -215,21 +219,22 @@ class Search:
                 texts, price = column.options[index]
                 cost += price
                 for name, text in zip(column.names, texts, strict=True):
-                    scene[scene_name(name)] = text if column.typed else self._typed_text(name, text)
-                    if name in self._on_page and not column.typed:
-                        assumed[name] = text
-            if turned[row]:
+                    scene[scene_name(name)] = text
+                    if not column.typed:
+                        known = self._typed.get(name, {}).get(text)
+                        first = next(iter(texts_that_print(text, name in ANGLES)), text)
+                        scene[scene_name(name)] = known or first
+                        if name in self._on_page:
+                            assumed[name] = text
+            if turn:
                 scene["MU"] = opposite(scene["MU"])
             scenes.append((scene, assumed, cost))
         found = [*self._scored(scenes)]
         # where double precision does not tell which way the contact slides
-        other = [row for row, one in enumerate(found) if "MUP" in one.wrong]
-        again = [
-            ({**scene, "MU": opposite(scene["MU"])}, assumed, cost)
-            for scene, assumed, cost in (scenes[row] for row in other)
-        ]
-        for row, scored in zip(other, self._scored(again), strict=True):
-            found[row] = min(found[row], scored, key=_cost)
+        for row, (scene, assumed, cost) in enumerate(scenes):
+            if "MUP" in found[row].wrong:
+                again = [({**scene, "MU": opposite(scene["MU"])}, assumed, cost)]
+                found[row] = min(found[row], *self._scored(again), key=_cost)
         return found
 
     def _typed_mu(self, value: Mapping[str, Floats]) -> Floats:
@@ -239,16 +244,16 @@ class Search:
             return mu
         return np.where(in_doubles(value, ["MUP"])["MUP"] == -mu, -mu, mu)
 
-    def _typed_text(self, name: str, text: str) -> str:
-        known = self._typed.get(name, {}).get(text)
-        return known or next(iter(texts_that_print(text, name in ANGLES)), text)
-
     def _other_bits(self, best: Scored) -> Scored:
         """The same printed inputs, typed in other ways that enter the equations with other bits."""
-        columns = [
-            column_of(name, [(text, _OTHER_BITS * rank) for rank, text in enumerate(texts)])
-            for name, texts in _texts_of(best)
-        ]
+        columns = []
+        for name, typed in best.scene.items():
+            printed = best.assumed.get("MUP" if name == "MU" else name, "")
+            texts = texts_that_print(printed, name in ANGLES)
+            if name == "MU" and texts and mu_turned(typed, printed):
+                texts = tuple(map(opposite, texts))
+            ways = enumerate(dict.fromkeys((typed, *texts)))
+            columns.append(column_of(name, [(text, _OTHER_BITS * rank) for rank, text in ways]))
         picks = combinations(columns, _CLOSELY)
         extra = best.cost - self.replayed_scene(best.scene, best.assumed).cost
         scenes = []
@@ -281,20 +286,6 @@ class Search:
             total = cost + sum(costs.values()) + _UNREAD * len(absent)
             differing = frozenset(name for name, one in costs.items() if one >= AGREES)
             yield Scored(total, scene, assumed, outcome, differing)
-
-
-def _cost(scored: Scored) -> float:
-    return scored.cost
-
-
-def _texts_of(best: Scored) -> Iterator[tuple[str, list[str]]]:
-    """The texts that may have been typed for each value of a scene, of different bits."""
-    for name, typed in best.scene.items():
-        printed = best.assumed.get("MUP" if name == "MU" else name, "")
-        texts = list(texts_that_print(printed, name in ANGLES)) if name != "M" else []
-        if name == "MU" and texts and mu_turned(typed, printed):
-            texts = [*map(opposite, texts)]
-        yield name, [typed, *(text for text in texts if text != typed)]
 
 
 def combinations(columns: Sequence[Column], most: int, limit: float = np.inf) -> Picks:
@@ -346,16 +337,16 @@ def _number(text: str) -> float:
 def _believing(columns: Sequence[Column], picks: Picks) -> Floats:
     """What the options themselves cost."""
     costs: Floats = np.zeros(len(picks))
-    for place, column in enumerate(columns):
-        costs += column.costs[picks[:, place]]
+    for column, pick in zip(columns, picks.T, strict=True):
+        costs += column.costs[pick]
     return costs
 
 
 def _values(columns: Sequence[Column], picks: Picks) -> dict[str, Floats]:
     """The values of combinations as columns of doubles; of MU the printed one."""
     return {
-        name: numbers[picks[:, place]]
-        for place, column in enumerate(columns)
+        name: numbers[pick]
+        for column, pick in zip(columns, picks.T, strict=True)
         for name, numbers in column.numbers.items()
     }
 

@@ -13,7 +13,7 @@ from functools import lru_cache
 
 from ..applesoft import decimaltext
 from ..applesoft.errorcodes import ApplesoftError
-from ..applesoft.real import Number, divide, multiply, rounded, to_stored
+from ..applesoft.real import divide, multiply, rounded, to_stored
 from ..doubles import double
 from ..reading.numerals import value_of
 
@@ -23,11 +23,8 @@ _PRINTED_DIGITS = 9
 """Digits a number is printed with at most."""
 
 
-@lru_cache(maxsize=1)
-def _radians_per_degree() -> Number:
-    """AG of line 300."""
-    degrees = decimaltext.number("180")
-    return rounded(divide(decimaltext.number("3.14159265"), degrees))
+_RADIANS = rounded(divide(decimaltext.number("3.14159265"), decimaltext.number("180")))
+"""AG of line 300."""
 
 
 @lru_cache(maxsize=65536)
@@ -38,8 +35,8 @@ def stored_and_printed(text: str, angle: bool = False) -> tuple[bytes, str] | No
         value = rounded(decimaltext.number(text))
         back = value
         if angle:
-            value = rounded(multiply(value, _radians_per_degree()))
-            back = rounded(divide(value, _radians_per_degree()))
+            value = rounded(multiply(value, _RADIANS))
+            back = rounded(divide(value, _RADIANS))
         return to_stored(value), decimaltext.write(back)
     except (ApplesoftError, ValueError):
         return None
@@ -55,8 +52,7 @@ def texts_that_print(printed: str, angle: bool = False) -> tuple[str, ...]:
         return ()
 
     def prints(text: str) -> bool:
-        seen = stored_and_printed(text, angle)
-        return seen is not None and seen[1] == printed
+        return (stored_and_printed(text, angle) or ("", ""))[1] == printed
 
     near = _neighbours(value, printed)
     found = [text for text in [*_shorter(value, printed), printed] if prints(text)]
