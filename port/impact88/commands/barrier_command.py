@@ -27,7 +27,6 @@ from ..errors import note
 from ..reconstruction.adjustment import share_resolved
 from ..reconstruction.solutiontable import Exact
 from ..uncertainty.uncertain import fixed
-from ..units import system_of
 from . import options
 
 KNOWABLE = (
@@ -39,11 +38,11 @@ ARGUMENTS = (*options.SOLUTION, options.sample_option("vehicle A of a published 
 
 
 def main(args: options.Args) -> None:
-    given, named = options.known_within_limits(args, KNOWABLE, single=True)
+    given, units = options.known_within_limits(args, KNOWABLE, single=True)
     barrier = BARRIER if "UX" in given else BARRIER | BARRIER_AFTER
     known, friction = share_resolved(given | {n: fixed(value) for n, value in barrier.items()})
     if friction:
         note(None, friction)
     everything = {name: item.nominal for name, item in known.items()} | BARRIER_AFTER
     found = Exact.all_of(everything, None, args.contact_time, options.source_of(args))
-    options.show_impacts(args, found, system_of(named))
+    options.show_impacts(args, found, units)

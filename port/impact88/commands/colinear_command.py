@@ -20,7 +20,7 @@ from ..names import quantity
 from ..plaintable import decimals_for, fixed, paragraph, quantities, table
 from ..reconstruction.outcome import forces
 from ..status import sentences
-from ..units import system_of, written
+from ..units import written
 from . import options
 
 COMMON = ("MA", "MB", "E", "MUP")
@@ -32,7 +32,7 @@ ARGUMENTS = options.SOLUTION
 
 
 def main(args: options.Args) -> None:
-    known, named = options.known_values(args, KNOWABLE)
+    known, system = options.known_values(args, KNOWABLE)
     before, after = ([n for n in names if n in known] for names in (BEFORE, AFTER))
     if before and after:
         raise UserError(
@@ -54,7 +54,6 @@ def main(args: options.Args) -> None:
         values["TF"] = args.contact_time
         values |= {n: float(v) for n, v in forces(values["P"], args.contact_time).items()}
     warnings = sentences(int(values.pop("STATUS")), values)
-    system = system_of(named)
     values = written(values, system)
     solved_for = BEFORE if after else AFTER
     units = {name: system.label(quantity(name).unit) for name in values}

@@ -119,8 +119,23 @@ def _lines(comparison: Comparison) -> Iterator[str]:
         yield "\nrows that disagree, by likely cause:"
         for cause, count in comparison.causes.most_common():
             yield f"  {count:>7}  {cause}"
-        yield from _evidence(comparison)
-        yield from _equations(comparison)
+        for named in comparison.evidence:
+            yield (
+                f"\n{named.says}: explains {named.explains} of {named.disagreeing} rows that "
+                f"disagree, gives {named.fits} of {named.agreeing} that agree (of the rows examined)"
+            )
+            for says, row in named.parts.items():
+                yield f"  row {row} shows: {says}"
+            for other in named.equivalents:
+                yield f"  or, the same in this table: {other}"
+        broken = {number: tally for number, tally in comparison.equations.items() if tally[1]}
+        if broken:
+            yield "\nequations that their final velocities violate:"
+            for number, (checked, violated) in broken.items():
+                where = f"in {violated} of {checked} rows that disagree"
+                yield f"  {number} ({EQUATIONS[number]}): {where}"
+        elif comparison.equations:
+            yield "\ntheir final velocities violate none of Equations 13 to 18"
     if comparison.differing:
         yield "\nworst first:"
         for cell in comparison.worst:
@@ -132,27 +147,3 @@ def _lines(comparison: Comparison) -> Iterator[str]:
             )
     for reason, skipped in comparison.not_compared.items():
         yield f"\n{skipped.rows} rows not compared: {reason}"
-
-
-def _evidence(comparison: Comparison) -> Iterator[str]:
-    """How many rows bear out each cause that is a program's, and what would do the same."""
-    for cause in comparison.evidence:
-        yield (
-            f"\n{cause.says}: explains {cause.explains} of {cause.disagreeing} rows that disagree, "
-            f"gives {cause.fits} of {cause.agreeing} that agree (of the rows examined)"
-        )
-        for says, row in cause.parts.items():
-            yield f"  row {row} shows: {says}"
-        for other in cause.equivalents:
-            yield f"  or, the same in this table: {other}"
-
-
-def _equations(comparison: Comparison) -> Iterator[str]:
-    """Which of Equations 13 to 18 their own results violate."""
-    broken = {number: tally for number, tally in comparison.equations.items() if tally[1]}
-    if broken:
-        yield "\nequations that their final velocities violate:"
-        for number, (checked, violated) in broken.items():
-            yield f"  {number} ({EQUATIONS[number]}): in {violated} of {checked} rows that disagree"
-    elif comparison.equations:
-        yield "\ntheir final velocities violate none of Equations 13 to 18"

@@ -24,7 +24,7 @@ from ..chapter import deltav
 from ..errors import BEYOND_DOUBLES, UserError
 from ..names import FINAL_VELOCITIES, SCENE, quantity
 from ..plaintable import number, quantities, table
-from ..units import System, system_of, written
+from ..units import System, written
 from . import options
 
 AFTER = FINAL_VELOCITIES[:4]
@@ -54,10 +54,10 @@ Answer = tuple[dict[str, Any], list[str]]
 
 
 def main(args: options.Args) -> None:
-    known, named = options.known_values(args, KNOWABLE)
+    known, units = options.known_values(args, KNOWABLE)
     factor = deltav.AS_PRINTED if args.as_printed else deltav.AS_USED
     try:
-        found, lines = _answer(known, args.like, factor, system_of(named))
+        found, lines = _answer(known, args.like, factor, units)
     except UserError as error:
         raise UserError(str(error), args.scene) from None
     equation = deltav.described(factor)

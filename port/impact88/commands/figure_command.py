@@ -41,7 +41,6 @@ from ..figures.views import colinear, configurations, planar, strip_drawing
 from ..names import FINAL_VELOCITIES, RESULTS, missing
 from ..scene import Scene, entries_in, numbers_of
 from ..tables.sweep import read_ranges
-from ..units import system_of
 from . import options
 
 OF_RANGES = ("histogram", "tornado")
@@ -126,7 +125,7 @@ def _barrier(args: options.Args) -> Drawing:
         {**BARRIER, **known, **wall},
         {**result, "VBX": 0.0, "VBY": 0.0, "WBF": 0.0},
         title="Barrier",
-        units=system_of(units),
+        units=units,
         outlines=sizes,
     )
 

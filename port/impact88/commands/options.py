@@ -260,9 +260,6 @@ def print_json(form: str, found: Mapping[str, Any], indent: int | None = None) -
     print(json.dumps(whole, ensure_ascii=False, allow_nan=False, indent=indent), flush=True)
 
 
-# --- NAME=VALUE ----------------------------------------------------------------------------------
-
-
 def pairs(texts: Sequence[str], option: str, example: str) -> dict[str, str]:
     """Name -> text of a repeatable ``option`` that takes NAME=TEXT, names in either case. Raises
     UserError for a text without ``=`` and for a name given twice."""
@@ -317,8 +314,6 @@ def names_given(
     return list(dict.fromkeys(names))
 
 
-# --- scenes and what is known --------------------------------------------------------------------
-
 ONE_EXPECTED = "expected one scene: a file, or --sample 1, 2 or 3"
 
 
@@ -345,22 +340,24 @@ def entries_given(args: Args, single: bool = False) -> Entries:
     return entries
 
 
-def known_values(args: Args, allowed: Collection[str]) -> tuple[dict[str, float], str | None]:
+def known_values(args: Args, allowed: Collection[str]) -> tuple[dict[str, float], System]:
     """What is known of a problem: the values of a flat TOML file or a sample, changed by ``--set``,
-    in base units, and the name of the system they were written in. What is not known is left out of
-    the file, or left empty as in a template; an empty setting makes a value unknown; of a value
+    in base units, and the system they were written in. What is not known is left out of the file,
+    or left empty as in a template; an empty setting makes a value unknown; of a value
     within limits the middle is taken. Raises UserError, naming file and name, for names not
     ``allowed``, texts that are not amounts, and where nothing is given."""
-    values, named = known_within_limits(args, allowed, single=True)
-    return {name: item.nominal for name, item in values.items()}, named
+    values, units = known_within_limits(args, allowed, single=True)
+    return {name: item.nominal for name, item in values.items()}, units
 
 
 def known_within_limits(
     args: Args, allowed: Collection[str], single: bool = False
-) -> tuple[dict[str, Uncertain], str | None]:
+) -> tuple[dict[str, Uncertain], System]:
     """The same, but each value a number or known within limits (`uncertainty.uncertain`) unless
     ``single``; a setting's ``+- D`` is around the file's value. Of a sample the names ``allowed``
     are taken."""
+    from ..units import system_of
+
     source = source_of(args) or ""
     if not source and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
@@ -385,7 +382,7 @@ def known_within_limits(
             values[name] = _within_limits(name, text, "--set", named, center)
         else:
             values.pop(name, None)
-    return values, named
+    return values, system_of(named)
 
 
 def _in_base(
@@ -464,8 +461,6 @@ def one_scene(args: Args) -> Scene:
         raise UserError(ONE_EXPECTED)
     return scene
 
-
-# --- values within limits, as bounds and figure take them ---------------------------------------
 
 EXPLORED = (
     *ONE_SCENE,

@@ -66,7 +66,7 @@ from ..reconstruction.state import KNOWABLE, QUANTITIES
 from ..scene import shown_texts, template
 from ..uncertainty.reconstructedtable import Measured
 from ..uncertainty.uncertain import Uncertain
-from ..units import System, system_of
+from ..units import System
 from . import options
 
 ARGUMENTS = (
@@ -86,11 +86,10 @@ def main(args: options.Args) -> None:
     if args.old:
         raise UserError("--scene is not an option here; expected --write-scene FILE")
     wanted = options.names_given(args.outputs, QUANTITIES, "--outputs") or None
-    known, named = options.known_within_limits(args, KNOWABLE)
+    known, units = options.known_within_limits(args, KNOWABLE)
     known, friction = share_resolved(known)
     if friction:
         note(None, friction)
-    units = system_of(named)
     found: Sequence[Impact]
     if args.write_scene or needs_adjustment(known, wanted):
         found = _reconstructed(known, wanted, args, units)

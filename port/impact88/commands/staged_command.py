@@ -35,7 +35,7 @@ from ..names import FINAL_STATE, VELOCITIES, missing
 from ..plaintable import fixed, paragraph, table
 from ..reconstruction.geometry import GEOMETRY, Geometry, within_doubles
 from ..reconstruction.unknowns import check_physical
-from ..units import base_of, system_of
+from ..units import base_of
 from . import options
 
 ARGUMENTS = (
@@ -74,11 +74,11 @@ def _own(args: options.Args) -> int:
     if args.spin_weight is not None and not 0 <= args.spin_weight < float("inf"):
         raise UserError(f"--spin-weight {args.spin_weight:g}: expected a number, 0 or more")
     names = (*GEOMETRY, *VELOCITIES, *FINAL_STATE)
-    known, named = options.known_values(args, names)
+    known, units = options.known_values(args, names)
     if absent := [name for name in names if name not in known]:
         raise UserError(missing(absent), args.scene)
     try:
-        whole, lines = within_doubles(_fitted)(known, args.spin_weight, base_of(system_of(named)))
+        whole, lines = within_doubles(_fitted)(known, args.spin_weight, base_of(units))
     except UserError as error:
         raise UserError(str(error), args.scene) from None
     options.show(args, "staged", lambda: whole, lambda: lines)
