@@ -122,7 +122,8 @@ def _lines(comparison: Comparison) -> Iterator[str]:
         for named in comparison.evidence:
             yield (
                 f"\n{named.says}: explains {named.explains} of {named.disagreeing} rows that "
-                f"disagree, gives {named.fits} of {named.agreeing} that agree (of the rows examined)"
+                f"disagree, gives {named.fits} of {named.agreeing} that agree (of the rows "
+                "examined)"
             )
             for says, row in named.parts.items():
                 yield f"  row {row} shows: {says}"
