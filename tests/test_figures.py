@@ -19,7 +19,7 @@ from impact88.closedform.solve import solve
 from impact88.commands import figure_command as command
 from impact88.commands.figure_command import solved
 from impact88.errors import UserError
-from impact88.figures import axes, canvas, charts, views
+from impact88.figures import canvas, charts, views
 from impact88.figures.canvas import svg
 from impact88.figures.drawing import (
     Box,
@@ -564,7 +564,7 @@ class TestCharts:
         [(0, 1), (-40, -20), (1e6, 1.0001e6), (-3e-7, 2e-7), (12, 12.004), (0, 9e99)],
     )
     def test_numbers_on_axes_are_true_and_apart(self, low, high):
-        numbers = axes.ticks(low, high, 5)
+        numbers = charts.ticks(low, high, 5)
         assert 2 <= len(numbers) <= 5
         texts = [text for _, text in numbers]
         assert len(set(texts)) == len(texts)

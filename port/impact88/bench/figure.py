@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..accuracy.errorbound import APPLESOFT, DOUBLE, relative_bounds
-from ..figures.axes import Panel, key, powers
+from ..figures.charts import Panel, key, powers
 from ..figures.drawing import GREY, ORANGE, VERMILION, Box, Drawing, Text, wrapped
 from .measure import Row
 from .methods import METHODS

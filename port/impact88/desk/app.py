@@ -87,7 +87,6 @@ class Desk:
         threading.Thread(target=lambda: [start() for start in starts], daemon=True).start()
 
     def close(self) -> None:
-        """End all processes."""
         for bench in self.benches.values():
             bench.close()
 
@@ -98,7 +97,6 @@ def symbol(text: str) -> Markup:
 
 
 def unit(label: str) -> str:
-    """How a unit is written."""
     return {"1": "", "degree": "°", "deg": "°", "percent": "%"}.get(label, label)
 
 
@@ -116,7 +114,6 @@ FILTERS |= {"digits": digits, "drivers": drivers}
 
 
 def contents() -> dict[str, Any]:
-    """The template's values."""
     return {
         "version": __version__,
         "groups": GROUPS,

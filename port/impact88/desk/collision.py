@@ -72,7 +72,6 @@ class Form(NamedTuple):
 
 
 def warm() -> None:
-    """Import what the first answer needs."""
     answer(dict(sample(1)))
     figure(dict(sample(1)))
 

@@ -107,5 +107,4 @@ def outline_lines(values: Mapping[str, str]) -> str:
 
 
 def digits(value: float | None, count: int) -> str:
-    """A number of a table; nothing for None."""
     return "" if value is None else number(value, count)

@@ -24,7 +24,6 @@ WORDS = ("date", "case", "examiner")
 
 
 def warm() -> None:
-    """Load what the first answer needs."""
     judged("run1", packaged_bytes("impact88.legacy", "run1-as-printed.txt"))
 
 

@@ -33,7 +33,6 @@ _SOUGHT = (*VELOCITIES, *FINAL_STATE, "E", "MUP", "EM")
 
 
 def warm() -> None:
-    """Load what the first answer needs."""
     answer(known_of_sample(1)["values"])
 
 

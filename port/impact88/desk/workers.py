@@ -77,7 +77,6 @@ class Bench:
             self._asked.pop(page).cancel()  # type: ignore[no-untyped-call]
 
     def stop(self, page: str) -> None:
-        """End what ``page`` is waiting for, if anything."""
         with self._lock:
             self._cancel(page)
 

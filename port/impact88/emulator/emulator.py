@@ -77,7 +77,6 @@ class Applesoft:
         return self.machine.screen.rows()
 
     def screen_text(self) -> str:
-        """The 24 rows of the text screen."""
         return self.machine.screen.text()
 
     def load(self, text: str) -> None:
@@ -197,7 +196,6 @@ class Applesoft:
 
 
 def _key(name: str) -> int:
-    """A name's two bytes in memory."""
     letters = name.rstrip("%$").encode("ascii")
     two = letters[:2].ljust(2, b"\0")
     return int.from_bytes(two, "big") | MARKS[name.encode()[len(letters) :]]

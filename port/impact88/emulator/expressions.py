@@ -12,7 +12,7 @@ from ..applesoft import decimaltext, functions, real
 from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
 from ..applesoft.real import INTEGER_EXPONENT, ZERO, Number, compare, integer, rounded, to_integer
 from .faults import Fault, located, placed
-from .memory import ADDRESSES, EMPTY, FUNCTION, INTEGER, STRING, SUBFLG_SIMPLE
+from .memory import EMPTY, FUNCTION, INTEGER, STRING, SUBFLG_SIMPLE
 from .tokens import BLANK, CLOSE, COMMA, OPEN, QUOTE, TOKENS
 from .variables import IS_STRING, LARGEST_INTEGER, LONGEST, Variables, descriptor, stored_at
 
@@ -70,8 +70,6 @@ def shifted_out(x: Number) -> int:
 
 
 class Expressions(Variables):
-    """FRMEVL and UNARY."""
-
     def number(self, sp: int) -> Number:
         """FRMNUM: a formula that must be a number. Raises TYPE MISMATCH."""
         fac = self.formula(sp - 2)
@@ -360,7 +358,6 @@ class Expressions(Variables):
         return integer((self.fretop - self.strend + 0x8000 & 0xFFFF) - 0x8000)
 
     def _pos(self, fac: Number, sp: int) -> Number:
-        """POS, whatever its argument."""
         self.valtyp = 0
         return integer(self.screen.column & 0xFF)
 
@@ -369,7 +366,6 @@ class Expressions(Variables):
         return integer(self.peek(address_of(fac, sp - 4)))
 
     def _pdl(self, fac: Number, sp: int) -> Number:
-        """PDL: nothing is plugged in."""
         byte_of(fac, sp - 2)
         self.refuse("PDL")
         return ZERO
@@ -397,7 +393,7 @@ class Expressions(Variables):
         if not text:
             return ZERO
         back, self.txtptr = self.txtptr, address
-        end = address + len(text) & ADDRESSES - 1
+        end = address + len(text) & 0xFFFF
         byte, self.ram[end] = self.ram[end], 0
         self.character()
         try:

@@ -90,7 +90,6 @@ class InputOutput(Expressions):
             self.console.put("\n")
 
     def byte(self, sp: int) -> int:
-        """GETBYT: a number from 0 to 255."""
         return byte_of(self.number(sp - 2), sp)
 
     def htab_(self) -> None:
@@ -107,7 +106,6 @@ class InputOutput(Expressions):
         self.screen.move_to_row(row - 1)
 
     def set_mode(self, mask: int, flash: int = 0) -> None:
-        """NORMAL, INVERSE, FLASH."""
         self.flash = flash
         self.screen.mask = mask
 
@@ -148,7 +146,6 @@ class InputOutput(Expressions):
             raise Fault("ILLEGAL DIRECT", sp)
 
     def _put_in_buffer(self, text: str) -> None:
-        """INLIN's bytes, on page 2."""
         data = text.encode("latin-1") + b"\0"
         self.ram[INPUT_BUFFER : INPUT_BUFFER + len(data)] = data
 

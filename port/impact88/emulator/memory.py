@@ -16,9 +16,9 @@ from .faults import Fault, TooManyStatements
 from .screen import BASE, END, Screen
 from .tokens import BLANK, COLON, OPEN, QUOTE, TOKENS
 
-TEXT_START, ROM, STACK, DIRECT, RTS = 0x801, 0xC000, 0xF8, 0xFF00, 0x60
+TEXT_START, ROM, STACK, DIRECT = 0x801, 0xC000, 0xF8, 0xFF00
 """The machine's TXTTAB and, without a disk system, HIMEM; the stack pointer when nothing is on the
-stack; CURLIN from here on: typed without a line number; a routine's end."""
+stack; CURLIN from here on: typed without a line number."""
 INPUT_BUFFER, BUFFER_END = 0x200, 0x300
 """Page 2, where typed lines are read in and their tokens put in their place."""
 TEMPORARIES, TEMPORARIES_END, EMPTY = 0x55, 0x5E, 0xE09A
@@ -32,7 +32,7 @@ FIRST_SEED = from_stored("804FC75200")
 """RND's seed after switching on: of the ROM's five bytes, which end in 58, four are copied."""
 AFTER_TYPING = (0xD0, 0xD0 << 32, 0)
 """What the ROM's parser leaves in the accumulator: an address."""
-SPEED, SEED, SCREEN, ADDRESSES = 241, range(201, 206), range(BASE, END), 0x10000
+SEED, SCREEN, ADDRESSES = range(201, 206), range(BASE, END), 0x10000
 REFUSALS, MORE_REFUSED = 8, "more of the kind"
 """How many different requests for what is not done here are remembered; a program makes few."""
 _BEYOND = 0x200
@@ -50,7 +50,7 @@ for _address, _name, _word in re.findall(r"(\w+) (\w+)(\+?)", _PAGE_ZERO):
         POINTERS[int(_address, 16) + 1] = _name, 8, 0x00FF
 OF_SCREEN = {32: "left", 33: "width", 34: "top", 35: "bottom", 36: "column", 37: "row", 50: "mask"}
 
-GOTO, PLUS, MINUS = (TOKENS[word] for word in ("GOTO", "+", "-"))
+PLUS, MINUS = TOKENS["+"], TOKENS["-"]
 SUBFLG_SIMPLE = 0x80
 """SUBFLG: no array and no integer may come, because of FOR or DEF FN."""
 DIGITS, HEADER, LINE_LIMIT = range(48, 58), 4, 0x19
@@ -86,7 +86,7 @@ class Memory:
     ) -> None:
         self.ram = bytearray(ADDRESSES + _BEYOND)
         self.ram[: len(PAGE_ZERO)] = PAGE_ZERO
-        self.ram[SPEED] = 1
+        self.ram[0xF1] = 1  # SPEED= 255
         self.screen = Screen(self.ram, screen, blanks)
         self.console = Console(keyboard, self.screen.write, printer, **dos)
         self.console.editor = self.screen
@@ -116,7 +116,6 @@ class Memory:
             self.statements_left -= 1
 
     def refuse(self, what: str) -> None:
-        """What is not done here is a SYNTAX error, and remembered."""
         if what not in self.refused and len(self.refused) <= REFUSALS:
             self.refused.append(what if len(self.refused) < REFUSALS else MORE_REFUSED)
         raise Fault("SYNTAX", self.sp - 4)
@@ -155,7 +154,6 @@ class Memory:
                 self.variables_changed()
 
     def word(self, address: int) -> int:
-        """Two bytes, the low one first."""
         return self.ram[address] | self.ram[address + 1] << 8
 
     def put_word(self, address: int, value: int) -> None:
@@ -198,7 +196,6 @@ class Memory:
         self.charac = 0
 
     def rem_(self) -> None:
-        """REM: to the end of the line."""
         self.txtptr = self.ram.index(0, self.txtptr)
         self.charac = 0
 

@@ -49,7 +49,6 @@ class Screen(Editor):
         self.move_to_row(1)
 
     def write(self, text: str) -> None:
-        """Show characters, and pass them on."""
         gap = max(self.column - self._expected, 0) if self._blanks else 0
         shown = text
         if gap and (first := _SHOWS.search(text)):
@@ -113,7 +112,6 @@ class Screen(Editor):
         self.move_to_row(self.row)
 
     def rows(self) -> list[bytes]:
-        """The 24 rows as they lie in memory, 40 bytes each."""
         starts = (row_address(row, 0) for row in range(HEIGHT))
         return [bytes(self._ram[start : start + WIDTH]) for start in starts]
 
@@ -122,7 +120,6 @@ class Screen(Editor):
         return "".join("".join(map(shown_character, row)).rstrip(" ") + "\n" for row in self.rows())
 
     def home(self) -> None:
-        """HOME: clear the window; the cursor at its top left."""
         self.row, self.column = self.top, 0
         self._clear_rows(self.top, 0)
 
@@ -166,26 +163,21 @@ class Screen(Editor):
         self.column = self._expected = column
 
     def under_cursor(self) -> str:
-        """The character that control-U takes."""
         address = self._address + self.column
         code = self._ram[address] if address < END else 0
         return chr((code & 0xDF if code >= _SMALL_LETTERS else code) & 0x7F)
 
     def escape(self, key: str) -> None:
-        """ESC and @ and A to F: clear the screen, move, clear to the end of the row or window."""
         if self.call(_ESCAPES.get(key, 0)):
             self._expected = self.column
 
     def end_line(self, shown: bool) -> None:
-        """RETURN: what stands behind the cursor in its row is cleared. ``shown``: a terminal has
-        shown it, and the cursor is at the left."""
         self._clear_from(self.column)
         if shown:
             self._draw("\n")
             self._expected = 0
 
     def echo(self, keys: str, put: Callable[[str], object]) -> None:
-        """Show keys, which are never inverse."""
         mask, self.mask = self.mask, NORMAL
         put(keys)
         self.mask = mask

@@ -46,8 +46,6 @@ class Array(NamedTuple):
 
 
 class Variables(Memory):
-    """Strings and variables."""
-
     formula: Callable[[int], Number]
 
     def collect_garbage(self) -> None:
@@ -82,7 +80,6 @@ class Variables(Memory):
         return self.fretop
 
     def move(self, source: int, target: int, length: int) -> None:
-        """MOVSTR: copy characters, the last one first."""
         ram = self.ram
         if target < source < target + length:
             for offset in range(length - 1, -1, -1):

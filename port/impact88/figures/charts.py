@@ -1,10 +1,11 @@
-"""Charts: draws and drivers of bounds, the friction sweep, staged collisions. One column wide."""
+"""Charts: draws and drivers of bounds, the friction sweep, staged collisions; and their panels, two
+axes with round numbers, and key. Nothing is hatched, which some renderers of SVG paint black."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -14,8 +15,7 @@ from ..scene import numbers_of
 from ..status import Status
 from ..units import System, system_of
 from . import drawing as d
-from .axes import Panel, key, span
-from .drawing import Box, Drawing, Path, Text, short
+from .drawing import BLACK, GREY, ROW, TEXT, Box, Drawing, Path, Text, short
 
 if TYPE_CHECKING:
     from ..uncertainty.boundstable import Bounds
@@ -31,6 +31,170 @@ _LEFT, _TOP = 13.0, 6.0
 _UNPHYSICAL = "#f7dfae"
 _PALE = "#c6dff0"
 _DASHED, _DOTTED = (1.3, 0.8), (0.4, 0.6)
+
+MARKS = {"o": (24, 0), "s": (4, 45), "D": (4, 0), "^": (3, 90), "v": (3, -90), ">": (3, 0)}
+MARKS |= {"P": (5, 90), "_": (2, 0)}
+"""Corners of each mark, and where the first of them stands in degrees."""
+BELOW = 3.3
+"""From the axis down to the numbers' baseline, in mm."""
+
+
+class Axis(NamedTuple):
+    """Numbers from ``low`` to ``high`` on paper from ``start`` to ``end``."""
+
+    low: float
+    high: float
+    start: float
+    end: float
+    log: bool = False
+
+    def __call__(self, value: Any) -> Any:
+        low, high = self.low, self.high
+        if self.log:
+            low, high, value = math.log10(low), math.log10(high), np.log10(value)
+        return self.start + (value - low) / (high - low) * (self.end - self.start)
+
+
+def span(values: Any, margin: float = 0.05) -> tuple[float, float]:
+    """From the smallest to the largest finite value, and a share of that beyond both."""
+    values = np.asarray(values, float).ravel()
+    values = values[np.isfinite(values)]
+    low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
+    more = margin * (high - low) or 0.05 * abs(low) or 1.0
+    return low - more, high + more
+
+
+def ticks(low: float, high: float, most: int) -> list[tuple[float, str]]:
+    """At most so many round numbers from ``low`` to ``high``, each with its text."""
+    power = math.floor(math.log10((high - low) / most))
+    for power_, step in ((power, 1), (power, 2), (power, 5), (power + 1, 1), (power + 1, 2)):
+        size = step * 10.0**power_
+        numbers = range(math.ceil(low / size - 1e-9), math.floor(high / size + 1e-9) + 1)
+        if len(numbers) <= most:
+            break
+    decimals = max(0, -power_)
+    largest = max(abs(low), abs(high))
+    if largest < 1e6 and decimals <= 4:
+        texts = [f"{number * size:.{decimals}f}" for number in numbers]
+    else:
+        digits = max(0, math.floor(math.log10(largest)) - power_)
+        texts = [f"{number * size:.{digits}e}" for number in numbers]
+    return [(n * size, t.replace("-", "−")) for n, t in zip(numbers, texts, strict=True)]
+
+
+def powers(low: float, high: float, step: int) -> list[tuple[float, str]]:
+    """Powers of ten, every ``step``-th with a text."""
+    first, last = round(math.log10(low)), round(math.log10(high))
+    return [
+        (10.0**n, "1" if n == 0 else f"1e{n}".replace("-", "−") if n % step == 0 else "")
+        for n in range(first, last + 1)
+    ]
+
+
+class Panel:
+    """Two axes around ``box``; the numbers stand below and left of it, the upper axis's name above
+    it, the lower one's below. ``x`` and ``y`` are (lowest, highest)."""
+
+    def __init__(
+        self,
+        drawing: Drawing,
+        box: Box,
+        x: tuple[float, float],
+        y: tuple[float, float],
+        x_label: str = "",
+        y_label: str = "",
+        *,
+        x_ticks: Sequence[tuple[float, str]] | int = 6,
+        y_ticks: Sequence[tuple[float, str]] | int = 4,
+        log: bool = False,
+        grid: bool = False,
+    ) -> None:
+        self.drawing, self.box = drawing, box
+        self.x = Axis(*x, box.left, box.right, log)
+        self.y = Axis(*y, box.bottom, box.top, log)
+        self._ground = len(drawing.items)
+        corner, right, _, top = box.corners
+        for end in (right, top):
+            drawing.add(Path((corner, end), BLACK, 0.2, role="axis"))
+        up, left = 1j * box.height, -1.5 - 0.8j
+        for axis, given, inward, outward, shift, look in (
+            (self.x, x_ticks, up, -0.9j, -1j * BELOW, ("middle", "x tick")),
+            (self.y, y_ticks, box.width, -0.9, left, ("end", "y tick")),
+        ):
+            marks = ticks(axis.low, axis.high, given) if isinstance(given, int) else given
+            for value, text in marks:
+                place = axis(value)
+                at = complex(place, box.bottom) if axis is self.x else complex(box.left, place)
+                if grid:
+                    drawing.add(Path((at, at + inward), "#dddddd", 0.14, role="grid"))
+                drawing.add(Path((at, at + outward), BLACK, 0.2, role="tick"))
+                drawing.add(Text(at + shift, text, anchor=look[0], role=look[1]))
+        room = box.width + 8
+        at = complex((box.left + box.right) / 2, box.bottom - BELOW - ROW + 0.2)
+        for line in d.wrapped(x_label, room) if x_label else []:
+            drawing.add(Text(at, line, anchor="middle", role="x label"))
+            at -= 1j * ROW
+        if y_label:
+            drawing.add(Text(complex(box.left - 1, box.top + 1.8), y_label, role="y label"))
+
+    def at(self, x: float, y: float) -> complex:
+        return complex(self.x(x), self.y(y))
+
+    def line(self, xs: Any, ys: Any, colour: str, width: float = 0.4, **look: Any) -> None:
+        """A line through pairs of numbers; pieces with one that is not finite are left out.
+        ``look``: as of a `Path`."""
+        points = self.x(np.asarray(xs, float)) + 1j * self.y(np.asarray(ys, float))
+        finite = np.isfinite(points)
+        for piece in np.split(points, np.flatnonzero(np.diff(finite)) + 1):
+            if len(piece) > 1 and np.isfinite(piece[0]):
+                self.drawing.add(Path(tuple(map(complex, piece)), colour, width, **look))
+
+    def rule(self, x: float, colour: str = BLACK, **look: Any) -> None:
+        self.line([x, x], [self.y.low, self.y.high], colour, 0.35, **look)
+
+    def shade(self, low: float, high: float, colour: str) -> None:
+        """A stretch of the horizontal axis, behind everything."""
+        box = Box(self.x(low), self.box.bottom, self.x(high), self.box.top)
+        self.drawing.items.insert(self._ground, Path(box.corners, None, fill=colour, role="shade"))
+
+    def mark(self, x: float, y: float, shape: str = "o", *look: Any, **looks: Any) -> None:
+        """A mark at a pair of numbers, if they are finite."""
+        at = self.at(x, y)
+        if math.isfinite(abs(at)):
+            self.drawing.add(mark(at, shape, *look, **looks))
+
+
+def mark(
+    at: complex, shape: str, colour: str = BLACK, filled: bool = True, role: str = "mark"
+) -> Path:
+    corners, turn = MARKS[shape]
+    points = tuple(at + 0.9 * d.unit(turn + 360 * i / corners) for i in range(corners))
+    return Path(points, colour, 0.3, (), colour if filled else d.WHITE, role)
+
+
+def key(drawing: Drawing, y: float, *entries: tuple[str, str, Any], note: str = "") -> float:
+    """Samples of what is drawn and what they mean, in rows from ``y`` on; returns where what
+    follows goes on. An entry is (text, colour, look): a mark (``o``, or ``o `` for an open one),
+    dashes of a line, or None for an area."""
+    x, sample = 2.0, 6.0
+    for text, colour, look in entries:
+        width = sample + 1.2 + d.text_width(text, TEXT)
+        if x > 2.0 and x + width > drawing.width - 2:
+            x, y = 2.0, y - ROW
+        start = complex(x, y + 0.8)
+        if isinstance(look, str):
+            drawing.add(mark(start + sample / 2, look[0], colour, look[-1] != " ", "key"))
+        elif look is None:
+            ends = Box(x, start.imag - 0.9, x + sample, start.imag + 0.9).corners
+            drawing.add(Path(ends, GREY, 0.15, fill=colour, role="key"))
+        else:
+            drawing.add(Path((start, start + sample), colour, 0.4, look, role="key"))
+        drawing.add(Text(complex(x + sample + 1.2, y), text, role="legend"))
+        x += width + 3.0
+    if note:
+        y -= ROW
+        drawing.add(Text(complex(2, y), note, colour=GREY, role="note"))
+    return y - ROW
 
 
 def _label(name: str, units: System) -> str:
@@ -78,7 +242,7 @@ def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
         bound, quantiles = result.bounds[name], result.spreads[name].quantiles
         heights, edges = np.histogram(draws, BINS)
         heights = heights * (100 / len(draws))
-        upper = top - (30 + d.ROW * tallest) * row - _TOP
+        upper = top - (30 + ROW * tallest) * row - _TOP
         left = _LEFT + column * wide - 3 * column
         box = Box(left, upper - 18, left + wide - _LEFT + (1 if column else -1), upper)
         panel = Panel(
@@ -95,9 +259,9 @@ def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
         for end in (bound.lower, bound.upper):
             panel.mark(end, 0.03 * panel.y.high, "D", role="bound")
     rows = -(-len(names) // columns)
-    looks = (("5 % and 95 %", d.VERMILION, _DASHED), ("bounds", d.BLACK, "D"))
-    low = top - (30 + d.ROW * tallest) * rows - 1
-    drawing.height = 2 - key(drawing, low, ("nominal", d.BLACK, ()), *looks)
+    looks = (("5 % and 95 %", d.VERMILION, _DASHED), ("bounds", BLACK, "D"))
+    low = top - (30 + ROW * tallest) * rows - 1
+    drawing.height = 2 - key(drawing, low, ("nominal", BLACK, ()), *looks)
     return drawing
 
 
@@ -113,7 +277,7 @@ def tornado(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
         low, high = result.limits[source]
         amount = f"{short(low)} … {short(high)} {units.unit(source)}".strip()
         texts[source] = f"{quantity(source).symbol}  {amount}"
-    left = max(d.text_width(text, d.TEXT) for text in texts.values()) + 3.5
+    left = max(d.text_width(text, TEXT) for text in texts.values()) + 3.5
     top = drawing.heading() - 2
     for name in names:
         bound = result.bounds[name]
@@ -132,10 +296,10 @@ def tornado(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
                 start, stop = panel.at(bound.nominal, -place), panel.at(value, -place)
                 bar = d.extent((start - 1.3j, stop + 1.3j)).corners
                 drawing.add(Path(bar, d.BLUE, 0.2, fill=colour, role=f"{source} {end}"))
-            panel.line([drive.lowest, drive.highest], [-place] * 2, d.BLACK, 0.3, role="whisker")
+            panel.line([drive.lowest, drive.highest], [-place] * 2, BLACK, 0.3, role="whisker")
         panel.rule(bound.nominal, role="nominal")
-        top = box.bottom - 11.5 - d.ROW * (len(d.wrapped(_label(name, units), box.width + 8)) - 1)
-    looks = (("at its upper limit", d.BLUE, None), ("in between", d.BLACK, ()))
+        top = box.bottom - 11.5 - ROW * (len(d.wrapped(_label(name, units), box.width + 8)) - 1)
+    looks = (("at its upper limit", d.BLUE, None), ("in between", BLACK, ()))
     drawing.height = 2 - key(drawing, top, ("at its lower limit", d.WHITE, None), *looks)
     return drawing
 
@@ -214,22 +378,22 @@ def _along(
         below = titles[1] if group == groups[-1] else ""
         panel = Panel(drawing, box, (float(axis[0]), float(axis[-1])), y, below, label)
         if y[0] < 0 < y[1]:
-            panel.line(axis[[0, -1]], [0, 0], d.GREY, 0.2)
+            panel.line(axis[[0, -1]], [0, 0], GREY, 0.2)
         for output, colour, dash in zip(group, (d.BLUE, d.VERMILION), ((), _DASHED), strict=False):
             panel.line(axis, values[output], colour, dash=dash, role=output)
             if len(group) > 1:
                 entries.append((quantity(output).symbol, colour, dash))
             if axis.min() <= own <= axis.max():
-                panel.mark(own, here[output], colour=colour if len(group) > 1 else d.BLACK)
+                panel.mark(own, here[output], colour=colour if len(group) > 1 else BLACK)
         edges = np.flatnonzero(np.diff(np.concatenate([[0], faulty.astype(int), [0]])))
         for first, last in edges.reshape(-1, 2):
             panel.shade(axis[first], axis[last - 1], _UNPHYSICAL)
         if limit:
             panel.rule(limit, dash=_DOTTED, role="critical")
         top = box.bottom - 11.5
-    entries.append((words[0], d.BLACK, "o"))
+    entries.append((words[0], BLACK, "o"))
     if limit:
-        entries.append((f"critical: {short(limit)}", d.BLACK, _DOTTED))
+        entries.append((f"critical: {short(limit)}", BLACK, _DOTTED))
     if faulty.any():
         entries.append((words[1], _UNPHYSICAL, None))
     drawing.height = 2 - key(drawing, top, *entries)
@@ -261,13 +425,13 @@ def figure_5() -> Drawing:
     box = Box(_LEFT, top - 65, _LEFT + 65, top)
     names = ("experimental ΔV, ft/s", "calculated ΔV, ft/s")
     panel = Panel(drawing, box, (0.0, most), (0.0, most), *names, y_ticks=6)
-    panel.line([0, most], [0, most], d.GREY, 0.3)
+    panel.line([0, most], [0, most], GREY, 0.3)
     looks = {"impact equations": ("o", d.BLUE), "Equation 19": ("^", d.VERMILION)}
     for name, points in series.items():
         for x, y, vehicle in points:
             panel.mark(x, y, *looks[name], vehicle == "A", name)
     entries = [(name, colour, mark) for name, (mark, colour) in looks.items()]
-    entries.append(("equal", d.GREY, ()))  # type: ignore[arg-type]
+    entries.append(("equal", GREY, ()))  # type: ignore[arg-type]
     note = "filled: vehicle A; open: vehicle B"
     drawing.height = 2 - key(drawing, box.bottom - 11.5, *entries, note=note)
     return drawing
@@ -286,7 +450,7 @@ def force_and_impulse() -> Drawing:
     force = time**2.6 * (1 - time) ** 4.2 * (1 + 0.1 * np.sin(9 * np.pi * time))
     force /= force.max()
     mean = float(((force[1:] + force[:-1]) / 2 * np.diff(time)).sum())
-    top = drawing.heading() - 2 * d.ROW
+    top = drawing.heading() - 2 * ROW
     for left, level, name, title, xs, ys in (
         (9.0, 1.0, "F_M", "a. typical force", time, force),
         (50.0, mean, "F_A", "b. average force", [0, 0, 1, 1], [0, mean, mean, 0]),
@@ -297,7 +461,7 @@ def force_and_impulse() -> Drawing:
             y_ticks=[(level, name)],
         )
         panel.line(xs, ys, d.BLUE, fill=_PALE, role="force")
-        panel.line([0, 1], [level] * 2, d.GREY, 0.2, dash=_DASHED)
+        panel.line([0, 1], [level] * 2, GREY, 0.2, dash=_DASHED)
         at = panel.at(0.4, 0.35 * mean)
         drawing.add(Text(at, "impulse", anchor="middle"))
     drawing.height = 38 - top

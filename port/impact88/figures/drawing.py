@@ -123,7 +123,6 @@ class Box(NamedTuple):
         return tuple(complex(*point) for point in points)
 
     def overlaps(self, other: "Box") -> bool:
-        """Whether the two share area."""
         beside = self.left >= other.right or other.left >= self.right
         return not beside and self.bottom < other.top and other.bottom < self.top
 
@@ -224,7 +223,6 @@ def text_runs(text: Text) -> list[tuple[complex, str, float]]:
 
 
 def text_box(text: Text) -> Box:
-    """The rectangle a text takes up."""
     start, height = _start(text), text.size * MM_PER_POINT
     below = DESCENT + (SUBSCRIPT_DROP if "_" in text.text else 0.0) / 2
     width = text_width(text.text, text.size, text.bold)
@@ -238,7 +236,6 @@ def unit(degrees: float) -> complex:
 
 
 def degrees(direction: complex) -> float:
-    """The angle of a direction from the x axis."""
     return math.degrees(cmath.phase(direction))
 
 
@@ -301,7 +298,6 @@ def dashes(points: Sequence[complex], pattern: Sequence[float]) -> list[tuple[co
 
 
 def extent(points: Iterable[complex]) -> Box:
-    """The rectangle around points."""
     xs, ys = zip(*((point.real, point.imag) for point in points), strict=True)
     return Box(min(xs), min(ys), max(xs), max(ys))
 

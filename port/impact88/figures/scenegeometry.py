@@ -105,7 +105,13 @@ def plan(
         "A": Motion(complex(values["UX"], values["UY"]), values["WA"]),
         "B": Motion(complex(values["VX"], values["VY"]), values["WB"]),
     }
-    after = _finals(result or {})
+    given = {n: float(result[n]) for n in FINAL_VELOCITIES if result and result.get(n) is not None}
+    after: dict[str, Motion] = {}
+    if given.keys() >= set(FINAL_VELOCITIES[:4]) and all(
+        map(math.isfinite, list(given.values())[:4])
+    ):
+        for v in "AB":
+            after[v] = Motion(complex(given[f"V{v}X"], given[f"V{v}Y"]), given.get(f"W{v}F", 0.0))
     reach = {
         "A": -values["DA"] * unit(values["TA"] + values["PA"]),
         "B": values["DB"] * unit(values["TB"] + values["PB"]),
@@ -139,18 +145,6 @@ def plan(
     measured = tuple(name for name in "AB" if f"L{name}" in outlines)
     both = vehicles[0], vehicles[1]
     return Plan(both, normal, 1j * normal, impulse, apart, remarks, values, measured)
-
-
-def _finals(result: Mapping[str, Any]) -> dict[str, Motion]:
-    given = {n: float(result[n]) for n in FINAL_VELOCITIES if result.get(n) is not None}
-    finals = {
-        v: Motion(
-            complex(given.get(f"V{v}X", math.nan), given.get(f"V{v}Y", math.nan)),
-            given.get(f"W{v}F", 0.0),
-        )
-        for v in "AB"
-    }
-    return finals if all(math.isfinite(motion.speed) for motion in finals.values()) else {}
 
 
 def _depth(point: complex, inward: complex) -> float:

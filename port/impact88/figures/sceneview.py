@@ -135,7 +135,6 @@ class _Field:
         return result
 
     def draw(self, drawing: Drawing) -> None:
-        """Everything, then the labels."""
         at = self.at
         for vehicle in self.shapes.vehicles:
             if vehicle.wall:
@@ -154,7 +153,16 @@ class _Field:
         for vehicle in self.shapes.bodies:
             self._draw_motion(drawing, vehicle)
         for vehicle in self.shapes.bodies if self.shapes.impulse else ():
-            self._draw_impulse(drawing, vehicle)
+            # the force on a vehicle, and from where on its clock it comes
+            force, symbol, role, width, head = (
+                (self.force, "P", "impulse", 0.9, 2.8)
+                if vehicle.name == "A"
+                else (-self.force, "−P", "opposite impulse", 0.45, 2.2)
+            )
+            drawing.add(*d.arrow(at(0), at(force), IMPULSE, width, head=head, role=role))
+            text = f"{symbol}, {clock(vehicle.pdof(self.shapes.impulse or 0j))}"
+            bold = vehicle.name == "A"
+            drawing.add(Label(at(force), force, text, 7.5, IMPULSE, bold, f"{role} label"))
         drawing.add(Path(d.circle(at(0), 0.75), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
         drawing.add(Path(d.circle(at(0), 0.2), None, fill=d.BLACK))
         drawing.add(Label(at(0), -self.shapes.tangent, "C", role="contact label"))
@@ -193,31 +201,17 @@ class _Field:
         role = f"{vehicle.name} center"
         drawing.add(Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role=role))
 
-    def _draw_impulse(self, drawing: Drawing, vehicle: Vehicle) -> None:
-        """The force on a vehicle, and from where on its clock it comes."""
-        acted = vehicle.name == "A"
-        force, symbol, role, width, head = (
-            (self.force, "P", "impulse", 0.9, 2.8)
-            if acted
-            else (-self.force, "−P", "opposite impulse", 0.45, 2.2)
-        )
-        tip = self.at(force)
-        drawing.add(*d.arrow(self.at(0), tip, IMPULSE, width, head=head, role=role))
-        text = f"{symbol}, {clock(vehicle.pdof(self.shapes.impulse or 0j))}"
-        drawing.add(Label(tip, force, text, 7.5, IMPULSE, acted, f"{role} label"))
-
 
 def velocity_arrow(
-    vehicle: Vehicle, kind: str, start: complex, end: complex, head: float = 0.0
+    vehicle: Vehicle, kind: str, start: complex, end: complex, head: float = 0.0, role: str = ""
 ) -> list[Path]:
-    """A velocity of a vehicle on paper; ``head``: where it is not the usual one."""
+    """A velocity of a vehicle on paper; ``head``, ``role``: where they are not the usual ones."""
     _, look, usual = ARROWS[kind]
-    role = f"{vehicle.name} {kind}"
-    return d.arrow(start, end, COLOURS[vehicle.name], *look, head=head or usual, role=role)
+    role, head = role or f"{vehicle.name} {kind}", head or usual
+    return d.arrow(start, end, COLOURS[vehicle.name], *look, head=head, role=role)
 
 
 def name_label(vehicle: Vehicle, at: complex, towards: complex, size: float = 10) -> Label:
-    """A vehicle's name beside ``at``."""
     colour = COLOURS[vehicle.name]
     return Label(at, towards, vehicle.name, size, colour, True, f"{vehicle.name} label")
 
@@ -324,13 +318,11 @@ def table_and_notes(drawing: Drawing, shapes: Plan, y: float, units: System) -> 
     for name, cells in rows.items():
         if name:
             drawing.add(Text(complex(2, y), name, colour=COLOURS[name], bold=True, role="table"))
-        drawing.items += [
-            Text(complex(x, y), cell, anchor="end", role="table")
-            for x, cell in zip(columns, cells, strict=True)
-        ]
+        for x, cell in zip(columns, cells, strict=True):
+            drawing.add(Text(complex(x, y), cell, anchor="end", role="table"))
         y -= ROW
-    line = y + 2.0
-    drawing.add(Path((complex(2, line), complex(drawing.width - 2, line)), d.GREY, 0.2))
+    line = 1j * (y + 2.0)
+    drawing.add(Path((2 + line, drawing.width - 2 + line), d.GREY, 0.2))
     for note in _notes(shapes, units):
         for text in d.wrapped(note, drawing.width - 4):
             drawing.add(Text(complex(2, y - 0.9), text, colour=d.GREY, role="note"))
@@ -351,7 +343,6 @@ def _cells(vehicle: Vehicle, shapes: Plan, units: System) -> list[str]:
 
 
 def _notes(shapes: Plan, units: System) -> list[str]:
-    """What a reader must know of a drawing."""
     first = []
     for vehicle in shapes.vehicles:
         if vehicle.name in shapes.measured:
@@ -376,7 +367,6 @@ def _notes(shapes: Plan, units: System) -> list[str]:
 
 
 def description(shapes: Plan, units: System) -> str:
-    """What a drawing shows, in words."""
     parts = []
     for vehicle in shapes.vehicles:
         speed = with_unit(vehicle.before.speed, _SPEED, units)

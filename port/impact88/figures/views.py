@@ -12,7 +12,7 @@ from . import drawing as d
 from . import sceneview as view
 from .drawing import ROW, Box, Drawing, Label, Path, Text, View, place
 from .scenegeometry import Motion, Plan, Vehicle, plan
-from .sceneview import ARROWS, COLOURS, IMPULSE, PLANE, TINTS, draw_axes, name_label
+from .sceneview import COLOURS, IMPULSE, PLANE, TINTS, draw_axes, name_label
 
 _GAP, _PANEL_GAP, _TITLE, _PAD = 6.0, 4.0, 5.0, 3.5
 """In mm: between the views of a strip, between panels, of a panel's title, within a panel."""
@@ -75,13 +75,11 @@ def _carried(vehicle: Vehicle, motion: Motion, time: float) -> Vehicle:
     center = vehicle.center + time * motion.velocity
     turn = cmath.rect(1.0, motion.spin * time)
     outline = tuple(center + turn * (point - vehicle.center) for point in vehicle.outline)
-    return vehicle._replace(
-        center=center, front=turn * vehicle.front, outline=outline, kept=outline
-    )
+    front = turn * vehicle.front
+    return vehicle._replace(center=center, front=front, outline=outline, kept=outline)
 
 
 def _tip(vehicle: Vehicle, kind: str, time: float) -> complex:
-    """Where the arrow of a vehicle's velocity ends."""
     motion = vehicle.after if kind == "after" and vehicle.after else vehicle.before
     return vehicle.center + (time if kind != "impact" else 0.0) * motion.velocity
 
@@ -181,15 +179,11 @@ def planar(scene: Any = None, velocities: bool = False) -> Drawing:
         moved = View(at(apart[vehicle.name]), scale)
         _body(drawing, shapes, vehicle, moved, scale * size)
         if velocities:
-            low, colour, (_, look, head) = (
-                vehicle.name.lower(),
-                COLOURS[vehicle.name],
-                ARROWS["before"],
-            )
+            low, colour = vehicle.name.lower(), COLOURS[vehicle.name]
             side = -0.9j if vehicle.name == "A" else 0.9j  # where P_t is not
             base = moved(vehicle.center + side * vehicle.width)
             end = base + 8 * vehicle.before.velocity / vehicle.before.speed
-            drawing.add(*d.arrow(base, end, colour, *look, head=head, role="velocity"))
+            drawing.add(*view.velocity_arrow(vehicle, "before", base, end, role="velocity"))
             drawing.add(Label(base, base - end, f"v_{{{low}n}}, v_{{{low}t}}", colour=colour))
     # the contact plane halfway between the bodies, its axes, and its angle from the y axis
     contact, size = at.origin, scale * size
@@ -219,7 +213,24 @@ def _body(drawing: Drawing, shapes: Plan, vehicle: Vehicle, at: View, size: floa
     contact = center if point else at(0)
     drawing.labels.insert(0, name_label(vehicle, center, -vehicle.front))
     if not point:
-        _angles(drawing, shapes, vehicle, center, contact, size)
+        low, arm = vehicle.name.lower(), 0.34 * size
+        # heading: TB of the front of B, TA of the rear of A (see figures.scenegeometry)
+        heading = d.degrees(-vehicle.front if vehicle.name == "A" else vehicle.front)
+        for end in (-0.5 * size * vehicle.front, 0.5 * size * vehicle.front, arm):
+            _ray(drawing, center, center + end)
+        if abs(heading) > 3:
+            _angle(drawing, center, 0.0, heading, 0.28 * size, f"θ_{low}")
+        else:
+            text = f"θ_{low} = {heading:.3g}°"
+            drawing.add(Label(center + arm, 1 + 0.3j, text, 7.5, _ANGLE))
+        # distance and angle of the contact point from the front
+        reach, angle = contact - center, shapes.numbers["P" + vehicle.name]
+        if abs(reach) > 0.02 * size:
+            drawing.add(Path((center, contact), d.BLACK, 0.3, (1.0, 0.6), role="distance"))
+            drawing.add(Label((center + contact) / 2, 1j * reach, f"d_{low}"))
+            if abs(angle) > 3:
+                radius, front = min(0.16 * size, 0.6 * abs(reach)), d.degrees(vehicle.front)
+                _angle(drawing, center, front, angle, radius, f"φ_{low}")
 
     # impulses: on A along n and t, on B against them
     sense, minus = (1, "") if vehicle.name == "A" else (-1, "−")
@@ -237,34 +248,6 @@ def _body(drawing: Drawing, shapes: Plan, vehicle: Vehicle, at: View, size: floa
     drawing.add(Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role="center"))
     if not point:
         drawing.add(Path(d.circle(contact, 0.5), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
-
-
-def _angles(
-    drawing: Drawing, shapes: Plan, vehicle: Vehicle, center: complex, contact: complex, size: float
-) -> None:
-    """Heading angle, and distance and angle of the contact point."""
-    low = vehicle.name.lower()
-    # heading: TB of the front of B, TA of the rear of A (see figures.scenegeometry)
-    heading = d.degrees(-vehicle.front if vehicle.name == "A" else vehicle.front)
-    arm = 0.34 * size
-    for end in (-0.5 * size * vehicle.front, 0.5 * size * vehicle.front, arm):
-        _ray(drawing, center, center + end)
-    if abs(heading) > 3:
-        _angle(drawing, center, 0.0, heading, 0.28 * size, f"θ_{low}")
-    else:
-        text = f"θ_{low} = {heading:.3g}°"
-        drawing.add(Label(center + arm, 1 + 0.3j, text, 7.5, _ANGLE))
-
-    # distance and angle of the contact point from the front
-    reach = contact - center
-    if abs(reach) > 0.02 * size:
-        drawing.add(Path((center, contact), d.BLACK, 0.3, (1.0, 0.6), role="distance"))
-        drawing.add(Label((center + contact) / 2, 1j * reach, f"d_{low}"))
-        angle = shapes.numbers["P" + vehicle.name]
-        if abs(angle) > 3:
-            radius = min(0.16 * size, 0.6 * abs(reach))
-            front = d.degrees(vehicle.front)
-            _angle(drawing, center, front, angle, radius, f"φ_{low}")
 
 
 def _ray(drawing: Drawing, start: complex, end: complex) -> None:
