@@ -207,7 +207,7 @@ def _coefficients(vehicles: dict[str, float]) -> Step:
 def _both_spins(vehicles: dict[str, float], initial: dict[str, float]) -> Step:
     """Equations 15, 16 and 18 as the chapter means them, and the same with all laws kept."""
     scene, after = {**vehicles, **NO_SWERVING, **NO_TURNING, **initial}, {**ESTIMATES, **BOTH_SPINS}
-    here = Geometry.of(scene)
+    here = Geometry(scene)
     six = ([of[n] for n in names] for of, names in ((scene, VELOCITIES), (after, FINAL_STATE)))
     gn, gn_after = (float(here.relative(velocities)[0]) for velocities in six)
     # what A and B gain of linear and angular momentum

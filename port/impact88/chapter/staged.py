@@ -222,7 +222,7 @@ def closure(collision: Collision) -> dict[str, float]:
     conserved; slug·ft/s and slug·ft²/s, NaN where a velocity is lost."""
     values = {**collision.scene, **collision.measured}
     given = {name: np.asarray(value) for name, value in values.items()}
-    here = Geometry.of(given)
+    here = Geometry(given)
     ax, ay, wa, bx, by, wb = (
         values[late] - values[early] for early, late in zip(VELOCITIES, FINAL_STATE, strict=True)
     )
@@ -287,7 +287,7 @@ def undetermined_range(
 
 def _fitter(collision: Collision, spin_weight: float) -> Callable[[float], Fit]:
     """The best fit for each EM. The final velocities are linear in the impulse p = (Pn, Pt, M)."""
-    geometry = Geometry.of(collision.scene)
+    geometry = Geometry(collision.scene)
     jacobian = np.array([geometry.changes(*unit) for unit in np.eye(3)], float).T
     directions = np.array(geometry.relative([*np.eye(6)]))
     before = np.array([collision.scene[name] for name in VELOCITIES])

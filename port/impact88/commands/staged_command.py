@@ -91,7 +91,7 @@ def _fitted(
     """The fit of one collision, as JSON and as lines."""
     check_physical(known)
     scene = {name: value for name, value in known.items() if name not in FINAL_STATE}
-    here = Geometry.of(scene)
+    here = Geometry(scene)
     if not here.relative([scene[name] for name in VELOCITIES])[0]:
         raise UserError("the contact points do not approach one another; no e can be fitted")
     if weight is None:

@@ -13,9 +13,8 @@ all four together: varied apart they tear it in two.
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property, wraps
-from typing import Any, ParamSpec, Self, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,36 +71,22 @@ def with_point_masses(columns: Mapping[str, Any]) -> dict[str, Any]:
     return {**(_POINT_MASS if m.size and (m == 4).all() else {}), **columns}
 
 
-@dataclass(frozen=True)
 class Geometry:
-    """Of scenes, as arrays that broadcast: ``cosine`` and ``sine`` of Γ; ``d1`` ... ``d4`` as in
-    listing line 330; ``point``: point masses (M = 4: no lever arms, nothing turns them)."""
+    """Of scenes given by name (`GEOMETRY`, and M where not 6), angles in degrees, as arrays that
+    broadcast: ``cosine`` and ``sine`` of Γ; ``d1`` ... ``d4`` as in listing line 330; ``point``:
+    point masses (M = 4: no lever arms, nothing turns them)."""
 
-    cosine: Array
-    sine: Array
-    d1: Array
-    d2: Array
-    d3: Array
-    d4: Array
-    inverse_ma: Array
-    inverse_mb: Array
-    inverse_ia: Array
-    inverse_ib: Array
-    point: NDArray[np.bool_]
-
-    @classmethod
-    def of(cls, columns: Mapping[str, Any]) -> Self:
-        """Of scenes given by name (`GEOMETRY`, and M where not 6), angles in degrees."""
+    def __init__(self, columns: Mapping[str, Any]) -> None:
         columns = with_point_masses(columns)
         value = {name: _numbers(columns[name]) for name in GEOMETRY}
-        point = np.asarray(columns.get("M", 6), np.float64) == 4
-        sine, cosine = sin_cos(value["GA"])
+        self.point = np.asarray(columns.get("M", 6), np.float64) == 4
+        self.sine, self.cosine = sin_cos(value["GA"])
         sine_a, cosine_a = sin_cos(value["TA"] + value["PA"])
         sine_b, cosine_b = sin_cos(value["TB"] + value["PB"])
-        da, db = np.where(point, 0.0, value["DA"]), np.where(point, 0.0, value["DB"])
-        ma, mb, ia, ib = (1 / value[name] for name in ("MA", "MB", "IA", "IB"))
-        d1, d2, d3, d4 = db * sine_b, db * cosine_b, da * sine_a, da * cosine_a
-        return cls(cosine, sine, d1, d2, d3, d4, ma, mb, ia, ib, point)
+        da, db = (np.where(self.point, 0.0, value[name]) for name in ("DA", "DB"))
+        self.d1, self.d2, self.d3, self.d4 = db * sine_b, db * cosine_b, da * sine_a, da * cosine_a
+        self.inverse_ma, self.inverse_mb = 1 / value["MA"], 1 / value["MB"]
+        self.inverse_ia, self.inverse_ib = 1 / value["IA"], 1 / value["IB"]
 
     @cached_property
     def an(self) -> Any:

@@ -140,7 +140,7 @@ def initial_impact(columns: Mapping[str, Any]) -> State:
     pivot's -10, singular friction) the values are NaN or infinite. Point masses keep their spins.
     """
     values = {name: np.asarray(value, np.float64) for name, value in columns.items()}
-    geometry = Geometry.of(columns)
+    geometry = Geometry(columns)
     e, em, mu = (values[name] for name in ("E", "EM", "MUP"))
     with np.errstate(all="ignore"):
         mu = np.where(mu == PIVOT, np.nan, mu)

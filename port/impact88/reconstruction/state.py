@@ -54,7 +54,7 @@ class State:
         from_after: Collection[str] = (),
     ) -> None:
         self.values = values
-        self.here = Geometry.of(values) if geometry is None else geometry
+        self.here = Geometry(values) if geometry is None else geometry
         self.from_after = from_after
 
     @classmethod

@@ -18,7 +18,7 @@ from copy import copy
 from dataclasses import dataclass
 from functools import reduce
 from itertools import combinations
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -137,7 +137,7 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
     >>> float(solution.values["UX"].round(2))
     -29.04
     """
-    problem = _Problem.of(known, unknown)
+    problem = _Problem(known, unknown)
     solutions = problem.solutions()
     if problem.shape == ():
         kept = [s for s in solutions if s.agrees]
@@ -154,43 +154,34 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
     raise UnsolvableError(problem.reason())
 
 
-@dataclass(frozen=True)
 class _Problem:
     """What is known and wanted, checked; every number an array of one ``shape``; ``names``: what
     can be unknown; ``absent``: what is."""
 
-    known: dict[str, Array]
-    wanted: tuple[str, ...]
-    names: tuple[str, ...]
-    absent: tuple[str, ...]
-    shape: tuple[int, ...]
-    point: bool
-
-    @classmethod
-    def of(cls, known: Mapping[str, Any], unknown: Iterable[str] | None) -> Self:
+    def __init__(self, known: Mapping[str, Any], unknown: Iterable[str] | None) -> None:
         allowed = {*GEOMETRY, "M", *VELOCITIES, *FINAL_STATE, "E", "EM", "MU", "MUP"}
         values = columns(known)
         check_names(values, [n for n in (*SCENE, *RESULTS) if n in allowed], "value of an impact")
         given = {n: np.asarray(v, np.float64) for n, v in with_point_masses(values).items()}
         check_physical(given)
         m = given.get("M", np.asarray(6.0))
-        point = bool(m.size) and bool((m == 4).all())
-        names = tuple(n for n in UNKNOWNS if not (point and n in (*SPINS, "EM")))
-        absent = tuple(n for n in names if n not in given and not (n == "MUP" and "MU" in given))
-        wanted = absent if unknown is None else tuple(dict.fromkeys(unknown))
-        check_names(wanted, names, "quantity that may be unknown")
-        for name in wanted:
-            if name not in absent:
+        self.point = point = bool(m.size) and bool((m == 4).all())
+        self.names = tuple(n for n in UNKNOWNS if not (point and n in (*SPINS, "EM")))
+        settled = {*given} | ({"MUP"} if "MU" in given else set())
+        self.absent = tuple(name for name in self.names if name not in settled)
+        self.wanted = self.absent if unknown is None else tuple(dict.fromkeys(unknown))
+        check_names(self.wanted, self.names, "quantity that may be unknown")
+        for name in self.wanted:
+            if name not in self.absent:
                 raise UserError(f"{name} is both known and wanted; leave it out of one")
-        if not wanted:
+        if not self.wanted:
             raise UserError("nothing is unknown; leave out the values to solve for")
         try:
-            shape = np.broadcast_shapes(*(value.shape for value in given.values()))
+            self.shape = np.broadcast_shapes(*(value.shape for value in given.values()))
         except ValueError:
             shapes = ", ".join(f"{name} {v.shape}" for name, v in given.items() if v.ndim)
             raise UserError(f"the arrays do not broadcast together: {shapes}") from None
-        given = {name: np.broadcast_to(value, shape) for name, value in given.items()}
-        return cls(given, wanted, names, absent, shape, point)
+        self.known = {name: np.broadcast_to(v, self.shape) for name, v in given.items()}
 
     @property
     def friction(self) -> Array | None:
@@ -245,12 +236,12 @@ class _Problem:
 
     # -- why a set is refused
 
-    def _first(self, wanted: Sequence[str], **changes: float) -> Self:
+    def _first(self, wanted: Sequence[str], **changes: float) -> "_Problem":
         """The first scene's problem with other unknowns wanted and some values changed."""
         given = {name: value.reshape(-1)[:1] for name, value in self.known.items()}
         if "MU" in given:
             given["MUP"] = given.pop("MU")
-        return self.of(given | changes, wanted)
+        return _Problem(given | changes, wanted)
 
     def _determines(self, wanted: Sequence[str], **changes: float) -> bool:
         """Whether all of ``wanted`` is determined in the first scene."""

@@ -13,8 +13,6 @@ initial velocities.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +23,7 @@ from ..errors import UserError
 from ..mappings import within_limits
 from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES, check_names, listed
 from ..reconstruction.geometry import MOVES, moved, placed
-from ..reconstruction.outcome import Model, forward_model, reconstruction_model
+from ..reconstruction.outcome import forward_model, reconstruction_model
 from ..scene import check_mapping
 from .boundstable import Bound, Bounds, Drive, Spread
 from .extremes import CORNERS_IN_FULL, Extremes, Piece, merged
@@ -98,7 +96,7 @@ def bounds(
         from .ranges import read_correlations
 
         pairs = read_correlations(text, "correlations") | pairs
-    box = _Box.of(given, outputs, problem, sigmas, exclude)
+    box = _Box(given, outputs, problem, sigmas, exclude)
     _check(samples, sigmas, quantiles, len(box.outputs))
     correlated = correlation_root(pairs, box.inputs)
     nominal = box.nominal()
@@ -183,48 +181,38 @@ def _check(samples: int, sigmas: float, quantiles: Sequence[float], outputs: int
         raise UserError(reason)
 
 
-@dataclass(frozen=True)
 class _Box:
     """The problem over the box of its inputs' limits, k inputs that vary and m outputs; ``share``:
     MU is a share of the critical friction."""
 
-    model: Model
-    known: dict[str, float]
-    inputs: dict[str, Uncertain]
-    outputs: tuple[str, ...]
-    limits: dict[str, tuple[float, float]]
-    excluded: int
-    share: bool
-
-    @classmethod
-    def of(
-        cls,
+    def __init__(
+        self,
         values: Mapping[str, Uncertain | float | str],
         outputs: Sequence[str] | str | None,
         problem: str,
         sigmas: float,
         exclude: Sequence[str],
-    ) -> Self:
+    ) -> None:
         check_names([problem], PROBLEMS, "problem")
         given = within_limits(values)
         given.setdefault("M", fixed(6.0))
         _check_values(given, problem)
-        inputs = {name: item for name, item in given.items() if item.varies}
-        known = {name: item.nominal for name, item in given.items() if not item.varies}
+        self.inputs = {name: item for name, item in given.items() if item.varies}
+        self.known = {name: item.nominal for name, item in given.items() if not item.varies}
         usual, allowed = _outputs(problem, given["M"].nominal == 4)
-        wanted = tuple(dict.fromkeys(usual if outputs is None else listed(outputs)))
-        check_names(wanted, allowed, "result")
-        if not wanted:
+        self.outputs = tuple(dict.fromkeys(usual if outputs is None else listed(outputs)))
+        check_names(self.outputs, allowed, "result")
+        if not self.outputs:
             raise UserError(f"no result is asked for; expected some of {' '.join(allowed)}")
-        limits = {name: item.limits(sigmas) for name, item in inputs.items()}
-        for name, (low, high) in limits.items():
+        self.limits = {name: item.limits(sigmas) for name, item in self.inputs.items()}
+        for name, (low, high) in self.limits.items():
             if not high - low < float("inf"):
                 raise UserError("its limits are too far apart for double precision", name)
-        model = forward_model if problem == "forward" else reconstruction_model
+        self.forward = problem == "forward"
+        self.model = forward_model if self.forward else reconstruction_model
         check_names(exclude, WARNINGS, "warning")
-        excluded = sum({WARNINGS[name] for name in exclude})
-        share = "MU" in given and given["MU"].share
-        return cls(model, known, inputs, wanted, limits, excluded, share)
+        self.excluded = sum({WARNINGS[name] for name in exclude})
+        self.share = "MU" in given and given["MU"].share
 
     # points are n x k, of the unit cube
 
@@ -247,7 +235,7 @@ class _Box:
         count = len(self.inputs)
         friction = self.known.get("MU")
         # a share of the critical friction has the sign that ends the sliding, whatever gt is
-        if self.model is not forward_model or friction in (0.0, PIVOT) or self.share:
+        if not self.forward or friction in (0.0, PIVOT) or self.share:
             return self.piece(None).extremes(count, rng)
         slip = Piece(lambda points: self.slip(points)[:, None], 1).extremes(count, rng)
         (lowest, highest), pieces = slip.bound[:, 0], []

@@ -235,7 +235,7 @@ class _Box:
         data, geometry = self.data(u), None
         x = start = np.repeat(self.x, len(u), axis=1) if guess is None else guess
         if set(data) & set(GEOMETRY):
-            geometry = Geometry.of({**self.system.constants, **data})
+            geometry = Geometry({**self.system.constants, **data})
         residual = self._left(x, data, geometry)
         left = np.abs(residual).max(axis=0, initial=0.0)
         for more in reversed(range(CHORDS)):
