@@ -18,7 +18,7 @@ the six; errors of the final velocities grow as 1/e. `unknowns` solves any other
 unknowns, more slowly, and says why a set cannot be solved.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -34,14 +34,6 @@ from .state import CHANGES, CONTACT, COURSES, FORCES, SPEEDS, State
 Array = NDArray[Any]
 Divided = tuple[dict[str, Array], list[Array]]
 """Arrays by name, and what divides them: where one of these is zero, some of them are infinite."""
-Model = Callable[[Mapping[str, Any], Sequence[str], float | None], Divided]
-"""Columns (arrays or numbers by name), the outputs wanted, and MU's sign as
-`closedform.solve.quantities` has it."""
-
-
-_FORWARD = ("MUC", "COND")
-"""What only the forward solution can tell: it needs all initial velocities and coefficients."""
-_TOLD = (*CONTACT, *CHANGES, "KI", "KF", "LOSS", *SPEEDS, *COURSES)
 
 
 @np.errstate(all="ignore")
@@ -55,18 +47,17 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
         given = {"WA": np.zeros(()), "WB": np.zeros(()), "EM": np.zeros(()), **given}
         given = {"WAF": given["WA"], "WBF": given["WB"], **given}
     state = State.of_known(given)
-    facing = {"TA", "TB"} & {*given}
     result = state.here.contact_point()
-    told = {name: state[name] for name in _TOLD if facing or name not in CHANGES}
-    told |= state.contact_velocities()
+    names = (*CONTACT, *CHANGES, "KI", "KF", "LOSS", *SPEEDS, *COURSES)
+    told = {name: state[name] for name in names} | state.contact_velocities()
     result |= {name: value for name, value in told.items() if not np.isnan(value).all()}
     if "PN" in given and "PT" in given:
-        result |= {name: state[name] for name in FORCES if facing}
+        result |= {name: state[name] for name in FORCES}
         result["P"] = np.hypot(given["PN"], given["PT"])
     condition: Any = 1.0
     if all(name in given for name in SCENE if name != "M"):
         scene = {name: given[name] for name in SCENE if name in given}
-        result["MUC"], condition = solve(scene, _FORWARD).values()
+        result["MUC"], condition = solve(scene, ("MUC", "COND")).values()
     result["STATUS"] = status(state, given, condition)
     shape = np.broadcast_shapes(*(np.shape(value) for value in given.values()))
     return {name: np.broadcast_to(value, shape) for name, value in result.items()}
@@ -81,15 +72,6 @@ def moment_ratio(em: Any) -> Any:
         return -em / (1 - 2 * em)
 
 
-def _pivot_impulse(given: Mapping[str, Array]) -> tuple[Array, Array]:
-    """PN and PT of the same impact if the sliding ended at separation."""
-    scene = {name: given[name] for name in SCENE if name in given} | {"MU": np.array(PIVOT)}
-    if not all(name in scene for name in SCENE if name != "M"):
-        return np.array(np.nan), np.array(np.nan)
-    solved = quantities(scene, ("PN", "PT"))
-    return solved["PN"], solved["PT"]
-
-
 def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Array:
     """STATUS of an impact; what cannot be decided for lack of a value is not remarked.
 
@@ -99,24 +81,19 @@ def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Ar
     here, value = state.here, state.values
     e, em, mu = (value.get(name, np.array(np.nan)) for name in ("E", "EM", "MUP"))
     known = [given[name] for name in (*VELOCITIES, *FINAL_STATE) if name in given]
+    # of the same impact if the sliding ended at separation
+    pivot = {name: given[name] for name in SCENE if name in given} | {"MU": np.array(PIVOT)}
+    whole = all(name in pivot for name in SCENE if name != "M")
+    ending = quantities(pivot, ("PN", "PT")) if whole else dict.fromkeys(("PN", "PT"), np.nan)
     with np.errstate(all="ignore"):
         lost, initial = 2 * state.energy_lost, state.initial_energy
         operands = (
-            state.relative_before[0],
-            value["PN"],
-            here.at,
-            here.bt,
-            np.where(here.point, 0.0, value["DA"]),
-            np.where(here.point, 0.0, value["DB"]),
+            *(state.relative_before[0], value["PN"], here.at, here.bt),
+            *(np.where(here.point, 0.0, value[name]) for name in ("DA", "DB")),
             # energies that are not known are not numbers that are not finite
-            np.where(np.isnan(lost), 0.0, lost),
-            np.where(np.isnan(initial), 1.0, initial),
-            e,
-            np.where(here.point, 0.0, em),
-            np.where(mu == PIVOT, 0.0, mu),
-            *_pivot_impulse(given),
-            np.asarray(condition),
-            sum(known, np.zeros(())),
+            *(np.where(np.isnan(lost), 0.0, lost), np.where(np.isnan(initial), 1.0, initial)),
+            *(e, np.where(here.point, 0.0, em), np.where(mu == PIVOT, 0.0, mu)),
+            *(ending["PN"], ending["PT"], np.asarray(condition), sum(known, np.zeros(()))),
         )
         return np.asarray(bits(findings(*operands)), np.uint16)
 

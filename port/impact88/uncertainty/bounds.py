@@ -21,12 +21,13 @@ from .. import status
 from ..closedform.solve import quantities, share_typed
 from ..errors import UserError
 from ..mappings import within_limits
-from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES, check_names, listed
-from ..reconstruction.geometry import MOVES, moved, placed
+from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, VELOCITIES, check_names, listed
+from ..reconstruction.geometry import MOVES, moved
 from ..reconstruction.outcome import forward_model, reconstruction_model
 from ..scene import check_mapping
 from .boundstable import Bound, Bounds, Drive, Spread
 from .extremes import CORNERS_IN_FULL, Extremes, Piece, merged
+from .ranges import complete, read_correlations
 from .uncertain import Uncertain, columns_of, correlation_root, fixed
 
 Array = NDArray[np.float64]
@@ -48,14 +49,6 @@ SLIP_APART = 1e-12
 SWEEP_POINTS = 41
 MOST_DRAWS = 100_000_000
 """Draws of all outputs together that are kept: 800 MB."""
-
-
-def input_names(problem: str) -> tuple[str, ...]:
-    """The values a problem needs; CX and CY may move the contact point beside them."""
-    if problem == "forward":
-        return tuple(SCENE)
-    kept = (name for name in SCENE if name not in VELOCITIES)
-    return (*("MUP" if name == "MU" else name for name in kept), *FINAL_VELOCITIES)
 
 
 @np.errstate(all="ignore")
@@ -93,8 +86,6 @@ def bounds(
     given = dict(values)
     pairs = dict(correlations or {})
     if isinstance(text := given.pop("correlations", None), str):
-        from .ranges import read_correlations
-
         pairs = read_correlations(text, "correlations") | pairs
     box = _Box(given, outputs, problem, sigmas, exclude)
     _check(samples, sigmas, quantiles, len(box.outputs))
@@ -302,10 +293,7 @@ class _Box:
 
 
 def _check_values(given: Mapping[str, Uncertain], problem: str) -> None:
-    names = placed(input_names(problem), given)
-    for name in names:
-        if name not in given:
-            raise UserError(f"{name} is missing; the {problem} problem needs {' '.join(names)}")
+    names = complete(given, problem)
     check_names(given, (*names, *MOVES), f"value of the {problem} problem")
     if given["M"].varies or given["M"].nominal not in (4, 6):
         raise UserError("expected 6, or 4 for point masses", "M")

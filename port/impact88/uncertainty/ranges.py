@@ -6,7 +6,7 @@ the six final velocities and MUP, the signed P_t/P_n. Without those it takes the
 solution of the nominal values: how well would the initial velocities have been found again?
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 from ..errors import UserError
@@ -16,11 +16,8 @@ from . import uncertain
 from .uncertain import Uncertain
 
 Pair = tuple[str, str]
-BEFORE = (*VELOCITIES, "MU")
-"""What only the forward problem starts from."""
 AFTER = (*FINAL_VELOCITIES, "MUP")
 """What only a reconstruction starts from."""
-COMMON = tuple(name for name in SCENE if name not in BEFORE)
 
 
 @dataclass(frozen=True)
@@ -31,6 +28,25 @@ class Inputs:
     values: dict[str, Uncertain]
     correlations: dict[Pair, float]
     derived: tuple[str, ...] = ()
+
+
+def input_names(problem: str) -> tuple[str, ...]:
+    """The values a problem needs; CX and CY may move the contact point beside them."""
+    if problem == "forward":
+        return tuple(SCENE)
+    return (*(name for name in SCENE if name not in (*VELOCITIES, "MU")), *AFTER)
+
+
+def complete(given: Collection[str], problem: str, source: str | None = None) -> tuple[str, ...]:
+    """The names a problem needs, the contact point's as they are ``given``. Raises UserError where
+    one is missing."""
+    names = placed(input_names(problem), given)
+    if missing := [name for name in names if name not in given]:
+        hint = " (MUP: the friction coefficient as signed P_t/P_n)" if "MUP" in missing else ""
+        raise UserError(
+            f"{' '.join(missing)} missing; the {problem} problem needs it{hint}", source
+        )
+    return names
 
 
 def read_inputs(
@@ -47,7 +63,7 @@ def read_inputs(
     correlations = read_correlations(entries.pop("correlations", ""), source)
     scene = placed(SCENE, entries)
     check_names(entries, (*scene, *AFTER, *MOVES), "name used here", source)
-    wanted = placed((*COMMON, *(BEFORE if problem == "forward" else AFTER)), entries)
+    wanted = placed(input_names(problem), entries)
     check_names(changes, (*wanted, *MOVES), f"value of the {problem} problem", "--range")
     values = {
         name: uncertain.read(text, f"{source}, {name}")
@@ -61,13 +77,7 @@ def read_inputs(
     for name, text in changes.items():
         center = values[name].nominal if name in values else 0.0 if name in MOVES else None
         values[name] = uncertain.read(text, f"--range {name}", center)
-    missing = [name for name in wanted if name not in values]
-    if missing:
-        hint = " (MUP: the friction coefficient as signed P_t/P_n)" if "MUP" in missing else ""
-        raise UserError(
-            f"{' '.join(missing)} missing; the {problem} problem needs it{hint}", source
-        )
-    wanted = (*wanted, *(name for name in MOVES if name in values))
+    wanted = (*complete(values, problem, source), *(name for name in MOVES if name in values))
     return Inputs({name: values[name] for name in wanted}, correlations, derived)
 
 
