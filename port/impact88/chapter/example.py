@@ -11,11 +11,11 @@ from functools import cache
 from math import hypot
 
 from ..closedform.solve import solve
-from ..names import FINAL_STATE, FINAL_VELOCITIES, VELOCITIES
+from ..names import FINAL_VELOCITIES
 from ..program.arithmetics import FLOAT64
 from ..reconstruction.adjustment import reconstruct
-from ..reconstruction.geometry import Geometry
 from ..reconstruction.outcome import moment_ratio
+from ..reconstruction.state import State
 from ..reconstruction.unknowns import solve_for
 from ..scene import sample
 from ..uncertainty.uncertain import Uncertain
@@ -207,9 +207,8 @@ def _coefficients(vehicles: dict[str, float]) -> Step:
 def _both_spins(vehicles: dict[str, float], initial: dict[str, float]) -> Step:
     """Equations 15, 16 and 18 as the chapter means them, and the same with all laws kept."""
     scene, after = {**vehicles, **NO_SWERVING, **NO_TURNING, **initial}, {**ESTIMATES, **BOTH_SPINS}
-    here = Geometry(scene)
-    six = ([of[n] for n in names] for of, names in ((scene, VELOCITIES), (after, FINAL_STATE)))
-    gn, gn_after = (float(here.relative(velocities)[0]) for velocities in six)
+    state = State.of_known({**scene, **after})
+    here, e = state.here, float(state["E"])
     # what A and B gain of linear and angular momentum
     gained = closure(Collision(0, "", scene, after, {}))
     x, y, on_a, on_b = (gained[name] for name in ("x_of_a", "y_of_a", "spin_of_a", "spin_of_b"))
@@ -227,7 +226,9 @@ def _both_spins(vehicles: dict[str, float], initial: dict[str, float]) -> Step:
         "Coefficients from both final spins, WAF -2.9 and WBF -0.9 rad/s",
         "Equations 15, 16 and 18",
         (
-            Number("E", "coefficient of restitution, as the estimates stand", -gn_after / gn, "1"),
+            Number(
+                "E", "coefficient of restitution, as the estimates stand", e, "1"
+            ),
             Number("MUP", "P_t/P_n, as they stand", pt / pn, "1"),
             # (1 - e_m) spin = -e_m bracket
             Number("EM", "moment coefficient, as they stand", spin / (spin - bracket), "1"),

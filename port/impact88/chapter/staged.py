@@ -31,6 +31,7 @@ from ..names import FINAL_STATE, VELOCITIES
 from ..reconstruction.geometry import Geometry, moved
 from ..reconstruction.outcome import forces
 from ..reconstruction.state import State
+from ..reconstruction.unknowns import typed
 from .deltav import delta_v
 
 Array = NDArray[np.float64]
@@ -183,10 +184,8 @@ def collisions() -> tuple[Collision, ...]:
 
 def typed_friction(scene: Mapping[str, Any], signed: Any) -> Array:
     """The MU to type so that line 400 leaves the signed P_t/P_n: it changes it where gt > 0."""
-    signed = np.asarray(signed, np.float64)
-    # line 400 looks at the velocities alone: the other coefficients may be any
-    used = solve({**scene, "E": 0.0, "EM": 0.0, "MU": signed}, ("MUP",))["MUP"]
-    return np.asarray(np.where(used == signed, signed, -signed))
+    state = State.of_known(scene)
+    return typed(np.asarray(signed, np.float64), state.relative_before[1], state.before)
 
 
 def forward(
@@ -200,11 +199,8 @@ def forward(
 
 def experimental(collision: Collision) -> dict[str, float]:
     """ΔV from Table 1's measured velocities."""
-    values = collision.scene | collision.measured
-    return {
-        "DVA": float(np.hypot(values["VAX"] - values["UX"], values["VAY"] - values["UY"])),
-        "DVB": float(np.hypot(values["VBX"] - values["VX"], values["VBY"] - values["VY"])),
-    }
+    state = State.of_known(collision.scene | collision.measured)
+    return {name: float(state[name]) for name in ("DVA", "DVB")}
 
 
 def predicted(collision: Collision, loss: Any = None) -> dict[str, Array]:
@@ -220,15 +216,12 @@ def closure(collision: Collision) -> dict[str, float]:
     ``number``, the energy ``loss`` in percent, the change of A's momentum along x and y and of the
     angular momentum about the origin of Equation 17, and minus B's: equal where momentum is
     conserved; slug·ft/s and slug·ft²/s, NaN where a velocity is lost."""
-    values = {**collision.scene, **collision.measured}
-    given = {name: np.asarray(value) for name, value in values.items()}
-    here = Geometry(given)
-    ax, ay, wa, bx, by, wb = (
-        values[late] - values[early] for early, late in zip(VELOCITIES, FINAL_STATE, strict=True)
-    )
-    ma, mb, ia, ib = (values[name] for name in ("MA", "MB", "IA", "IB"))
+    values = {name: np.asarray(v) for name, v in (collision.scene | collision.measured).items()}
+    state = State.of_known(values)
+    here, (ax, ay, wa, bx, by, wb) = state.here, map(float, state.changes)
+    ma, mb, ia, ib = (float(values[name]) for name in ("MA", "MB", "IA", "IB"))
     return {
-        **{"number": collision.number, "loss": float(State.of_known(given)["LOSS"])},
+        **{"number": collision.number, "loss": float(state["LOSS"])},
         **{"x_of_a": ma * ax, "x_of_b": -mb * bx, "y_of_a": ma * ay, "y_of_b": -mb * by},
         # the impulse acts at (-d4, -d3) from A's center: M = I ΔΩ - r x m ΔV, and on B the opposite
         "spin_of_a": float(ia * wa - ma * (-here.d4 * ay + here.d3 * ax)),
