@@ -226,9 +226,7 @@ def _both_spins(vehicles: dict[str, float], initial: dict[str, float]) -> Step:
         "Coefficients from both final spins, WAF -2.9 and WBF -0.9 rad/s",
         "Equations 15, 16 and 18",
         (
-            Number(
-                "E", "coefficient of restitution, as the estimates stand", e, "1"
-            ),
+            Number("E", "coefficient of restitution, as the estimates stand", e, "1"),
             Number("MUP", "P_t/P_n, as they stand", pt / pn, "1"),
             # (1 - e_m) spin = -e_m bracket
             Number("EM", "moment coefficient, as they stand", spin / (spin - bracket), "1"),

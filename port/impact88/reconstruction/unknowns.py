@@ -319,13 +319,8 @@ def _determined(given: Mapping[str, Any], wanted: Sequence[str], point: bool) ->
     # a barrier's momentum is nobody's equation
     said = jacobian.any(axis=(1, 2)) | residual.any(axis=1)
     residual, jacobian = residual[said], jacobian[said]
-    weight = np.ones((len(jacobian), 1))
-    if len(jacobian) <= len(system.variables):
-        # the solution is the same however the equations are scaled; this is best for rounding
-        largest = np.abs(jacobian).max(axis=1, initial=0.0)
-        weight = np.where(largest > 0, largest, 1.0)
-    inverse, left_open = _pseudo_inverse((jacobian / weight[:, None]).transpose(2, 0, 1))
-    x = -np.einsum("nvr,rn->vn", inverse, residual / weight)
+    inverse, left_open = _pseudo_inverse(jacobian.transpose(2, 0, 1))
+    x = -np.einsum("nvr,rn->vn", inverse, residual)
     rest = residual + np.einsum("rvn,vn->rn", jacobian, x)
     # each known velocity in error by one unit
     known = [n for n in (*VELOCITIES, *FINAL_STATE) if n in system.nominal]
@@ -335,7 +330,7 @@ def _determined(given: Mapping[str, Any], wanted: Sequence[str], point: bool) ->
         for name, unit in zip(known, np.eye(len(known)), strict=True)
     }
     missed = np.imag(left(system.state(x[:, None].astype(complex), moved))) / TINY
-    errors = -np.einsum("nvr,rkn->vkn", inverse, missed[said] / weight[:, None])
+    errors = -np.einsum("nvr,rkn->vkn", inverse, missed[said])
 
     names = [n for n in (*VELOCITIES, *FINAL_STATE, *IMPULSES) if n not in ignored]
     unknown = [n for n in COEFFICIENTS if n not in given and n not in ignored]
@@ -386,14 +381,10 @@ def _pseudo_inverse(matrix: Array) -> tuple[Array, Array]:
     A matrix with a number that is not finite (masses beyond all bounds) leaves everything open.
     """
     finite = np.asarray(np.isfinite(matrix).all(axis=(1, 2)))
-    u, s, vt = np.linalg.svd(np.where(finite[:, None, None], matrix, 0.0))
-    free = np.ones(vt.shape[:2], bool)
-    rank = s.shape[1]
-    free[:, :rank] = s <= _RANK * s.max(axis=1, initial=0.0)[:, None]
-    inverse = np.where(free[:, :rank], 0.0, 1 / s)
-    v = vt.swapaxes(1, 2)
-    pseudo = (v[:, :, :rank] * inverse[:, None]) @ u[:, :, :rank].swapaxes(1, 2)
-    return pseudo, (v * free[:, None]) @ vt
+    u, s, vt = np.linalg.svd(np.where(finite[:, None, None], matrix, 0.0), full_matrices=False)
+    kept, v = s > _RANK * s.max(axis=1, initial=0.0)[:, None], vt.swapaxes(1, 2)
+    pseudo = (v * np.where(kept, 1 / s, 0.0)[:, None]) @ u.swapaxes(1, 2)
+    return pseudo, np.eye(matrix.shape[2]) - (v * kept[:, None]) @ vt
 
 
 def typed(mup: Any, sliding: Any, velocities: Iterable[Any]) -> Array:
