@@ -21,11 +21,10 @@ from impact88.uncertainty import uncertain
 from impact88.uncertainty.bounds import (
     RECONSTRUCTED,
     bounds,
-    input_names,
 )
 from impact88.uncertainty.boundstable import as_json, table
 from impact88.uncertainty.extremes import Piece
-from impact88.uncertainty.ranges import read_correlations, read_inputs
+from impact88.uncertainty.ranges import input_names, read_correlations, read_inputs
 from impact88.uncertainty.uncertain import Uncertain, fixed, read
 
 

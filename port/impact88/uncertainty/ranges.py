@@ -32,9 +32,9 @@ class Inputs:
 
 def input_names(problem: str) -> tuple[str, ...]:
     """The values a problem needs; CX and CY may move the contact point beside them."""
-    if problem == "forward":
-        return tuple(SCENE)
-    return (*(name for name in SCENE if name not in (*VELOCITIES, "MU")), *AFTER)
+    before = (*VELOCITIES, "MU")
+    common = (name for name in SCENE if name not in before)
+    return (*common, *(before if problem == "forward" else AFTER))
 
 
 def complete(given: Collection[str], problem: str, source: str | None = None) -> tuple[str, ...]:
