@@ -500,7 +500,7 @@ class TestRefusals:
     def test_missing(self):
         scene = values(1, UX="+- 1")
         del scene["GA"]
-        with pytest.raises(UserError, match="GA is missing"):
+        with pytest.raises(UserError, match="GA missing; the forward problem needs it"):
             bounds(scene)
 
 
