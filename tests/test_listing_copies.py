@@ -14,7 +14,7 @@ from captures import ROOT
 from impact88.cli import main
 from impact88.errors import UserError
 from impact88.program.emulated import ListingCopy
-from impact88.reporting.examination import Verdict, examine_bytes
+from impact88.reporting.examination import Verdict, examine
 from impact88.scene import sample
 
 LISTING = (ROOT / "legacy" / "impact.bas").read_text(encoding="utf-8")
@@ -70,7 +70,7 @@ def copy_of(text: str, folder: Path) -> ListingCopy:
 
 
 def verdicts(text: str, copy: ListingCopy | None) -> set[Verdict]:
-    return {result.verdict for result in examine_bytes("-", text.encode(), None, copy).results}
+    return {result.verdict for result in examine("-", None, copy, data=text.encode()).results}
 
 
 @pytest.mark.captures
@@ -112,7 +112,7 @@ def test_rounding_on_one_line_comes_before_a_misread_digit(tmp_path: Path) -> No
     named = []
     for row in random.Random(1).sample(printouts.normal_ends(), printouts.SWEEP or 1):
         page = printouts.body(copy.run(row["scene"]).page)
-        for result in examine_bytes("-", page.encode()).results:
+        for result in examine("-", data=page.encode()).results:
             if result.verdict is Verdict.DIFFERS:
                 first = result.explanations[0]
                 named.append((first.kind, first.note.partition(";")[0]))
@@ -133,7 +133,7 @@ def test_what_a_page_cannot_show_is_what_the_copy_cannot(tmp_path: Path) -> None
     """One that forgets PB shows nothing of it."""
     copy = copy_of(LISTING.replace("TB + PB", "TB"), tmp_path)
     page = printouts.body(copy.run(sample(1)).page)
-    (result,) = examine_bytes("-", page.encode(), None, copy).results
+    (result,) = examine("-", None, copy, data=page.encode()).results
     assert result.verdict in SETTLED
     assert result.unseen[0].startswith("PB: nothing else on the page depends on it")
 
@@ -156,7 +156,7 @@ def test_a_line_retyped_wrong_is_named(tmp_path: Path) -> None:
     """Without the copy at hand: the page itself shows which line is another."""
     wrong = copy_of(changed((490, line(490).replace("- 2 * EM", "+ 2 * EM"))), tmp_path)
     page = printouts.body(wrong.run(sample(1)).page)
-    (result,) = examine_bytes("-", page.encode()).results
+    (result,) = examine("-", data=page.encode()).results
     first = result.explanations[0]
     assert first.kind == "a changed line of the listing"
     assert first.note.startswith("line 490: A66 = 1 + 2*em, should be 1 - 2*em")

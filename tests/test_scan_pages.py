@@ -17,7 +17,7 @@ import scanpages
 from captures import ROOT
 from impact88.judging.judgement import Verdict
 from impact88.recovery.replays import run_all
-from impact88.reporting.examination import Examined, Verification, examine, examine_bytes
+from impact88.reporting.examination import Examined, Verification, examine
 from impact88.reporting.verification import EXPLAINED, lines
 from impact88.scan import sheets
 from impact88.scan.evidence import MOST_MISREAD, THRESHOLDS, Judged, judged, state
@@ -75,7 +75,7 @@ def test_fresh_pages_of_other_fonts_and_forgeries(kind: str) -> None:
     digits in another typeface many are only left open (20 of 50 where this was counted)."""
     right = 0
     for picture, truth in scanpages.pages(10, 1988, (kind,)):
-        found = examine_bytes("page.png", saved(picture, "PNG")).results
+        found = examine("page.png", data=saved(picture, "PNG")).results
         told = [str(one.verdict) for one in found]
         if truth["altered"]:
             assert not told or set(told) - SETTLED
@@ -116,7 +116,7 @@ def test_pdf_tiff_and_a_turned_page() -> None:
         ("page.pdf", saved(grey, "PDF", resolution=200)),
         ("page.tif", saved(grey.transpose(Pillow.Transpose.ROTATE_90), "TIFF")),
     ):
-        examined = examine_bytes(name, data)
+        examined = examine(name, data=data)
         assert [str(one.verdict) for one in examined.results] == ["identical"], examined
 
 
@@ -126,7 +126,7 @@ def test_two_printouts_side_by_side() -> None:
     both = Pillow.new("L", (sum(page.width for page in pages) + 60, height), 255)
     both.paste(pages[0], (0, 0))
     both.paste(pages[1], (pages[0].width + 60, 37))
-    found = examine_bytes("page.png", saved(both, "PNG")).results
+    found = examine("page.png", data=saved(both, "PNG")).results
     assert [str(one.verdict) for one in found] == ["identical", "differs"]
     left = [max(cell["box"][2] for cell in one.cells) for one in found]
     assert left[0] < pages[0].width < left[1]
@@ -159,7 +159,7 @@ def test_an_input_that_no_result_bears_out_is_what_the_paper_shows() -> None:
     ],
 )
 def test_what_is_no_page(data: bytes, message: str, tmp_path: Path) -> None:
-    examined: Examined = examine_bytes("page", data)
+    examined: Examined = examine("page", data=data)
     assert examined.error is not None
     assert message in examined.error
     assert not examined.results
@@ -230,7 +230,7 @@ def test_a_digit_pasted_from_elsewhere_on_the_page_differs_and_is_shown() -> Non
         grey = page.convert("L")
     glyph = grey.crop(tuple(round(v) for v in source["box"]))
     grey.paste(glyph, tuple(round(v) for v in target["box"][:2]))
-    altered = examine_bytes("page.png", saved(grey, "PNG"))
+    altered = examine("page.png", data=saved(grey, "PNG"))
     (result,) = altered.results
     assert result.verdict is Verdict.DIFFERS
     assert EXPLAINED not in "\n".join(lines(result))  # the cells say it

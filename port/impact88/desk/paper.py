@@ -13,7 +13,7 @@ from ..reading import plaintext as pasted
 from ..reading.printout import LARGEST_FILE
 from ..report.casefile import report as report_page
 from ..reporting import verification
-from ..reporting.examination import examine_bytes
+from ..reporting.examination import examine
 from ..reporting.verification import Examined, Verification
 
 LONGEST_NAME = LONGEST_WORDS = 200
@@ -46,7 +46,7 @@ def _examined(name: str, data: bytes, seed: str = "") -> Examined:
     name = base_name(name)
     if len(data) > LARGEST_FILE:
         raise UserError(f"is larger than {LARGEST_FILE:,} bytes, the limit here", name)
-    return examine_bytes(name, data, seed=seed)
+    return examine(name, seed=seed, data=data)
 
 
 def base_name(name: str) -> str:

@@ -37,16 +37,15 @@ def looked_past(found: Judged, rereading: Rereading) -> Judged | None:
     own = [r for r in rereading.best() if apart.isdisjoint(one.field for one in r.changes)]
     scenes = [one.scored for one in own[:_TRIED]]
     scenes.append(recovered.search.replayed_scene(recovered.scene, recovered.assumed))
-    least = min(scored.cost for scored in scenes)
-    best: Judged | None = None
-    for one in sorted(scenes, key=lambda scored: scored.cost):
-        if one.cost <= least + _AS_WELL:
-            other = replace(recovered, scene=one.scene, assumed=one.assumed, outcome=one.outcome)
-            judged = judge(shown, other)
-            if not settled(judged.fields, judged.replies):
-                return None
-            best = best or judged
-    assert best is not None
+    scenes.sort(key=lambda scored: scored.cost)
+    every = [
+        judge(shown, replace(recovered, scene=one.scene, assumed=one.assumed, outcome=one.outcome))
+        for one in scenes
+        if one.cost <= scenes[0].cost + _AS_WELL
+    ]
+    if not all(settled(one.fields, one.replies) for one in every):
+        return None
+    best = every[0]
     for check in [*best.fields, *best.replies]:
         if check.status == Status.CONTRADICTED:
             check.status = Status.DOUBTFUL
