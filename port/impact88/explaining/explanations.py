@@ -66,7 +66,7 @@ def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) ->
     """Causes that make more of a differing printout agree, those that ask least first.
     ``rereading``: slips in its inputs; ``in_time``: whether more causes may still be tried."""
     page = PageEvidence(found)
-    causes = [*_slips_alone(page), *_labels(page)]
+    causes = [*_slipped(page, (), page.base, found.recovered.outcome.fields), *_labels(page)]
     if not found.recovered.missing and any(not one.startswith("label ") for one in page.base):
         rows = Rows(page)
         causes += [*_reread(page, rereading.best(1)), *rows.causes(), *machines.causes(page)]
@@ -78,8 +78,11 @@ def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) ->
             whole = [one.bits for one in causes if not one.left]
             if in_time() and min(whole, default=math.inf) > _ENOUGH:
                 causes += more()
-        if not any(_accuses(one) and not one.left for one in causes):
-            causes += _last_places_alone(page)
+        longer = any(page.decimals(name) > (FIELDS[name].places or 9) for name in page.texts)
+        accused = any(_accuses(one) and not one.left for one in causes)
+        if page.only_last_places and len(page.base) > 1 and not longer and not accused:
+            note = f"all that differs is off by one in its last place; {NOT_APPLESOFT}"
+            causes.append(Cause("another arithmetic", note, _ANOTHER_ARITHMETIC, frozenset()))
     return _ranked(page, causes)
 
 
@@ -90,28 +93,19 @@ def explain_copy(
     """The same of a page held against a copy of the listing: slips, those nearest to its results
     first. ``put_right``: the printout judged by the copy with other inputs printed."""
     page = PageEvidence(found)
-    causes = [*_slips_alone(page), *_labels(page)]
+    causes = [*_slipped(page, (), page.base, found.recovered.outcome.fields), *_labels(page)]
     if not found.recovered.missing:
         rereading = Rereading(found.recovered)
-        tried: list[tuple[Change, ...]] = [
-            (one,) for one in _nearest_slips(page, rereading)[:_BY_COPY]
-        ]
-        tried += [one.changes for one in rereading.best()[:_BY_COPY]]
-        for changes in filter(None, dict.fromkeys(tried)):
+        tried = [one.changes for one in rereading.best()[:_BY_COPY]]
+        nearest = _nearest_slips(page, rereading)[:_BY_COPY]
+        for changes in filter(None, dict.fromkeys([*nearest, *tried])):
             other = put_right(found, {change.field: change.would_be for change in changes})
             if other is not None:
-                outcome = other.recovered.outcome.fields
-                causes.append(_slipped(page, changes, differing(other), outcome))
+                causes += _slipped(page, changes, differing(other), other.recovered.outcome.fields)
     return _ranked(page, causes)
 
 
 # --- slips and labels ---
-
-
-def _slips_alone(page: PageEvidence) -> Iterator[Cause]:
-    """Results and replies that are one slip away from what they should be."""
-    if changes := _slips(page, page.base, page.recovered.outcome.fields):
-        yield _slipped(page, changes, page.base)
 
 
 def _labels(page: PageEvidence) -> Iterator[Cause]:
@@ -130,14 +124,6 @@ def _labels(page: PageEvidence) -> Iterator[Cause]:
         yield Cause(kind, "the numbers are what the program prints there", _LABEL, left, changes)
 
 
-def _last_places_alone(page: PageEvidence) -> Iterator[Cause]:
-    """An arithmetic that is none of those tried: results off by one in their last places."""
-    longer = any(page.decimals(name) > (FIELDS[name].places or 9) for name in page.texts)
-    if page.only_last_places and len(page.base) > 1 and not longer:
-        note = f"all that differs is off by one in its last place; {NOT_APPLESOFT}"
-        yield Cause("another arithmetic", note, _ANOTHER_ARITHMETIC, frozenset())
-
-
 def _reread(page: PageEvidence, rereads: Iterable[Reread]) -> Iterator[Cause]:
     """Inputs put right, with what results are then still a slip away."""
     best = math.inf
@@ -145,9 +131,9 @@ def _reread(page: PageEvidence, rereads: Iterable[Reread]) -> Iterator[Cause]:
         wrong = page.left(one.scored.scene, one.scored.outcome, one.changes)
         least = sum(map(_believed, one.changes)) + _SLIP * (len(wrong) - page.most_left)
         if one.changes and least <= min(best + _WORSE, _MOST_BITS):
-            cause = _slipped(page, one.changes, wrong, one.scored.outcome.fields)
-            best = min(best, _weight(cause))
-            yield cause
+            for cause in _slipped(page, one.changes, wrong, one.scored.outcome.fields):
+                best = min(best, _weight(cause))
+                yield cause
 
 
 def _exchanged_and_slipped(page: PageEvidence, rows: Rows, rereading: Rereading) -> Iterator[Cause]:
@@ -158,11 +144,11 @@ def _exchanged_and_slipped(page: PageEvidence, rows: Rows, rereading: Rereading)
             changes = (*exchanged, *one.changes)
             bits = row.bits + sum(map(_believed, one.changes))
             left = page.left(one.scored.scene, one.scored.outcome, changes)
-            cause = _slipped(page, changes, left)
-            yield replace(cause, bits=bits, note=row.note)
+            for cause in _slipped(page, changes, left):
+                yield replace(cause, bits=bits, note=row.note)
 
 
-def _nearest_slips(page: PageEvidence, rereading: Rereading) -> list[Change]:
+def _nearest_slips(page: PageEvidence, rereading: Rereading) -> list[tuple[Change, ...]]:
     """The single slips of printed inputs, those first whose results are nearest to the page's by
     double precision; that differs from what the program prints as in the scene recovered."""
     scene, fields = page.recovered.scene, page.recovered.outcome.fields
@@ -176,34 +162,26 @@ def _nearest_slips(page: PageEvidence, rereading: Rereading) -> list[Change]:
         for name, column in in_doubles(columns, [n for n in page.results if n in fields]).items()
     }
     order = np.argsort(page.far(found, len(tried) + 1)[1:], kind="stable")
-    return [tried[index] for index in order]
-
-
-def _slips(
-    page: PageEvidence, names: Iterable[str], fields: Mapping[str, str]
-) -> tuple[Change, ...]:
-    """The single slips of printed numbers and replies that make them what they should be."""
-    found = []
-    for name in sorted(names):
-        check = page.checks.get(name)
-        reply = name.startswith("reply ")
-        should = page.recovered.scene.get(name[6:]) if reply else fields.get(name)
-        if check is None or check.printed is None or should is None:
-            continue
-        if kind := slips.slip(check.printed, should):
-            found.append(Change(kind, name, check.printed, should))
-    return tuple(found)
+    return [(tried[index],) for index in order]
 
 
 def _slipped(
     page: PageEvidence,
     changes: tuple[Change, ...],
-    wrong: frozenset[str],
+    left: frozenset[str],
     outcome: Mapping[str, str] | None = None,
-) -> Cause:
-    """Slips as a cause; ``outcome``: what is then printed, in which may be slips, too."""
-    if outcome and len(wrong - page.base) <= page.most_left:
-        changes = (*changes, *_slips(page, wrong & page.base, outcome))
+) -> Iterator[Cause]:
+    """Slips as a cause; ``outcome``: what is then printed: numbers and replies may be one slip away
+    from it, too."""
+    if outcome and len(left - page.base) <= page.most_left:
+        for name in sorted(left & page.checks.keys() & page.base):
+            printed = page.checks[name].printed or ""
+            reply = name.startswith("reply ")
+            should = page.recovered.scene[name[6:]] if reply else outcome.get(name, "")
+            if printed and should and (kind := slips.slip(printed, should)):
+                changes = (*changes, Change(kind, name, printed, should))
+    if not changes:
+        return
     bits = sum(map(_believed, changes))
     if all(change.field in INPUTS for change in changes) and page.only_last_places:
         bits += _LAST_PLACE
@@ -213,7 +191,7 @@ def _slipped(
     elif any(one.field in page.recovered.apart for one in changes):
         note = "in the inputs given separately"
     kind = " and ".join(dict.fromkeys(change.kind for change in changes))
-    return Cause(kind, note, bits, wrong - {one.field for one in changes}, changes)
+    yield Cause(kind, note, bits, left - {one.field for one in changes}, changes)
 
 
 def _believed(change: Change) -> float:
