@@ -13,8 +13,7 @@ import pytest
 from captures import ROOT
 from impact88.errors import UserError
 from impact88.fields import INPUTS, outcome_fields
-from impact88.judging.judgement import Status
-from impact88.judging.lookingpast import settled
+from impact88.judging.judgement import Status, settled
 from impact88.program.run import run
 from impact88.reading.numerals import printable
 from impact88.reading.printout import Printout, read_bytes, read_printouts

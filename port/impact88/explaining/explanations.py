@@ -22,7 +22,7 @@ from ..recovery import slips
 from ..recovery.search import in_doubles
 from ..recovery.slips import Change, Reread, Rereading
 from ..recovery.typedtext import mu_turned
-from . import machines, programs
+from . import machines
 from .causes import (
     LABEL_WRONG,
     LABELS_EXCHANGED,
@@ -32,7 +32,7 @@ from .causes import (
     differing,
     in_last_places,
 )
-from .hypotheses import Rows
+from .hypotheses import Rows, other_programs
 
 MOST = 6
 """Explanations given at most."""
@@ -73,7 +73,7 @@ def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) ->
         for more in (
             lambda: _reread(page, rereading.best()),
             lambda: (*rows.searched(), *_exchanged_and_slipped(page, rows, rereading)),
-            lambda: programs.causes(page),
+            lambda: other_programs(page),
         ):
             whole = [one.bits for one in causes if not one.left]
             if in_time() and min(whole, default=math.inf) > _ENOUGH:

@@ -1,4 +1,5 @@
-"""Named causes (``hypotheses.txt``): pages whose inputs or results stand there otherwise.
+"""Named causes (``hypotheses.txt``): pages whose inputs or results stand there otherwise; and other
+programs.
 
 Each row means a scene that was computed with, or results that are shown otherwise. Those that fit
 the page in double precision are replayed. A number shown in another unit was rounded there, so that
@@ -8,15 +9,16 @@ it may have been computed with several; they are searched for the nearest rows.
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import combinations
-from math import isfinite
+from math import isfinite, log2
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..doubles import double, doubles_of
-from ..equations.edits import assigned, written_out
-from ..equations.evaluation import value
-from ..equations.spelling import NEGATIVE, Expression
+from ..equations.edits import Edit, assigned, edits_of, readings, written_out
+from ..equations.evaluation import Run, chunks, value
+from ..equations.spelling import LISTING, NEGATIVE, SHOWN, Expression, spellings
 from ..fields import FIELDS, INPUTS, scene_name
 from ..files import packaged_text
 from ..reading import numerals
@@ -24,18 +26,18 @@ from ..recovery import replays
 from ..recovery.search import Column, in_doubles
 from ..recovery.slips import Change
 from ..recovery.typedtext import with_opposite_mu
-from .causes import (
-    Cause,
-    PageEvidence,
-    Range,
-    decimals_of,
-    digits_of,
-)
+from .causes import NOT_APPLESOFT, Cause, PageEvidence, Range, decimals_of, digits_of
 
 _ANY_TWO = 20.0
 """Bits of any two numbers exchanged: then no slip is looked for besides."""
 _COMBINATIONS = 60_000
 """Numbers that may have been computed with, of all inputs together."""
+_BITS = {"a changed line of the listing": 24.0, "another program": 20.0}
+"""Bits of an edit: one of some 5,000 lines (12) or 500 readings (9), and an office's copy in which
+one is wrong at all (12, 11)."""
+_CHANCE = 50.0
+"""Bits that the explained numbers must have together: the digits of three of them, as two often
+follow from one another (a center's velocity and its contact point's)."""
 _ROUGH = 1e-6
 """Relative error of the Apple's arithmetic, and of a factor that is known to seven digits."""
 
@@ -250,3 +252,43 @@ def _near(number: float, within: float, most: int) -> list[str]:
         if last >= first:
             texts = [_short(round(k * step, places)) for k in range(int(first), int(last) + 1)]
     return texts
+
+
+# --- other programs ---
+
+
+def other_programs(page: PageEvidence) -> Iterator[Cause]:
+    """The edit of the listing that explains all that differs, of those that compute the same the
+    likeliest: one node of one statement written otherwise, columns read or shown otherwise, other
+    models; in double precision. Only where it explains far more than chance would."""
+    numbers = {name: some[0] for name, some in page.results.items() if some and name in page.texts}
+    differ = page.base & set(numbers)
+    if sum(log2(1 + abs(numbers[n]) * 10.0 ** (FIELDS[n].places or 0)) for n in differ) < _CHANCE:
+        return
+    values = doubles_of(page.recovered.scene)
+    run = Run(spellings()[LISTING], {name: np.array([value]) for name, value in values.items()})
+
+    def wrong(names: Mapping[str, Any], count: int) -> NDArray[np.intp]:
+        """How many of the numbers each of so many programs leaves unexplained."""
+        found = np.zeros(count, np.intp)
+        for name, number in numbers.items():
+            shown = names.get(SHOWN + name, run.names[SHOWN + name])
+            places = FIELDS[name].places
+            unit = 0.0 if places is None else 10.0 ** -max(places, page.decimals(name))
+            slack = _ROUGH * abs(number) + 0.05 * unit
+            ahead = np.broadcast_to(shown, (count, 1))[:, 0] - number
+            found += ~((ahead >= -slack) & (ahead <= unit + slack))
+        return found
+
+    if not wrong({}, 1)[0]:
+        return  # what differs is the arithmetic
+    edits = (*edits_of(LISTING), *readings())
+    named: list[Edit] = []
+    for part in chunks(len(edits), 1):
+        names = run.edited([edit.sides for edit in edits[part]])
+        alike = np.flatnonzero(wrong(names, len(edits[part])) == 0)
+        named += [edits[part][k] for k in alike]
+    if named:
+        edit = min(named, key=lambda edit: (edit.rank, len(edit.text)))
+        kind = "a changed line of the listing" if edit.title else "another program"
+        yield Cause(kind, f"{edit.text}; {NOT_APPLESOFT}", _BITS[kind], frozenset())

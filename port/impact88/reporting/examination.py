@@ -16,8 +16,7 @@ from .. import files
 from ..errors import UserError, quoted
 from ..fields import scene_name
 from ..judging import beside
-from ..judging.judgement import Judged, Status, Verdict, judge
-from ..judging.lookingpast import looked_past
+from ..judging.judgement import Judged, Status, Verdict, judge, looked_past
 from ..mappings import texts
 from ..reading.plaintext import decoded
 from ..reading.printout import LARGEST_FILE, Printout, read_printouts

@@ -16,7 +16,7 @@ from ..scan.evidence import RATES, state
 from ..scan.exhibit import exhibit, shown
 from ..scan.grid import Grid
 from ..scan.holding import Cell
-from ..scan.picture import pages_of
+from ..scan.picture import Page, pages_of
 from ..scan.scenes import scenes_in
 from ..scan.sheets import Leaf, looked
 from ..scan.typeface import BLANK
@@ -34,8 +34,7 @@ def verified(path: str, data: bytes, seed: str = "") -> Iterator[Verification]:
             leaves = looked(page.grey, [*seeds, *scenes_in(page.text)])
             found: list[Verification] = []
             for leaf in leaves:
-                number = len(results) + len(found) + 1
-                result = _verification(path, number, page.number, page.grey.shape, leaf)
+                result = _verification(path, len(results) + len(found) + 1, page, leaf)
                 result.exhibit = partial(exhibit, page.grey, leaves, leaf)
                 found.append(result)
             if page.text.strip():
@@ -81,46 +80,36 @@ def _layered(results: list[Verification], text: str) -> None:
                 result.verdict = Verdict.INCOMPLETE
 
 
-def _verification(
-    path: str, number: int, page: int, size: tuple[int, ...], leaf: Leaf
-) -> Verification:
+def _verification(path: str, number: int, page: Page, leaf: Leaf) -> Verification:
     settled = leaf.judged.verdict is not Verdict.INCOMPLETE
     known = {name: _printed(cells) for name, cells in leaf.by_name.items()} if settled else {}
     text, starts = leaf.read.page(known)
     printed = leaf.found.outcome.fields if leaf.found else {}
     scene: dict[str, str | None] = dict.fromkeys(SCENE)
     if leaf.found and settled:
-        scene = {name: leaf.found.scene[name] for name in SCENE}
-    result = Verification(
-        file=path,
-        number=number,
-        line=min((row.start for row in leaf.read.sheet.rows.values()), default=0) + 1,
-        page=page,
-        basis=RATES,
-        verdict=leaf.judged.verdict,
-        scene=scene,
-        fields=[
-            _check(leaf, name, printed.get(name), leaf.by_name.get(name, []))
-            for name in FIELDS
-            if name in printed or name in leaf.read.costs
-        ],
-        replies=list(_replies(leaf)),
-        stop=len(text),
-        text=text,
-    )
+        scene |= {name: leaf.found.scene[name] for name in SCENE}
+    fields = [
+        _check(leaf, name, printed.get(name), leaf.by_name.get(name, []))
+        for name in FIELDS
+        if name in printed or name in leaf.read.costs
+    ]
+    line = min((row.start for row in leaf.read.sheet.rows.values()), default=0) + 1
+    result = Verification(path, number, line, leaf.judged.verdict, scene, fields)
+    result.replies, result.page = [*_replies(leaf)], page.number
+    result.text, result.stop, result.basis = text, len(text), RATES
     for check in result.fields:
         if check.printed and check.name in starts:
             check.start = starts[check.name]
             check.stop = check.start + len(check.printed)
     result.cells = [
-        _described(cell, page, size, leaf.grid)
+        _described(cell, page, leaf.grid)
         for cell in leaf.cells  # blanks and labels that hold are not told
         if (cell.name and cell.predicted != BLANK) or state(cell) != "holds"
     ]
     if leaf.judged.reason:
-        result.remarks.append(f"page {page}: {leaf.judged.reason}")
+        result.remarks.append(f"page {page.number}: {leaf.judged.reason}")
     result.findings += [
-        f"page {page}, line {cell.place.line + 1}, cell {cell.place.cell + 1}: "
+        f"page {page.number}, line {cell.place.line + 1}, cell {cell.place.cell + 1}: "
         f"{cell.name or 'a label'} shows {shown(cell.other)} where the program prints "
         f"{shown(cell.predicted)} (margin {cell.margin:+.2f}, {cell.count} and {cell.other_count} "
         "cells of each on the page)"
@@ -165,10 +154,14 @@ def _replies(leaf: Leaf) -> Iterator[FieldCheck]:
                 yield _check(leaf, name, "".join(cell.predicted for cell in part), part)
 
 
-def _described(cell: Cell, page: int, size: tuple[int, ...], grid: Grid) -> dict[str, Any]:
+def _described(cell: Cell, page: Page, grid: Grid) -> dict[str, Any]:
+    """A cell as JSON; ``box``: left, top, right, bottom in the picture as it lies, in pixels."""
+    x, y = grid.around(*cell.place).T
+    height, width = page.grey.shape
+    x, y = ((x, y), (width - y, x), (width - x, height - y), (y, height - x))[grid.turns]
     return {
-        "page": page,
-        "box": box(cell, size, grid),
+        "page": page.number,
+        "box": [round(float(v), 1) for v in (x.min(), y.min(), x.max(), y.max())],
         "field": cell.name or None,
         "predicted": cell.predicted,
         "state": state(cell),
@@ -178,16 +171,3 @@ def _described(cell: Cell, page: int, size: tuple[int, ...], grid: Grid) -> dict
         "cells_of_predicted": cell.count,
         "cells_of_runner_up": cell.other_count,
     }
-
-
-def box(cell: Cell, size: tuple[int, ...], grid: Grid) -> list[float]:
-    """Left, top, right, bottom of a cell in the picture as it lies, in pixels."""
-    x, y = grid.around(*cell.place).T
-    height, width = size[:2]
-    if grid.turns == 1:
-        x, y = width - y, x
-    elif grid.turns == 2:
-        x, y = width - x, height - y
-    elif grid.turns == 3:
-        x, y = y, height - x
-    return [round(float(v), 1) for v in (x.min(), y.min(), x.max(), y.max())]
