@@ -176,8 +176,8 @@ def _slipped(
     if outcome and len(left - page.base) <= page.most_left:
         for name in sorted(left & page.checks.keys() & page.base):
             printed = page.checks[name].printed or ""
-            reply = name.startswith("reply ")
-            should = page.recovered.scene[name[6:]] if reply else outcome.get(name, "")
+            known = page.recovered.scene if name.startswith("reply ") else outcome
+            should = known.get(name.removeprefix("reply "), "")
             if printed and should and (kind := slips.slip(printed, should)):
                 changes = (*changes, Change(kind, name, printed, should))
     if not changes:
