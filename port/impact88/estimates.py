@@ -90,8 +90,3 @@ def _of_weight(mass: float, name: str, source: str, units: str | None) -> float:
             source,
         )
     return (_SLOPE * weight - _OFFSET) * float(SYSTEMS["us"].scale(INERTIA) / system.scale(INERTIA))
-
-
-def remarks(how: Mapping[str, str], values: Mapping[str, str]) -> dict[str, str]:
-    """A line for each estimate, for people who see the result."""
-    return {name: f"{name} = {values[name]} is estimated: {rule}" for name, rule in how.items()}

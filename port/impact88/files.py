@@ -68,9 +68,6 @@ def decode(data: bytes, where: str) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-# --- reading -------------------------------------------------------------------------------------
-
-
 @contextmanager
 def _naming(path: str, done: str) -> Iterator[None]:
     """Errors of the system within are UserErrors that name the file."""
@@ -158,9 +155,6 @@ def typed_line() -> str | None:
     return line.rstrip("\r\n") if line else None
 
 
-# --- writing -------------------------------------------------------------------------------------
-
-
 class _Sink(io.FileIO):
     """A file being written; an error in writing it is a UserError that names it."""
 
@@ -171,11 +165,14 @@ class _Sink(io.FileIO):
             return super().write(data)
 
 
-def _sink(
-    file: str, target: str, mode: str, opener: Callable[[str, int], int] | None = None
-) -> IO[Any]:
+def _sink(file: str, target: str, mode: str, private: bool) -> IO[Any]:
+    """A file to write; ``private``: one that must not be there yet, for its owner only."""
+
+    def opener(path: str, flags: int) -> int:
+        return os.open(path, flags | os.O_EXCL, 0o600)
+
     with _naming(target, "written"):
-        raw = _Sink(file, "w", opener=opener)
+        raw = _Sink(file, "w", opener=opener if private else None)
     raw.target = target
     buffered = io.BufferedWriter(raw)
     if "b" in mode:
@@ -193,7 +190,7 @@ def replacing(path: str, mode: str = "w") -> Iterator[IO[Any]]:
     disk is full, or what stands there is read-only."""
     target, usual = _target(path)
     if os.path.exists(target) and not os.path.isfile(target):
-        with _sink(target, path, mode) as file:
+        with _sink(target, path, mode, False) as file:
             yield file
         return
     folder, name = os.path.split(target)
@@ -201,7 +198,7 @@ def replacing(path: str, mode: str = "w") -> Iterator[IO[Any]]:
     beside = os.path.join(folder, f".{name[:56]}.{os.urandom(8).hex()}.part")
     # its name is known before it is there: a signal at any moment finds what to remove
     try:
-        file = _sink(beside, path, mode, _private)
+        file = _sink(beside, path, mode, True)
         try:
             yield file
             file.flush()
@@ -229,11 +226,6 @@ def write_folder(folder: str, files: Mapping[str, bytes]) -> None:
             os.makedirs(os.path.dirname(path), exist_ok=True)
         with replacing(path, "wb") as file:
             file.write(data)
-
-
-def _private(path: str, flags: int) -> int:
-    """Open a file that must not be there yet, for its owner only."""
-    return os.open(path, flags | os.O_EXCL, 0o600)
 
 
 def _target(path: str) -> tuple[str, int]:
@@ -300,17 +292,11 @@ def _place(path: str) -> tuple[Any, ...] | None:
     return (about.st_dev, about.st_ino) if S_ISREG(about.st_mode) else None
 
 
-# --- what is installed with this project ---------------------------------------------------------
-
-
 def packaged_bytes(package: str, name: str) -> bytes:
     """A data file that is installed with this project, such as legacy's listing."""
-    from importlib import import_module
+    from pkgutil import get_data
 
-    module = import_module(package)
-    folder = os.path.dirname(module.__file__ or "")
-    data: bytes = module.__loader__.get_data(os.path.join(folder, name))  # type: ignore[union-attr]
-    return data
+    return get_data(package, name) or b""
 
 
 def packaged_text(package: str, name: str) -> str:

@@ -30,25 +30,21 @@ def in_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _in_base(values: Mapping[str, Any]) -> tuple[Mapping[str, Any], str | None]:
-    """The values in base units, and the name of their system."""
     check_mapping(values)
     texts = {name: value for name, value in values.items() if isinstance(value, str)}
     if isinstance(values, Scene) or not texts:
         return values, None
     if "units" in texts:
-        scalars = {n: v for n, v in values.items() if type(v) in (int, float)}
-        texts |= {name: repr(value).upper() for name, value in scalars.items()}
+        texts |= {n: repr(v).upper() for n, v in values.items() if type(v) in (int, float)}
     found = entries_of(texts, "values")
     kept = {name: value for name, value in values.items() if name not in texts}
     if found.units:
         from .uncertainty.uncertain import Uncertain
         from .units import system_of
 
-        factors = {n: system_of(found.units).factor(n) for n in kept}
-        kept = {
-            n: v.over(factors[n]) if isinstance(v, Uncertain) else in_doubles(n, v) / factors[n]
-            for n, v in kept.items()
-        }
+        for n, v in kept.items():
+            factor = system_of(found.units).factor(n)
+            kept[n] = v.over(factor) if isinstance(v, Uncertain) else in_doubles(n, v) / factor
     return {**kept, **found.values}, found.units
 
 
@@ -89,7 +85,7 @@ def _double(name: str, value: Any) -> float:
         if isinstance(value, bytes):
             value = value.decode("ascii")
         return double(value) if isinstance(value, str) else float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise UserError(f"{quoted(value)} is not a number", f"column {name}") from None
 
 

@@ -5,8 +5,6 @@ a scene keeps text; an arithmetic reads it later. The file form is TOML, flat, k
 listing's names; only the raw text of a value is used, never TOML's own idea of the number.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
@@ -25,7 +23,6 @@ VALUE_LIMIT = 70
 """The longest value: three of them and their commas fit the 239 characters INPUT keeps."""
 DATA_LINES, REPLY_LINES, M_LINE = (280, 290, 310), (210, 230), 350
 TYPED_LIMIT = 239
-_NUMBER_BEGINS = tuple("0123456789.")
 LISTING = "impact.bas"
 
 _ENTRY = r"""[ \t]*(?:([A-Za-z0-9_-]+)|"([^"]*)"|'([^']*)')[ \t]*=[ \t]*(.*)"""
@@ -51,7 +48,7 @@ class Entries:
         self.sources: dict[str, str] = {}
         self.remarks: dict[str, str] = {}
 
-    def changed(self, changes: Mapping[str, str]) -> Entries:
+    def changed(self, changes: Mapping[str, str]) -> "Entries":
         """These entries with some values changed."""
         result = Entries({**self.values, **changes}, {**self.given, **changes}, self.units)
         result.title, result.case, result.outlines = self.title, self.case, self.outlines
@@ -105,27 +102,23 @@ class Scene(Mapping[str, str]):
     @classmethod
     def from_mapping(
         cls, values: Mapping[str, str], source: str = "scene", units: str | None = None
-    ) -> Scene:
+    ) -> "Scene":
         """A scene from texts by name, which may have units; bare numbers are in ``units`` unless an
-        entry says otherwise; M defaults to 6."""
-        return cls._of(values, source, units)
-
-    @classmethod
-    def from_toml(cls, path: str, units: str | None = None) -> Scene:
-        """The same from a TOML file; of a value known within limits, the middle. Raises UserError
-        naming file, line or key."""
-        return cls._of(toml_file(path), called(path), units)
-
-    @classmethod
-    def from_toml_text(cls, text: str, source: str, units: str | None = None) -> Scene:
-        """The scene in a TOML document; ``source`` names it in errors."""
-        return cls._of(toml_texts(text, source), source, units)
-
-    @classmethod
-    def _of(cls, texts: Mapping[str, str], source: str, units: str | None) -> Scene:
-        found = entries_of(texts, source, units, single=True)
+        entry says otherwise; of a value known within limits, the middle; M defaults to 6. Raises
+        UserError."""
+        found = entries_of(values, source, units, single=True)
         found.values.pop("correlations", None)
         return cls(found.values, found.title, source, found.units, found)
+
+    @classmethod
+    def from_toml(cls, path: str, units: str | None = None) -> "Scene":
+        """The same from a TOML file. Raises UserError naming file, line or key."""
+        return cls.from_mapping(toml_file(path), called(path), units)
+
+    @classmethod
+    def from_toml_text(cls, text: str, source: str, units: str | None = None) -> "Scene":
+        """The scene in a TOML document; ``source`` names it in errors."""
+        return cls.from_mapping(toml_texts(text, source), source, units)
 
     def __getitem__(self, name: str) -> str:
         return self._values[name]
@@ -143,7 +136,7 @@ class Scene(Mapping[str, str]):
         """The scene file, as a notebook shows it."""
         return notebook.preformatted(self.to_toml())
 
-    def replaced(self, changes: Mapping[str, str]) -> Scene:
+    def replaced(self, changes: Mapping[str, str]) -> "Scene":
         """This scene with some values changed; a share of the critical friction stays that share.
         Raises UserError as the constructor does."""
         entries = self.entries.changed(changes)
@@ -178,7 +171,7 @@ class Scene(Mapping[str, str]):
         has at most 239 characters."""
         for value in SCENE.values():
             text = self[value.name]
-            if value.line not in REPLY_LINES and text.lstrip(" +-")[:1] not in _NUMBER_BEGINS:
+            if value.line not in REPLY_LINES and not re.match(r"[ +-]*[0-9.]", text):
                 raise UserError(
                     f"{value.name} = {text!r} is a number to INPUT but not in program line "
                     f"{value.line}; expected one that begins with a digit or a point",
@@ -285,7 +278,8 @@ def entries_of(
         from . import estimates
 
         values, found.estimated, found.outlines = estimates.with_estimates(values, source, system)
-        found.remarks |= estimates.remarks(found.estimated, values)
+        for name, rule in found.estimated.items():
+            found.remarks[name] = f"{name} = {values[name]} is estimated: {rule}"
         for name in found.estimated if single else ():
             values[name] = _middle(name, values[name], source)
     found.values = _with_contact_point(values, source)
@@ -366,8 +360,6 @@ def toml_texts(text: str, source: str) -> dict[str, str]:
             raise UserError(
                 f"has more than {LONGEST_ENTRY:,} characters; expected one value a line", where
             )
-        if '"""' in line or "'''" in line:
-            raise UserError("has a text of several lines; expected one value a line", where)
         if not line.strip() or line.lstrip().startswith("#"):
             continue
         if header := re.fullmatch(r"\s*\[([A-Za-z0-9_-]+)\]\s*(#.*)?", line):
@@ -384,7 +376,7 @@ def toml_texts(text: str, source: str) -> dict[str, str]:
                     source,
                 )
             raise UserError(f"{quoted(line.strip())} is not an entry; expected NAME = VALUE", where)
-        key = next(group for group in match.groups()[:3] if group is not None)
+        key = match[1] or match[2] or match[3] or ""
         if table:
             if key not in ("value", "source"):
                 raise UserError(f"{table} is a table; expected a number", where)
@@ -411,6 +403,10 @@ def _toml_values(key: str, text: str, where: str) -> dict[str, str]:
     except tomllib.TOMLDecodeError as error:
         if not raw:
             raise UserError(f"{key} has no value; expected a number", where) from None
+        if raw[:3] in ('"""', "'''"):
+            raise UserError(
+                "has a text of several lines; expected one value a line", where
+            ) from None
         if not is_number(raw):
             reason = str(error).partition(" (at line")[0]
             raise UserError(f"{key} = {quoted(raw)} is not TOML: {reason}", where) from None
@@ -418,12 +414,11 @@ def _toml_values(key: str, text: str, where: str) -> dict[str, str]:
         bare = f"{whole} or " if _plain_toml(whole) else ""
         raise UserError(f'{key} = {raw} is not TOML; write {bare}"{raw}"', where) from None
     texts = {}
-    if isinstance(value, dict) and set(value) <= {"value", "source"} and "value" in value:
+    if isinstance(value, dict) and "value" in value and set(value) <= {"value", "source"}:
         if "source" in value:
             texts[key + SOURCE] = str(value["source"])
         value = value["value"]
-        inside = re.search(r"\bvalue\s*=\s*([^,}]*)", raw)
-        raw = inside[1].strip() if inside else ""
+        raw = re.sub(r".*?\bvalue\s*=\s*([^,}]*).*", r"\1", raw).strip()
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         kind = {bool: "a truth value", list: "a list", dict: "a table"}.get(type(value), "a date")
         raise UserError(f"{key} is {kind}; expected a number", where)
@@ -447,21 +442,10 @@ The impulse P_n n + P_t t acts on A, its opposite on B; friction (MU above 0) op
 
 def shown_texts(texts: Mapping[str, str], units: str | None) -> dict[str, str]:
     """Numbers in base units as bare numbers of the system of that name."""
-    if units is None:
-        return dict(texts)
     from .amounts import shown_text
-    from .units import SYSTEMS
+    from .units import system_of
 
-    return {name: shown_text(name, text, SYSTEMS[units]) for name, text in texts.items()}
-
-
-def _unit_of(name: str, units: str | None) -> str:
-    """How a quantity's unit is called in a file: a rule where it names no system."""
-    if not units:
-        return str(quantity(name).unit)
-    from .units import SYSTEMS
-
-    return SYSTEMS[units].label(quantity(name).unit)
+    return {name: shown_text(name, text, system_of(units)) for name, text in texts.items()}
 
 
 def template(
@@ -472,6 +456,8 @@ def template(
 ) -> str:
     """A commented scene file; without ``values`` the numbers are left to fill in; ``units``: the
     system of its bare numbers (`impact88.units`); ``estimated``: names marked as estimates."""
+    from .units import system_of
+
     lines = [
         "# A scene for impact88. Any consistent units; angles in degrees, spins in radians per",
         '# unit of time. The digits are used as written. Write 0.911 or ".911": TOML takes no .911',
@@ -489,7 +475,7 @@ def template(
         text = values[row.name] if values else (DEFAULT_M if row.name == "M" else "")
         entry = f"{row.name} = {text if _plain_toml(text) else _quoted(text)}"
         mark = ", estimated" if row.name in estimated else ""
-        unit = _unit_of(row.name, units)
+        unit = system_of(units).label(row.unit)
         lines.append(f"{entry:<20} # {row.symbol}: {row.meaning} [{unit}]{mark}")
     return "\n".join(lines) + "\n"
 
@@ -498,6 +484,8 @@ def known_template(
     names: Sequence[str], values: Mapping[str, str] | None = None, units: str | None = None
 ) -> str:
     """A file to fill in with what is known of ``names``; ``values``: what is known already."""
+    from .units import system_of
+
     known = {"M": DEFAULT_M} if values is None else values
     lines = ["# Fill in what is known; what stays empty is solved for. Any consistent units."]
     if units:
@@ -506,15 +494,14 @@ def known_template(
         row = quantity(name)
         meaning = "signed P_t/P_n, in place of MU" if name == "MUP" else row.meaning
         entry = f"{name} = {_quoted(known.get(name, ''))}"
-        lines.append(f"{entry:<12} # {row.symbol}: {meaning} [{_unit_of(name, units)}]")
+        lines.append(f"{entry:<12} # {row.symbol}: {meaning} [{system_of(units).label(row.unit)}]")
     return "\n".join(lines)
 
 
 def _quoted(text: str) -> str:
     """A text as TOML has it, on one line whatever it holds."""
     line = "".join(character if character.isprintable() else " " for character in text)
-    line = line.replace("\\", "\\\\").replace('"', '\\"')
-    return '"{}"'.format(line.replace("'''", "\\u0027" * 3))  # which would begin several lines
+    return '"{}"'.format(line.replace("\\", "\\\\").replace('"', '\\"'))
 
 
 def _plain_toml(text: str) -> bool:
@@ -551,7 +538,7 @@ _SAMPLES = {
 SAMPLES = tuple(_SAMPLES)
 
 
-def sample(number: int) -> Scene:
+def sample(number: int) -> "Scene":
     """The scene of published run 1, 2 or 3. Raises UserError for another number.
 
     >>> impact88.sample(2)["M"]

@@ -138,13 +138,12 @@ def _product(text: str, arc: bool, force: bool) -> tuple[Dimension, Fraction, st
 
 class System(NamedTuple):
     """A consistent set and how its quantities are written. ``base``: sizes of its length and mass
-    in m and kg (its time is the second); ``usual``: the unit of a bare number, by what it measures;
-    ``labels``: of what is not entered, but shown."""
+    in m and kg (its time is the second); ``usual``: the unit of a bare number, by what it
+    measures."""
 
     name: str
     base: tuple[Fraction, Fraction]
     usual: dict[str, str]
-    labels: dict[str, str]
 
     def scale(self, rule: str) -> Fraction:
         """The size in m, kg, s and radians of one base unit of what ``rule`` measures."""
@@ -155,20 +154,16 @@ class System(NamedTuple):
 
     def label(self, rule: str) -> str:
         """The unit that values of a rule ("length/time") are shown in."""
-        return self.usual.get(rule) or self.labels.get(rule, rule)
+        return self.usual.get(rule, rule)
 
     def shown(self, rule: str, value: float) -> float:
         """A value in base units as it is shown."""
-        return value * self._factor(rule)
-
-    def _factor(self, rule: str) -> float:
-        unit = self.usual.get(rule)
-        size = size_of(unit, rule) if unit else None
-        return float(self.scale(rule) / size[0]) if size else 1.0
+        size = size_of(self.usual.get(rule, ""), rule)
+        return value * float(self.scale(rule) / size[0]) if size else value
 
     def factor(self, name: str) -> float:
         """What a quantity's value in base units is multiplied with to be shown."""
-        return self._factor(quantity(name).unit)
+        return self.shown(quantity(name).unit, 1.0)
 
     def unit(self, name: str) -> str:
         """The unit a quantity is shown in; nothing for a mere number or where none is known."""
@@ -183,22 +178,19 @@ class System(NamedTuple):
 
 
 _FEET, _METRES = (_FOOT, _SLUG), (Fraction(1), Fraction(1))
-_FEET_LABELS = {FORCE: "lb", IMPULSE: "lb-s", TURNING: "ft-lb-s", TIME: "s", PERCENT: "percent"}
-_METRE_LABELS = {FORCE: "N", IMPULSE: "N-s", TURNING: "N-m-s", TIME: "s", PERCENT: "percent"}
-_COMMON = {SPIN: "rad/s", ANGLE: "deg"}
+_COMMON = {SPIN: "rad/s", ANGLE: "deg", TIME: "s", PERCENT: "percent"}
 _US_UNITS = {LENGTH: "ft", INERTIA: "lb-ft-s2", ENERGY: "ft-lb", **_COMMON}
+_US_UNITS |= {FORCE: "lb", IMPULSE: "lb-s", TURNING: "ft-lb-s"}
 _SI_UNITS = {LENGTH: "m", MASS: "kg", INERTIA: "kg-m2", ENERGY: "J", **_COMMON}
+_SI_UNITS |= {FORCE: "N", IMPULSE: "N-s", TURNING: "N-m-s"}
 SYSTEMS = {
-    system.name: system
-    for system in (
-        System("us", _FEET, {**_US_UNITS, VELOCITY: "mph", MASS: "lb"}, _FEET_LABELS),
-        System("chapter", _FEET, {**_US_UNITS, VELOCITY: "ft/s", MASS: "slug"}, _FEET_LABELS),
-        System("metric", _METRES, {**_SI_UNITS, VELOCITY: "km/h"}, _METRE_LABELS),
-        System("si", _METRES, {**_SI_UNITS, VELOCITY: "m/s"}, _METRE_LABELS),
-    )
+    "us": System("us", _FEET, {**_US_UNITS, VELOCITY: "mph", MASS: "lb"}),
+    "chapter": System("chapter", _FEET, {**_US_UNITS, VELOCITY: "ft/s", MASS: "slug"}),
+    "metric": System("metric", _METRES, {**_SI_UNITS, VELOCITY: "km/h"}),
+    "si": System("si", _METRES, {**_SI_UNITS, VELOCITY: "m/s"}),
 }
 """What ``units = "..."`` and ``--units`` may say."""
-RULES = System("", _METRES, {}, {})
+RULES = System("", _METRES, {})
 """No units given: rules stand for units ("length/time"), and values are shown as they are."""
 
 

@@ -96,7 +96,7 @@ class TableUnits:
             raise UserError(
                 f"{quoted(text)}: expected its unit in the heading, or --units {found.name}"
             )
-        return converted(name, text, System("", self.system.base, usual, {}))
+        return converted(name, text, System("", self.system.base, usual))
 
     def headings(self, results: Sequence[str]) -> list[str]:
         """Names with the headings they have here: ``DVA [mph]``."""
