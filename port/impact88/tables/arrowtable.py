@@ -4,7 +4,7 @@ Needs pyarrow (extra ``arrow``). Numbers are taken as they are stored, texts and
 digits. What was text in a CSV becomes doubles where it is a scene's, and stays text elsewhere.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -15,7 +15,7 @@ from ..files import ESCAPED, replacing
 from ..names import SCENE
 from .arrow import ArrowColumn, ArrowTexts
 from .cells import typed
-from .rows import BLOCK_ROWS, Column, Reader, Rows, heading, scene_names
+from .rows import BLOCK_ROWS, Column, Named, Put, Reader, Rows, heading, scene_names
 
 
 def _blocks(pa: Any, names: Sequence[str], batches: Iterable[Any], where: str) -> Iterator[Rows]:
@@ -85,9 +85,7 @@ def _encodable(text: str) -> str:
 
 
 @contextmanager
-def write(
-    path: str, form: str, delimiter: str, names: Sequence[str]
-) -> Iterator[Callable[[Sequence[tuple[str, Column]]], None]]:
+def write(path: str, form: str, delimiter: str, names: Sequence[str]) -> Iterator[Put]:
     """Write a Parquet or Arrow file, whose schema is the first block's."""
     pa = library("pyarrow", "arrow", "this format")
     from pyarrow import parquet
@@ -111,7 +109,7 @@ def write(
         repeating = [field.name for field in schema if not pa.types.is_floating(field.type)]
         return parquet.ParquetWriter(file, schema, use_dictionary=repeating)
 
-    def put(columns: Sequence[tuple[str, Column]]) -> None:
+    def put(columns: Named) -> None:
         table = pa.table([array(*column) for column in columns], headings)
         if not opened:
             opened.extend((writer(table.schema), table.schema))

@@ -8,7 +8,7 @@ the header. From the first block that is not, it is read line by line.
 
 import csv
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from itertools import chain, takewhile
 from typing import Any
@@ -26,6 +26,8 @@ from .rows import (
     BLOCK_CHARACTERS,
     BLOCK_ROWS,
     Column,
+    Named,
+    Put,
     Reader,
     Rows,
     heading,
@@ -249,9 +251,7 @@ def _joined(arrays: Sequence[Any], delimiter: str, ends: str) -> Any:
 
 
 @contextmanager
-def write(
-    path: str, form: str, delimiter: str, names: Sequence[str]
-) -> Iterator[Callable[[Sequence[tuple[str, Column]]], None]]:
+def write(path: str, form: str, delimiter: str, names: Sequence[str]) -> Iterator[Put]:
     """Write a CSV table. Blocks of pyarrow's texts and of arrays go out through pyarrow."""
     ends = f'[{re.escape(delimiter)}"\r\n]'
 
@@ -262,7 +262,7 @@ def write(
             return texts
         return ['"{}"'.format(t.replace('"', '""')) if re.search(ends, t) else t for t in texts]
 
-    def put(columns: Sequence[tuple[str, Column]]) -> None:
+    def put(columns: Named) -> None:
         found = (_in_arrow(column) for _, column in columns if through_arrow)
         arrays = list(takewhile(lambda array: array is not None, found))
         if len(arrays) == len(columns):

@@ -6,9 +6,9 @@ import io
 import math
 import os
 import zipfile
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from itertools import islice
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import closing, contextmanager
+from itertools import chain, islice
 from typing import Any
 
 import numpy as np
@@ -19,25 +19,35 @@ from ..names import SCENE
 from .cells import typed
 from .jsontext import plain
 from .npztable import check_unpacked
-from .rows import BLOCK_ROWS, Column, Reader, Rows, heading, scene_names
+from .rows import BLOCK_ROWS, Column, Named, Put, Reader, Rows, heading, scene_names
 
 LONGEST_CELL = 32_767
 """Characters that Excel has in a cell."""
 
 
-def _names(lines: Iterator[tuple[int, tuple[Any, ...]]], where: str) -> list[str]:
-    """The header: the first row that holds anything."""
-    header = [_text(cell).strip() for _, row in islice(lines, 1) for cell in row]
-    while header and not header[-1]:
-        header.pop()
-    if not header:
-        raise UserError("its first sheet is empty; expected a header of names", where)
-    return scene_names(header, where)
+_Lines = Generator[tuple[int, tuple[Any, ...]], None, None]
 
 
-def _blocks(
-    names: list[str], lines: Iterator[tuple[int, tuple[Any, ...]]], where: str
-) -> Iterator[Rows]:
+def _lines(path: str) -> _Lines:
+    """The rows that hold anything, with their numbers. Whatever openpyxl raises on arbitrary bytes
+    is a UserError."""
+    openpyxl = library("openpyxl", "excel", "an .xlsx")
+    try:
+        with zipfile.ZipFile(path) as archive:
+            check_unpacked(archive.infolist(), os.path.getsize(path), path)
+        with closing(openpyxl.load_workbook(path, read_only=True, data_only=True)) as book:
+            for number, row in enumerate(book.worksheets[0].iter_rows(values_only=True), 1):
+                if any(cell is not None for cell in row):
+                    yield number, row
+    except OSError as error:
+        raise UserError(f"cannot be read: {error.strerror or error}", path) from None
+    except UserError:
+        raise
+    except Exception as error:
+        raise UserError(f"is not an .xlsx workbook: {quoted(str(error))}", path) from None
+
+
+def _blocks(names: list[str], lines: _Lines, where: str) -> Iterator[Rows]:
     width, trusted = len(names), False
     while block := list(islice(lines, BLOCK_ROWS)):
         for number, row in block:
@@ -57,21 +67,19 @@ def _blocks(
 def _check_computed(path: str, width: int) -> None:
     """Raise UserError where a formula has no value: libraries write formulas, spreadsheet programs
     compute them when they save."""
-    openpyxl = library("openpyxl", "excel", "an .xlsx")
-    books = [openpyxl.load_workbook(path, read_only=True, data_only=only) for only in (True, False)]
-    try:
-        sheets = (book.worksheets[0].iter_rows(max_col=width) for book in books)
-        for values, formulas in zip(*sheets, strict=True):
-            for value, formula in zip(values, formulas, strict=True):
-                if value.value is None and formula.data_type == "f":
-                    raise UserError(
-                        f"cell {formula.coordinate} has a formula that was never computed; "
-                        "expected a workbook saved by a spreadsheet program",
-                        path,
-                    )
-    finally:
-        for book in books:
-            book.close()
+    load = library("openpyxl", "excel", "an .xlsx").load_workbook
+    with (
+        closing(load(path, read_only=True, data_only=True)) as computed,
+        closing(load(path, read_only=True)) as written,
+    ):
+        sheets = (book.worksheets[0].iter_rows(max_col=width) for book in (computed, written))
+        for value, formula in chain.from_iterable(map(zip, *sheets)):
+            if value.value is None and formula.data_type == "f":
+                raise UserError(
+                    f"cell {formula.coordinate} has a formula that was never computed; expected a "
+                    "workbook saved by a spreadsheet program",
+                    path,
+                )
 
 
 def _text(cell: Any) -> str:
@@ -82,38 +90,15 @@ def _text(cell: Any) -> str:
 @contextmanager
 def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
     """Open a workbook. Raises UserError if it is not one, or unpacks to more than it may."""
-    openpyxl = library("openpyxl", "excel", "an .xlsx")
-    with _parsing(path):
-        with zipfile.ZipFile(path) as archive:
-            check_unpacked(archive.infolist(), os.path.getsize(path), path)
-        book = openpyxl.load_workbook(path, read_only=True, data_only=True)
-        rows = book.worksheets[0].iter_rows(values_only=True)
-
-    def filled() -> Iterator[tuple[int, tuple[Any, ...]]]:
-        with _parsing(path):
-            for number, row in enumerate(rows, 1):
-                if any(cell is not None for cell in row):
-                    yield number, row
-
-    lines = filled()
-    try:
-        names = _names(lines, path)
+    lines = _lines(path)
+    with closing(lines):
+        header = [_text(cell).strip() for _, row in islice(lines, 1) for cell in row]
+        while header and not header[-1]:
+            header.pop()
+        if not header:
+            raise UserError("its first sheet is empty; expected a header of names", path)
+        names = scene_names(header, path)
         yield Reader(names, _blocks(names, lines, path))
-    finally:
-        book.close()
-
-
-@contextmanager
-def _parsing(path: str) -> Iterator[None]:
-    """Whatever openpyxl raises on arbitrary bytes is a UserError."""
-    try:
-        yield
-    except OSError as error:
-        raise UserError(f"cannot be read: {error.strerror or error}", path) from None
-    except UserError:
-        raise
-    except Exception as error:
-        raise UserError(f"is not an .xlsx workbook: {quoted(str(error))}", path) from None
 
 
 def _cell(value: Any) -> Any:
@@ -127,9 +112,7 @@ def _cell(value: Any) -> Any:
 
 
 @contextmanager
-def write(
-    path: str, form: str, delimiter: str, names: Sequence[str]
-) -> Iterator[Callable[[Sequence[tuple[str, Column]]], None]]:
+def write(path: str, form: str, delimiter: str, names: Sequence[str]) -> Iterator[Put]:
     """Write a workbook."""
     openpyxl = library("openpyxl", "excel", "an .xlsx")
     book = openpyxl.Workbook(write_only=True)
@@ -137,7 +120,7 @@ def write(
     sheet.append([_cell(heading(name)) for name in names])
     count = 1
 
-    def put(columns: Sequence[tuple[str, Column]]) -> None:
+    def put(columns: Named) -> None:
         nonlocal count
         cells = (typed(*column) for column in columns)
         rows = list(

@@ -7,7 +7,7 @@ to the same, NaN is null, and infinity 1e999, which readers take for it.
 
 import json
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from itertools import chain, islice
 from typing import Any
@@ -24,6 +24,8 @@ from .rows import (
     BLOCK_CHARACTERS,
     BLOCK_ROWS,
     Column,
+    Named,
+    Put,
     Reader,
     Rows,
     heading,
@@ -107,13 +109,11 @@ def _cells(name: str, column: Column) -> list[str]:
 
 
 @contextmanager
-def write(
-    path: str, form: str, delimiter: str, names: Sequence[str]
-) -> Iterator[Callable[[Sequence[tuple[str, Column]]], None]]:
+def write(path: str, form: str, delimiter: str, names: Sequence[str]) -> Iterator[Put]:
     """Write a JSON Lines table, of blocks that need not all have the same columns."""
     with writing(path) as file:
 
-        def put(columns: Sequence[tuple[str, Column]]) -> None:
+        def put(columns: Named) -> None:
             keys = [json.dumps(heading(name), ensure_ascii=False) for name, _ in columns]
             file.writelines(
                 "{" + ", ".join(f"{k}: {v}" for k, v in zip(keys, row, strict=True) if v) + "}\n"

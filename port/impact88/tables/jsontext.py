@@ -35,21 +35,16 @@ def read(text: str) -> Any:
         raise ValueError(f"is nested deeper than {DEEPEST} levels") from None
     except ValueError as error:
         raise ValueError(f"is not JSON: {error}") from None
-    if text.count("[") + text.count("{") > DEEPEST and _is_deep(value):
+    if text.count("[") + text.count("{") > DEEPEST and _depth(value) > DEEPEST:
         raise ValueError(f"is nested deeper than {DEEPEST} levels")
     return value
 
 
-def _is_deep(value: Any) -> bool:
-    level = [value]
-    for _ in range(DEEPEST):
-        level = [
-            inner
-            for outer in level
-            if isinstance(outer, dict | list)
-            for inner in (outer.values() if isinstance(outer, dict) else outer)
-        ]
-    return any(isinstance(value, dict | list) for value in level)
+def _depth(value: Any) -> int:
+    """How many lists and objects stand inside one another."""
+    if not isinstance(value, dict | list):
+        return 0
+    return 1 + max(map(_depth, value.values() if isinstance(value, dict) else value), default=0)
 
 
 def written(value: Any) -> str:
@@ -72,18 +67,15 @@ def plain(value: Any) -> str:
     return written(value) if isinstance(value, dict | list | bool) else str(value)
 
 
-_DOUBLE = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+([eE][+-]?[0-9]+)?|[eE][+-]?[0-9]+)")
-_WHOLE = re.compile(r"-?(0|[1-9][0-9]*)")
+_JSON = re.compile(r"-?(?:0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 
 
 def double(text: str) -> str:
     """A number's own digits as JSON writes a double: never as a whole number, so that readers who
     go by what they see give all of a column one type. Raises ValueError for a text that is no
     number."""
-    if _DOUBLE.fullmatch(text):
-        return text
-    if _WHOLE.fullmatch(text):
-        return text + ".0"
+    if match := _JSON.fullmatch(text):
+        return text if match[1] or match[2] else text + ".0"
     if not doubles.is_number(text):
         raise ValueError(f"{text!r} is not a number")
     sign, whole, decimals, exponent_sign, exponent, _ = scan(text.upper())

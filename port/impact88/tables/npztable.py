@@ -8,7 +8,8 @@ import io
 import os
 import sys
 import zipfile
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from math import prod
 from typing import Any
@@ -20,17 +21,16 @@ from ..errors import UserError, quoted
 from ..files import ESCAPED, replacing
 from ..names import SCENE
 from .cells import typed
-from .rows import Column, Reader, Rows, heading, scene_names
+from .rows import Column, Put, Reader, Rows, heading, scene_names
 
 MOST_ARRAYS = 10_000
 """A table has some fifty columns."""
 UNPACKED, RATIO = 256_000_000, 20
 """Bytes that a small file may unpack to; a larger one so many times its own. Doubles pack to a
 third; with twice as much a file of 100 MB may take 4 GB of memory."""
-_KINDS = "biufcSU"
 
 
-def read_arrays(path: str) -> dict[str, NDArray[Any]]:
+def _arrays(path: str) -> dict[str, NDArray[Any]]:
     """Every array of an .npz file by name. Raises UserError if it is not one, holds anything else,
     or unpacks to more than it may."""
     try:
@@ -40,17 +40,11 @@ def read_arrays(path: str) -> dict[str, NDArray[Any]]:
                 raise UserError(
                     f"holds {len(members):,} arrays; at most {MOST_ARRAYS:,} are read", path
                 )
-            seen = set()
-            for member in members:
-                if not member.filename.endswith(".npy"):
-                    raise UserError(
-                        f"holds {quoted(member.filename)}; expected .npy arrays only", path
-                    )
-                if member.flag_bits & 1:
-                    raise UserError("is encrypted; expected a plain .npz file", path)
-                if member.filename in seen:
-                    raise UserError(f"holds {quoted(member.filename)} twice", path)
-                seen.add(member.filename)
+            for name, count in Counter(member.filename for member in members).items():
+                if not name.endswith(".npy"):
+                    raise UserError(f"holds {quoted(name)}; expected .npy arrays only", path)
+                if count > 1:
+                    raise UserError(f"holds {quoted(name)} twice", path)
             check_unpacked(members, os.path.getsize(path), path)
             return {m.filename[:-4]: _member(archive, m, path) for m in members}
     except OSError as error:
@@ -75,27 +69,23 @@ def check_unpacked(members: list[zipfile.ZipInfo], size: int, path: str) -> None
 
 def _member(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: str) -> NDArray[Any]:
     where = f"{path}, {quoted(member.filename)}"
+    if member.flag_bits & 1:
+        raise UserError("is encrypted; expected a plain .npz file", path)
+    headers = np.lib.format.read_array_header_1_0, np.lib.format.read_array_header_2_0
+    says = "cannot be unpacked"
     try:
         with archive.open(member) as file:
             data = io.BytesIO(file.read(member.file_size + 1))
+        says = "is not an array of numbers or text"
+        shape, _, dtype = headers[np.lib.format.read_magic(data)[0] - 1](data)
     except (OSError, MemoryError):
         raise
-    except Exception as error:  # zlib, struct, lzma ... each have their own
-        raise UserError(f"cannot be unpacked: {error}", where) from None
-    try:
-        version = np.lib.format.read_magic(data)
-        read = np.lib.format.read_array_header_1_0
-        if version != (1, 0):
-            read = {(2, 0): np.lib.format.read_array_header_2_0}[version]
-        shape, _, dtype = read(data)
-    except MemoryError:
-        raise
-    except Exception as error:  # whatever a literal's parser raises on arbitrary bytes
-        reason = quoted(str(error).partition("\n")[0])
-        raise UserError(f"is not an array of numbers or text: {reason}", where) from None
+    except Exception as error:  # zlib, struct, lzma, a literal's parser ... each have their own
+        reason = str(error).partition("\n")[0]
+        raise UserError(f"{says}: {reason}", where) from None
     if any(length < 0 for length in shape):
         raise UserError("has a negative length", where)
-    if dtype.kind not in _KINDS:
+    if dtype.kind not in "biufcSU":
         raise UserError(f"holds {dtype}; expected an array of numbers or of text", where)
     size, expected = data.getbuffer().nbytes, data.tell() + prod(shape) * dtype.itemsize
     if size != expected or size != member.file_size:
@@ -111,7 +101,7 @@ LARGEST_TEXTS = 256_000_000
 @contextmanager
 def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
     """Open an .npz table. Raises UserError if it is not one, or holds Python objects."""
-    arrays = read_arrays(path)
+    arrays = _arrays(path)
     names = scene_names(list(arrays))
     columns: dict[str, Any] = dict(zip(names, arrays.values(), strict=True))
     scene = {name: array for name, array in columns.items() if name in SCENE}
@@ -146,9 +136,7 @@ def _array(name: str, column: Column) -> NDArray[Any]:
 
 
 @contextmanager
-def write(
-    path: str, form: str, delimiter: str, names: Sequence[str]
-) -> Iterator[Callable[[Sequence[tuple[str, Column]]], None]]:
+def write(path: str, form: str, delimiter: str, names: Sequence[str]) -> Iterator[Put]:
     """Write an .npz table as numpy.savez does, but of arrays with any name."""
     parts: list[list[NDArray[Any]]] = []
     yield lambda columns: parts.append([_array(*column) for column in columns])

@@ -16,6 +16,9 @@ from ..errors import UserError, quoted
 from ..names import RESULTS, SCENE
 
 Column = Sequence[Any] | NDArray[Any]
+Named = Sequence[tuple[str, Column]]
+"""A block's columns, each with its name."""
+Put = Callable[[Named], None]
 
 BLOCK_ROWS = 16384
 """Rows read, solved and written together, unless they are very long: two arrays of them fit a
