@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 
 from impact88 import solve
-from impact88.amounts import in_base
 from impact88.cli import main
 from impact88.errors import UserError
 from impact88.scene import Scene, sample
 from impact88.uncertainty.bounds import bounds
 from impact88.uncertainty.uncertain import read
-from impact88.units import SYSTEMS, size_of
+from impact88.units import SYSTEMS, in_base, size_of
 
 G = 9.80665 / 0.3048
 """ft/s²"""
@@ -89,10 +88,10 @@ class TestConversion:
 
     def test_shown_and_read_are_inverse(self):
         for system in SYSTEMS.values():
-            for rule, unit in system.usual.items():
-                value, _ = in_base({"units": system.name, _NAMES[rule]: f"12.5 {unit}"}, "f")
-                assert system.shown(rule, float(value[_NAMES[rule]])) == pytest.approx(12.5)
-                assert size_of(unit, rule)
+            for rule, name in _NAMES.items():
+                value, _ = in_base({"units": system.name, name: f"12.5 {system.usual[rule]}"}, "f")
+                assert system.shown(rule, float(value[name])) == pytest.approx(12.5)
+                assert size_of(system.usual[rule], rule)
 
 
 _NAMES = {

@@ -12,12 +12,11 @@ from typing import Any
 
 import pytest
 
-from impact88.amounts import shown_text
 from impact88.cli import main
 from impact88.closedform.solve import solve
 from impact88.names import FINAL_STATE, quantity
 from impact88.scene import sample
-from impact88.units import SYSTEMS, size_of
+from impact88.units import SYSTEMS, shown_text, size_of
 
 Amounts = dict[str, float]
 """By what it is called: values in m, kg, s, degrees and rad/s."""

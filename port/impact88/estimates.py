@@ -18,10 +18,9 @@ Beside a known inertia LA BA are the outline that is drawn. A weight needs no es
 from collections.abc import Mapping
 from math import inf
 
-from .amounts import nominal
 from .doubles import digits, double
 from .errors import UserError
-from .units import INERTIA, MASS, SYMBOLS, SYSTEMS
+from .units import INERTIA, MASS, SYMBOLS, SYSTEMS, nominal
 
 WORD = "estimate"
 """What stands in a file for an inertia that is not known."""
@@ -66,7 +65,7 @@ def with_estimates(
 def _number(text: str, name: str, wanted: str, source: str) -> float:
     """The value, or the middle of one known within limits."""
     try:
-        value = double(nominal(text))
+        value = double(nominal(name, text, source))
     except ValueError:
         value = 0.0
     if not 0 < value < inf:

@@ -264,24 +264,25 @@ def entries_of(
         if name not in given:
             raise UserError(f"{name}{SOURCE} is given, and {name} is not", source)
     found.title, found.case = values.pop("title", None), values.pop("case", None)
-    if system:
-        from .amounts import remarks
+    uncertain = [n for n, text in values.items() if n != "correlations" and _is_range(text)]
+    if system or (uncertain and single):
+        from .units import nominal, remarks
 
         found.remarks = remarks(given, system)
-    for name in values if single else ():
-        if name != "correlations" and _is_range(values[name]):
-            values[name] = _middle(name, values[name], source)
-            found.remarks[name] = f"{name} = {given[name]}: its middle is used"
+    for name in uncertain if single else ():
+        values[name] = nominal(name, values[name], source)
+        found.remarks[name] = f"{name} = {given[name]}: its middle is used"
     if not _SIZES.isdisjoint(values) or any(
         values.get(name, "").startswith("estimate") for name in ("IA", "IB")
     ):
-        from . import estimates
+        from .estimates import with_estimates
+        from .units import nominal
 
-        values, found.estimated, found.outlines = estimates.with_estimates(values, source, system)
+        values, found.estimated, found.outlines = with_estimates(values, source, system)
         for name, rule in found.estimated.items():
             found.remarks[name] = f"{name} = {values[name]} is estimated: {rule}"
         for name in found.estimated if single else ():
-            values[name] = _middle(name, values[name], source)
+            values[name] = nominal(name, values[name], source)
     found.values = _with_contact_point(values, source)
     return found
 
@@ -300,25 +301,14 @@ def _is_range(text: str) -> bool:
     return any(mark in text for mark in RANGES) and not text.startswith("estimate")
 
 
-def _middle(name: str, text: str, source: str) -> str:
-    if is_number(text):
-        return text
-    from .amounts import ACCEPTED, nominal
-
-    try:
-        return nominal(text)
-    except ValueError:
-        raise UserError(f"{name} = {text!r} is not an amount; {ACCEPTED}", source) from None
-
-
 def in_base_units(
     texts: Mapping[str, str], source: str, units: str | None = None
 ) -> tuple[dict[str, str], str | None]:
-    """The texts in base units (`impact88.amounts`), and the system's name; as they are where no
+    """The texts in base units (`impact88.units`), and the system's name; as they are where no
     value, nor the entry ``units``, nor ``units`` names any. Raises UserError."""
     if units is None and all(BARE.issuperset(texts[n]) for n in texts if n not in _NO_AMOUNTS):
         return dict(texts), None
-    from .amounts import in_base
+    from .units import in_base
 
     return in_base(texts, source, units)
 
@@ -442,8 +432,7 @@ The impulse P_n n + P_t t acts on A, its opposite on B; friction (MU above 0) op
 
 def shown_texts(texts: Mapping[str, str], units: str | None) -> dict[str, str]:
     """Numbers in base units as bare numbers of the system of that name."""
-    from .amounts import shown_text
-    from .units import system_of
+    from .units import shown_text, system_of
 
     return {name: shown_text(name, text, system_of(units)) for name, text in texts.items()}
 

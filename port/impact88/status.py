@@ -95,7 +95,8 @@ def sentences(status: int, values: Mapping[str, Any] | None = None) -> list[str]
 def admissible_friction(status: int, values: Mapping[str, Any]) -> list[str]:
     """Which sign of MU is admissible and how large it may be, if ``status`` says that it is not.
     ``values``: MUC and MUP of the impact; MU, GA, XA YA XB YB as far as they are known."""
-    critical, used, typed = (float(values.get(name, nan)) for name in ("MUC", "MUP", "MU"))
+    names = ("MUC", "MUP", "MU", "GA", "XA", "YA", "XB", "YB")
+    critical, used, typed, plane, xa, ya, xb, yb = (float(values.get(n, nan)) for n in names)
     if not status & _FRICTION or not isfinite(critical) or not used:
         return []
     if critical * used > 0 and status & Status.FRICTION_WRONG_DIRECTION:
@@ -103,7 +104,8 @@ def admissible_friction(status: int, values: Mapping[str, Any]) -> list[str]:
     text = f"admissible here: P_t/P_n {_up_to(critical)}"
     if abs(typed) > 0:  # MU is known
         text += f", that is MU {_up_to(critical * typed / used)} as typed"
-    if typed == used and _slides_not(values):
+    sliding = (ya - yb) * cos(radians(plane)) - (xa - xb) * sin(radians(plane))
+    if typed == used and abs(sliding) <= 1e-12 * hypot(xa - xb, ya - yb):
         text += "; without sliding before the impact line 400 keeps the sign of MU"
     return [text]
 
@@ -116,12 +118,3 @@ def _up_to(limit: float) -> str:
         return "= 0 only"
     low, high = sorted((0.0, limit))
     return f"from {low:.4g} to {high:.4g}"
-
-
-def _slides_not(values: Mapping[str, Any]) -> bool:
-    """Whether the contact points do not slide along each other before the impact."""
-    if not all(name in values for name in ("GA", "XA", "YA", "XB", "YB")):
-        return False
-    x, y = (float(values[f"{axis}A"]) - float(values[f"{axis}B"]) for axis in "XY")
-    gamma = radians(float(values["GA"]))
-    return abs(y * cos(gamma) - x * sin(gamma)) <= 1e-12 * hypot(x, y)

@@ -1,18 +1,33 @@
-"""Units: their sizes, the systems they belong to, and what values are shown in.
+"""Units, and amounts as people write them: sizes, systems, and the one grammar of numbers, units,
+ranges and tolerances.
 
-An amount with a unit ("-25 mph", see `impact88.amounts`) is converted once, by exact fractions, to
-its system's base: ft, slug and s, or m, kg and s; angles are in degrees, spins in radians a second.
-A unit is an expression of symbols ("slug ft2", "lb-ft-s2"), whose dimension is worked out and
-compared with what a quantity measures: in "lb ft2" only the mass gives an inertia, in "lb-ft-s2"
-only the force. A units library would take a quarter of a second to import, and has one "lb".
+    -25 mph   3,091 lb   5 1/2 ft   6 ft 6 in   6'6"   8°30'   2,000 lb ft2   a number with a unit
+    -31..-29 mph      30 mph .. 35 mph         between two values
+    30 +- 2 mph       143.5 slug +- 5%         a middle and a half width (±, +/-)
+    +- 2 mph          +- 5%                    the same, around the value known otherwise
+    uniform A B    triangular A M B    normal MEAN SD [within A .. B]
+    estimate          estimate +- 20 %         a yaw inertia (`impact88.estimates`)
+
+A unit that one number has and others lack belongs to all of them. Numbers that stand side by side
+without a unit between them, or with a sign, are refused, and so is a comma that may be a decimal
+one. A bare number without any system of units stays the text it is, digit for digit.
+
+An amount is converted once, by exact fractions, to its system's base: ft, slug and s, or m, kg and
+s; angles are in degrees, spins in radians a second. A unit is an expression of symbols ("slug ft2",
+"lb-ft-s2"), whose dimension is worked out and compared with what a quantity measures: in "lb ft2"
+only the mass gives an inertia, in "lb-ft-s2" only the force. A units library would take a quarter
+of a second to import, and has one "lb".
 """
 
 import re
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from functools import lru_cache
+from itertools import pairwise
+from math import inf
 from typing import NamedTuple
 
+from .doubles import BARE, digits, double, is_number
 from .errors import UserError, quoted
 from .names import quantity
 
@@ -255,3 +270,305 @@ def written(values: Mapping[str, float], system: System) -> dict[str, float]:
     if system is RULES:
         return dict(values)
     return {name: value * system.factor(name) for name, value in values.items()}
+
+
+ACCEPTED = (
+    "expected a number, a number with its unit (-25 mph, 3,091 lb, 5 1/2 ft, 6 ft 6 in, 8 deg), "
+    "'A .. B', 'N +- D', 'N +- P%', 'uniform A B', 'triangular A M B' or "
+    "'normal MEAN SD [within A .. B]'"
+)
+WORDS = ("title", "case", "correlations", "M")
+"""Entries of a file that are not amounts."""
+ENTRY = "units"
+"""The entry of a file that names its system."""
+SHARED = ("MU", "MUP")
+"""Ratios whose percentage is a share of something else; kept for the code that knows of what."""
+
+_MEANT = str.maketrans(
+    {"−": "-", "′": "'", "’": "'", "″": '"', "”": '"', "⋅": "·", "×": "*", "•": "·", "º": "°"}
+    | {"\u00a0": " ", "\u202f": " ", "\u2009": " ", "½": " 1/2", "¼": " 1/4", "¾": " 3/4"}
+)
+_DECIMAL = r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_NUMBER = rf"\d{{1,3}}(?:,\d{{3}})+(?:\.\d*)?(?![\d,])|(?:\d+ )?\d+ ?/ ?\d+|{_DECIMAL}"
+_AFTER = r"[a-zA-Z°%²³^]"
+_PART = re.compile(rf"({_NUMBER})(?![\d,/]) ?(?:({UNIT})(?!{_AFTER})|(?!{_AFTER})) ?")
+_SIGN = re.compile(r"([-+]?) ?")
+_FORMS = (
+    ("uniform", r"uniform (.+)", (2,), "uniform {} {}"),
+    ("triangular", r"triangular (.+)", (3,), "triangular {} {} {}"),
+    ("normal", r"normal (.+?) within (.+?) ?\.\. ?(.+)", (2, 1, 1), "normal {} {} within {} .. {}"),
+    ("normal", r"normal (.+)", (2,), "normal {} {}"),
+    ("around", rf"(.*?) ?(?:\+-|±|\+/-) ?({_DECIMAL}) ?%", (1, 1), "{} +- {}%"),
+    ("around", r"(.*?) ?(?:\+-|±|\+/-) ?(.+)", (1, 1), "{} +- {}"),
+    ("range", r"(.+?) ?\.\. ?(.+)", (1, 1), "{} .. {}"),
+)
+"""Notations of a value known within limits: pattern, how many amounts each part holds, layout."""
+_PHRASES: dict[str, tuple[re.Pattern[str], tuple[str, ...]]] = {
+    "estimate": (re.compile(r"estimate(?: (.+))?"), ("",)),
+    "skid": (re.compile(r"skid (.+) at (.+)"), (LENGTH, NUMBER)),
+}
+"""Phrases that hold values of their own: the pattern, and what each value measures ("": what the
+entry does). Whoever reads the entry finds the phrase again, its values in base units."""
+
+
+class Amount(NamedTuple):
+    """One amount: its ``sign``, its numbers as written, each with its unit ("" for none)."""
+
+    sign: str
+    parts: tuple[tuple[str, str], ...]
+
+    @property
+    def units(self) -> list[str]:
+        """The units it has."""
+        return [unit for _, unit in self.parts if unit]
+
+
+class Notation(NamedTuple):
+    """A text taken apart: its ``kind`` ("fixed" or one of the notations above), its ``amounts`` in
+    order (the middle of ``around`` may be None), whether the last is a share in percent, and its
+    ``layout``."""
+
+    kind: str
+    amounts: tuple[Amount | None, ...]
+    share: bool = False
+    layout: str = "{}"
+
+    @property
+    def units(self) -> list[str]:
+        """The units it has."""
+        return [unit for amount in self.amounts if amount for unit in amount.units]
+
+
+def parse(text: str) -> Notation:
+    """A value or range taken apart. Raises ValueError for what is neither."""
+    words = " ".join(text.replace("⁻¹", "^-1").replace("⁻²", "^-2").translate(_MEANT).split())
+    if "..." in words:
+        raise ValueError(text)
+    for kind, pattern, counts, layout in _FORMS:
+        if match := re.fullmatch(pattern, words):
+            amounts: list[Amount | None] = []
+            for part, count in zip(match.groups(), counts, strict=True):
+                amounts += _split(part, count) if part or kind != "around" else [None]
+            return Notation(kind, tuple(amounts), layout.endswith("%"), layout)
+    if is_number(words) and not re.search(r"\d \d", words):
+        return Notation("fixed", (Amount("", ((words, ""),)),))
+    return Notation("fixed", (_amount(words),))
+
+
+def _amount(text: str) -> Amount:
+    """One amount. Raises ValueError."""
+    sign = _SIGN.match(text)
+    assert sign is not None
+    at = sign.end()
+    parts: list[tuple[str, str]] = []
+    while at < len(text):
+        part = _PART.match(text, at)
+        if not part or (parts and not parts[-1][1]):
+            raise ValueError(text)
+        parts.append((part[1], part[2] or ""))
+        at = part.end()
+    if not parts or (len(parts) > 1 and not _descend([unit for _, unit in parts])):
+        raise ValueError(text)
+    return Amount(sign[1], tuple(parts))
+
+
+def _descend(units: list[str]) -> bool:
+    """Whether units are such as may follow one another: feet and inches, degrees and minutes."""
+    for rule in (LENGTH, ANGLE, MASS):
+        sizes = [size_of(unit, rule) for unit in units]
+        if all(sizes) and all(a[0] > b[0] for a, b in pairwise(filter(None, sizes))):
+            return len({system for _, system in filter(None, sizes)} - {""}) < 2
+    return False
+
+
+def _split(text: str, count: int) -> list[Amount]:
+    """So many amounts that stand side by side. Raises ValueError unless there is one way."""
+    if count == 1:
+        return [_amount(text)]
+    found = []
+    for at in [match.start() for match in re.finditer(" ", text)]:
+        try:
+            found.append([_amount(text[:at]), *_split(text[at + 1 :], count - 1)])
+        except ValueError:
+            continue
+    if len(found) != 1:
+        raise ValueError(text)
+    return found[0]
+
+
+class _Value:
+    """The text of one entry, and what it measures. Raises UserError for what is not an amount."""
+
+    def __init__(self, name: str, text: str, rule: str, source: str) -> None:
+        self.entry, self.rule, self.source = f"{name} = {text}", rule, source
+        try:
+            self.notation = parse(text)
+        except ValueError:
+            raise UserError(
+                f"{name} = {quoted(text)} is not an amount; {ACCEPTED}", source
+            ) from None
+        for unit in self.notation.units:
+            check_unit(unit, rule, self.entry, source)
+        if self.notation.share and (rule == PERCENT or "%" in self.notation.units):
+            raise UserError(f"{self.entry}: percent of a percentage; expected '37 +- 2'", source)
+
+    @property
+    def uses(self) -> list[tuple[str, str]]:
+        """The units it has, each with what it measures."""
+        return [(unit, self.rule) for unit in self.notation.units]
+
+    def based(self, system: System, strict: bool) -> str:
+        """The text in base units; ``strict``: bare numbers that measure something are refused."""
+        units = set(self.notation.units)
+        common = units.pop() if len(units) == 1 else None
+        numbers = []
+        for at, amount in enumerate(self.notation.amounts):
+            if amount is None or (at == 1 and self.notation.share):
+                numbers.append(amount.parts[0][0] if amount else "")
+                continue
+            bare = not amount.units and common is None
+            if bare and strict and self.rule not in _UNITLESS and _fraction(amount.parts[0][0]):
+                raise UserError(f"{self.entry} has no unit, and others have", self.source)
+            numbers.append(self._number(amount, common or system.usual.get(self.rule, ""), system))
+        return self.notation.layout.format(*numbers).lstrip()
+
+    def _number(self, amount: Amount, usual: str, system: System) -> str:
+        """One amount as a number of base units: the digits as written where no factor is needed."""
+        known = [size_of(unit or usual, self.rule) for _, unit in amount.parts]
+        sizes = [size[0] if size else Fraction(1) for size in known]
+        scale = system.scale(self.rule) if usual or amount.units else Fraction(1)
+        for (number, _), size in zip(amount.parts, known, strict=True):
+            if "," in number and (not size or size[1] != "us"):
+                self._refuse(f"the comma of {number} may be a decimal one")
+        number = amount.parts[0][0]
+        if sizes == [scale] and "/" not in number:
+            return amount.sign + number.replace(",", "")
+        try:
+            parts = zip(amount.parts, sizes, strict=True)
+            value = float(sum(_fraction(number) * size for (number, _), size in parts) / scale)
+        except (OverflowError, ZeroDivisionError):
+            self._refuse("too large for a double")
+        return "0" if not value else ("-" if amount.sign == "-" else "") + digits(value)
+
+    def _refuse(self, why: str) -> None:
+        raise UserError(f"{self.entry}: {why}; {ACCEPTED}", self.source)
+
+
+_UNITLESS = (NUMBER, ANGLE, SPIN, PERCENT)
+
+
+def _fraction(text: str) -> Fraction:
+    """A number as written, exactly. Raises OverflowError where no double is as large."""
+    number = text.replace(",", "")
+    if "/" in number:
+        whole, _, part = number.replace(" /", "/").replace("/ ", "/").rpartition(" ")
+        return Fraction(whole or 0) + Fraction(part)
+    value = double(number)
+    if abs(value) == inf:
+        raise OverflowError
+    if not value:  # exponents of nine digits are not worked out
+        return Fraction(0)
+    try:
+        return Fraction(number)
+    except ValueError:  # what only INPUT takes, such as 1E
+        return Fraction(value)
+
+
+def nominal(name: str, text: str, source: str) -> str:
+    """The single value that stands for a value or range in base units: as written where it is, the
+    middle of two limits. Raises UserError for what is neither, and for a tolerance alone."""
+    try:
+        kind, amounts, *_ = parse(text)
+    except ValueError:
+        kind, amounts = "", (None,)
+    first = amounts[1 if kind == "triangular" else 0]
+    if first is None:
+        raise UserError(f"{name} = {text!r} is not an amount; {ACCEPTED}", source)
+    numbers = [a.sign + a.parts[0][0] for a in (first, amounts[-1]) if a]
+    if kind not in ("range", "uniform"):
+        return numbers[0]
+    return digits(float(sum(map(_fraction, numbers)) / 2))
+
+
+def _taken_apart(name: str, text: str, source: str) -> tuple[str, list[_Value]]:
+    """The values an entry holds, and its text with ``{}`` in place of each; no values where it is
+    read elsewhere, or refused there."""
+    if name in WORDS or not any(character.isdigit() for character in text):
+        return text, []
+    try:
+        rule = quantity(name).unit
+    except KeyError:
+        return text, []
+    if name in SHARED and "%" in text:
+        return text, []
+    words = " ".join(text.split())
+    pattern, rules = _PHRASES.get(words.partition(" ")[0], (None, ()))
+    if match := pattern and pattern.fullmatch(words):
+        ends = [0, *(place for at in range(len(rules)) for place in match.span(at + 1)), None]
+        between = [words[a:b] for a, b in zip(ends[::2], ends[1::2], strict=True)]
+        parts = zip(match.groups(), rules, strict=True)
+        return "{}".join(between), [_Value(name, part, own or rule, source) for part, own in parts]
+    return "{}", [_Value(name, text, rule, source)]
+
+
+def in_base(
+    texts: Mapping[str, str], source: str, units: str | None = None
+) -> tuple[dict[str, str], str | None]:
+    """The texts in base units, and the name of their system (None where nothing says). ``texts``:
+    by name, as they were written, and perhaps the entry ``units``; ``units``: the system of bare
+    numbers, where no entry says. Raises UserError for what is not an amount, a unit that does not
+    measure the quantity, for bare numbers among others with units, and for units of two systems
+    where none is named."""
+    entries = dict(texts)
+    system = system_named(units, "--units") if units else None
+    if (named := entries.pop(ENTRY, None)) is not None:
+        system = system_named(named, source)
+    held = {name: _taken_apart(name, text, source) for name, text in entries.items()}
+    strict = system is None
+    system = system or system_using(
+        [use for _, values in held.values() for value in values for use in value.uses], source
+    )
+    strict = strict and system is not RULES
+    for name, (layout, values) in held.items():
+        if values and (system is not RULES or not BARE.issuperset(entries[name])):
+            entries[name] = layout.format(*(v.based(system, strict) for v in values))
+    return entries, system.name or None
+
+
+def converted(name: str, text: str, system: System) -> str:
+    """One entry in base units; its bare numbers are the system's. Raises UserError."""
+    layout, values = _taken_apart(name, text, "")
+    return layout.format(*(v.based(system, False) for v in values)) if values else text
+
+
+def shown_text(name: str, text: str, system: System) -> str:
+    """A number in base units as one of the system's usual units: the fewest digits that are read
+    as the same number again; as it stands where no factor is needed."""
+    factor = system.factor(name)
+    if factor == 1 or not is_number(text):
+        return text
+    value, shown = double(text), ""
+    for places in (15, 16, 17):
+        shown = f"{value * factor:.{places}g}".upper()
+        if double(converted(name, shown, system)) == value:
+            break
+    return shown
+
+
+def units_in(name: str, text: str) -> list[tuple[str, str]]:
+    """The units in a text, each with what it measures; none where it is not an amount."""
+    try:
+        return [use for value in _taken_apart(name, text, "")[1] for use in value.uses]
+    except UserError:
+        return []
+
+
+def remarks(texts: Mapping[str, str], system: str | None) -> dict[str, str]:
+    """What a reader should know of how entries were understood, by name."""
+    bare = [n for n in ("IA", "IB") if (text := texts.get(n, "").strip()) and is_number(text)]
+    if system != "us" or not bare:
+        return {}
+    return {
+        bare[0]: f"{' and '.join(bare)} without a unit: read as slug ft2 (lb-ft-s2); for pounds "
+        "times feet squared write 'lb ft2', 1/32.17 of it"
+    }

@@ -392,7 +392,7 @@ def _in_base(
     changes where the file has none, whose bare numbers are then base units, which is said."""
     given, own = in_base_units(changes, option, units)
     if units or own:
-        from ..amounts import remarks
+        from ..units import remarks
 
         for line in remarks(changes, units or own or "").values():
             note(None, line)

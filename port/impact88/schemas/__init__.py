@@ -6,16 +6,12 @@ number by one, and so does a word added to an enumeration. Schema, number and ou
 same commit. Digits that become more accurate are no change of form.
 """
 
-from __future__ import annotations
+from collections.abc import Mapping
+from typing import Any
 
 from ..errors import UserError
 from ..files import packaged_text
 from ..version import __version__
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from typing import Any
 
 NUMBERS = {
     "run": 1,

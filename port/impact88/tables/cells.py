@@ -3,6 +3,7 @@
 
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
 from copy import copy
 from typing import Any
 
@@ -10,11 +11,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import doubles
-from ..amounts import converted, units_in
 from ..closedform.columns import UNUSED_BY_POINTS
 from ..errors import UserError, quoted
 from ..names import RESULTS, SCENE, quantity
-from ..units import NUMBER, RULES, SYSTEMS, System, check_unit, size_of, system_named, system_using
+from ..units import (
+    NUMBER,
+    RULES,
+    SYSTEMS,
+    System,
+    check_unit,
+    converted,
+    size_of,
+    system_named,
+    system_using,
+    units_in,
+)
 from . import arrow, jsontext
 from .rows import Column, Heading, Rows, heading
 
@@ -224,10 +235,11 @@ def _number(cell: object) -> float | str:
     """The double that a cell is, or why it is none."""
     if cell is None or (isinstance(cell, str) and not cell.strip()):
         return "is empty; expected a number"
-    if isinstance(cell, str) and is_infinite(cell):
-        return math.inf
-    if isinstance(cell, str) and doubles.is_number(cell):
-        return doubles.double(cell)
+    with suppress(ValueError, TypeError):
+        if not isinstance(cell, str | bool):
+            return float(cell)  # type: ignore[arg-type]
+        if isinstance(cell, str):
+            return math.inf if is_infinite(cell) else doubles.double(cell)
     return f"{quoted(cell)} is not a number"
 
 

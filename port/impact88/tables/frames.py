@@ -5,6 +5,7 @@ None of these libraries is imported here unless the frame handed over is its own
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -39,7 +40,7 @@ def solve_frame(
             they are; a result takes the place of a column with its name. A pandas index is kept.
         outputs: the result names wanted, all of them by default.
         scene: values for the columns the frame lacks, such as ``impact88.sample(1)``; M is 6
-            where it is given nowhere.
+            where it is not given.
         units: the system (us, chapter, metric, si) of columns that name no unit.
         threads: as for `impact88.solve`.
 
@@ -89,23 +90,16 @@ def solve_frame(
 
 
 def _numbers(name: str, values: Any, units: TableUnits) -> Array:
-    """Cells as doubles in base units, NaN for what is missing or no number."""
+    """Cells as doubles in base units, NaN for what is missing or no number; of M, 6."""
     if isinstance(values, np.ma.MaskedArray):
         values = np.ma.filled(values.astype(np.float64), np.nan)
     array = np.asarray(values)
     cells = array.reshape(-1)
-    column = cells if array.dtype.kind in "fiu" else list(map(_cell, cells.tolist()))
+    if name == "M" and array.dtype.kind in "fO":
+        absent = [cell is None or cell != cell for cell in cells]
+        cells = np.where(absent, float(DEFAULT_M), cells)
+    column = cells if array.dtype.kind in "fiu" else cells.tolist()
     return numbers(Rows(array.size, {name: column}), units)[name].reshape(array.shape)
-
-
-def _cell(cell: Any) -> Any:
-    """A cell of a table: the text of a number of whatever type."""
-    if isinstance(cell, str | bool) or cell is None:
-        return cell
-    try:
-        return repr(float(cell))
-    except (TypeError, ValueError):
-        return None
 
 
 def _structured(frame: Array, solved: Solver) -> Array:
@@ -126,11 +120,10 @@ def _structured(frame: Array, solved: Solver) -> Array:
 def _dicts(rows: Sequence[Any], solved: Solver) -> list[dict[str, Any]]:
     if not all(isinstance(row, Mapping) for row in rows):
         raise UserError("expected a list of dicts, one for each scene")
-    names = list(dict.fromkeys(name for row in rows for name in row))
-    default = {"M": float(DEFAULT_M)}
     if not rows:
         return []
-    found = solved(names, lambda name: [row.get(name, default.get(name)) for row in rows])
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    found = solved(names, lambda name: [row.get(name) for row in rows])
     results = {name: column.tolist() for name, column in found.items()}
     return [{**row, **{n: c[at] for n, c in results.items()}} for at, row in enumerate(rows)]
 
@@ -163,21 +156,14 @@ def _narwhals(frame: Any, solved: Solver) -> Any:
             "already computed; expected a DataFrame of pandas or polars, a pyarrow Table, an "
             "xarray Dataset, a structured array or a list of dicts"
         ) from None
-    results = solved(table.columns, lambda name: _series(name, table[name]))
-    backend = nw.get_native_namespace(table)
-    count = len(table)
-    return table.with_columns(
-        *(
-            nw.new_series(name, np.broadcast_to(array, (count,)).copy(), native_namespace=backend)
-            for name, array in results.items()
-        )
-    ).to_native()
 
+    def cells(name: str) -> Any:
+        series = table[name]
+        if series.dtype.is_numeric() and not series.is_null().any():
+            return np.asarray(series.to_numpy())
+        return np.array(series.to_list(), dtype=object)
 
-def _series(name: str, series: Any) -> Any:
-    if series.dtype.is_numeric() and not series.is_null().any():
-        return np.asarray(series.to_numpy())
-    cells = series.to_list()
-    if name == "M":
-        cells = [DEFAULT_M if cell is None or cell != cell else cell for cell in cells]
-    return np.array(cells, dtype=object)
+    make = partial(nw.new_series, native_namespace=nw.get_native_namespace(table))
+    results = solved(table.columns, cells).items()
+    spread = ((name, np.broadcast_to(array, (len(table),)).copy()) for name, array in results)
+    return table.with_columns(*(make(*column) for column in spread)).to_native()

@@ -68,8 +68,7 @@ def read_sweep(
     """A reader of the scene's texts with every combination of the ranges' values, the last range
     running fastest; in the system ``units``, the values that have a unit headed with it."""
     if units:
-        from ..amounts import shown_text
-        from ..units import SYSTEMS
+        from ..units import SYSTEMS, shown_text
 
         system = SYSTEMS[units]
         headed = {n: Heading(n, system.heading(n), system.unit(n)) for n in scene}

@@ -25,9 +25,9 @@ from functools import lru_cache
 from statistics import NormalDist
 from typing import TYPE_CHECKING
 
-from ..amounts import ACCEPTED, parse
 from ..doubles import double, is_number
 from ..errors import UserError
+from ..units import ACCEPTED, gravity_in, parse, system_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -206,8 +206,6 @@ _SKID = re.compile(r"skid (.+) at (.+)")
 def skid(text: str, name: str, units: str | None) -> Uncertain:
     """The speed v = √(2 μ g d) at the begin of a skid to rest, of a text "skid D at MU" whose
     values may have limits. ``units``: the system D is in. Raises UserError."""
-    from ..units import gravity_in, system_of
-
     match, gravity = _SKID.fullmatch(" ".join(text.split())), gravity_in(system_of(units))
     if match is None:
         raise UserError(f"{text!r} is not a skid; expected such as 'skid 62 ft at 0.7'", name)
