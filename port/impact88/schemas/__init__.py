@@ -7,7 +7,6 @@ same commit. Digits that become more accurate are no change of form.
 """
 
 from collections.abc import Mapping
-from typing import Any
 
 from ..errors import UserError
 from ..files import packaged_text
@@ -29,7 +28,7 @@ NUMBERS = {
 CONVENTIONS = "conventions"
 
 
-def stamped(name: str, found: Mapping[str, Any]) -> dict[str, Any]:
+def stamped(name: str, found: Mapping[str, object]) -> dict[str, object]:
     """An object as it is printed: with the name and number of its form, and the version."""
     return {"schema": f"impact88/{name}/{NUMBERS[name]}", "version": __version__, **found}
 
