@@ -53,7 +53,7 @@ class _Page:
             self.drawing.add(Text(at, line, 6, bold=line == title[0], role="panel title"))
         box, (xs, x_label, x_ticks), (ys, y_label, y_ticks) = Box(left, top - 38, right, top), x, y
         ticks: Any = {"x_ticks": x_ticks, "y_ticks": y_ticks}
-        return Panel(self.drawing, box, xs, ys, x_label, y_label, **ticks, log=True, grid=True)
+        return Panel(self.drawing, box, xs, ys, x_label, y_label, **ticks, log=True)
 
     def finished(self, rows: int, methods: Sequence[str], note: str) -> Drawing:
         names = {row["method"]: row["name"] for row in self.rows if row["method"] in methods}

@@ -31,10 +31,8 @@ from .forms import digits, filled_in
 from .guard import HEADERS, LARGEST_BODY, refusal
 from .workers import Bench, BrokenError, SupersededError
 
-BENCHES = {
-    **{"edit": "paper", "paper": "paper"},
-    **{"bounds": "collision", "reconstruction": "reconstruction"},
-}
+BENCHES = {"edit": "paper", "paper": "paper", "bounds": "collision"}
+BENCHES["reconstruction"] = "reconstruction"
 """What takes long, and the module that does it; the text being edited overtakes papers waiting."""
 _FORM = ("values", "units")
 
@@ -63,12 +61,8 @@ MORE_GROUPS = {
 ALWAYS_KNOWN = frozenset("MA IA DA PA TA MB IB DB PB TB GA M".split())
 """What a reconstruction cannot do without."""
 
-SYSTEMS = (
-    ("us", "lb, mph, ft"),
-    ("chapter", "slug, ft/s, ft"),
-    ("metric", "kg, km/h, m"),
-    ("si", "kg, m/s, m"),
-)
+SYSTEMS = {"us": "lb, mph, ft", "chapter": "slug, ft/s, ft"}
+SYSTEMS |= {"metric": "kg, km/h, m", "si": "kg, m/s, m"}
 """The systems of units (`impact88.units`), and what bare numbers are in them."""
 PUBLISHED = ("run1-as-printed.txt", "run2-as-printed.txt", "table3-as-printed.txt")
 """The published printouts, as they stand in the chapter."""
@@ -111,22 +105,6 @@ def drivers(bound: Mapping[str, Any]) -> str:
 FILTERS: dict[str, Callable[..., Any]]
 FILTERS = {"quantity": quantity, "symbol": symbol, "unit": unit}
 FILTERS |= {"digits": digits, "drivers": drivers}
-
-
-def contents() -> dict[str, Any]:
-    return {
-        "version": __version__,
-        "groups": GROUPS,
-        "known_groups": KNOWN_GROUPS,
-        "more_groups": MORE_GROUPS,
-        "always_known": ALWAYS_KNOWN,
-        "report_fields": [("case", "Case"), ("examiner", "Examiner"), ("date", "Date")],
-        "published": PUBLISHED,
-        "systems": SYSTEMS,
-        "default_m": DEFAULT_M,
-        "signs": [re.split("   +", line)[-1] for line in SIGNS.splitlines() if line.strip()],
-        "samples": [(number, sample(number).title) for number in SAMPLES],
-    }
 
 
 def application(desk: Desk, port: int, token: str) -> Flask:
@@ -184,7 +162,21 @@ def _addresses(desk: Desk) -> Blueprint:
     @routes.get("/")
     def whole_page() -> str:
         desk.warm()  # while the page is sent
-        return flask.render_template("desk.html", **contents())
+        signs = [re.split("   +", line)[-1] for line in SIGNS.splitlines() if line.strip()]
+        return flask.render_template(
+            "desk.html",
+            version=__version__,
+            groups=GROUPS,
+            known_groups=KNOWN_GROUPS,
+            more_groups=MORE_GROUPS,
+            always_known=ALWAYS_KNOWN,
+            report_fields=[("case", "Case"), ("examiner", "Examiner"), ("date", "Date")],
+            published=PUBLISHED,
+            systems=SYSTEMS.items(),
+            default_m=DEFAULT_M,
+            signs=signs,
+            samples=[(number, sample(number).title) for number in SAMPLES],
+        )
 
     @routes.get("/signs.svg")
     def signs() -> Response:
@@ -275,11 +267,8 @@ def _addresses(desk: Desk) -> Blueprint:
 
 def _saved(text: str, kind: str, name: str) -> Response:
     """A file to be saved by the browser under a name."""
-    return Response(
-        text.encode(),
-        content_type=f"{kind}; charset=utf-8",
-        headers={"Content-Disposition": f'attachment; filename="{name}"'},
-    )
+    headers = {"Content-Disposition": f'attachment; filename="{name}"'}
+    return Response(text.encode(), content_type=f"{kind}; charset=utf-8", headers=headers)
 
 
 def _are_texts(value: object) -> bool:
@@ -311,7 +300,6 @@ def _parts(*names: str) -> dict[str, Any]:
         kind, fits = _KINDS[name]
         if not fits(whole.get(name)):
             raise UserError(f"{name!r} is not {kind}")
-    known = dict(SYSTEMS)
-    if "units" in names and (units := whole.get("units")) and units not in known:
-        raise UserError(f"{units!r} is not a system of units; expected {', '.join(known)}")
+    if "units" in names and (units := whole.get("units")) and units not in SYSTEMS:
+        raise UserError(f"{units!r} is not a system of units; expected {', '.join(SYSTEMS)}")
     return {name: "" if whole.get(name) is None else whole[name] for name in names}

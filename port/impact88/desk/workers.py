@@ -32,12 +32,8 @@ class Bench:
 
     def __init__(self, module: str) -> None:
         self._module = f"{__package__}.{module}"
-        self._pool = ProcessPool(
-            1,
-            initializer=_warm,
-            initargs=(self._module,),
-            context=multiprocessing.get_context("spawn"),
-        )
+        spawn: Any = multiprocessing.get_context("spawn")
+        self._pool = ProcessPool(1, 0, _warm, (self._module,), spawn)
         self._lock = threading.Lock()
         self._asked: dict[str, ProcessFuture[Any]] = {}
 
@@ -50,12 +46,12 @@ class Bench:
         question, SupersededError, and BrokenError."""
         with self._lock:
             self._cancel(page)
-            asked = self._pool.schedule(
-                _answer, (self._module, function, arguments), timeout=ANSWERED_WITHIN
-            )
-            self._asked[page] = asked
+            question = self._module, function, arguments
+            asked = self._asked[page] = self._pool.schedule(_answer, question, {}, ANSWERED_WITHIN)
         try:
-            problem, answer = asked.result()
+            return asked.result()
+        except UserError:
+            raise
         except CancelledError:
             raise SupersededError from None
         except TimeoutError:
@@ -68,9 +64,6 @@ class Bench:
             with self._lock:
                 if self._asked.get(page) is asked:
                     del self._asked[page]
-        if problem:
-            raise UserError(problem)
-        return answer
 
     def _cancel(self, page: str) -> None:
         if page in self._asked:
@@ -93,9 +86,5 @@ def _warm(module: str) -> None:
     import_module(module).warm()
 
 
-def _answer(module: str, function: str, arguments: dict[str, Any]) -> tuple[str, Any]:
-    """What is wrong with the question, or nothing, and what the function returns."""
-    try:
-        return "", getattr(import_module(module), function)(**arguments)
-    except UserError as error:
-        return str(error), None
+def _answer(module: str, function: str, arguments: dict[str, Any]) -> Any:
+    return getattr(import_module(module), function)(**arguments)

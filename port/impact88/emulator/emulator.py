@@ -12,7 +12,7 @@ from ..applesoft.real import to_stored
 from .faults import Fault, Restart
 from .machine import Machine
 from .memory import AFTER_TYPING, INPUT_BUFFER, INTEGER, MARKS, STRING
-from .tokens import LINE_LIMIT, source, split_number, tokenise
+from .tokens import LINE_LIMIT, split_number, tokenise, untokenised
 
 PROMPT = "]"
 
@@ -137,8 +137,8 @@ class Applesoft:
         raise Restart
 
     def source(self) -> str:
-        """The program as text that `load` takes."""
-        return source(self.machine.lines())
+        """The program as text that `load` takes, a line a row: what SAVE writes."""
+        return "".join(f"{number} {untokenised(line)}\n" for number, line in self.machine.lines())
 
     def run(self) -> ApplesoftError | None:
         """RUN. Returns the error that ended the program, or None. Raises `console.EndOfInput` when

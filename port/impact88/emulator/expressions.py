@@ -11,7 +11,7 @@ from collections.abc import Callable
 from ..applesoft import decimaltext, functions, real
 from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
 from ..applesoft.real import INTEGER_EXPONENT, ZERO, Number, compare, integer, rounded, to_integer
-from .faults import Fault, located, placed
+from .faults import Fault, fault_if, located, placed
 from .memory import EMPTY, FUNCTION, INTEGER, STRING, SUBFLG_SIMPLE
 from .tokens import BLANK, CLOSE, COMMA, OPEN, QUOTE, TOKENS
 from .variables import IS_STRING, LARGEST_INTEGER, LONGEST, Variables, descriptor, stored_at
@@ -263,8 +263,7 @@ class Expressions(Variables):
         self.expect(FN, sp - 2)
         self.subflg = SUBFLG_SIMPLE
         address = self.variable(sp - 2, mark=FUNCTION)
-        if self.valtyp:
-            raise Fault("TYPE MISMATCH", sp)
+        fault_if(self.valtyp, "TYPE MISMATCH", sp)
         return address
 
     def _function_call(self, sp: int) -> Number:
@@ -272,17 +271,14 @@ class Expressions(Variables):
         ram = self.ram
         place = self.function_name(sp - 5)
         argument = self.parenthesis(sp - 7)
-        if self.valtyp:
-            raise Fault("TYPE MISMATCH", sp - 7)
-        if not ram[place + 3]:
-            raise Fault("UNDEF'D FUNCTION", sp - 3)
+        fault_if(self.valtyp, "TYPE MISMATCH", sp - 7)
+        fault_if(not ram[place + 3], "UNDEF'D FUNCTION", sp - 3)
         variable = self.varpnt = self.word(place + 2)
         value = bytes(ram[variable : variable + 5])
         self.assign(variable, argument)
         back, self.txtptr = self.txtptr, self.word(place)
         fac = self.number(sp - 14)
-        if not self.at_end():
-            raise Fault("SYNTAX", sp - 10)
+        fault_if(not self.at_end(), "SYNTAX", sp - 10)
         self.txtptr = back
         ram[variable : variable + 5] = value
         return fac
@@ -372,8 +368,7 @@ class Expressions(Variables):
 
     def _text(self, fac: Number, sp: int) -> bytes:
         """GETSTR. Raises TYPE MISMATCH."""
-        if not self.valtyp:
-            raise Fault("TYPE MISMATCH", sp - 6)
+        fault_if(not self.valtyp, "TYPE MISMATCH", sp - 6)
         self.valtyp = 0
         return self.used(descriptor(fac))
 
@@ -382,8 +377,7 @@ class Expressions(Variables):
 
     def _asc(self, fac: Number, sp: int) -> Number:
         text = self._text(fac, sp)
-        if not text:
-            raise Fault("ILLEGAL QUANTITY", sp)
+        fault_if(not text, "ILLEGAL QUANTITY", sp)
         return integer(text[0])
 
     def _val(self, fac: Number, sp: int) -> Number:
@@ -413,8 +407,7 @@ class Expressions(Variables):
         return decimaltext.write(x).encode("ascii")
 
     def _str(self, fac: Number, sp: int) -> Number:
-        if self.valtyp:
-            raise Fault("TYPE MISMATCH", sp - 2)
+        fault_if(self.valtyp, "TYPE MISMATCH", sp - 2)
         text = self.digits(fac)
         self.charac = 0
         return self.made(text)
@@ -428,8 +421,7 @@ class Expressions(Variables):
         self.expect(OPEN, sp - 6)
         string = self.formula(sp - 6)
         self.expect(COMMA, sp - 6)
-        if not self.valtyp:
-            raise Fault("TYPE MISMATCH", sp - 6)
+        fault_if(not self.valtyp, "TYPE MISMATCH", sp - 6)
         place = descriptor(string)
         last = self.number(sp - 10)
         first, length = byte_of(last, sp - 8), LONGEST
@@ -439,8 +431,7 @@ class Expressions(Variables):
             last = self.number(sp - 12)
             length = byte_of(last, sp - 10)
         self.expect(CLOSE, sp - 12)
-        if not first or not word:
-            raise Fault("ILLEGAL QUANTITY", sp - 5)
+        fault_if(not first or not word, "ILLEGAL QUANTITY", sp - 5)
         size = self.ram[place]
         if word == "MID$":
             start = min(first - 1, size)
@@ -448,4 +439,7 @@ class Expressions(Variables):
         else:
             length = min(first, size)
             start = 0 if word == "LEFT$" else size - length
-        return self.part(place, start, length, shifted_out(last))
+        address = self.room(length)
+        _, source = self.freed(place)
+        self.move(source + start, address, length)
+        return self.temporary(length, address, shifted_out(last))

@@ -18,6 +18,12 @@ class Fault(ApplesoftError):
         self.code = code or self.code
 
 
+def fault_if(wrong: object, kind: str, stack: int, code: int = 0) -> None:
+    """Raises the `Fault` if something is wrong."""
+    if wrong:
+        raise Fault(kind, stack, code)
+
+
 def placed(error: ApplesoftError, stack: int) -> Fault:
     """The error with a stack pointer, unless it has one already."""
     return error if isinstance(error, Fault) else Fault(error.kind, stack)

@@ -8,7 +8,7 @@ values before a bad one stay. Only a comma, a colon or the end may follow.
 from ..applesoft.console import CONTROL_C
 from ..applesoft.real import Number, integer
 from .expressions import Expressions, byte_of
-from .faults import Fault, located
+from .faults import Fault, fault_if, located
 from .memory import ADDRESSES, DIGITS, DIRECT, HEADER, INPUT_BUFFER, MINUS
 from .screen import HEIGHT, WIDTH
 from .tokens import CLOSE, COLON, COMMA, DATA, FIRST, QUOTE, SEMICOLON, TOKENS, spelling
@@ -65,8 +65,7 @@ class InputOutput(Expressions):
             if byte in (TAB, SPC):  # TAB counts from 1, 0 is 256
                 self.txtptr += 1
                 columns = self.byte(sp - 3)
-                if self.character() != CLOSE:
-                    raise Fault("SYNTAX", sp - 1)
+                fault_if(self.character() != CLOSE, "SYNTAX", sp - 1)
                 self.txtptr += 1
                 if byte == TAB:
                     columns = (columns - 1 & 0xFF) - self.screen.column
@@ -101,8 +100,7 @@ class InputOutput(Expressions):
 
     def vtab_(self) -> None:
         row = self.byte(self.sp - 4)
-        if not 1 <= row <= HEIGHT:
-            raise Fault("ILLEGAL QUANTITY", self.sp - 2)
+        fault_if(not 1 <= row <= HEIGHT, "ILLEGAL QUANTITY", self.sp - 2)
         self.screen.move_to_row(row - 1)
 
     def set_mode(self, mask: int, flash: int = 0) -> None:
@@ -142,8 +140,7 @@ class InputOutput(Expressions):
 
     def refuse_direct(self, sp: int) -> None:
         """ERRDIR. Raises ILLEGAL DIRECT at the prompt."""
-        if self.curlin >= DIRECT:
-            raise Fault("ILLEGAL DIRECT", sp)
+        fault_if(self.curlin >= DIRECT, "ILLEGAL DIRECT", sp)
 
     def _put_in_buffer(self, text: str) -> None:
         data = text.encode("latin-1") + b"\0"
@@ -192,8 +189,7 @@ class InputOutput(Expressions):
                 if source != FROM_REPLY:
                     self.curlin = self.datlin if source == FROM_DATA else AFTER_GET
                     raise Fault("SYNTAX", sp)
-                if self.errflg & 0x80:
-                    raise Fault("SYNTAX", sp, BAD_REPLY)
+                fault_if(self.errflg & 0x80, "SYNTAX", sp, BAD_REPLY)
                 # asked again, from where the ROM noted last that a statement begins
                 self.show_message(REENTER)
                 self.txtptr = self.oldtext
@@ -214,8 +210,7 @@ class InputOutput(Expressions):
         while source == FROM_DATA:
             self.data_()
             if not ram[self.txtptr]:
-                if not ram[self.txtptr + 2]:
-                    raise Fault("OUT OF DATA", sp)
+                fault_if(not ram[self.txtptr + 2], "OUT OF DATA", sp)
                 self.datlin = self.word(self.txtptr + 3)
                 self.txtptr += HEADER
             self.txtptr += 1

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import ZERO, Number, add, compare, integer, rounded
 from .expressions import ONE, address_of
-from .faults import Fault, Restart, placed
+from .faults import Fault, Restart, fault_if, placed
 from .inputoutput import BREAK_CODE, FROM_DATA, InputOutput
 from .memory import DIGITS, DIRECT, HEADER, INPUT_BUFFER, ROM, STACK, SUBFLG_SIMPLE, TEMPORARIES
 from .screen import FLASHING, INVERSE, NORMAL
@@ -101,19 +101,15 @@ class Machine(InputOutput):
         self.error, self.broken = None, False
         while True:
             try:
-                try:
-                    step()
-                except KeyboardInterrupt:
-                    self.interrupted = False
-                    self.break_()
-                except ApplesoftError as error:
-                    self._handle(error)
+                step()
+                step = self.next_statements
+            except KeyboardInterrupt:
+                self.interrupted = False
+                step = self.break_
             except ApplesoftError as error:
                 step = partial(self._handle, error)
-                continue
             except Restart:
                 break
-            step = self.next_statements
         if self.after_line and self.curlin < DIRECT:
             self.after_line(self.curlin)
 
@@ -142,7 +138,7 @@ class Machine(InputOutput):
 
     def next_statements(self) -> None:
         """NEWSTT: statement after statement. Raises Restart at the program's end."""
-        ram = self.ram
+        ram, statements = self.ram, self.statements
         line = self.curlin
         while True:
             self.remstk = self.sp
@@ -169,8 +165,15 @@ class Machine(InputOutput):
                     self.show_number(integer(self.curlin))
                     self.put(" ")
                 line = self.curlin
-            self.txtptr = pos + 1
-            self.execute()
+            pos += 1
+            while (byte := ram[pos]) == BLANK:
+                pos += 1
+            if FIRST <= byte <= LAST_STATEMENT:
+                self.txtptr = pos + 1
+                statements[byte - FIRST]()
+            else:
+                self.txtptr = pos
+                self.execute()
 
     def execute(self) -> None:
         """EXECUTE_STATEMENT: the statement at TXTPTR. Raises SYNTAX."""
@@ -202,8 +205,7 @@ class Machine(InputOutput):
         self.expect(OPEN, sp)
         self.subflg = SUBFLG_SIMPLE
         argument = self.variable(sp)
-        if self.valtyp:
-            raise Fault("TYPE MISMATCH", sp)
+        fault_if(self.valtyp, "TYPE MISMATCH", sp)
         self.expect(CLOSE, sp)
         first = self.expect(EQUAL, sp)
         self.put_word(function, self.txtptr)
@@ -245,14 +247,12 @@ class Machine(InputOutput):
 
     def himem_(self) -> None:
         place = self._address(self.sp - 4)
-        if place < self.strend:
-            raise Fault("OUT OF MEMORY", self.sp - 2)
+        fault_if(place < self.strend, "OUT OF MEMORY", self.sp - 2)
         self.memsiz = self.fretop = place
 
     def lomem_(self) -> None:
         place = self._address(self.sp - 4)
-        if not self.vartab <= place < self.memsiz:
-            raise Fault("OUT OF MEMORY", self.sp - 2)
+        fault_if(not self.vartab <= place < self.memsiz, "OUT OF MEMORY", self.sp - 2)
         self.vartab = place
         self.clear()
 
@@ -263,8 +263,7 @@ class Machine(InputOutput):
 
     def keep_byte(self, place: int, table: bytes) -> None:
         n = self.byte(self.sp - 4)
-        if n >= len(table):
-            raise Fault("ILLEGAL QUANTITY", self.sp - 2)
+        fault_if(n >= len(table), "ILLEGAL QUANTITY", self.sp - 2)
         self.ram[place] = table[n]
 
     def trace(self, bit: int) -> None:
@@ -301,7 +300,8 @@ class Machine(InputOutput):
         """GTFORPNT: the loop with FORPNT's variable, or the innermost one if FORPNT's high byte is
         0, or -1; where the stack pointer came to in looking."""
         sp, frames = self.sp, self.frames
-        for n, frame in reversed(list(enumerate(frames))):
+        for n in range(len(frames) - 1, -1, -1):
+            frame = frames[n]
             if frame.sp != sp or frame.variable == NO_VARIABLE:
                 break
             if not self.forpnt >> 8:
@@ -339,15 +339,13 @@ class Machine(InputOutput):
         n, sp = self._find_loop()
         if n >= 0:
             self.set_stack(sp + FOR_SIZE & 0xFF)
-        if self.sp - 2 & 0xFF < FOR_ROOM - 2:
-            raise Fault("OUT OF MEMORY", self.sp - 2)
+        fault_if(self.sp - 2 & 0xFF < FOR_ROOM - 2, "OUT OF MEMORY", self.sp - 2)
         sp = self.sp
         start = self.txtptr
         self.data_()
         back, self.txtptr = self.txtptr, start
         self.expect(TO, sp - 6)
-        if self.valtyp:
-            raise Fault("TYPE MISMATCH", sp - 6)
+        fault_if(self.valtyp, "TYPE MISMATCH", sp - 6)
         limit = rounded(self.number(sp - 6))
         step = ONE
         if self.character() == STEP:
@@ -368,8 +366,7 @@ class Machine(InputOutput):
             frame = self.frames[-1] if self.frames else NO_FRAME
             if frame.sp != self.sp or frame.variable != self.forpnt:
                 n, sp = self._find_loop()
-                if n < 0:
-                    raise Fault("NEXT WITHOUT FOR", self.sp - 2)
+                fault_if(n < 0, "NEXT WITHOUT FOR", self.sp - 2)
                 self.set_stack(sp)
                 frame = self.frames[-1]
             _, variable, line, text, limit, step, sign = frame
@@ -395,8 +392,7 @@ class Machine(InputOutput):
             self.rem_()
             beyond = self.txtptr + 1 if number >> 8 > self.curlin >> 8 else self.txttab
             found, address = self.find_line(number, beyond)
-            if not found:
-                raise Fault("UNDEF'D STATEMENT", sp)
+            fault_if(not found, "UNDEF'D STATEMENT", sp)
             target = address - 1
             if self.txttab <= start < self.prgend:
                 self.targets[start] = target
@@ -404,8 +400,7 @@ class Machine(InputOutput):
         self.charac = 0
 
     def gosub_(self) -> None:
-        if self.sp - 4 & 0xFF < GOSUB_ROOM - 4:
-            raise Fault("OUT OF MEMORY", self.sp - 4)
+        fault_if(self.sp - 4 & 0xFF < GOSUB_ROOM - 4, "OUT OF MEMORY", self.sp - 4)
         frame = Frame(self.sp - GOSUB_SIZE & 0xFF, NO_VARIABLE, self.curlin, self.txtptr)
         self.goto_(self.sp - GOSUB_SIZE - 2)
         self.frames.append(frame)
@@ -423,8 +418,7 @@ class Machine(InputOutput):
         n, sp = self._find_loop()
         if n < 0 or sp != self.sp:
             self.set_stack(sp)
-        if n >= 0 or not self.frames or self.frames[-1].sp != sp:
-            raise Fault("RETURN WITHOUT GOSUB", sp)
+        fault_if(n >= 0 or not self.frames or self.frames[-1].sp != sp, "RETURN WITHOUT GOSUB", sp)
         frame = self.frames.pop()
         self.sp = self.sp + GOSUB_SIZE & 0xFF
         return frame
@@ -433,8 +427,7 @@ class Machine(InputOutput):
         sp = self.sp - 2
         count = self.byte(sp - 2)
         command = self.character()
-        if command not in (GOTO, GOSUB):
-            raise Fault("SYNTAX", sp - 1)
+        fault_if(command not in (GOTO, GOSUB), "SYNTAX", sp - 1)
         while True:
             self.txtptr += 1
             count -= 1
@@ -496,8 +489,7 @@ class Machine(InputOutput):
 
     def break_(self) -> None:
         """Control-C: an error under ONERR, else as STOP."""
-        if self.errflg & 0x80:
-            raise Fault("SYNTAX", self.sp - 4, BREAK_CODE)
+        fault_if(self.errflg & 0x80, "SYNTAX", self.sp - 4, BREAK_CODE)
         self.broken = True
         self.end(BREAK)
 
@@ -509,8 +501,7 @@ class Machine(InputOutput):
             self.show_number(integer(self.curlin))
 
     def cont(self) -> None:
-        if not self.oldtext >> 8:
-            raise Fault("CAN'T CONTINUE", self.sp - 2)
+        fault_if(not self.oldtext >> 8, "CAN'T CONTINUE", self.sp - 2)
         self.txtptr, self.curlin = self.oldtext, self.oldlin
 
     def lines(self) -> Iterator[tuple[int, bytes]]:
@@ -526,8 +517,7 @@ class Machine(InputOutput):
         """Put lines in place of the program. Raises OUT OF MEMORY, and changes nothing then."""
         numbered = sorted(dict(lines).items())
         image = b"".join(_linked(*line) for line in numbered if line[1]) + END_MARK
-        if self.txttab + len(image) >= self.memsiz:
-            raise Fault("OUT OF MEMORY", self.sp)
+        fault_if(self.txttab + len(image) >= self.memsiz, "OUT OF MEMORY", self.sp)
         self.ram[self.txttab : self.txttab + len(image)] = image
         self.vartab = self.txttab + len(image)
         self.fix_links()
@@ -543,8 +533,7 @@ class Machine(InputOutput):
             size = HEADER + len(tokens) + 1
             self.fretop = self.memsiz
             self.arytab = self.strend = self.vartab
-            if self.vartab + size >= self.fretop:
-                raise Fault("OUT OF MEMORY", self.sp)
+            fault_if(self.vartab + size >= self.fretop, "OUT OF MEMORY", self.sp)
             ram[line + size : self.vartab + size] = ram[line : self.vartab]
             self.vartab += size
             ram[line : line + size] = _linked(number, tokens)
@@ -578,8 +567,7 @@ class Machine(InputOutput):
     def del_(self) -> None:
         """DEL. The program ends, unless the range lies before its own beginning."""
         sp = self.sp - 2
-        if self.character() not in DIGITS:
-            raise Fault("SYNTAX", sp)
+        fault_if(self.character() not in DIGITS, "SYNTAX", sp)
         self.vartab = self.prgend
         _, start = self.find_line(self.line_number(sp - 2), self.txttab)
         self.expect(COMMA, sp - 2)

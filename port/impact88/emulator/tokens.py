@@ -6,7 +6,6 @@ table's order that fits: TOTAL begins with TO, SCORE holds OR. AT followed at on
 AT, so that ATN and A TO are found instead.
 """
 
-from collections.abc import Iterable
 from functools import lru_cache
 
 from ..applesoft.console import keyed
@@ -104,17 +103,25 @@ def split_number(text: str) -> tuple[int, str] | None:
     return (int(digits), rest) if digits else None
 
 
-def source(lines: Iterable[tuple[int, bytes]]) -> str:
-    """A program as text that loads into the same tokens, one line a line: what SAVE writes."""
-    return "".join(f"{number} {untokenised(tokens)}\n" for number, tokens in lines)
-
-
 def untokenised(tokens: bytes) -> str:
     """Statement text that tokenises into ``tokens``: blanks stand around keywords, except after REM
     and DATA, whose text is kept. PRINT is written as a question mark where its letters would make
     another word with those before: ``PO?``."""
-    text = _spelled(tokens, "PRINT")
-    return text if tokenise(text) == tokens else _spelled(tokens, "?")
+    for print_word in ("PRINT", "?"):
+        text, keyword = "", False
+        for byte in tokens:
+            keyword = byte >= FIRST and byte not in (REM, DATA)
+            if byte < FIRST:
+                text += chr(byte)
+                continue
+            word = print_word if byte == PRINT else spelling(byte)
+            text += word if not text or text.endswith((" ", "(")) else f" {word}"
+            if keyword and not word.endswith("("):
+                text += " "
+        text = text.rstrip(" ") if keyword else text
+        if tokenise(text) == tokens:
+            break
+    return text
 
 
 def spelling(token: int) -> str:
@@ -122,18 +129,3 @@ def spelling(token: int) -> str:
     after a zero that ends the table and the word."""
     index = token - FIRST
     return _LISTED[index] if index < len(_LISTED) else ""
-
-
-def _spelled(tokens: bytes, print_word: str) -> str:
-    out = ""
-    keyword = False
-    for byte in tokens:
-        keyword = byte >= FIRST and byte not in (REM, DATA)
-        if byte < FIRST:
-            out += chr(byte)
-            continue
-        word = print_word if byte == PRINT else spelling(byte)
-        out += word if not out or out.endswith((" ", "(")) else f" {word}"
-        if keyword and not word.endswith("("):
-            out += " "
-    return out.rstrip(" ") if keyword else out

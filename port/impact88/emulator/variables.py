@@ -181,13 +181,6 @@ class Variables(Memory):
         self.freed(left)
         return self.temporary(length, address, left >> 8)
 
-    def part(self, place: int, first: int, length: int, extension: int) -> Number:
-        """The last part of LEFT$, RIGHT$ and MID$: characters of a string from an offset on."""
-        address = self.room(length)
-        _, source = self.freed(place)
-        self.move(source + first, address, length)
-        return self.temporary(length, address, extension)
-
     def variables_changed(self) -> None:
         ram = self.ram
         self.simple: dict[int, int] = {}

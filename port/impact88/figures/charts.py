@@ -93,7 +93,7 @@ def powers(low: float, high: float, step: int) -> list[tuple[float, str]]:
 
 class Panel:
     """Two axes around ``box``; the numbers stand below and left of it, the upper axis's name above
-    it, the lower one's below. ``x`` and ``y`` are (lowest, highest)."""
+    it, the lower one's below. ``x`` and ``y`` are (lowest, highest), on a grid if ``log``."""
 
     def __init__(
         self,
@@ -107,7 +107,6 @@ class Panel:
         x_ticks: Sequence[tuple[float, str]] | int = 6,
         y_ticks: Sequence[tuple[float, str]] | int = 4,
         log: bool = False,
-        grid: bool = False,
     ) -> None:
         self.drawing, self.box = drawing, box
         self.x = Axis(*x, box.left, box.right, log)
@@ -125,7 +124,7 @@ class Panel:
             for value, text in marks:
                 place = axis(value)
                 at = complex(place, box.bottom) if axis is self.x else complex(box.left, place)
-                if grid:
+                if log:
                     drawing.add(Path((at, at + inward), "#dddddd", 0.14, role="grid"))
                 drawing.add(Path((at, at + outward), BLACK, 0.2, role="tick"))
                 drawing.add(Text(at + shift, text, anchor=look[0], role=look[1]))
