@@ -66,7 +66,6 @@ writes = partial(value, type=OutputPath)
 
 
 def choice(names: str, choices: Sequence[Any], meaning: str, **keywords: Any) -> Argument:
-    """An option whose value is one of several."""
     return value(names, None, meaning, choices=choices, **keywords)
 
 
@@ -76,26 +75,31 @@ def count(
     """An option whose value is a whole number within limits, which the message says."""
 
     def read(text: str) -> int:
-        try:
-            number = int(text)
-        except ValueError:
-            number = least - 1
-        if not least <= number <= most:
-            raise argparse.ArgumentTypeError(
-                f"{quoted(text)} is not a whole number from {least:,} to {most:,}"
-            )
+        if not least <= (number := int(text)) <= most:
+            raise ValueError
         return number
 
-    return value(name, metavar, meaning, type=read, default=default)
+    read_or_refuse = _reader(read, f"a whole number from {least:,} to {most:,}")
+    return value(name, metavar, meaning, type=read_or_refuse, default=default)
+
+
+def _reader(read: Callable[[str], float], expected: str) -> Callable[[str], float]:
+    """The type of an argument that ``read`` reads, or refuses by a ValueError."""
+
+    def read_or_refuse(text: str) -> float:
+        try:
+            return read(text)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"{quoted(text)} is not {expected}") from None
+
+    return read_or_refuse
 
 
 def flag(name: str, meaning: str) -> Argument:
-    """An option without a value."""
     return (name,), {"action": "store_true", "help": meaning}
 
 
 def repeatable(name: str, metavar: str, meaning: str, **keywords: Any) -> Argument:
-    """An option whose values are collected."""
     meaning += "; repeatable"
     return value(name, metavar, meaning, action="append", default=[], **keywords)
 
@@ -111,26 +115,13 @@ sample_option = partial(choice, "--sample", SAMPLES, type=int)
 
 
 def draws(default: int, meaning: str = "random draws") -> tuple[Argument, Argument]:
-    """The options ``--samples`` and ``--seed``."""
     meaning += " (default: %(default)s)"
     return count("--samples", 0, 10**8, meaning, default=default), seed()
 
 
 def seed(meaning: str = "which random draws", default: int = 0) -> Argument:
-    """The option ``--seed``."""
     text = f"{meaning} (default: %(default)s)"
     return count("--seed", 0, 2**63, text, default=default, metavar="S")
-
-
-def _duration(text: str) -> float:
-    """An argument's type: a time, in seconds without unit."""
-    try:
-        given, _ = in_base_units({"TF": text}, "--contact-time")
-        return double(given["TF"])
-    except (UserError, ValueError):
-        raise argparse.ArgumentTypeError(
-            f"{quoted(text)} is not a duration; expected one such as 0.12 or '120 ms'"
-        ) from None
 
 
 JSON = flag("--json", "print one JSON object")
@@ -171,7 +162,10 @@ SOLUTION = (
         "--contact-time",
         "T",
         "duration of contact (usually .1 to .2 s): average and peak force",
-        type=_duration,
+        type=_reader(
+            lambda text: double(in_base_units({"TF": text}, "--contact-time")[0]["TF"]),
+            "a duration; expected one such as 0.12 or '120 ms'",
+        ),
     ),
     flag("--template", "print a file to fill in"),
     JSON,
@@ -240,7 +234,6 @@ def show(
 
 
 def show_impacts(args: Args, found: Sequence[Impact], units: System) -> None:
-    """Print solved impacts."""
     from ..reconstruction.solutiontable import in_turn
 
     def record() -> dict[str, Any]:

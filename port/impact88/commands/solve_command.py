@@ -175,12 +175,11 @@ def _float64(rows: Rows, units: TableUnits, wanted: Sequence[str]) -> Results:
     unread = {index for index, *_ in rows.bad}
     refused = rows.count > 0 and examine(columns).refused is not None
     for refusal in refusals(columns) if refused else ():
-        for index in np.flatnonzero(np.broadcast_to(refusal.where, rows.count)).tolist():
-            if index not in unread:
-                unread.add(index)
-                value = float(np.broadcast_to(columns[refusal.column], rows.count)[index])
-                reason = f"{value!r} {refusal.reason}"
-                rows.bad.append((index, refusal.column, reason))
+        values = np.broadcast_to(columns[refusal.column], rows.count)
+        found = np.flatnonzero(np.broadcast_to(refusal.where, rows.count)).tolist()
+        for index in sorted({*found} - unread):
+            unread.add(index)
+            rows.bad.append((index, refusal.column, f"{float(values[index])!r} {refusal.reason}"))
     return _blanked(solve(columns, wanted), unread)
 
 
