@@ -106,10 +106,6 @@ def clean(region: Region) -> str | None:
     return text if is_number(text) and not any(glyph.gap for glyph in region[1:]) else None
 
 
-def _glyphs(region: Region) -> Glyphs:
-    return tuple(glyph[:2] for glyph in region[:LONGEST])
-
-
 # --- what glyphs are, given what is printed ------------------------------------------------------
 
 
@@ -126,7 +122,7 @@ def compare(region: Region, printed: str, cut: bool = False, sign_free: bool = F
         return Match(_SPECK, (Spot(0, text, printed, Doubt.LOOK_ALIKE),), 0)
     if other is not None and value_of(other) == value_of(printed):
         return Match(_SLIGHT, (Spot(0, text, printed, Doubt.RETYPED),), len(printed))
-    return _compared(_glyphs(region), printed, cut, sign_free)
+    return _compared(tuple(one[:2] for one in region[:LONGEST]), printed, cut, sign_free)
 
 
 @lru_cache(maxsize=20000)
@@ -256,13 +252,16 @@ _BEAM = 48
 _MOST_ILLEGIBLE = 4
 
 
-def candidates(region: Region, most: int = 40, sign_free: bool = False) -> list[tuple[str, float]]:
+Ways = tuple[tuple[str, float], ...]
+
+
+def candidates(region: Region, most: int = 40, sign_free: bool = False) -> Ways:
     """The printable texts that glyphs may have been, with what each costs, cheapest first."""
-    return list(_candidates(_glyphs(region), most, sign_free))
+    return _candidates(tuple(one[:2] for one in region[:LONGEST]), most, sign_free)
 
 
 @lru_cache(maxsize=20000)
-def _candidates(region: Glyphs, most: int, sign_free: bool) -> tuple[tuple[str, float], ...]:
+def _candidates(region: Glyphs, most: int, sign_free: bool) -> Ways:
     chars = "".join(char for char, _ in region)
     strange = sum(char not in "0123456789OIL.-" for char in chars)
     if 3 < len(chars) < 2 * strange and not any(map(str.isdigit, chars)):

@@ -7,7 +7,7 @@ names what is found, and `judging` says when a reader's slips may be looked past
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from itertools import combinations
 from operator import ne
@@ -53,18 +53,13 @@ class Change(NamedTuple):
 
     @property
     def bits(self) -> float:
-        """What it takes to believe it."""
-        return bits_of(*self)
-
-
-def bits_of(kind: str, field: str, printed: str, would_be: str) -> float:
-    """What it takes to believe a slip; nothing for other changes."""
-    bits = BITS.get(kind, 0.0)
-    if kind == DIGIT:
-        bits += _UNLIKE * _unlikeness(printed, would_be)
-    if bits and field in ANGLES and abs(double(would_be)) > 360:
-        bits += BITS[DIGIT]  # nobody types more than a full turn
-    return bits
+        """What it takes to believe it; nothing for a change that is no slip."""
+        bits = BITS.get(self.kind, 0.0)
+        if self.kind == DIGIT:
+            bits += _UNLIKE * _unlikeness(self.printed, self.would_be)
+        if bits and self.field in ANGLES and abs(double(self.would_be)) > 360:
+            bits += BITS[DIGIT]  # nobody types more than a full turn
+        return bits
 
 
 class Reread(NamedTuple):
@@ -100,10 +95,11 @@ class Rereading:
         else:
             wrong = self._recovered.wrong
             picks = search.promising(columns, 100_000, _REPLAYED, _TWO_SLIPS, wrong)
-        rereads = [
-            Reread(tuple(self._changes(pick)), scored)
-            for pick, scored in zip(picks.tolist(), search.replayed(columns, picks), strict=True)
-        ]
+        rereads = []
+        for pick, scored in zip(picks.tolist(), search.replayed(columns, picks), strict=True):
+            taken = zip(INPUTS, pick, strict=False)
+            changes = tuple(self._slips[name][at - 1][1] for name, at in taken if at)
+            rereads.append(Reread(changes, scored))
         return sorted(rereads, key=lambda one: one.scored.cost)
 
     @cached_property
@@ -112,36 +108,26 @@ class Rereading:
         scene, columns = self._recovered.scene, []
         for name in INPUTS:
             text = self._base.get(name, scene[scene_name(name)])
-            slips = [(other, cost) for cost, other, _ in self._ways.get(name, [])]
+            slips = [(slip.would_be, cost) for cost, slip in self._slips.get(name, [])]
             apart = name not in self._recovered.assumed
             columns.append(column_of(name, [(text, 0.0), *slips], apart))
         return [*columns, column_of("M", [(scene["M"], 0.0)], True)]
 
     def single(self) -> Iterator[Change]:
         """Every slip in one input."""
-        for name, ways in self._ways.items():
-            yield from (Change(kind, name, self._base[name], other) for _, other, kind in ways)
+        return (slip for slips in self._slips.values() for _, slip in slips)
 
     @cached_property
-    def _ways(self) -> dict[str, list[tuple[float, str, str]]]:
-        """The slips of every input: what each costs, its text and its kind, cheapest first.
-        One is cheaper (2.7) than a result that differs (3.0), two are dearer."""
-        ways = {}
+    def _slips(self) -> dict[str, list[tuple[float, Change]]]:
+        """The slips of every input with what each costs, cheapest first. One is cheaper (2.7) than
+        a result that differs (3.0), two are dearer."""
+        slips = {}
         for name, text in self._base.items():
             possible = printable if name in self._recovered.assumed else is_number
-            ways[name] = sorted(
-                (0.7 + bits_of(kind, name, text, other) / 5, other, kind)
-                for other, kind in misreadings(text).items()
-                if possible(other)
-            )
-        return ways
-
-    def _changes(self, pick: Sequence[int]) -> Iterator[Change]:
-        """The slips that are taken of every input, by their rank."""
-        for name, at in zip(INPUTS, pick, strict=False):
-            if at:
-                _, other, kind = self._ways[name][at - 1]
-                yield Change(kind, name, self._base[name], other)
+            changes = (Change(kind, name, text, other) for other, kind in misreadings(text).items())
+            some = [(0.7 + one.bits / 5, one) for one in changes if possible(one.would_be)]
+            slips[name] = sorted(some, key=lambda pair: (pair[0], pair[1].would_be))
+        return slips
 
 
 def misreadings(text: str) -> dict[str, str]:

@@ -4,8 +4,6 @@ Labels need no reading: they are known text at known places. The characters of n
 first names from small prototypes of a few styles of type.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -58,7 +56,7 @@ class Sample:
     norms: Vectors
     shape: tuple[int, int]
 
-    def at(self, chosen: NDArray[np.intp]) -> Sample:
+    def at(self, chosen: NDArray[np.intp]) -> "Sample":
         """Some of the cells."""
         return Sample(self.vectors[chosen], self.norms[chosen], self.shape)
 
@@ -69,12 +67,9 @@ def sample_of(grid: Grid, places: Sequence[Place]) -> Sample:
     whole = np.zeros((len(places), height + 2 * SLACK, width + 2 * SLACK), np.float32)
     for row, place in zip(whole, places, strict=True):
         picture = grid.pictures[place.line]
-        start = place.cell * CELL_WIDTH
-        piece = picture[:, max(start, 0) : max(start + row.shape[1], 0)]
-        if start < 0:
-            row[:, row.shape[1] - piece.shape[1] :] = piece
-        else:
-            row[:, : piece.shape[1]] = piece
+        columns = place.cell * CELL_WIDTH + np.arange(row.shape[1])
+        there = (columns >= 0) & (columns < picture.shape[1])
+        row[:, there] = picture[:, columns[there]]
     vectors = np.stack(
         [whole[:, y : y + height, x : x + width].reshape(len(places), -1) for y, x in _SHIFTS], 1
     )
@@ -130,24 +125,20 @@ def typeface_of(sample: Sample, names: Sequence[str]) -> Typeface:
     mean as it forms."""
     characters = "".join(sorted(set(names) - {"", BLANK}))
     index = np.array([characters.find(name or BLANK) for name in names])
-    middle = len(_SHIFTS) // 2
-    members = sample.vectors[:, middle]
-    means = _means(members, index, len(characters))
+    pick = (index == np.arange(len(characters))[:, None]).astype(np.float32)
+    counts = pick.sum(axis=1).astype(int)
+
+    def mean(members: Vectors) -> Vectors:
+        return np.asarray(pick @ members / np.maximum(counts[:, None], 1), np.float32)
+
+    members = sample.vectors[:, len(_SHIFTS) // 2]
     for _ in range(_ROUNDS):
         # each cell at the shift that fits the mean of its class
-        own = means[np.maximum(index, 0)]
+        own = mean(members)[np.maximum(index, 0)]
         inner = np.matmul(sample.vectors, own[:, :, None])[:, :, 0]
         best = np.argmin(sample.norms - 2 * inner, axis=1)
         members = sample.vectors[np.arange(len(index)), best]
-        means = _means(members, index, len(characters))
-    counts = np.array([int(np.sum(index == k)) for k in range(len(characters))])
-    return Typeface(characters, means, counts, index, members, sample.shape)
-
-
-def _means(members: Vectors, index: NDArray[np.intp], count: int) -> Vectors:
-    pick = (index[None] == np.arange(count)[:, None]).astype(np.float32)
-    means: Vectors = (pick @ members) / np.maximum(pick.sum(axis=1, keepdims=True), 1)
-    return means
+    return Typeface(characters, mean(members), counts, index, members, sample.shape)
 
 
 @lru_cache
@@ -168,11 +159,12 @@ def _normal(sample: Sample, typeface: Typeface) -> Vectors:
     inked = np.flatnonzero(profile > 0.25 * profile.max())
     top, foot = float(inked[0]), float(inked[-1] + 1)
     middle = sample.vectors[:, sample.vectors.shape[1] // 2].reshape(-1, height, width)
-    at = top + (np.arange(_ROWS) + 0.5 - _TOP) * (foot - top) / (_BOTTOM - _TOP) - 0.5
-    low = np.floor(at).astype(int)
-    part = (at - low).astype(np.float32)[None, :, None]
-    padded = np.pad(middle, ((0, 0), (_ROWS, _ROWS), (0, 0)))
-    normal: Vectors = padded[:, low + _ROWS] * (1 - part) + padded[:, low + _ROWS + 1] * part
+    scale = (foot - top) / (_BOTTOM - _TOP)
+    offset = top + (0.5 - _TOP) * scale - 0.5
+    normal: Vectors = ndimage.affine_transform(
+        middle, [1, scale, 1], [0, offset, 0], (len(middle), _ROWS, width),
+        order=1, mode="grid-constant",
+    )  # fmt: skip
     return normal
 
 
@@ -256,19 +248,19 @@ def read_numbers(grid: Grid, sheets: Sequence[Sheet]) -> list[dict[str, Floats]]
         return []
     places: list[Place] = []
     names: list[str] = []
+    chosen: list[int] = []
     numbers: list[tuple[int, str, slice]] = []
     for which, sheet in enumerate(sheets):
-        for pieces in sheet.pieces.values():
-            for piece in pieces:
-                begin = len(places)
-                places += piece.places
-                if piece.name:
-                    numbers.append((which, piece.name, slice(begin, len(places))))
-                known = len(piece.text) == len(piece.places)
-                names += piece.text if known else BLANK * len(piece.places)
+        for piece in (piece for line in sheet.pieces.values() for piece in line):
+            if piece.name:
+                begin = len(chosen)
+                chosen += range(len(places), len(places) + len(piece.places))
+                numbers.append((which, piece.name, slice(begin, len(chosen))))
+            places += piece.places
+            known = len(piece.text) == len(piece.places)
+            names += piece.text if known else BLANK * len(piece.places)
     sample = sample_of(grid, places)
-    chosen = np.concatenate([np.arange(part.start, part.stop) for _, _, part in numbers])
-    of_numbers = sample.at(chosen)
+    of_numbers = sample.at(np.array(chosen))
     labels = np.array([k for k, name in enumerate(names) if name != BLANK])
     unlike = likeness(of_numbers, typeface_of(sample, names))
     # how far apart two cells of one character are on this page, as its labels show
@@ -278,22 +270,21 @@ def read_numbers(grid: Grid, sheets: Sequence[Sheet]) -> list[dict[str, Floats]]
     first = _named(of_numbers, unlike, _SPREAD * float(usual))
     for cell, k in zip(chosen, first, strict=True):
         names[cell] = NUMERIC[k]
-    empty = sample.norms.min(axis=1)
+    costs = np.full((len(chosen), len(READABLE)), np.inf)
     for _ in range(_READINGS):
         typeface = typeface_of(sample, names)
-        costs = np.full((len(places), len(READABLE)), np.inf)
-        columns = [typeface.characters.find(character) for character in READABLE]
         apart, strength = distances(of_numbers, typeface.means)
-        weak = np.take_along_axis(strength, apart.argmin(axis=1)[:, None], axis=1)[:, 0] ** 2
-        for k, column in enumerate(columns):
-            if column >= 0:
-                costs[chosen, k] = apart[:, column]
-        costs[chosen, -1] = empty[chosen]
-        for cell in chosen:
-            names[cell] = READABLE[int(costs[cell].argmin())]
-    own = costs[chosen].min(axis=1)
+        weak = np.take_along_axis(strength, apart.argmin(axis=1)[:, None], axis=1) ** 2
+        costs[:] = np.inf
+        for k, character in enumerate(READABLE):
+            if (column := typeface.characters.find(character)) >= 0:
+                costs[:, k] = apart[:, column]
+        costs[:, -1] = of_numbers.norms.min(axis=1)
+        for cell, k in zip(chosen, costs.argmin(axis=1), strict=True):
+            names[cell] = READABLE[k]
+    own = costs.min(axis=1, keepdims=True)
     unit = max(float(np.median(own)) * 0.6, 1e-3)
-    costs[chosen] = (costs[chosen] - own[:, None]) / (unit * weak[:, None])
+    costs = (costs - own) / (unit * weak)
     return [
         {name: costs[part] for index, name, part in numbers if index == which}
         for which in range(len(sheets))
