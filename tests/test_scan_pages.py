@@ -20,8 +20,7 @@ from impact88.recovery.replays import run_all
 from impact88.reporting.examination import Examined, Verification, examine
 from impact88.reporting.verification import EXPLAINED, lines
 from impact88.scan import sheets
-from impact88.scan.evidence import MOST_MISREAD, THRESHOLDS, Judged, judged, state
-from impact88.scan.holding import Cell
+from impact88.scan.holding import MOST_MISREAD, THRESHOLDS, Cell, Judged, judged, state
 from impact88.scan.layout import Place, Sheet
 from impact88.scan.scenes import WORST, Candidate, Read, borne_out
 from impact88.scan.typeface import READABLE

@@ -186,7 +186,6 @@ def _emitted(char: str) -> tuple[Costs, Costs]:
 
 
 def _in_number(char: str, reply: bool) -> int:
-    """The cost of a glyph where a number stands."""
     if char.isdigit():
         return 0
     if char in NUMERIC or char == "?" or (reply and char in ",;"):

@@ -260,6 +260,21 @@ def candidates(region: Region, most: int = 40, sign_free: bool = False) -> Ways:
     return _candidates(tuple(one[:2] for one in region[:LONGEST]), most, sign_free)
 
 
+def taken_for(region: Region, sign_free: bool) -> str | None:
+    """The number that glyphs are read as, ``?`` for what is illegible; None when nothing of one is
+    there."""
+    if text := clean(region):
+        return text
+    ways = candidates(region, 1, sign_free)
+    # a glyph that looks like no figure within a number is illegible
+    strange = [not (one.char in NUMERIC or printed_for(one.char) or one.gap) for one in region]
+    figures = [at for at, glyph in enumerate(region) if glyph.char.isdigit()] or [0]
+    if ways and not any(strange[figures[0] + 1 : figures[-1]]):
+        return ways[0][0]
+    text = "".join(one.char if one.char in NUMERIC else ILLEGIBLE for one in region)[:LONGEST]
+    return text if any(map(str.isdigit, text)) or text in ("?", "??", "???") else None
+
+
 @lru_cache(maxsize=20000)
 def _candidates(region: Glyphs, most: int, sign_free: bool) -> Ways:
     chars = "".join(char for char, _ in region)

@@ -18,28 +18,9 @@ from ..errors import UserError, quoted
 from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT, label
 from . import numerals
 from . import plaintext as pasted
-from .alignment import (
-    LABELS,
-    PROMPTS,
-    SPINS,
-    STARS,
-    STATES,
-    Budget,
-    align,
-    letter_of,
-)
+from .alignment import LABELS, PROMPTS, SPINS, STARS, STATES, Budget, align, letter_of
 from .fieldlabels import READERS, LabelCheck, LabelState, label_checks, words_before
-from .glyphs import (
-    ILLEGIBLE,
-    NUMERIC,
-    Gap,
-    Page,
-    Region,
-    label_cost,
-    letters,
-    plain_glyphs,
-    printed_for,
-)
+from .glyphs import ILLEGIBLE, Gap, Page, Region, label_cost, letters, plain_glyphs
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
@@ -212,11 +193,9 @@ class Printout:
         return reading.text if reading else None
 
     def _letter(self, index: int) -> str:
-        """The letter of a label that a glyph is taken for, "" where it is taken for none."""
         return letter_of(self._states.get(index, 0))
 
     def _line(self, index: int) -> int:
-        """The line of the program's page that a glyph belongs to."""
         return STATES[self._states.get(index, 0)].line
 
     def read(self) -> bool:
@@ -224,7 +203,13 @@ class Printout:
         self._crop()
         for name, (start, stop) in self._slots.items():
             if name in FIELDS:
-                self._read_number(name, start, stop)
+                signed = self._letter(start - 1) == "=" == self.page.glyphs[start - 1].char
+                sign_free = not signed and name not in ANGLES
+                reading = reading_of(self.page, self.page.glyphs[start:stop], sign_free)
+                if reading:
+                    self.fields[name] = reading
+                else:
+                    self._remark(name, start, ": expected a number", self.page.shown(start, stop))
         if not self._worth_telling():
             return False
         self.has_final_spins = [*self._exact.values()].count(SPINS) >= 2
@@ -304,15 +289,6 @@ class Printout:
         shown = "" if read is None else repr(read if len(read) <= 30 else read[:27] + "...")
         self.remarks.append(f"line {line}, column {column}: {name}: {shown}{message}")
 
-    def _read_number(self, name: str, start: int, stop: int) -> None:
-        signed = self._letter(start - 1) == "=" == self.page.glyphs[start - 1].char
-        region = self.page.glyphs[start:stop]
-        reading = reading_of(self.page, region, not signed and name not in ANGLES)
-        if reading is None:
-            self._remark(name, start, ": expected a number", self.page.shown(start, stop))
-        else:
-            self.fields[name] = reading
-
     def _read_angles(self) -> None:
         glyphs = self.page.glyphs
         places = [self._slots[name] for name in ANGLES if name in self._slots]
@@ -375,21 +351,9 @@ class Printout:
 
 def reading_of(page: Page, region: Region, sign_free: bool = False) -> Reading | None:
     """A region of a page as a number, None when nothing of one is there."""
-    text = numerals.clean(region)
+    text = numerals.taken_for(region, sign_free)
     if text is None:
-        ways = numerals.candidates(region, 1, sign_free)
-        # a glyph that looks like no figure within a number is illegible
-        strange = [
-            not (glyph.char in NUMERIC or printed_for(glyph.char) or glyph.gap) for glyph in region
-        ]
-        figures = [at for at, glyph in enumerate(region) if glyph.char.isdigit()] or [0]
-        if ways and not any(strange[figures[0] + 1 : figures[-1]]):
-            text = ways[0][0]
-        else:
-            marked = (one.char if one.char in NUMERIC else ILLEGIBLE for one in region)
-            text = "".join(marked)[: numerals.LONGEST]
-            if not any(map(str.isdigit, text)) and text not in ("?", "??", "???"):
-                return None
+        return None
     begin, end = region[0].offset, region[-1].offset + 1
     cut = region[-1].offset == page.glyphs[-1].offset and end == len(page.text)
     cut = cut or page.place(end - 1)[1] == page.width
@@ -520,14 +484,11 @@ def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
                 text, span = page.shown(start, stop), page.span(start, stop)
                 number, column = page.place(span[0])
                 figure = not stars and any(map(str.isdigit, text))
-                beside = numbered or figure or (whole and _names_a_number(text))
+                words = re.split(r"[^A-Za-z]+", text) if whole else ()
+                named = {word.upper() if len(word) > 2 else word for word in words} & _LABEL_WORDS
+                beside = numbered or figure or bool(named)
                 above = [one for one in found if one.line <= number] or found[:1]
                 above[-1].left_over.append(Piece(text, number, column, *span, beside, whole))
-
-
-def _names_a_number(text: str) -> bool:
-    words = re.split(r"[^A-Za-z]+", text)
-    return not _LABEL_WORDS.isdisjoint(word.upper() if len(word) > 2 else word for word in words)
 
 
 def _normalised(text: str) -> list[str]:

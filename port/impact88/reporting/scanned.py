@@ -12,10 +12,9 @@ from ..judging.judgement import Doubtful, FieldCheck, Status, Verdict
 from ..names import SCENE
 from ..progress import progress
 from ..reading.printout import read_printouts
-from ..scan.evidence import RATES, state
 from ..scan.exhibit import exhibit, shown
 from ..scan.grid import Grid
-from ..scan.holding import Cell
+from ..scan.holding import RATES, Cell, state
 from ..scan.picture import Page, pages_of
 from ..scan.scenes import scenes_in
 from ..scan.sheets import Leaf, looked

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 from PIL import Image as Pillow
 
-from .evidence import RATES, THRESHOLDS, state
-from .holding import Cell
+from .holding import RATES, THRESHOLDS, Cell, state
 from .ink import Floats, Image
 from .sheets import Leaf
 from .typeface import BLANK, sample_of, typeface_of

@@ -39,8 +39,7 @@ class Place(NamedTuple):
     cell: int
 
 
-@dataclass
-class Piece:
+class Piece(NamedTuple):
     """A label's text, blanks included, or a number (``name``), and where its characters stand."""
 
     name: str
@@ -50,12 +49,13 @@ class Piece:
 
 class Row(NamedTuple):
     """Where a line of print begins: line of the grid, how many of its lines it takes, the cell of
-    its first column, and the line as it is written."""
+    its first column; the line as it is written, and its parts."""
 
     start: int
     used: int
     margin: int
-    text: str
+    text: str = ""
+    pieces: Sequence[Piece] = ()
 
     def place(self, column: int) -> Place:
         """Where a column of the printed line stands."""
@@ -76,9 +76,8 @@ class Row(NamedTuple):
 
 @dataclass
 class Sheet:
-    """One printout on the grid: its pieces and rows by line of `LINES`."""
+    """One printout on the grid: its rows by line of `LINES`."""
 
-    pieces: dict[int, list[Piece]] = field(default_factory=dict)
     rows: dict[int, Row] = field(default_factory=dict)
     gain: float = 0.0
 
@@ -95,7 +94,7 @@ class Sheet:
     @property
     def numbers(self) -> dict[str, Piece]:
         """The numbers and replies by name."""
-        found = (piece for line in self.pieces.values() for piece in line)
+        found = (piece for row in self.rows.values() for piece in row.pieces)
         return {piece.name: piece for piece in found if piece.name}
 
 
@@ -173,11 +172,11 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
     margins = [margin for margin in (first, first - 1, first - 2, first + 1) if margin >= -1]
     tried: list[tuple[Row, Floats]] = []
     for margin, start in product(margins, range(len(odds))):
-        cells = Row(start, 1, margin, "").cells(odds)
-        tried.append((Row(start, 1, margin, ""), cells))
+        whole, broken = Row(start, 1, margin), Row(start, 2, margin)
+        cells = whole.cells(odds)
+        tried.append((whole, cells))
         followed = start + 1 < len(odds) and tops[start + 1] - tops[start] <= 3.2
         if followed and len(cells) >= WRAP and not np.any(cells[WRAP:] > 2):
-            broken = Row(start, 2, margin, "")
             tried.append((broken, broken.cells(odds)))
     width = max(len(cells) for _, cells in tried)
     padded = np.stack([np.pad(cells, (0, width - len(cells))) for _, cells in tried])
@@ -207,8 +206,7 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
             continue
         gain, at, row = fits[margin][key]
         sheets[-1].gain += gain
-        sheets[-1].rows[key[2]] = row
-        sheets[-1].pieces[key[2]] = _pieces(row, inked[at], blank[at])
+        sheets[-1].rows[key[2]] = row._replace(pieces=_pieces(row, inked[at], blank[at]))
     return [sheet for sheet in sheets if len(sheet.numbers) >= _FEWEST]
 
 

@@ -12,13 +12,12 @@ from types import MappingProxyType
 from ..applesoft.decimaltext import is_number
 from ..errors import UserError
 from ..fields import ANGLES, INPUTS, REPLIES, scene_name
-from ..reading.alignment import LINES
 from ..reading.printout import read_printouts
 from ..recovery.recovered import recover
 from ..recovery.replays import Outcome, run_all
 from ..recovery.typedtext import opposite
 from .ink import Floats
-from .layout import Sheet, parts
+from .layout import Sheet
 from .typeface import READABLE
 
 WORST = 6.0
@@ -67,13 +66,12 @@ class Read:
         """The printout as text, as far as its lines were found, and where its numbers begin.
         ``known``: numbers of which more is known than was read."""
         page, starts = "", {}
-        for line in range(len(LINES)):
-            if line in self.sheet.pieces:
-                page += "\n" * bool(page)
-                for name, text in parts(self.sheet.rows[line].text):
-                    if name:
-                        starts[name] = len(page)
-                    page += known.get(name) or self.text(name) if name else text
+        for _, row in sorted(self.sheet.rows.items()):
+            page += "\n" * bool(page)
+            for name, text, _ in row.pieces:
+                if name:
+                    starts[name] = len(page)
+                page += known.get(name) or self.text(name) if name else text
         return page, starts
 
 

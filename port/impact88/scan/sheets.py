@@ -10,9 +10,8 @@ import numpy as np
 from ..fields import INPUTS
 from ..judging.judgement import Verdict
 from ..reading.alignment import MAY_BE_MISSING
-from .evidence import Judged, judged, state
 from .grid import Grid, grids_of
-from .holding import Cell, held
+from .holding import Cell, Judged, held, judged, state
 from .ink import Image, ink_of
 from .layout import Sheet, sheets_of
 from .scenes import Candidate, Read, borne_out, scene_of
@@ -137,6 +136,6 @@ def _mistaken(leaf: Leaf) -> bool:
             if row.start <= cell.place.line < row.start + row.used
         ]
         if states.count("holds") < 0.5 * len(states):
-            del sheet.rows[line], sheet.pieces[line]
+            del sheet.rows[line]
             found = True
     return found

@@ -251,14 +251,13 @@ def read_numbers(grid: Grid, sheets: Sequence[Sheet]) -> list[dict[str, Floats]]
     chosen: list[int] = []
     numbers: list[tuple[int, str, slice]] = []
     for which, sheet in enumerate(sheets):
-        for piece in (piece for line in sheet.pieces.values() for piece in line):
-            if piece.name:
+        for name, text, held in (piece for row in sheet.rows.values() for piece in row.pieces):
+            if name:
                 begin = len(chosen)
-                chosen += range(len(places), len(places) + len(piece.places))
-                numbers.append((which, piece.name, slice(begin, len(chosen))))
-            places += piece.places
-            known = len(piece.text) == len(piece.places)
-            names += piece.text if known else BLANK * len(piece.places)
+                chosen += range(len(places), len(places) + len(held))
+                numbers.append((which, name, slice(begin, len(chosen))))
+            places += held
+            names += text if len(text) == len(held) else BLANK * len(held)
     sample = sample_of(grid, places)
     of_numbers = sample.at(np.array(chosen))
     labels = np.array([k for k, name in enumerate(names) if name != BLANK])
