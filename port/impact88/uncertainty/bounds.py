@@ -12,6 +12,7 @@ the six final velocities back, with MUP, the signed P_t/P_n, for MU: line 400's 
 initial velocities.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
@@ -44,8 +45,6 @@ CHUNK = 1 << 15
 """Draws evaluated at a time: what the processor's cache holds. Part of what a seed means."""
 RANKED = 20_000
 """Draws the rank correlations are taken over at most (standard error 0.007)."""
-SLIP_APART = 1e-12
-"""How far from gt = 0 the changed sign of MU is met, of gt's range: on it the sign is kept."""
 SWEEP_POINTS = 41
 MOST_DRAWS = 100_000_000
 """Draws of all outputs together that are kept: 800 MB."""
@@ -233,14 +232,13 @@ class _Box:
         for sign in (1.0, -1.0):
             # kept where gt <= 0, changed where gt > 0
             if lowest <= 0 if sign > 0 else highest > 0:
-                apart = 0.0 if sign > 0 else SLIP_APART * float(highest - lowest)
-                pieces.append(self.piece(sign, apart).extremes(count, rng, slip.at[:, 0]))
+                pieces.append(self.piece(sign).extremes(count, rng, slip.at[:, 0]))
         searched = merged(pieces)
         return searched._replace(evaluations=searched.evaluations + slip.evaluations)
 
-    def piece(self, sign: float | None, apart: float = 0.0) -> Piece:
+    def piece(self, sign: float | None) -> Piece:
         """The outputs with MU's sign kept (+1) or changed (-1) throughout, and where line 400 does
-        that: at least ``apart`` from gt = 0. None: with the sign the scene gives it."""
+        that. None: with the sign the scene gives it."""
         names = (*self.outputs, "STATUS") if self.excluded else self.outputs
 
         def values(points: Array) -> Array:
@@ -254,7 +252,8 @@ class _Box:
             return np.stack(every, axis=1)
 
         def margin(points: Array) -> Array:
-            return -(sign or 1.0) * self.slip(points) - apart
+            slip = self.slip(points)  # at gt = 0 the sign is kept
+            return slip - math.ulp(0.0) if sign == -1.0 else -slip
 
         return Piece(values, len(self.outputs), None if sign is None else margin)
 
