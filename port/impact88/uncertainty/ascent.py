@@ -49,18 +49,16 @@ def climb(
     number: NDArray[np.intp],
     sense: Array,
     least: Array,
-    taken: Callable[[int], bool] = lambda points: True,
 ) -> tuple[Array, Array, Array, Flags]:
     """Where c climbers that start at ``u`` (c x k) and the states ``x`` (s x c) end: coordinates,
     states, all functions there, and whether each came to its end. ``number``: whose function each
     climbs, -1 for those who only seek the way inside the walls; ``sense``: +1 up, -1 down;
-    ``least``: the gain not worth a step; ``taken`` is called with the points looked at, and returns
-    whether to go on."""
+    ``least``: the gain not worth a step."""
     x, functions, walls, usable = ground.at(u, x)
     u, reach = u.copy(), np.where(usable, REACH, 0.0)
     for _ in range(ROUNDS):
         who = np.flatnonzero(reach >= LAST_REACH)
-        if not u[who].size or not taken(len(who) * (u.shape[1] + CORRECTIONS)):
+        if not u[who].size:
             break
         slopes, bends, turns = ground.slopes(u[who], x[:, who])
         here, inside = u[who], walls[who]
@@ -108,7 +106,6 @@ def extremes_of(
     starts: int,
     gain: float,
     states: Callable[[Array], Array],
-    taken: Callable[[int], bool] = lambda points: True,
 ) -> tuple[Array, Array, Flags]:
     """The lowest and the highest values of m functions, 2 x m: the values (nan where there is
     none), the coordinates there, and whether the climb came to its end. Climbers start from the
@@ -124,7 +121,7 @@ def extremes_of(
     least = gain * np.maximum(np.nan_to_num(most + np.roll(most, count), neginf=0.0), 0.0)
     begin = points[first.reshape(-1)]
     number, sense, least = (np.tile(each, len(first)) for each in (number, sense, least))
-    u, _, reached, ended = climb(ground, begin, states(begin), number, sense, least, taken)
+    u, _, reached, ended = climb(ground, begin, states(begin), number, sense, least)
     final = below_all(reached[np.arange(len(u)), number] * sense).reshape(first.shape)
     winner, every = final.argmax(axis=0), np.arange(2 * count)
     best = final[winner, every]

@@ -47,8 +47,6 @@ STARTS = 4
 """Climbers of each extreme, each from the best of a part of all points."""
 LEAST_GAIN = 1e-7
 """Of a quantity's range: a gain not worth a step."""
-BUDGET = 150_000
-"""Impacts the search for bounds may take: most take a tenth."""
 LEARNT, UNSEEN, WALKS, PACES = 6, 9, 20, 40
 """Times each chain's place is met while the walls are learnt, until it has forgotten its start, and
 as a draw; each so many paces apart."""
@@ -95,28 +93,22 @@ def draws(
     names: Sequence[str],
     count: int,
     seed: int = 0,
-    progress: Progress = lambda draws: None,
+    progress: Progress = lambda impacts: None,
 ) -> Draws:
     """``count`` random draws of what is known, each reconstructed: the quantities ``names``. Where
     no impact lies within all limits the known values are drawn as normal ones, each with its
     standard deviation."""
     rng = np.random.default_rng([seed, 1])
-    box = _Box(solution, names)
-    size = len(names)
+    box = _Box(solution, names, progress)
     if box.rest and box.kept:  # else nothing varies
-        points, functions = _walked(box, count, rng, progress)
+        points, functions = _walked(box, count, rng)
         if not len(points):
-            _, functions = _walked(_Box(solution, names, walls=False), count, rng, progress)
-        values = np.full((count, size), np.nan)
-        values[: len(functions)] = functions[:, :size]
+            _, functions = _walked(_Box(solution, names, progress, walls=False), count, rng)
     else:
-        points, values = np.empty((count, len(box.kept))), np.empty((count, size))
-        for first in range(0, count, CHUNK):
-            part = slice(first, min(first + CHUNK, count))
-            points[part] = box.drawn(rng, part.stop - part.start)
-            _, functions, _, usable = box.from_nominal(points[part])
-            values[part] = np.where(usable[:, None], functions[:, :size], np.nan)
-            progress(part.stop - part.start)
+        parts = [box.drawn(rng, min(CHUNK, count - first)) for first in range(0, count, CHUNK)]
+        points = np.concatenate(parts)
+        functions = box.functions(points)
+    values = functions[:, : len(names)] if len(functions) else np.full((count, len(names)), np.nan)
     failed = np.isnan(values).any(axis=1).mean() if values.size else 0.0
     return Draws(dict(zip(names, values.T, strict=True)), float(failed), points)
 
@@ -127,33 +119,22 @@ def ranges(
     names: Sequence[str],
     seed: int = 0,
     drawn: Draws | None = None,
-    progress: Progress = lambda draws: None,
+    progress: Progress = lambda impacts: None,
 ) -> dict[str, Range]:
     """The lowest and highest value of each quantity over the limits of what is known. The search
     begins from ``drawn``, too."""
-    box = _Box(solution, names)
-    rng = np.random.default_rng([seed, 0])
-    taken = 0
-
-    def budget(points: int) -> bool:
-        nonlocal taken
-        taken += points
-        progress(points)
-        return taken < BUDGET
-
-    points = box.inside(rng, budget)
+    box = _Box(solution, names, progress)
+    points = box.inside(np.random.default_rng([seed, 0]))
     if drawn is not None and drawn.points.shape[1] == points.shape[1]:
         points = np.concatenate([points, drawn.points])
     if not len(points):
         return {name: Range(np.nan, np.nan, {}, {}) for name in names}
-    functions = np.concatenate(
-        [box.from_nominal(points[i : i + CHUNK])[1] for i in range(0, len(points), CHUNK)]
-    )
+    functions = box.functions(points)
     # of each part of the points the best: climbers that stand apart
     parts = [np.arange(i, len(points), STARTS) for i in range(min(STARTS, len(points)))]
     (lower, upper), ends, done = extremes_of(
         *(box, points, functions, parts, 1, LEAST_GAIN),
-        *(lambda start: box.from_nominal(start)[0], budget),
+        lambda start: box.from_nominal(start)[0],
     )
     endless = _endless(box, solution.system.known, names)
     # what divides a coefficient takes both signs
@@ -170,8 +151,14 @@ class _Box:
     among them) and walls (redundant values, 0 to 1 from limit to limit) over k coordinates, 0 to 1
     each. ``walls``: whether limits are kept, or each value is normal about its nominal one."""
 
-    def __init__(self, solution: Reconstruction, names: Sequence[str], walls: bool = True) -> None:
-        known, self.limited = solution.system.known, walls
+    def __init__(
+        self,
+        solution: Reconstruction,
+        names: Sequence[str],
+        progress: Progress,
+        walls: bool = True,
+    ) -> None:
+        known, self.limited, self.progress = solution.system.known, walls, progress
         self.kept, self.rest = _independent(solution)
         adjusted = {item.name: item.adjusted for item in solution.adjusted}
         self.items: dict[str, Uncertain] = {}
@@ -224,6 +211,7 @@ class _Box:
         return np.stack(np.broadcast_arrays(*columns))[1:]
 
     def _found(self, x: Floats, state: State, usable: Flags) -> Point:
+        self.progress(len(usable))
         columns = self._told(state).T
         count = len(self.names) + len(self.ratios)
         functions, walls = columns[:, :count], columns[:, count:]
@@ -252,6 +240,14 @@ class _Box:
             part = {n: column[wild] for n, column in data.items()}
             x[:, wild], settled[wild] = self._newton(part, start[:, wild])
         return self._found(x, self.system.state(x, data, geometry), settled)
+
+    def functions(self, points: Floats) -> Floats:
+        """The functions at any number of points, NaN where there is no impact."""
+        found = []
+        for first in range(0, len(points), CHUNK):
+            _, functions, _, usable = self.from_nominal(points[first : first + CHUNK])
+            found.append(np.where(usable[:, None], functions, np.nan))
+        return np.concatenate(found)
 
     def at(self, u: Floats, guess: Floats) -> Point:
         """`ascent.Landscape`."""
@@ -332,9 +328,7 @@ class _Box:
 
     # -- points within all walls
 
-    def inside(
-        self, rng: np.random.Generator, taken: Callable[[int], bool] = lambda points: True
-    ) -> Floats:
+    def inside(self, rng: np.random.Generator) -> Floats:
         """Points of the box that lie within all walls; none where none was found."""
         points = spread_out(len(self.kept), SCATTERED, rng)
         on_faces = rng.random(points.shape) < rng.choice([0.0, 0.5, 1.0], (SCATTERED, 1))
@@ -349,7 +343,7 @@ class _Box:
         nobody = np.full(len(nearest), -1)
         u, _, _, _ = climb(
             *(self, points[nearest], x[:, nearest], nobody, np.ones(len(nearest))),
-            *(np.full(len(nearest), OUTSIDE), taken),
+            np.full(len(nearest), OUTSIDE),
         )
         _, _, walls, usable = self.from_nominal(u)
         reached = usable & (np.abs(walls - 0.5) <= 0.5 + OUTSIDE).all(axis=1)
@@ -379,9 +373,7 @@ def _near(name: str, value: Floats, nominal: float | None) -> Floats:
     return np.asarray(value - 360 * np.round((np.real(value) - nominal) / 360))
 
 
-def _walked(
-    box: _Box, count: int, rng: np.random.Generator, progress: Progress
-) -> tuple[Floats, Floats]:
+def _walked(box: _Box, count: int, rng: np.random.Generator) -> tuple[Floats, Floats]:
     """``count`` points within all walls, by Markov chains, and the functions there; none where
     there is no such point."""
     begin = box.inside(rng)
@@ -453,7 +445,6 @@ def _walked(
             met_there = np.vstack([met_there, np.hstack([ahead, x.T])[seen]])
         elif walk >= UNSEEN:
             drawn.append((u, functions))
-            progress(chains)
     points, values = (np.concatenate(part)[:count] for part in zip(*drawn, strict=True))
     return points, values
 
