@@ -318,13 +318,14 @@ class Reconstruction:
     def backwards(self) -> tuple[str, ...]:
         """The known courses along which this impact drives backwards, and PDOFs from which it
         pulls."""
-        state, speed = self.system.state(self.x), self.system.speed
+        state, system = self.system.state(self.x), self.system
         return tuple(
             name
             for name in DIRECTIONS
-            if name in self.system.known
+            if name in system.known
             and (COURSES.get(name) or "PN") in self.values
-            and state.along(name) < -_HOLDS * speed * (self.system.mass if name in FORCES else 1)
+            and state.along_and_across(name)[0]
+            < -_HOLDS * system.scale("PN" if name in FORCES else "UX")
         )
 
     @cached_property

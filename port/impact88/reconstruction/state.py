@@ -6,7 +6,7 @@ of sums, products, roots and quotients, over numbers or arrays, real or complex 
 carries a derivative).
 """
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from functools import cached_property, lru_cache
 from typing import Any, Self
 
@@ -102,13 +102,10 @@ class State:
         """What Equation 15 (E), 16 (MUP) or 18 (EM) leaves over, 0 where it holds: a velocity, an
         impulse, a spin. MUP = -10 is the pivot, no tangential relative velocity afterwards."""
         value = self.values[coefficient]
-        pn, pt, moment = self.impulse
-        if coefficient == "E":
-            return self.relative_after[0] + value * self.relative_before[0]
-        if coefficient == "MUP":
-            return self.relative_after[1] if np.all(value == PIVOT) else pt - value * pn
-        turned = value * moment * self.here.inverse_spin_inertia
-        return (1 - value) * self.relative_after[2] - turned
+        if coefficient == "MUP" and np.all(value == PIVOT):
+            return self.relative_after[1]
+        above, below = self.quotient(coefficient)
+        return above - value * below
 
     def __getitem__(self, name: str) -> Any:
         """A quantity by name; coefficients are what velocities and impulse make them."""
@@ -125,22 +122,26 @@ class State:
         if name in COEFFICIENTS:
             above, below = self.quotient(name)
             return above / below
-        return _QUANTITIES[name](self)
+        if name in CHANGES:
+            return self._change(name)
+        if name in FORCES:
+            return self._pdof(name)
+        if name in CONTACT:
+            return -self.relative_before[0] if name == "VC" else self.relative_after[0]
+        lost, initial = self.energy_lost, self.initial_energy
+        if name in ("LOSS", "DT"):
+            return (100.0 if name == "LOSS" else 1.0) * lost / initial
+        return {"KI": initial, "KF": initial - lost, "EL": lost}[name]
 
     def _components(self, speed: str) -> tuple[Any, Any]:
         x, y = SPEEDS[speed]
         return self[x], self[y]
 
-    def across(self, direction: str) -> Any:
-        """Across the course given the velocity's component, across the PDOF given the impulse's: 0
-        where it runs along it."""
+    def along_and_across(self, direction: str) -> tuple[Any, Any]:
+        """The components along and across the course given, or of the push from the PDOF given; the
+        second is 0 where the velocity, or the impulse, runs along it."""
         (x, y), (cosine, sine) = self._vector(direction), self._given(direction)
-        return y * cosine - x * sine
-
-    def along(self, direction: str) -> Any:
-        """The component along the course given, or along the push from the PDOF given."""
-        (x, y), (cosine, sine) = self._vector(direction), self._given(direction)
-        return x * cosine + y * sine
+        return x * cosine + y * sine, y * cosine - x * sine
 
     def _vector(self, direction: str) -> tuple[Any, Any]:
         if direction in COURSES:
@@ -188,12 +189,15 @@ class State:
                 velocities[f"Y{vehicle}{suffix}"] = y + arm_y * spin
         return velocities
 
-    def _change(self, vehicle: str) -> tuple[Any, Any]:
-        """A vehicle's change of velocity along its length, forward, and across, to its right."""
-        first = 0 if vehicle == "A" else 3
-        x, y = self.changes[first : first + 2]
+    def _change(self, name: str) -> Any:
+        """A vehicle's change of velocity: its size, or along its length, forward (F), or across, to
+        its right (R)."""
+        vehicle, part = name[2], name[3:]
+        x, y = self.changes[:2] if vehicle == "A" else self.changes[3:5]
+        if not part:
+            return _size(x, y)
         cosine, sine = _unit(facing(vehicle, self.values["T" + vehicle]))
-        return x * cosine + y * sine, x * sine - y * cosine
+        return x * cosine + y * sine if part == "F" else x * sine - y * cosine
 
     def _energy(self, velocities: list[Any]) -> Any:
         inertias = [
@@ -214,25 +218,6 @@ class State:
         in the difference of two energies."""
         parts = zip(self.impulse, self.relative_before, self.relative_after, strict=True)
         return -0.5 * sum(part * (early + late) for part, early, late in parts)
-
-
-_QUANTITIES: dict[str, Callable[[State], Any]] = {
-    "DVA": lambda state: _size(*state.changes[:2]),
-    "DVB": lambda state: _size(*state.changes[3:5]),
-    "DVAF": lambda state: state._change("A")[0],
-    "DVAR": lambda state: state._change("A")[1],
-    "DVBF": lambda state: state._change("B")[0],
-    "DVBR": lambda state: state._change("B")[1],
-    "KI": lambda state: state.initial_energy,
-    "KF": lambda state: state.initial_energy - state.energy_lost,
-    "EL": lambda state: state.energy_lost,
-    "LOSS": lambda state: 100 * state.energy_lost / state.initial_energy,
-    "DT": lambda state: state.energy_lost / state.initial_energy,
-    "VC": lambda state: -state.relative_before[0],
-    "VS": lambda state: state.relative_after[0],
-    "PDOFA": lambda state: state._pdof("PDOFA"),
-    "PDOFB": lambda state: state._pdof("PDOFB"),
-}
 
 
 def _size(x: Any, y: Any) -> Any:

@@ -158,12 +158,14 @@ class System:
 
     def _exact(self, state: State, name: str, targets: Mapping[str, Any]) -> Any:
         if name in DIRECTIONS:
-            return state.across(name) / (self.speed * (self.mass if name in FORCES else 1.0))
+            return state.along_and_across(name)[1] / (
+                self.speed * (self.mass if name in FORCES else 1.0)
+            )
         if name == "ELA":
             return (state["EL"] - state.values["ELA"] - state.values["ELB"]) / self.scale("EL")
         if name in SPEEDS:
             course = _COURSE_OF[name]
-            size = state.along(course) if course in self.known else state[name]
+            size = state.along_and_across(course)[0] if course in self.known else state[name]
             value = state.values[name] if name in self.variables else targets[name]
             return (size - value) / self.speed
         return (state[name] - targets[name]) / self.scale(name)
