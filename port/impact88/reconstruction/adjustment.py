@@ -485,7 +485,6 @@ def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertai
 
 
 def _agrees(solution: Reconstruction, mu: float) -> bool:
-    """Whether friction with this solution's sign opposes its own sliding, as line 400 has it."""
     signed = solution.system.nominal["MUP"]
     known = not set(VELOCITIES) & set(solution.undetermined)
     return not known or typed_friction(solution.system.state(solution.x), signed) == mu

@@ -13,7 +13,7 @@ all four together: varied apart they tear it in two.
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cached_property, wraps
+from functools import wraps
 from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
@@ -73,8 +73,10 @@ def with_point_masses(columns: Mapping[str, Any]) -> dict[str, Any]:
 
 class Geometry:
     """Of scenes given by name (`GEOMETRY`, and M where not 6), angles in degrees, as arrays that
-    broadcast: ``cosine`` and ``sine`` of Γ; ``d1`` ... ``d4`` as in listing line 330; ``point``:
-    point masses (M = 4: no lever arms, nothing turns them)."""
+    broadcast: ``cosine`` and ``sine`` of Γ; ``d1`` ... ``d4`` as in listing line 330; ``an`` ``at``
+    ``bn`` ``bt``: the spins' shares in the normal and tangential velocity of A minus B at the
+    contact point; ``inverse_mass``: R = 1/m_a + 1/m_b, ``inverse_spin_inertia``: 1/Ī = 1/I_a +
+    1/I_b; ``point``: point masses (M = 4: no lever arms, nothing turns them)."""
 
     def __init__(self, columns: Mapping[str, Any]) -> None:
         columns = with_point_masses(columns)
@@ -87,34 +89,12 @@ class Geometry:
         self.d1, self.d2, self.d3, self.d4 = db * sine_b, db * cosine_b, da * sine_a, da * cosine_a
         self.inverse_ma, self.inverse_mb = 1 / value["MA"], 1 / value["MB"]
         self.inverse_ia, self.inverse_ib = 1 / value["IA"], 1 / value["IB"]
-
-    @cached_property
-    def an(self) -> Any:
-        """Normal lever arm of A: the spin's share in the contact point's normal velocity."""
-        return self.d3 * self.cosine - self.d4 * self.sine
-
-    @cached_property
-    def at(self) -> Any:
-        return -(self.d4 * self.cosine + self.d3 * self.sine)
-
-    @cached_property
-    def bn(self) -> Any:
-        """Normal lever arm of B, with the sign it has in the *relative* velocity A minus B."""
-        return self.d1 * self.cosine - self.d2 * self.sine
-
-    @cached_property
-    def bt(self) -> Any:
-        return -(self.d2 * self.cosine + self.d1 * self.sine)
-
-    @property
-    def inverse_mass(self) -> Any:
-        """R = 1/m_a + 1/m_b."""
-        return self.inverse_ma + self.inverse_mb
-
-    @property
-    def inverse_spin_inertia(self) -> Any:
-        """1/Ī = 1/I_a + 1/I_b."""
-        return self.inverse_ia + self.inverse_ib
+        self.inverse_mass = self.inverse_ma + self.inverse_mb
+        self.inverse_spin_inertia = self.inverse_ia + self.inverse_ib
+        self.an = self.d3 * self.cosine - self.d4 * self.sine
+        self.at = -(self.d4 * self.cosine + self.d3 * self.sine)
+        self.bn = self.d1 * self.cosine - self.d2 * self.sine
+        self.bt = -(self.d2 * self.cosine + self.d1 * self.sine)
 
     def relative(self, velocities: Sequence[Any]) -> tuple[Array, Array, Array]:
         """Relative normal, tangential and angular velocity, A minus B, at the contact point; of UX
@@ -131,10 +111,6 @@ class Geometry:
         on_a, on_b = self.an * pn + self.at * pt + moment, self.bn * pn + self.bt * pt - moment
         a, b = self.inverse_ma, self.inverse_mb
         return [a * x, a * y, self.inverse_ia * on_a, -b * x, -b * y, self.inverse_ib * on_b]
-
-    def contact_point(self) -> dict[str, Array]:
-        """The contact point from each center of gravity, along the scene's x and y."""
-        return {"CAX": -self.d4, "CAY": -self.d3, "CBX": self.d2, "CBY": self.d1}
 
 
 # -- in a vehicle's own axes

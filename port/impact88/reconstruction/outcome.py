@@ -47,7 +47,8 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
         given = {"WA": np.zeros(()), "WB": np.zeros(()), "EM": np.zeros(()), **given}
         given = {"WAF": given["WA"], "WBF": given["WB"], **given}
     state = State.of_known(given)
-    result = state.here.contact_point()
+    here = state.here
+    result = {"CAX": -here.d4, "CAY": -here.d3, "CBX": here.d2, "CBY": here.d1}
     names = (*CONTACT, *CHANGES, "KI", "KF", "LOSS", *SPEEDS, *COURSES)
     told = {name: state[name] for name in names} | state.contact_velocities()
     result |= {name: value for name, value in told.items() if not np.isnan(value).all()}

@@ -82,11 +82,9 @@ class Impact:
         return sentences(int(self.values.get("STATUS", 0)), self.values)
 
     def further(self, units: System) -> list[list[str]]:
-        """More tables."""
         return []
 
     def more(self, units: System) -> dict[str, Any]:
-        """More for a program."""
         return {}
 
     def spread_of(self, name: str) -> tuple[float, float, float] | None:

@@ -225,7 +225,6 @@ def _size(x: Any, y: Any) -> Any:
 
 
 def _unit(degrees: Any) -> tuple[Any, Any]:
-    """Cosine and sine."""
     sine, cosine = _of_number(degrees) if isinstance(degrees, float) else sin_cos(degrees)
     return cosine, sine
 

@@ -70,10 +70,17 @@ class System:
         if not self.point:
             self.gyration = np.sqrt(geometry.inverse_mass / geometry.inverse_spin_inertia)
         still: tuple[str, ...] = ("WA", "WB", "PM") if self.point else ()
-        for mass, names in (("MA", VELOCITIES[:3]), ("MB", VELOCITIES[3:])):
-            if barrier and np.all(np.isinf(self.nominal[mass])):
+        for own_mass, names in (("MA", VELOCITIES[:3]), ("MB", VELOCITIES[3:])):
+            if barrier and np.all(np.isinf(self.nominal[own_mass])):
                 still += names
         self.speed: Any = self._typical_speed()
+        speed, mass, length = self.speed, self.mass, self.gyration
+        self.sizes: dict[str, Any] = {
+            **{"1": 1.0, "percent": 100.0, "degree": np.degrees(1.0), "length": length},
+            **{"length/time": speed, "rad/time": speed / length},
+            **{"mass·length/time": mass * speed, "mass·length²/time": mass * speed * length},
+            "mass·length²/time²": mass * speed**2,
+        }
         loose = {n for n, item in known.items() if adjusted and item.varies}
         parameters = [n for n in known if n in PARAMETERS and n in loose]
         unknown = [n for n in VELOCITIES if n not in still and (n not in known or n in loose)]
@@ -114,15 +121,8 @@ class System:
 
     def scale(self, name: str) -> Any:
         """What a quantity of ordinary size measures in the problem's units."""
-        speed, mass, length = self.speed, self.mass, self.gyration
-        if name in ("MA", "MB", "IA", "IB"):
-            return abs(self.nominal[name])
-        return {
-            **{"1": 1.0, "percent": 100.0, "degree": np.degrees(1.0), "length": length},
-            **{"length/time": speed, "rad/time": speed / length},
-            **{"mass·length/time": mass * speed, "mass·length²/time": mass * speed * length},
-            "mass·length²/time²": mass * speed**2,
-        }[quantity(name).unit]
+        own = name in ("MA", "MB", "IA", "IB")
+        return abs(self.nominal[name]) if own else self.sizes[quantity(name).unit]
 
     def state(
         self, x: Array, data: Mapping[str, Array] | None = None, geometry: Geometry | None = None
@@ -188,7 +188,6 @@ class System:
         return np.real(values[:, 0]), np.imag(values) / TINY
 
     def slopes(self, x: Array) -> Floats:
-        """Of what conditions and observations leave over, for one impact."""
         return self.linearized(x, self.left)[1][:, :, 0]
 
     def gradients(self, x: Array, names: Sequence[str]) -> Floats:

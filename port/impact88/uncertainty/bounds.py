@@ -221,7 +221,6 @@ class _Box:
         return {**values, "MU": share_typed(values, values["MU"])} if self.share else values
 
     def extremes(self, rng: np.random.Generator) -> Extremes:
-        """The extremes of the outputs over the box."""
         count = len(self.inputs)
         friction = self.known.get("MU")
         # a share of the critical friction has the sign that ends the sliding, whatever gt is
@@ -262,16 +261,13 @@ class _Box:
         return np.broadcast_to(values, len(points))
 
     def left_out(self, solved: Mapping[str, Array]) -> NDArray[np.bool_]:
-        """Which of the scenes solved carry a warning that excludes them."""
         return np.asarray(np.asarray(solved["STATUS"], np.int64) & self.excluded, bool)
 
     def warnings_at(self, point: Array) -> tuple[str, ...]:
-        """Names of the warnings at one point."""
         bits = int(np.ravel(self.solved(self.columns(point[None]), ["STATUS"])["STATUS"])[0])
         return tuple(name for name, bit in WARNINGS.items() if bits & bit)
 
     def nominal(self) -> dict[str, float]:
-        """The outputs with every input at its nominal value."""
         columns = {name: np.array([item.nominal]) for name, item in self.inputs.items()}
         solved = self.solved(columns, self.outputs)
         result = {name: float(np.ravel(solved[name])[0]) for name in self.outputs}

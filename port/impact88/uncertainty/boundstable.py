@@ -190,7 +190,6 @@ def unbounded(bound: Any) -> list[str]:
 
 
 def _width(bound: Bound) -> float:
-    """From bound to bound; 0 where there is no end."""
     width = bound.upper - bound.lower
     return width if math.isfinite(width) else 0.0
 
@@ -253,7 +252,6 @@ def table(bounds: Bounds) -> str:
 
 
 def _warnings_at_bounds(answer: Bounds) -> list[str]:
-    """For each warning the bounds at which it stands, one line (or more) each."""
     places: dict[str, list[str]] = {}
     for name, bound in answer.bounds.items():
         for side, warnings in (("lower", bound.lower_warnings), ("upper", bound.upper_warnings)):

@@ -50,8 +50,8 @@ LEAST_GAIN = 1e-7
 LEARNT, UNSEEN, WALKS, PACES = 6, 9, 20, 40
 """Times each chain's place is met while the walls are learnt, until it has forgotten its start, and
 as a draw; each so many paces apart."""
-FREE, ENOUGH = 4096, 100
-"""Draws as without walls, and how many inside the walls will do for chains to start from."""
+FREE = 4096
+"""Draws as without walls that chains may start from."""
 NEAR, RIDGE = 1.5, 1e-9
 """Walls are learnt no farther from the middle between them, where a quotient's pole would spoil
 them; the ridge holds still what the places met do not tell."""
@@ -391,8 +391,6 @@ def _walked(box: _Box, count: int, rng: np.random.Generator) -> tuple[Floats, Fl
     more = whole[among] - box.density(free[among], np.full_like(walls[among], 0.5))
     weights[among] = np.exp(more - more.max(initial=-np.inf))
     weights = np.minimum(weights, weights.sum() / np.sqrt(among.sum() or 1))
-    if (weights[:FREE] > 0).sum() >= ENOUGH:
-        weights[FREE:] = 0.0
     if not weights.any():
         weights[-len(begin) :] = 1.0
     start = rng.choice(len(free), chains, p=weights / weights.sum())

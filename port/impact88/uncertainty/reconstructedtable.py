@@ -212,7 +212,6 @@ class Measured(Impact):
         return table(rows, [*heading, "unit"], left=(0, len(heading))) if rows else []
 
     def _connections(self) -> list[list[str]]:
-        """Correlations, and what makes results uncertain."""
         names = self.names
         # the unknowns themselves: courses and speeds are made of them
         at = [i for i, n in enumerate(names) if n not in (*SPEEDS, *COURSES)][:MOST_CORRELATED]

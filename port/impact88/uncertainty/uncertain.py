@@ -163,7 +163,6 @@ def columns_of(
 
 
 def fixed(value: float) -> Uncertain:
-    """A value that is known."""
     return Uncertain("fixed", value, value, value)
 
 
