@@ -30,7 +30,7 @@ from .run_command import MACHINE, check_slot
 LISTING = "impact.bas"
 SLOT_LINE = '190 P$ = "PR# " + "{}"'
 PROGRAM_LIMIT = 1_000_000
-"""Bytes of a program's text; 48K hold some 50,000."""
+"""Bytes of a program's text; 48K hold some 50,000, so that twice as many change no answer."""
 LEAVE = "control-Z and RETURN leave" if sys.platform == "win32" else "control-D leaves"
 BANNER = f"impact88 basic: an Apple II Plus. LIST shows the program, RUN starts {{}}; {LEAVE}."
 

@@ -57,7 +57,7 @@ def main(args: options.Args) -> None:
     values = written(values, system)
     solved_for = BEFORE if after else AFTER
     units = {name: system.label(quantity(name).unit) for name in values}
-    whole = {"solved_for": solved_for, "values": values, "units": units, "warnings": warnings}
+    record = {"solved_for": solved_for, "values": values, "units": units, "warnings": warnings}
 
     def lines() -> Iterator[str]:
         decimals = decimals_for([values[name] for name in KNOWABLE[4:]])
@@ -74,4 +74,4 @@ def main(args: options.Args) -> None:
         for warning in warnings:
             yield from paragraph(f"! {warning}")
 
-    options.show(args, "colinear", lambda: whole, lines)
+    options.show(args, "colinear", lambda: record, lines)

@@ -30,7 +30,7 @@ from ..tables.table import format_of
 from . import options
 
 SHOWN = 20
-"""Unreadable rows listed on stderr."""
+"""Unreadable rows listed on stderr: a screen, and twice as many are two."""
 
 ARGUMENTS = (
     options.reads("theirs", "THEIRS", "the table (- is standard input, CSV)"),

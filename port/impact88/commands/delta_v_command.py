@@ -62,8 +62,8 @@ def main(args: options.Args) -> None:
         raise UserError(str(error), args.scene) from None
     equation = deltav.described(factor)
     caution = f"An estimate: {deltav.ERROR};\nuntested elsewhere (Section VI)."
-    whole = {"equation": equation, **found}
-    options.show(args, "delta-v", lambda: whole, lambda: [*lines, equation, caution])
+    record = {"equation": equation, **found}
+    options.show(args, "delta-v", lambda: record, lambda: [*lines, equation, caution])
 
 
 def _answer(known: dict[str, float], like: str | None, factor: float, units: System) -> Answer:
@@ -87,8 +87,8 @@ def _answer(known: dict[str, float], like: str | None, factor: float, units: Sys
     rows = [[number(estimate[n]) for n in ("LOSS", "DVA", "DVB")] for estimate in estimates]
     heading = ["loss [percent]", f"DVA [{label}]", f"DVB [{label}]"]
     lines = [*quantities(speeds, units), "", *table(rows, heading, left=()), "", f"loss: {source}"]
-    whole = {"factor": factor, "given": speeds, "loss_from": source, "estimates": estimates}
-    return {**whole, "units": _labels((*GIVEN, "DVA", "DVB", "LOSS"), units)}, lines
+    record = {"factor": factor, "given": speeds, "loss_from": source, "estimates": estimates}
+    return {**record, "units": _labels((*GIVEN, "DVA", "DVB", "LOSS"), units)}, lines
 
 
 def _speeds_before(
@@ -125,8 +125,8 @@ def _loss(known: dict[str, float], like: str | None, factor: float, units: Syste
     displayed = written(changes, units)
     rows = [[name, number(displayed[name]), number(loss)] for name, loss in found.items()]
     heading = ["from", f"velocity change [{units.label('length/time')}]", "loss [percent]"]
-    whole = {"given": written(given, units), "LOSS_from": found, "units": _labels(given, units)}
-    return whole, [*table(rows, heading), ""]
+    record = {"given": written(given, units), "LOSS_from": found, "units": _labels(given, units)}
+    return record, [*table(rows, heading), ""]
 
 
 def _check_finite(numbers: Iterable[float]) -> None:

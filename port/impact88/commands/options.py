@@ -249,8 +249,8 @@ def print_json(form: str, found: Mapping[str, Any], indent: int | None = None) -
     from ..plaintable import plain
     from ..schemas import stamped
 
-    whole = stamped(form, plain(found))
-    print(json.dumps(whole, ensure_ascii=False, allow_nan=False, indent=indent), flush=True)
+    record = stamped(form, plain(found))
+    print(json.dumps(record, ensure_ascii=False, allow_nan=False, indent=indent), flush=True)
 
 
 def pairs(texts: Sequence[str], option: str, example: str) -> dict[str, str]:

@@ -64,7 +64,7 @@ def main(args: options.Args) -> None:
     with replacing(args.output) as out:
         out.write(page)
     if args.csv:
-        rows = [r for one in tables for r in ([one.title], one.headings, *one.rows, [])]
+        rows = [r for table in tables for r in ([table.title], table.headings, *table.rows, [])]
         with replacing(args.csv) as out:
             csv.writer(out, lineterminator="\n").writerows(rows)
     if args.xlsx:

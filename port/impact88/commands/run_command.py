@@ -28,7 +28,8 @@ from ..scene import Scene, published_data
 from . import options
 
 MOST_REPLIES = 10_000
-"""Replies that are read: the program asks twice, and once more for each it refuses."""
+"""Replies that are read: the program asks twice, and once more for each it refuses. Only a program
+types as many, or twice as many."""
 
 MACHINE = (
     options.flag("--no-dos", "no disk operating system: lines that start with control-D are shown"),
@@ -84,12 +85,12 @@ def main(args: options.Args) -> int:
             f"--set gives {' '.join(given)} but not {missing}; expected all six velocities, "
             "or none of them to be asked for, or a scene"
         )
-    whole = scene or Scene(dict.fromkeys(VELOCITIES, "0") | data, source="--set")
+    complete = scene or Scene(dict.fromkeys(VELOCITIES, "0") | data, source="--set")
     if args.listing:
-        run = _run_of_copy(args, whole if given else None)
+        run = _run_of_copy(args, complete if given else None)
     else:
-        whole.check_typed()
-        run = _run(args, data, whole.keyboard() if given else None)
+        complete.check_typed()
+        run = _run(args, data, complete.keyboard() if given else None)
     if args.json:
         options.print_json("run", {**run._asdict(), "floats": run.floats})
     elif args.listing:

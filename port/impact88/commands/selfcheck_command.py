@@ -24,17 +24,17 @@ def main(args: options.Args) -> int:
             print(_line(check), flush=True)
         elif sys.stderr.isatty():
             print(f"{check.name}: {'pass' if check.passed else 'FAIL'}", file=sys.stderr)
-    whole = record(results)
+    qualification = record(results)
     if args.json:
-        options.print_json("selfcheck", whole, indent=2)
+        options.print_json("selfcheck", qualification, indent=2)
     else:
         print()
         for group in ("versions", "hashes"):
-            for name, text in whole[group].items():
+            for name, text in qualification[group].items():
                 print(f"{name + (' SHA-256' if group == 'hashes' else ''):<17} {text}")
-        print(f"{'time':<17} {whole['seconds']} s")
-        print(f"{'result':<17} {'PASS' if whole['passed'] else 'FAIL'}")
-    return int(not whole["passed"])
+        print(f"{'time':<17} {qualification['seconds']} s")
+        print(f"{'result':<17} {'PASS' if qualification['passed'] else 'FAIL'}")
+    return int(not qualification["passed"])
 
 
 def _line(check: Check) -> str:

@@ -64,7 +64,7 @@ __doc__ = (__doc__ or "").format(
 Results = dict[str, NDArray[Any]]
 
 SHOWN = 20
-"""Bad rows listed on stderr when no file takes them all."""
+"""Bad rows listed on stderr when no file takes them all: a screen, and twice as many are two."""
 
 ARGUMENTS = (
     options.reads("cases", "CASES", "the table of scenes (- is stdin)", nargs="?"),

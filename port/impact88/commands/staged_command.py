@@ -78,10 +78,10 @@ def _own(args: options.Args) -> int:
     if absent := [name for name in names if name not in known]:
         raise UserError(missing(absent), args.scene)
     try:
-        whole, lines = within_doubles(_fitted)(known, args.spin_weight, base_of(units))
+        record, lines = within_doubles(_fitted)(known, args.spin_weight, base_of(units))
     except UserError as error:
         raise UserError(str(error), args.scene) from None
-    options.show(args, "staged", lambda: whole, lambda: lines)
+    options.show(args, "staged", lambda: record, lambda: lines)
     return 0
 
 
@@ -102,7 +102,7 @@ def _fitted(
         raise UserError(BEYOND_DOUBLES)
     low, high = staged.undetermined_range(own, spin_weight=weight)
     measured = staged.closure(own)
-    whole = {
+    record = {
         **{"fit": asdict(found), "closure": measured},
         **{"spin_weight": weight, "em_range": (low, high), "base_units": units},
     }
@@ -116,7 +116,7 @@ def _fitted(
         f"of squares {found.sum_of_squares:.4g}. 0 <= e <= 1, -1 <= e_m <= 0. Squares and "
         f"momentum in base units: {units}."
     )
-    return whole, [*table(rows, left=(0, 2)), "", *paragraph(text), "", *_closures([measured])]
+    return record, [*table(rows, left=(0, 2)), "", *paragraph(text), "", *_closures([measured])]
 
 
 def _measured() -> list[str]:

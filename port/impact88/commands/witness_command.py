@@ -31,7 +31,7 @@ from . import options
 Job = Callable[[Session], hearing.Heard]
 
 SHOWN, SHOWN_LINES = 10, 24
-"""Cases with differences that are shown, and lines of each."""
+"""Cases with differences that are shown, and lines of each, an Apple's screen."""
 
 ARGUMENTS = (
     options.reads("scenes", "SCENE.toml", "scenes to run", nargs="*"),
@@ -64,11 +64,11 @@ def main(args: options.Args) -> int:
         for job in jobs:
             heard.append(job(session))
             meter.update(1)
-    whole = hearing.record(image, heard, time.perf_counter() - start)
+    record = hearing.record(image, heard, time.perf_counter() - start)
     if args.save:
         hearing.save(args.save, heard)
-    options.show(args, "witness", lambda: whole, lambda: _report(image, heard, whole), indent=2)
-    return int(not whole["passed"])
+    options.show(args, "witness", lambda: record, lambda: _report(image, heard, record), indent=2)
+    return int(not record["passed"])
 
 
 def _jobs(args: options.Args) -> list[Job]:
@@ -100,7 +100,7 @@ def _jobs(args: options.Args) -> list[Job]:
     return jobs
 
 
-def _report(image: Image, heard: list[hearing.Heard], whole: dict[str, Any]) -> Iterator[str]:
+def _report(image: Image, heard: list[hearing.Heard], record: dict[str, Any]) -> Iterator[str]:
     wrong = [case for case in heard if case.differences]
     for case in wrong[:SHOWN]:
         lines = [line for difference in case.differences for line in difference.lines()]
@@ -108,11 +108,11 @@ def _report(image: Image, heard: list[hearing.Heard], whole: dict[str, Any]) -> 
         yield f"  and {len(lines) - SHOWN_LINES} lines more\n" if len(lines) > SHOWN_LINES else ""
     if len(wrong) > SHOWN:
         yield f"and {len(wrong) - SHOWN} cases more with differences\n"
-    width = max(map(len, whole["comparisons"]))
-    for name, tally in whole["comparisons"].items():
+    width = max(map(len, record["comparisons"]))
+    for name, tally in record["comparisons"].items():
         yield f"{name:<{width}}  {tally['right']:>6} of {tally['total']:>6} without a difference"
-    yield f"\nROM SHA-1         {image.sha1} ({whole['rom']})"
-    for name, text in whole["versions"].items():
+    yield f"\nROM SHA-1         {image.sha1} ({record['rom']})"
+    for name, text in record["versions"].items():
         yield f"{name:<17} {text}"
-    yield f"time              {whole['seconds']} s"
-    yield f"result            {'NO DIFFERENCE' if whole['passed'] else 'DIFFERENT'}"
+    yield f"time              {record['seconds']} s"
+    yield f"result            {'NO DIFFERENCE' if record['passed'] else 'DIFFERENT'}"
