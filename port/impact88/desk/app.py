@@ -290,16 +290,16 @@ def _parts(*names: str) -> dict[str, Any]:
     """Parts of the request's JSON, a text that is missing empty. Raises UserError, also for a
     system of ``units`` there is not."""
     try:
-        whole = json.loads(request.get_data())
-        json.dumps(whole, ensure_ascii=False).encode()  # half a pair of surrogates is not text
+        question = json.loads(request.get_data())
+        json.dumps(question, ensure_ascii=False).encode()  # half a pair of surrogates is not text
     except (ValueError, RecursionError):
         raise UserError("the request is not JSON; expected an object") from None
-    if not isinstance(whole, dict):
+    if not isinstance(question, dict):
         raise UserError("the request is not a JSON object")
     for name in names:
         kind, fits = _KINDS[name]
-        if not fits(whole.get(name)):
+        if not fits(question.get(name)):
             raise UserError(f"{name!r} is not {kind}")
-    if "units" in names and (units := whole.get("units")) and units not in SYSTEMS:
+    if "units" in names and (units := question.get("units")) and units not in SYSTEMS:
         raise UserError(f"{units!r} is not a system of units; expected {', '.join(SYSTEMS)}")
-    return {name: "" if whole.get(name) is None else whole[name] for name in names}
+    return {name: "" if question.get(name) is None else question[name] for name in names}

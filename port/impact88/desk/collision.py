@@ -67,7 +67,7 @@ class Form(NamedTuple):
     remarks: list[str]
 
     @property
-    def whole(self) -> bool:
+    def complete(self) -> bool:
         return not self.problems and not self.missing
 
 
@@ -86,7 +86,7 @@ def read(values: Mapping[str, str], units: str = "") -> Form:
             form.texts[name] = _number_text(name, text, form.ranges)
         except UserError as error:
             form.problems[name] = str(error)
-    if form.whole and is_share(form.texts["MU"]):
+    if form.complete and is_share(form.texts["MU"]):
         try:
             scene = Scene(form.texts)
         except UserError as error:
@@ -124,15 +124,15 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
 
     form = read(values, units)
     parts = ("problems", "missing", "ranges", "remarks")
-    whole: dict[str, Any] = {part: getattr(form, part) for part in parts}
-    whole["units"] = units_shown(form.units)
-    if form.whole:
+    found: dict[str, Any] = {part: getattr(form, part) for part in parts}
+    found["units"] = units_shown(form.units)
+    if form.complete:
         scene = Scene(form.texts, source="the form")
         known = oracle([scene], reference=False)[0]
         results, system, machine = known["results"], system_of(form.units), loaded(scene)
-        exact = {n: one["double"] for n, one in results.items() if one["double"] is not None}
+        exact = {n: row["double"] for n, row in results.items() if row["double"] is not None}
         finished(machine)
-        whole |= {
+        found |= {
             "oracle": stamped("oracle", {"id": None, "scene": dict(scene), **known}),
             "answer": _answer(scene, exact, system),
             "page": page(known["printout"]),
@@ -140,7 +140,7 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
             "results": _rows(results, without_rounding(exact, _ROUNDING), system),
             "warnings": beside.warnings(scene),
         }
-    return whole
+    return found
 
 
 def _answer(scene: Scene, exact: Mapping[str, float], system: System) -> list[dict[str, Any]]:
@@ -154,10 +154,10 @@ def _answer(scene: Scene, exact: Mapping[str, float], system: System) -> list[di
         if not values.keys() >= set(names):
             continue
         rule = quantity(names[0]).unit
-        shown = {name: system.shown(rule, values[name]) for name in names}
+        amounts = {name: system.shown(rule, values[name]) for name in names}
         texts = [
             {"name": name, "text": number(value, _ANSWER_DIGITS), "value": value}
-            for name, value in shown.items()
+            for name, value in amounts.items()
         ]
         rows.append({"words": words, "unit": system.label(rule), "values": texts})
     return rows
@@ -192,8 +192,8 @@ def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
     from ..figures.sceneview import scene_drawing
 
     form = read(values, units)
-    if not form.whole:
-        raise UserError("there is no whole scene to draw")
+    if not form.complete:
+        raise UserError("there is no complete scene to draw")
     scene = Scene(form.texts, source="the form")
     result = solve(doubles_of(scene), [*FINAL_VELOCITIES, "STATUS"])
     given = {name: values[name] for name in OUTLINES if values.get(name)}
@@ -210,7 +210,7 @@ def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     from ..uncertainty.ranges import read_inputs
 
     form = read(values, units)
-    if not form.whole or not form.ranges:
+    if not form.complete or not form.ranges:
         raise UserError("there are no ranges to explore")
     inputs = read_inputs(form.entries, {}, source="the form")
     answered = bounds(inputs.values, correlations=inputs.correlations, samples=DRAWS)

@@ -91,8 +91,8 @@ def filled_in(data: bytes, name: str, allowed: Collection[str]) -> dict[str, Any
         read["extra"] = extra
     own = {axis for axes in OWN_AXES.values() for axis in axes}.intersection(texts)
     if own or extra or WORD in " ".join(values.values()):
-        whole = {entry: text for entry, text in texts.items() if text}
-        found = entries_of(whole, name, single=bool(own))
+        written = {entry: text for entry, text in texts.items() if text}
+        found = entries_of(written, name, single=bool(own))
         if own or found.estimated:
             values = found.values
             read["units"] = _WHOSE_BASE.get(found.units or "", found.units or "")

@@ -42,9 +42,9 @@ def guarded(server: Any) -> None:
     def handle_accept() -> None:
         accept()
         channels = server.active_channels.values()
-        waiting = [one for one in channels if not (one.requests or one.total_outbufs_len)]
+        waiting = [c for c in channels if not (c.requests or c.total_outbufs_len)]
         if len(waiting) > WAITING:
-            min(waiting, key=lambda one: (one.served, one.last_activity)).handle_close()
+            min(waiting, key=lambda channel: (channel.served, channel.last_activity)).handle_close()
 
     def maintenance(now: float) -> None:
         maintain(now)

@@ -52,8 +52,8 @@ def _examined(name: str, data: bytes, seed: str = "") -> Examined:
 def base_name(name: str) -> str:
     """A file's name without folders, of bounded length, never one that a command takes for more."""
     last = name.replace("\\", "/").rpartition("/")[2].strip()
-    shown = "".join(character for character in last if character.isprintable())
-    return shown[:LONGEST_NAME] if shown.strip(".-") else UNNAMED
+    printable = "".join(character for character in last if character.isprintable())
+    return printable[:LONGEST_NAME] if printable.strip(".-") else UNNAMED
 
 
 def _text(examined: Examined, data: bytes) -> str | None:
@@ -92,5 +92,5 @@ def report(papers: Sequence[Mapping[str, str]], words: Mapping[str, str]) -> str
             raise UserError(f"has more than {LONGEST_WORDS} characters", name)
     if not papers:
         raise UserError("there is nothing to report on")
-    examined = [_examined(one.get("name", ""), b64decode(one["data"])) for one in papers]
+    examined = [_examined(paper.get("name", ""), b64decode(paper["data"])) for paper in papers]
     return report_page(examined, given["date"], given["case"], given["examiner"])

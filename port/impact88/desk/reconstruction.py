@@ -53,22 +53,24 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
             known[name] = _read(name, text, given.units)
         except UserError as error:
             given.problems[name] = str(error)
-    whole: dict[str, Any] = {"problems": given.problems, "units": units_shown(given.units)}
-    whole |= {"waiting": "", "object": None, "solutions": []}
+    answered: dict[str, Any] = {"problems": given.problems, "units": units_shown(given.units)}
+    answered |= {"waiting": "", "object": None, "solutions": []}
     try:
         if given.problems:
             raise UserError(f"To be corrected: {' '.join(given.problems)}.")
         found: Sequence[Impact]
         if adjustment.needs_adjustment(known):
-            found = [Measured(impact, DRAWS) for impact in adjustment.reconstruct(known)]
+            found = [Measured(solution, DRAWS) for solution in adjustment.reconstruct(known)]
         else:
             found = Exact.all_of({name: item.nominal for name, item in known.items()})
-        solutions = [(one.as_json(system), one.as_text(system)) for one in found]
+        solutions = [(impact.as_json(system), impact.as_text(system)) for impact in found]
     except UserError as error:
-        return {**whole, "waiting": str(error)}
-    whole["object"] = stamped("reconstruct", {"solutions": [numbers for numbers, _ in solutions]})
-    whole["solutions"] = [_solution(given, *solution) for solution in solutions]
-    return whole
+        return {**answered, "waiting": str(error)}
+    answered["object"] = stamped(
+        "reconstruct", {"solutions": [numbers for numbers, _ in solutions]}
+    )
+    answered["solutions"] = [_solution(given, *solution) for solution in solutions]
+    return answered
 
 
 def _read(name: str, text: str, units: str | None) -> Uncertain:
@@ -84,7 +86,7 @@ def _solution(given: Entries, values: Mapping[str, Any], printed: str) -> dict[s
 
     found = values["values"]
     exact = {name: value for name, value in found.items() if value is not None}
-    shown = without_rounding(exact, _ROUNDING)
+    rounded = without_rounding(exact, _ROUNDING)
     rows = []
     for name, value in found.items():
         spread = values.get("uncertainty", {}).get(name, {})
@@ -92,18 +94,18 @@ def _solution(given: Entries, values: Mapping[str, Any], printed: str) -> dict[s
         parts = {**spread, **spread.get("quantiles", {}), "amplified": amplified}
         numbers = {head: parts.get(part) for head, (_, part) in _COLUMNS.items()}
         row = {**what(name), "value": value, "known": name in values["known"], "numbers": numbers}
-        row["text"] = digits(shown.get(name), _DIGITS)
+        row["text"] = digits(rounded.get(name), _DIGITS)
         row["solved"] = name in values.get("solved_for", _SOUGHT) and not row["known"]
         row["columns"] = {head: digits(x, _COLUMNS[head][0]) for head, x in numbers.items()}
         rows.append(row)
     shown_digits = {"measured": _DIGITS, "tolerance": _COLUMNS["±"][0], "adjusted": _DIGITS}
     adjusted = [
         {
-            **what(one["name"]),
-            **{part: digits(one[part], count) for part, count in shown_digits.items()},
-            "moved": f"{one['moved'] + 0.0:.2f}",
+            **what(row["name"]),
+            **{part: digits(row[part], count) for part, count in shown_digits.items()},
+            "moved": f"{row['moved'] + 0.0:.2f}",
         }
-        for one in values.get("adjusted", ())
+        for row in values.get("adjusted", ())
         if values["redundancy"]
     ]
     return {

@@ -49,8 +49,8 @@ class Applesoft:
         self._queue: deque[str] = deque()
         self._keyboard = keyboard
         self._output: list[str] = []
-        shown = screen or self._output.append
-        self.machine = Machine(self._next_line, shown, printer, blanks, dos=dos, echo=echo)
+        device = screen or self._output.append
+        self.machine = Machine(self._next_line, device, printer, blanks, dos=dos, echo=echo)
 
     def _next_line(self) -> str | None:
         if self._queue:

@@ -12,7 +12,7 @@ from ..applesoft import decimaltext, functions, real
 from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
 from ..applesoft.real import INTEGER_EXPONENT, ZERO, Number, compare, integer, rounded, to_integer
 from .faults import Fault, fault_if, located, placed
-from .memory import EMPTY, FUNCTION, INTEGER, STRING, SUBFLG_SIMPLE
+from .memory import EMPTY, FUNCTION, INTEGER, MINUS, PLUS, STRING, SUBFLG_SIMPLE
 from .tokens import BLANK, CLOSE, COMMA, OPEN, QUOTE, TOKENS
 from .variables import IS_STRING, LARGEST_INTEGER, LONGEST, Variables, descriptor, stored_at
 
@@ -20,10 +20,8 @@ ROOM, PENDING, DIGITS_COUNTED, LARGEST_ADDRESS = 59, 12, 36, 0x90
 """Of the ROM: where CHKMEM wants the stack pointer to be at least; bytes on the stack for an
 operator that waits for its right operand; what FOUT leaves in VARPNT; GETADR's largest exponent."""
 POINT, DIGIT_0, DIGIT_9, LETTER_A, LETTER_Z = map(ord, ".09AZ")
-FN, PLUS_TOKEN, MINUS_TOKEN, NOT_TOKEN, OR_TOKEN, GREATER, LESS, FIRST_FUNCTION = (
-    TOKENS[word] for word in ("FN", "+", "-", "NOT", "OR", ">", "<", "SGN")
-)
-BLANK_OR_PLUS, MINUS_OR_NOT = (BLANK, PLUS_TOKEN), (MINUS_TOKEN, NOT_TOKEN)
+FN, NOT_TOKEN, OR_TOKEN, GREATER, LESS, SGN = (TOKENS[word] for word in "FN NOT OR > < SGN".split())
+BLANK_OR_PLUS, MINUS_OR_NOT = (BLANK, PLUS), (MINUS, NOT_TOKEN)
 POWER, AND, OR, NEGATE, NOT, RELATION, NONE = range(4, 11)
 PRECEDENCES = (0x79, 0x79, 0x7B, 0x7B, 0x7D, 0x50, 0x46, 0x7F, 0x7F, 0x64, 0)
 """Operators by their place in MATHTBL, after + - * and /, none at the end; what stands there."""
@@ -109,7 +107,7 @@ class Expressions(Variables):
                     byte = ram[pos]
                 if byte in MINUS_OR_NOT:
                     pos += 1
-                    operator = NEGATE if byte == MINUS_TOKEN else NOT
+                    operator = NEGATE if byte == MINUS else NOT
                     pending.append((last, operator, ZERO, 0))
                     last = PRECEDENCES[operator]
                     sp -= PENDING
@@ -123,8 +121,8 @@ class Expressions(Variables):
                 byte = ram[pos]
                 if byte == BLANK:
                     pos += 1
-                elif PLUS_TOKEN <= byte <= OR_TOKEN and not cprtyp:
-                    operator = byte - PLUS_TOKEN
+                elif PLUS <= byte <= OR_TOKEN and not cprtyp:
+                    operator = byte - PLUS
                     if operator or not valtyp:
                         pos += 1
                         break
@@ -220,7 +218,7 @@ class Expressions(Variables):
                 return string
             if byte == FN:
                 return self._function_call(sp)
-            if byte >= FIRST_FUNCTION:
+            if byte >= SGN:
                 self.txtptr += 1
                 return self.function(byte, sp)
             if byte in MINUS_OR_NOT:  # behind a string's +; the ROM goes astray
@@ -305,10 +303,10 @@ class Expressions(Variables):
         return result
 
     def _int(self, fac: Number, sp: int) -> Number:
-        whole = real.floor(fac)
+        integral = real.floor(fac)
         if fac[0] < INTEGER_EXPONENT:
-            self.charac = to_integer(whole) & 0xFF
-        return whole
+            self.charac = to_integer(integral) & 0xFF
+        return integral
 
     def power(self, left: Number, right: Number) -> Number:
         """FPWRT: left ^ right. INT does not find the parity of a power of 2^32 or more, and leaves

@@ -13,8 +13,8 @@ from itertools import pairwise
 
 from ..applesoft.console import Editor
 
-WIDTH, HEIGHT, BASE, END = 40, 24, 0x400, 0x800
-NORMAL, INVERSE, FLASHING, _BLANK, _SMALL_LETTERS = 0xFF, 0x3F, 0x7F, 0xA0, 0xE0
+WIDTH, HEIGHT, BASE, END, NORMAL, INVERSE, FLASHING = 40, 24, 0x400, 0x800, 0xFF, 0x3F, 0x7F
+_BLANK, _SMALL_LETTERS = 0xA0, 0xE0
 """Of the monitor: the screen and where it lies; its masks and codes."""
 _SHOWS = re.compile("[^\0-\x09\x0b-\x1f]")
 """A character that shows, or the end of the line."""
@@ -50,12 +50,12 @@ class Screen(Editor):
 
     def write(self, text: str) -> None:
         gap = max(self.column - self._expected, 0) if self._blanks else 0
-        shown = text
+        sent = text
         if gap and (first := _SHOWS.search(text)):
             if first[0] != "\n":
-                shown = text[: first.start()] + " " * gap + text[first.start() :]
+                sent = text[: first.start()] + " " * gap + text[first.start() :]
             gap = 0
-        self._device(shown)
+        self._device(sent)
         self._draw(text)
         self._expected = self.column - gap
 

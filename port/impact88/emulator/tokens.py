@@ -11,7 +11,6 @@ from functools import lru_cache
 from ..applesoft.console import keyed
 from ..applesoft.errorcodes import CODES
 
-FIRST = 0x80
 KEYWORDS = (
     *"END FOR NEXT DATA INPUT DEL DIM READ GR TEXT PR# IN# CALL PLOT HLIN VLIN".split(),
     *"HGR2 HGR HCOLOR= HPLOT DRAW XDRAW HTAB HOME ROT= SCALE= SHLOAD TRACE".split(),
@@ -22,12 +21,10 @@ KEYWORDS = (
     *"POS SQR RND LOG EXP COS SIN TAN ATN PEEK LEN STR$ VAL ASC CHR$ LEFT$".split(),
     *"RIGHT$ MID$".split(),
 )
-"""In the ROM's order: the first has token 0x80."""
-
+FIRST = 0x80
+"""The ROM's keywords in its order, and the token of the first."""
 TOKENS = {word: FIRST + n for n, word in enumerate(KEYWORDS)}
-DATA, REM, AT, PRINT, LAST_STATEMENT = (
-    TOKENS[word] for word in ("DATA", "REM", "AT", "PRINT", "NEW")
-)
+DATA, REM, AT, PRINT, LAST_STATEMENT = (TOKENS[word] for word in "DATA REM AT PRINT NEW".split())
 BLANK, QUOTE, COLON, COMMA, SEMICOLON, OPEN, CLOSE = map(ord, ' ":,;()')
 LAST_LINE, LINE_LIMIT = 63999, 239
 """The ROM's largest number of a line, and what the monitor hands over of one that is typed."""

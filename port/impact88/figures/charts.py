@@ -26,11 +26,9 @@ BINS, SWEEP = 60, 801
 """Bars of a histogram, two a millimetre; points of a sweep, ten a millimetre."""
 WIDEST_SWEEP = 5.0
 """Friction coefficients beyond are not swept."""
-_LEFT, _TOP = 13.0, 6.0
-"""Room in mm for the numbers left of a panel and the name above it."""
-_UNPHYSICAL = "#f7dfae"
-_PALE = "#c6dff0"
-_DASHED, _DOTTED = (1.3, 0.8), (0.4, 0.6)
+_LEFT, _TOP, _DASHED, _DOTTED = 13.0, 6.0, (1.3, 0.8), (0.4, 0.6)
+"""In mm: room for the numbers left of a panel and the name above it; dashes told apart in print."""
+_UNPHYSICAL, _PALE = "#f7dfae", "#c6dff0"
 
 MARKS = {"o": (24, 0), "s": (4, 45), "D": (4, 0), "^": (3, 90), "v": (3, -90), ">": (3, 0)}
 MARKS |= {"P": (5, 90), "_": (2, 0)}
@@ -216,11 +214,11 @@ def _begun(result: Bounds, outputs: Sequence[str] | None, title: str) -> tuple[l
             raise UserError(f"{name!r} is not among the results; expected {known}")
     _check_count(names)
     bounds = [(_label(name, units), result.bounds[name]) for name in names]
-    said = (
+    sentences = (
         f"{label}: {short(bound.nominal)}, bounds {short(bound.lower)} to {short(bound.upper)}."
         for label, bound in bounds
     )
-    return names, Drawing(d.COLUMN, title, " ".join(said))
+    return names, Drawing(d.COLUMN, title, " ".join(sentences))
 
 
 def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:

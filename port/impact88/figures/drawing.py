@@ -23,9 +23,8 @@ DRAWABLE = 1e100
 """The largest number that is drawn: products of some must be doubles too."""
 COLUMN = 85.0
 """Width in millimetres of a column in print."""
-MM_PER_POINT = 25.4 / 72
-TEXT, ROW = 6.5, 3.4
-"""Size of most texts in points, and the distance of their lines in mm."""
+MM_PER_POINT, TEXT, ROW = 25.4 / 72, 6.5, 3.4
+"""Of type; the size of most texts in points, and the distance of their lines in mm."""
 
 # Okabe and Ito's colours, which stay apart for every common kind of colour blindness
 BLACK, GREY, WHITE = "#000000", "#666666", "#ffffff"
@@ -41,9 +40,8 @@ _WIDTHS |= {"Δ": 685, "Ω": 765, "…": 1000, **_OTHERS, **dict.fromkeys("ω×�
 """Advances in thousandths of the size."""
 BOLD = 1.15
 """A bold character is at most about so much wider."""
-ASCENT, DESCENT = 0.78, 0.24
-"""Of the size, above and below the baseline, of capitals and of letters with tails."""
-SUBSCRIPT_SIZE, SUBSCRIPT_DROP = 0.7, 0.2
+ASCENT, DESCENT, SUBSCRIPT_SIZE, SUBSCRIPT_DROP = 0.78, 0.24, 0.7, 0.2
+"""Of the size: capitals above and tails below the baseline; subscripts, as usual in print."""
 
 DIRECTIONS = 24
 """Half as many leave labels on lines that a step of 15 degrees clears; twice as many change

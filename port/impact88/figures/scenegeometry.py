@@ -140,8 +140,8 @@ def plan(
     # momentum of the lighter vehicle: a wall's change of velocity has no digits left
     moved, sense = (vehicles[1], -1) if vehicles[0].wall else (vehicles[0], 1)
     impulse = None if moved.change is None else sense * values[f"M{moved.name}"] * moved.change
-    whole = {**values, **(result or {})}
-    remarks = tuple(sentences(int(whole.get("STATUS") or 0), whole))
+    known = {**values, **(result or {})}
+    remarks = tuple(sentences(int(known.get("STATUS") or 0), known))
     measured = tuple(name for name in "AB" if f"L{name}" in outlines)
     both = vehicles[0], vehicles[1]
     return Plan(both, normal, 1j * normal, impulse, apart, remarks, values, measured)

@@ -24,9 +24,8 @@ ARROWS: dict[str, tuple[str, tuple[float, tuple[float, ...]], float]] = {
     "change": ("ΔV", (0.3, (0.4, 0.5)), 1.8),
 }
 """Velocities of a vehicle: symbol, width and dashes of the arrow, and its head."""
-FIELD = 70.0
-"""Largest height in mm of the drawing proper."""
-_MARGIN = 6.0
+FIELD, _MARGIN = 70.0, 6.0
+"""Largest height in mm of the drawing proper, and what labels need beside it."""
 _SPEED, _LENGTH, _SPIN, _IMPULSE = "length/time", "length", "rad/time", "mass·length/time"
 
 
