@@ -9,7 +9,7 @@ out of the energies.
 
 from collections.abc import Mapping, Sequence
 from itertools import permutations
-from typing import Any, NamedTuple
+from typing import Any
 
 from ..errors import UserError
 from ..names import DEFAULT_M, PIVOT
@@ -70,6 +70,16 @@ class Exact(Terms):
         g = {name: number(value) for name, value in scene.items()}
         point = number(scene.get("M", DEFAULT_M)) == 4
         super().__init__(g, point, g["MU"] == PIVOT, mpmath.mpf(0))
+        s, c = self.s, self.c
+        # what A's and B's spin add to the relative contact velocity: an, at, bn, bt
+        self.arms = (
+            *(total(self.D3 * c, -self.D4 * s), total(-self.D4 * c, -self.D3 * s)),
+            *(total(self.D1 * c, -self.D2 * s), total(-self.D2 * c, -self.D1 * s)),
+        )
+        # 1/MA 1/MB 1/IA 1/IB; 0 of an infinite body, and of a point mass's inertia
+        moved = ("MA", "MB") if point else ("MA", "MB", "IA", "IB")
+        inverses = [self.zero if mpmath.isinf(g[x]) else 1 / g[x] for x in moved]
+        self.inverses = [*inverses, self.zero, self.zero][:4]
 
     def turn(self, *degrees: Number) -> tuple[Number, Number]:
         angle = sum(degrees[1:], degrees[0])
@@ -104,40 +114,11 @@ def _solve(A: Sequence[Sequence[Number]], b: Sequence[Number]) -> list[Number] |
     return [_determinant(rows) / divisor for rows in replaced]
 
 
-class Impulse(NamedTuple):
-    """What acts on A: along n, along t, and as a moment."""
-
-    normal: Number
-    tangential: Number
-    moment: Number
-
-
-def inverses(t: Terms) -> list[Number]:
-    """Inverse masses and inertias; 0 for an infinite body, and for a point mass's inertia."""
-    unmoved = {"IA", "IB"} if t.point else set()
-    return [
-        mpmath.mpf(0) if x in unmoved or mpmath.isinf(t.g[x]) else 1 / t.g[x]
-        for x in ("MA", "MB", "IA", "IB")
-    ]
-
-
-def arms(t: Terms) -> tuple[Number, Number, Number, Number]:
-    """What A's and B's spin add to the relative contact velocity: an, at, bn, bt."""
-    s, c = t.s, t.c
-    return (
-        total(t.D3 * c, -t.D4 * s),
-        total(-t.D4 * c, -t.D3 * s),
-        total(t.D1 * c, -t.D2 * s),
-        total(-t.D2 * c, -t.D1 * s),
-    )
-
-
-def impulse(t: Terms) -> Impulse | None:
-    """The impulse of a scene: Equations 15, 16 (or no slip) and 18 in the unknowns Pn, Pt and M;
-    13, 14 and 17 hold because the same impulse acts on both bodies. None if they are singular."""
-    zero, one = mpmath.mpf(0), mpmath.mpf(1)
-    ma, mb, ia, ib = inverses(t)
-    an, at, bn, bt = arms(t)
+def impulse(t: Exact) -> list[Number] | None:
+    """What acts on A along n, along t, and as a moment: Equations 15, 16 (or no slip) and 18 in the
+    unknowns Pn, Pt and M; 13, 14 and 17 hold because the same impulse acts on both bodies. None if
+    they are singular."""
+    (ma, mb, ia, ib), (an, at, bn, bt) = t.inverses, t.arms
     across = total(ia * an * at, ib * bn * bt)
     turn_n, turn_t = total(ia * an, -ib * bn), total(ia * at, -ib * bt)
     rows = [[ma + mb + ia * an**2 + ib * bn**2, across, turn_n]]
@@ -146,22 +127,20 @@ def impulse(t: Terms) -> Impulse | None:
         rows.append([across, ma + mb + ia * at**2 + ib * bt**2, turn_t])
         right.append(-t.gt)
     else:
-        rows.append([-t.mu, one, zero])
-        right.append(zero)
+        rows.append([-t.mu, mpmath.mpf(1), t.zero])
+        right.append(t.zero)
     if t.point:
         solution = _solve([row[:2] for row in rows], right)
-        return None if solution is None else Impulse(solution[0], solution[1], zero)
+        return solution and [*solution, t.zero]
     em = t.g["EM"]
     rows.append([(1 - em) * turn_n, (1 - em) * turn_t, (1 - 2 * em) * (ia + ib)])
     right.append((em - 1) * (t.WA - t.WB))
-    solution = _solve(rows, right)
-    return None if solution is None else Impulse(*solution)
+    return _solve(rows, right)
 
 
-def velocities(t: Terms, P: Impulse) -> list[Number]:
+def velocities(t: Exact, P: Sequence[Number]) -> list[Number]:
     """The velocities that an impulse leaves, in the order of `ORDER`."""
-    ma, mb, ia, ib = inverses(t)
-    an, at, bn, bt = arms(t)
+    (ma, mb, ia, ib), (an, at, bn, bt) = t.inverses, t.arms
     s, c, (pn, pt, m) = t.s, t.c, P
     changes = [
         (ma * c * pn, -ma * s * pt),
@@ -211,14 +190,13 @@ def fifty_digits(scene: Mapping[str, str | float]) -> dict[str, Any]:
             x, y = (total(f[f"{axis}A{suffix}"], -f[f"{axis}B{suffix}"]) for axis in "XY")
             f[name] = sign * total(t.c * x, t.s * y)
         f |= _energies(t, P, after)
-        ma, mb, *_ = inverses(t)
-        size = mpmath.hypot(P.normal, P.tangential)
-        f |= {"DVA": ma * size, "DVB": mb * size}
-        f |= {"PN": P.normal, "PT": P.tangential, "PM": P.moment, "MUP": t.mu}
+        size = mpmath.hypot(*P[:2])
+        f |= {"DVA": t.inverses[0] * size, "DVB": t.inverses[1] * size}
+        f |= {**dict(zip(("PN", "PT", "PM"), P, strict=True)), "MUP": t.mu}
         if t.point:
             f |= {"WAF": t.g["WA"], "WBF": t.g["WB"]}
         pivot = impulse(Exact({**texts, "MU": "-10"}))
-        return f | ({"MUC": pivot.tangential / pivot.normal} if pivot and pivot.normal else {})
+        return f | ({"MUC": pivot[1] / pivot[0]} if pivot and pivot[0] else {})
 
 
 def _contact_velocities(t: Terms, velocities: list[Any], suffix: str) -> dict[str, Any]:
@@ -232,7 +210,7 @@ def _contact_velocities(t: Terms, velocities: list[Any], suffix: str) -> dict[st
     }
 
 
-def _energies(t: Terms, P: Impulse, after: list[Any]) -> dict[str, Any]:
+def _energies(t: Exact, P: Sequence[Number], after: list[Number]) -> dict[str, Number]:
     """Lines 320, 580, 590 and 690; the percentage by the work of the impulse at the mean of the
     relative velocities before and after."""
     g, before = t.g, t.before()
@@ -246,13 +224,13 @@ def _energies(t: Terms, P: Impulse, after: list[Any]) -> dict[str, Any]:
     initial = energy(before)
     values = {"KI": initial, "KF": energy(after)}
     if initial:
-        an, at, bn, bt = arms(t)
-        s, c = t.s, t.c
+        (an, at, bn, bt), s, c = t.arms, t.s, t.c
         ax, ay, bx, by, wa, wb = (u + v for u, v in zip(before, after, strict=True))
         if t.point:
             wa = wb = mpmath.mpf(0)
         normal = total(c * ax, s * ay, -c * bx, -s * by, an * wa, bn * wb)
         sliding = total(c * ay, -s * ax, -c * by, s * bx, at * wa, bt * wb)
-        work = total(P.normal * normal, P.tangential * sliding, P.moment * total(wa, -wb))
+        moved = normal, sliding, total(wa, -wb)
+        work = total(*(p * v for p, v in zip(P, moved, strict=True)))
         values["LOSS"] = -50 * work / initial
     return values

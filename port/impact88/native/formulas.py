@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 Key = tuple[object, ...]
@@ -24,7 +25,7 @@ def _operator(name: str, reflected: bool = False) -> Callable[[Expression, Any],
     """The method of an operator; ``reflected``: with the operands the other way round."""
 
     def method(self: Expression, other: Expression | float) -> Expression:
-        a, b = self, self.table.wrap(other)
+        a, b = self, other if isinstance(other, Expression) else self.table.constant(other)
         if reflected:
             a, b = b, a
         rule = getattr(self.table, name, None)
@@ -34,27 +35,18 @@ def _operator(name: str, reflected: bool = False) -> Callable[[Expression, Any],
     return method
 
 
+@dataclass(slots=True, eq=False)
 class Expression:
     """One value per scene: an operation on other expressions, a column, or a constant.
 
     ``varies`` is False when the value is the same for every scene of a block.
     """
 
-    __slots__ = ("operands", "operation", "table", "value", "varies")
-
-    def __init__(
-        self,
-        table: ExpressionTable,
-        operation: str,
-        operands: tuple[Expression, ...],
-        varies: bool,
-        value: float | str | None = None,
-    ) -> None:
-        self.table = table
-        self.operation = operation
-        self.operands = operands
-        self.varies = varies
-        self.value = value
+    table: ExpressionTable
+    operation: str
+    operands: tuple[Expression, ...]
+    varies: bool
+    value: float | str | None
 
     def is_constant(self, number: float) -> bool:
         """Whether this is the known constant ``number``."""
@@ -121,9 +113,6 @@ class ExpressionTable:
     def column(self, name: str, varies: bool) -> Expression:
         return self.combine("column", value=name, varies=varies)
 
-    def wrap(self, operand: Expression | float) -> Expression:
-        return operand if isinstance(operand, Expression) else self.constant(operand)
-
     # -- arithmetic; the rules of leaving out stand here and nowhere else
 
     def add(self, a: Expression, b: Expression) -> Expression:
@@ -149,14 +138,11 @@ class ExpressionTable:
     def multiply(self, a: Expression, b: Expression) -> Expression:
         if a.is_zero or b.is_zero:
             return self.constant(0.0)
-        if a.is_constant(1.0):
-            return b
-        if b.is_constant(1.0):
-            return a
-        if a.is_constant(-1.0):
-            return self.negative(b)
-        if b.is_constant(-1.0):
-            return self.negative(a)
+        for factor, other in ((a, b), (b, a)):
+            if factor.is_constant(1.0):
+                return other
+            if factor.is_constant(-1.0):
+                return self.negative(other)
         # a sign is taken outwards, where a sum or another sign takes it up
         if a.operation == "negative":
             return self.negative(self.multiply(a.operands[0], b))
@@ -173,8 +159,7 @@ class ExpressionTable:
         return self.combine("divide", a, b)
 
     def negative(self, a: Expression) -> Expression:
-        if a.operation == "constant":
-            assert isinstance(a.value, float)
+        if isinstance(a.value, float):
             return self.constant(-a.value)
         if a.operation == "negative":
             return a.operands[0]
@@ -202,11 +187,7 @@ class ExpressionTable:
             sine, cosine = self.sine_and_cosine(degrees.operands[0])
             return self.negative(sine), cosine
         both = self.combine("sine_and_cosine", degrees)
-        return self.half(both, "sine"), self.half(both, "cosine")
-
-    def half(self, both: Expression, name: str) -> Expression:
-        """The ``sine`` or ``cosine`` of a sine and cosine made together."""
-        return self.combine(name, both)
+        return self.combine("sine", both), self.combine("cosine", both)
 
     def against(self, value: Expression, slip: Expression) -> Expression:
         """``value`` with its sign changed where ``slip`` > 0 (the rule of listing line 400)."""

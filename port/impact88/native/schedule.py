@@ -89,7 +89,7 @@ class Schedule:
             places = [self._place[id(operand)] for operand in operands]
             made = [e]
             if e.operation == "sine_and_cosine":
-                made = [e.table.half(e, half) for half in PROJECTIONS]
+                made = [e.table.combine(half, e) for half in PROJECTIONS]
             elif e.operation not in _APART:
                 release(operands, e)
             for value in made:
