@@ -16,7 +16,7 @@ from ..errors import UserError
 from ..fields import ANGLES
 from ..mappings import in_base, in_doubles
 from ..names import DEFAULT_M, PIVOT, SCENE
-from ..native.program import extremes
+from ..native.program import addresses
 from .written import LARGE_ANGLE
 
 Array = NDArray[Any]
@@ -150,8 +150,12 @@ def _extremes(columns: Sequence[Floats]) -> list[Limits]:
     if native.library is None:
         return [(float(column.min()), float(column.max())) for column in columns]
     order = sorted(range(len(columns)), key=lambda i: -len(columns[i]))
-    found = extremes([columns[i] for i in order])
-    return [found[order.index(i)] for i in range(len(columns))]
+    where, found = addresses(columns[i] for i in order), np.empty((len(order), 2))
+    count = len(columns[order[0]])
+    many = sum(len(column) == count for column in columns)
+    survey = native.library.survey_kinds
+    survey(where.ctypes.data, many, len(order), count, found.ctypes.data, 0, 0)
+    return [(least, most) for least, most in found[np.argsort(order)].tolist()]
 
 
 ORDINARY: dict[str, Limits] = {

@@ -58,7 +58,6 @@ class _Survey:
         self._rooms = tuple(x.ctypes.data for x in (self.found, self._ordinary, self._kinds))
 
     def kinds(self, count: int) -> bytes:
-        assert native.library is not None
         native.library.survey_kinds(*self._columns, count, *self._rooms)
         return self._kinds.tobytes()
 

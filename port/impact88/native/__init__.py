@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
+from typing import Any
 
 VARIABLE = "IMPACT88_ACCELERATED"
 """Environment variable: 0 leaves everything to numpy."""
@@ -43,7 +44,7 @@ def _declared(found: ctypes.CDLL) -> ctypes.CDLL:
     return found
 
 
-library = _load()
+library: Any = _load()
 """What was loaded, or None: asked at every call, so that it may be switched off meanwhile."""
 STRIP: int = library.strip() if library else 0
 """Scenes the machine takes at a time."""

@@ -1,7 +1,7 @@
-"""Programs for the compiled machine, and its other functions over arrays."""
+"""Programs for the compiled machine."""
 
 import hashlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import Any
 
@@ -20,7 +20,6 @@ class Program(Schedule):
 
     @cached_property
     def code(self) -> NDArray[np.int32]:
-        assert native.library is not None
         if self.places > native.library.most_places():
             raise MemoryError(f"a program of {self.places} values")
         operations = native.library.operations().decode().split()
@@ -41,7 +40,6 @@ class Program(Schedule):
 
     @cached_property
     def kernel(self) -> Any:
-        assert native.library is not None
         return native.library.kernel_of(self.digest)
 
     @cached_property
@@ -63,7 +61,6 @@ class Program(Schedule):
         program's order; ``fixed``: the columns that do not vary; ``circle``: see
         `closedform.impactprograms`. Returns how many scenes were done: all, or those before the
         strips among which a column ``checked`` leaves its ``limits`` (least and most of each)."""
-        assert native.library is not None
         room = self._rooms.pop() if self._rooms else Room(self)
         room.moving[: len(columns)] = columns
         room.moving[len(columns) :] = results
@@ -105,42 +102,10 @@ class Room:
 
     def run(self) -> int:
         """`Program.run` as prepared, of what ``moving`` and ``values`` hold."""
-        assert native.library is not None
         done: int = native.library.run_program(self._at)
         return done
-
-
-def extremes(columns: Sequence[Array]) -> list[tuple[float, float]]:
-    """The least and the largest number of each column, both NaN where one is; columns of one
-    length, then those of one number."""
-    assert native.library is not None
-    found, count = np.empty((len(columns), 2)), len(columns[0])
-    many = sum(len(column) == count for column in columns)
-    where = addresses(columns)
-    to = found.ctypes.data
-    native.library.survey_kinds(where.ctypes.data, many, len(columns), count, to, 0, 0)
-    return [(least, most) for least, most in found.tolist()]
 
 
 def addresses(arrays: Iterable[NDArray[np.generic]]) -> Addresses:
     """Where arrays begin in memory."""
     return np.array([array.ctypes.data for array in arrays], np.int64)
-
-
-def read_numbers(text: bytes, count: int) -> tuple[Array, NDArray[np.bool_]]:
-    """The Apple's reals that ``count`` decimal texts are, each ended by a newline, extension
-    included; and which are left to others (True): no plain numbers, or very large or small."""
-    assert native.library is not None
-    values, odd = np.empty(count), np.empty(count, np.bool_)
-    native.library.read_numbers(text, count, values.ctypes.data, odd.ctypes.data)
-    return values, odd
-
-
-def write_numbers(values: Array, texts: NDArray[np.str_]) -> NDArray[np.bool_]:
-    """Fill ``texts`` with the characters PRINT makes of reals; which are left to others (True)."""
-    assert native.library is not None
-    odd = np.empty(values.shape, np.bool_)
-    native.library.write_numbers(
-        values.ctypes.data, values.size, texts.ctypes.data, odd.ctypes.data
-    )
-    return odd

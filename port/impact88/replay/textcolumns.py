@@ -13,7 +13,6 @@ import numpy.typing as npt
 from .. import native
 from ..applesoft import decimaltext as scalar
 from ..errors import UserError
-from ..native.program import read_numbers, write_numbers
 from .reals import OVERFLOW, ZERO, Reals, compare, constant, from_number, select
 from .unit import Bools, Ints, Unit
 
@@ -68,7 +67,8 @@ def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals
         data = b""
     if native.library is None or data.count(b"\n") != len(texts):
         return together(range(len(texts)), Reals(np.zeros(len(texts)), unit))
-    v, odd = read_numbers(data, len(texts))
+    v, odd = np.empty(len(texts)), np.empty(len(texts), np.bool_)
+    native.library.read_numbers(data, len(texts), v.ctypes.data, odd.ctypes.data)
     x = Reals(v, unit)
     rows = np.flatnonzero(odd)
     if rows.size:
@@ -130,7 +130,9 @@ def write(x: Reals, texts: Strings | None = None) -> Strings:
     v = np.ascontiguousarray(x.v)
     texts = np.empty(v.shape, TEXT) if texts is None else texts
     unit = x.unit or Unit(v.size)
-    odd = np.ones(v.shape, bool) if native.library is None else write_numbers(v, texts)
+    odd = np.ones(v.shape, np.bool_)
+    if native.library is not None:
+        native.library.write_numbers(v.ctypes.data, v.size, texts.ctypes.data, odd.ctypes.data)
     rows = np.flatnonzero(odd)
     for at in range(0, rows.size, AT_A_TIME):
         some = rows[at : at + AT_A_TIME]
