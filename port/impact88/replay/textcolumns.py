@@ -5,7 +5,6 @@ read and written together, a step at a time.
 """
 
 from collections.abc import Callable, Sequence
-from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -56,62 +55,47 @@ def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals
 
     Records OVERFLOW. Raises UserError for a text that is not a number; ``where`` names its place.
     """
-
-    def together(rows: Sequence[int], part: Reals) -> Reals:
-        unit = part.unit or Unit(1)
-        return _read_together([texts[i] for i in rows], unit, lambda i: where(rows[i]))
-
     try:
         data = ("\n".join(texts) + "\n").encode("ascii")
     except (TypeError, UnicodeEncodeError):
         data = b""
-    if native.library is None or data.count(b"\n") != len(texts):
-        return together(range(len(texts)), Reals(np.zeros(len(texts)), unit))
-    v, odd = np.empty(len(texts)), np.empty(len(texts), np.bool_)
-    native.library.read_numbers(data, len(texts), v.ctypes.data, odd.ctypes.data)
-    x = Reals(v, unit)
-    rows = np.flatnonzero(odd)
+    v, odd = np.zeros(len(texts)), np.ones(len(texts), np.bool_)
+    if native.library is not None and data.count(b"\n") == len(texts):
+        native.library.read_numbers(data, len(texts), v.ctypes.data, odd.ctypes.data)
+    x, rows = Reals(v, unit), np.flatnonzero(odd)
     if rows.size:
-        _treat(x, rows, partial(together, rows.tolist()))
+        some = [(texts[row], row) for row in rows.tolist()]
+        _treat(x, rows, lambda part: _read_together(some, part.unit or Unit(1), where))
     return x
 
 
-def _read_together(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals:
-    """`read`, without the compiled machine."""
-    plain = [text.replace(" ", "").upper() if isinstance(text, str) else "" for text in texts]
-    found = [scalar.NUMERAL.fullmatch(text) if text else None for text in plain]
-    numerals = [numeral.groups("") for numeral in found if numeral]
-    if len(numerals) < len(texts):
-        row = found.index(None)
-        raise UserError(f"{texts[row]!r} is not a number; expected decimal text", where(row))
-    digits = [whole + decimals for _, whole, decimals, _, _ in numerals]
+def _read_together(
+    texts: Sequence[tuple[str, int]], unit: Unit, where: Callable[[int], str]
+) -> Reals:
+    """`read`, of texts and their places, without the compiled machine."""
+    numerals = []
+    for text, place in texts:
+        plain = text.replace(" ", "").upper() if isinstance(text, str) else ""
+        found = scalar.NUMERAL.fullmatch(plain)
+        if not plain or not found:
+            raise UserError(f"{text!r} is not a number; expected decimal text", where(place))
+        sign, whole, decimals, power_sign, power = found.groups("")
+        exponent = min(max(int(power_sign + (power.lstrip("0")[:3] or "0")), -100), 100)
+        count = (exponent - len(decimals) + 128 & 0xFF) - 128  # kept in one byte
+        numerals.append((whole + decimals, count, exponent == 100, sign == "-"))
+    digits, counts, overflow, negative = zip(*numerals, strict=True)
     x = Reals(np.array([int(text[:_EXACT_DIGITS] or 0) for text in digits], float), unit, True)
     for place in range(_EXACT_DIGITS, max(map(len, digits))):
         rows = np.array([row for row, text in enumerate(digits) if len(text) > place])
         digit = Reals(np.array([float(digits[i][place]) for i in rows]), None, True)
-        _treat(x, rows, partial(_next_digit, digit=digit))
-    powers = [
-        int(sign + (power.lstrip("0")[:3] or "0")) if power else 0 for *_, sign, power in numerals
-    ]
-    decimals = [len(text) for _, _, text, _, _ in numerals]
-    exponent = np.clip(np.array(powers, np.int64), -100, 100)
-    overflow = exponent == 100
-    if overflow.any():
-        unit.fails(overflow, OVERFLOW)
-    steps = (exponent - decimals + 128 & 0xFF) - 128  # kept in one byte
-    for step, count in ((times_ten, steps), (over_ten, -steps)):
-        rows = np.flatnonzero(count > 0)
-        finished = 0
-        while rows.size:
-            _treat(x, rows, step)
-            finished += 1
-            rows = rows[count[rows] > finished]
-    np.negative(x.v, out=x.v, where=[sign == "-" for sign, *_ in numerals])
+        _treat(x, rows, times_ten)
+        _treat(x, rows, digit.__radd__)
+    unit.fails(np.array(overflow), OVERFLOW)
+    for step, steps in ((times_ten, np.array(counts)), (over_ten, -np.array(counts))):
+        for finished in range(max(steps)):
+            _treat(x, np.flatnonzero(steps > finished), step)
+    np.negative(x.v, out=x.v, where=negative)
     return x
-
-
-def _next_digit(value: Reals, digit: Reals) -> Reals:
-    return times_ten(value) + digit  # ADDACC: the former rounded
 
 
 def _treat(x: Reals, rows: Ints, operation: Callable[[Reals], Reals]) -> None:
