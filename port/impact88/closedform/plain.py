@@ -3,8 +3,7 @@ done column by column, for `bounds` and root finders make many short calls."""
 
 import math
 import sys
-import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -15,7 +14,7 @@ from .. import native
 from ..errors import UserError
 from ..names import SCENE
 from ..native.program import Addresses, Program, addresses
-from ..processors import processors
+from ..processors import shared_out, workers
 from .columns import ORDINARY, UNUSED_BY_POINTS, alike_kind
 from .impactprograms import CIRCLE, program_for
 
@@ -157,32 +156,6 @@ def solve_plain(
         return None
     finally:
         free.append(survey)
-
-
-def workers(count: int, threads: int | None, share: int) -> int:
-    """How many threads, each with at least ``share`` scenes to do."""
-    return max(1, min(threads or processors(), count // share))
-
-
-def shared_out(work: Callable[[int, int], None], count: int, workers: int) -> None:
-    """Do ``work(start, stop)`` of all scenes, an equal part by each of some threads."""
-    size = -(-count // workers)
-    failures: list[BaseException] = []
-
-    def part(start: int) -> None:
-        try:
-            work(start, min(start + size, count))
-        except BaseException as error:
-            failures.append(error)
-
-    others = [threading.Thread(target=part, args=(k * size,)) for k in range(1, workers)]
-    for thread in others:
-        thread.start()
-    part(0)
-    for thread in others:
-        thread.join()
-    if failures:
-        raise failures[0]
 
 
 _kept: list[Array] = []

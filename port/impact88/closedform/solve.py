@@ -17,12 +17,13 @@ from ..errors import UserError
 from ..mappings import in_base, in_doubles
 from ..names import PIVOT, RESULTS, listed
 from ..native.program import addresses
+from ..processors import shared_out, workers
 from ..scene import check_mapping
 from ..status import Status
 from .columns import Source, examine, part, sources
 from .impactprograms import CIRCLE, by_numpy, program_for
 from .onescene import ALL, in_order, solve_one
-from .plain import check_room, rooms, shared_out, solve_plain, workers
+from .plain import check_room, rooms, solve_plain
 from .share import share_of
 
 Array = NDArray[Any]

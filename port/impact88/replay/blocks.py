@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .. import native
-from ..processors import processors
+from ..processors import shared_out, workers
 from . import compiled, statements
 from .realcolumns import Scenes
 from .reals import Floats, compare, from_floats, select
@@ -39,8 +39,7 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int | None 
     unit.at(350)
     unit.fails(~known, OTHER_M)
     values = {name: np.zeros(scenes.size) for name in statements.ASSIGNED}
-    useful = max(1, scenes.size // WORTH_A_THREAD)
-    threads = min(threads if threads is not None else processors(), useful)
+    threads = workers(scenes.size, threads, WORTH_A_THREAD)
     if block is None:
         block = BLOCK if threads == 1 else SHARED_BLOCK
     block = max(1, min(block, -(-scenes.size // threads)))
@@ -50,23 +49,15 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int | None 
     def compute(work: Callable[..., Computed]) -> None:
         """Compute what is left, block by block."""
 
-        def one_block(job: tuple[Ints | slice, statements.Kind]) -> None:
-            rows, kind = job
-            columns = {name: v[rows] if v.size > 1 else v for name, v in scenes.values.items()}
-            results, unit.first[rows], left[rows] = work(columns, unit.first[rows], kind)
-            for name, column in results.items():
-                values[name][rows] = column
+        def some_blocks(start: int, stop: int) -> None:
+            for rows, kind in jobs[start:stop]:
+                columns = {name: v[rows] if v.size > 1 else v for name, v in scenes.values.items()}
+                results, unit.first[rows], left[rows] = work(columns, unit.first[rows], kind)
+                for name, column in results.items():
+                    values[name][rows] = column
 
         jobs = _blocks(left, six, pivot, block)
-        if threads > 1 and len(jobs) > 1:
-            from concurrent.futures import ThreadPoolExecutor  # imports logging
-
-            with ThreadPoolExecutor(threads) as pool:
-                for _ in pool.map(one_block, jobs):
-                    pass
-        else:
-            for job in jobs:
-                one_block(job)
+        shared_out(some_blocks, len(jobs), max(1, min(threads, len(jobs))))
 
     if native.library is not None:
         compute(partial(_compiled, scenes.size >= WORTH_SHARING))
