@@ -15,8 +15,13 @@ from .populations import POPULATIONS
 WIDTH = 174.0
 """Millimetres: two columns."""
 _ROW, _PANELS = 56.0, 3
+"""Millimetres from a row of panels to the next: the panels' 38, a title of three lines, numbers and
+axis below; panels that fit the width."""
 _TIMES, _ERRORS = (1e-9, 2e-2), (1e-17, 1e4)
+"""Ends of the axes: a nanosecond is ten times less than memory alone takes, 20 ms what 50 digits
+take; an error of 0 stands at the lower end."""
 _CONDITIONS, _SHARES = (1.0, 1e16), (1e-4, 1.0)
+"""No condition is below 1, and from 1e16 on no digit of a double is left; one scene of 10,000."""
 _LABEL = "relative error of the final velocities"
 _MARKS = {method.key: (method.mark, method.colour) for method in METHODS}
 SCATTERED = ("applesoft", "lapack-fill", "closed-form")
@@ -24,43 +29,31 @@ SCATTERED = ("applesoft", "lapack-fill", "closed-form")
 MOST_MARKS = 250
 """Scenes shown of each method; more cover each other."""
 
-
 _Axis = tuple[tuple[float, float], str, Sequence[tuple[float, str]]]
 
 
-class _Page:
-    """A drawing of rows of panels with both axes logarithmic, and a key below them."""
+def _finish(drawing: Drawing, low: float, rows: Sequence[Row], note: str) -> Drawing:
+    """With a key from ``low`` on, and the rows in words."""
+    told = [
+        f"{row['name']} on {row['population']}: {row['seconds']:.2g} s, median "
+        f"{row['median']:.2g}, largest {row['largest']:.2g}"
+        for row in rows
+        if "median" in row
+    ]
+    drawing.description = f"{drawing.description}. {'; '.join(told)}."
+    look = {"mpmath": ((0.4, 0.6), GREY), **_MARKS}
+    samples = {row["name"]: (row["name"], *look[row["method"]][::-1]) for row in rows}
+    drawing.height = 2 - key(drawing, low + 8, *samples.values(), note=note)
+    return drawing
 
-    def __init__(self, title: str, described: str, rows: Sequence[Row]) -> None:
-        told = [
-            f"{row['name']} on {row['population']}: {row['seconds']:.2g} s, median "
-            f"{row['median']:.2g}, largest {row['largest']:.2g}"
-            for row in rows
-            if "median" in row
-        ]
-        self.rows = rows
-        self.names = list(dict.fromkeys(row["population"] for row in rows))
-        self.drawing = Drawing(WIDTH, title, f"{described}. {'; '.join(told)}.")
-        self.top = self.drawing.heading() - 11
 
-    def panel(
-        self, left: float, right: float, row: int, title: Sequence[str], x: _Axis, y: _Axis
-    ) -> Panel:
-        """Each axis: its ends, label and ticks."""
-        top = self.top - _ROW * row
-        for count, line in enumerate(title[::-1]):
-            at = complex(left, top + 5 + 2.8 * count)
-            self.drawing.add(Text(at, line, 6, bold=line == title[0], role="panel title"))
-        box, (xs, x_label, x_ticks), (ys, y_label, y_ticks) = Box(left, top - 38, right, top), x, y
-        ticks: Any = {"x_ticks": x_ticks, "y_ticks": y_ticks}
-        return Panel(self.drawing, box, xs, ys, x_label, y_label, **ticks, log=True)
-
-    def finished(self, rows: int, methods: Sequence[str], note: str) -> Drawing:
-        names = {row["method"]: row["name"] for row in self.rows if row["method"] in methods}
-        look = {"mpmath": ((0.4, 0.6), GREY), **_MARKS}
-        samples = [(name, look[method][1], look[method][0]) for method, name in names.items()]
-        self.drawing.height = 2 - key(self.drawing, self.top - _ROW * rows + 8, *samples, note=note)
-        return self.drawing
+def _panel(drawing: Drawing, box: Box, title: Sequence[str], x: _Axis, y: _Axis) -> Panel:
+    """With both axes logarithmic. Each axis: its ends, label and ticks."""
+    for count, line in enumerate(title[::-1]):
+        at = complex(box.left, box.top + 5 + 2.8 * count)
+        drawing.add(Text(at, line, 6, bold=line == title[0], role="panel title"))
+    ticks: Any = {"x_ticks": x[2], "y_ticks": y[2]}
+    return Panel(drawing, box, x[0], y[0], x[1], y[1], **ticks, log=True)
 
 
 def _mark(panel: Panel, x: float, error: float, method: str) -> None:
@@ -68,8 +61,8 @@ def _mark(panel: Panel, x: float, error: float, method: str) -> None:
     panel.mark(x, _shown(error), shape[0], colour, shape[-1] != " ", method)
 
 
-def _shown(error: float) -> float:
-    return min(max(error, _ERRORS[0]), _ERRORS[1])  # an error of 0 stands on the axis
+def _shown(error: Any) -> Any:
+    return np.clip(error, *_ERRORS)
 
 
 _ERROR_TICKS = powers(1e-15, 1e3, 3)[::3]
@@ -79,62 +72,65 @@ def work_precision(rows: Sequence[Row], roof: float) -> Drawing:
     """A panel for each population: every method's median error (mark) and largest error (end of the
     line) against its time per scene. Down and left is better; nothing that reads its scenes from
     memory is left of ``roof``, seconds a scene."""
-    page = _Page("Error against time", "Time per scene and median relative error", rows)
-    for place, name in enumerate(page.names):
-        across, column = divmod(place, _PANELS)
-        title = [name, *wrapped(POPULATIONS[name].meaning, 52, 6)]
-        panel = page.panel(
-            *(12 + 56.0 * column, 56 + 56.0 * column, across, title),
+    drawing = Drawing(WIDTH, "Error against time", "Time per scene and median relative error")
+    top = drawing.heading() - 11
+    names = list(dict.fromkeys(row["population"] for row in rows))
+    for place, name in enumerate(names):
+        below, column = divmod(place, _PANELS)
+        left, upper = 12 + 56.0 * column, top - _ROW * below
+        panel = _panel(
+            *(drawing, Box(left, upper - 38, left + 44, upper)),
+            [name, *wrapped(POPULATIONS[name].meaning, 52, 6)],
             (_TIMES, "time per scene, s", powers(1e-9, 1e-2, 2)),
             (_ERRORS, "" if column else _LABEL, _ERROR_TICKS),
         )
         panel.rule(roof, dash=(1.2, 0.6), role="memory roof")
-        for row in rows:
-            if row["population"] != name:
+        for row in [row for row in rows if row["population"] == name]:
+            method, seconds = row["method"], row["seconds"]
+            if method not in _MARKS:
+                panel.rule(seconds, GREY, dash=(0.4, 0.6))
                 continue
-            if row["method"] not in _MARKS:
-                panel.rule(row["seconds"], GREY, dash=(0.4, 0.6))
-                continue
-            colour, ends = _MARKS[row["method"]][1], (_shown(row["median"]), _shown(row["largest"]))
-            panel.line([row["seconds"]] * 2, ends, colour, 0.3)
-            panel.mark(row["seconds"], ends[1], "_", colour)
-            _mark(panel, row["seconds"], row["median"], row["method"])
+            colour, ends = _MARKS[method][1], _shown((row["median"], row["largest"]))
+            panel.line([seconds] * 2, ends, colour, 0.3)
+            panel.mark(seconds, ends[1], "_", colour)
+            _mark(panel, seconds, row["median"], method)
+    low = top - _ROW * -(-len(names) // _PANELS)
     note = "mark: median; end of line: largest; dashed: what memory alone takes"
-    return page.finished(-(-len(page.names) // _PANELS), [*_MARKS, "mpmath"], note)
+    return _finish(drawing, low, rows, note)
 
 
 def error_distribution(rows: Sequence[Row]) -> Drawing:
     """Two panels for each population: every scene's error, by its `errorbound.scales`, against its
     COND, the bound `relative_bounds` of each precision as a line; and the share of scenes with a
     larger error."""
-    title = "Error against condition, and the distribution of errors"
     rows = [row for row in rows if row["method"] in SCATTERED]
-    page = _Page(title, "Errors against condition and their distribution", rows)
-    for place, name in enumerate(page.names):
-        errors = page.panel(
-            *(12, 84, place, [name]),
+    title = "Error against condition, and the distribution of errors"
+    drawing = Drawing(WIDTH, title, "Errors against condition and their distribution")
+    top = drawing.heading() - 11
+    for name in dict.fromkeys(row["population"] for row in rows):
+        first = name == rows[0]["population"]
+        errors = _panel(
+            *(drawing, Box(12, top - 38, 84, top), [name]),
             (_CONDITIONS, "condition", powers(1, 1e16, 4)),
-            (_ERRORS, "" if place else "error by the scene's speeds and spins", _ERROR_TICKS),
+            (_ERRORS, "error by the scene's speeds and spins" if first else "", _ERROR_TICKS),
         )
         for unit, colour in ((DOUBLE, ORANGE), (APPLESOFT, VERMILION)):
-            line = [_shown(x) for x in relative_bounds(_CONDITIONS, unit).tolist()]
-            errors.line(_CONDITIONS, line, colour, dash=(1.2, 0.6), role="bound")
-        shares = page.panel(
-            *(98, 170, place, []),
+            line = _shown(relative_bounds(_CONDITIONS, unit))
+            errors.line(_CONDITIONS, line, colour, 0.4, dash=(1.2, 0.6), role="bound")
+        shares = _panel(
+            *(drawing, Box(98, top - 38, 170, top), []),
             (_ERRORS, "the same error", _ERROR_TICKS),
-            (_SHARES, "" if place else "share of scenes with a larger error", powers(1e-4, 1, 1)),
+            (_SHARES, "share of scenes with a larger error" if first else "", powers(1e-4, 1, 1)),
         )
-        for row in rows:
-            if row["population"] != name:
-                continue
+        for row in [row for row in rows if row["population"] == name]:
             method, found = row["method"], row["errors"]
             every = max(1, len(found) // MOST_MARKS)
             for condition, error in zip(row["conditions"][::every], found[::every], strict=True):
                 _mark(errors, float(np.clip(condition, *_CONDITIONS)), float(error), method)
-            ordered = np.clip(np.sort(found), *_ERRORS)
-            share = 1 - np.arange(len(ordered)) / len(ordered)
+            share = 1 - np.arange(len(found)) / len(found)
             mark, colour = _MARKS[method]
             dash = (0.4, 0.6) if mark[-1] == " " else ()
-            shares.line(ordered, share, colour, dash=dash, role=method)
+            shares.line(_shown(np.sort(found)), share, colour, 0.4, dash=dash, role=method)
+        top -= _ROW
     note = "dashed: 16 × condition × unit roundoff, of double precision and of the 1988 program"
-    return page.finished(len(page.names), SCATTERED, note)
+    return _finish(drawing, top, rows, note)
