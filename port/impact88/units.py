@@ -42,7 +42,7 @@ INERTIA, ENERGY = "mass·length²", "mass·length²/time²"
 FORCE, IMPULSE, TURNING = "mass·length/time²", "mass·length/time", "mass·length²/time"
 TIME, ANGLE, NUMBER, PERCENT = "time", "degree", "1", "percent"
 
-Dimension = tuple[int, int, int, int]
+Dimension = tuple[int, ...]
 """Exponents of length, mass, time and angle."""
 _LENGTH, _MASS, _TIME, _ANGLE = (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)
 _SPEED, _RATE, _FORCE, _ENERGY = (1, 0, -1, 0), (0, 0, -1, 1), (1, 1, -2, 0), (2, 1, -2, 0)
@@ -124,7 +124,8 @@ def _dimension(rule: str) -> Dimension:
 def _product(text: str, arc: bool, force: bool) -> tuple[Dimension, Fraction, str] | None:
     """Dimension, size and system of an expression; ``force``: its pounds are forces; ``arc``: of an
     angle, which has minutes."""
-    dimension, size, systems, at = [0, 0, 0, 0], Fraction(1), set(), 0
+    dimension: Dimension = (0, 0, 0, 0)
+    size, systems, at = Fraction(1), set(), 0
     while at < len(text):
         step = _STEP.match(text, at)
         if not step:
@@ -141,14 +142,13 @@ def _product(text: str, arc: bool, force: bool) -> tuple[Dimension, Fraction, st
         if known is None:
             return None
         power = -power if "/" in step[1] else power
-        dimension = [d + power * k for d, k in zip(dimension, known[0], strict=True)]
+        dimension = tuple(d + power * k for d, k in zip(dimension, known[0], strict=True))
         size *= known[1] ** power
         systems.add(known[2])
     systems -= {""}
     if len(systems) > 1:
         return None
-    length, mass, time, angle = dimension
-    return (length, mass, time, angle), size, systems.pop() if systems else ""
+    return dimension, size, systems.pop() if systems else ""
 
 
 class System(NamedTuple):
@@ -211,9 +211,8 @@ RULES = System("", _METRES, {})
 
 def base_of(system: System) -> str:
     """The base units in words."""
-    if system is RULES:
-        return "any consistent units"
-    return "m, kg, s" if system.base == _METRES else "ft, slug, s"
+    base = "m, kg, s" if system.base == _METRES else "ft, slug, s"
+    return base if system is not RULES else "any consistent units"
 
 
 def gravity_in(system: System) -> float | None:
@@ -252,7 +251,7 @@ def system_using(units: Iterable[tuple[str, str]], source: str) -> System:
         return sum(
             size_of(unit, rule) == size_of(system.usual[rule], rule)
             for unit, rule in used
-            if rule in (VELOCITY, MASS) and rule in system.usual
+            if rule in (VELOCITY, MASS)
         )
 
     return max((s for s in SYSTEMS.values() if s.base == base), key=matching)
@@ -292,7 +291,6 @@ _DECIMAL = r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NUMBER = rf"\d{{1,3}}(?:,\d{{3}})+(?:\.\d*)?(?![\d,])|(?:\d+ )?\d+ ?/ ?\d+|{_DECIMAL}"
 _AFTER = r"[a-zA-Z°%²³^]"
 _PART = re.compile(rf"({_NUMBER})(?![\d,/]) ?(?:({UNIT})(?!{_AFTER})|(?!{_AFTER})) ?")
-_SIGN = re.compile(r"([-+]?) ?")
 _FORMS = (
     ("uniform", r"uniform (.+)", (2,), "uniform {} {}"),
     ("triangular", r"triangular (.+)", (3,), "triangular {} {} {}"),
@@ -357,19 +355,18 @@ def parse(text: str) -> Notation:
 
 def _amount(text: str) -> Amount:
     """One amount. Raises ValueError."""
-    sign = _SIGN.match(text)
-    assert sign is not None
-    at = sign.end()
+    sign = text[0] if text[:1] in ("+", "-") else ""
+    rest = text.removeprefix(sign).lstrip()
     parts: list[tuple[str, str]] = []
-    while at < len(text):
-        part = _PART.match(text, at)
+    while rest:
+        part = _PART.match(rest)
         if not part or (parts and not parts[-1][1]):
             raise ValueError(text)
         parts.append((part[1], part[2] or ""))
-        at = part.end()
+        rest = rest[part.end() :]
     if not parts or (len(parts) > 1 and not _descend([unit for _, unit in parts])):
         raise ValueError(text)
-    return Amount(sign[1], tuple(parts))
+    return Amount(sign, tuple(parts))
 
 
 def _descend(units: list[str]) -> bool:
