@@ -248,7 +248,6 @@ def _target(path: str) -> tuple[str, int]:
 
 
 def _settle(handle: int) -> None:
-    """Have the file's bytes on the disk, where the file system knows how."""
     try:
         os.fsync(handle)
     except OSError as error:

@@ -382,7 +382,6 @@ def toml_texts(text: str, source: str) -> dict[str, str]:
 
 
 def _toml_values(key: str, text: str, where: str) -> dict[str, str]:
-    """The text of an entry by its key, and of what says where its value comes from."""
     import tomllib
 
     raw = text.partition("#")[0].strip()

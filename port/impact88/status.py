@@ -111,7 +111,6 @@ def admissible_friction(status: int, values: Mapping[str, Any]) -> list[str]:
 
 
 def _up_to(limit: float) -> str:
-    """The numbers from 0 to a limit, in words."""
     if isinf(limit):
         return "above 0" if limit > 0 else "below 0"
     if abs(limit) < 5e-10:

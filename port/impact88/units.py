@@ -354,7 +354,6 @@ def parse(text: str) -> Notation:
 
 
 def _amount(text: str) -> Amount:
-    """One amount. Raises ValueError."""
     sign = text[0] if text[:1] in ("+", "-") else ""
     rest = text.removeprefix(sign).lstrip()
     parts: list[tuple[str, str]] = []

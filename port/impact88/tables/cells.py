@@ -1,6 +1,7 @@
 """The cells of a table as numbers in base units: by the units of its headings (``UX [mph]``, ``MA
 (lb)``) and of the cells themselves; and its results in the same units."""
 
+import json
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
@@ -26,7 +27,7 @@ from ..units import (
     system_using,
     units_in,
 )
-from . import arrow, jsontext
+from . import arrow
 from .rows import Column, Heading, Rows, heading
 
 _MEASURING = ("length", "length/time", "mass", "mass·length²", "mass·length²/time²")
@@ -121,7 +122,6 @@ class TableUnits:
 
 
 def _units_in_cells(rows: Rows) -> list[tuple[str, str]]:
-    """The units that cells have, each with what it measures."""
     found: set[tuple[str, str]] = set()
     for name, column in rows.scene().items():
         if not isinstance(column, np.ndarray):
@@ -160,7 +160,7 @@ def typed(name: str, column: Column) -> NDArray[Any] | list[str]:
     if isinstance(column, np.ndarray):
         return column
     if name not in SCENE:
-        return [jsontext.plain(cell) for cell in column]
+        return [plain(cell) for cell in column]
     if isinstance(column, arrow.ArrowTexts) and (found := column.doubles()) is not None:
         return found
     return np.array([np.nan if isinstance(n := _number(c), str) else n for c in column], float)
@@ -220,7 +220,6 @@ def _numbers(
 
 
 def _plain_numbers(column: Column) -> NDArray[np.float64] | None:
-    """The numbers of a column that holds nothing else."""
     if isinstance(column, np.ndarray) and column.dtype.kind in "fiub":
         return column.astype(np.float64, copy=False)
     if isinstance(column, arrow.ArrowTexts) and (values := column.doubles()) is not None:
@@ -246,3 +245,37 @@ def _number(cell: object) -> float | str:
 def is_infinite(text: str) -> bool:
     """Whether a cell says inf, the mass and the inertia of a barrier; INPUT has no such number."""
     return text.strip().lower() == "inf"
+
+
+class Numeral(str):
+    """The text of a JSON number."""
+
+    __slots__ = ()
+
+
+def json_text(value: Any) -> str:
+    """JSON text of a value as `read` makes it; not ASCII alone."""
+    if isinstance(value, Numeral):
+        return json_number(float(value)) if value in ("nan", "inf", "-inf") else str(value)
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{json.dumps(k)}: {json_text(v)}" for k, v in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(json_text, value)) + "]"
+    if isinstance(value, float):
+        return json_number(value)
+    return json.dumps(value, ensure_ascii=False, default=str)
+
+
+def plain(value: Any) -> str:
+    """A cell of any kind as a table of texts has it: nothing for None, else text or JSON."""
+    if value is None:
+        return ""
+    return json_text(value) if isinstance(value, dict | list | bool) else str(value)
+
+
+def json_number(value: float) -> str:
+    """A float in the fewest digits that read back to it; null for NaN, which JSON has not, and
+    1e999 for infinity, which readers take for it."""
+    if math.isfinite(value):
+        return repr(value)
+    return "null" if math.isnan(value) else ("1e999" if value > 0 else "-1e999")

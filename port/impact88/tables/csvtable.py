@@ -20,7 +20,7 @@ from ..errors import UserError, quoted
 from ..files import LONGEST_LINE
 from ..names import RESULTS, SCENE
 from . import arrow
-from .jsontext import plain
+from .cells import plain
 from .lines import Lines, open_text, writing
 from .rows import (
     BLOCK_CHARACTERS,

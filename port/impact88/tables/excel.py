@@ -16,8 +16,7 @@ import numpy as np
 from ..errors import UserError, library, quoted
 from ..files import replacing
 from ..names import SCENE
-from .cells import typed
-from .jsontext import plain
+from .cells import plain, typed
 from .npztable import check_unpacked
 from .rows import BLOCK_ROWS, Column, Named, Put, Reader, Rows, heading, scene_names
 
@@ -83,7 +82,6 @@ def _check_computed(path: str, width: int) -> None:
 
 
 def _text(cell: Any) -> str:
-    """What stands in a cell: a number by its shortest digits."""
     return repr(cell).removesuffix(".0") if isinstance(cell, float) else plain(cell)
 
 

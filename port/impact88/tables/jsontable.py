@@ -7,6 +7,7 @@ to the same, NaN is null, and infinity 1e999, which readers take for it.
 
 import json
 import math
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from itertools import chain, islice
@@ -14,9 +15,10 @@ from typing import Any
 
 import numpy as np
 
+from .. import doubles
+from ..applesoft.decimaltext import scan
 from ..names import SCENE
-from . import jsontext
-from .cells import is_infinite
+from .cells import Numeral, is_infinite, json_number, json_text
 from .lines import Lines, open_text, writing
 from .rows import (
     ABSENT,
@@ -31,6 +33,32 @@ from .rows import (
     heading,
     scene_names,
 )
+
+DEEPEST = 100
+"""Lists and objects inside one another that are read."""
+_decode = json.JSONDecoder(
+    parse_float=Numeral, parse_int=Numeral, parse_constant=lambda name: Numeral(float(name))
+).decode
+
+
+def _read(text: str) -> Any:
+    """The value of a JSON text. Raises ValueError if it is not one, or nested too deeply."""
+    try:
+        value = _decode(text)
+        deep = text.count("[") + text.count("{") > DEEPEST and _depth(value) > DEEPEST
+    except RecursionError:
+        deep = True
+    except ValueError as error:
+        raise ValueError(f"is not JSON: {error}") from None
+    if deep:
+        raise ValueError(f"is nested deeper than {DEEPEST} levels")
+    return value
+
+
+def _depth(value: Any) -> int:
+    if not isinstance(value, dict | list):
+        return 0
+    return 1 + max(map(_depth, value.values() if isinstance(value, dict) else value), default=0)
 
 
 def _blocks(lines: Lines) -> Iterator[Rows]:
@@ -51,7 +79,7 @@ def _blocks(lines: Lines) -> Iterator[Rows]:
             if not text.strip():
                 continue
             try:
-                value, reason = jsontext.read(text), "is not a JSON object"
+                value, reason = _read(text), "is not a JSON object"
             except ValueError as error:
                 value, reason = None, str(error)
             if not isinstance(value, dict):
@@ -76,7 +104,7 @@ def _blocks(lines: Lines) -> Iterator[Rows]:
 
 
 def _text(cell: Any) -> Any:
-    return str(cell) if type(cell) is jsontext.Numeral else cell
+    return str(cell) if type(cell) is Numeral else cell
 
 
 @contextmanager
@@ -89,22 +117,30 @@ def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
         yield Reader(names, chain(first, blocks), *lines.source.extent)
 
 
+_JSON = re.compile(r"-?(?:0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
+
+
 def _double(cell: Any) -> str:
-    if isinstance(cell, str):
-        try:
-            return jsontext.double(cell)
-        except ValueError:
-            return jsontext.number(math.inf) if is_infinite(cell) else "null"
-    return jsontext.number(cell) if type(cell) in (int, float) else "null"
+    """A scene's cell as JSON writes a double: its own digits, and never as a whole number, so that
+    readers who go by what they see give all of a column one type."""
+    if not isinstance(cell, str):
+        return json_number(cell) if type(cell) in (int, float) else "null"
+    if match := _JSON.fullmatch(cell):
+        return cell if match[1] or match[2] else cell + ".0"
+    if not doubles.is_number(cell):
+        return json_number(math.inf) if is_infinite(cell) else "null"
+    sign, whole, decimals, exponent_sign, exponent, _ = scan(cell.upper())
+    power = f"E{exponent_sign}{exponent}" if exponent else ""
+    return f"{sign.strip('+')}{whole.lstrip('0') or '0'}.{decimals or '0'}{power}"
 
 
 def _cells(name: str, column: Column) -> list[str]:
     if isinstance(column, np.ndarray):
         if column.dtype.kind == "f" or (name in SCENE and column.dtype.kind in "iub"):
             # whole numbers too: where one is missing, a later block of them is of doubles
-            return list(map(jsontext.number, column.astype(np.float64, copy=False).tolist()))
-        return list(map(jsontext.written, column.tolist()))
-    write = _double if name in SCENE else jsontext.written
+            return list(map(json_number, column.astype(np.float64, copy=False).tolist()))
+        return list(map(json_text, column.tolist()))
+    write = _double if name in SCENE else json_text
     return ["" if cell is ABSENT else write(cell) for cell in column]
 
 

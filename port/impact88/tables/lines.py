@@ -59,7 +59,6 @@ class Lines:
         return line
 
     def _error(self, message: str) -> UserError:
-        """A UserError about the line after the last one given."""
         return UserError(f"line {self.number + 1} {message}", self.where)
 
 
