@@ -198,17 +198,11 @@ def replacing(path: str, mode: str = "w") -> Iterator[IO[Any]]:
     beside = os.path.join(folder, f".{name[:56]}.{os.urandom(8).hex()}.part")
     # its name is known before it is there: a signal at any moment finds what to remove
     try:
-        file = _sink(beside, path, mode, True)
-        try:
+        with _sink(beside, path, mode, True) as file:
             yield file
             file.flush()
             with _naming(path, "written"):
                 _settle(file.fileno())
-            file.close()
-        except BaseException:
-            with suppress(UserError, OSError, ValueError):
-                file.close()
-            raise
         with _naming(path, "written"):
             os.chmod(beside, usual)
             os.replace(beside, target)

@@ -42,8 +42,7 @@ def table(
     rows: Iterable[Sequence[str]], heading: Sequence[str] | None = None, left: Sequence[int] = (0,)
 ) -> list[str]:
     """Lines of aligned columns, two blanks between; columns in ``left`` start at the left."""
-    body = [list(row) for row in rows]
-    lines = [list(heading), *body] if heading else body
+    lines = [list(row) for row in ((heading,) if heading else ()) + tuple(rows)]
     count = max(map(len, lines), default=0)
     lines = [line + [""] * (count - len(line)) for line in lines]
     widths = [max(len(line[i]) for line in lines) for i in range(count)]
@@ -66,13 +65,9 @@ def quantities(
     ``meanings`` has another). ``values``: in the units of ``system``."""
     from .names import quantity
 
-    special = meanings or {}
-    rows = [(name, number(value), quantity(name)) for name, value in values.items()]
-    cells = [
-        [name, text, system.label(what.unit), special.get(name, what.meaning)]
-        for name, text, what in rows
-    ]
-    return table(cells, left=(0, 2, 3))
+    meant = {name: quantity(name).meaning for name in values} | dict(meanings or {})
+    rows = [(n, number(x), system.label(quantity(n).unit), meant[n]) for n, x in values.items()]
+    return table(rows, left=(0, 2, 3))
 
 
 def paragraph(text: str, indent: str = "") -> list[str]:

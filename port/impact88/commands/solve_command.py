@@ -139,6 +139,7 @@ def main(args: options.Args) -> int:
             write = stack.enter_context(behind(write))
         if not may_wait(path or ""):
             blocks = stack.enter_context(ahead(blocks))
+        units.based = given
         adverse = place = 0
         for rows in blocks:
             for name, text in given.items():
@@ -148,7 +149,7 @@ def main(args: options.Args) -> int:
             nothing = [None] * rows.count
             rows.columns |= {name: nothing for name in SCENE if name not in rows.columns}
             rows.columns["M"] = filled(rows.columns["M"], DEFAULT_M)
-            results = arithmetic(rows, units.given(given), wanted)
+            results = arithmetic(rows, units, wanted)
             write(rows, units.shown(results))
             adverse += complain(rows.complaints())
             if "ERROR" in results:

@@ -5,7 +5,6 @@ import json
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
-from copy import copy
 from typing import Any
 
 import numpy as np
@@ -37,8 +36,9 @@ _RATIOS = ("1", "-", "–", "—", "")
 
 class TableUnits:
     """What the columns of one table are in. ``system``: what results are shown in, `RULES` where
-    nothing names a unit. Raises UserError for a heading whose unit does not measure its quantity,
-    and for bare columns beside such with units where ``given`` names no system."""
+    nothing names a unit; ``based``: columns that are replaced by base units. Raises UserError for a
+    heading whose unit does not measure its quantity, and for bare columns beside such with units
+    where ``given`` names no system."""
 
     def __init__(
         self,
@@ -62,7 +62,7 @@ class TableUnits:
         if self.system is RULES and first is not None:
             self.system = system_using(_units_in_cells(first), where)
             self.strict = self.system is not RULES
-        elif not given and (bare := [name for name in compared if self._open(name)]):
+        elif not given and (bare := [name for name in compared if self.leaves_open(name)]):
             if self.system is not RULES:
                 # beside ft, slug and ft/s, or m, kg and m/s, bare numbers are such too
                 self.system = SYSTEMS["si" if self.system.base == SYSTEMS["si"].base else "chapter"]
@@ -74,7 +74,8 @@ class TableUnits:
                     where,
                 )
 
-    def _open(self, name: str) -> bool:
+    def leaves_open(self, name: str) -> bool:
+        """Whether a column's bare numbers may be in several units."""
         return name not in self.units and quantity(name).unit in _MEASURING
 
     def _unit(self, name: str) -> str:
@@ -86,19 +87,9 @@ class TableUnits:
         size = size_of(unit, rule) if unit and name not in self.based else None
         return float(size[0] / self.system.scale(rule)) if size else 1.0
 
-    def given(self, names: Collection[str]) -> "TableUnits":
-        """The same of columns of which some are replaced by base units."""
-        result = copy(self)
-        result.based = names
-        return result
-
     def converts(self, name: str) -> bool:
         """Whether a column's texts have to be looked at."""
         return name not in self.based and (self.system is not RULES or name in self.units)
-
-    def refuses_bare(self, name: str) -> bool:
-        """Whether bare numbers of a column leave their unit open."""
-        return self.strict and self.converts(name) and self._open(name)
 
     def cell(self, name: str, text: str) -> str:
         """One cell in base units, exactly. Raises UserError for what is not an amount."""
@@ -191,7 +182,8 @@ def point_masses(rows: Rows) -> NDArray[np.bool_]:
 def _numbers(
     rows: Rows, name: str, column: Column, units: TableUnits, asked: NDArray[np.bool_]
 ) -> NDArray[np.float64]:
-    factor, bare_refused = units.factor(name), units.refuses_bare(name)
+    factor = units.factor(name)
+    bare_refused = units.strict and units.converts(name) and units.leaves_open(name)
     values = None if bare_refused else _plain_numbers(column)
     if values is not None:
         return values if factor == 1 else values * factor

@@ -68,9 +68,10 @@ def solve_frame(
         texts = {n: list(np.ravel(a)) for n, a in arrays.items() if a.dtype.kind not in "fiu"}
         table = TableUnits(found, units or getattr(scene, "units", None), Rows(0, texts))
         columns = {n: _numbers(n, values, table) for n, values in given.items()}
+        table.based = SCENE
         for name, value in (scene or {}).items():
             if name in SCENE:
-                columns.setdefault(name, _numbers(name, [value], table.given([name]))[0])
+                columns.setdefault(name, _numbers(name, [value], table)[0])
         all_points = "M" in columns and bool(np.all(np.asarray(columns["M"]) == 4))
         check_scene_columns(columns, all_points, "scene=")
         results = table.shown(solve(columns, outputs, threads=threads))
