@@ -10,26 +10,12 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable
 
+from . import real
 from .functions import power
-from .real import (
-    BIAS,
-    Number,
-    add,
-    compare,
-    divide,
-    from_stored,
-    integer,
-    multiply,
-    negate,
-    rounded,
-    subtract,
-    to_stored,
-)
+from .real import BIAS, Number, compare, from_stored, integer, rounded, to_stored
 
 
-def _binary(
-    rule: Callable[[Number, Number], Number],
-) -> tuple[Callable[[Real, Real | int], Real], Callable[[Real, int], Real]]:
+def _binary(rule: Callable[[Number, Number], Number]) -> tuple[Callable[..., Real], ...]:
     """An operator, and what it is with a whole number on the left."""
 
     def forward(left: Real, right: Real | int) -> Real:
@@ -90,12 +76,12 @@ class Real:
         return f"Real({float(self)!r}, {self.stored().hex()}:{self.extension:02x})"
 
     def __neg__(self) -> Real:
-        return Real(negate(self.number))
+        return Real(real.negate(self.number))
 
-    __add__, __radd__ = _binary(add)
-    __sub__, __rsub__ = _binary(subtract)
-    __mul__, __rmul__ = _binary(multiply)
-    __truediv__, __rtruediv__ = _binary(divide)
+    __add__, __radd__ = _binary(real.add)
+    __sub__, __rsub__ = _binary(real.subtract)
+    __mul__, __rmul__ = _binary(real.multiply)
+    __truediv__, __rtruediv__ = _binary(real.divide)
     __pow__ = _binary(power)[0]
     __lt__, __gt__ = _comparison(operator.lt), _comparison(operator.gt)
     __le__, __ge__ = _comparison(operator.le), _comparison(operator.ge)

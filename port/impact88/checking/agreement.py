@@ -1,12 +1,10 @@
-"""Whether another program's numbers agree with ours, and how closely they must.
+"""Whether another program's numbers agree with ours, and how closely they must in each scene.
 
-Each scene is judged by its own condition. A result agrees *to the double* when it is no farther off
-than rounding allows in the best of programs (`accuracy.errorbound`); *to the digits claimed* when
-it is the exact value rounded to the digits it is written with; *as elimination does* when it is no
-farther off than the usual ways allow in this scene: elimination unit roundoff times the condition
-number of a 6 by 6 matrix as it stands times the largest unknown (measured on the vectors: at most
-0.03 of it), contact impulses their running error bound. Where rounding decides which way the
-contact slides, either way of MU's sign is right.
+*To the double*: no farther off than rounding allows in the best of programs. *To the digits
+claimed*: the exact value rounded to the digits it is written with. *As elimination does*: no
+farther off than the usual ways allow, elimination unit roundoff times the condition number of a 6
+by 6 matrix times the largest unknown (on the vectors at most 0.03 of it), contact impulses their
+running error bound. Where rounding decides which way the contact slides, either way is right.
 """
 
 import re

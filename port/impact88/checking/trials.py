@@ -1,9 +1,8 @@
 """Which program gives the numbers of a table: every small mistake made, alone and two together.
 
-All edits of all spellings are run over a few rows that disagree and a few that agree; those that
-explain any are run over more. Two mistakes are looked for in three ways: *by outputs*, one explains
-the velocities and another on top of it the rest; *by equations*, with their velocities put in, what
-two change of the residuals adds up to what mends them; *by rows*, one explains some rows alone.
+All edits of all spellings are run over a few rows; those that explain any are run over more. Two
+mistakes are looked for by equations (with their velocities put in, what two change of the residuals
+adds up to what mends them) and by rows (one explains some alone, another on top of it the rest).
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -14,16 +13,7 @@ from numpy.typing import NDArray
 
 from ..equations.edits import CONVENTION, Edit, edits_of, edits_on, readings, variants
 from ..equations.evaluation import RESIDUAL, Columns, Run, chunks, value
-from ..equations.spelling import (
-    A_IMPULSE,
-    CONTACT_FRAME,
-    IMPULSES,
-    LISTING,
-    SHOWN,
-    Spelling,
-    expression,
-    spellings,
-)
+from ..equations.spelling import IMPULSES, LISTING, SHOWN, Spelling, expression, spellings
 from ..names import FINAL_VELOCITIES
 from .agreement import Bools, Floats
 
@@ -121,12 +111,10 @@ class Judge(NamedTuple):
         return amiss or [every]
 
     def near(self, results: Columns, prefix: str = "") -> Bools:
-        """The rows whose every result is near enough: (n,) or (K, n)."""
+        """The rows whose every result is near enough, (n,) or (K, n); NaN contradicts nothing."""
         fits: Any = np.ones(self.wrong.size, bool)
         for name, theirs in self.theirs.items():
-            mine = results.get(prefix + name)
-            if mine is not None:
-                # what they do not give, NaN, contradicts nothing
+            if (mine := results.get(prefix + name)) is not None:
                 fits = fits & ((np.abs(mine - theirs) <= self.limit[name]) | np.isnan(theirs))
         return np.asarray(fits)
 
@@ -197,21 +185,16 @@ def singles(judge: Judge, unexplained: Bools, on: Program | None = None) -> list
     return ranked((one.program for one in seen[:_KEPT]), judge)
 
 
-def _candidates(base: Program) -> Iterator[tuple[Spelling, list[Edit]]]:
-    """What may be wrong besides, by spelling."""
-    titled = [edit.title for edit in base.edits if edit.title]
-    for title in titled[:1] or spellings():
-        whole = Program((*base.edits, Edit(title, {}))).spelling
-        edits = [] if titled else [one for one in variants() if one.title == title]
-        if titled or title == LISTING:
-            edits += [one for one in readings() if one not in base.edits]
-        yield whole, [*edits, *(edits_on(whole) if titled else edits_of(title))]
-
-
 def _tried(judge: Judge, base: Program) -> Iterator[Found]:
     """Programs with one mistake more than ``base`` that explain a row."""
     size = judge.wrong.size
-    for spelling, edits in _candidates(base):
+    titled = [edit.title for edit in base.edits if edit.title]
+    for title in titled[:1] or spellings():
+        spelling = Program((*base.edits, Edit(title, {}))).spelling
+        edits = [] if titled else [one for one in variants() if one.title == title]
+        if titled or title == LISTING:
+            edits += [one for one in readings() if one not in base.edits]
+        edits += edits_on(spelling) if titled else edits_of(title)
         start = Run(spelling, judge.scene)
         found = start.distinct([spelling.composed(edit.sides) for edit in edits])
         for part in chunks(len(found), size):
@@ -258,7 +241,6 @@ _ALONG = {
     **{"VAN": "c*VAX + s*VAY", "VAT": "c*VAY - s*VAX"},
     **{"VBN": "c*VBX + s*VBY", "VBT": "c*VBY - s*VBX"},
 }
-_WITHOUT_IMPULSES = (LISTING, A_IMPULSE, CONTACT_FRAME)
 _SUMS = 200
 """Partners of an edit that are looked at; more have coarse tables only."""
 
@@ -302,7 +284,8 @@ def _by_equations(judge: Judge, whole: Judge) -> Iterator[list[Program]]:
     reading = [one for one in readings() if not one.shows]
     for title, spelling in spellings().items():
         own = [*reading, *(one for one in variants() if one.title == title), *edits_of(title)]
-        for how in "A" if title in _WITHOUT_IMPULSES else "AB":
+        impulses = {"Px", "Pn"} & {*spelling.where, *spelling.unknown}
+        for how in "AB" if impulses else "A":
             yield _sums(_Faults(spelling, judge, how), own)
     # how many residuals each reading leaves that rounding does not in nearly all rows
     faults = _Faults(spellings()[LISTING], judge, "A")
