@@ -133,7 +133,10 @@ def _case(
     best = errorbound.relative_bounds(ours["COND"], 1.0)
     spent = running_errors(spellings()[IMPULSES], scene)
     largest = np.nanmax(np.abs([ours[name] for name in FINAL_VELOCITIES]), 0, initial=0.0)
-    eliminated = _condition(scene) * largest
+    # the larger condition number, by row sums, of the two 6 by 6 matrices as they stand
+    matrices = (Run(spellings()[title], scene).system({})[0][0] for title in (LISTING, A_IMPULSE))
+    conditions = np.array([np.linalg.cond(matrix, np.inf) for matrix in matrices])
+    eliminated = np.where(np.isnan(conditions), np.inf, conditions).max(0) * largest
     shares = [np.fmax(eliminated, spent[name][1]) / sizes[name] for name in FINAL_VELOCITIES]
     sliding, off = spent["gt"]
     undecided = np.abs(sliding) <= off * errorbound.DOUBLE
@@ -151,14 +154,6 @@ def _case(
     found = (scenes, values, units, mine, measures, ours["COND"], tight, loose, per_unit)
     case = Case(tuple(theirs), *found)
     return case, np.flatnonzero(undecided)
-
-
-def _condition(scene: Columns) -> Floats:
-    """The larger condition number (largest row sum) of the two 6 by 6 matrices as they stand, the
-    listing's and the one with A's impulse; infinite where there is no finite one."""
-    matrices = (Run(spellings()[title], scene).system({})[0][0] for title in (LISTING, A_IMPULSE))
-    both = [np.linalg.cond(matrix, np.inf) for matrix in matrices]
-    return np.asarray(np.where(np.isnan(both), np.inf, both).max(0))
 
 
 def read_theirs(rows: Rows, name: str, factor: float = 1.0) -> tuple[Floats, Floats]:

@@ -1,9 +1,8 @@
 """Why another program's results differ: one cause for a table where one explains it.
 
-What is looked for, in turn: right numbers written otherwise; one mistake, then two (`trials`), and
-what they leave; rows of several programs; coarser arithmetic. A cause must earn its name: rows that
-agree must bear it out, and the bits that it gets right in rows that disagree must be many more than
-choosing among so many programs yields by chance.
+Looked for in turn: right numbers written otherwise; one mistake, then two (`trials`), and what they
+leave; rows of several programs; coarser arithmetic. Rows that agree must bear a cause out, and the
+bits that it gets right must be many more than choosing among so many programs yields by chance.
 """
 
 import math
@@ -93,8 +92,7 @@ class Diagnosis:
 
     @np.errstate(all="ignore")
     def __init__(self, case: Case) -> None:
-        self._case, self._wrong = case, case.wrong
-        wrong = self._wrong
+        self._case, self._wrong = case, (wrong := case.wrong)
         self._causes = np.where(wrong, UNKNOWN, "").astype(object)
         self.evidence: list[Cause] = []
         self.programs: list[Program] = []
@@ -210,9 +208,8 @@ class Diagnosis:
         for row in np.flatnonzero(self._open).tolist():
             broken = [number for number, off in violations.items() if off[row]]
             if broken and len(broken) < len(violations):
-                *first, last = broken
-                which = f"Equations {', '.join(first)} and {last} are"
-                which = which if first else f"Equation {last} is"
+                which = f"Equations {', '.join(broken[:-1])} and {broken[-1]} are"
+                which = which if len(broken) > 1 else f"Equation {broken[0]} is"
                 self._causes[row] = f"{UNKNOWN}, but only {which} violated"
             elif 0 < self._off[row] < 1e-2:
                 digits = int(-math.log10(self._off[row]))
@@ -336,15 +333,12 @@ def _deepened(found: Sequence[Found], judge: Judge) -> Sequence[Found]:
     """With what the best leaves looked into: another mistake's, of a branch that few rows take."""
     for _ in range(_DEEPER):
         left = judge.wrong & ~found[0].rows
-        if not left.any():
-            break
-        more = [
-            one
-            for one in singles(judge, left, found[0].program)
-            if one.whole
-            and (explains := (one.rows & left).sum()) >= _MOST * left.sum()
-            and (explains > 1 or one.program.edits[-1].rank <= RARE_CONVENTION)
-        ]
+        more = []
+        for one in singles(judge, left, found[0].program) if left.any() else ():
+            explains = (one.rows & left).sum()
+            known = one.program.edits[-1].rank <= RARE_CONVENTION
+            if one.whole and explains >= _MOST * left.sum() and (explains > 1 or known):
+                more.append(one)
         if not more:
             break
         found = more
@@ -354,18 +348,13 @@ def _deepened(found: Sequence[Found], judge: Judge) -> Sequence[Found]:
 def _telling(judge: Judge) -> list[str]:
     """The final velocities, and what does not follow from theirs as it should: what does says
     nothing more."""
-    names = list(judge.theirs)
     if not judge.has_velocities:
-        return names
+        return list(judge.theirs)
     theirs = {name: judge.theirs[name] for name in FINAL_VELOCITIES}
     follows = Run(spellings()[LISTING], judge.scene, theirs).names
-    return [
-        name
-        for name in names
-        if name in FINAL_VELOCITIES
-        or name not in follows
-        or judge.of([name]).near(follows).mean() < BORNE_OUT
-    ]
+    known = {*follows} - {*FINAL_VELOCITIES}
+    alone = {name: judge.of([name]).near(follows).mean() for name in judge.theirs if name in known}
+    return [name for name in judge.theirs if alone.get(name, 0.0) < BORNE_OUT]
 
 
 def _several(alone: Sequence[Found], part: Judge, judge: Judge) -> list[_Chosen]:
