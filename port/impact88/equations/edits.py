@@ -152,16 +152,19 @@ def _equation_edits(spelling: Spelling) -> Iterator[Edit]:
     for subject, places in groups.items():
         if len(places) == 1 and ";" not in subject:
             continue
-        within = [spelling.statements[index] for index in places]
-        parts = (node for one in within for side in one.sides for node in nodes(side))
-        names = Counter(node for node in parts if isinstance(node, str))
+        sides = (side for index in places for side in spelling.statements[index].sides)
+        names = Counter(x for side in sides for x in nodes(side) if isinstance(x, str))
         kin = spelling.kin_at(places[0])
         for name in [one for one in names if one not in (*CONDITIONS, "pi", *spelling.unknown)]:
             for says, changes in _throughout(name, kin.get(name, ()), names):
-                touched = [one for one in within if not changes.keys().isdisjoint(one.reads)]
-                sides = {one.key: tuple(renamed(x, changes) for x in one.sides) for one in touched}
+                touched = [
+                    spelling.statements[index]
+                    for index in places
+                    if not changes.keys().isdisjoint(spelling.reads[index])
+                ]
+                made = {one.key: tuple(renamed(x, changes) for x in one.sides) for one in touched}
                 where = ", ".join(dict.fromkeys(one.place for one in touched))
-                yield Edit(spelling.title, sides, LESS, f"{where}: {says} in {subject}")
+                yield Edit(spelling.title, made, LESS, f"{where}: {says} in {subject}")
 
 
 def _throughout(

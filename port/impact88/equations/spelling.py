@@ -24,7 +24,6 @@ COMPARISONS = ("<", "<=", ">", ">=", "==")
 
 FIRST, LAST = "reading", "results"
 LISTING, IMPULSES, A_IMPULSE = "listing", "contact impulses", "equations with A's impulse"
-CONTACT_FRAME = "contact frame"
 TYPED, SHOWN = "typed_", "shown_"
 """Before a column's name: as the table has it; before a result's: as the program shows it."""
 
@@ -42,12 +41,6 @@ class Statement(NamedTuple):
     def key(self) -> str:
         """What it is found by in any spelling that has it."""
         return self.target or f"== {self.subject}"
-
-    @property
-    def reads(self) -> frozenset[str]:
-        """The names that it reads."""
-        whole = (node for side in self.sides for node in nodes(side))
-        return frozenset(node for node in whole if isinstance(node, str))
 
     @property
     def text(self) -> str:
@@ -72,7 +65,8 @@ class Spelling:
     @cached_property
     def reads(self) -> tuple[frozenset[str], ...]:
         """The names that each statement reads."""
-        return tuple(one.reads for one in self.statements)
+        every = ([node for side in one.sides for node in nodes(side)] for one in self.statements)
+        return tuple(frozenset(one for one in found if isinstance(one, str)) for found in every)
 
     @cached_property
     def equations(self) -> tuple[int, ...]:
