@@ -27,11 +27,11 @@ from ..fields import FIELDS, outcome_fields
 from ..files import packaged_bytes, read_bytes, write_folder
 from ..names import SCENE
 from ..program import emulated
-from ..program.run import Run, run
+from ..program.run import run
 from ..report import frame
 from ..scene import Scene, sample
 from .apple import Image, Lost
-from .session import LONGEST_TYPED, Finished, Session
+from .session import LONGEST_TYPED, Session
 
 OWN = "own programs"
 CAPTURE, PORT, EMULATOR, REPLAY, PUBLISHED = "capture", "port", "emulator", "replay", "published"
@@ -183,23 +183,22 @@ def hear_scene(
     mine = _left_behind(rom)
     sides: Sides = {}
     if capture:
-        captured_run = Finished(capture["printout"], capture["reals"], capture["A"])
-        sides[CAPTURE] = mine, _left_behind(captured_run)
-    sides[PORT] = mine, _left_behind(run(scene, dos=False))
-    sides[EMULATOR] = mine, _left_behind(emulated.run(scene, dos=False))
+        sides[CAPTURE] = mine, _left_behind(capture)
+    sides[PORT] = mine, _left_behind(run(scene, dos=False)._asdict())
+    sides[EMULATOR] = mine, _left_behind(emulated.run(scene, dos=False)._asdict())
     alone = replay({each: [scene[each]] for each in SCENE})
     replayed = {each: text for each in FIELDS if (text := alone.printed(each).tolist()[0])}
-    sides[REPLAY] = outcome_fields(rom.printout), replayed
+    sides[REPLAY] = outcome_fields(rom["printout"]), replayed
     if published:
         pieces: list[str] = []
-        Console(lambda: None, pieces.append, dos=True).put(rom.printout)
+        Console(lambda: None, pieces.append, dos=True).put(rom["printout"])
         sides[PUBLISHED] = {"printout": "".join(pieces)}, {"printout": published}
     row = {
         "id": name,
         "scene": dict(scene),
         "typed_lines": scene.typed_lines(),
         "keyboard": scene.keyboard(),
-        **rom._asdict(),
+        **rom,
     }
     return _held(SCENES, name, sides, row)
 
@@ -210,10 +209,10 @@ def hear_sample(session: Session, number: int) -> Heard:
     return hear_scene(session, f"sample {number}", sample(number), published=published)
 
 
-def _left_behind(run: Finished | Run) -> dict[str, str]:
+def _left_behind(run: Mapping[str, Any]) -> dict[str, str]:
     """What a run printed and left in its variables and its array, by name."""
-    reals, array = captured.left_behind(run.reals, run.A)
-    whole = {"printout": run.printout, **dict(sorted(reals.items()))}
+    reals, array = captured.left_behind(run["reals"], run["A"])
+    whole = {"printout": run["printout"], **dict(sorted(reals.items()))}
     if array:
         (rows, columns), cells = array
         whole["DIM A"] = f"{[rows, columns]}"

@@ -9,7 +9,7 @@ March 1980).
 
 import re
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 from ..errors import UserError
 from ..files import packaged_text
@@ -25,15 +25,6 @@ _OTHER_PROMPTS = {
 }
 LONGEST_TYPED = 239
 """Characters of the longest line the monitor's line reader keeps; Apple's documents say so."""
-
-
-class Finished(NamedTuple):
-    """What a run on the ROM left, in the captures' form: all that was displayed after the echo of
-    RUN, the real variables, and the array A."""
-
-    printout: str
-    reals: dict[str, str]
-    A: dict[str, Any] | None
 
 
 class Session:
@@ -64,15 +55,16 @@ class Session:
             self._enter(command)
         return self.apple.state()
 
-    def run_scene(self, scene: Scene) -> Finished:
-        """RUN the listing, typed once, on a scene. Raises UserError for a line too long to be typed
-        and a program that does not come to an end."""
+    def run_scene(self, scene: Scene) -> dict[str, Any]:
+        """RUN the listing, typed once, on a scene: in the captures' form the ``printout`` after the
+        echo of RUN, the ``reals``, and the array ``A``. Raises UserError for a line too long to be
+        typed and a program that does not come to an end."""
         self.apple.restore(self._with_listing)
         self.apple.blanks = False
         for line in scene.typed_lines():
             self._enter(line)
         printout = self._run("".join(f"{reply}\n" for reply in scene.keyboard()))
-        return Finished(printout, _reals(self.apple), _array_a(self.apple))
+        return {"printout": printout, "reals": _reals(self.apple), "A": _array_a(self.apple)}
 
     def run_program(self, program: str, keys: str = "", *, blanks: bool = True) -> str:
         """Type a program in, RUN, then the keys: what is displayed, without the prompts' NULs."""
