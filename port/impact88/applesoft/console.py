@@ -92,8 +92,6 @@ class Console:
         self.editor = Editor()
         self.reply: Reply | None = None
 
-    # --- output -------------------------------------------------------------------------------
-
     def put(self, text: str) -> None:
         """Send characters on their way: to the disk system, or to the selected slot's device."""
         if not self.dos:
@@ -120,8 +118,6 @@ class Console:
         device = {0: self.screen, PRINTER_SLOT: self.printer}.get(self.slot)
         if device and text:
             device(text)
-
-    # --- input --------------------------------------------------------------------------------
 
     def read_key(self) -> str:
         """One key, as GET reads it: not shown, not made upper case; RETURN after a line's last.

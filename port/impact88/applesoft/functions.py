@@ -1,9 +1,7 @@
-"""Applesoft's functions, each by the ROM's own reduction and polynomial.
+"""Applesoft's functions, each by the ROM's own reduction and polynomial, on plain triples (`real`).
 
-They are functions on plain triples, as in `real`. Arguments may carry an extension (a function's
-argument is not rounded on the way in, except where the rule says so); so do results. Coefficients
-are stored reals in hexadecimal, as the ROM has them.
-"""
+Arguments may carry an extension (it is not rounded away, except where the rule says so); so do
+results. Coefficients are stored reals in hexadecimal."""
 
 from collections.abc import Sequence
 from functools import lru_cache

@@ -1,9 +1,7 @@
 """Python's operators on Applesoft's reals: an expression computes what Applesoft's would.
 
-A binary operator rounds its left operand and keeps the right one's extension, because that is what
-happens to a value set aside and to one still in the accumulator (`real`). Storing in a variable is
-explicit: `Real.rounded`.
-"""
+A binary operator rounds its left operand, which was set aside, and keeps the extension of the right
+one, still in the accumulator. Storing in a variable is explicit: `Real.rounded`."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """The captures of the real machine: read, and their own form of what is done again here.
 
-A folder of captures is laid out as golden/: arithmetic/, programs/, scenes and fuzz. They leave
-some things open, such as what bytes stand in a zero.
-"""
+A folder is laid out as golden/. Captures leave some things open, such as what bytes stand in a
+zero."""
 
 import gzip
 import json

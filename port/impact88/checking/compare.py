@@ -1,9 +1,6 @@
-"""Comparing another implementation's results with this one's, and saying why they differ.
-
-Every result of every row is judged by the scene's own condition (`agreement`). Rows that disagree
-are explained by `diagnosis`: which mistake or convention, made here too, gives their numbers. What
-could not be compared is counted, and why.
-"""
+"""Comparing another implementation's results with this one's, row by row by the scene's condition
+(`agreement`), and saying why they differ (`diagnosis`). What could not be compared is counted, and
+why."""
 
 import difflib
 import os

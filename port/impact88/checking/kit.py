@@ -1,9 +1,5 @@
 """The kit for other implementations: test vectors, what is asked of a program by each, conventions,
-and programs in several languages that read and answer them.
-
-``vectors.csv`` has the scenes, ``vectors.jsonl`` all that is known of them. Both are the same on
-any machine for the same seed; ``KIT.json`` has seed, version and hashes.
-"""
+and programs in several languages that read and answer them; the same bytes for the same seed."""
 
 import hashlib
 import io

@@ -1,9 +1,8 @@
 """The oracle: everything this project knows about a scene, for checking other programs.
 
-For each scene: what the 1988 program prints; each result as Applesoft has it (printed text, the
-five bytes stored, their exact decimal value), in double precision by the closed form, and to 30
-digits; its condition; how far rounding may take the final velocities and spins, in doubles and on
-the Apple (a bound, relative to `errorbound.scales`); what is unphysical about it.
+What the 1988 program prints; each result as Applesoft has it (text, the five bytes stored, their
+exact decimal value), in doubles by the closed form, to 30 digits; its condition; how far rounding
+may take final velocities and spins, relative to `errorbound.scales`; what is unphysical about it.
 """
 
 import json

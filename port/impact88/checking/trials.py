@@ -99,16 +99,10 @@ class Judge(NamedTuple):
         """The final velocities, and each other result, of those that are wrong in many rows; all
         where none is."""
         every = list(self.theirs)
-        if not self.has_velocities:
-            return [every]
         ours, few = Program().results(self.scene), _SHARE * self.wrong.sum()
         rest = [[name] for name in every if name not in FINAL_VELOCITIES]
-        amiss = [
-            one
-            for one in ([*FINAL_VELOCITIES], *rest)
-            if (self.wrong & ~self.of(one).near(ours)).sum() >= few
-        ]
-        return amiss or [every]
+        parts = [[*FINAL_VELOCITIES], *rest] if self.has_velocities else []
+        return [x for x in parts if (self.wrong & ~self.of(x).near(ours)).sum() >= few] or [every]
 
     def near(self, results: Columns, prefix: str = "") -> Bools:
         """The rows whose every result is near enough, (n,) or (K, n); NaN contradicts nothing."""
@@ -162,11 +156,6 @@ class Found(NamedTuple):
         """Whether it explains what there is to explain, and the rows that agree bear it out."""
         return self.stands and self.explains >= BORNE_OUT * self.wrong.sum() > 0
 
-    @property
-    def order(self) -> tuple[int, int, int]:
-        """What sorts the best first; of equals the likeliest."""
-        return -self.explains * self.stands, -int((self.rows & ~self.wrong).sum()), self.rank
-
 
 def run(program: Program, judge: Judge) -> Found:
     """A program over all rows of a judge."""
@@ -174,8 +163,10 @@ def run(program: Program, judge: Judge) -> Found:
 
 
 def ranked(programs: Iterable[Program], judge: Judge) -> list[Found]:
-    """Programs run over all rows, best first."""
-    return sorted((run(program, judge) for program in programs), key=lambda one: one.order)
+    """Programs run over all rows, best first; of equals the likeliest."""
+    found = [run(program, judge) for program in programs]
+    found.sort(key=lambda x: (-x.explains * x.stands, -int((x.rows & ~x.wrong).sum()), x.rank))
+    return found
 
 
 def singles(judge: Judge, unexplained: Bools, on: Program | None = None) -> list[Found]:

@@ -1,9 +1,8 @@
 """Test vectors for other implementations: labelled scenes with everything the oracle knows.
 
-Three classes, mixed evenly: ``casework`` (scenes as reports hold them), ``edge`` (one limit or
-special case each), ``failure`` (the 1988 program stops, or goes wrong without a word). Seed and
-number give the same vector on any machine, and no scene comes twice.
-"""
+Three classes in turn: ``casework`` (as reports hold them), ``edge`` (one limit or special case),
+``failure`` (the 1988 program stops, or goes wrong without a word). Seed and number give the same
+vector on any machine."""
 
 import gzip
 from collections.abc import Callable, Iterator

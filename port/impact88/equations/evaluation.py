@@ -1,7 +1,6 @@
 """What a spelling computes for many scenes, as it stands and with statements written otherwise.
 
 Arrays have the scenes last, edits before them: (K, n), or (1, n) of what edits do not change.
-All edits run through the program together, statement by statement.
 """
 
 from collections import ChainMap

@@ -1,9 +1,6 @@
-"""The arithmetics the port can take: Applesoft's own, and IEEE double.
-
-Both offer the same operations to the same statements, so that a difference between two printouts
-is the arithmetic's alone. `APPLESOFT` stores with rounding to 32 bits; `FLOAT64` is Python's float
-and math, printed by Applesoft's layout of nine digits.
-"""
+"""The arithmetics the port can take: `APPLESOFT`, and `FLOAT64`, Python's float and math printed by
+Applesoft's layout. Both offer the same operations to the same statements, so that a difference
+between two printouts is the arithmetic's alone."""
 
 from __future__ import annotations
 

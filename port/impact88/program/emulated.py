@@ -1,9 +1,7 @@
 """Run the restored listing, or an office's own copy of it, in the Applesoft emulator.
 
-The restored listing is an independent check of the port: a scene's lines are retyped into it, and
-the velocities typed at its prompts. In a copy, which may have been changed, the values of a scene
-go where it gets them itself: numbers assigned to the scene's variables, items of DATA that READ
-gives them, and replies that INPUT asks for.
+In a copy, which may have been changed, the values of a scene go where it gets them itself: numbers
+assigned to the scene's variables, items of DATA that READ gives them, replies to INPUT.
 """
 
 import re

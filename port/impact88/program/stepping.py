@@ -1,9 +1,7 @@
 """Where the port is: the BASIC line being executed, and stopping after every line.
 
-The BASIC line of a Python line of `listing` is the one in the last comment above it, held in
-`linetable`: a package of compiled files alone prints the same. The variables are the locals of
-`listing.impact`.
-"""
+The BASIC line of a Python line of `listing` is the one in the last comment above it; `linetable`
+holds it, for a package of compiled files alone."""
 
 from __future__ import annotations
 

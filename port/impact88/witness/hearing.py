@@ -1,9 +1,7 @@
 """Hearing the witness: what the ROM does, held against the captures and against this project.
 
-Of a scene every character displayed, every variable's five bytes and the array are held against
-capture, port, emulator and replay; a program against its capture and the emulator, a calculation
-against its capture and the arithmetic here.
-"""
+Of a scene every character, every variable's five bytes and the array; of a program all that is
+displayed; of a calculation the result."""
 
 import difflib
 import gzip

@@ -1,10 +1,8 @@
 """Sessions at the ROM's own prompt: the restored listing on a scene, any program, one calculation.
 
-Everything is done with the keys a user would press: the listing and the scene's lines are typed,
-its small letters POKEd into its text at the prompt, as was done in the days, RUN, and the replies.
-What is left is found by the reference manual's appendix "Applesoft in memory"; calculations enter
-where machine-code programs do: John Crossley, "Applesoft Internal Entry Points" (Apple Orchard,
-March 1980).
+All is done with the keys a user would press; small letters are POKEd into the listing, as was done
+in the days. What is left is found by the reference manual's appendix "Applesoft in memory";
+calculations enter by John Crossley, "Applesoft Internal Entry Points" (Apple Orchard, March 1980).
 """
 
 import re
@@ -93,8 +91,6 @@ class Session:
         return self.apple.take_output().partition("RUN\n")[2].removesuffix(f"\n{PROMPT}")
 
 
-# --- what Applesoft keeps in memory -------------------------------------------------------------
-
 PROGRAM, VARIABLES, ARRAYS, ARRAYS_END = 0x67, 0x69, 0x6B, 0x6D
 """Zero-page pointers to where each begins; what is in between belongs to the one before."""
 _ENTRY, _NUMBER = 7, 5
@@ -148,8 +144,6 @@ def small_letters(apple: Apple, program: str) -> list[str]:
         place += len(text)
     return commands
 
-
-# --- single calls of the arithmetic ---------------------------------------------------------------
 
 FAC, FAC_SIGN, FAC_EXTENSION = 0x9D, 0xA2, 0xAC
 """The accumulator: exponent, four mantissa bytes; its sign byte; the eight bits below."""
