@@ -94,6 +94,7 @@ def workbook(found: Sequence[dict[str, Any]]) -> bytes:
     book.remove(book.worksheets[0])
     for row, vector in enumerate(found, 2):
         cells = {name: f"{title}!{letter}{row}" for name, (title, letter) in places.items()}
+        cells["pi"] = "PI()"
         book["vectors"].append([*_head(vector), *(float(vector["scene"][n]) for n in SCENE)])
         bodies = ",".join(cells[name] for name in ("MA", "MB", "ia", "ib"))
         for one in statements:
@@ -114,11 +115,9 @@ def workbook(found: Sequence[dict[str, Any]]) -> bytes:
 
 
 def _formula(node: Expression, cells: Mapping[str, str]) -> str:
-    if isinstance(node, str):
-        return "PI()" if node == "pi" else cells[node]
-    if not isinstance(node, tuple):
-        return repr(node)
-    return _FORMULAS[node[0]].format(*(_formula(part, cells) for part in node[1:]))
+    if isinstance(node, tuple):
+        return _FORMULAS[node[0]].format(*(_formula(part, cells) for part in node[1:]))
+    return cells[node] if isinstance(node, str) else repr(node)
 
 
 _FORMULAS = {

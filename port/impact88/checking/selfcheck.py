@@ -114,8 +114,7 @@ def _closed_form(golden: Any) -> Counted:
     scenes = {name: np.array([float(row["scene"][name]) for row in rows]) for name in SCENE}
     solved = solve(scenes)
     finals = {name: (solved[name], np.zeros(len(rows))) for name in FINAL_VELOCITIES}
-    with np.errstate(all="ignore"):
-        violated = agreement.violated(agreement.case_of(scenes, finals))
+    violated = agreement.violated(agreement.case_of(scenes, finals))
     broken = violated["13"] | violated["14"] | violated["17"]
     usable = np.all([np.isfinite(solved[name]) for name in FINAL_VELOCITIES], axis=0)
     for index in np.flatnonzero(usable).tolist():

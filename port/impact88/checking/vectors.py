@@ -32,44 +32,35 @@ def vectors(
     count: int, seed: int = 0, reference: bool = True, only: str | None = None
 ) -> Iterator[dict[str, Any]]:
     """``count`` vectors: id, class, label, scene, the oracle's answer. ``only``: of one class."""
-    every = ((index, *one) for index, one in enumerate(_endless(seed)) if only in (None, one[0]))
-    labelled = islice(every, count)
+    every = enumerate(scenes(None, seed))
+    labelled = islice(((index, *one) for index, one in every if only in (None, one[0])), count)
     while batch := list(islice(labelled, BATCH)):
         answers = oracle([scene for *_, scene in batch], reference)
         for (index, kind, label, scene), found in zip(batch, answers, strict=True):
-            solvable = all(
-                found["results"][name]["double"] is not None for name in FINAL_VELOCITIES
-            )
-            ending = found["ending"]
+            finals = [found["results"][name]["double"] for name in FINAL_VELOCITIES]
+            ends = f"ends with {found['ending']}" if found["ending"] else "answers"
             head = {
                 "id": f"{seed}-{index:06d}",
                 "class": kind,
                 "label": label,
-                "expect": ANSWER if kind != FAILURE else EITHER if solvable else REFUSE,
+                "expect": ANSWER if kind != FAILURE else REFUSE if None in finals else EITHER,
                 "flags": found["status"],
-                "comment": f"{label}; the 1988 program "
-                + (f"ends with {ending}" if ending else "answers"),
+                "comment": f"{label}; the 1988 program {ends}",
                 "scene": scene,
             }
             yield stamped("vectors", head | found)
 
 
 def published() -> str:
-    """The vectors that are packaged, an object a line: the first `PUBLISHED` of seed
-    `PUBLISHED_SEED`."""
+    """The packaged vectors, an object a line: the first `PUBLISHED` of seed `PUBLISHED_SEED`."""
     return gzip.decompress(packaged_bytes("impact88.golden", "vectors.jsonl.gz")).decode("utf-8")
 
 
-def scenes(count: int, seed: int = 0) -> Iterator[tuple[str, str, Texts]]:
-    """Class, label and scene of the first ``count`` vectors."""
-    return islice(_endless(seed), count)
-
-
-def _endless(seed: int) -> Iterator[tuple[str, str, Texts]]:
-    """Class, label and scene of every vector of a seed; no scene comes twice."""
+def scenes(count: int | None, seed: int = 0) -> Iterator[tuple[str, str, Texts]]:
+    """Class, label and scene of the first ``count`` vectors of a seed, or of all; none twice."""
     rng = Random(seed)
     seen = set()
-    for index in count_from(0):
+    for index in islice(count_from(0), count):
         kind = CLASSES[index % 3]
         cases = {CASEWORK: {"random": _with()}, EDGE: EDGES, FAILURE: FAILURES}[kind]
         label = list(cases)[index // 3 % len(cases)]
