@@ -11,8 +11,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-SUBSCRIPT_LIMIT = 32768
-
 
 def subscript(x: Any) -> int:
     """A subscript as the machine takes it: rounded down, 0 ... 32767. Raises ILLEGAL QUANTITY."""
@@ -21,7 +19,7 @@ def subscript(x: Any) -> int:
         if s or e > 143:
             raise illegal_quantity()
         return int(m >> 168 - e)
-    if not 0 <= x < SUBSCRIPT_LIMIT:
+    if not 0 <= x < 32768:
         raise illegal_quantity()
     return int(x)
 

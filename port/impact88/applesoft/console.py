@@ -23,7 +23,6 @@ LINE_LIMIT, WARNING, BUFFER = 239, 248, 256
 """What INPUT keeps of a line; where the bell begins; where a line is abandoned: the ROM's."""
 PRINTER_SLOT = 1
 """Where a printer's card is by custom; the listing's line 180 says so."""
-NO_KEY = "?"
 _ESCAPED = range(0xDC80, 0xDD00)
 """What Python makes of the bytes from 80 on that it cannot decode."""
 _MOVES = {"I": "D", "J": "B", "K": "A", "M": "C"}
@@ -262,7 +261,7 @@ def keyed(text: str) -> str:
     counts for its seven bits; for other characters ``?`` stands, so that a typographic minus is
     refused where a number is expected."""
     codes = map(ord, text)
-    return "".join(chr(n & 0x7F) if n < 0x80 or n in _ESCAPED else NO_KEY for n in codes)
+    return "".join(chr(n & 0x7F) if n < 0x80 or n in _ESCAPED else "?" for n in codes)
 
 
 def capitals(typed: str) -> str:

@@ -37,12 +37,11 @@ IN_THESE_ROWS = ", in these rows only"
 # change no cause and take 1.4 times as long; all tolerances together change no cause.
 _WRONG_SAMPLE, _RIGHT_SAMPLE = 45, 30
 """Rows that the search looks at: of ten kinds of scene some three each."""
-_DEEPER = 2
-"""Mistakes that are looked for in what others leave, one after the other: pycrash has three."""
-_MOST = 0.5
-"""The share of what is left that such a one explains; one row is enough for a known convention."""
-_SEVERAL = 3
-"""Causes that a table of several programs' rows may have."""
+_DEEPER, _MOST = 2, 0.5
+"""Mistakes that are looked for in what others leave (pycrash has three in all), and the share of it
+that one explains; one row is enough for a known convention."""
+_SEVERAL, _EQUIVALENTS = 3, 4
+"""Causes that a table of several programs' rows may have; other ways to say one that are listed."""
 _LARGE = 1e-5
 """Differences below this share of their size are no pair of mistakes, but coarse arithmetic."""
 _NEED, _NEED_NAMED, _NEED_PAIR = 22.0, 10.0, 32.0
@@ -50,22 +49,17 @@ _NEED, _NEED_NAMED, _NEED_PAIR = 22.0, 10.0, 32.0
 500 known alternatives, and as many as one pair of 30,000 edits in different equations."""
 _BITS_A_ROW = 40.0
 """What one row counts for at most: more than any need, so that two rows of doubles are enough."""
-_CLOSE = 1e-9
+_CLOSE, _EXPLAINED = 1e-9, 0.1
 """Results this close, as a share of their size, are the same program's: more than another way to
-compute them rounds, no more than 3.14159265 for pi does."""
-_EXPLAINED = 0.1
-"""A cause leaves at most this share of a row's difference."""
-_WIDESPREAD = 0.5
-"""The share of the rows in which coarser arithmetic can be seen that it spoils."""
-_TYPICAL = 1 / 64
-"""Its error there, as a share of the bound."""
+compute them rounds, no more than 3.14159265 for pi does; and at most this share of a difference."""
+_WIDESPREAD, _TYPICAL = 0.5, 1 / 64
+"""The share of the rows that could show coarser arithmetic that it spoils; its error, as a share of
+the bound."""
 _WIDTHS = {SINGLE: (24, 27.0, 33.5), APPLESOFT: (32, 34.0, 40.0)}
 """Cause -> bits of the arithmetic, and the range in which the bits measured against the bound lie:
 rounding spoils a few bits less than the bound allows."""
 _BRANCHES = ("MU's sign rule inverted", "the critical ratio used in place of MU")
 """Models that take the other branch, of friction's sign or of the pivot, in every row."""
-_EQUIVALENTS = 4
-"""Other ways to say a cause that are listed."""
 LOOKED_INTO = 4000
 """Rows that agree, and must bear a cause out, and rows that the 1988 program is run on: they bound
 time and memory of large tables."""

@@ -23,13 +23,12 @@ _KEPT = 60
 """Programs that are run over the larger sample: equivalents in nine spellings, and to spare."""
 _FIRST_WRONG, _FIRST_RIGHT = 10, 5
 """Rows that all edits are run over: the time of the search grows with them."""
-_FEW = 8
-"""Rows that disagree on which pairs are looked for, and half as many for pairs of readings."""
+_FEW, _FIRSTS = 8, 4
+"""Rows that disagree on which pairs are looked for, half as many for pairs of readings; mistakes on
+top of which another is looked for."""
 _SHARE = 0.1
 """The least share of the rows that disagree that the first of two mistakes explains alone, or that
 a result is wrong in that is explained apart."""
-_FIRSTS = 4
-"""Mistakes on top of which another is looked for."""
 _PRECISION = 1e-11
 """Of residuals, beside what the digits written allow: their terms round by some 1e-13."""
 

@@ -86,8 +86,7 @@ def start(
     Raises UserError for an unknown arithmetic and `console.EndOfInput`.
     """
     chosen = arithmetics.named(arithmetic)
-    error = None
-    zero_determinant = False
+    error, zero_determinant = None, False
     watching = stepping.after_every_line(after_line, chosen.unset) if after_line else nullcontext()
     try:
         names: Mapping[str, Any]

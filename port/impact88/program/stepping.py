@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from types import CodeType, FrameType, TracebackType
 
-from ..applesoft.arrays import Array
 from . import linetable, listing
 
 TYPE_CHECKING = False
@@ -26,12 +25,8 @@ if _LISTING.co_firstlineno != linetable.FIRST_PYTHON_LINE:
     raise ImportError("linetable.py does not belong to listing.py; run python tests/linetable.py")
 
 
-class Variables(namedtuple("Variables", "reals A")):
-    """The listing's variables at a moment: reals by name, if assigned so far, and the array A."""
-
-    __slots__ = ()
-    reals: dict[str, Any]
-    A: Array | None
+Variables = namedtuple("Variables", "reals A")
+"""The listing's variables at a moment: reals by name, if assigned so far, and the array A."""
 
 
 def basic_line(python_line: int) -> int | None:
@@ -40,14 +35,9 @@ def basic_line(python_line: int) -> int | None:
     return linetable.BASIC_LINES[index] if index >= 0 else None
 
 
-_TRANSLATIONS = {
-    code
-    for code in _LISTING.co_consts
-    if isinstance(code, CodeType)
-    and any((line or 0) > linetable.PYTHON_LINES[0] for _, _, line in code.co_lines())
-}
+_CODES = {code.co_name: code for code in _LISTING.co_consts if isinstance(code, CodeType)}
+_TRANSLATIONS = {_CODES[name] for name in ("main", "gosub_1000", "gosub_1070")}
 """The functions inside `listing.impact` that BASIC lines stand in: main program, subroutines."""
-_MAIN = min(_TRANSLATIONS, key=lambda code: code.co_firstlineno)
 
 
 def left_at(traceback: TracebackType | None) -> tuple[int | None, dict[str, Any]]:
@@ -92,7 +82,7 @@ def after_every_line(after_line: AfterLine, unset: object) -> Iterator[None]:
         nonlocal current
         if frame.f_code not in _TRANSLATIONS:
             return None
-        ended = event == "return" and frame.f_code is _MAIN
+        ended = event == "return" and frame.f_code is _CODES["main"]
         line = basic_line(frame.f_lineno) if event == "line" else None if ended else current
         if line != current:
             left, current = current, line

@@ -72,10 +72,40 @@ class Session:
             self._enter(line)
         return self._run(keys).replace("\0", "")
 
-    def calculate(self, *row: str) -> str:
-        """One call of the ROM's arithmetic, asked for as a capture's row does."""
-        self.apple.restore(self._fresh)
-        return _calculated(self.apple, *row)
+    def calculate(self, operation: str, first: str, second: str, extension: str) -> str:
+        """One call of the ROM's arithmetic, asked and answered in the captures' form: a number is
+        ``stored:raw:extension``, an error ``E`` and its code."""
+        apple = self.apple
+        apple.restore(self._fresh)
+        operand = [_LDA, _OPERAND & 0xFF, _LDY, _OPERAND >> 8]
+        if operation == "fin":
+            _put(apple, _BUFFER, first.encode("ascii") + b"\0")
+            _put(apple, TEXT_POINTER, _BUFFER.to_bytes(2, "little"))
+            code = [*_jsr(CHRGOT), *_jsr(READ_NUMBER)]
+        else:
+            accumulator = bytes.fromhex(second or first)
+            _put(apple, FAC, bytes([accumulator[0], accumulator[1] | 0x80, *accumulator[2:]]))
+            _put(apple, FAC_SIGN, accumulator[1:2])
+            _put(apple, FAC_EXTENSION, bytes.fromhex(extension))
+            _put(apple, _OPERAND, bytes.fromhex(first))
+            if operation in WITH_MEMORY:
+                code = [*operand, *_jsr(WITH_MEMORY[operation])]
+            elif operation == "pow":  # A and the flags must show the accumulator's exponent
+                code = [*operand, *_jsr(LOAD_ARGUMENT), _LDA_ZERO, FAC, *_jsr(POWER)]
+            else:
+                code = _jsr(OF_ACCUMULATOR[operation])
+        error = _execute(apple, code)
+        if error:
+            return error
+        if operation == "cmp":
+            return f"{apple.cpu.a:02x}"
+        if operation == "fout":
+            start = apple.cpu.a + 256 * apple.cpu.y
+            return bytes(apple.memory[start : start + 20]).partition(b"\0")[0].decode("ascii")
+        raw = bytes(apple.memory[FAC : FAC_SIGN + 1]).hex()
+        low = f"{apple.memory[FAC_EXTENSION]:02x}"
+        error = _execute(apple, [_LDX, *operand[1:], *_jsr(STORE_ROUNDED)])
+        return error or f"{bytes(apple.memory[_OPERAND : _OPERAND + 5]).hex()}:{raw}:{low}"
 
     def _enter(self, line: str) -> None:
         if len(line) > LONGEST_TYPED:
@@ -163,40 +193,6 @@ _OPERAND, _STUB, _BACK, _BUFFER = 0x0300, 0x0310, 0x0340, 0x0200
 """Page 3 is the user's; a number to be read stands in the input buffer."""
 _LDA, _LDY, _LDX, _LDA_ZERO, _JSR, _JMP = 0xA9, 0xA0, 0xA2, 0xA5, 0x20, 0x4C
 """Opcodes; the first three take the number behind them."""
-
-
-def _calculated(apple: Apple, operation: str, first: str, second: str, extension: str) -> str:
-    """The result of a call in the captures' form: ``stored:raw:extension``, ``E`` and an error's
-    code, the answer of a comparison, or the text written."""
-    operand = [_LDA, _OPERAND & 0xFF, _LDY, _OPERAND >> 8]
-    if operation == "fin":
-        _put(apple, _BUFFER, first.encode("ascii") + b"\0")
-        _put(apple, TEXT_POINTER, _BUFFER.to_bytes(2, "little"))
-        code = [*_jsr(CHRGOT), *_jsr(READ_NUMBER)]
-    else:
-        accumulator = bytes.fromhex(second or first)
-        _put(apple, FAC, bytes([accumulator[0], accumulator[1] | 0x80, *accumulator[2:]]))
-        _put(apple, FAC_SIGN, accumulator[1:2])
-        _put(apple, FAC_EXTENSION, bytes.fromhex(extension))
-        _put(apple, _OPERAND, bytes.fromhex(first))
-        if operation in WITH_MEMORY:
-            code = [*operand, *_jsr(WITH_MEMORY[operation])]
-        elif operation == "pow":  # A and the flags must show the accumulator's exponent
-            code = [*operand, *_jsr(LOAD_ARGUMENT), _LDA_ZERO, FAC, *_jsr(POWER)]
-        else:
-            code = _jsr(OF_ACCUMULATOR[operation])
-    error = _execute(apple, code)
-    if error:
-        return error
-    if operation == "cmp":
-        return f"{apple.cpu.a:02x}"
-    if operation == "fout":
-        start = apple.cpu.a + 256 * apple.cpu.y
-        return bytes(apple.memory[start : start + 20]).partition(b"\0")[0].decode("ascii")
-    raw = bytes(apple.memory[FAC : FAC_SIGN + 1]).hex()
-    low = f"{apple.memory[FAC_EXTENSION]:02x}"
-    error = _execute(apple, [_LDX, *operand[1:], *_jsr(STORE_ROUNDED)])
-    return error or f"{bytes(apple.memory[_OPERAND : _OPERAND + 5]).hex()}:{raw}:{low}"
 
 
 def _jsr(address: int) -> list[int]:
