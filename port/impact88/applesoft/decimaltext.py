@@ -94,8 +94,19 @@ def write(x: Number) -> str:
     """The characters PRINT and STR$ make of ``x``: at most nine digits, extension counted."""
     if not x[0]:
         return "0"
-    digits, d = _nine_digits(real.absolute(x))
-    return lay_out("-" if x[2] else "", str(digits), d)
+    sign, x, d = "-" if x[2] else "", real.absolute(x), 0
+    if x[0] <= BIAS:
+        x = real.multiply(BILLION, x)
+        d = -9
+    while (order := real.compare(NINE_DIGITS, x)) > 0:
+        x = over_ten(x)
+        d += 1
+    if order:
+        while real.compare(EIGHT_DIGITS, x) <= 0:
+            x = times_ten(x)
+            d -= 1
+        x = real.add(HALF, x)
+    return lay_out(sign, str(real.to_integer(x)), d)
 
 
 def lay_out(sign: str, text: str, d: int) -> str:
@@ -109,20 +120,3 @@ def lay_out(sign: str, text: str, d: int) -> str:
         text = text[0] + "." + text[1:]
         exponent = f"E{'-' if d + 8 < 0 else '+'}{abs(d + 8):02d}"
     return sign + text.rstrip("0").rstrip(".") + exponent
-
-
-def _nine_digits(x: Number) -> tuple[int, int]:
-    """The nine digits N written for x > 0, and d with x = N * 10^d."""
-    d = 0
-    if x[0] <= BIAS:
-        x = real.multiply(BILLION, x)
-        d = -9
-    while (order := real.compare(NINE_DIGITS, x)) > 0:
-        x = over_ten(x)
-        d += 1
-    if order:
-        while real.compare(EIGHT_DIGITS, x) <= 0:
-            x = times_ten(x)
-            d -= 1
-        x = real.add(HALF, x)
-    return real.to_integer(x), d

@@ -234,7 +234,18 @@ def compare(
     if not any(tally.compared for tally in comparison.tallies.values()):
         raise UserError("no result could be compared", where)
     if causes and comparison.differing:
-        _explain(agreement.joined(kept), comparison)
+        case = agreement.joined(kept)
+        right = np.flatnonzero(~case.wrong)[:LOOKED_INTO]
+        found = Diagnosis(case.part(np.concatenate([np.flatnonzero(case.wrong), right])))
+        rows_wrong = comparison.differences
+        comparison.equations, comparison.programs = found.equations, found.programs
+        comparison.evidence = [
+            one._replace(parts={says: rows_wrong[at].row for says, at in one.parts.items()})
+            for one in found.evidence
+        ]
+        both = zip(rows_wrong, found.causes, strict=True)
+        comparison.differences = [row._replace(cause=cause) for row, cause in both]
+        comparison.causes.update(found.causes)
     return comparison
 
 
@@ -320,21 +331,6 @@ def _differing(
             float(relative[place, index]),
             UNKNOWN,
         )
-
-
-def _explain(case: Case, comparison: Comparison) -> None:
-    wrong, rows = case.wrong, comparison.differences
-    right = np.flatnonzero(~wrong)[:LOOKED_INTO]
-    found = Diagnosis(case.part(np.concatenate([np.flatnonzero(wrong), right])))
-    comparison.equations, comparison.programs = found.equations, found.programs
-    comparison.evidence = [
-        one._replace(parts={says: rows[place].row for says, place in one.parts.items()})
-        for one in found.evidence
-    ]
-    comparison.differences = [
-        row._replace(cause=cause) for row, cause in zip(rows, found.causes, strict=True)
-    ]
-    comparison.causes.update(found.causes)
 
 
 def write_junit(path: str, name: str, comparison: Comparison, strict: bool) -> None:

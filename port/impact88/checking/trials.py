@@ -5,7 +5,7 @@ mistakes are looked for by equations (with their velocities put in, what two cha
 adds up to what mends them) and by rows (one explains some alone, another on top of it the rest).
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -235,36 +235,38 @@ _SUMS = 200
 """Partners of an edit that are looked at; more have coarse tables only."""
 
 
-class _Faults:
+_Faults = tuple[Run, Callable[[Sequence[Mapping[str, Any]]], Floats]]
+"""A run with their velocities put in, and what each of some edits leaves of its equations, by what
+is allowed, (K, equations, rows)."""
+
+
+def _faults(spelling: Spelling, judge: Judge, how: str) -> _Faults:
     """The equations of a spelling that their velocities violate, ``how``: with the impulses by what
     changes of A or of B."""
+    names = Run(spelling, judge.scene).names
 
-    def __init__(self, spelling: Spelling, judge: Judge, how: str) -> None:
-        self.size = judge.wrong.size
-        names = Run(spelling, judge.scene).names
+    def clamped(theirs: Columns) -> Run:
+        seen = {**names, **theirs}
+        made = {**_IMPULSES[how], **_ALONG}
+        for name, text in made.items():
+            seen[name] = value(expression(text), seen)
+        return Run(spelling, judge.scene, {n: seen[n] for n in (*FINAL_VELOCITIES, *made)})
 
-        def clamped(theirs: Columns) -> Run:
-            seen = {**names, **theirs}
-            made = {**_IMPULSES[how], **_ALONG}
-            for name, text in made.items():
-                seen[name] = value(expression(text), seen)
-            return Run(spelling, judge.scene, {n: seen[n] for n in (*FINAL_VELOCITIES, *made)})
+    start = clamped(judge.theirs)
+    residuals = {key: x for key, x in start.names.items() if key.startswith(RESIDUAL)}
+    limits: dict[str, Any] = dict.fromkeys(residuals, _PRECISION)
+    for name in FINAL_VELOCITIES:
+        moved = clamped({**judge.theirs, name: judge.theirs[name] + judge.limit[name]}).names
+        for key, residual in residuals.items():
+            limits[key] = limits[key] + np.abs(moved[key] - residual)
 
-        self.start = clamped(judge.theirs)
-        residuals = {key: x for key, x in self.start.names.items() if key.startswith(RESIDUAL)}
-        self.limits: dict[str, Any] = dict.fromkeys(residuals, _PRECISION)
-        for name in FINAL_VELOCITIES:
-            moved = clamped({**judge.theirs, name: judge.theirs[name] + judge.limit[name]}).names
-            for key, residual in residuals.items():
-                self.limits[key] = self.limits[key] + np.abs(moved[key] - residual)
-
-    def left(self, several: Sequence[Mapping[str, Any]]) -> Floats:
-        """What each of some edits leaves of the equations, by what is allowed, (K, equations,
-        rows)."""
-        found = {**self.start.names, **self.start.edited(several)}
-        shape = (len(several), self.size)
-        parts = [np.broadcast_to(found[key] / room, shape) for key, room in self.limits.items()]
+    def left(several: Sequence[Mapping[str, Any]]) -> Floats:
+        found = {**start.names, **start.edited(several)}
+        shape = (len(several), start.size)
+        parts = [np.broadcast_to(found[key] / room, shape) for key, room in limits.items()]
         return np.stack(parts, 1)
+
+    return start, left
 
 
 def _by_equations(judge: Judge, whole: Judge) -> Iterator[list[Program]]:
@@ -276,10 +278,10 @@ def _by_equations(judge: Judge, whole: Judge) -> Iterator[list[Program]]:
         own = [*reading, *(one for one in variants() if one.title == title), *edits_of(title)]
         impulses = {"Px", "Pn"} & {*spelling.where, *spelling.unknown}
         for how in "AB" if impulses else "A":
-            yield _sums(_Faults(spelling, judge, how), own)
+            yield _sums(_faults(spelling, judge, how), own)
     # how many residuals each reading leaves that rounding does not in nearly all rows
-    faults = _Faults(spellings()[LISTING], judge, "A")
-    held = np.abs(faults.left([{}, *(one.sides for one in reading)])) <= 2
+    _, left = _faults(spellings()[LISTING], judge, "A")
+    held = np.abs(left([{}, *(one.sides for one in reading)])) <= 2
     violated = (held.mean(-1) < BORNE_OUT).sum(1)
     for place in np.argsort(violated[1:], kind="stable")[:_FIRSTS]:
         if violated[place + 1] < violated[0]:
@@ -290,11 +292,11 @@ def _by_equations(judge: Judge, whole: Judge) -> Iterator[list[Program]]:
 def _sums(faults: _Faults, edits: Sequence[Edit]) -> list[Program]:
     """Programs with two edits, of which what each changes of the residuals adds up to what mends
     them: looked up among projections of the changes, sorted, by half of the rows at a time."""
-    distinct = faults.start.distinct([edit.sides for edit in edits])
-    parts = [distinct[part] for part in chunks(len(distinct), faults.size)]
-    own = faults.left([{}])
-    left = np.concatenate([own, *(faults.left([sides for _, sides in part]) for part in parts)])
-    changes = left - own
+    start, left = faults
+    distinct = start.distinct([edit.sides for edit in edits])
+    parts = [distinct[part] for part in chunks(len(distinct), start.size)]
+    own = left([{}])
+    changes = np.concatenate([own, *(left([made for _, made in part]) for part in parts)]) - own
     seen = np.isfinite(changes).all((1, 2)) & (np.abs(changes) > 8).any((1, 2))
     changes, made = changes[seen], [edits[distinct[k - 1][0]] for k in np.flatnonzero(seen)]
     found = set()

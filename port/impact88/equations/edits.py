@@ -199,23 +199,20 @@ def edits_on(spelling: Spelling) -> Iterator[Edit]:
     return _node_edits(spelling, range(len(SCENE), len(spelling.statements) - shown))
 
 
+_OF_A = frozenset("DA PA TA MA IA UX UY WA VAX VAY WAF XA YA XAF YAF DVA".split())
+
+
 @cache
 def readings() -> tuple[Edit, ...]:
-    """Columns read or shown otherwise, of ``readings.txt``, for both vehicles or for one."""
-    both = [_reading(line) for line in written_out(table("readings.txt"))]
-    return (*both, *(part for one in both for part in _of_one_vehicle(one)))
-
-
-def _of_one_vehicle(reading: Edit) -> Iterator[Edit]:
-    """What a reading changes of A alone, and of B alone, where it changes both."""
-    a = {key for key in reading.sides if key.removeprefix(SHOWN) in _OF_A}
-    b = reading.sides.keys() - a
-    for vehicle, keys in (("A's", a), ("B's", b)) if len(a) == len(b) else ():
-        sides = {key: made for key, made in reading.sides.items() if key in keys}
-        yield Edit("", sides, RARE_CONVENTION, f"{reading.says}, {vehicle} only")
-
-
-_OF_A = frozenset("DA PA TA MA IA UX UY WA VAX VAY WAF XA YA XAF YAF DVA".split())
+    """Columns read or shown otherwise, of ``readings.txt``, for both vehicles, then for one."""
+    every = [_reading(line) for line in written_out(table("readings.txt"))]
+    for both in every[:]:
+        a = {key for key in both.sides if key.removeprefix(SHOWN) in _OF_A}
+        b = both.sides.keys() - a
+        for vehicle, keys in (("A's", a), ("B's", b)) if len(a) == len(b) else ():
+            sides = {key: made for key, made in both.sides.items() if key in keys}
+            every.append(Edit("", sides, RARE_CONVENTION, f"{both.says}, {vehicle} only"))
+    return tuple(every)
 
 
 def written_out(lines: Iterable[str]) -> Iterator[str]:

@@ -32,7 +32,7 @@ def loaded(
     scene.check_typed()
     # the port's printouts hold what the machine sends, not the columns it skips
     machine = Applesoft(dos=dos, blanks=False)
-    machine.load(text or _restored())
+    machine.load(text or files.packaged_text("impact88.legacy", LISTING))
     for line in scene.typed_lines():
         machine.enter(line)
     if slot:
@@ -100,7 +100,7 @@ class ListingCopy:
     def changed_lines(self) -> list[ChangedLine]:
         """The lines in which the copy is another program than the restored listing; remarks and
         blanks apart."""
-        both = self._lines, _listed(_restored())
+        both = self._lines, _listed(files.packaged_text("impact88.legacy", LISTING))
         changed = []
         for number in sorted({*both[0], *both[1]}):
             copy, restored = (lines.get(number, []) for lines in both)
@@ -149,10 +149,6 @@ def _items(statement: str, verb: str) -> list[str]:
     match = _LIST.fullmatch(statement)
     found = match and match["verb"].upper() == verb
     return [item.strip() for item in match["items"].split(",")] if match and found else []
-
-
-def _restored() -> str:
-    return files.packaged_text("impact88.legacy", LISTING)
 
 
 def _listed(text: str) -> dict[int, list[str]]:
