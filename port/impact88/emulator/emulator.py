@@ -190,7 +190,8 @@ class Applesoft:
         machine = self.machine
         kind = key & INTEGER
         if kind == STRING:
-            return machine.characters(place).decode("latin-1")
+            address = machine.word(place + 1)
+            return machine.ram[address : address + machine.ram[place]].decode("latin-1")
         x = machine.integer_value(place) if kind else machine.value(place)
         return to_stored(x).hex()
 

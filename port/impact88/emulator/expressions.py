@@ -213,9 +213,7 @@ class Expressions(Variables):
             if DIGIT_0 <= byte <= DIGIT_9 or byte == POINT:
                 return self.constant()
             if byte == QUOTE:
-                string = self.literal(pos + 1)
-                self.txtptr = self.strng2
-                return string
+                return self.literal(pos + 1)
             if byte == FN:
                 return self._function_call(sp)
             if byte >= SGN:

@@ -61,30 +61,25 @@ class InputOutput(Expressions):
     def print_(self) -> None:
         sp, newline = self.sp - 2, True
         while (byte := self.character()) and byte != COLON:
-            newline = False
-            if byte in (TAB, SPC):  # TAB counts from 1, 0 is 256
-                self.txtptr += 1
-                columns = self.byte(sp - 3)
-                fault_if(self.character() != CLOSE, "SYNTAX", sp - 1)
-                self.txtptr += 1
-                if byte == TAB:
-                    columns = (columns - 1 & 0xFF) - self.screen.column
-                self.put(" " * columns)
-            elif byte == COMMA:
-                self.txtptr += 1
-                if self.screen.column >= LAST_ZONE_FROM:
-                    self.put("\n")
-                else:
-                    self.screen.column = self.screen.column + ZONE & 0xF0
-            elif byte == SEMICOLON:
-                self.txtptr += 1
-            else:
+            if newline := byte not in (TAB, SPC, COMMA, SEMICOLON):
                 fac = self.formula(sp - 2)
                 if self.valtyp:
                     self.show(self.used(descriptor(fac)))
                 else:
                     self.show_number(fac)
-                newline = True
+                continue
+            self.txtptr += 1
+            if byte == COMMA and self.screen.column >= LAST_ZONE_FROM:
+                self.put("\n")
+            elif byte == COMMA:
+                self.screen.column = self.screen.column + ZONE & 0xF0
+            elif byte != SEMICOLON:  # TAB counts from 1, 0 is 256
+                columns = self.byte(sp - 3)
+                fault_if(self.character() != CLOSE, "SYNTAX", sp - 1)
+                self.txtptr += 1
+                self.put(
+                    " " * (columns if byte == SPC else (columns - 1 & 0xFF) - self.screen.column)
+                )
         if newline:
             self.console.put("\n")
 
@@ -153,7 +148,6 @@ class InputOutput(Expressions):
         sp = self.sp - 2
         if self.character() == QUOTE:
             prompt = self.literal(self.txtptr + 1)
-            self.txtptr = self.strng2
             self.expect(SEMICOLON, sp - 2)
             self.show(self.used(descriptor(prompt)))
         else:
@@ -242,7 +236,6 @@ class InputOutput(Expressions):
             string = self.literal(start + 1)
         else:
             string = self.literal(start, COLON, COMMA)
-        self.txtptr = self.strng2
         self.assign_string(self.forpnt, string)
         self.valtyp = IS_STRING
         return False

@@ -25,6 +25,7 @@ from .variables import store
 
 FOR_SIZE, FOR_ROOM, GOSUB_SIZE, GOSUB_ROOM, NO_VARIABLE = 18, 74, 7, 64, -1
 """Bytes on the stack, and where the stack pointer has to be at least; a GOSUB's variable."""
+END_MARK, BREAK = b"\0\0", b"\rBREAK"
 TO, THEN, STEP, GOSUB, GOTO, EQUAL = (TOKENS[word] for word in "TO THEN STEP GOSUB GOTO =".split())
 EVERY_BYTE = bytes(range(256))
 KEPT = {
@@ -49,9 +50,6 @@ class Frame(NamedTuple):
     limit: Number = ZERO
     step: Number = ZERO
     sign: int = 0
-
-
-NO_FRAME, END_MARK, BREAK = Frame(-1, NO_VARIABLE, 0, 0), b"\0\0", b"\rBREAK"
 
 
 class Machine(InputOutput):
@@ -84,10 +82,10 @@ class Machine(InputOutput):
             "PR#": lambda: self.console.select(self.byte(self.sp - 4)),
             "IN#": lambda: self.byte(self.sp - 4),  # nothing but the keyboard is plugged in
         }
-        alone: dict[str, Callable[[], object]]
-        alone = {"CLEAR": self.clear, "CONT": self.cont, "END": self.end, "NEW": self.new}
-        alone |= {"POP": self.subroutine, "RETURN": self.return_}
-        alone["STOP"] = partial(self.end, BREAK)
+        alone: dict[str, Callable[[], object]] = {
+            **{"CLEAR": self.clear, "CONT": self.cont, "END": self.end, "NEW": self.new},
+            **{"POP": self.subroutine, "RETURN": self.return_, "STOP": partial(self.end, BREAK)},
+        }
         statements |= {word: partial(self._alone, does) for word, does in alone.items()}
         self.statements = list(statements.values())
         self.clear_stack()
@@ -340,8 +338,7 @@ class Machine(InputOutput):
         if n >= 0:
             self.set_stack(sp + FOR_SIZE & 0xFF)
         fault_if(self.sp - 2 & 0xFF < FOR_ROOM - 2, "OUT OF MEMORY", self.sp - 2)
-        sp = self.sp
-        start = self.txtptr
+        sp, start = self.sp, self.txtptr
         self.data_()
         back, self.txtptr = self.txtptr, start
         self.expect(TO, sp - 6)
@@ -358,24 +355,22 @@ class Machine(InputOutput):
 
     def next_(self) -> None:
         """NEXT. Raises NEXT WITHOUT FOR."""
+        frames = self.frames
         if self.at_end():
             self.forpnt &= 0xFF
         else:
             self.forpnt = self.variable(self.sp - 4)
         while True:
-            frame = self.frames[-1] if self.frames else NO_FRAME
-            if frame.sp != self.sp or frame.variable != self.forpnt:
+            if not frames or frames[-1].sp != self.sp or frames[-1].variable != self.forpnt:
                 n, sp = self._find_loop()
                 fault_if(n < 0, "NEXT WITHOUT FOR", self.sp - 2)
                 self.set_stack(sp)
-                frame = self.frames[-1]
-            _, variable, line, text, limit, step, sign = frame
+            _, variable, line, text, limit, step, sign = frames[-1]
             self.assign(variable, add(self.value(variable), step))
             if compare(limit, self.fac) != sign:
-                self.curlin = line
-                self.txtptr = text
+                self.curlin, self.txtptr = line, text
                 return
-            self.frames.pop()
+            frames.pop()
             self.sp = self.sp + FOR_SIZE & 0xFF
             if self.character() != COMMA:
                 return

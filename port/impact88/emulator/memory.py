@@ -101,7 +101,7 @@ class Memory:
         self.errflg = self.errlin = self.errpos = self.errnum = self.errstk = self.lastpt = 0
         self.txtpsv = self.cursv = self.subflg = self.trcflg = self.flash = self.lock = 0
         self.temppt, self.charac = TEMPORARIES, 0
-        self.valtyp = self.cprtyp = self.strng2 = 0
+        self.valtyp = self.cprtyp = 0
         self.interrupted = self.inttyp = self.broken = False
         self.statements_left: int | None = None
         self.refused: list[str] = []

@@ -87,11 +87,6 @@ class Variables(Memory):
         else:
             ram[target : target + length] = ram[source : source + length]
 
-    def characters(self, place: int) -> bytes:
-        """The characters of the string that a descriptor describes."""
-        address = self.word(place + 1)
-        return bytes(self.ram[address : address + self.ram[place]])
-
     def temporary(self, length: int, address: int, extension: int = 0) -> Number:
         """PUTNEW: a new temporary, in the accumulator. Raises FORMULA TOO COMPLEX."""
         place = self.temppt
@@ -108,21 +103,22 @@ class Variables(Memory):
 
     def literal(self, address: int, *ends: int) -> Number:
         """STRLIT, STRLT2: the string from an address to a zero or one of ``ends``, a quote unless
-        given; STRNG2 is behind it, and behind its quote. What stands on page 0 or 2 is copied."""
+        given, and past it and its quote. What stands on page 0 or 2 is copied."""
         ram = self.ram
         end = ram.index(0, address)
         for byte in ends or (QUOTE,):
             found = ram.find(byte, address, end)
             end = found if found >= 0 else end
         length = end - address & 0xFF
-        self.strng2 = end + (ram[end] == QUOTE)
         self.charac = 0
         page = address >> 8
         if page in (0, 2):
             copy = self.room(length)
             self.move(address, copy, length)
             address = copy
-        return self.temporary(length, address, page)
+        string = self.temporary(length, address, page)
+        self.txtptr = end + (ram[end] == QUOTE)
+        return string
 
     def made(self, text: bytes, extension: int = 0) -> Number:
         """STRINI and PUTNEW: a temporary with characters."""

@@ -43,22 +43,18 @@ BOLD = 1.15
 ASCENT, DESCENT, SUBSCRIPT_SIZE, SUBSCRIPT_DROP = 0.78, 0.24, 0.7, 0.2
 """Of the size: capitals above and tails below the baseline; subscripts, as usual in print."""
 
-DIRECTIONS = 24
-"""Half as many leave labels on lines that a step of 15 degrees clears; twice as many change
-nothing."""
+DIRECTIONS, GAP, STEP, LEADER_FROM = 24, 0.9, 0.4, 3.6
+"""Directions tried for a label; in mm, least distance of two texts, distance of the points that
+lines are looked at by, distance from which on a thin line leads to the point. Of 323 labels in 24
+drawings 1 covers a line: none with twice the directions, 2 with half, 4 with twice the step."""
 REACHES = (0.9, 2.0, 3.4, 5.0, 7.0, 10.0, 14.0, 20.0)
-"""Distances in mm tried between the point named and the nearest edge of the text."""
-LEADER_FROM = 3.6
-"""Beyond this distance a thin line leads from the label to its point."""
-GAP = 0.9
-"""Least distance in mm of two texts."""
-STEP = 0.4
-"""Distance in mm of the points that lines are looked at by: a fifth of a text's height."""
+"""Distances in mm tried between the point named and the nearest edge of the text; doubled, 4."""
 WEIGHTS = {
     **{"glass": 0.4, "heading": 1.5, "body": 0.0, "after": 2.5, "impulse": 2.5, "head": 2.5},
     **{"spin": 2.0, "moment": 2.5, "before": 2.0, "angle": 1.5, "change": 1.5},
 }
-"""What covering a line of the role ending so costs, against 1 for any other."""
+"""What covering a line of the role ending so costs, against 1 for any other: doubled, 2 labels
+move; without them, 4 labels cover lines."""
 
 
 class Path(NamedTuple):

@@ -105,11 +105,10 @@ def plan(
         "A": Motion(complex(values["UX"], values["UY"]), values["WA"]),
         "B": Motion(complex(values["VX"], values["VY"]), values["WB"]),
     }
-    given = {n: float(result[n]) for n in FINAL_VELOCITIES if result and result.get(n) is not None}
+    finals = {name: (result or {}).get(name) for name in FINAL_VELOCITIES}
+    given = {name: float(value) for name, value in finals.items() if value is not None}
     after: dict[str, Motion] = {}
-    if given.keys() >= set(FINAL_VELOCITIES[:4]) and all(
-        map(math.isfinite, list(given.values())[:4])
-    ):
+    if all(math.isfinite(given.get(name, math.nan)) for name in FINAL_VELOCITIES[:4]):
         for v in "AB":
             after[v] = Motion(complex(given[f"V{v}X"], given[f"V{v}Y"]), given.get(f"W{v}F", 0.0))
     reach = {
@@ -118,7 +117,8 @@ def plan(
     }
     front = {"A": -unit(values["TA"]), "B": unit(values["TB"])}
     apart = values["DA"] == 0 == values["DB"]
-    sizes = _sizes(values, reach, front, outlines)
+    contact = {name: 2 * reach[name] * front[name].conjugate() for name in "AB"}
+    sizes = _sizes(values, contact, outlines)
     vehicles = []
     for name, inward in (("A", normal), ("B", -normal)):
         length, width = sizes[name]
@@ -135,8 +135,8 @@ def plan(
         heavy, light = (abs(values[f"M{which}"]) for which in (name, "B" if name == "A" else "A"))
         wall = heavy >= WALL * light and before[name] == (0, 0)
         motions = before[name], after.get(name)
-        size = length, width
-        vehicles.append(Vehicle(name, center, front[name], *size, outline, kept, wall, *motions))
+        size = length, width, outline, kept
+        vehicles.append(Vehicle(name, center, front[name], *size, wall, *motions))
     # momentum of the lighter vehicle: a wall's change of velocity has no digits left
     moved, sense = (vehicles[1], -1) if vehicles[0].wall else (vehicles[0], 1)
     impulse = None if moved.change is None else sense * values[f"M{moved.name}"] * moved.change
@@ -153,12 +153,9 @@ def _depth(point: complex, inward: complex) -> float:
 
 
 def _sizes(
-    values: Mapping[str, float],
-    reach: Mapping[str, complex],
-    front: Mapping[str, complex],
-    outlines: Mapping[str, float],
+    values: Mapping[str, float], contact: Mapping[str, complex], outlines: Mapping[str, float]
 ) -> dict[str, tuple[float, float]]:
-    """Length and width of both vehicles, see the module's text."""
+    """Length and width of both vehicles; ``contact``: twice the contact point from each's axes."""
     lengths: dict[str, float] = {}
     for name in "AB":
         mass, inertia, distance = (values[kind + name] for kind in "MID")
@@ -170,8 +167,8 @@ def _sizes(
     sizes = {}
     for name in "AB":
         length = lengths.get(name, max(lengths.values(), default=1.0))
-        contact = 2 * reach[name] * front[name].conjugate()
-        sizes[name] = max(length, abs(contact.real)), max(length / PROPORTION, abs(contact.imag))
+        along, across = abs(contact[name].real), abs(contact[name].imag)
+        sizes[name] = max(length, along), max(length / PROPORTION, across)
         if f"L{name}" in outlines:
             sizes[name] = (outlines[f"L{name}"], outlines[f"B{name}"])
     return sizes
