@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 
 import captures
 from impact88.fields import ANGLES, FIELDS
+from impact88.reading.plaintext import decoded
+from impact88.reading.printout import Printout, read_printouts
 
 SWEEP = int(os.environ.get("IMPACT88_SWEEP") or 0)
 """Set to n: every captured scene, and n changes of each; else a sample that takes seconds. A sweep
@@ -28,6 +30,11 @@ _WORDS = {
     "WAF": "WA=",
     "WBF": "WB=",
 }
+
+
+def from_bytes(data: bytes, where: str) -> list[Printout]:
+    """The printouts in a file's bytes."""
+    return read_printouts(decoded(data, where), where)
 
 
 class Place(NamedTuple):

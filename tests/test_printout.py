@@ -9,7 +9,7 @@ import printouts
 from impact88.errors import UserError
 from impact88.fields import ANGLES, FIELDS
 from impact88.reading.numerals import candidates
-from impact88.reading.printout import read_bytes, read_printouts
+from impact88.reading.printout import read_printouts
 
 SAMPLE = """\
 MA= 143.5 MB= 95.8 IA= 3728 IB= 1961
@@ -152,15 +152,15 @@ def test_error_messages_end_a_printout() -> None:
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be"])
 def test_encodings(encoding: str) -> None:
-    (shown,) = read_bytes(SAMPLE.replace("\n", "\r").encode(encoding), "page")
+    (shown,) = printouts.from_bytes(SAMPLE.replace("\n", "\r").encode(encoding), "page")
     assert {name: reading.text for name, reading in shown.fields.items()} == texts(SAMPLE)
 
 
 def test_unreadable_files_are_refused() -> None:
     with pytest.raises(UserError, match="is not UTF-8 text"):
-        read_bytes(bytes(range(256)) * 40, "file")
+        printouts.from_bytes(bytes(range(256)) * 40, "file")
     with pytest.raises(UserError, match="no printout"):
-        read_bytes(b"nothing of the kind", "file")
+        printouts.from_bytes(b"nothing of the kind", "file")
 
 
 def test_truncated_anywhere_reads_or_is_refused() -> None:

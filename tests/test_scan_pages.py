@@ -20,7 +20,7 @@ from impact88.recovery.replays import run_all
 from impact88.reporting.examination import Examined, Verification, examine
 from impact88.reporting.verification import EXPLAINED, lines
 from impact88.scan import sheets
-from impact88.scan.holding import MOST_MISREAD, THRESHOLDS, Cell, Judged, judged, state
+from impact88.scan.holding import FOREIGN, KIND, MOST_MISREAD, Cell, Judged, judged, state
 from impact88.scan.layout import Place, Sheet
 from impact88.scan.scenes import WORST, Candidate, Read, borne_out
 from impact88.scan.typeface import READABLE
@@ -267,9 +267,9 @@ def cell(name: str, *, distance: float, other_distance: float, hand: str = "") -
 @pytest.mark.parametrize(
     ("other_distance", "hand", "expected"),
     [
-        (THRESHOLDS.foreign - 1, "", "differs"),
-        (THRESHOLDS.foreign + 1, "", "doubtful"),  # like nothing: a blot
-        (THRESHOLDS.foreign + 1, "8", "differs"),  # another hand's digit
+        (FOREIGN - 1, "", "differs"),
+        (FOREIGN + 1, "", "doubtful"),  # like nothing: a blot
+        (FOREIGN + 1, "8", "differs"),  # another hand's digit
     ],
 )
 def test_a_digit_of_another_hand_differs_and_a_blot_does_not(
@@ -281,7 +281,7 @@ def test_a_digit_of_another_hand_differs_and_a_blot_does_not(
 @pytest.mark.parametrize("away", [-1, 1])
 def test_a_digit_like_nothing_on_the_page_settles_nothing(monkeypatch, away: float) -> None:
     """A digit drawn by another hand over another one may still be least unlike what is printed."""
-    odd = cell("YBF", distance=THRESHOLDS.foreign + away, other_distance=80.0)
+    odd = cell("YBF", distance=FOREIGN + away, other_distance=80.0)
     odd.margin = -0.41
     monkeypatch.setattr(Sheet, "whole", True)
     candidate = Candidate({}, SimpleNamespace(fields={}, ending=None), 0.0)  # type: ignore[arg-type]
@@ -297,11 +297,11 @@ def test_a_page_read_otherwise_in_more_places_than_differ_accuses_nobody(
     monkeypatch.setattr(Sheet, "whole", True)
     cost = WORST + MOST_MISREAD + beyond
     candidate = Candidate({}, SimpleNamespace(fields={}, ending=None), cost)  # type: ignore[arg-type]
-    differs = cell("TB", distance=100.0, other_distance=THRESHOLDS.foreign - 1)
+    differs = cell("TB", distance=100.0, other_distance=FOREIGN - 1)
     expected = Verdict.INCOMPLETE if beyond > 0 else Verdict.DIFFERS
     assert judged(Sheet(rows={}), candidate, [differs]).verdict is expected
 
 
 def test_another_letter_is_near_to_that_letters_mean() -> None:
-    assert state(cell("", distance=100.0, other_distance=THRESHOLDS.kind - 1)) == "differs"
-    assert state(cell("", distance=100.0, other_distance=THRESHOLDS.kind + 1)) == "doubtful"
+    assert state(cell("", distance=100.0, other_distance=KIND - 1)) == "differs"
+    assert state(cell("", distance=100.0, other_distance=KIND + 1)) == "doubtful"

@@ -10,13 +10,14 @@ from typing import Any
 
 import pytest
 
+import printouts
 from captures import ROOT
 from impact88.errors import UserError
 from impact88.fields import INPUTS, outcome_fields
 from impact88.judging.judgement import Status, settled
 from impact88.program.run import run
 from impact88.reading.numerals import printable
-from impact88.reading.printout import Printout, read_bytes, read_printouts
+from impact88.reading.printout import Printout, read_printouts
 from impact88.reporting.examination import Verdict, Verification, verify
 from impact88.scene import sample
 from printouts import SWEEP
@@ -417,7 +418,7 @@ def test_digits_too_small_to_show_are_told_and_no_others() -> None:
     ],
 )
 def test_what_people_save_and_paste(change: Any) -> None:
-    (shown,) = read_bytes(change(SAMPLE), "page")
+    (shown,) = printouts.from_bytes(change(SAMPLE), "page")
     assert verify(shown).verdict in SETTLED
 
 
@@ -427,7 +428,7 @@ def test_what_people_save_and_paste(change: Any) -> None:
 )
 def test_files_that_are_no_text_say_what_makes_text_of_them(start: bytes, says: str) -> None:
     with pytest.raises(UserError, match=says):
-        read_bytes(start + b"\0" * 200, "page")
+        printouts.from_bytes(start + b"\0" * 200, "page")
 
 
 ROW = " -19.8      -38.7      0      60      -30"

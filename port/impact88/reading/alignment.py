@@ -61,11 +61,10 @@ class State(NamedTuple):
 
 
 class Label(NamedTuple):
-    """What names a number on the page: the field (of a prompt, its reply's slot), the label's
-    letters, and the states of these letters."""
+    """What names a number on the page: the field (of a prompt, its reply's slot), and the states
+    of the label's letters."""
 
     name: str
-    text: str
     states: tuple[int, ...]
 
 
@@ -77,12 +76,10 @@ def _page() -> tuple[list[State], list[Label]]:
         for text, name in re.findall(r"([^{]*)(?:{(\w+)}|$)", line):
             loose = len(text) if number < PROMPTS else _LOOSE_WORDS.get(text, 0)
             named = ANGLES if number == HEADING and text else [name] if text and name else []
-            at = len(states)
-            for one in named:
-                label = one if number == HEADING else text
-                own = [at + place for place, letter in enumerate(label) if letter.isalpha()]
-                labels.append(Label(one, "".join(filter(str.isalpha, label)), tuple(own)))
-                at += len(label)
+            own = [len(states) + at for at, letter in enumerate(text) if letter.isalpha()]
+            for which, field in enumerate(named):
+                size = len(own) // len(named)
+                labels.append(Label(field, tuple(own[which * size : (which + 1) * size])))
             for place, letter in enumerate(text):
                 states.append(State("loose" if place < loose else "letter", letter, number))
             if name:

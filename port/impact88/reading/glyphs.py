@@ -20,14 +20,11 @@ from typing import NamedTuple
 ILLEGIBLE = "?"
 """Stands for a character that cannot be read."""
 
-_MINUS = "−‐‑‒–—―﹣－⁻"
 _GLYPHS = {
-    **dict.fromkeys(_MINUS, "-"),
-    **dict.fromkeys("＝﹦≡", "="),
-    **dict.fromkeys("∗✱＊⁎", "*"),
-    "？": ILLEGIBLE,
-    "μ": "M",
-    "µ": "M",
+    **dict.fromkeys("−‐‑‒–—―﹣⁻", "-"),
+    **dict.fromkeys("﹦≡", "="),
+    **dict.fromkeys("∗✱⁎", "*"),
+    **dict.fromkeys("μµ", "M"),
 }
 
 NUMERIC = frozenset("0123456789.-+E")

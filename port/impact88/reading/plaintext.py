@@ -160,8 +160,6 @@ def _groups_joined(text: str) -> str:
 _TAG = re.compile(r"""<([\w:]+)((?:"[^"]*"|'[^']*'|[^"'<>])*)>([^<]*)""")
 _ATTRIBUTE = re.compile(r"""\b([\w:]++)\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s"'>]+))""")
 _BOX = re.compile(r"\bbbox +(-?[0-9]+) +(-?[0-9]+) +(-?[0-9]+) +(-?[0-9]+)")
-_TSV_PLACE = ("left", "top", "width", "height")
-_ALTO_PLACE = ("hpos", "vpos", "width", "height")
 _PRINTER = 80
 """Columns of a printer's line: no gap is wider."""
 
@@ -198,7 +196,8 @@ def laid_out(text: str, where: str) -> str:
 def _rows(text: str) -> Iterator[list[str]]:
     """The words of TSV: page, text, left, top, width, height."""
     for row in csv.DictReader(text.splitlines(), delimiter="\t", quoting=csv.QUOTE_NONE):
-        yield [row["page_num"], row["text"] or "", *(row[name] for name in _TSV_PLACE)]
+        place = [row[name] for name in ("left", "top", "width", "height")]
+        yield [row["page_num"], row["text"] or "", *place]
 
 
 def _elements(text: str) -> Iterator[list[str]]:
@@ -215,11 +214,12 @@ def _elements(text: str) -> Iterator[list[str]]:
         elif kind in ("ocrx_word", "ocr_word"):
             box = _BOX.search(given.get("title", ""))
         elif element == "string" and "content" in given:
-            yield [str(page), given["content"], *(given.get(key, "0") for key in _ALTO_PLACE)]
+            place = [given.get(key, "0") for key in ("hpos", "vpos", "width", "height")]
+            yield [str(page), given["content"], *place]
         if box and after.strip():
             left, top, right, bottom = map(int, box.groups())
-            place = left, top, right - left, bottom - top
-            yield [str(page), html.unescape(after), *map(str, place)]
+            place = [*map(str, (left, top, right - left, bottom - top))]
+            yield [str(page), html.unescape(after), *place]
             box = None
 
 

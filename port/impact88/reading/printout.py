@@ -15,10 +15,10 @@ from typing import NamedTuple
 
 from ..applesoft.errorcodes import CODES
 from ..errors import UserError, quoted
-from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT, label
+from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT
 from . import numerals
 from . import plaintext as pasted
-from .alignment import LABELS, PROMPTS, SPINS, STARS, STATES, Budget, align, letter_of
+from .alignment import LABELS, LINES, PROMPTS, SPINS, STARS, STATES, Budget, align, letter_of
 from .fieldlabels import READERS, LabelCheck, LabelState, label_checks, words_before
 from .glyphs import ILLEGIBLE, Gap, Page, Region, label_cost, letters, plain_glyphs
 
@@ -239,8 +239,12 @@ class Printout:
         read = {name: self._slots[name] for name in self.fields if name in self._slots}
         marks = self.marks + self._misread("*") if len(self.fields) >= _PART else READERS
         found = [
-            (name, text, [at for at, state in self._states.items() if state in own])
-            for name, text, own in LABELS
+            (
+                name,
+                "".join(map(letter_of, own)),
+                [at for at, one in self._states.items() if one in own],
+            )
+            for name, own in LABELS
         ]
         self.labels = label_checks(self.page, found, read, marks)
         wrong = {one.name for one in self.mislabelled}
@@ -251,10 +255,9 @@ class Printout:
         margin is cut off, and what a line begins with is not to be relied on."""
         seen = set(self._states.values())
         first = [index for index in self._states if self.page.glyphs[index].gap is Gap.LINE]
-        labels = [index for index in first if self._letter(index) not in ("", "*")]
-        before = [self._states[index] - 1 for index in labels]
+        before = [self._states[at] - 1 for at in first if self._letter(at) not in ("", "*")]
         lost = sum(bool(letter_of(state)) and state not in seen for state in before)
-        if lost > max(2, len(labels) / 2):
+        if lost > max(2, len(before) / 2):
             for name, (start, _) in [*self._slots.items()]:
                 if start in first:
                     self._remark(name, start, "begins where the margin is cut off")
@@ -306,10 +309,12 @@ class Printout:
         """The three numbers typed at a prompt, after any that INPUT refused."""
         stop, line, glyphs = start, self._line(start), self.page.glyphs
         others = {begin for begin, _ in self._slots.values()} - {start}  # one may lack its label
-        while self._states.get(stop) and (not self._letter(stop) or self._line(stop) == line):
+        while (
+            stop not in others
+            and self._states.get(stop)
+            and (not self._letter(stop) or self._line(stop) == line)
+        ):
             stop += 1
-            if stop in others:
-                break
         parts = _reply_parts(glyphs[start:stop])
         # a prompt's end whose mark was not read, before what is printed below
         value = numerals.value_of(self.text(names[0]) or "")
@@ -373,12 +378,6 @@ def _reply_parts(region: Region) -> list[Region]:
         elif not (glyph.char == "?" and place and region[place - 1].char == "?"):
             parts[-1] += (glyph,)
     return parts
-
-
-def read_bytes(data: bytes, where: str) -> list[Printout]:
-    """The printouts in a file's bytes, whatever wrote it. Raises UserError (naming ``where``) for
-    what is not text or holds no printout."""
-    return read_printouts(pasted.decoded(data, where), where)
 
 
 def read_printouts(text: str, where: str = "text") -> list[Printout]:
@@ -454,14 +453,7 @@ def _notes(page: Page, start: int, stop: int, found: Sequence[Mapping[int, int]]
     return notes
 
 
-# --- what else stands on the page ---
-
-_LABEL_WORDS = frozenset(
-    word
-    for text in (*map(label, FIELDS), "VAX VAY WA VBX VBY WB INITIAL")
-    for word in text.replace("=", " ").split()
-    if len(word) > 1
-)
+_LABEL_WORDS = {*re.findall("[A-Z]{2,}", re.sub("{.*?}", "", " ".join(LINES[PROMPTS:])))}
 
 
 def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
@@ -505,11 +497,7 @@ def _normalised(text: str) -> list[str]:
 def _left_out(text: str, unwrapped: str) -> list[str]:
     """That lines were left out as markup or as lines of a program."""
     pairs = zip(text.splitlines(), unwrapped.splitlines(), strict=False)
-    lines = [
-        number
-        for number, (one, other) in enumerate(pairs, 1)
-        if any(map(str.isalpha, one)) and not other.strip()
-    ]
-    what = "1 line is" if len(lines) == 1 else f"{len(lines)} lines are"
+    gone = [any(map(str.isalpha, one)) and not other.strip() for one, other in pairs]
+    what = "1 line is" if sum(gone) == 1 else f"{sum(gone)} lines are"
     what += " markup or lines of a BASIC program, and not read: the first is line "
-    return [f"{what}{lines[0]}"] if lines else []
+    return [f"{what}{gone.index(True) + 1}"] if any(gone) else []

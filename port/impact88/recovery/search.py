@@ -6,9 +6,10 @@ and the best of them are replayed in the Apple's own arithmetic. What a scene co
 inputs cost to believe plus what every printed result then costs.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 from operator import attrgetter
 from typing import NamedTuple
 
@@ -37,7 +38,7 @@ _UNREAD = 0.6
 """What a result costs of which hardly anything was read, or that the page does not have."""
 _OTHER_BITS = 0.02
 """What it costs that a number was typed with zeros that do not show, by the rank of that text."""
-_REPLAYED = 160
+_MOST = 160
 _ROOM = 30_000
 """Combinations of the rest tried with the likeliest of masses and velocities."""
 _CLOSELY = 5_000
@@ -50,7 +51,6 @@ _ENERGIES = 60
 """Combinations of masses and velocities that are tried with the rest."""
 _ROUGH = 4e-7
 """Relative error allowed to the Apple's arithmetic in screening."""
-RESULTS = tuple(name for name in FIELDS if name not in INPUTS)
 
 
 @dataclass
@@ -81,6 +81,10 @@ def column_of(name: str, ways: Iterable[tuple[str, float]], typed: bool = False)
     return Column((name,), [((text,), cost) for text, cost in ways], typed)
 
 
+Columns = Sequence[Column]
+Names = Collection[str]
+
+
 class Scored(NamedTuple):
     """A scene tried: what it and its results cost, the texts typed, the texts assumed printed, what
     it prints, and the names in which that is not what the page says."""
@@ -99,10 +103,6 @@ class Expected:
     name: str
     texts: dict[str, float]
     default: float
-
-    def cost(self, text: str | None) -> float:
-        """What it costs that the program prints ``text`` here, or nothing."""
-        return MISMATCH if text is None else self.texts.get(text, self.default)
 
     def mismatch(self, values: Floats) -> Floats:
         """What each unfloored value costs."""
@@ -127,8 +127,8 @@ class Search:
     def __init__(self, shown: Printout, typed: Mapping[str, Mapping[str, str]]) -> None:
         self.shown = shown
         self.expected: list[Expected] = []
-        for name in RESULTS:
-            if reading := shown.fields.get(name):
+        for name in FIELDS:
+            if name not in INPUTS and (reading := shown.fields.get(name)):
                 legible = reading.clean or sum(map(str.isdigit, letters(reading.region))) >= 2
                 default = MISMATCH if legible else _UNREAD
                 self.expected.append(Expected(name, reading.texts(60), default))
@@ -137,7 +137,7 @@ class Search:
         self._on_page = {name for name in INPUTS if name in shown.fields or name in on_row}
         self._lost_inputs = set(INPUTS) - set(shown.fields)
 
-    def best(self, columns: Sequence[Column]) -> Scored:
+    def best(self, columns: Columns) -> Scored:
         """The scene of least cost that the columns allow."""
         best = min(self.replayed(columns, combinations(columns, 2)), key=_cost)
         if best.wrong or best.cost >= 0.05:
@@ -146,12 +146,7 @@ class Search:
         return self._other_bits(best) if best.wrong else best
 
     def promising(
-        self,
-        columns: Sequence[Column],
-        room: int,
-        most: int = _REPLAYED,
-        limit: float = np.inf,
-        wrong: frozenset[str] = frozenset(),
+        self, columns: Columns, room: int, most: int = _MOST, limit: float = inf, wrong: Names = ()
     ) -> Picks:
         """The most promising combinations: those whose kinetic energy is the printed one first, the
         better they are with the more of the rest, ``room`` for the best. ``limit``: what all inputs
@@ -183,13 +178,7 @@ class Search:
             parts.append(part)
         return self.screened(columns, np.concatenate(parts), most, wrong)
 
-    def screened(
-        self,
-        columns: Sequence[Column],
-        picks: Picks,
-        most: int,
-        wrong: frozenset[str] = frozenset(),
-    ) -> Picks:
+    def screened(self, columns: Columns, picks: Picks, most: int, wrong: Names = ()) -> Picks:
         """The ``most`` combinations that explain most, by double precision."""
         telling = sorted(_TELLING, key=lambda name: name not in wrong)[:4]
         few = [one for one in self.expected if one.default == MISMATCH and one.name in telling]
@@ -206,7 +195,7 @@ class Search:
                 picks = picks[np.argsort(costs, kind="stable")[:count]]
         return picks
 
-    def replayed(self, columns: Sequence[Column], picks: Picks) -> list[Scored]:
+    def replayed(self, columns: Columns, picks: Picks) -> list[Scored]:
         """Combinations, replayed in the Apple's arithmetic, in their order."""
         value = _values(columns, picks)
         turned = self._typed_mu(value) != value["MU"]
@@ -273,7 +262,10 @@ class Search:
         """Scenes, each with the texts assumed printed and what it costs to believe, replayed."""
         outcomes = replays.run_all([scene for scene, _, _ in scenes])
         for (scene, assumed, cost), outcome in zip(scenes, outcomes, strict=True):
-            costs = {one.name: one.cost(outcome.fields.get(one.name)) for one in self.expected}
+            costs = dict.fromkeys((one.name for one in self.expected), MISMATCH)
+            for one in self.expected:
+                if text := outcome.fields.get(one.name):
+                    costs[one.name] = one.texts.get(text, one.default)
             wrong = {
                 name for name, text in assumed.items() if outcome.fields.get(name, text) != text
             }
@@ -288,7 +280,7 @@ class Search:
             yield Scored(total, scene, assumed, outcome, differing)
 
 
-def combinations(columns: Sequence[Column], most: int, limit: float = np.inf) -> Picks:
+def combinations(columns: Columns, most: int, limit: float = inf) -> Picks:
     """The combinations of one option each, cheapest first, up to ``most`` and up to a cost."""
     steps = []
     costs: Floats = np.zeros(1)
@@ -317,7 +309,7 @@ def combinations(columns: Sequence[Column], most: int, limit: float = np.inf) ->
     return picks
 
 
-def one_each(columns: Sequence[Column]) -> Picks:
+def one_each(columns: Columns) -> Picks:
     """The cheapest combination, and every one that departs from it in one column."""
     picks = [np.zeros((1, len(columns)), np.intp)]
     for place, column in enumerate(columns):
@@ -334,7 +326,7 @@ def _number(text: str) -> float:
         return float("nan")
 
 
-def _believing(columns: Sequence[Column], picks: Picks) -> Floats:
+def _believing(columns: Columns, picks: Picks) -> Floats:
     """What the options themselves cost."""
     costs: Floats = np.zeros(len(picks))
     for column, pick in zip(columns, picks.T, strict=True):
@@ -342,7 +334,7 @@ def _believing(columns: Sequence[Column], picks: Picks) -> Floats:
     return costs
 
 
-def _values(columns: Sequence[Column], picks: Picks) -> dict[str, Floats]:
+def _values(columns: Columns, picks: Picks) -> dict[str, Floats]:
     """The values of combinations as columns of doubles; of MU the printed one."""
     return {
         name: numbers[pick]

@@ -83,12 +83,10 @@ class Rereading:
     def best(self, most: int = 2, exchanged: Mapping[str, str] | None = None) -> list[Reread]:
         """Scenes with one input put right, or with up to two, those that explain most first.
         ``exchanged``: texts printed in place of others, by field, and not to be put right."""
-        columns = [
-            column_of(one.names[0], [(exchanged[one.names[0]], 0.0)], one.typed)
-            if exchanged and one.names[0] in exchanged
-            else one
-            for one in self._columns
-        ]
+        columns = [*self._columns]
+        for name, text in (exchanged or {}).items():
+            place = INPUTS.index(name)
+            columns[place] = column_of(name, [(text, 0.0)], columns[place].typed)
         search = self._recovered.search
         if most == 1:
             picks = search.screened(columns, one_each(columns), 2 if exchanged else _REPLAYED)

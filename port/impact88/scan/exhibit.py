@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from PIL import Image as Pillow
 
-from .holding import RATES, THRESHOLDS, Cell, state
+from .holding import DIFFERS, HOLDS, RATES, Cell, state
 from .ink import Floats, Image
 from .sheets import Leaf
 from .typeface import BLANK, sample_of, typeface_of
@@ -52,7 +52,7 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
         "more": max(0, len(doubted) - _MOST_STRIPS),
         "bars": (counts / max(counts.max(initial=1), 1)).tolist(),
         "margins": len(margins),
-        "limits": (THRESHOLDS.holds, THRESHOLDS.differs),
+        "limits": (HOLDS, DIFFERS),
         "basis": RATES,
     }
 

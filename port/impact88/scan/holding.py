@@ -3,14 +3,13 @@
 The mean glyphs are made under the *predicted* names, each cell left out of its own mean. A cell's
 margin is how far it is from its predicted mean beyond its distance from the nearest other,
 relative to how far those two means are apart: -1 is the predicted glyph itself, +1 the other.
-`THRESHOLDS` is the one table of what margins allow to be said.
+What margins allow to be said stands before `RATES`.
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
 from itertools import product
-from typing import NamedTuple
 
 import numpy as np
 
@@ -174,22 +173,11 @@ def held(grid: Grid, known: Sequence[tuple[Read, Candidate]]) -> list[list[Cell]
 # --- the verdict ---------------------------------------------------------------------------------
 
 
-class Thresholds(NamedTuple):
-    """``holds``: a cell with a smaller margin is the character predicted; ``differs``: one with a
-    larger margin is another; ``label``: a label with a smaller margin holds; ``blank``: blank paper
-    with a larger margin is not blank; ``foreign``: a cell this many times as far from a mean as is
-    usual was not made by that type; ``kind``: a label that is nearer than this to another
-    letter's mean is that letter."""
-
-    holds: float
-    differs: float
-    label: float
-    blank: float
-    foreign: float
-    kind: float
-
-
-THRESHOLDS = Thresholds(holds=-0.12, differs=0.3, label=0.1, blank=-0.15, foreign=20.0, kind=15.0)
+HOLDS, DIFFERS, LABEL, EMPTY, FOREIGN, KIND = -0.12, 0.3, 0.1, -0.15, 20.0, 15.0
+"""A cell with a smaller margin is the character predicted; one with a larger is another; a label
+with a smaller margin holds; blank paper with a larger one is not blank; a cell this many times as
+far from a mean as is usual was not made by that type; a label that is nearer than this to another
+letter's mean is that letter."""
 RATES = (
     "Basis of the thresholds: 314 pages with known truth whose scene was found and that were "
     "settled. On 160 scans and photographs (74 clean, 62 hard, 24 photographed) none of 21,707 "
@@ -251,28 +239,27 @@ def judged(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> Judged:
 
 def state(cell: Cell) -> str:
     """``holds``, ``doubtful`` or ``differs``."""
-    limits = THRESHOLDS
     if cell.cut:
         return "doubtful" if cell.name and cell.predicted != BLANK else "holds"
     if cell.predicted == BLANK:
-        if cell.margin < limits.blank or cell.other in _MARKS:
-            return "holds" if cell.margin < limits.differs or not cell.name else "doubtful"
-        return "differs" if cell.margin > limits.differs else "doubtful"
-    if (cell.hand and cell.count < 2) or (cell.lost and cell.margin > limits.holds):
+        if cell.margin < EMPTY or cell.other in _MARKS:
+            return "holds" if cell.margin < DIFFERS or not cell.name else "doubtful"
+        return "differs" if cell.margin > DIFFERS else "doubtful"
+    if (cell.hand and cell.count < 2) or (cell.lost and cell.margin > HOLDS):
         return "doubtful"
     if not cell.name:
-        if cell.margin < limits.label:
+        if cell.margin < LABEL:
             return "holds"
         # another letter only where the page has it elsewhere and the cell is of its kind
         known = min(cell.count, cell.other_count) > 2 and cell.other != BLANK
-        near = cell.other_distance < limits.kind and cell.distance > 2 * cell.other_distance
-        return "differs" if known and near and cell.margin > 2 * limits.differs else "doubtful"
-    if cell.margin < limits.holds:
-        return "holds" if cell.distance < limits.foreign else "doubtful"
-    if cell.margin < limits.differs or (cell.predicted in _MARKS and cell.other in f"{BLANK}.,-"):
+        near = cell.other_distance < KIND and cell.distance > 2 * cell.other_distance
+        return "differs" if known and near and cell.margin > 2 * DIFFERS else "doubtful"
+    if cell.margin < HOLDS:
+        return "holds" if cell.distance < FOREIGN else "doubtful"
+    if cell.margin < DIFFERS or (cell.predicted in _MARKS and cell.other in f"{BLANK}.,-"):
         return "doubtful"
     # a blot is like nothing, another hand's digit like that of a known style
-    return "differs" if cell.other_distance < limits.foreign or cell.hand else "doubtful"
+    return "differs" if cell.other_distance < FOREIGN or cell.hand else "doubtful"
 
 
 def _retyped(cell: Cell, others: Sequence[Cell]) -> bool:
@@ -292,5 +279,5 @@ def _slight(cell: Cell) -> bool:
         return cell.margin < 0.5
     if cell.predicted in _MARKS and cell.other in _MARKS and cell.margin < 0.5:
         return True
-    near = cell.predicted in _MARKS or cell.distance < THRESHOLDS.foreign
-    return near and not cell.hand and cell.margin < THRESHOLDS.holds
+    near = cell.predicted in _MARKS or cell.distance < FOREIGN
+    return near and not cell.hand and cell.margin < HOLDS

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import product
+from itertools import groupby, product
+from operator import attrgetter
 
 import numpy as np
 
@@ -41,11 +42,8 @@ class Leaf:
     @cached_property
     def by_name(self) -> dict[str, list[Cell]]:
         """The cells of each number and reply, in order."""
-        cells: dict[str, list[Cell]] = {}
-        for cell in self.cells:
-            if cell.name:
-                cells.setdefault(cell.name, []).append(cell)
-        return cells
+        by_name = groupby(self.cells, attrgetter("name"))
+        return {name: [*cells] for name, cells in by_name if name}
 
 
 def looked(grey: Image, seeds: Sequence[dict[str, str]] = ()) -> list[Leaf]:
