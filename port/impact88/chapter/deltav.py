@@ -25,9 +25,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-AS_USED = 2 / 3
-"""The factor with which the chapter computed Table 2 and Section VII."""
-AS_PRINTED = 1.0
+AS_USED, AS_PRINTED = 2 / 3, 1.0
+"""The factor with which the chapter computed Table 2 and Section VII, and Equation 19's own."""
 
 GIVEN = ("MA", "MB", "SA", "SB", "LOSS")
 """What Equation 19 asks for."""

@@ -38,8 +38,8 @@ Array = NDArray[np.float64]
 
 SPIN_WEIGHT = 25.0
 """Weight of a squared spin against a squared velocity, ft²."""
-E_BOUNDS = (0.0, 1.0)
-EM_BOUNDS = (-1.0, 0.0)
+E_BOUNDS, EM_BOUNDS = (0.0, 1.0), (-1.0, 0.0)
+"""Between which the coefficients are fitted: the chapter's own ranges."""
 _HALF_DIGIT_COEFFICIENT, _HALF_DIGIT = 0.0005, 0.05
 """Half of the last digit that Table 2 prints of coefficients, and of loss and velocity changes."""
 _GRIDS = (201, *[21] * 6)

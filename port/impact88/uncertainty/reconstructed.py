@@ -33,8 +33,10 @@ Flags = NDArray[np.bool_]
 Point = tuple[Floats, Floats, Floats, Flags]
 Progress = Callable[[int], object]
 
+# chosen on 14 problems, half of them redundant; doubled on four of those, where nothing else is
+# said, no bound moves by 1e-4 of its range, and draws only where their density is improper
 SIGMAS, FAR = 3.0, 6.0
-"""Where a normal without limits ends; and, taken for normal, any value."""
+"""Where a normal without limits ends, by definition; and, taken for normal, any value."""
 CHUNK = 1 << 14
 """Draws at a time: bounds the memory."""
 CHORDS, NEWTONS = 8, 12
@@ -54,7 +56,8 @@ FREE = 4096
 """Draws as without walls that chains may start from."""
 NEAR, RIDGE = 1.5, 1e-9
 """Walls are learnt no farther from the middle between them, where a quotient's pole would spoil
-them; the ridge holds still what the places met do not tell."""
+them: learnt anywhere, draws of one problem move by .6 of their deviation. The ridge holds still
+what the places met do not tell."""
 _SINGULAR = 1e-12
 """Singular values of so little of the largest are none."""
 

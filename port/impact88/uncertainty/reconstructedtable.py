@@ -25,8 +25,9 @@ _RESULTS = (*_RESULTS, "PDOFA", "PDOFB", "VC", "VS", "LOSS", *COEFFICIENTS)
 _ANSWERS = ("SA", "SB", "DVA", "DVB")
 """What the answer holds, known within limits or not."""
 QUANTILES = (0.05, 0.5, 0.95)
-MOST_CORRELATED = 7
-DRIVERS = 3
+"""The median and the middle 90 % of the draws."""
+MOST_CORRELATED, DRIVERS = 7, 3
+"""Columns of the tables: what 96 characters hold."""
 ILL_POSED = 0.25
 """From this share of the largest speed, a velocity's standard deviation is called ill-posed."""
 TOO_FAR = 3.0
