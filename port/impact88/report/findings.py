@@ -20,8 +20,6 @@ from ..status import sentences
 from ..units import RULES, System, base_of, system_of
 from .frame import render
 
-FIGURE_WIDTH = 150.0
-"""Of the drawing, in mm: what both papers leave between their margins, less a little."""
 DRIVERS = 3
 """Inputs named for each result: they fill a line."""
 FORWARD = ("SAF", "SBF", "VAX", "VAY", "WAF", "VBX", "VBY", "WBF", "DVA", "DVB", "LOSS")
@@ -44,37 +42,35 @@ _CONSEQUENCES = (
 
 
 class Table(NamedTuple):
-    """One table of a report; columns in ``left`` start at the left; ``place``: before the figure
-    ("answer") or after it ("content")."""
+    """One table of a report; columns in ``left`` start at the left."""
 
     title: str
     headings: Sequence[str]
     rows: Sequence[Sequence[str]]
     left: Sequence[int]
-    place: str = "content"
     caption: str = ""
 
 
 class Spread(NamedTuple):
-    """How uncertain a result is, in base units; NaN for what is not known."""
+    """How uncertain a result is, in base units, NaN for what is not known; and what drives it."""
 
     deviation: float = math.nan
     low: float = math.nan
     high: float = math.nan
     lower: float = math.nan
     upper: float = math.nan
+    drivers: Sequence[str] = ()
 
 
 class Findings(NamedTuple):
-    """An impact's ``values`` with all that follows, the ``spreads`` of its ``main`` results, the
-    ``drivers`` of each, ``remarks`` in sentences, and the ``scene`` that is drawn; ``inverse``:
-    whether it was reconstructed."""
+    """An impact's ``values`` with all that follows, the ``spreads`` of its ``main`` results,
+    ``remarks`` in sentences, and the ``scene`` that is drawn; ``inverse``: whether it was
+    reconstructed."""
 
     inverse: bool
     values: Mapping[str, float]
     main: Sequence[str]
     spreads: Mapping[str, Spread]
-    drivers: Mapping[str, Sequence[str]]
     remarks: Sequence[str]
     scene: Mapping[str, float]
 
@@ -103,7 +99,8 @@ def report(
     found = (_forward if whole else _inverse)(entries, source, samples, seed, units)
     drawing = None
     if set(SCENE) <= set(found.scene):  # what is not determined cannot be drawn
-        look = (FIGURE_WIDTH, "Scene from above", units, entries.outlines)
+        # as wide, in mm, as both papers leave between their margins, less a little
+        look = (150.0, "Scene from above", units, entries.outlines)
         drawing = scene_drawing(found.scene, found.values, *look)
     tables = [_answer(found, units), *_details(found, entries, units)]
     page = render(
@@ -159,7 +156,6 @@ def _forward(entries: Entries, source: str, samples: int, seed: int, units: Syst
     results = {name: float(value) for name, value in solve(nominal).items()}
     values = completed({**{n: float(v) for n, v in nominal.items()}, **results}, None)
     spreads: dict[str, Spread] = {}
-    drivers: dict[str, list[str]] = {}
     remarks = sentences(int(results["STATUS"]), {**nominal, **results})
     if any(item.varies for item in inputs.values.values()):
         drawn: dict[str, Any] = {"samples": samples, "seed": seed, "keep_draws": True}
@@ -172,19 +168,19 @@ def _forward(entries: Entries, source: str, samples: int, seed: int, units: Syst
         for name, bound in found.bounds.items():
             spread = found.spreads[name]
             limits = spread.quantiles[0.05], spread.quantiles[0.95], bound.lower, bound.upper
-            spreads[name] = Spread(spread.deviation, *limits)
             ranked = sorted(found.drives[name].items(), key=lambda entry: -entry[1].swing)
-            drivers[name] = [
+            drivers = [
                 f"{source} {number(drive.swing * units.factor(name), 3)} {units.unit(name)}".strip()
                 for source, drive in ranked[:DRIVERS]
                 if drive.swing > 0
             ]
+            spreads[name] = Spread(spread.deviation, *limits, drivers)
         remarks += [
             f"{100 * share:.3g} % of the draws carry the warning {name}"
             for name, share in found.warnings.items()
         ]
     scene = {name: float(nominal[name]) for name in SCENE}
-    return Findings(False, values, FORWARD, spreads, drivers, remarks, scene)
+    return Findings(False, values, FORWARD, spreads, remarks, scene)
 
 
 def _inverse(entries: Entries, source: str, samples: int, seed: int, units: System) -> Findings:
@@ -202,18 +198,19 @@ def _inverse(entries: Entries, source: str, samples: int, seed: int, units: Syst
     sought = [n for n in INVERSE if n not in found[0].system.known]
     spread = Measured(found[0], samples, seed, sought)
     values = spread.values
-    spreads, drivers = {}, {}
+    spreads = {}
     for name in spread.names:
         low = high = lower = upper = math.nan
         if spread.draws:
             low, high = spread.draws.spread(name, (0.05, 0.95)).quantiles.values()
             lower, upper = spread.ranges[name].lower, spread.ranges[name].upper
-        spreads[name] = Spread(float(spread.deviations[name]), low, high, lower, upper)
-        drivers[name] = [
+        drivers = [
             f"{known} {100 * share:.0f} %"
             for known, share in spread.drivers[name][:DRIVERS]
             if share >= 0.005
         ]
+        deviation = float(spread.deviations[name])
+        spreads[name] = Spread(deviation, low, high, lower, upper, drivers)
     remarks = spread.warnings(units)
     if len(found) > 1:
         remarks.append(f"{len(found)} impacts agree with what is known; this is the first of them")
@@ -221,7 +218,7 @@ def _inverse(entries: Entries, source: str, samples: int, seed: int, units: Syst
     scene.setdefault("M", float(DEFAULT_M))
     if scene["M"] == 4 or "EM" not in scene:
         scene["EM"] = 0.0  # which nothing drawn depends on
-    return Findings(True, values, sought, spreads, drivers, remarks, scene)
+    return Findings(True, values, sought, spreads, remarks, scene)
 
 
 def _amount(name: str, value: float, units: System, like: float = math.nan) -> str:
@@ -262,26 +259,18 @@ def _unit(name: str, units: System) -> str:
 
 
 def _answer(found: Findings, units: System) -> Table:
-    heads, caption = _SPREAD[:1], ""
-    if found.spreads:
-        heads = _SPREAD
-        caption = _CAPTION + "; none are sought for speeds after" * (not found.inverse)
+    heads = _SPREAD if found.spreads else _SPREAD[:1]
+    caption = _CAPTION + "; none are sought for speeds after" * (not found.inverse)
     rows = []
     for name in found.main:
         if name in found.values:
             spread = found.spreads.get(name, Spread())
-            shown = (found.values[name], *spread)[: len(heads)]
+            shown = (found.values[name], *spread[:5])[: len(heads)]
             cells = [_amount(name, x, units, spread.deviation) for x in shown]
             rows.append([name, quantity(name).meaning, *cells, _unit(name, units)])
     headings = ["", "result", *heads, "unit"]
-    return Table(
-        "Answer",
-        headings,
-        rows,
-        (0, 1, len(headings) - 1),
-        "answer",
-        caption if found.spreads else "",
-    )
+    left = (0, 1, len(headings) - 1)
+    return Table("Answer", headings, rows, left, caption if found.spreads else "")
 
 
 def _details(found: Findings, entries: Entries, units: System) -> list[Table]:
@@ -296,12 +285,12 @@ def _details(found: Findings, entries: Entries, units: System) -> list[Table]:
         rows.append([name, quantity(name).meaning, text, unit, "; ".join(filter(None, source))])
     headings = ["", "input", "given", "unit", "source"]
     tables = [Table("Inputs as given", headings, rows, (0, 1, 3, 4))]
-    if found.drivers:
-        rows = [
-            [name, quantity(name).meaning, ", ".join(ranked)]
-            for name, ranked in found.drivers.items()
-            if ranked
-        ]
+    rows = [
+        [name, quantity(name).meaning, ", ".join(spread.drivers)]
+        for name, spread in found.spreads.items()
+        if spread.drivers
+    ]
+    if rows:
         caption = "how far the result goes while one input goes through its limits"
         caption = f"{'share of the variance' if found.inverse else caption}, largest first"
         headings = ["", "result", "driven by"]
