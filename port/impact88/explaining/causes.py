@@ -90,13 +90,13 @@ class PageEvidence:
         self.base = differing(found)
         self.most_left = int(_ALL_BUT * len(self.base))
         self.results = {
-            one.name: [
+            expected.name: [
                 float(text)
-                for text in sorted(one.texts, key=one.texts.__getitem__)
-                if one.texts[text] < AGREES and value_of(text) is not None
+                for text in sorted(expected.texts, key=expected.texts.__getitem__)
+                if expected.texts[text] < AGREES and value_of(text) is not None
             ]
-            for one in self.recovered.search.expected
-            if one.default >= AGREES
+            for expected in self.recovered.search.expected
+            if expected.default >= AGREES
         }
         self.texts = {
             name: reading.text
@@ -105,7 +105,7 @@ class PageEvidence:
         }
         self.numbers = {name: [float(text)] for name, text in self.texts.items()} | self.results
         printed = as_printed(self.recovered.outcome)
-        self._contradicted = {name: one for name, one in printed.items() if name in self.base}
+        self._contradicted = {name: value for name, value in printed.items() if name in self.base}
 
     def decimals(self, name: str) -> int:
         """How many decimals a number has on the page."""
@@ -131,7 +131,7 @@ class PageEvidence:
         for name, column in found.items():
             unit = 10.0 ** -min(FIELDS[name].places or 9, self.decimals(name))
             numbers = self.results.get(name, [])
-            near = [np.abs(column - one) <= units * unit + part * abs(one) for one in numbers]
+            near = [np.abs(column - x) <= units * unit + part * abs(x) for x in numbers]
             misfits += ~np.any(near, axis=0) if near else 0
         return misfits <= self.most_left
 
@@ -152,10 +152,10 @@ class PageEvidence:
         compared = self.results.keys() | self.texts.keys() & predicted.keys() & inputs - spared
         for name in compared:
             low, high = predicted.get(name, (math.nan, math.nan))
-            if not any(low <= one <= high for one in self.numbers[name]):
+            if not any(low <= number <= high for number in self.numbers[name]):
                 wrong |= {name}
         # what contradicts the program's number contradicts a cause that predicts the same
-        wrong |= {n for n, one in self._contradicted.items() if predicted.get(n, one) == one}
+        wrong |= {n for n, value in self._contradicted.items() if predicted.get(n, value) == value}
         wrong |= {"ENDING"} if self.shown.ending not in (None, outcome.ending) else set()
         for check in self.found.replies:
             read = check.status in (Status.READ, Status.CONTRADICTED)
@@ -178,8 +178,8 @@ def differing(found: Judged) -> frozenset[str]:
     """The names of what differs; replies and labels are marked as such."""
     replies = set(map(id, found.replies))
     return frozenset(
-        [f"{'reply ' * (id(one) in replies)}{one.name}" for one in found.contradicted]
-        + [f"label {one.name}" for one in found.shown.mislabelled]
+        [f"{'reply ' * (id(check) in replies)}{check.name}" for check in found.contradicted]
+        + [f"label {label.name}" for label in found.shown.mislabelled]
     )
 
 
@@ -203,10 +203,10 @@ def digits_of(text: str | None) -> int:
 def in_last_places(name: str, printed: str | None, other: str | None) -> bool:
     """Whether a result is another by no more than other arithmetics leave open: one in the last
     place it is floored to, or the last of the digits of the kinetic energy."""
-    one, two = value_of(printed or ""), value_of(other or "")
-    if one is None or two is None or name not in FIELDS:
+    first, second = value_of(printed or ""), value_of(other or "")
+    if first is None or second is None or name not in FIELDS:
         return False
     places = FIELDS[name].places
     units = 1 if places is not None else _ENERGY_UNITS
-    last = two.adjusted() - _ENERGY_DIGITS + 1 if places is None else -places
-    return abs(one - two).scaleb(-last) <= units
+    last = second.adjusted() - _ENERGY_DIGITS + 1 if places is None else -places
+    return abs(first - second).scaleb(-last) <= units

@@ -11,6 +11,7 @@ share a rank: the page cannot tell them apart.
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -36,8 +37,6 @@ from .hypotheses import Rows, other_programs
 
 MOST = 6
 """Explanations given at most."""
-_LABEL = 10.0
-"""Bits of wrong labels on numbers that are what the program prints: as a digit misread."""
 _LEFT = 14.0
 """Bits of a number that a cause leaves unexplained: more than of a slip besides (10 to 13.5), so
 that a cause with the slip comes before the one without."""
@@ -57,8 +56,6 @@ _LAST_PLACE = 8.0
 and for misread inputs on a page on which nothing worse is wrong."""
 _SLIP = min(slips.BITS.values())
 """Bits of a slip besides, at least."""
-_ANOTHER_ARITHMETIC = 17.0
-"""Bits of an arithmetic that is not among those tried: less than two last places misread (37)."""
 
 
 @np.errstate(all="ignore")  # a cause tried may leave a double's range, and then explains nothing
@@ -67,7 +64,7 @@ def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) ->
     ``rereading``: slips in its inputs; ``in_time``: whether more causes may still be tried."""
     page = PageEvidence(found)
     causes = [*_slipped(page, (), page.base, found.recovered.outcome.fields), *_labels(page)]
-    if not found.recovered.missing and any(not one.startswith("label ") for one in page.base):
+    if not found.recovered.missing and any(not name.startswith("label ") for name in page.base):
         rows = Rows(page)
         causes += [*_reread(page, rereading.best(1)), *rows.causes(), *machines.causes(page)]
         for more in (
@@ -75,14 +72,15 @@ def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) ->
             lambda: (*rows.searched(), *_exchanged_and_slipped(page, rows, rereading)),
             lambda: other_programs(page),
         ):
-            whole = [one.bits for one in causes if not one.left]
+            whole = [cause.bits for cause in causes if not cause.left]
             if in_time() and min(whole, default=math.inf) > _ENOUGH:
                 causes += more()
         longer = any(page.decimals(name) > (FIELDS[name].places or 9) for name in page.texts)
-        accused = any(_accuses(one) and not one.left for one in causes)
+        accused = any(_accuses(cause) and not cause.left for cause in causes)
         if page.only_last_places and len(page.base) > 1 and not longer and not accused:
+            bits = slips.BITS[slips.DIGIT] + _LAST_PLACE  # as one of them misread
             note = f"all that differs is off by one in its last place; {NOT_APPLESOFT}"
-            causes.append(Cause("another arithmetic", note, _ANOTHER_ARITHMETIC, frozenset()))
+            causes.append(Cause("another arithmetic", note, bits, frozenset()))
     return _ranked(page, causes)
 
 
@@ -96,7 +94,7 @@ def explain_copy(
     causes = [*_slipped(page, (), page.base, found.recovered.outcome.fields), *_labels(page)]
     if not found.recovered.missing:
         rereading = Rereading(found.recovered)
-        tried = [one.changes for one in rereading.best()[:_BY_COPY]]
+        tried = [reread.changes for reread in rereading.best()[:_BY_COPY]]
         nearest = _nearest_slips(page, rereading)[:_BY_COPY]
         for changes in filter(None, dict.fromkeys([*nearest, *tried])):
             other = put_right(found, {change.field: change.would_be for change in changes})
@@ -112,26 +110,27 @@ def _labels(page: PageEvidence) -> Iterator[Cause]:
     """Labels that stand in each other's place, or name another number, where the number is what
     the program prints."""
     wrong = [
-        one
-        for one in page.shown.mislabelled
-        if one.name in page.checks and page.checks[one.name].same
+        label
+        for label in page.shown.mislabelled
+        if label.name in page.checks and page.checks[label.name].same
     ]
     if wrong:
-        exchanged = sorted(one.read for one in wrong) == sorted(one.printed for one in wrong)
-        kind = LABELS_EXCHANGED if exchanged else LABEL_WRONG
-        changes = tuple(Change(kind, one.name, one.read, one.printed) for one in wrong)
-        left = page.base - {f"label {one.name}" for one in wrong}
-        yield Cause(kind, "the numbers are what the program prints there", _LABEL, left, changes)
+        read, printed = (sorted(map(attrgetter(name), wrong)) for name in ("read", "printed"))
+        kind = LABELS_EXCHANGED if read == printed else LABEL_WRONG
+        changes = tuple(Change(kind, label.name, label.read, label.printed) for label in wrong)
+        left = page.base - {f"label {label.name}" for label in wrong}
+        note, bits = "the numbers are what the program prints there", slips.BITS[slips.DIGIT]
+        yield Cause(kind, note, bits, left, changes)
 
 
 def _reread(page: PageEvidence, rereads: Iterable[Reread]) -> Iterator[Cause]:
     """Inputs put right, with what results are then still a slip away."""
     best = math.inf
-    for one in rereads:
-        wrong = page.left(one.scored.scene, one.scored.outcome, one.changes)
-        least = sum(map(_believed, one.changes)) + _SLIP * (len(wrong) - page.most_left)
-        if one.changes and least <= min(best + _WORSE, _MOST_BITS):
-            for cause in _slipped(page, one.changes, wrong, one.scored.outcome.fields):
+    for reread in rereads:
+        wrong = page.left(reread.scored.scene, reread.scored.outcome, reread.changes)
+        least = sum(map(_believed, reread.changes)) + _SLIP * (len(wrong) - page.most_left)
+        if reread.changes and least <= min(best + _WORSE, _MOST_BITS):
+            for cause in _slipped(page, reread.changes, wrong, reread.scored.outcome.fields):
                 best = min(best, _weight(cause))
                 yield cause
 
@@ -140,10 +139,10 @@ def _exchanged_and_slipped(page: PageEvidence, rows: Rows, rereading: Rereading)
     """Inputs of a side or an axis exchanged, and a slip in another."""
     for row, exchanged in rows.exchanges():
         texts = {change.field: change.would_be for change in exchanged}
-        for one in rereading.best(1, texts):
-            changes = (*exchanged, *one.changes)
-            bits = row.bits + sum(map(_believed, one.changes))
-            left = page.left(one.scored.scene, one.scored.outcome, changes)
+        for reread in rereading.best(1, texts):
+            changes = (*exchanged, *reread.changes)
+            bits = row.bits + sum(map(_believed, reread.changes))
+            left = page.left(reread.scored.scene, reread.scored.outcome, changes)
             for cause in _slipped(page, changes, left):
                 yield replace(cause, bits=bits, note=row.note)
 
@@ -152,11 +151,11 @@ def _nearest_slips(page: PageEvidence, rereading: Rereading) -> list[tuple[Chang
     """The single slips of printed inputs, those first whose results are nearest to the page's by
     double precision; that differs from what the program prints as in the scene recovered."""
     scene, fields = page.recovered.scene, page.recovered.outcome.fields
-    tried = [one for one in rereading.single() if one.kind != slips.TWO_DIGITS]
+    tried = [change for change in rereading.single() if change.kind != slips.TWO_DIGITS]
     columns = {name: np.full(len(tried) + 1, double(text)) for name, text in scene.items()}
-    for row, one in enumerate(tried, 1):
-        turned = one.field == "MUP" and mu_turned(scene["MU"], one.printed)
-        columns[scene_name(one.field)][row] = double(one.would_be) * (-1 if turned else 1)
+    for row, change in enumerate(tried, 1):
+        turned = change.field == "MUP" and mu_turned(scene["MU"], change.printed)
+        columns[scene_name(change.field)][row] = double(change.would_be) * (-1 if turned else 1)
     found = {
         name: column - column[0] + double(fields[name])
         for name, column in in_doubles(columns, [n for n in page.results if n in fields]).items()
@@ -188,10 +187,10 @@ def _slipped(
     note = ""
     if changes[0].field.startswith("reply "):
         note = "in the typed reply"
-    elif any(one.field in page.recovered.apart for one in changes):
+    elif any(change.field in page.recovered.apart for change in changes):
         note = "in the inputs given separately"
     kind = " and ".join(dict.fromkeys(change.kind for change in changes))
-    yield Cause(kind, note, bits, left - {one.field for one in changes}, changes)
+    yield Cause(kind, note, bits, left - {change.field for change in changes}, changes)
 
 
 def _believed(change: Change) -> float:
@@ -205,57 +204,53 @@ def _believed(change: Change) -> float:
 def _ranked(page: PageEvidence, causes: Iterable[Cause]) -> list[Cause]:
     """Those that explain nearly all, the least to believe first, with ranks; none that only adds
     to a simpler one, or says it again."""
-    offered = [
-        one
-        for one in causes
-        if len(one.left) <= page.most_left and page.base - one.left and _weight(one) <= _MOST_BITS
-    ]
-    offered.sort(key=_weight)
+    nearly = [c for c in causes if len(c.left) <= page.most_left and page.base - c.left]
+    offered = sorted((c for c in nearly if _weight(c) <= _MOST_BITS), key=_weight)
     chosen: list[Cause] = []
-    for one in offered:
-        near = _weight(one) <= _weight(offered[0]) + _WORSE
-        if near and not any(_adds_to(one, other) for other in chosen):
-            chosen.append(one)
+    for cause in offered:
+        near = _weight(cause) <= _weight(offered[0]) + _WORSE
+        if near and not any(_adds_to(cause, other) for other in chosen):
+            chosen.append(cause)
     # a misreading that would do is not left out where another machine is named
-    innocent = next((one for one in chosen if not _accuses(one)), None)
+    innocent = next((cause for cause in chosen if not _accuses(cause)), None)
     if innocent in chosen[MOST:]:
         chosen[MOST - 1] = innocent
     leaders: list[Cause] = []
     ranked = []
-    for one in chosen[:MOST]:
+    for cause in chosen[:MOST]:
         # that another program or machine made the page is said beside no misreading that explains
         # it better
         alike = (
             rank
             for rank, other in enumerate(leaders, 1)
-            if one.left == other.left
-            and _weight(one) <= _weight(other) + _ALIKE
-            and (_accuses(other) or not _accuses(one))
+            if cause.left == other.left
+            and _weight(cause) <= _weight(other) + _ALIKE
+            and (_accuses(other) or not _accuses(cause))
         )
         rank = next(alike, len(leaders) + 1)
-        leaders += [one] * (rank > len(leaders))
-        changes = [_described(page, change) for change in one.right]
-        found = len(page.base - one.left), len(page.base), changes, rank
-        ranked.append(Cause(one.kind, one.note, one.bits, one.left, one.right, *found))
-    return sorted(ranked, key=lambda one: (one.rank, _weight(one)))
+        leaders += [cause] * (rank > len(leaders))
+        changes = [_described(page, change) for change in cause.right]
+        found = len(page.base - cause.left), len(page.base), changes, rank
+        ranked.append(Cause(cause.kind, cause.note, cause.bits, cause.left, cause.right, *found))
+    return sorted(ranked, key=lambda cause: (cause.rank, _weight(cause)))
 
 
-def _weight(one: Cause) -> float:
-    return one.bits + _LEFT * len(one.left)
+def _weight(cause: Cause) -> float:
+    return cause.bits + _LEFT * len(cause.left)
 
 
-def _accuses(one: Cause) -> bool:
-    return one.note.endswith(NOT_APPLESOFT)
+def _accuses(cause: Cause) -> bool:
+    return cause.note.endswith(NOT_APPLESOFT)
 
 
-def _adds_to(one: Cause, other: Cause) -> bool:
+def _adds_to(cause: Cause, other: Cause) -> bool:
     """Whether a cause puts right what a likelier one does and more, or the same numbers in the
     same way, or says the same."""
     if not other.right:
-        return not one.right and (one.kind, one.note) == (other.kind, other.note)
-    rights, others = ({(c.field, c.would_be) for c in each.right} for each in (one, other))
-    if one.kind == other.kind and dict(rights).keys() == dict(others).keys():
-        return len(one.left) > len(other.left) or rights == others
+        return not cause.right and (cause.kind, cause.note) == (other.kind, other.note)
+    rights, others = ({(c.field, c.would_be) for c in each.right} for each in (cause, other))
+    if cause.kind == other.kind and dict(rights).keys() == dict(others).keys():
+        return len(cause.left) > len(other.left) or rights == others
     return others < rights
 
 
@@ -266,10 +261,10 @@ def _described(page: PageEvidence, change: Change) -> dict[str, Any]:
     name = name.removeprefix("reply ")
     reading = readings.get(name)
     label = kind in (LABELS_EXCHANGED, LABEL_WRONG)
-    one = next((one for one in page.shown.labels if label and one.name == name), reading)
-    line, column = (one.line, one.column) if one else (None, None)
+    place = next((check for check in page.shown.labels if label and check.name == name), reading)
+    line, column = (place.line, place.column) if place else (None, None)
     look = ""
-    if one and (label or kind in slips.BITS):
+    if place and (label or kind in slips.BITS):
         at, asked = (line, column), f"{printed} or {would_be}"
         if kind == slips.DIGIT and reading is not None:
             index = next(at for at in range(len(printed)) if printed[at] != would_be[at])

@@ -24,12 +24,10 @@ from ..files import packaged_text
 from ..reading import numerals
 from ..recovery import replays
 from ..recovery.search import Column, in_doubles
-from ..recovery.slips import Change
+from ..recovery.slips import BITS, DIGIT, Change
 from ..recovery.typedtext import with_opposite_mu
 from .causes import NOT_APPLESOFT, Cause, PageEvidence, Range, decimals_of, digits_of
 
-_ANY_TWO = 20.0
-"""Bits of any two numbers exchanged: then no slip is looked for besides."""
 _COMBINATIONS = 60_000
 """Numbers that may have been computed with, of all inputs together."""
 _BITS = {"a changed line of the listing": 24.0, "another program": 20.0}
@@ -71,8 +69,8 @@ def table() -> tuple[Row, ...]:
         if "{one}" in line:
             of_results = ";;" in line
             names = [n for n in FIELDS if n not in INPUTS] if of_results else list(INPUTS)
-            for one, two in combinations(map(scene_name, names), 2):
-                lines.append(line.replace("{one}", one).replace("{two}", two))
+            for first, second in combinations(map(scene_name, names), 2):
+                lines.append(line.replace("{one}", first).replace("{two}", second))
         else:
             lines.append(line)
     rows: dict[str, Row] = {}
@@ -93,22 +91,22 @@ class Rows:
         self._values = doubles_of(self._scene)
         self._places = {name: decimals_of(text.strip()) for name, text in self._scene.items()}
         self._every = [
-            one._replace(scene=scene)
+            case._replace(scene=scene)
             for row in table()
-            for one in self._made(row)
-            for scene in (one.scene, *with_opposite_mu(one.scene))
+            for case in self._made(row)
+            for scene in (case.scene, *with_opposite_mu(case.scene))
         ]
-        self._found = self._in_doubles([one.scene for one in self._every], page.results)
-        for index, one in enumerate(self._every):
-            names = {name: self._found[name][index] for name in self._found if one.row.results}
-            for name, made in one.row.results.items():
+        self._found = self._in_doubles([case.scene for case in self._every], page.results)
+        for index, case in enumerate(self._every):
+            names = {name: self._found[name][index] for name in self._found if case.row.results}
+            for name, made in case.row.results.items():
                 if name in names:
                     self._found[name][index] = value(made, {**names, "x": names[name]})
 
     def causes(self) -> Iterator[Cause]:
         """The rows of inputs that fit the page, and those of results that change what differs."""
         fits = self._page.fits(self._found, len(self._every), 1.05, _ROUGH)
-        own = (one for one, fit in zip(self._every, fits, strict=True) if fit)
+        own = (case for case, fit in zip(self._every, fits, strict=True) if fit)
         results = (
             Hypothesis(row, self._scene)
             for row in table()
@@ -117,10 +115,10 @@ class Rows:
         return self._tested([*own, *results])
 
     def exchanges(self) -> Iterator[tuple[Row, list[Change]]]:
-        """The inputs in each other's place that are printed on the page."""
+        """Printed inputs in each other's place, where that is no rarer than two digits misread."""
         for row in table():
             names = all(isinstance(made, str) for made in row.inputs.values())
-            for made in self._made(row) if names and row.bits < _ANY_TWO else ():
+            for made in self._made(row) if names and row.bits < 2 * BITS[DIGIT] else ():
                 changes = self._changes(made)
                 if {change.field for change in changes} <= set(self._printed):
                     yield row, changes
@@ -130,15 +128,15 @@ class Rows:
         far = self._page.far(self._found, len(self._every))
         units = [
             (distance, index)
-            for index, (one, distance) in enumerate(zip(self._every, far, strict=True))
-            if one.within and not one.row.results and one.scene["M"] == "6"
+            for index, (case, distance) in enumerate(zip(self._every, far, strict=True))
+            if case.within and not case.row.results and case.scene["M"] == "6"
         ]
         if units:
             unit = self._every[min(units)[1]]
             columns = list(self._columns(unit))
             search = self._page.recovered.search
             picks = search.promising(columns, _COMBINATIONS)
-            best = min(search.replayed(columns, picks), key=lambda one: one.cost)
+            best = min(search.replayed(columns, picks), key=lambda scored: scored.cost)
             yield from self._tested([unit._replace(scene=best.scene)])
 
     # --- the scene that a row means ---
@@ -167,23 +165,23 @@ class Rows:
             if (scene := {**self._scene, **own}) != self._scene:
                 yield Hypothesis(row, scene, within)
 
-    def _changes(self, one: Hypothesis) -> list[Change]:
+    def _changes(self, case: Hypothesis) -> list[Change]:
         """The inputs that it puts right, as they would be printed."""
         changes = []
         for name in INPUTS:
-            own, text = self._scene[scene_name(name)], one.scene[scene_name(name)]
-            made = one.row.inputs.get(scene_name(name))
+            own, text = self._scene[scene_name(name)], case.scene[scene_name(name)]
+            made = case.row.inputs.get(scene_name(name))
             if made and text != own:
                 printed = self._printed.get(name, own)
                 other = self._printed.get("MUP" if made == "MU" else str(made), printed)
                 right = other if other != printed else numerals.as_printed(text) or text
-                changes.append(Change(one.row.kind, name, printed, right))
+                changes.append(Change(case.row.kind, name, printed, right))
         return changes
 
     def _in_doubles(
         self, scenes: Sequence[Mapping[str, str]], names: Iterable[str]
     ) -> dict[str, Any]:
-        columns = {name: np.full(len(scenes), one) for name, one in self._values.items()}
+        columns = {name: np.full(len(scenes), x) for name, x in self._values.items()}
         for index, scene in enumerate(scenes):
             for name, text in scene.items():
                 if text is not self._scene[name]:
@@ -205,11 +203,11 @@ class Rows:
     # --- what it leaves unexplained ---
 
     def _tested(self, every: Sequence[Hypothesis]) -> Iterator[Cause]:
-        scenes = [one.scene for one in every]
+        scenes = [case.scene for case in every]
         names = [name for name in self._page.texts if name not in INPUTS]
         columns = self._in_doubles(scenes, names) if scenes else {}
-        for index, (one, outcome) in enumerate(zip(every, replays.run_all(scenes), strict=True)):
-            row, fields, changes = one.row, outcome.fields, self._changes(one)
+        for index, (case, outcome) in enumerate(zip(every, replays.run_all(scenes), strict=True)):
+            row, fields, changes = case.row, outcome.fields, self._changes(case)
             values = {name: float(column[index]) for name, column in columns.items()}
             otherwise: dict[str, Range] = {}
             for name, made in row.results.items():
@@ -225,7 +223,7 @@ class Rows:
                     otherwise[name] = float(text), float(text)
                     if fields.get(name, text) != text:
                         changes.append(Change(row.kind, name, text, fields[name]))
-            given = one.scene, outcome, changes, otherwise, frozenset(row.inputs)
+            given = case.scene, outcome, changes, otherwise, frozenset(row.inputs)
             yield Cause(row.kind, row.note, row.bits, self._page.left(*given), tuple(changes))
 
 

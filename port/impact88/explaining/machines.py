@@ -30,13 +30,10 @@ from .causes import (
     digits_of,
 )
 
-_CUT = 13.0
-"""Bits for results rounded or truncated by the program itself; one more by another machine."""
-_SOME_LINES = 14.2
-"""Bits for an office's copy that rounds on some lines: more than for another arithmetic (14), less
-than for a last place misread (18), which a rounded one looks like."""
-_OTHERWISE = 14.5
-"""Bits for results to other decimals and for single precision: as for another unit."""
+_BITS = 14.0
+"""Bits for another machine or way to print, about as for another unit (14.5); a tenth more for each
+of its ranks, the commonest first, and a whole one for two of them together. All are less than two
+results misread by one in their last places (36), which a rounded page looks like."""
 _SHAKEN = 6
 """Runs in single precision; with twice as many the ranges grow by a tenth."""
 _OPEN_UNITS, _OPEN = 12, 3e-4
@@ -57,8 +54,7 @@ CUTS: dict[str, Callable[[float], int]] = {
 """How programs bring a number to so many decimals; the listing floors."""
 
 
-_DOUBLES = (("", 14.0, _PI), (" with exact pi", 14.5, math.pi), (" with pi = 3.1416", 15.0, 3.1416))
-_OTHER_PI = 14.3
+_DOUBLES = (("", 1, _PI), (" with exact pi", 4, math.pi), (" with pi = 3.1416", 5, 3.1416))
 _PIS = ("3.1416", "3.14159", "3.1415927", "3.141592654", "3.14")
 
 
@@ -66,13 +62,13 @@ def causes(page: PageEvidence) -> Iterator[Cause]:
     """Every other machine and way to print, tried; of those of one kind the best."""
     known = all(reading.clean for reading in page.shown.fields.values())
     best: dict[str, Cause] = {}
-    for one in _causes(page):
-        kind = f"{one.kind} {one.note}" if one.bits == _SOME_LINES else one.kind
-        if kind not in best or len(one.left) < len(best[kind].left):
-            best[kind] = one
-    for one in best.values():
+    for cause in _causes(page):
+        kind = f"{cause.kind} {cause.note}" if cause.note.startswith("on line") else cause.kind
+        if kind not in best or len(cause.left) < len(best[kind].left):
+            best[kind] = cause
+    for cause in best.values():
         accused = NOT_APPLESOFT if known else ""
-        yield replace(one, note="; ".join(filter(None, [one.note, accused])))
+        yield replace(cause, note="; ".join(filter(None, [cause.note, accused])))
 
 
 def _causes(page: PageEvidence) -> Iterator[Cause]:
@@ -86,24 +82,24 @@ def _causes(page: PageEvidence) -> Iterator[Cause]:
     if near[_PI]:
         run = _Run(page, scene, APPLESOFT)
         for how in ("rounded", "truncated"):
-            yield run.cause(f"{how}, not floored", "", _CUT, run.cut(how))
+            yield run.cause(f"{how}, not floored", "", 0, run.cut(how))
             if lines := run.lines(how):
                 where = f"on line{'s' * (len(lines) > 1)} {', '.join(map(str, lines))}"
-                yield run.cause(f"{how}, not floored", where, _SOME_LINES, run.cut(how, lines))
+                yield run.cause(f"{how}, not floored", where, 2, run.cut(how, lines))
         yield from _other_decimals(run)
         if all(digits_of(page.texts.get(name)) <= _SINGLE_DIGITS for name in (*INPUTS, "KI")):
             yield from _single_precision(page, typed, spared)
-    for variant, bits, pi in _DOUBLES:
+    for variant, rank, pi in _DOUBLES:
         if near[pi]:
             run = _Run(page, typed, _with_pi(FLOAT64, pi), spared)
-            yield run.cause(f"IEEE double arithmetic{variant}", "", bits, {})
+            yield run.cause(f"IEEE double arithmetic{variant}", "", rank, {})
             for how in ("rounded", "truncated"):
                 kind = f"IEEE double arithmetic, {how}, not floored"
-                yield run.cause(kind, variant.strip(), bits + 1, run.cut(how))
+                yield run.cause(kind, variant.strip(), rank + 10, run.cut(how))
     for text in _PIS:
         if near[float(text)]:
             run = _Run(page, typed, _with_pi(APPLESOFT, APPLESOFT.number(text)), spared)
-            yield run.cause("another pi in line 300", text, _OTHER_PI, {})
+            yield run.cause("another pi in line 300", text, 3, {})
 
 
 def _with_pi(arithmetic: Arithmetic, pi: Any) -> Arithmetic:
@@ -144,16 +140,16 @@ class _Run:
                 slack = 0.5001 * 10.0**last
             self._own["KI"] = self.energy - slack, self.energy + slack
 
-    def cause(self, kind: str, note: str, bits: float, other: Mapping[str, Range]) -> Cause:
+    def cause(self, kind: str, note: str, rank: int, other: Mapping[str, Range]) -> Cause:
         """What it leaves unexplained, some of its results otherwise."""
         left = self.page.left(self.scene, self.outcome, (), {**self._own, **other}, self.spared)
-        return Cause(kind, note, bits, left)
+        return Cause(kind, note, _BITS + 0.1 * rank, left)
 
     def cut(self, how: str, lines: Iterable[int] | None = None) -> dict[str, Range]:
         """The results, or those of some lines, cut to the listing's decimals."""
         return {
-            name: cut(one, (FIELDS[name].places or 0), how)
-            for name, one in self.values.items()
+            name: cut(value, (FIELDS[name].places or 0), how)
+            for name, value in self.values.items()
             if lines is None or FIELDS[name].line in lines
         }
 
@@ -195,7 +191,7 @@ def _other_decimals(run: _Run) -> Iterator[Cause]:
                 others += places != (FIELDS[name].places or 0) or "E" in text
     if others >= 2:
         said = " to ".join(map(str, sorted({min(decimals), max(decimals)}))) + " decimals"
-        yield run.cause("printed with other decimals", said, _OTHERWISE, own)
+        yield run.cause("printed with other decimals", said, 4, own)
 
 
 def cut(value: float, places: int, how: str) -> Range:
@@ -223,12 +219,12 @@ def _single_precision(
         name: near
         for name in run.outcome.fields.keys() & page.texts.keys() - set(INPUTS)
         if name == "KI" or page.decimals(name) <= (FIELDS[name].places or 0)
-        if (near := _left_open(name, [float(one.fields[name]) for one in outcomes]))
+        if (near := _left_open(name, [float(outcome.fields[name]) for outcome in outcomes]))
     }
     read = exact.values.keys() & page.texts.keys()
     how = max(CUTS, key=lambda how: sum(exact.prints(name, exact.cut(how)) for name in read))
     kind = "single-precision arithmetic" + ("" if how == "floored" else f", {how}, not floored")
-    yield run.cause(kind, "as in GW-BASIC and similar BASICs", _OTHERWISE, ranges)
+    yield run.cause(kind, "as in GW-BASIC and similar BASICs", 4, ranges)
 
 
 def _left_open(name: str, numbers: list[float]) -> Range | None:

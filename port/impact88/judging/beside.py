@@ -94,12 +94,12 @@ def unseen(scene: Scene, printed: Mapping[str, str], program: Program = run_colu
     ``printed``: what it prints, by field."""
     trials = [*_other_values(scene)]
     alike = zip(trials, _same(program, scene, trials), strict=True)
-    shows = {one.names for one, same in alike if not same}
+    shows = {trial.names for trial, same in alike if not same}
     alone = [name for name in INPUTS if (name,) not in shows]
-    digits = [one for one in _other_digits(scene, printed) if one.names in shows]
+    digits = [trial for trial in _other_digits(scene, printed) if trial.names in shows]
     if program is not run_columns:  # those that the listing does not show, and the likeliest
         alike = zip(digits, _same(run_columns, scene, digits), strict=True)
-        digits = [one for one, same in alike if same or one.near]
+        digits = [trial for trial, same in alike if same or trial.near]
     sentences = []
     if alone:
         names = ", ".join(map(scene_name, alone))
@@ -113,9 +113,10 @@ def unseen(scene: Scene, printed: Mapping[str, str], program: Program = run_colu
         if (a, b) not in shows and not {a, b} & set(alone)
     ]
     faint: dict[str, list[str]] = {}
-    for one in compress(digits, _same(program, scene, digits)):
-        text = printed[one.names[0]]
-        faint.setdefault(scene_name(one.names[0]), [*text])[one.place] = f"({text[one.place]})"
+    for trial in compress(digits, _same(program, scene, digits)):
+        (name,), at = trial.names, trial.place
+        text = printed[name]
+        faint.setdefault(scene_name(name), [*text])[at] = f"({text[at]})"
     if faint:
         marked = [f"{name} {''.join(text).replace(')(', '')}" for name, text in faint.items()]
         sentences.append(
@@ -136,9 +137,10 @@ def _other_values(scene: Scene) -> Iterator[_Trial]:
             others = [value * 0.7 + 0.11]
         for other in others:
             yield _Trial((name,), {**scene, scene_name(name): _short(other)})
-    for one, two in _SUMS:
-        turned = {one: _short(double(scene[one]) + 7), two: _short(double(scene[two]) - 7)}
-        yield _Trial((one, two), {**scene, **turned})
+    for first, second in _SUMS:
+        turned = (_short(double(scene[first]) + 7), _short(double(scene[second]) - 7))
+        angles = dict(zip((first, second), turned, strict=True))
+        yield _Trial((first, second), {**scene, **angles})
 
 
 def _short(value: float) -> str:
@@ -162,13 +164,13 @@ def _other_digits(scene: Scene, printed: Mapping[str, str]) -> Iterator[_Trial]:
 def _same(program: Program, scene: Scene, trials: Sequence[_Trial]) -> list[bool]:
     """Whether a program prints the same for each as for the scene, but for what was changed; nearly
     the same where that is a sum."""
-    endings, columns = program([scene, *(one.scene for one in trials)], _DEPENDENT)
+    endings, columns = program([scene, *(trial.scene for trial in trials)], _DEPENDENT)
     differ = {name: texts != texts[0] for name, texts in columns.items()}
     count = sum(differ.values()) + (np.array(endings) != endings[0])
     alike = []
-    for row, one in enumerate(trials, 1):
-        others = [name for name in _DEPENDENT if differ[name][row]] if len(one.names) > 1 else []
-        same = count[row] == len(others) + (one.names[0] == "MUP" and differ["MUP"][row])
+    for row, trial in enumerate(trials, 1):
+        others = [name for name in _DEPENDENT if differ[name][row]] if len(trial.names) > 1 else []
+        same = count[row] == len(others) + (trial.names[0] == "MUP" and differ["MUP"][row])
         for name in others:
             text, other = columns[name][0], columns[name][row]
             unit = 10.0 ** -(FIELDS[name].places or 0)

@@ -41,11 +41,11 @@ class CopyPages:
         self.copy = copy
         restored, own = run(sample(1)).page, copy.run(sample(1)).page
         self._order, self._own_order = _labelled(restored), _labelled(own)
-        kinds, others = ({_plain(line, "#") for line in one.split("\n")} for one in (restored, own))
-        self._besides = others - kinds
+        kinds = [{_plain(line, "#") for line in page.split("\n")} for page in (restored, own)]
+        self._besides = kinds[1] - kinds[0]
         text, *_ = self.prepared(own)
         printed = read_printouts(text, copy.file)[0]
-        self._labels = {one.name: one.read for one in printed.labels}
+        self._labels = {label.name: label.read for label in printed.labels}
         self._as_listed = _texts(printed) == outcome_fields(text)
 
     def prepared(self, text: str) -> tuple[str, list[int], dict[int, str]]:
@@ -74,8 +74,10 @@ class CopyPages:
     ) -> tuple[list[str], dict[str, Any]]:
         """What the copy prints for each scene, as `replays.run_columns` has it."""
         found = [self._run(scene)[0] for scene in scenes]
-        columns = {name: np.array([one.fields.get(name, "") for one in found]) for name in names}
-        return [one.ending or "" for one in found], columns
+        columns = {
+            name: np.array([outcome.fields.get(name, "") for outcome in found]) for name in names
+        }
+        return [outcome.ending or "" for outcome in found], columns
 
     def _run(self, scene: Mapping[str, str]) -> tuple[Outcome, list[str]]:
         """What the copy prints for a scene: by field, and its lines."""
@@ -96,7 +98,7 @@ class CopyPages:
         lines that only the copy prints."""
 
         def wrong(found: Judged) -> int:
-            return sum(one.status != Status.READ for one in [*found.fields, *found.replies])
+            return sum(check.status != Status.READ for check in [*found.fields, *found.replies])
 
         best = None
         for scene in self._scenes(shown, recovered.scene):
@@ -115,8 +117,8 @@ class CopyPages:
         for texts in product(*ways):
             typed = dict(zip(map(scene_name, right), texts, strict=True))
             scene = {**found.recovered.scene, **typed}
-            own = [one for one in found.replies if one.name.startswith("line ")]
-            besides = {one.line or 0: one.printed or "" for one in own}
+            own = [check for check in found.replies if check.name.startswith("line ")]
+            besides = {check.line or 0: check.printed or "" for check in own}
             other = self._judged(found.shown, found.recovered, scene, besides)
             printed = other.recovered.outcome.fields
             if all(printed.get(name) == text for name, text in right.items()):
@@ -128,8 +130,8 @@ class CopyPages:
         them, and as others that print so, where the copy prints those otherwise."""
         either = [scene, *with_opposite_mu(scene)]
         yield from either
-        for one in either:
-            fields = self._run(one)[0].fields
+        for typed in either:
+            fields = self._run(typed)[0].fields
             printed = {
                 name: text
                 for name in ANGLES
@@ -137,7 +139,7 @@ class CopyPages:
             }
             for rank in range(_TEXTS if printed else 0):
                 texts = {name: _ways(name, text)[rank:] for name, text in printed.items()}
-                yield {**one, **{name: some[0] for name, some in texts.items() if some}}
+                yield {**typed, **{name: some[0] for name, some in texts.items() if some}}
 
     def _judged(
         self,
@@ -150,10 +152,10 @@ class CopyPages:
         a line that only the copy prints must have its numbers, too."""
         outcome, lines = self._run(scene)
         labels = [
-            one._replace(state=LabelState.EXACT, doubt=False)
-            if self._labels.get(one.name, one.printed) == one.read
-            else one
-            for one in shown.labels
+            label._replace(state=LabelState.EXACT, doubt=False)
+            if self._labels.get(label.name, label.printed) == label.read
+            else label
+            for label in shown.labels
         ]
         shown = replace(shown, labels=labels)
         own = set(map(_plain, lines))

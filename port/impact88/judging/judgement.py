@@ -85,7 +85,7 @@ class FieldCheck:
 
     def as_json(self) -> dict[str, Any]:
         """The object `impact88 verify --json` prints for a number."""
-        doubts = [one._asdict() for one in self.doubts]
+        doubts = [doubt._asdict() for doubt in self.doubts]
         return {**vars(self), "same": self.same, "status": str(self.status), "doubts": doubts}
 
     def swapped(self) -> list[tuple[str, str]]:
@@ -118,7 +118,7 @@ class Judged:
 
 def judge(shown: Printout, recovered: Recovered, others: Sequence[FieldCheck] = ()) -> Judged:
     """The printout, judged. ``others``: replies that were compared elsewhere."""
-    replies = [_reply(shown, recovered, name, one) for name, one in shown.replies.items()]
+    replies = [_reply(shown, recovered, name, reading) for name, reading in shown.replies.items()]
     every = _fields(shown, recovered), [*replies, *others], _ending(shown, recovered)
     found = Judged(shown, recovered, *every, Verdict.IDENTICAL)
     found.verdict = _verdict(found)
@@ -137,7 +137,7 @@ def _verdict(found: Judged) -> Verdict:
         return Verdict.INCOMPLETE
     doubtful = any(check.status != Status.READ for check in [*found.fields, *found.replies])
     beside = any(piece.beside for piece in shown.left_over) or bool(shown.remarks)
-    if doubtful or beside or any(one.doubt for one in shown.labels):
+    if doubtful or beside or any(label.doubt for label in shown.labels):
         return Verdict.IDENTICAL_AS_READ
     return Verdict.IDENTICAL
 
@@ -213,8 +213,8 @@ def _angle_row(shown: Printout, recovered: Recovered) -> dict[str, Region]:
 def _doubts(shown: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Doubtful]:
     starts = [*(glyph.offset for glyph in reading.region), reading.stop]
     return [
-        Doubtful(*shown.page.place(starts[one.at]), starts[one.at], *one[1:3], str(one.doubt))
-        for one in spots
+        Doubtful(*shown.page.place(starts[spot.at]), starts[spot.at], *spot[1:3], str(spot.doubt))
+        for spot in spots
     ]
 
 
@@ -247,9 +247,9 @@ def _reply(shown: Printout, recovered: Recovered, name: str, reading: Reading) -
     return check
 
 
-def same_value(one: str, other: str) -> bool:
+def same_value(text: str, other: str) -> bool:
     """Whether two typed texts are the same real."""
-    seen, expected = stored_and_printed(one), stored_and_printed(other)
+    seen, expected = stored_and_printed(text), stored_and_printed(other)
     return seen is not None and expected is not None and seen[0] == expected[0]
 
 
@@ -287,16 +287,16 @@ def looked_past(found: Judged, rereading: Rereading) -> Judged | None:
     if no_reader or recovered.missing:
         return None
     apart = set(recovered.apart)
-    own = [r for r in rereading.best() if apart.isdisjoint(one.field for one in r.changes)]
-    scenes = [one.scored for one in own[:_TRIED]]
+    own = [r for r in rereading.best() if apart.isdisjoint(change.field for change in r.changes)]
+    scenes = [reread.scored for reread in own[:_TRIED]]
     scenes.append(recovered.search.replayed_scene(recovered.scene, recovered.assumed))
     scenes.sort(key=lambda scored: scored.cost)
     every = [
-        judge(shown, replace(recovered, scene=one.scene, assumed=one.assumed, outcome=one.outcome))
-        for one in scenes
-        if one.cost <= scenes[0].cost + _AS_WELL
+        judge(shown, replace(recovered, scene=run.scene, assumed=run.assumed, outcome=run.outcome))
+        for run in scenes
+        if run.cost <= scenes[0].cost + _AS_WELL
     ]
-    if not all(settled(one.fields, one.replies) for one in every):
+    if not all(settled(judged.fields, judged.replies) for judged in every):
         return None
     best = every[0]
     for check in [*best.fields, *best.replies]:
@@ -335,5 +335,7 @@ def _digits_lost_or_added(check: FieldCheck) -> int:
     if check.printed and check.printed.endswith(".") and not any(doubt.read for doubt in wrong):
         return 1
     return sum(
-        (one.read + one.printed).isdigit() for one in wrong if not (one.read and one.printed)
+        (doubt.read + doubt.printed).isdigit()
+        for doubt in wrong
+        if not (doubt.read and doubt.printed)
     )

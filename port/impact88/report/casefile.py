@@ -34,15 +34,15 @@ def report(
 ) -> str:
     """The page as HTML. ``date``, ``case``, ``examiner``: the user's own, shown as given. Raises
     UserError where jinja2 is not installed."""
-    results = [result for one in examined for result in one.results]
+    results = [result for file in examined for result in file.results]
     read: list[list[str]] = []
-    for one in examined:
-        where = files.called(one.file)
-        read += [[where, "–", "NOT READ", one.error]] if one.error else []
-        for result in one.results:
+    for file in examined:
+        where = files.called(file.file)
+        read += [[where, "–", "NOT READ", file.error]] if file.error else []
+        for result in file.results:
             what, title = f"{result.number} ({result.where})", TITLES[result.verdict]
             read.append([where, what, title, counts(result.fields)])
-    digests = [(files.called(one.file), one.sha256 or "not read") for one in examined]
+    digests = [(files.called(file.file), file.sha256 or "not read") for file in examined]
     return render(
         "verification.html",
         title=f"Verification of {len(results)} printout{'s' * (len(results) != 1)}",
@@ -119,7 +119,8 @@ def _marks(result: Verification) -> Iterator[tuple[int, int, str]]:
         if check.status == Status.CONTRADICTED:
             yield check.start, check.stop, "differs"
             continue
-        for start, read in [(one.start, one.read) for one in check.doubts] or [(check.start, "")]:
+        places = [(doubt.start, doubt.read) for doubt in check.doubts]
+        for start, read in places or [(check.start, "")]:
             yield start, start + max(1, len(read)), "doubtful"
     for label in result.labels:
         wrong = label.state is LabelState.CONTRADICTORY

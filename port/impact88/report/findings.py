@@ -111,7 +111,7 @@ def report(
         files=[(source, data)],
         found=found,
         draws=f"{samples:,} random draws, seed {seed}."
-        if any(one.low == one.low for one in found.spreads.values())
+        if any(spread.low == spread.low for spread in found.spreads.values())
         else "",
         base=base_of(units),
         units="any consistent set" if units is RULES else f"those of the file ({units.name})",

@@ -161,7 +161,7 @@ def _verified(shown: Printout, given: Mapping[str, str] | None) -> Verification:
         from ..explaining.explanations import explain
 
         result.explanations = explain(found, rereading, lambda: process_time() - begun < BUDGET)
-        altered = any(len(one.changes) <= MOST_ALTERED for one in result.explanations[:1])
+        altered = any(len(cause.changes) <= MOST_ALTERED for cause in result.explanations[:1])
         if shown.machine_read and not altered and not shown.mislabelled:
             result.verdict, result.explanations = Verdict.INCOMPLETE, []
     if result.verdict is Verdict.INCOMPLETE and shown.machine_read and result.differing:
@@ -192,7 +192,7 @@ def _against(pages: CopyPages, found: Judged) -> Verification:
 
 def _result(found: Judged) -> Verification:
     shown, scene = found.shown, found.recovered.scene_or_missing()
-    read = {scene_name(one.name) for one in found.fields if one.status == Status.READ}
+    read = {scene_name(check.name) for check in found.fields if check.status == Status.READ}
     guessed = [
         name for name, text in scene.items() if text is not None and name not in {"M", *read}
     ]

@@ -57,18 +57,18 @@ def _layered(results: list[Verification], text: str) -> None:
     """Holds a PDF's text layer against what its picture shows: one that says another number is
     told, and nothing is settled."""
     try:
-        layer = [one for one in read_printouts(text) if not one.fragment]
+        layer = [printout for printout in read_printouts(text) if not printout.fragment]
     except UserError:
         layer = []
     if len(layer) != len(results):
         for result in results:
             result.remarks.append(f"page {result.page}: no such printout is in its text layer")
         return
-    for result, one in zip(results, layer, strict=True):
+    for result, page in zip(results, layer, strict=True):
         other = [
-            f"{check.name} {one.text(check.name)} for {check.printed}"
+            f"{check.name} {page.text(check.name)} for {check.printed}"
             for check in result.fields
-            if one.text(check.name) is not None and one.text(check.name) != check.printed
+            if page.text(check.name) is not None and page.text(check.name) != check.printed
         ]
         if other:
             result.remarks.append(

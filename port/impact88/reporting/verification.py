@@ -114,10 +114,10 @@ class Verification:
         """Give every place the number that its line had in the file."""
         for check in [*self.fields, *self.replies]:
             check.line = lines[check.line - 1] if check.line else None
-            check.doubts = [one._replace(line=lines[one.line - 1]) for one in check.doubts]
+            check.doubts = [doubt._replace(line=lines[doubt.line - 1]) for doubt in check.doubts]
         self.line = lines[self.line - 1]
-        self.labels = [one._replace(line=lines[one.line - 1]) for one in self.labels]
-        self.left_over = [one._replace(line=lines[one.line - 1]) for one in self.left_over]
+        self.labels = [label._replace(line=lines[label.line - 1]) for label in self.labels]
+        self.left_over = [piece._replace(line=lines[piece.line - 1]) for piece in self.left_over]
 
     def _repr_html_(self) -> str:
         return notebook.preformatted("\n".join(lines(self)))
@@ -178,7 +178,7 @@ def summary(result: Verification) -> list[str]:
     elif verdict is Verdict.DIFFERS:
         compared = sum(check.same is not None for check in fields)
         said = [f"{compared} printed numbers compared, {len(result.differing)} differ"]
-        if wrong := sum(one.state is LabelState.CONTRADICTORY for one in result.labels):
+        if wrong := sum(label.state is LabelState.CONTRADICTORY for label in result.labels):
             said.append("1 label contradicts" if wrong == 1 else f"{wrong} labels contradict")
     elif verdict is Verdict.IDENTICAL_AS_READ:
         said.append(MEANINGS[verdict])
@@ -193,8 +193,8 @@ def summary(result: Verification) -> list[str]:
         said.append("the results are missing, or the page ends before them")
     ending = result.ending
     if ending is not None and ending.same is not True and (ending.printed or ending.recomputed):
-        one, other = (text or "no error" for text in (ending.printed, ending.recomputed))
-        said.append(f"ends with {one}, recomputed: {other}")
+        printed, recomputed = (text or "no error" for text in (ending.printed, ending.recomputed))
+        said.append(f"ends with {printed}, recomputed: {recomputed}")
     return said
 
 
@@ -249,22 +249,23 @@ _DOUBTS: dict[str, str] = {
 
 
 def _doubts(check: FieldCheck) -> Iterator[str]:
-    for one in check.doubts:
-        if one.how in _DOUBTS:
-            words = {**one._asdict(), "program": check.recomputed or "", "whole": check.printed}
-            said = _DOUBTS[one.how].format(**words)
-            yield f"line {one.line}, column {one.column}: {check.name} {said}"
+    for doubt in check.doubts:
+        if doubt.how in _DOUBTS:
+            words = {**doubt._asdict(), "program": check.recomputed or "", "whole": check.printed}
+            said = _DOUBTS[doubt.how].format(**words)
+            yield f"line {doubt.line}, column {doubt.column}: {check.name} {said}"
 
 
 def look(check: FieldCheck) -> Iterator[str]:
     """Where to look on the paper for a misread digit."""
-    for one in check.doubts:
-        if one.how == Doubt.CONTRADICTS:
-            printed = f"{'an' if one.printed[:1] == '8' else 'a'} {one.printed}"
+    for doubt in check.doubts:
+        if doubt.how == Doubt.CONTRADICTS:
+            printed = f"{'an' if doubt.printed[:1] == '8' else 'a'} {doubt.printed}"
             question = f"is {printed} missing here"
-            if one.read:
-                question = f"is this {one.read} {printed if one.printed else 'part of the number'}"
-            yield f"line {one.line}, column {one.column}: {question}?"
+            if doubt.read:
+                part = printed if doubt.printed else "part of the number"
+                question = f"is this {doubt.read} {part}"
+            yield f"line {doubt.line}, column {doubt.column}: {question}?"
 
 
 _LABELS = {
@@ -277,10 +278,10 @@ _LABELS = {
 def _labels(checks: Sequence[LabelCheck]) -> list[str]:
     """The labels that are not the program's, those that contradict first."""
     return [
-        f"line {one.line}: " + text.format(read=printable(one.read), printed=one.printed)
+        f"line {label.line}: " + text.format(read=printable(label.read), printed=label.printed)
         for state, text in _LABELS.items()
-        for one in checks
-        if one.state is state and (state is LabelState.CONTRADICTORY or one.doubt)
+        for label in checks
+        if label.state is state and (state is LabelState.CONTRADICTORY or label.doubt)
     ]
 
 
@@ -295,7 +296,7 @@ def _left_over(pieces: Sequence[Piece]) -> Iterator[str]:
             text = piece.text if len(piece.text) <= 40 else piece.text[:37] + "..."
             where = f"line {piece.line}, column {piece.column}"
             yield f"{where}: {text!r} left over beside a number"
-    lines = sorted((one for one in pieces if one.whole), key=lambda piece: not piece.beside)
+    lines = sorted((piece for piece in pieces if piece.whole), key=lambda piece: not piece.beside)
     for piece in sorted(lines[:_MOST_LINES], key=lambda piece: piece.line):
         yield f"line {piece.line} does not belong to the program's page: {printable(piece.text)}"
     if len(lines) > _MOST_LINES:
@@ -309,13 +310,13 @@ def _explained(result: Verification) -> list[str]:
         return []
     said: list[str] = []
     before = 0
-    for one in result.explanations:
-        if one.rank != before:
-            said.append(f"{one.rank}. {one}; explains {one.explains} of {one.differing}")
+    for cause in result.explanations:
+        if cause.rank != before:
+            said.append(f"{cause.rank}. {cause}; explains {cause.explains} of {cause.differing}")
         else:
-            said.append(f"   or, equally well on this page: {one}")
-        before = one.rank
-        said += [f"   look at {where}" for where in one.look[:4]]
+            said.append(f"   or, equally well on this page: {cause}")
+        before = cause.rank
+        said += [f"   look at {where}" for where in cause.look[:4]]
     return said or ["no single slip explains this"]
 
 
@@ -328,7 +329,7 @@ def findings(found: Judged) -> Iterator[str]:
     retyped = [
         check.name
         for check in found.fields
-        if any(one.how == Doubt.RETYPED for one in check.doubts)
+        if any(doubt.how == Doubt.RETYPED for doubt in check.doubts)
     ]
     if retyped:
         yield (
@@ -360,7 +361,7 @@ def put_down(found: Judged) -> Iterator[str]:
         for printed, read in check.swapped()
     ]
     misread = sum(
-        any(one.how in _MISREADINGS and one.read != one.printed for one in check.doubts)
+        any(doubt.how in _MISREADINGS and doubt.read != doubt.printed for doubt in check.doubts)
         for check in found.fields
     )
     if others:
@@ -403,8 +404,8 @@ def given_apart(given: Mapping[str, str], result: Verification) -> Iterator[str]
         if check.printed is None:
             absent.append(name)
             continue
-        one, other = (stored_and_printed(each, name in ANGLES) for each in (text, by_page))
-        if one is None or other is None or one[1] != other[1]:
+        typed, own = (stored_and_printed(each, name in ANGLES) for each in (text, by_page))
+        if typed is None or own is None or typed[1] != own[1]:
             otherwise.append(f"{name} {text} (by the page {by_page})")
     if absent:
         compared = [check.same for check in result.fields if check.same is not None]
