@@ -39,13 +39,15 @@ MOST = 6
 """Explanations given at most."""
 _LEFT = 14.0
 """Bits of a number that a cause leaves unexplained: more than of a slip besides (10 to 13.5), so
-that a cause with the slip comes before the one without."""
+that a cause with the slip comes before the one without. Doubled, one page lists fewer."""
 _ALIKE = 8.0
-"""Causes that leave the same unexplained and ask for no more bits than these more share a rank."""
+"""Causes that leave the same unexplained and ask for no more bits than these more share a rank; of
+two pages the first rank grows when it is doubled."""
 _WORSE = 15.0
-"""What asks for so many bits more than the best is no cause."""
+"""What asks for so many bits more than the best is no cause; doubled, three pages list more."""
 _ENOUGH = 26.0
-"""Causes that take longer are tried where none asks for so few bits: two slips (21 to 25)."""
+"""Causes that take longer are tried where none asks for so few bits: two slips (21 to 25). Doubled,
+none changes; halved, five do."""
 _MOST_BITS = 50.0
 """What asks for more is no explanation: four slips of the likelier kinds. Twice as much names slips
 on a page that nothing explains."""
@@ -53,7 +55,8 @@ _BY_COPY = 12
 """Slips, of each kind of ranking, that are tried in a copy of the listing."""
 _LAST_PLACE = 8.0
 """Bits more for a result misread by one in its last place, where another arithmetic is likelier;
-and for misread inputs on a page on which nothing worse is wrong."""
+and for misread inputs on a page on which nothing worse is wrong. Doubled, one page has another
+first."""
 _SLIP = min(slips.BITS.values())
 """Bits of a slip besides, at least."""
 

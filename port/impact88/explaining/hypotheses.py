@@ -29,15 +29,16 @@ from ..recovery.typedtext import with_opposite_mu
 from .causes import NOT_APPLESOFT, Cause, PageEvidence, Range, decimals_of, digits_of
 
 _COMBINATIONS = 60_000
-"""Numbers that may have been computed with, of all inputs together."""
+"""Numbers that may have been computed with, of all inputs together; doubled, no page changes."""
 _BITS = {"a changed line of the listing": 24.0, "another program": 20.0}
 """Bits of an edit: one of some 5,000 lines (12) or 500 readings (9), and an office's copy in which
 one is wrong at all (12, 11)."""
 _CHANCE = 50.0
 """Bits that the explained numbers must have together: the digits of three of them, as two often
-follow from one another (a center's velocity and its contact point's)."""
+follow from one another (a center's velocity and its contact point's); doubled, no page changes."""
 _ROUGH = 1e-6
-"""Relative error of the Apple's arithmetic, and of a factor that is known to seven digits."""
+"""Relative error of the Apple's arithmetic, and of a factor that is known to seven digits; doubled,
+no page changes."""
 
 
 class Row(NamedTuple):

@@ -21,26 +21,19 @@ from ..fields import ANGLES, FIELDS, INPUTS
 from ..program.arithmetics import APPLESOFT, FLOAT64, Arithmetic
 from ..recovery import replays
 from ..recovery.search import in_doubles
-from .causes import (
-    NOT_APPLESOFT,
-    Cause,
-    PageEvidence,
-    Range,
-    as_printed,
-    digits_of,
-)
+from .causes import NOT_APPLESOFT, Cause, PageEvidence, Range, as_printed, digits_of
 
 _BITS = 14.0
 """Bits for another machine or way to print, about as for another unit (14.5); a tenth more for each
 of its ranks, the commonest first, and a whole one for two of them together. All are less than two
-results misread by one in their last places (36), which a rounded page looks like."""
+results misread by one in their last places (36), which a rounded page looks like: doubled, two
+such pages are not told."""
 _SHAKEN = 6
-"""Runs in single precision; with twice as many the ranges grow by a tenth."""
+"""Runs in single precision; with twice as many, or two, no page changes: ranges grow by a tenth."""
 _OPEN_UNITS, _OPEN = 12, 3e-4
 """A result is left open by single precision within so many units of its last printed place, or
-within this part of it; where it is more, the page is no evidence."""
-_LONG = 7
-"""Angles of so many digits came back from radians a little off: 59.99999 was 60."""
+within this part of it; where it is more, the page is no evidence. Doubled, none
+changes; without the units 15 of 28 pages of other machines do, without the part one."""
 _APPLESOFT_DIGITS, _SINGLE_DIGITS = 9, 7
 _PI = 3.14159265
 """That of line 300."""
@@ -52,10 +45,10 @@ CUTS: dict[str, Callable[[float], int]] = {
     "truncated": math.trunc,
 }
 """How programs bring a number to so many decimals; the listing floors."""
-
-
 _DOUBLES = (("", 1, _PI), (" with exact pi", 4, math.pi), (" with pi = 3.1416", 5, 3.1416))
+"""IEEE doubles: what is added, rank and pi."""
 _PIS = ("3.1416", "3.14159", "3.1415927", "3.141592654", "3.14")
+"""What offices' copies have in line 300."""
 
 
 def causes(page: PageEvidence) -> Iterator[Cause]:
@@ -76,7 +69,6 @@ def _causes(page: PageEvidence) -> Iterator[Cause]:
     # as another machine was given it: the printed numbers
     shown = {**page.recovered.assumed, **page.texts}
     typed = scene | {name: shown[name] for name in INPUTS if name in shown and name != "MUP"}
-    spared = frozenset(name for name in ANGLES if digits_of(typed[name]) >= _LONG)
     numbers = (_PI, *(pi for _, _, pi in _DOUBLES), *map(float, _PIS))
     near = dict(zip(numbers, _near(page, typed, numbers), strict=True))
     if near[_PI]:
@@ -88,17 +80,17 @@ def _causes(page: PageEvidence) -> Iterator[Cause]:
                 yield run.cause(f"{how}, not floored", where, 2, run.cut(how, lines))
         yield from _other_decimals(run)
         if all(digits_of(page.texts.get(name)) <= _SINGLE_DIGITS for name in (*INPUTS, "KI")):
-            yield from _single_precision(page, typed, spared)
+            yield from _single_precision(page, typed)
     for variant, rank, pi in _DOUBLES:
         if near[pi]:
-            run = _Run(page, typed, _with_pi(FLOAT64, pi), spared)
+            run = _Run(page, typed, _with_pi(FLOAT64, pi))
             yield run.cause(f"IEEE double arithmetic{variant}", "", rank, {})
             for how in ("rounded", "truncated"):
                 kind = f"IEEE double arithmetic, {how}, not floored"
                 yield run.cause(kind, variant.strip(), rank + 10, run.cut(how))
     for text in _PIS:
         if near[float(text)]:
-            run = _Run(page, typed, _with_pi(APPLESOFT, APPLESOFT.number(text)), spared)
+            run = _Run(page, typed, _with_pi(APPLESOFT, APPLESOFT.number(text)))
             yield run.cause("another pi in line 300", text, 3, {})
 
 
@@ -121,14 +113,8 @@ def _near(page: PageEvidence, scene: Mapping[str, str], pis: Iterable[float]) ->
 class _Run:
     """What one run of the listing prints: its fields, and its values before they are floored."""
 
-    def __init__(
-        self,
-        page: PageEvidence,
-        scene: Mapping[str, str],
-        machine: Arithmetic,
-        spared: frozenset[str] = frozenset(),
-    ) -> None:
-        self.page, self.scene, self.spared = page, scene, spared
+    def __init__(self, page: PageEvidence, scene: Mapping[str, str], machine: Arithmetic) -> None:
+        self.page, self.scene = page, scene
         self.outcome, self.values = replays.run_whole(scene, machine)
         self.energy = self.values.pop("KI", 0.0)
         self._own = as_printed(self.outcome)
@@ -142,7 +128,7 @@ class _Run:
 
     def cause(self, kind: str, note: str, rank: int, other: Mapping[str, Range]) -> Cause:
         """What it leaves unexplained, some of its results otherwise."""
-        left = self.page.left(self.scene, self.outcome, (), {**self._own, **other}, self.spared)
+        left = self.page.left(self.scene, self.outcome, (), {**self._own, **other})
         return Cause(kind, note, _BITS + 0.1 * rank, left)
 
     def cut(self, how: str, lines: Iterable[int] | None = None) -> dict[str, Range]:
@@ -207,10 +193,8 @@ def cut(value: float, places: int, how: str) -> Range:
 # --- single precision ---
 
 
-def _single_precision(
-    page: PageEvidence, scene: dict[str, str], spared: frozenset[str]
-) -> Iterator[Cause]:
-    run, exact = _Run(page, scene, single(0), spared), _Run(page, scene, FLOAT64)
+def _single_precision(page: PageEvidence, scene: Mapping[str, str]) -> Iterator[Cause]:
+    run, exact = _Run(page, scene, single(0)), _Run(page, scene, FLOAT64)
     outcomes = [replays.run_once(scene, single(seed)) for seed in range(1, _SHAKEN + 1)]
     outcomes.append(run.outcome)
     if exact.outcome.ending or any(outcome.ending for outcome in outcomes):

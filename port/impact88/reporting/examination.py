@@ -61,7 +61,7 @@ def examine(
         picture = data.startswith(PICTURE_STARTS)
         if picture and (given or copy):
             other = "a scene apart" if given else "a copy of the listing"
-            raise UserError(f"{files.called(path)}: {other} goes with text, not with a picture")
+            raise UserError(f"{other} goes with text, not with a picture", files.called(path))
         found = _pictured(path, data, seed) if picture else _printed(path, data, given, copy)
         for result in found:
             result.sha256 = examined.sha256
@@ -75,10 +75,8 @@ def _pictured(path: str, data: bytes, seed: str) -> Iterator[Verification]:
     try:
         from .scanned import verified
     except ImportError as error:
-        raise UserError(
-            f"{files.called(path)}: pictures need {error.name}, which is not installed; "
-            "pip install 'impact88[scan]'"
-        ) from None
+        said = f"pictures need {error.name}, which is not installed; pip install 'impact88[scan]'"
+        raise UserError(said, files.called(path)) from None
     return map(completed, verified(path, data, seed))
 
 
@@ -87,7 +85,7 @@ def _printed(
 ) -> Iterator[Verification]:
     where = files.called(path)
     if len(data) > LARGEST_FILE:
-        raise UserError(f"{where}: is larger than {LARGEST_FILE:,} bytes of text")
+        raise UserError(f"is larger than {LARGEST_FILE:,} bytes of text", where)
     text = decoded(data, where)
     if copy:
         from ..judging.copies import pages_of
