@@ -265,8 +265,8 @@ def _ending(shown: Printout, recovered: Recovered) -> FieldCheck:
 # --- looking past a reader's mistakes ------------------------------------------------------------
 
 _AS_WELL = 1.0
-"""Scenes that cost so little more than the best explain the page as well; doubled or halved, none of
-95 readings that differ is settled otherwise."""
+"""Scenes that cost so little more than the best explain the page as well; doubled or halved, of 95
+readings that differ none is settled otherwise."""
 _LOST_AND_ADDED = 3
 """So many numbers with a glyph lost or added may be put down to a reader; doubled, 1 of 95 more is
 settled, and with one 1 of 10 less."""
