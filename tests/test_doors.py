@@ -17,7 +17,7 @@ from impact88.bench.populations import BENCHMARK, scenes
 from impact88.cli import main
 from impact88.closedform.columns import UNUSED_BY_POINTS
 from impact88.names import RESULTS, SCENE
-from impact88.tables import arrow
+from impact88.tables import csvtable
 from impact88.tables.table import format_of, open_reader
 
 COUNT = 2000
@@ -223,7 +223,7 @@ def csv_by(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> I
     if request.param == "pyarrow":
         pytest.importorskip("pyarrow")
     else:
-        monkeypatch.setattr(arrow, "available", lambda: False)
+        monkeypatch.setattr(csvtable, "arrow_available", lambda: False)
     return request.param
 
 

@@ -18,8 +18,7 @@ from hypothesis import strategies as st
 from impact88.cli import main
 from impact88.errors import UserError
 from impact88.names import SCENE
-from impact88.tables import arrow, csvtable
-from impact88.tables.arrow import texts_of
+from impact88.tables import csvtable
 from impact88.tables.cells import TableUnits, check_scene_columns, numbers
 from impact88.tables.rows import BLOCK_ROWS, BadCell, shortest
 from impact88.tables.table import format_of, open_reader, open_writer
@@ -60,7 +59,7 @@ def test_floats_read_back_to_the_same_bits(value):
 @given(st.lists(st.floats(allow_nan=True), min_size=1))
 def test_pyarrow_writes_the_same_texts(values):
     array = np.array(values)
-    assert texts_of(array).to_pylist() == shortest(array)
+    assert csvtable.texts_of(array).to_pylist() == shortest(array)
 
 
 class TestCsv:
@@ -262,7 +261,7 @@ def test_with_and_without_pyarrow_the_same_bytes(tmp_path, monkeypatch, capsys, 
     path.write_bytes(text.encode())
     said = []
     for there in (True, False):
-        monkeypatch.setattr(arrow, "available", lambda there=there: there)
+        monkeypatch.setattr(csvtable, "arrow_available", lambda there=there: there)
         monkeypatch.setattr(csvtable, "BLOCK_BYTES", block)
         status = main(["solve", str(path)])
         said.append((status, *capsys.readouterr()))
@@ -332,7 +331,7 @@ def test_parquet_takes_types_as_they_are(tmp_path, capsys):
 def test_what_must_be_quoted_is(tmp_path, monkeypatch, delimiter):
     """As the standard library's csv does it, and nothing else."""
     notes = ["a,b", "c;d", 'say "no"', "two\nlines", "\r", "", " ", "'", "plain"]
-    monkeypatch.setattr(arrow, "available", lambda: False)
+    monkeypatch.setattr(csvtable, "arrow_available", lambda: False)
     for note in notes:
         source, there = tmp_path / "a.csv", tmp_path / "b.csv"
         text = csv_text([{**TEXTS, "note": note}, {**TEXTS, "note": "x"}], delimiter=delimiter)

@@ -13,9 +13,19 @@ import numpy as np
 from ..errors import UserError, library
 from ..files import ESCAPED, replacing
 from ..names import SCENE
-from .arrow import ArrowColumn, ArrowTexts
 from .cells import typed
-from .rows import BLOCK_ROWS, Column, Named, Put, Reader, Rows, heading, scene_names
+from .rows import (
+    BLOCK_ROWS,
+    ArrowColumn,
+    ArrowTexts,
+    Column,
+    Named,
+    Put,
+    Reader,
+    Rows,
+    heading,
+    scene_names,
+)
 
 
 def _blocks(pa: Any, names: Sequence[str], batches: Iterable[Any], where: str) -> Iterator[Rows]:

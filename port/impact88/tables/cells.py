@@ -26,8 +26,7 @@ from ..units import (
     system_using,
     units_in,
 )
-from . import arrow
-from .rows import Column, Heading, Rows, heading
+from .rows import ArrowTexts, Column, Heading, Rows, heading
 
 _MEASURING = ("length", "length/time", "mass", "mass·length²", "mass·length²/time²")
 """What a bare column beside others with units leaves open."""
@@ -140,7 +139,7 @@ def filled(column: Column, text: str) -> Column:
     """A column with ``text`` where it has nothing."""
     if isinstance(column, np.ndarray):
         return column
-    if isinstance(column, arrow.ArrowTexts):
+    if isinstance(column, ArrowTexts):
         return column.filled(text)
     return [text if cell in (None, "") else cell for cell in column]
 
@@ -152,7 +151,7 @@ def typed(name: str, column: Column) -> NDArray[Any] | list[str]:
         return column
     if name not in SCENE:
         return [plain(cell) for cell in column]
-    if isinstance(column, arrow.ArrowTexts) and (found := column.doubles()) is not None:
+    if isinstance(column, ArrowTexts) and (found := column.doubles()) is not None:
         return found
     return np.array([np.nan if isinstance(n := _number(c), str) else n for c in column], float)
 
@@ -214,7 +213,7 @@ def _numbers(
 def _plain_numbers(column: Column) -> NDArray[np.float64] | None:
     if isinstance(column, np.ndarray) and column.dtype.kind in "fiub":
         return column.astype(np.float64, copy=False)
-    if isinstance(column, arrow.ArrowTexts) and (values := column.doubles()) is not None:
+    if isinstance(column, ArrowTexts) and (values := column.doubles()) is not None:
         return values
     try:
         return np.array(doubles.doubles(list(column)))

@@ -10,6 +10,7 @@ import csv
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from importlib.util import find_spec
 from itertools import chain, takewhile
 from typing import Any
 
@@ -19,12 +20,12 @@ from numpy.typing import NDArray
 from ..errors import UserError, quoted
 from ..files import LONGEST_LINE
 from ..names import RESULTS, SCENE
-from . import arrow
 from .cells import plain
 from .lines import Lines, open_text, writing
 from .rows import (
     BLOCK_CHARACTERS,
     BLOCK_ROWS,
+    ArrowTexts,
     Column,
     Named,
     Put,
@@ -35,8 +36,15 @@ from .rows import (
     shortest,
 )
 
+_POINT_FROM, _POINT_TO = 1e-3, 1e10
+"""Between these every version of it writes a number without an exponent, as Python does."""
 BLOCK_BYTES = 1 << 22
 """A pass over a block of 4 MB takes some milliseconds; blocks of 1 and of 16 MB take as long."""
+
+
+def arrow_available() -> bool:
+    """Whether pyarrow is installed."""
+    return find_spec("pyarrow") is not None
 
 
 def _whole_records(stream: Any, size: int) -> bytes:
@@ -54,7 +62,7 @@ def _whole_records(stream: Any, size: int) -> bytes:
 
 def _parsed(
     data: bytes, delimiter: str, width: int
-) -> tuple[list[arrow.ArrowTexts], NDArray[np.int64]] | None:
+) -> tuple[list[ArrowTexts], NDArray[np.int64]] | None:
     """The fields of plain records, and the line in which each record ends; None of others."""
     if width < 2 or b"\0" in data or data.count(b"\r") != data.count(b"\r\n"):
         return None
@@ -92,7 +100,7 @@ def _parsed(
         return None
     if not data.endswith(b"\n") or table.num_rows != ends.size:
         return None
-    columns = [arrow.ArrowTexts(column.chunk(0)) for column in table.combine_chunks().columns]
+    columns = [ArrowTexts(column.chunk(0)) for column in table.combine_chunks().columns]
     return columns, np.searchsorted(newlines, ends) + 1
 
 
@@ -108,7 +116,7 @@ def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
     """Open a CSV table. Raises UserError if it cannot be read as one."""
     with open_text(path, encoding) as lines:
         head = b""
-        if arrow.available() and lines.encoding.startswith("utf-8"):
+        if arrow_available() and lines.encoding.startswith("utf-8"):
             while len(head) < LONGEST_LINE and (line := lines.binary.readline(LONGEST_LINE)):
                 head += line
                 bare = line.strip(b"\xef\xbb\xbf \r\n\t;,").lower()
@@ -205,7 +213,7 @@ def _named(
 def _with_points(column: Column) -> Column:
     """Numbers with decimal commas as numbers with points; a comma cannot mean anything else where
     it does not separate fields. A cell with a unit stays as it is."""
-    if isinstance(column, arrow.ArrowTexts):
+    if isinstance(column, ArrowTexts):
         points = column.replaced(",", ".")
         if points.doubles() is not None:
             return points
@@ -220,15 +228,33 @@ def _texts(column: Column) -> Sequence[str]:
     return column if set(map(type, column)) == {str} else list(map(plain, column))
 
 
+def texts_of(values: NDArray[Any]) -> Any:
+    """A pyarrow array of the texts `shortest` makes of an array."""
+    import pyarrow as pa
+    from pyarrow import compute
+
+    array = pa.array(values)
+    if values.dtype.kind != "f":
+        return array.cast(pa.string())
+    texts = array.cast(pa.string())
+    size = np.abs(values)
+    # pyarrow has the same digits, but another idea of when to use an exponent, and writes 1 for 1.0
+    other = (size < _POINT_FROM) | (size >= _POINT_TO) | (values == np.rint(values))
+    if other.any():
+        # by their bits: 0.0 equals -0.0
+        different, where = np.unique(values[other].view(np.int64), return_inverse=True)
+        written = pa.array(list(map(repr, different.view(np.float64).tolist())))
+        texts = compute.replace_with_mask(texts, pa.array(other), written.take(pa.array(where)))
+    return texts
+
+
 def _in_arrow(column: Column) -> Any:
     """A column as pyarrow's texts; None where Python writes them."""
-    if isinstance(column, arrow.ArrowTexts):
+    if isinstance(column, ArrowTexts):
         return column.array
     if not isinstance(column, np.ndarray) or not column.dtype.isnative:
         return None
-    return (
-        arrow.texts_of(column) if column.dtype.char == "d" or column.dtype.kind in "iuU" else None
-    )
+    return texts_of(column) if column.dtype.char == "d" or column.dtype.kind in "iuU" else None
 
 
 def _joined(arrays: Sequence[Any], delimiter: str, ends: str) -> Any:
@@ -275,5 +301,5 @@ def write(path: str, form: str, delimiter: str, names: Sequence[str]) -> Iterato
     with writing(path) as file:
         through_arrow = False
         put([(name, [heading(name)]) for name in names])
-        through_arrow = arrow.available() and hasattr(file, "buffer")
+        through_arrow = arrow_available() and hasattr(file, "buffer")
         yield put

@@ -20,6 +20,9 @@ Named = Sequence[tuple[str, Column]]
 """A block's columns, each with its name."""
 Put = Callable[[Named], None]
 
+_PLAIN = np.zeros(256, bool)
+_PLAIN[np.frombuffer(b"0123456789+-.eE", np.uint8)] = True
+"""Characters of which pyarrow makes a number only where INPUT makes the same one."""
 BLOCK_ROWS = 16384
 """Rows read, solved and written together, unless they are very long: two arrays of them fit a
 second-level cache. JSON Lines and Parquet take as long with half and with four times as many."""
@@ -35,6 +38,58 @@ class _Absent(str):
 
 
 ABSENT = _Absent()
+
+
+class ArrowColumn(Sequence[Any]):
+    """A column in pyarrow's memory (extra ``arrow``); cells become Python's when looked at."""
+
+    def __init__(self, array: Any) -> None:
+        self.array = array
+
+    def __len__(self) -> int:
+        return len(self.array)
+
+    def __getitem__(self, index: Any) -> Any:
+        return self.array[index].as_py()
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter(self.array.to_pylist())
+
+
+class ArrowTexts(ArrowColumn):
+    """A column of texts without nulls."""
+
+    def doubles(self) -> NDArray[np.float64] | None:
+        """The doubles that the texts are, by the rule of `impact88.doubles`; None where a cell
+        needs a closer look."""
+        import pyarrow as pa
+
+        data = self.array.buffers()[2]
+        if data is None:
+            return None
+        # where each text begins among the characters, and where the last one ends
+        offsets = self.array.buffers()[1]
+        ends = np.frombuffer(offsets, np.int32, len(self.array) + 1, 4 * self.array.offset)
+        characters = np.frombuffer(data, np.uint8)[ends[0] : ends[-1]]
+        if not _PLAIN[characters].all():
+            return None
+        try:
+            values: NDArray[np.float64] = self.array.cast(pa.float64()).to_numpy()
+        except pa.ArrowInvalid:
+            return None
+        return values
+
+    def replaced(self, old: str, new: str) -> "ArrowTexts":
+        """The column with every ``old`` a ``new``."""
+        from pyarrow import compute
+
+        return ArrowTexts(compute.replace_substring(self.array, old, new))
+
+    def filled(self, text: str) -> "ArrowTexts":
+        """The column with ``text`` where there is none."""
+        from pyarrow import compute
+
+        return ArrowTexts(compute.if_else(compute.equal(self.array, ""), text, self.array))
 
 
 class BadCell(NamedTuple):
