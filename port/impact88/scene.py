@@ -146,9 +146,7 @@ class Scene(Mapping[str, str]):
 
     def keyboard(self) -> list[str]:
         """The replies to the INPUTs of lines 210 and 230."""
-        return [
-            ",".join(map(self.__getitem__, names)) for names in (VELOCITIES[:3], VELOCITIES[3:])
-        ]
+        return [",".join(self[n] for n in names) for names in (VELOCITIES[:3], VELOCITIES[3:])]
 
     def typed_lines(self) -> list[str]:
         """The program lines to retype for this scene: 280, 290, 310, and 350 unless M is 6."""
@@ -347,9 +345,8 @@ def toml_texts(text: str, source: str) -> dict[str, str]:
     for number, line in enumerate(text.split("\n"), 1):
         where = f"{source}, line {number}"
         if len(line) > LONGEST_ENTRY:
-            raise UserError(
-                f"has more than {LONGEST_ENTRY:,} characters; expected one value a line", where
-            )
+            says = f"has more than {LONGEST_ENTRY:,} characters; expected one value a line"
+            raise UserError(says, where)
         if not line.strip() or line.lstrip().startswith("#"):
             continue
         if header := re.fullmatch(r"\s*\[([A-Za-z0-9_-]+)\]\s*(#.*)?", line):
