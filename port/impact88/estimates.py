@@ -29,6 +29,7 @@ CARS = (1500, 6000)
 SIZES = {"A": ("LA", "BA"), "B": ("LB", "BB")}
 """Length and width of each vehicle."""
 _SLOPE, _OFFSET = 1.03, 1206
+"""Of the line from the weight, as published."""
 
 
 def with_estimates(

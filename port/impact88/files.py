@@ -20,9 +20,10 @@ if TYPE_CHECKING:
     from typing import IO, Any
 
 LARGEST = 100_000_000
-"""Bytes of the largest file that is read as a whole, unless a reader says otherwise."""
+"""Bytes of the largest file that is read as a whole, unless a reader says otherwise: a bound on
+memory, thousands of times what is usual."""
 LONGEST_LINE = 1_000_000
-"""Characters of the longest line that is read."""
+"""Characters of the longest line that is read: a bound on memory; rows have hundreds."""
 ESCAPED = "impact88.escaped"
 """The error handler of text streams: what they cannot encode becomes \\uXXXX, as in JSON."""
 

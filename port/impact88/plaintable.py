@@ -1,14 +1,9 @@
 """Rows laid out as a table of aligned columns, for people to read."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from .units import System
+from typing import Any
 
 WIDTH = 96
 """Columns of a paragraph: those of the widest table."""
@@ -59,14 +54,14 @@ def table(
 
 
 def quantities(
-    values: Mapping[str, float], system: System, meanings: Mapping[str, str] | None = None
+    values: Mapping[str, float], label: Callable[[str], str], meanings: Mapping[str, str]
 ) -> list[str]:
     """Values of any table of names as lines: name, number, unit, meaning (of the table, unless
-    ``meanings`` has another). ``values``: in the units of ``system``."""
+    ``meanings`` has another). ``label``: the unit of a rule (`units.System.label`)."""
     from .names import quantity
 
-    meant = {name: quantity(name).meaning for name in values} | dict(meanings or {})
-    rows = [(n, number(x), system.label(quantity(n).unit), meant[n]) for n, x in values.items()]
+    meant = {name: quantity(name).meaning for name in values} | dict(meanings)
+    rows = [(n, number(x), label(quantity(n).unit), meant[n]) for n, x in values.items()]
     return table(rows, left=(0, 2, 3))
 
 

@@ -16,13 +16,14 @@ from .files import called, packaged_text, read_text
 from .names import DEFAULT_M, SCENE, VELOCITIES, check_names, missing, quantity
 
 TOML_LIMIT = 100_000
-"""Bytes of the largest scene file that is read."""
+"""Bytes of the largest scene file that is read: a bound on time; a whole scene has 2,000."""
 LONGEST_ENTRY = 2_000
 """Characters of the longest line of a scene file; a TOML reader may be slow with long keys."""
 VALUE_LIMIT = 70
 """The longest value: three of them and their commas fit the 239 characters INPUT keeps."""
 DATA_LINES, REPLY_LINES, M_LINE = (280, 290, 310), (210, 230), 350
 TYPED_LIMIT = 239
+"""Lines of the listing that set and ask for values; the characters the Apple takes in a line."""
 LISTING = "impact.bas"
 
 _ENTRY = r"""[ \t]*(?:([A-Za-z0-9_-]+)|"([^"]*)"|'([^']*)')[ \t]*=[ \t]*(.*)"""

@@ -70,7 +70,7 @@ def main(args: options.Args) -> None:
         others = {
             n: v for n, v in values.items() if n not in (*BEFORE, *AFTER) and math.isfinite(v)
         }
-        yield from quantities(others, system, {"MUP": "signed P_t/P_n, as given"})
+        yield from quantities(others, system.label, {"MUP": "signed P_t/P_n, as given"})
         for warning in warnings:
             yield from paragraph(f"! {warning}")
 

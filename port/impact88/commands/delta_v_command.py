@@ -86,7 +86,13 @@ def _answer(known: dict[str, float], like: str | None, factor: float, units: Sys
     label = units.label("length/time")
     rows = [[number(estimate[n]) for n in ("LOSS", "DVA", "DVB")] for estimate in estimates]
     heading = ["loss [percent]", f"DVA [{label}]", f"DVB [{label}]"]
-    lines = [*quantities(speeds, units), "", *table(rows, heading, left=()), "", f"loss: {source}"]
+    lines = [
+        *quantities(speeds, units.label, {}),
+        "",
+        *table(rows, heading, left=()),
+        "",
+        f"loss: {source}",
+    ]
     record = {"factor": factor, "given": speeds, "loss_from": source, "estimates": estimates}
     return {**record, "units": _labels((*GIVEN, "DVA", "DVB", "LOSS"), units)}, lines
 

@@ -35,7 +35,7 @@ from .rows import (
 )
 
 DEEPEST = 100
-"""Lists and objects inside one another that are read."""
+"""Lists and objects inside one another that are read: a bound; Python itself reads a thousand."""
 _decode = json.JSONDecoder(
     parse_float=Numeral, parse_int=Numeral, parse_constant=lambda name: Numeral(float(name))
 ).decode

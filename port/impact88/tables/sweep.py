@@ -13,7 +13,7 @@ from ..scene import in_base_units
 from .rows import BLOCK_ROWS, Column, Heading, Reader, Rows
 
 MOST = 10_000_000
-"""Scenes of one sweep."""
+"""Scenes of one sweep: a bound on time and room; twice as many take twice as much."""
 
 
 class Range(NamedTuple):
