@@ -52,6 +52,9 @@ class Frame(NamedTuple):
     sign: int = 0
 
 
+NO_FRAME = Frame(-1, NO_VARIABLE, 0, 0)
+
+
 class Machine(InputOutput):
     """An Apple II Plus with 48K as far as a BASIC program can tell.
 
@@ -361,11 +364,13 @@ class Machine(InputOutput):
         else:
             self.forpnt = self.variable(self.sp - 4)
         while True:
-            if not frames or frames[-1].sp != self.sp or frames[-1].variable != self.forpnt:
+            frame = frames[-1] if frames else NO_FRAME
+            if frame.sp != self.sp or frame.variable != self.forpnt:
                 n, sp = self._find_loop()
                 fault_if(n < 0, "NEXT WITHOUT FOR", self.sp - 2)
                 self.set_stack(sp)
-            _, variable, line, text, limit, step, sign = frames[-1]
+                frame = frames[-1]
+            _, variable, line, text, limit, step, sign = frame
             self.assign(variable, add(self.value(variable), step))
             if compare(limit, self.fac) != sign:
                 self.curlin, self.txtptr = line, text
@@ -395,7 +400,8 @@ class Machine(InputOutput):
         self.charac = 0
 
     def gosub_(self) -> None:
-        fault_if(self.sp - 4 & 0xFF < GOSUB_ROOM - 4, "OUT OF MEMORY", self.sp - 4)
+        if self.sp - 4 & 0xFF < GOSUB_ROOM - 4:
+            raise Fault("OUT OF MEMORY", self.sp - 4)
         frame = Frame(self.sp - GOSUB_SIZE & 0xFF, NO_VARIABLE, self.curlin, self.txtptr)
         self.goto_(self.sp - GOSUB_SIZE - 2)
         self.frames.append(frame)
