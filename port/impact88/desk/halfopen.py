@@ -6,12 +6,9 @@ from typing import Any
 
 from waitress.channel import HTTPChannel  # type: ignore[import-untyped]
 
-HEADER_SECONDS = 10.0
-"""For a request's header; a page's own takes a millisecond."""
-BODY_SECONDS = 60.0
-"""For the whole request: 16 MB from the same machine take a second when it is busy."""
-WAITING = 64
-"""Connections without a whole request; a browser keeps six, and some pages may be open."""
+HEADER_SECONDS, BODY_SECONDS, WAITING = 10.0, 60.0, 64
+"""For a request's header, of which a page's own takes a millisecond; for the whole request: 16 MB
+take a second; connections without a whole request, of which a browser keeps six."""
 
 
 class Channel(HTTPChannel):  # type: ignore[misc]

@@ -20,21 +20,17 @@ from .drawing import BLACK, GREY, ROW, TEXT, Box, Drawing, Path, Text, short
 if TYPE_CHECKING:
     from ..uncertainty.boundstable import Bounds
 
-MOST_PANELS, MOST_BARS = 12, 8
-"""Panels that fit a page, and bars that fit a panel."""
-BINS, SWEEP = 60, 801
-"""Bars of a histogram, two a millimetre; points of a sweep, ten a millimetre."""
-WIDEST_SWEEP = 5.0
-"""Friction coefficients beyond are not swept."""
-_LEFT, _TOP, _DASHED, _DOTTED = 13.0, 6.0, (1.3, 0.8), (0.4, 0.6)
-"""In mm: room for the numbers left of a panel and the name above it; dashes told apart in print."""
+MOST_PANELS, MOST_BARS, BINS, SWEEP, WIDEST_SWEEP = 12, 8, 60, 801, 5.0
+"""Panels that fit a page, bars that fit a panel; bars of a histogram, two a millimetre; points of a
+sweep, ten a millimetre; the largest friction coefficient swept."""
+_LEFT, _TOP, _BELOW, _DASHED, _DOTTED = 13.0, 6.0, 3.3, (1.3, 0.8), (0.4, 0.6)
+"""In mm: room for the numbers left of a panel and the name above it; from the axis down to the
+numbers' baseline; dashes told apart in print."""
 _UNPHYSICAL, _PALE = "#f7dfae", "#c6dff0"
 
 MARKS = {"o": (24, 0), "s": (4, 45), "D": (4, 0), "^": (3, 90), "v": (3, -90), ">": (3, 0)}
 MARKS |= {"P": (5, 90), "_": (2, 0)}
 """Corners of each mark, and where the first of them stands in degrees."""
-BELOW = 3.3
-"""From the axis down to the numbers' baseline, in mm."""
 
 
 class Axis(NamedTuple):
@@ -115,7 +111,7 @@ class Panel:
             drawing.add(Path((corner, end), BLACK, 0.2, role="axis"))
         up, left = 1j * box.height, -1.5 - 0.8j
         for axis, given, inward, outward, shift, look in (
-            (self.x, x_ticks, up, -0.9j, -1j * BELOW, ("middle", "x tick")),
+            (self.x, x_ticks, up, -0.9j, -1j * _BELOW, ("middle", "x tick")),
             (self.y, y_ticks, box.width, -0.9, left, ("end", "y tick")),
         ):
             marks = ticks(axis.low, axis.high, given) if isinstance(given, int) else given
@@ -127,7 +123,7 @@ class Panel:
                 drawing.add(Path((at, at + outward), BLACK, 0.2, role="tick"))
                 drawing.add(Text(at + shift, text, anchor=look[0], role=look[1]))
         room = box.width + 8
-        at = complex((box.left + box.right) / 2, box.bottom - BELOW - ROW + 0.2)
+        at = complex((box.left + box.right) / 2, box.bottom - _BELOW - ROW + 0.2)
         for line in d.wrapped(x_label, room) if x_label else []:
             drawing.add(Text(at, line, anchor="middle", role="x label"))
             at -= 1j * ROW

@@ -22,10 +22,8 @@ from ..scene import numbers_of
 from ..status import sentences
 from .drawing import check_drawable, degrees, unit
 
-PROPORTION = 2.6
-"""Length over width."""
-WALL = 1e4
-"""From this ratio of masses on the heavier one is a wall."""
+PROPORTION, WALL = 2.6, 1e4
+"""Length over width; the ratio of masses from which on the heavier one is a wall."""
 
 
 class Motion(NamedTuple):
