@@ -60,15 +60,7 @@ class State(NamedTuple):
     line: int
 
 
-class Label(NamedTuple):
-    """What names a number on the page: the field (of a prompt, its reply's slot), and the states
-    of the label's letters."""
-
-    name: str
-    states: tuple[int, ...]
-
-
-def _page() -> tuple[list[State], list[Label]]:
+def _page() -> tuple[list[State], list[tuple[str, list[int]]]]:
     states = [State("outside", "", -1)]
     labels = []
     for number, line in enumerate(_ROWS):
@@ -77,9 +69,8 @@ def _page() -> tuple[list[State], list[Label]]:
             loose = len(text) if number < PROMPTS else _LOOSE_WORDS.get(text, 0)
             named = ANGLES if number == HEADING and text else [name] if text and name else []
             own = [len(states) + at for at, letter in enumerate(text) if letter.isalpha()]
-            for which, field in enumerate(named):
-                size = len(own) // len(named)
-                labels.append(Label(field, tuple(own[which * size : (which + 1) * size])))
+            size = len(own) // max(len(named), 1)
+            labels += [(field, own[at * size :][:size]) for at, field in enumerate(named)]
             for place, letter in enumerate(text):
                 states.append(State("loose" if place < loose else "letter", letter, number))
             if name:
@@ -88,7 +79,8 @@ def _page() -> tuple[list[State], list[Label]]:
 
 
 STATES, LABELS = _page()
-"""The states, the first of which is the text outside any printout; what names each number."""
+"""The states, the first of which is the text outside any printout; of what names each number the
+field (of a prompt, its reply's slot), and the states of the label's letters."""
 
 
 def letter_of(state: int) -> str:

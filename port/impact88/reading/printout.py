@@ -24,8 +24,6 @@ from .glyphs import ILLEGIBLE, Gap, Page, Region, label_cost, letters, plain_gly
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
-FRAGMENT = 6
-"""A piece with fewer numbers than this is a fragment."""
 BADLY_READ = 17
 """So many letters and numbers misread, asterisks included: of the given scans that differ 58 of 88
 readings of genuine pages have as many, and 2 of 84 of pages with an altered digit."""
@@ -179,8 +177,8 @@ class Printout:
 
     @property
     def fragment(self) -> bool:
-        """Whether it holds too few numbers to be called a printout."""
-        return len(self.fields) < FRAGMENT
+        """Whether it holds too few numbers, five at most, to be called a printout."""
+        return len(self.fields) <= 5
 
     @property
     def fragment_of_run(self) -> bool:
@@ -266,7 +264,7 @@ class Printout:
     def _misread(self, letters_of: str, wrong: Collection[str] = ()) -> int:
         """How many of some letters of labels, but of wrong ones, and asterisks were read as other
         letters or figures."""
-        others = {state for one in LABELS if one.name in wrong for state in one.states}
+        others = {state for name, own in LABELS if name in wrong for state in own}
         return sum(
             self.page.glyphs[index].char != letter and self.page.glyphs[index].char.isalnum()
             for index, state in self._states.items()
@@ -282,7 +280,7 @@ class Printout:
         if not numbers.issuperset(ANGLES[:-1]):
             numbers -= set(ANGLES)
         read = {self._states[index] for index in self._exact}
-        labelled = {one.name for one in LABELS if not read.isdisjoint(one.states)} | {*ANGLES}
+        labelled = {name for name, own in LABELS if not read.isdisjoint(own)} | {*ANGLES}
         count = len(numbers & labelled)
         return count >= 1 and count + len(self._exact) >= 5
 

@@ -96,15 +96,13 @@ def without_angles(recovered: Recovered) -> Recovered:
 
 
 def _independent_of(
-    missing: list[str], scene: Mapping[str, str], outcome: replays.Outcome
+    lost: list[str], scene: Mapping[str, str], outcome: replays.Outcome
 ) -> replays.Outcome:
     """The outcome's fields that are the same whatever the missing inputs are."""
-    others = [{**scene, **dict.fromkeys(missing, value)} for value in _STAND_INS[1:]]
-    fields = dict(outcome.fields)
+    others = [{**scene, **dict.fromkeys(lost, value)} for value in _STAND_INS[1:]]
+    fields = {name: text for name, text in outcome.fields.items() if scene_name(name) not in lost}
     for other in replays.run_all(others):
         fields = {name: text for name, text in fields.items() if other.fields.get(name) == text}
-    for name in missing:
-        fields.pop("MUP" if name == "MU" else name, None)
     return replays.Outcome(fields, None)
 
 

@@ -96,8 +96,7 @@ class Scored(NamedTuple):
     wrong: frozenset[str]
 
 
-@dataclass
-class Expected:
+class Expected(NamedTuple):
     """A printed result as read: the texts it may be, with what each costs."""
 
     name: str

@@ -21,8 +21,6 @@ _TYPED_ZEROS = 3
 """How many zeros after the last decimal are thought to have been typed at most."""
 _PRINTED_DIGITS = 9
 """Digits a number is printed with at most."""
-
-
 _RADIANS = rounded(divide(decimaltext.number("3.14159265"), decimaltext.number("180")))
 """AG of line 300."""
 

@@ -91,10 +91,7 @@ def _strips(
             {
                 "place": f"{cell.name or 'label'}, line {line + 1}, cell {at + 1}",
                 "paper": _uri(crop) if crop.size else "",
-                "glyphs": [
-                    glyph(cell.predicted, cell.count),
-                    glyph(cell.other, cell.other_count),
-                ],
+                "glyphs": [glyph(cell.predicted, cell.count), glyph(cell.other, cell.other_count)],
                 "margin": f"{cell.margin:+.2f}",
                 "state": kind,
             }

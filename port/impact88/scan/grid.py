@@ -5,7 +5,7 @@ Fourier component at the pitch is strong; the phase of that component says where
 Smooth polynomials carry both over the page, which takes in turned, keystoned and bent paper.
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy import ndimage
@@ -38,8 +38,7 @@ _COARSE = 80
 """Stretches of a dozen cells from which the starts are found, those with the clearest gaps."""
 
 
-@dataclass
-class Grid:
+class Grid(NamedTuple):
     """Cells of a page. ``pictures``: of each line, cell k from pixel SLACK + k CELL_WIDTH on, with
     SLACK rows above and below; ``tops``: each line's place in pitches down the page; ``corners``:
     each line's cells in the picture, shape (cells + 1, 2, 2): left edge k, top or bottom, x and y;

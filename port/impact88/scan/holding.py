@@ -172,7 +172,6 @@ def held(grid: Grid, known: Sequence[tuple[Read, Candidate]]) -> list[list[Cell]
 
 # --- the verdict ---------------------------------------------------------------------------------
 
-
 HOLDS, DIFFERS, LABEL, EMPTY, FOREIGN, KIND = -0.12, 0.3, 0.1, -0.15, 20.0, 15.0
 """A cell with a smaller margin is the character predicted; one with a larger is another; a label
 with a smaller margin holds; blank paper with a larger one is not blank; a cell this many times as
@@ -226,15 +225,15 @@ def judged(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> Judged:
         reason = "a reply is typed otherwise than was expected"
     if reason:
         return Judged(Verdict.INCOMPLETE, differing, doubtful, reason)
-    if not differing:
-        if not doubtful:
-            return Judged(Verdict.IDENTICAL)
-        slight = len(doubtful) <= MOST_DOUBTFUL and all(map(_slight, doubtful))
-        return Judged(Verdict.IDENTICAL_AS_READ if slight else Verdict.INCOMPLETE, [], doubtful)
-    misread = candidate.cost - WORST * len(differing)
-    sure = len(differing) <= MOST_DIFFERING and all(map(_slight, doubtful))
-    sure = sure and misread <= MOST_MISREAD
-    return Judged(Verdict.DIFFERS if sure else Verdict.INCOMPLETE, differing, doubtful)
+    verdict, slight = Verdict.IDENTICAL, all(map(_slight, doubtful))
+    if differing:
+        misread = candidate.cost - WORST * len(differing)
+        sure = slight and len(differing) <= MOST_DIFFERING and misread <= MOST_MISREAD
+        verdict = Verdict.DIFFERS if sure else Verdict.INCOMPLETE
+    elif doubtful:
+        slight = slight and len(doubtful) <= MOST_DOUBTFUL
+        verdict = Verdict.IDENTICAL_AS_READ if slight else Verdict.INCOMPLETE
+    return Judged(verdict, differing, doubtful)
 
 
 def state(cell: Cell) -> str:
@@ -273,11 +272,9 @@ def _retyped(cell: Cell, others: Sequence[Cell]) -> bool:
 def _slight(cell: Cell) -> bool:
     """Whether a doubt leaves every digit beyond doubt: it is about a mark, a speck or a label. A
     digit that is like nothing on the page is in doubt, whatever it is least unlike."""
-    if cell.lost and (not cell.name or cell.predicted in _MARKS):
+    mark = cell.predicted in _MARKS
+    if cell.lost and (not cell.name or mark):
         return True
-    if not cell.name or cell.predicted == BLANK:
+    if not cell.name or cell.predicted == BLANK or (mark and cell.other in _MARKS):
         return cell.margin < 0.5
-    if cell.predicted in _MARKS and cell.other in _MARKS and cell.margin < 0.5:
-        return True
-    near = cell.predicted in _MARKS or cell.distance < FOREIGN
-    return near and not cell.hand and cell.margin < HOLDS
+    return (mark or cell.distance < FOREIGN) and not cell.hand and cell.margin < HOLDS

@@ -91,12 +91,6 @@ class Sheet:
         rows = self.rows.values()
         return any(row.used == 2 and place.cell >= row.margin + WRAP for row in rows)
 
-    @property
-    def numbers(self) -> dict[str, Piece]:
-        """The numbers and replies by name."""
-        found = (piece for row in self.rows.values() for piece in row.pieces)
-        return {piece.name: piece for piece in found if piece.name}
-
 
 @lru_cache
 def parts(line: str) -> tuple[tuple[str, str], ...]:
@@ -207,7 +201,11 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
         gain, at, row = fits[margin][key]
         sheets[-1].gain += gain
         sheets[-1].rows[key[2]] = row._replace(pieces=_pieces(row, inked[at], blank[at]))
-    return [sheet for sheet in sheets if len(sheet.numbers) >= _FEWEST]
+    return [
+        sheet
+        for sheet in sheets
+        if sum(bool(piece.name) for row in sheet.rows.values() for piece in row.pieces) >= _FEWEST
+    ]
 
 
 _Key = tuple[int, int, int]

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
 from types import MappingProxyType
+from typing import NamedTuple
 
 from ..applesoft.decimaltext import is_number
 from ..errors import UserError
@@ -75,8 +76,7 @@ class Read:
         return page, starts
 
 
-@dataclass
-class Candidate:
+class Candidate(NamedTuple):
     """A scene, what the program prints for it, and what that costs against the cells."""
 
     scene: dict[str, str]

@@ -5,9 +5,9 @@ first names from small prototypes of a few styles of type.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from importlib import resources
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,8 +48,7 @@ _AGAIN = 0.1
 """What a character's second group costs a cell, in units of `likeness`."""
 
 
-@dataclass
-class Sample:
+class Sample(NamedTuple):
     """Cells of a page at every shift, shape (cells, shifts, pixels), with their squared norms."""
 
     vectors: Vectors
@@ -89,8 +88,7 @@ def distances(sample: Sample, means: Vectors) -> tuple[Floats, Floats]:
     return np.maximum(least, 0.0), np.take_along_axis(strength, best, axis=1)[:, 0].astype(float)
 
 
-@dataclass
-class Typeface:
+class Typeface(NamedTuple):
     """Mean glyphs: ``characters`` in order, ``means`` (characters, pixels), on how many cells each
     rests, and which shifted cells they were made of."""
 
