@@ -134,5 +134,5 @@ def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple["Appl
     lines = typed()
     machine = Applesoft(lambda: next(lines, None), blanks=blanks)
     machine.prompt()
-    shown = machine.take_output().removeprefix("RUN\n").removesuffix("\n]")
-    return machine, shown.replace("\0", "")
+    displayed = machine.take_output().removeprefix("RUN\n").removesuffix("\n]")
+    return machine, displayed.replace("\0", "")

@@ -128,7 +128,7 @@ class Comparison:
     @property
     def worst(self) -> list[Row]:
         """The rows that disagree most."""
-        return sorted(self.differences, key=lambda one: -one.relative)[:WORST]
+        return sorted(self.differences, key=lambda row: -row.relative)[:WORST]
 
     @property
     def silent(self) -> list[str]:
@@ -147,7 +147,7 @@ class Comparison:
         """One line."""
         rows = f"{self.rows} row{'s' if self.rows != 1 else ''}"
         line = f"{rows}: {self.agreeing} agree, {self.differing} disagree"
-        if skipped := sum(one.rows for one in self.not_compared.values()):
+        if skipped := sum(group.rows for group in self.not_compared.values()):
             line += f", {skipped} not compared"
         for cause, count in self.causes.most_common(1):
             line += f"; likely cause of {count}: {cause}"
@@ -159,7 +159,7 @@ class Comparison:
             number: {"checked": checked, "violated": violated}
             for number, (checked, violated) in self.equations.items()
         }
-        found = [{"row": one.row, "id": one.id, "cause": one.cause} for one in self.differences]
+        found = [{"row": row.row, "id": row.id, "cause": row.cause} for row in self.differences]
         whole: dict[str, Any] = {
             "summary": self.summary,
             "rows": self.rows,
@@ -167,12 +167,12 @@ class Comparison:
             "differing": self.differing,
             "results": {name: vars(tally) for name, tally in self.tallies.items()},
             "causes": dict(self.causes.most_common()),
-            "evidence": [one._asdict() for one in self.evidence],
+            "evidence": [cause._asdict() for cause in self.evidence],
             "equations": equations,
-            "worst": [one._asdict() for one in self.worst],
+            "worst": [row._asdict() for row in self.worst],
             "differences": found,
             "elimination": vars(self.elimination),
-            "not_compared": {name: vars(one) for name, one in self.not_compared.items()},
+            "not_compared": {name: vars(skipped) for name, skipped in self.not_compared.items()},
             "unknown_columns": self.unknown,
             "bad_rows": list(map(str, self.bad)),
         }
@@ -240,8 +240,8 @@ def compare(
         rows_wrong = comparison.differences
         comparison.equations, comparison.programs = found.equations, found.programs
         comparison.evidence = [
-            one._replace(parts={says: rows_wrong[at].row for says, at in one.parts.items()})
-            for one in found.evidence
+            cause._replace(parts={says: rows_wrong[at].row for says, at in cause.parts.items()})
+            for cause in found.evidence
         ]
         both = zip(rows_wrong, found.causes, strict=True)
         comparison.differences = [row._replace(cause=cause) for row, cause in both]

@@ -102,8 +102,8 @@ class Diagnosis:
         share = np.where(np.isfinite(off), share, 0.0)
         worst = share.argmax(0), np.arange(wrong.size)
         self._off = share[worst]
-        shown = np.where(np.isfinite(off) & (sizes > 0), written / sizes, 0.0)
-        self._room = np.fmax(shown[worst], case.loose)
+        digits = np.where(np.isfinite(off) & (sizes > 0), written / sizes, 0.0)
+        self._room = np.fmax(digits[worst], case.loose)
         near = np.fmin(np.fmax(4 * case.loose, _CLOSE), _EXPLAINED * self._off)
         self._limits = np.where(wrong, near, np.fmax(case.loose, _CLOSE)) * sizes + written
         if not self._by_digits():
@@ -245,7 +245,7 @@ def _parts(program: Program, judge: Judge, explained: Bools) -> dict[str, int]:
     """What is wrong with a program in several ways: each, and the first row that shows it."""
     parts = {}
     for edit in program.edits if len(program.edits) > 1 else ():
-        without = Program(tuple(one for one in program.edits if one is not edit))
+        without = Program(tuple(other for other in program.edits if other is not edit))
         shows = explained & ~run(without, judge).rows
         if shows.any():
             parts[edit.text] = int(np.argmax(shows))
@@ -293,11 +293,11 @@ def _explanations(judge: Judge, coarse: bool) -> Iterator[list[_Chosen]]:
         groups = judge.of(_telling(judge)).groups()
         first = judge.narrowed(groups[0])
         alone = singles(first, first.wrong)
-        found = [one for one in alone if one.whole]
+        found = [trial for trial in alone if trial.whole]
         stages = pairs(first, alone) if coarse else iter(())
         while not found and (programs := next(stages, None)) is not None:
             meter.update(1)
-            found = [one for one in ranked(programs, first) if one.whole]
+            found = [trial for trial in ranked(programs, first) if trial.whole]
         if found:
             yield [_completed(_deepened(found, first), groups, judge)]
         yield _several(alone, first, judge)
@@ -306,18 +306,18 @@ def _explanations(judge: Judge, coarse: bool) -> Iterator[list[_Chosen]]:
 def _completed(found: Sequence[Found], groups: Sequence[list[str]], judge: Judge) -> _Chosen:
     """Of programs that explain the first group of results alike, the one that all bear out, or the
     likeliest; with what explains the other groups besides."""
-    alike = [one for one in found if np.array_equal(one.rows, found[0].rows)]
-    alike.sort(key=lambda one: (-int(run(one.program, judge).rows.sum()), one.rank))
+    alike = [trial for trial in found if np.array_equal(trial.rows, found[0].rows)]
+    alike.sort(key=lambda trial: (-int(run(trial.program, judge).rows.sum()), trial.rank))
     program = alike[0].program
     wrong = [name for group in groups for name in group]
     names = [name for name in judge.theirs if name in groups[0] or name not in wrong]
     for more in (wrong, *groups[1:3]) if len(groups) > 1 else ():
         part = judge.narrowed([*names, *more])
-        one = run(program, part)
-        if not one.whole:
-            one = next(iter(singles(part, part.wrong & ~one.rows, program)), one)
-        if one.whole:
-            program, names = one.program, [*names, *more]
+        trial = run(program, part)
+        if not trial.whole:
+            trial = next(iter(singles(part, part.wrong & ~trial.rows, program)), trial)
+        if trial.whole:
+            program, names = trial.program, [*names, *more]
         if set(wrong) <= set(names):
             break
     return program, alike[1:] if program is alike[0].program else (), names
@@ -328,11 +328,11 @@ def _deepened(found: Sequence[Found], judge: Judge) -> Sequence[Found]:
     for _ in range(_DEEPER):
         left = judge.wrong & ~found[0].rows
         more = []
-        for one in singles(judge, left, found[0].program) if left.any() else ():
-            explains = (one.rows & left).sum()
-            known = one.program.edits[-1].rank <= RARE_CONVENTION
-            if one.whole and explains >= _MOST * left.sum() and (explains > 1 or known):
-                more.append(one)
+        for trial in singles(judge, left, found[0].program) if left.any() else ():
+            explains = (trial.rows & left).sum()
+            known = trial.program.edits[-1].rank <= RARE_CONVENTION
+            if trial.whole and explains >= _MOST * left.sum() and (explains > 1 or known):
+                more.append(trial)
         if not more:
             break
         found = more
@@ -357,7 +357,7 @@ def _several(alone: Sequence[Found], part: Judge, judge: Judge) -> list[_Chosen]
     left = part.wrong.copy()
     chosen: list[_Chosen] = []
     while alone and left.any() and len(chosen) < _SEVERAL:
-        best = max(alone, key=lambda one: ((one.rows & left).sum(), -one.rank))
+        best = max(alone, key=lambda trial: ((trial.rows & left).sum(), -trial.rank))
         new = best.rows & left
         if not new.any():
             break

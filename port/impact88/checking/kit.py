@@ -24,9 +24,9 @@ HEAD = ("id", "class", "expect", "flags")
 def flat(found: Iterable[dict[str, Any]]) -> Iterator[str]:
     """The scenes as CSV, a line each, the header first; no field needs quotes."""
     yield ",".join([*HEAD, *SCENE, "comment"]) + "\n"
-    for one in found:
-        scene = [one["scene"][name] for name in SCENE]
-        yield ",".join([*_head(one), *scene, one["comment"].replace(",", " -")]) + "\n"
+    for vector in found:
+        scene = [vector["scene"][name] for name in SCENE]
+        yield ",".join([*_head(vector), *scene, vector["comment"].replace(",", " -")]) + "\n"
 
 
 def _head(vector: dict[str, Any]) -> list[str]:
@@ -39,7 +39,7 @@ def write_kit(place: str, count: int, seed: int) -> list[str]:
     found = list(vectors(count, seed))
     texts = {
         "vectors.csv": "".join(flat(found)),
-        "vectors.jsonl": "".join(json.dumps(one, ensure_ascii=False) + "\n" for one in found),
+        "vectors.jsonl": "".join(json.dumps(vector, ensure_ascii=False) + "\n" for vector in found),
         "vectors.schema.json": schemas.text("vectors"),
         "conventions.md": schemas.text(schemas.CONVENTIONS),
     }
@@ -79,12 +79,12 @@ def workbook(found: Sequence[dict[str, Any]]) -> bytes:
 
     book = Workbook()
     statements = [
-        one
-        for one in spellings()[IMPULSES].statements
-        if one.target not in SCENE and not one.target.startswith(SHOWN)
+        statement
+        for statement in spellings()[IMPULSES].statements
+        if statement.target not in SCENE and not statement.target.startswith(SHOWN)
     ]
-    results = [one.target for one in statements if one.target in RESULTS]
-    between = [one.target for one in statements if one.target not in RESULTS]
+    results = [statement.target for statement in statements if statement.target in RESULTS]
+    between = [statement.target for statement in statements if statement.target not in RESULTS]
     sheets = {"vectors": [*HEAD, *SCENE, *results], "between": between}
     places: dict[str, tuple[str, str]] = {}
     for title, heads in sheets.items():
@@ -97,13 +97,13 @@ def workbook(found: Sequence[dict[str, Any]]) -> bytes:
         cells["pi"] = "PI()"
         book["vectors"].append([*_head(vector), *(float(vector["scene"][n]) for n in SCENE)])
         bodies = ",".join(cells[name] for name in ("MA", "MB", "ia", "ib"))
-        for one in statements:
-            text = _formula(one.sides[0], cells)
-            if one.target == "Pn":
+        for statement in statements:
+            text = _formula(statement.sides[0], cells)
+            if statement.target == "Pn":
                 text = f"IF(MIN({bodies})<=0,NA(),{text})"
-            elif one.target in results:  # none where there are no final velocities
+            elif statement.target in results:  # none where there are no final velocities
                 text += f"+0*{cells['Pn']}"
-            title, letter = places[one.target]
+            title, letter = places[statement.target]
             book[title][f"{letter}{row}"] = f"={text}"
     whole, out = io.BytesIO(), io.BytesIO()
     book.save(whole)

@@ -93,8 +93,8 @@ def _replay(golden: Any) -> Counted:
 def _programs(golden: Any) -> Counted:
     for kind, name, texts in captured.programs(golden):
         keys, blanks = texts.get("in", ""), kind == captured.PROGRAMS
-        _, shown = captured.session(texts["bas"], keys, blanks=blanks)
-        yield name, shown == texts.get("out", "")
+        _, displayed = captured.session(texts["bas"], keys, blanks=blanks)
+        yield name, displayed == texts.get("out", "")
 
 
 def _published(golden: Any) -> Counted:

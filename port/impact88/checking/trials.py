@@ -46,7 +46,7 @@ class Program(NamedTuple):
             later = {key for other in self.edits[place + 1 :] for key in other.sides}
             if edit.says or not later.issuperset(edit.sides):
                 said.append(edit.text)
-        return "; and ".join(sorted(said, key=lambda one: "should be" in one))
+        return "; and ".join(sorted(said, key=lambda part: "should be" in part))
 
     @property
     def spelling(self) -> Spelling:
@@ -171,8 +171,8 @@ def ranked(programs: Iterable[Program], judge: Judge) -> list[Found]:
 def singles(judge: Judge, unexplained: Bools, on: Program | None = None) -> list[Found]:
     """Programs with one mistake, or with one more than ``on``, that explain rows, best first."""
     seen = list(_tried(judge.few(unexplained), on or Program()))
-    seen.sort(key=lambda one: (-int(one.rows.sum()), one.rank))
-    return ranked((one.program for one in seen[:_KEPT]), judge)
+    seen.sort(key=lambda trial: (-int(trial.rows.sum()), trial.rank))
+    return ranked((trial.program for trial in seen[:_KEPT]), judge)
 
 
 def _tried(judge: Judge, base: Program) -> Iterator[Found]:
@@ -181,9 +181,9 @@ def _tried(judge: Judge, base: Program) -> Iterator[Found]:
     titled = [edit.title for edit in base.edits if edit.title]
     for title in titled[:1] or spellings():
         spelling = Program((*base.edits, Edit(title, {}))).spelling
-        edits = [] if titled else [one for one in variants() if one.title == title]
+        edits = [] if titled else [edit for edit in variants() if edit.title == title]
         if titled or title == LISTING:
-            edits += [one for one in readings() if one not in base.edits]
+            edits += [edit for edit in readings() if edit not in base.edits]
         edits += edits_on(spelling) if titled else edits_of(title)
         start = Run(spelling, judge.scene)
         found = start.distinct([spelling.composed(edit.sides) for edit in edits])
@@ -203,18 +203,19 @@ def pairs(judge: Judge, alone: Sequence[Found]) -> Iterator[list[Program]]:
         few = judge.of(FINAL_VELOCITIES).few(judge.wrong, _FEW)
         given = np.all([np.isfinite(column) for column in few.theirs.values()], axis=0)
         yield from _by_equations(few.part(np.flatnonzero(given)), judge)
-    enough = (one for one in alone if one.explains >= _SHARE * judge.wrong.sum() and one.stands)
-    for one in list(enough)[:_FIRSTS]:
-        unexplained = judge.wrong & ~one.rows
+    share = _SHARE * judge.wrong.sum()
+    enough = [trial for trial in alone if trial.stands and trial.explains >= share]
+    for trial in enough[:_FIRSTS]:
+        unexplained = judge.wrong & ~trial.rows
         if unexplained.any():
-            yield [more.program for more in singles(judge, unexplained, one.program)[:2]]
+            yield [more.program for more in singles(judge, unexplained, trial.program)[:2]]
 
 
 def _two_readings(judge: Judge) -> Iterator[Program]:
-    common = [one for one in readings() if one.rank == CONVENTION]
-    first = [one for one in common if not one.shows]
+    common = [edit for edit in readings() if edit.rank == CONVENTION]
+    first = [edit for edit in common if not edit.shows]
     spelling = spellings()[IMPULSES]
-    seen = dict(judge.scene) | Run(spelling, judge.scene).edited([one.sides for one in first])
+    seen = dict(judge.scene) | Run(spelling, judge.scene).edited([edit.sides for edit in first])
     for other in common:
         near = judge.near(Run(spelling.edited(other.sides), seen).names, SHOWN)
         for place in np.flatnonzero(near.mean(-1) >= BORNE_OUT) if near.ndim > 1 else ():
@@ -273,20 +274,20 @@ def _by_equations(judge: Judge, whole: Judge) -> Iterator[list[Program]]:
     """Programs with two mistakes that together mend what their velocities violate; then a reading,
     and a mistake on top of it. ``judge``: a few rows, of which all have all final velocities;
     ``whole``: those that the second is to explain."""
-    reading = [one for one in readings() if not one.shows]
+    reading = [edit for edit in readings() if not edit.shows]
     for title, spelling in spellings().items():
-        own = [*reading, *(one for one in variants() if one.title == title), *edits_of(title)]
+        own = [*reading, *(edit for edit in variants() if edit.title == title), *edits_of(title)]
         impulses = {"Px", "Pn"} & {*spelling.where, *spelling.unknown}
         for how in "AB" if impulses else "A":
             yield _sums(_faults(spelling, judge, how), own)
     # how many residuals each reading leaves that rounding does not in nearly all rows
     _, left = _faults(spellings()[LISTING], judge, "A")
-    held = np.abs(left([{}, *(one.sides for one in reading)])) <= 2
+    held = np.abs(left([{}, *(edit.sides for edit in reading)])) <= 2
     violated = (held.mean(-1) < BORNE_OUT).sum(1)
     for place in np.argsort(violated[1:], kind="stable")[:_FIRSTS]:
         if violated[place + 1] < violated[0]:
             found = singles(whole, whole.wrong, Program((reading[place],)))
-            yield [one.program for one in found[:2]]
+            yield [trial.program for trial in found[:2]]
 
 
 def _sums(faults: _Faults, edits: Sequence[Edit]) -> list[Program]:
@@ -313,4 +314,4 @@ def _sums(faults: _Faults, edits: Sequence[Edit]) -> list[Program]:
             mended = (np.abs(own + changes[i] + changes[others]) <= 2).all(1)
             found |= {(int(i), int(j)) for j in others[mended.mean(1) >= BORNE_OUT] if i < j}
     programs = [Program((made[i], made[j])) for i, j in sorted(found)]
-    return sorted(programs, key=lambda one: one.edits[0].rank + one.edits[1].rank)[:_FIRSTS]
+    return sorted(programs, key=lambda pair: pair.edits[0].rank + pair.edits[1].rank)[:_FIRSTS]

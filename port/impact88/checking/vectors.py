@@ -33,7 +33,7 @@ def vectors(
 ) -> Iterator[dict[str, Any]]:
     """``count`` vectors: id, class, label, scene, the oracle's answer. ``only``: of one class."""
     every = enumerate(scenes(None, seed))
-    labelled = islice(((index, *one) for index, one in every if only in (None, one[0])), count)
+    labelled = islice(((index, *row) for index, row in every if only in (None, row[0])), count)
     while batch := list(islice(labelled, BATCH)):
         answers = oracle([scene for *_, scene in batch], reference)
         for (index, kind, label, scene), found in zip(batch, answers, strict=True):

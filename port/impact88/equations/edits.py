@@ -59,9 +59,10 @@ class Edit(NamedTuple):
         said = []
         right = spellings()[self.title]
         for key, sides in self.sides.items():
-            one = right.statements[right.where[key]]
-            now, should = written(one.target, sides), one.text.removeprefix(f"{one.target} = ")
-            said.append(f"{one.place}: {now}, should be {should}; {one.subject}")
+            statement = right.statements[right.where[key]]
+            now = written(statement.target, sides)
+            should = statement.text.removeprefix(f"{statement.target} = ")
+            said.append(f"{statement.place}: {now}, should be {should}; {statement.subject}")
         return "; and ".join(said)
 
 
@@ -69,10 +70,10 @@ def _node_edits(spelling: Spelling, places: range) -> Iterator[Edit]:
     """Every edit of one node of statements, of each statement the likeliest first: of those that
     compute the same it stays."""
     for index in places:
-        one, kin = spelling.statements[index], spelling.kin_at(index)
+        line, kin = spelling.statements[index], spelling.kin_at(index)
         found = [
-            Edit(spelling.title, {one.key: (*one.sides[:at], other, *one.sides[at + 1 :])}, rank)
-            for at, side in enumerate(one.sides)
+            Edit(spelling.title, {line.key: (*line.sides[:at], other, *line.sides[at + 1 :])}, rank)
+            for at, side in enumerate(line.sides)
             for rank, other in _variations(side, kin)
         ]
         yield from sorted(found, key=lambda edit: edit.rank)
@@ -128,8 +129,8 @@ def _matches(pattern: Expression, node: Expression, bound: dict[str, Expression]
         bound[pattern] = node
         return True
     return _kind(pattern) == _kind(node) and all(
-        _matches(one, other, bound)
-        for one, other in zip(operands(pattern), operands(node), strict=True)
+        _matches(wanted, other, bound)
+        for wanted, other in zip(operands(pattern), operands(node), strict=True)
     )
 
 
@@ -144,26 +145,28 @@ def _equation_edits(spelling: Spelling) -> Iterator[Edit]:
     """The same edit throughout one statement, or all that share a subject up to a comma."""
     groups: dict[str, list[int]] = {}
     for index in range(spelling.own, spelling.results):
-        one = spelling.statements[index]
-        subjects = one.subject.split(", ")
+        statement = spelling.statements[index]
+        subjects = statement.subject.split(", ")
         for count in range(1, len(subjects) + 1):
             groups.setdefault(", ".join(subjects[:count]), []).append(index)
-        groups[f"{one.text}; {one.subject}"] = [index]
+        groups[f"{statement.text}; {statement.subject}"] = [index]
     for subject, places in groups.items():
         if len(places) == 1 and ";" not in subject:
             continue
         sides = (side for index in places for side in spelling.statements[index].sides)
         names = Counter(x for side in sides for x in nodes(side) if isinstance(x, str))
         kin = spelling.kin_at(places[0])
-        for name in [one for one in names if one not in (*CONDITIONS, "pi", *spelling.unknown)]:
+        for name in [word for word in names if word not in (*CONDITIONS, "pi", *spelling.unknown)]:
             for says, changes in _throughout(name, kin.get(name, ()), names):
                 touched = [
                     spelling.statements[index]
                     for index in places
                     if not changes.keys().isdisjoint(spelling.reads[index])
                 ]
-                made = {one.key: tuple(renamed(x, changes) for x in one.sides) for one in touched}
-                where = ", ".join(dict.fromkeys(one.place for one in touched))
+                made = {
+                    line.key: tuple(renamed(x, changes) for x in line.sides) for line in touched
+                }
+                where = ", ".join(dict.fromkeys(line.place for line in touched))
                 yield Edit(spelling.title, made, LESS, f"{where}: {says} in {subject}")
 
 
@@ -195,8 +198,8 @@ def edits_of(title: str) -> tuple[Edit, ...]:
 
 def edits_on(spelling: Spelling) -> Iterator[Edit]:
     """The edits of one node of a spelling, edited or not, its input and output apart."""
-    shown = sum(one.target.startswith(SHOWN) for one in spelling.statements)
-    return _node_edits(spelling, range(len(SCENE), len(spelling.statements) - shown))
+    results = sum(statement.target.startswith(SHOWN) for statement in spelling.statements)
+    return _node_edits(spelling, range(len(SCENE), len(spelling.statements) - results))
 
 
 _OF_A = frozenset("DA PA TA MA IA UX UY WA VAX VAY WAF XA YA XAF YAF DVA".split())
@@ -221,7 +224,7 @@ def written_out(lines: Iterable[str]) -> Iterator[str]:
     for line in lines:
         if line.startswith("table "):
             name, entries = line.removeprefix("table ").split(":", 1)
-            pairs = (one.rsplit("=", 1) for one in entries.split(", "))
+            pairs = (entry.rsplit("=", 1) for entry in entries.split(", "))
             tables[name] = [(says.strip(), factor.strip()) for says, factor in pairs]
             continue
         word = re.search(r"\{(?!factor)(\w+)\}", line)

@@ -78,8 +78,8 @@ def running_errors(spelling: Spelling, scene: Columns) -> Mapping[str, tuple[Any
         return found, _ERRORS[node[0]](found, *values, *errors) + np.abs(found)
 
     with np.errstate(all="ignore"):
-        for one in spelling.statements:
-            names[one.target] = bounded(one.sides[0])
+        for statement in spelling.statements:
+            names[statement.target] = bounded(statement.sides[0])
     return names
 
 
@@ -123,25 +123,25 @@ class Run:
         for k, changes in enumerate(several):
             for key, sides in changes.items():
                 edits.setdefault(key, []).append((k, sides))
-        for index, one in enumerate(self.spelling.statements):
-            here, own = edits.get(one.key, []), self._own[index]
+        for index, statement in enumerate(self.spelling.statements):
+            here, own = edits.get(statement.key, []), self._own[index]
             fresh = own is None or not changed.isdisjoint(self.spelling.reads[index])
             if here or fresh:
-                seen = names if one.target else names.new_child(self._unknown)
-                found = [value(side, seen) for side in one.sides] if fresh else own
+                seen = names if statement.target else names.new_child(self._unknown)
+                found = [value(side, seen) for side in statement.sides] if fresh else own
                 self._own[index] = found if own is None else own
                 if here:
                     found = self._rows(found, here, len(several), seen)
-                if not one.target and not self.clamped:
+                if not statement.target and not self.clamped:
                     equations[index] = found
-                elif not one.target:
-                    made[RESIDUAL + one.key] = np.subtract(*found)
-                elif one.target in self.clamped:
-                    made[one.target] = self.clamped[one.target]
-                    made[RESIDUAL + one.key] = found[0] - made[one.target]
+                elif not statement.target:
+                    made[RESIDUAL + statement.key] = np.subtract(*found)
+                elif statement.target in self.clamped:
+                    made[statement.target] = self.clamped[statement.target]
+                    made[RESIDUAL + statement.key] = found[0] - made[statement.target]
                 else:
-                    made[one.target] = np.atleast_2d(found[0])
-                    changed.add(one.target)
+                    made[statement.target] = np.atleast_2d(found[0])
+                    changed.add(statement.target)
             if equations and index == self.spelling.equations[-1]:
                 solved = np.moveaxis(_solutions(*self.system(equations)), -1, 0)
                 made |= zip(self.spelling.unknown, solved, strict=True)
@@ -191,11 +191,11 @@ class Run:
         found: list[tuple[int, Changes]] = [(place, edits[place]) for place in groups.pop("", [])]
         for key, places in groups.items():
             index = self.spelling.where[key]
-            one, own = self.spelling.statements[index], self._own[index]
-            seen = self.names if one.target else {**self.names, **self._unknown}
+            line, own = self.spelling.statements[index], self._own[index]
+            seen = self.names if line.target else {**self.names, **self._unknown}
             known: dict[int, Any] = {}
             values = [[value(side, seen, known) for side in edits[place][key]] for place in places]
-            wholes = [sides[0] if one.target else np.subtract(*sides) for sides in (own, *values)]
+            wholes = [sides[0] if line.target else np.subtract(*sides) for sides in (own, *values)]
             shape = np.broadcast_shapes((1, self.size), *map(np.shape, wholes))
             met = set[bytes]()
             for place, sides, whole in zip((-1, *places), (own, *values), wholes, strict=True):

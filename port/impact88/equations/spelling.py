@@ -65,36 +65,39 @@ class Spelling:
     @cached_property
     def reads(self) -> tuple[frozenset[str], ...]:
         """The names that each statement reads."""
-        every = ([node for side in one.sides for node in nodes(side)] for one in self.statements)
-        return tuple(frozenset(one for one in found if isinstance(one, str)) for found in every)
+        every = ([node for side in line.sides for node in nodes(side)] for line in self.statements)
+        return tuple(frozenset(node for node in found if isinstance(node, str)) for found in every)
 
     @cached_property
     def equations(self) -> tuple[int, ...]:
         """Which statements are equations."""
-        return tuple(i for i, one in enumerate(self.statements) if not one.target)
+        return tuple(i for i, statement in enumerate(self.statements) if not statement.target)
 
     @cached_property
     def where(self) -> dict[str, int]:
         """Key -> which statement."""
-        return {one.key: i for i, one in enumerate(self.statements)}
+        return {statement.key: i for i, statement in enumerate(self.statements)}
 
     def kin_at(self, index: int) -> Kin:
         """The kin that are known already where a statement stands."""
-        known = {*SCENE, *(one.target for one in self.statements[:index])}
+        known = {*SCENE, *(statement.target for statement in self.statements[:index])}
         if self.equations and index >= self.equations[0]:
             known.update(self.unknown)
         return {
-            name: tuple(one for one in others if one in known) for name, others in self.kin.items()
+            name: tuple(other for other in others if other in known)
+            for name, others in self.kin.items()
         }
 
     @cached_property
     def otherwise(self) -> dict[str, Expression]:
         """What is read for each column as typed, and shown for each result."""
         return {
-            f"{TYPED}{one.target}" if one.target in SCENE else one.target.removeprefix(SHOWN): side
-            for one in self.statements
-            for side in one.sides[:1]
-            if one.target in SCENE or one.target.startswith(SHOWN)
+            f"{TYPED}{line.target}"
+            if line.target in SCENE
+            else line.target.removeprefix(SHOWN): side
+            for line in self.statements
+            for side in line.sides[:1]
+            if line.target in SCENE or line.target.startswith(SHOWN)
         }
 
     def composed(self, sides: Mapping[str, Sides]) -> Mapping[str, Sides]:
@@ -109,7 +112,9 @@ class Spelling:
     def edited(self, sides: Mapping[str, Sides]) -> "Spelling":
         """The spelling with statements written otherwise."""
         made = self.composed(sides)
-        statements = (one._replace(sides=made.get(one.key, one.sides)) for one in self.statements)
+        statements = (
+            line._replace(sides=made.get(line.key, line.sides)) for line in self.statements
+        )
         return replace(self, statements=tuple(statements))
 
 
@@ -202,7 +207,7 @@ def _spelling(title: str, sections: Mapping[str, list[str]]) -> Spelling:
     begins = []
     for section in (FIRST, title, LAST):
         begins.append(len(statements))
-        known = {one.target for one in statements}.union(unknown)
+        known = {statement.target for statement in statements}.union(unknown)
         for line in sections[section]:
             word, *names = line.split()
             if word == "kin":
@@ -211,11 +216,11 @@ def _spelling(title: str, sections: Mapping[str, list[str]]) -> Spelling:
             elif word == "unknown":
                 unknown = tuple(names)
             else:
-                one = _statement(line, f"{title} form")
-                if section != LAST or one.target not in known:
-                    statements.append(one)
-    known = {one.target for one in statements}.union(unknown)
-    shown = [name for name in RESULTS if name in known]
-    statements += [_statement(f"| {SHOWN}{n} = {n} | {n} shown", "output") for n in shown]
+                statement = _statement(line, f"{title} form")
+                if section != LAST or statement.target not in known:
+                    statements.append(statement)
+    known = {statement.target for statement in statements}.union(unknown)
+    results = [name for name in RESULTS if name in known]
+    statements += [_statement(f"| {SHOWN}{n} = {n} | {n} shown", "output") for n in results]
     others = {name: tuple(sorted(alike - {name})) for name, alike in kin.items()}
     return Spelling(title, tuple(statements), unknown, others, *begins[1:])

@@ -168,5 +168,5 @@ def _statements(text: str) -> Iterator[str]:
 
 def _plain(statements: list[str]) -> str:
     """A line without blanks and remarks."""
-    kept = (one for one in statements if not one.lstrip().upper().startswith("REM"))
+    kept = (text for text in statements if not text.lstrip().upper().startswith("REM"))
     return ":".join("".join(statement.split()) for statement in kept)

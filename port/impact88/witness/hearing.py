@@ -231,8 +231,8 @@ def _hear_program(session: Session, case: Case) -> Heard:
     try:
         rom["displayed"] = session.run_program(program, keys, blanks=blanks)
         rom["screen"] = apple.screen_text()
-        machine, shown = captured.session(program, keys, blanks=blanks)
-        others[EMULATOR] = {"displayed": shown}
+        machine, displayed = captured.session(program, keys, blanks=blanks)
+        others[EMULATOR] = {"displayed": displayed}
         if case.kind == OWN:
             others[EMULATOR]["screen"] = machine.screen_text()
     except Lost as lost:
@@ -251,16 +251,16 @@ def _hear_program(session: Session, case: Case) -> Heard:
 def record(image: Image, heard: list[Heard], seconds: float) -> dict[str, Any]:
     """The object `impact88 witness --json` prints."""
     comparisons, failing = Counter[str](), Counter[str]()
-    for one in heard:
-        comparisons.update(f"{one.kind}, {who}" for who in one.compared)
-        failing.update({f"{one.kind}, {difference.who}" for difference in one.differences})
-    wrong = [one for one in heard if one.differences]
+    for case in heard:
+        comparisons.update(f"{case.kind}, {who}" for who in case.compared)
+        failing.update({f"{case.kind}, {difference.who}" for difference in case.differences})
+    wrong = [case for case in heard if case.differences]
     return {
         "passed": bool(heard) and not wrong,
         "versions": {**frame.versions(), "py65": metadata.version("py65")},
         "hashes": {"rom_sha1": image.sha1, **frame.hashes()},
         "rom": "Apple II Plus" if image.known else "unknown",
-        "cases": Counter(one.kind for one in heard),
+        "cases": Counter(case.kind for case in heard),
         "comparisons": {
             name: {"total": total, "right": total - failing[name]}
             for name, total in comparisons.items()
@@ -268,11 +268,11 @@ def record(image: Image, heard: list[Heard], seconds: float) -> dict[str, Any]:
         "differing_cases": len(wrong),
         "differences": [
             {
-                "kind": one.kind,
-                "name": one.name,
-                "differences": [difference._asdict() for difference in one.differences],
+                "kind": case.kind,
+                "name": case.name,
+                "differences": [difference._asdict() for difference in case.differences],
             }
-            for one in wrong[:TOLD]
+            for case in wrong[:TOLD]
         ],
         "seconds": round(seconds, 1),
     }

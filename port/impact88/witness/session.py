@@ -31,12 +31,12 @@ class Session:
     def __init__(self, rom: bytes) -> None:
         self.apple = Apple(rom)
         try:
-            shown = self.apple.boot()
+            displayed = self.apple.boot()
         except Lost as lost:
             raise UserError(f"this ROM does not come to a prompt: {lost}") from None
-        last = shown.rstrip()[-1:]
+        last = displayed.rstrip()[-1:]
         if last != PROMPT:
-            what = _OTHER_PROMPTS.get(last, f"{shown[-20:]!r}, no prompt of Applesoft")
+            what = _OTHER_PROMPTS.get(last, f"{displayed[-20:]!r}, no prompt of Applesoft")
             raise UserError(f"this ROM comes to {what}")
         self._fresh = self.apple.state()
 
