@@ -109,12 +109,14 @@ def stored(text: str) -> str:
     return "00" * 5 if text.startswith("00") else text
 
 
-def left_behind(reals: Mapping[str, str], a: Mapping[str, Any] | None) -> tuple[Any, Any]:
-    """A run's variables and array in a form that compares."""
-    return (
-        {name: stored(text) for name, text in reals.items()},
-        a and (a["dims"], [stored(text) for text in a["data"]]),
-    )
+def left_behind(reals: Mapping[str, str], a: Mapping[str, Any] | None) -> dict[str, str]:
+    """A run's variables and its array by name, in a form that compares."""
+    found = {name: stored(text) for name, text in sorted(reals.items())}
+    if a:
+        rows, found["DIM A"] = a["dims"][0], str(list(a["dims"]))
+        cells = enumerate(map(stored, a["data"]))
+        found |= {f"A({at % rows},{at // rows})": text for at, text in cells}
+    return found
 
 
 def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple["Applesoft", str]:

@@ -45,14 +45,12 @@ def value(node: Expression, names: Columns, known: dict[int, Any] | None = None)
 
 
 _ERRORS: dict[str, Callable[..., Any]] = {
-    "+": lambda v, x, y, dx, dy: dx + dy,
-    "-": lambda v, x, y, dx, dy: dx + dy,
+    **dict.fromkeys(("+", "-", "hypot"), lambda v, x, y, dx, dy: dx + dy),
     "*": lambda v, x, y, dx, dy: np.abs(x) * dy + np.abs(y) * dx,
     "/": lambda v, x, y, dx, dy: (dx + np.abs(v) * dy) / np.abs(y),
     "**": lambda v, x, y, dx, dy: 2 * np.abs(x) * dx,
     "sin": lambda v, x, dx: np.abs(np.cos(x)) * dx,
     "cos": lambda v, x, dx: np.abs(np.sin(x)) * dx,
-    "hypot": lambda v, x, y, dx, dy: dx + dy,
     NEGATIVE: lambda v, x, dx: dx - np.abs(v),
     "where": lambda v, p, x, y, dp, dx, dy: np.where(p, dx, dy) - np.abs(v),
 }

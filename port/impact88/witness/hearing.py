@@ -208,14 +208,7 @@ def hear_sample(session: Session, number: int) -> Heard:
 
 
 def _left_behind(run: Mapping[str, Any]) -> dict[str, str]:
-    """What a run printed and left in its variables and its array, by name."""
-    reals, array = captured.left_behind(run["reals"], run["A"])
-    whole = {"printout": run["printout"], **dict(sorted(reals.items()))}
-    if array:
-        (rows, columns), cells = array
-        whole["DIM A"] = f"{[rows, columns]}"
-        whole |= {f"A({at % rows},{at // rows})": text for at, text in enumerate(cells)}
-    return whole
+    return {"printout": run["printout"], **captured.left_behind(run["reals"], run["A"])}
 
 
 def _hear_program(session: Session, case: Case) -> Heard:
