@@ -26,7 +26,7 @@ CLASSES = CASEWORK, EDGE, FAILURE = "casework", "edge", "failure"
 ANSWER, REFUSE, EITHER = "answer", "refuse", "either"
 
 PUBLISHED, PUBLISHED_SEED = 1000, 1988
-"""Every label occurs in 16 scenes at least. Another number or seed would change published hashes."""
+"""Every label occurs in 16 scenes at least; the hash of these vectors is published."""
 
 
 def vectors(
