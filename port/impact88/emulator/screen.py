@@ -14,8 +14,8 @@ from itertools import pairwise
 from ..applesoft.console import Editor
 
 WIDTH, HEIGHT, BASE, END, NORMAL, INVERSE, FLASHING = 40, 24, 0x400, 0x800, 0xFF, 0x3F, 0x7F
-_BLANK, _SMALL_LETTERS = 0xA0, 0xE0
-"""Of the monitor: the screen and where it lies; its masks and codes."""
+"""Of the monitor: the screen, where it lies, and its masks."""
+_BLANK, _SMALL_LETTERS = 0xA0, 0xE0  # codes on the screen
 _SHOWS = re.compile("[^\0-\x09\x0b-\x1f]")
 """A character that shows, or the end of the line."""
 _TITLE, _TITLE_COLUMN = bytes(code | 0x80 for code in b"APPLE ]["), 15

@@ -20,9 +20,10 @@ from .memory import EMPTY, INTEGER, ROM, STRING, TEMPORARIES, TEMPORARIES_END, M
 from .tokens import CLOSE, COMMA, QUOTE
 
 DESCRIPTOR, IS_STRING, LONGEST, VARIABLE_SIZE, ARRAY_HEADER = 3, 0xFF, 255, 7, 5
+"""Of the ROM: bytes of a descriptor, VALTYP of a string, its longest, bytes of others."""
 AUTOMATIC, LARGEST_INTEGER, DEEPEST = 11, 143, 63
-"""Of the ROM: bytes, and VALTYP; elements per dimension of an array that no DIM made; exponent of
-the largest number that MKINT takes; the stack pointer below which a subscript's formula fails."""
+"""Of the ROM: elements per dimension of an array that no DIM made; exponent of the largest number
+that MKINT takes; the stack pointer below which a subscript's formula fails."""
 LOWEST = from_stored("9080000020")
 """The one number below -32767.99 that the ROM lets through: a little less than -32768."""
 AFTER_SUBSCRIPT = (COMMA, CLOSE)
