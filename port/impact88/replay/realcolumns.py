@@ -13,7 +13,7 @@ from .textcolumns import read
 from .unit import NEVER, Ints, Unit, key
 
 _AT_A_TIME = 32768
-"""So many texts are read together, if there are that many: few calls for few, cache for many."""
+"""Texts up to which all columns are read together: few calls for few, cache for many."""
 
 PLACES = {
     name: (SCENE[name].line, i) for i, name in enumerate(dict.fromkeys([*VELOCITIES, *SCENE]))
@@ -54,16 +54,9 @@ def read_columns(columns: Mapping[str, Any]) -> Scenes:
     count = lengths.pop() if lengths else 1
     first = np.full(count, NEVER, np.int64)
     values = {name: from_packed(column, None).v for name, column in packed.items()}
-    group: list[str] = []
-    size = 0
-    for name in texts:
-        if group and size + sizes[name] > _AT_A_TIME:
-            _read_texts({member: texts[member] for member in group}, values, first)
-            group, size = [], 0
-        group.append(name)
-        size += sizes[name]
-    if group:
-        _read_texts({member: texts[member] for member in group}, values, first)
+    together = sum(sizes[name] for name in texts) <= _AT_A_TIME
+    for group in [texts] if texts and together else [{name: texts[name]} for name in texts]:
+        _read_texts(group, values, first)
     return Scenes(values, count, first)
 
 
@@ -75,7 +68,7 @@ def _read_texts(texts: dict[str, Sequence[str]], values: dict[str, Floats], firs
     sizes = [len(column) for column in texts.values()]
     starts = np.concatenate([[0], np.cumsum(sizes)])
     unit = Unit(len(every))
-    unit.at_every(np.repeat([key(*PLACES[name]) for name in texts], sizes))
+    unit.place = np.repeat([key(*PLACES[name]) for name in texts], sizes)
 
     def where(index: int) -> str:
         column = int(np.searchsorted(starts, index, side="right")) - 1

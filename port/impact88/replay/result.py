@@ -138,21 +138,17 @@ class Replay:
         """What PRINT gets for fields, extension included; length 1 where all scenes share it."""
         values = {**self._scenes.values, **self._values}
         made = [name for name in names if name == "LOSS" or name in (*statements.FLOORED, *ANGLES)]
-        found: Mapping[str, Floats] = {}
-        rows: Ints | None = None  # None: all scenes are left to the arrays
+        found = {name: np.empty(self.count) for name in made}
+        rows = np.arange(self.count)  # left to the arrays
         if made and native.library is not None:
             given = {x: values[x] for name in made for x in compiled.sources(name)}
             varying = frozenset(x for x, v in given.items() if v.size > 1)
             program = compiled.field_program(tuple(made), varying)
             found, odd = compiled.computed(program, given, self.count)
             rows = np.flatnonzero(odd)
-        for name in made if rows is None or rows.size else ():
+        for name in made if rows.size else ():
             columns = [values[x] for x in compiled.sources(name)]
-            if rows is None:
-                values[name] = _shown(name, columns)
-            else:
-                some = [v[rows] if v.size > 1 else v for v in columns]
-                found[name][rows] = _shown(name, some)
+            found[name][rows] = _shown(name, [v[rows] if v.size > 1 else v for v in columns])
         return [found[name] if name in found else values[name] for name in names]
 
 

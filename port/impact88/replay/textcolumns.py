@@ -13,7 +13,7 @@ from .. import native
 from ..applesoft import decimaltext as scalar
 from ..errors import UserError
 from .reals import OVERFLOW, ZERO, Reals, compare, constant, from_number, select
-from .unit import Bools, Ints, Unit
+from .unit import Ints, Unit
 
 Strings = npt.NDArray[np.str_]
 
@@ -33,6 +33,8 @@ AT_A_TIME = 32768
 
 _QUARTER_LIMIT = 2.0**125
 """Four times this is exponent byte 256."""
+_ROUNDS_TO_OVERFLOW = 2.0**127 - 2.0**94
+"""From exponent byte 255, mantissa FFFFFFFF and extension 80 on."""
 
 
 def times_ten(x: Reals) -> Reals:
@@ -127,27 +129,10 @@ def write(x: Reals, texts: Strings | None = None) -> Strings:
 
 
 def _written_together(x: Reals) -> Strings:
-    """`write`, without the compiled machine."""
-    number, d, failed = _nine_digits(x)
-    if failed.any():
-        x.fails(failed, OVERFLOW)
-    signs = np.where(x.v < 0, "-", "").tolist()
-    texts = [
-        scalar.lay_out(sign, str(nine), power) if nine else "0"
-        for sign, nine, power in zip(signs, number.tolist(), d.tolist(), strict=True)
-    ]
-    return np.where(failed, "", np.array(texts, TEXT))
-
-
-_ROUNDS_TO_OVERFLOW = 2.0**127 - 2.0**94
-"""From exponent byte 255, mantissa FFFFFFFF and extension 80 on."""
-
-
-def _nine_digits(x: Reals) -> tuple[Ints, Ints, Bools]:
-    """The nine digits N written for |x|, and d with |x| = N * 10^d; N = 0 for zero. And where |x|
-    overflows when DIV10 rounds it, which it does first of all."""
+    """`write`, without the compiled machine: of |x| = N * 10^d the nine digits N, and d."""
     v = np.abs(x.v)
-    failed = v >= _ROUNDS_TO_OVERFLOW
+    failed = v >= _ROUNDS_TO_OVERFLOW  # when DIV10 rounds it, which it does first of all
+    x.fails(failed, OVERFLOW)
     v[failed] = 0.0
     nonzero, small = v != 0, (v != 0) & (v < 1)
     unit = Unit(v.size)
@@ -161,4 +146,9 @@ def _nine_digits(x: Reals) -> tuple[Ints, Ints, Bools]:
         v = np.where(below, times_ten(Reals(v, unit)).v, v)
         d -= below
     v = np.where(rounds, (_HALF + Reals(v, unit)).v, v)
-    return np.floor(v).astype(np.int64), d, failed
+    signs = np.where(x.v < 0, "-", "").tolist()
+    texts = [
+        scalar.lay_out(sign, str(int(nine)), power) if nine else "0"
+        for sign, nine, power in zip(signs, np.floor(v).tolist(), d.tolist(), strict=True)
+    ]
+    return np.where(failed, "", np.array(texts, TEXT))

@@ -18,9 +18,9 @@ Bools = npt.NDArray[np.bool_]
 NEVER = np.int64(2**63 - 1)
 """The record of a scene in which nothing has failed."""
 
-_ORDER = 40
-_CLOCK = 24
-_LINE = 8
+_ORDER, _CLOCK, _LINE = 40, 24, 8
+"""Where a record's parts begin, in bits: the place; the count of errors, of which a block has fewer
+than 65,536; the line, which is below 65,536; and the code has 8 bits."""
 
 
 def stamp(line: int, position: int = 0) -> int:
@@ -43,7 +43,8 @@ class Unit:
         self.first: Ints = np.full(count, NEVER, dtype=np.int64)
         self.elsewhere: Bools | None = None
         """The scenes that do not run the present statement; their errors are none."""
-        self._place: Any = 0
+        self.place: Any = 0
+        """Where the program is, as `key`; or an array, a place of its own for each scene."""
         self._clock = 0
 
     def skip(self, skipped: Bools | None) -> None:
@@ -52,17 +53,13 @@ class Unit:
 
     def at(self, line: int, position: int = 0, order: int | None = None) -> None:
         """Go to a place, see `key`."""
-        self._place = key(line, position, order)
-
-    def at_every(self, places: Ints) -> None:
-        """Go to a place of its own for each scene, given as `key`."""
-        self._place = places
+        self.place = key(line, position, order)
 
     def part(self, rows: Ints) -> Unit:
         """A unit of some scenes only, at the same place."""
         part = Unit(rows.size)
-        place = self._place
-        part._place = place[rows] if isinstance(place, np.ndarray) else place
+        place = self.place
+        part.place = place[rows] if isinstance(place, np.ndarray) else place
         return part
 
     def join(self, part: Unit, rows: Ints) -> None:
@@ -77,7 +74,7 @@ class Unit:
         if not failed.any():
             return False
         self._clock += 1
-        keys = np.where(failed, self._place + (self._clock << _CLOCK) + code, NEVER)
+        keys = np.where(failed, self.place + (self._clock << _CLOCK) + code, NEVER)
         np.minimum(self.first, keys, out=self.first)
         return True
 
