@@ -327,9 +327,6 @@ def check_value(name: str, text: str, source: str | None) -> str:
     return text
 
 
-# --- TOML ----------------------------------------------------------------------------------------
-
-
 def toml_file(path: str) -> dict[str, str]:
     """The entries of a flat TOML file (``-``: standard input), see `toml_texts`."""
     return toml_texts(read_text(path, TOML_LIMIT), called(path))
@@ -346,8 +343,8 @@ def toml_texts(text: str, source: str) -> dict[str, str]:
     for number, line in enumerate(text.split("\n"), 1):
         where = f"{source}, line {number}"
         if len(line) > LONGEST_ENTRY:
-            says = f"has more than {LONGEST_ENTRY:,} characters; expected one value a line"
-            raise UserError(says, where)
+            message = f"has more than {LONGEST_ENTRY:,} characters; expected one value a line"
+            raise UserError(message, where)
         if not line.strip() or line.lstrip().startswith("#"):
             continue
         if header := re.fullmatch(r"\s*\[([A-Za-z0-9_-]+)\]\s*(#.*)?", line):
@@ -493,9 +490,6 @@ def _quoted(text: str) -> str:
 def _plain_toml(text: str) -> bool:
     """Whether TOML takes the number unquoted."""
     return re.fullmatch(r"[+-]?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?", text) is not None
-
-
-# --- the listing's own data and the published runs -----------------------------------------------
 
 
 def published_data() -> dict[str, str]:

@@ -543,12 +543,12 @@ def shown_text(name: str, text: str, system: System) -> str:
     factor = system.factor(name)
     if factor == 1 or not is_number(text):
         return text
-    value, shown = double(text), ""
+    value, rounded = double(text), ""
     for places in (15, 16, 17):
-        shown = f"{value * factor:.{places}g}".upper()
-        if double(converted(name, shown, system)) == value:
+        rounded = f"{value * factor:.{places}g}".upper()
+        if double(converted(name, rounded, system)) == value:
             break
-    return shown
+    return rounded
 
 
 def units_in(name: str, text: str) -> list[tuple[str, str]]:

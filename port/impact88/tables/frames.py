@@ -111,9 +111,9 @@ def _structured(frame: Array, solved: Solver) -> Array:
             "impact88.solve with an array for each name"
         )
     columns = {n: frame[n] for n in names}
-    whole = columns | solved(names, lambda name: columns[name])
-    result = np.empty(frame.shape, [(name, column.dtype) for name, column in whole.items()])
-    for name, column in whole.items():
+    extended = columns | solved(names, lambda name: columns[name])
+    result = np.empty(frame.shape, [(name, column.dtype) for name, column in extended.items()])
+    for name, column in extended.items():
         result[name] = column
     return result
 

@@ -70,17 +70,17 @@ def check_unpacked(members: list[zipfile.ZipInfo], size: int, path: str) -> None
 def _member(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: str) -> NDArray[Any]:
     where = f"{path}, {quoted(member.filename)}"
     headers = np.lib.format.read_array_header_1_0, np.lib.format.read_array_header_2_0
-    says = "cannot be unpacked"
+    problem = "cannot be unpacked"
     try:
         with archive.open(member) as file:
             data = io.BytesIO(file.read(member.file_size + 1))
-        says = "is not an array of numbers or text"
+        problem = "is not an array of numbers or text"
         shape, _, dtype = headers[np.lib.format.read_magic(data)[0] - 1](data)
     except (OSError, MemoryError):
         raise
     except Exception as error:  # zlib, struct, lzma, a literal's parser ... each have their own
         reason = str(error).partition("\n")[0]
-        raise UserError(f"{says}: {reason}", where) from None
+        raise UserError(f"{problem}: {reason}", where) from None
     if dtype.kind not in "biufcSU":
         raise UserError(f"holds {dtype}; expected an array of numbers or of text", where)
     size, expected = data.getbuffer().nbytes, data.tell() + prod(shape) * dtype.itemsize
@@ -144,5 +144,5 @@ def write(path: str, form: str, delimiter: str, names: Sequence[str]) -> Iterato
             # a fixed date: the same arrays give the same bytes
             escaped = f"{heading(name)}.npy".encode("utf-8", ESCAPED).decode()
             with archive.open(zipfile.ZipInfo(escaped), "w", force_zip64=True) as out:
-                whole = column[0] if len(column) == 1 else np.concatenate(column)
-                np.lib.format.write_array(out, np.asanyarray(whole), allow_pickle=False)
+                array = column[0] if len(column) == 1 else np.concatenate(column)
+                np.lib.format.write_array(out, np.asanyarray(array), allow_pickle=False)

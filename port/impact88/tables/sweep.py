@@ -10,6 +10,7 @@ from ..doubles import digits, double, is_number
 from ..errors import UserError, quoted
 from ..names import SCENE, check_names
 from ..scene import in_base_units
+from ..units import shown_text, system_of
 from .rows import BLOCK_ROWS, Column, Heading, Reader, Rows
 
 MOST = 10_000_000
@@ -67,16 +68,11 @@ def read_sweep(
 ) -> Iterator[Reader]:
     """A reader of the scene's texts with every combination of the ranges' values, the last range
     running fastest; in the system ``units``, the values that have a unit headed with it."""
-    if units:
-        from ..units import SYSTEMS, shown_text
-
-        system = SYSTEMS[units]
-        headed = {n: Heading(n, system.heading(n), system.unit(n)) for n in scene}
-        scene = {headed[n]: shown_text(n, text, system) for n, text in scene.items()}
-        factors = {n: system.factor(n) for n in ranges}
-        ranges = {
-            headed[n]: Range(r.low * factors[n], r.high * factors[n], r.steps)
-            for n, r in ranges.items()
-        }
-    total = prod(r.steps for r in ranges.values())
-    yield Reader(list(scene), _blocks(scene, ranges), total)
+    system = system_of(units)
+    headed = {n: Heading(n, system.heading(n), system.unit(n)) for n in scene}
+    texts: dict[str, str] = {headed[n]: shown_text(n, t, system) for n, t in scene.items()}
+    swept: dict[str, Range] = {}
+    for n, values in ranges.items():
+        low, high = (system.factor(n) * limit for limit in values[:2])
+        swept[headed[n]] = Range(low, high, values.steps)
+    yield Reader(list(texts), _blocks(texts, swept), prod(r.steps for r in ranges.values()))
