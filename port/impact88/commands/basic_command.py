@@ -164,7 +164,8 @@ def _run_file(machine: Applesoft, terminal: Terminal, *, stay: bool) -> int:
             raise
     if stay:
         return 0
-    terminal.end_row()
+    if not (machine.machine.broken and sys.stderr.isatty()):  # else the command line ends it
+        terminal.end_row()
     if machine.machine.broken:
         raise KeyboardInterrupt  # what the printer had so far replaces nothing
     return int(error is not None)
