@@ -197,18 +197,18 @@ def _newton(system: System, x: Floats, residual: Floats, jacobian: Floats) -> tu
     weight = np.abs(loose).max(initial=0.0) or 1.0
     tight, narrow = jacobian[:count] @ along.T, loose @ along.T / weight
     free, rows = len(along), len(loose)
-    whole = np.zeros((free + rows + count,) * 2)
-    whole[:free, :free] = along @ (curvature + curvature.T) @ along.T / (2 * weight * weight)
-    whole[:free, free : free + rows], whole[:free, free + rows :] = narrow.T, tight.T
-    whole[free : free + rows, :free], whole[free + rows :, :free] = narrow, tight
-    whole[free : free + rows, free : free + rows] = -np.eye(rows)
-    right = np.zeros(len(whole))
+    equations = np.zeros((free + rows + count,) * 2)
+    equations[:free, :free] = along @ (curvature + curvature.T) @ along.T / (2 * weight * weight)
+    equations[:free, free : free + rows], equations[:free, free + rows :] = narrow.T, tight.T
+    equations[free : free + rows, :free], equations[free + rows :, :free] = narrow, tight
+    equations[free : free + rows, free : free + rows] = -np.eye(rows)
+    right = np.zeros(len(equations))
     right[free : free + rows], right[free + rows :] = -measured / weight, -residual[:count]
-    if not (np.isfinite(whole).all() and np.isfinite(right).all()):
+    if not (np.isfinite(equations).all() and np.isfinite(right).all()):
         raise np.linalg.LinAlgError("not finite")
-    solution = np.linalg.lstsq(whole, right, rcond=1e-15)[0]
+    solution = np.linalg.lstsq(equations, right, rcond=1e-15)[0]
     # for every residual and every condition that says something, one curves downward
-    downward = np.linalg.eigvalsh(_balanced(whole)) < -_DOWNWARD
+    downward = np.linalg.eigvalsh(_balanced(equations)) < -_DOWNWARD
     step: Floats = along.T @ solution[:free]
     return step, bool(downward.sum() <= rows + size - null.shape[1])
 
@@ -539,8 +539,8 @@ class _Search:
             settled = begin.shape[1] == 1 or (some is more and not self.is_open)
             if self.solutions and settled:
                 break
-            for one in some.T:
-                nearby, left_over = tightened(system, one[:, None])
+            for start in some.T:
+                nearby, left_over = tightened(system, start[:, None])
                 if left_over <= _NEARLY:
                     met = True
                     self.follow(nearby)
@@ -577,7 +577,7 @@ class _Search:
         solution = _described(self.system, x, self.assumed)
         if solution.undetermined:  # from elsewhere it would only come out otherwise
             both = (*self.solutions, solution)
-            self.solutions = [min(both, key=lambda one: round(one.squares, 9))]
+            self.solutions = [min(both, key=lambda impact: round(impact.squares, 9))]
         elif not any(np.abs(x - other.x).max(initial=0.0) < 1e-6 for other in self.solutions):
             self.solutions.append(solution)
 

@@ -41,8 +41,8 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
     """The consequences of ``values`` (geometry, velocities, coefficients, PN and PT, by name), as
     far as what they need is known: contact point, STATUS, direction of force, contact velocities,
     energies, velocity changes, speeds and courses, and MUC."""
-    whole = with_point_masses(values)
-    given = {name: np.asarray(value, np.float64) for name, value in whole.items()}
+    values = with_point_masses(values)
+    given = {name: np.asarray(value, np.float64) for name, value in values.items()}
     if (given.get("M", np.array(6.0)) == 4).all():
         given = {"WA": np.zeros(()), "WB": np.zeros(()), "EM": np.zeros(()), **given}
         given = {"WAF": given["WA"], "WBF": given["WB"], **given}
@@ -50,8 +50,8 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
     here = state.here
     result = {"CAX": -here.d4, "CAY": -here.d3, "CBX": here.d2, "CBY": here.d1}
     names = (*CONTACT, *CHANGES, "KI", "KF", "LOSS", *SPEEDS, *COURSES)
-    told = {name: state[name] for name in names} | state.contact_velocities()
-    result |= {name: value for name, value in told.items() if not np.isnan(value).all()}
+    following = {name: state[name] for name in names} | state.contact_velocities()
+    result |= {name: value for name, value in following.items() if not np.isnan(value).all()}
     if "PN" in given and "PT" in given:
         result |= {name: state[name] for name in FORCES}
         result["P"] = np.hypot(given["PN"], given["PT"])
@@ -84,8 +84,8 @@ def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Ar
     known = [given[name] for name in (*VELOCITIES, *FINAL_STATE) if name in given]
     # of the same impact if the sliding ended at separation
     pivot = {name: given[name] for name in SCENE if name in given} | {"MU": np.array(PIVOT)}
-    whole = all(name in pivot for name in SCENE if name != "M")
-    ending = quantities(pivot, ("PN", "PT")) if whole else dict.fromkeys(("PN", "PT"), np.nan)
+    complete = all(name in pivot for name in SCENE if name != "M")
+    ending = quantities(pivot, ("PN", "PT")) if complete else dict.fromkeys(("PN", "PT"), np.nan)
     with np.errstate(all="ignore"):
         lost, initial = 2 * state.energy_lost, state.initial_energy
         operands = (
@@ -160,8 +160,8 @@ def reconstruction_model(
     result = {n: state[n] for n in outputs if n not in ("MUC", "STATUS")}
     if "MUC" in outputs:
         # the critical friction depends on MU's sign as little as on MU
-        whole = {**state.values, **before, "MU": 0.0}
-        scene = {name: whole[name] for name in SCENE if name in whole}
+        values = {**state.values, **before, "MU": 0.0}
+        scene = {name: values[name] for name in SCENE if name in values}
         result["MUC"], zero = quantities(scene, ("MUC", "critical_denominator")).values()
         denominators.append(zero)
     if "STATUS" in outputs:

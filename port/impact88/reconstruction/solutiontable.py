@@ -99,7 +99,7 @@ class Impact:
     def as_text(self, units: System = RULES) -> str:
         """The answer, tables and remarks."""
         remarks = self.warnings(units)
-        told = [paragraph(f"! {remarks.pop(0)}")] if self.undetermined else []
+        undetermined = [paragraph(f"! {remarks.pop(0)}")] if self.undetermined else []
         clean = _without_noise(self.values)
         values = written(clean, units)
         named = (
@@ -111,7 +111,7 @@ class Impact:
             self._velocities(values, units),
             *(self._named(names, values, units) for names in named),
             *self.further(units),
-            *told,
+            *undetermined,
         ]
         lines = [line for block in blocks if block for line in (*block, "")]
         for remark in remarks:
@@ -122,7 +122,7 @@ class Impact:
     def as_json(self, units: System = RULES) -> dict[str, Any]:
         """The same for a program; numbers that do not exist are null."""
         values = {n: v for n, v in written(self.values, units).items() if n != "STATUS"}
-        whole: dict[str, Any] = plain(
+        record: dict[str, Any] = plain(
             {
                 "known": [*self.known],
                 "values": values,
@@ -132,7 +132,7 @@ class Impact:
                 **self.more(units),
             }
         )
-        return whole
+        return record
 
     def _answer(self, values: Mapping[str, float], remarks: int, units: System) -> Iterator[str]:
         unit = units.label(VELOCITY)
@@ -140,11 +140,11 @@ class Impact:
         def size(vehicle: str, name: str) -> str:
             if name not in values:
                 return f"{vehicle} unknown"
-            shown = units.shown(VELOCITY, values[name])
-            text = f"{vehicle} {number(shown, 3)}"
+            speed = units.shown(VELOCITY, values[name])
+            text = f"{vehicle} {number(speed, 3)}"
             if units is not RULES:
                 road, factor = _ROAD.get(unit, ("", 0.0))
-                text += f" {unit}" + (f" ({number(shown * factor, 3)} {road})" if road else "")
+                text += f" {unit}" + (f" ({number(speed * factor, 3)} {road})" if road else "")
             if spread := self.spread_of(name):
                 deviation, lower, upper = (number(units.shown(VELOCITY, v), 3) for v in spread)
                 text += f", sd {deviation}"

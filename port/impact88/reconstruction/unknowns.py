@@ -335,7 +335,7 @@ def _determined(given: Mapping[str, Any], wanted: Sequence[str], point: bool) ->
     names = [n for n in (*VELOCITIES, *FINAL_STATE, *IMPULSES) if n not in ignored]
     unknown = [n for n in COEFFICIENTS if n not in given and n not in ignored]
 
-    def told(state: State, _: Any = None) -> Array:
+    def scaled(state: State, _: Any = None) -> Array:
         rows = [held(state)[name] / system.scale(name) for name in names]
         for name in unknown:
             unit = {"MUP": system.mass, "EM": 1 / system.gyration}.get(name, 1.0) * system.speed
@@ -343,10 +343,10 @@ def _determined(given: Mapping[str, Any], wanted: Sequence[str], point: bool) ->
         rows += [velocity / system.speed for velocity in state.relative_before[:2]]
         return np.stack(np.broadcast_arrays(*rows))
 
-    rows, slopes = system.linearized(x, told)
+    rows, slopes = system.linearized(x, scaled)
     unsure = np.abs(np.einsum("qvn,nvw->qwn", slopes, left_open)).max(axis=1)
     sure = unsure <= _OPEN * np.abs(slopes).max(axis=1)
-    growth = np.imag(told(system.state(x[:, None] + 1j * TINY * errors, moved))) / TINY
+    growth = np.imag(scaled(system.state(x[:, None] + 1j * TINY * errors, moved))) / TINY
     closing = np.hypot(*rows[-2:])
     rows, growth = np.where(sure, rows, np.nan), np.where(sure[:, None], growth, np.nan)
     result = {n: row * system.scale(n) for n, row in zip(names, rows, strict=False)}

@@ -162,7 +162,7 @@ def as_json(bounds: Bounds) -> dict[str, Any]:
         }
 
     alike = ("problem", "samples", "seed", "sigmas", "evaluations", "unusable", "warnings")
-    whole: dict[str, Any] = plain(
+    record: dict[str, Any] = plain(
         {
             **{name: getattr(bounds, name) for name in alike},
             "all_corners": bounds.corners_in_full,
@@ -181,7 +181,7 @@ def as_json(bounds: Bounds) -> dict[str, Any]:
             "outputs": {name: output(name, bound) for name, bound in bounds.bounds.items()},
         }
     )
-    return whole
+    return record
 
 
 def unbounded(bound: Any) -> list[str]:

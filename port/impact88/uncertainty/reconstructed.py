@@ -201,7 +201,7 @@ class _Box:
 
     # -- impacts
 
-    def _told(self, state: State) -> Any:
+    def _rows(self, state: State) -> Any:
         """Functions, then walls of impacts, real or complex."""
         columns = [state.values["PN"]]  # for the shape
         for name in self.names:
@@ -215,7 +215,7 @@ class _Box:
 
     def _found(self, x: Floats, state: State, usable: Flags) -> Point:
         self.progress(len(usable))
-        columns = self._told(state).T
+        columns = self._rows(state).T
         count = len(self.names) + len(self.ratios)
         functions, walls = columns[:, :count], columns[:, count:]
         usable = usable & np.isfinite(walls).all(axis=1)
@@ -298,9 +298,9 @@ class _Box:
         right = np.broadcast_to(left, (len(left), len(self.kept), len(u)))
         turns = -_solved(jacobian, right.transpose(2, 0, 1))
         state = system.state(still + 1j * TINY * turns.transpose(1, 2, 0), moved)
-        told = np.nan_to_num(np.imag(self._told(state)) / TINY).transpose(2, 0, 1)
+        derivatives = np.nan_to_num(np.imag(self._rows(state)) / TINY).transpose(2, 0, 1)
         count = len(self.names) + len(self.ratios)
-        return told[:, :count], told[:, count:], turns
+        return derivatives[:, :count], derivatives[:, count:], turns
 
     def log_volume(self, u: Floats, x: Floats) -> Floats:
         """The logarithm, but for a constant, of how much of the space of velocities before,
@@ -354,19 +354,19 @@ class _Box:
 
     def proper_density(self, u: Floats, x: Floats, walls: Floats) -> Floats:
         """`density` over the velocities before, the coefficients and the vehicles."""
-        whole = self.density(u, walls) + self.log_volume(u, x)
-        return np.where(np.isnan(whole), -np.inf, whole)
+        logarithm = self.density(u, walls) + self.log_volume(u, x)
+        return np.where(np.isnan(logarithm), -np.inf, logarithm)
 
     def density(self, u: Floats, walls: Floats, beyond: Floats | float = 0.0) -> Floats:
         """The logarithm of all known values' density, but for a constant; ``beyond``: how far the
         walls are set back."""
         inside = (np.abs(u - 0.5) <= 0.5).all(1) & (np.abs(walls - 0.5) <= 0.5 + beyond).all(1)
         shares = np.clip(np.concatenate([u, walls], axis=1), 0.0, 1.0)
-        whole = np.zeros(len(u))
+        logarithm = np.zeros(len(u))
         for item, share in zip(self.items.values(), shares.T, strict=True):
             if item.kind != "uniform":
-                whole += item.log_density(item.low + share * (item.high - item.low))
-        return np.where(inside, whole, -np.inf)
+                logarithm += item.log_density(item.low + share * (item.high - item.low))
+        return np.where(inside, logarithm, -np.inf)
 
 
 def _near(name: str, value: Floats, nominal: float | None) -> Floats:
@@ -388,22 +388,22 @@ def _walked(box: _Box, count: int, rng: np.random.Generator) -> tuple[Floats, Fl
     between = (shares * begin[rng.integers(len(begin), size=(chains, 4))]).sum(axis=1)
     free = np.concatenate([box.drawn(rng, FREE), between, begin])
     x, functions, walls, usable = box.from_nominal(free)
-    whole = np.where(usable, box.proper_density(free, x, walls), -np.inf)
+    density = np.where(usable, box.proper_density(free, x, walls), -np.inf)
     # the draws' own density is in them already; one heavy weight would hold all chains
-    among, weights = np.isfinite(whole), np.zeros(len(free))
-    more = whole[among] - box.density(free[among], np.full_like(walls[among], 0.5))
+    among, weights = np.isfinite(density), np.zeros(len(free))
+    more = density[among] - box.density(free[among], np.full_like(walls[among], 0.5))
     weights[among] = np.exp(more - more.max(initial=-np.inf))
     weights = np.minimum(weights, weights.sum() / np.sqrt(among.sum() or 1))
     if not weights.any():
         weights[-len(begin) :] = 1.0
     start = rng.choice(len(free), chains, p=weights / weights.sum())
-    u, functions, whole = free[start], functions[start], whole[start]
-    one, other = np.triu_indices(k)
+    u, functions, density = free[start], functions[start], density[start]
+    row, column = np.triu_indices(k)
     center = u[:1]
 
     def terms(points: Floats) -> Floats:
         off = points - center
-        return np.concatenate([np.ones((len(off), 1)), off, off[:, one] * off[:, other]], axis=1)
+        return np.concatenate([np.ones((len(off), 1)), off, off[:, row] * off[:, column]], axis=1)
 
     seen = usable & (np.abs(walls - 0.5) < NEAR).all(axis=1)
     met_at, met_there = free[seen], np.hstack([walls, x.T])[seen]
@@ -430,17 +430,17 @@ def _walked(box: _Box, count: int, rng: np.random.Generator) -> tuple[Floats, Fl
             v, height = np.where(moved[:, None], tried, v), np.where(moved, after, height)
         x, values, ahead, usable = box.from_nominal(v, (terms(v) @ model[:, r:]).T)
         after = np.where(usable, box.proper_density(v, x, ahead), -np.inf)
-        moved = -rng.standard_exponential(chains) < (after - whole) - (height - plain)
+        moved = -rng.standard_exponential(chains) < (after - density) - (height - plain)
         u, walls = np.where(moved[:, None], v, u), np.where(moved[:, None], ahead, walls)
-        functions, whole = (
+        functions, density = (
             np.where(moved[:, None], values, functions),
-            np.where(moved, after, whole),
+            np.where(moved, after, density),
         )
         if walk < LEARNT:
             # who started where hardly anybody comes follows one who has moved
             if moved.any():
                 of = np.where(moved, np.arange(chains), rng.choice(np.flatnonzero(moved), chains))
-                u, walls, functions, whole = u[of], walls[of], functions[of], whole[of]
+                u, walls, functions, density = u[of], walls[of], functions[of], density[of]
             seen = usable & (np.abs(ahead - 0.5) < NEAR).all(axis=1)
             met_at = np.vstack([met_at, v[seen]])
             met_there = np.vstack([met_there, np.hstack([ahead, x.T])[seen]])

@@ -245,13 +245,13 @@ class Measured(Impact):
 
     def _uncertain(self, name: str, units: System) -> dict[str, Any]:
         factor = units.factor(name)
-        whole: dict[str, Any] = {
+        record: dict[str, Any] = {
             "first_order": self.deviations[name] * factor,
             "drivers": dict(self.drivers[name]),
         }
         if self.draws:
             drawn, bound = self.draws.spread(name, QUANTILES), self.ranges[name]
-            whole |= {
+            record |= {
                 "mean": drawn.mean * factor,
                 "deviation": drawn.deviation * factor,
                 "quantiles": {f"{q:g}": v * factor for q, v in drawn.quantiles.items()},
@@ -261,7 +261,7 @@ class Measured(Impact):
                 "at_lower": written(bound.at_lower, units),
                 "at_upper": written(bound.at_upper, units),
             }
-        return whole
+        return record
 
 
 class Reconstructions(list[Reconstruction]):
@@ -269,7 +269,7 @@ class Reconstructions(list[Reconstruction]):
 
     def _repr_html_(self) -> str:
         """What `impact88 reconstruct --samples 0` prints, as a notebook shows it."""
-        return notebook.preformatted(in_turn([Measured(one, 0) for one in self]))
+        return notebook.preformatted(in_turn([Measured(impact, 0) for impact in self]))
 
 
 def reconstruct(known: Mapping[str, Uncertain | float | str]) -> Reconstructions:
