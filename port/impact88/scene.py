@@ -210,7 +210,7 @@ OWN_AXES = {"A": ("CAF", "CAL"), "B": ("CBF", "CBL")}
 
 def _with_contact_point(values: dict[str, str], source: str) -> dict[str, str]:
     """The values with DA PA or DB PB worked out from CAF CAL or CBF CBL, forward and to the left of
-    the center of gravity. Within limits they stay, for `reconstruction.contact`."""
+    the center of gravity. Within limits they stay, for `reconstruction.geometry.moved`."""
     for vehicle, names in OWN_AXES.items():
         absent = [name for name in names if name not in values]
         if len(absent) == len(names):

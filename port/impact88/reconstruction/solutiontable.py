@@ -29,8 +29,8 @@ _TURNING = (
 _ROAD = {"ft/s": ("mph", 3600 / 5280), "m/s": ("km/h", 3.6)}
 """The unit of speeds on the road."""
 _SPINS = ("WA", "WB", "WAF", "WBF")
-_SHARE = 0.05
-"""Of a speed's variance: less is not named in the answer."""
+DRIVERS, _SHARE = 3, 0.05
+"""Values named as making a result uncertain, at most, and a share of its variance too small to."""
 _LEFT, _WIDTH = 16, 104
 """Characters of the answer's labels and lines."""
 _NOISE = 1e-9
@@ -68,7 +68,9 @@ def _absent(values: Mapping[str, float]) -> tuple[str, ...]:
 class Impact:
     """A solved impact: what is ``known`` and all ``values``, in base units; ``undetermined``: what
     is told apart from the remarks, ``helpful``: further values that would determine it; ``note``:
-    what is said of several solutions."""
+    what is said of several solutions; ``deviations``, bounds (``ranges``) and ``drivers``: of its
+    uncertain results, the last the known values that make them so, with their shares of the
+    variance."""
 
     undetermined: Sequence[str] = ()
     helpful: Sequence[str] = ()
@@ -76,6 +78,9 @@ class Impact:
 
     def __init__(self, known: Mapping[str, Any], values: dict[str, float]) -> None:
         self.known, self.values = known, values
+        self.deviations: Mapping[str, float] = {}
+        self.ranges: Mapping[str, Any] = {}
+        self.drivers: Mapping[str, Sequence[tuple[str, float]]] = {}
 
     def warnings(self, units: System = RULES) -> list[str]:
         """What a reader must know, in sentences."""
@@ -86,14 +91,6 @@ class Impact:
 
     def more(self, units: System) -> dict[str, Any]:
         return {}
-
-    def spread_of(self, name: str) -> tuple[float, float, float] | None:
-        """A result's standard deviation and bounds, NaN where none are sought."""
-        return None
-
-    def drivers_of(self, name: str) -> Sequence[tuple[str, float]]:
-        """The known values that make a result uncertain, with their shares of its variance."""
-        return ()
 
     @within_doubles
     def as_text(self, units: System = RULES) -> str:
@@ -145,10 +142,12 @@ class Impact:
             if units is not RULES:
                 road, factor = _ROAD.get(unit, ("", 0.0))
                 text += f" {unit}" + (f" ({number(speed * factor, 3)} {road})" if road else "")
-            if spread := self.spread_of(name):
-                deviation, lower, upper = (number(units.shown(VELOCITY, v), 3) for v in spread)
+            if name in self.drivers:
+                bound = self.ranges.get(name)
+                sizes = (self.deviations[name], *((bound.lower, bound.upper) if bound else ()))
+                deviation, *ends = (number(units.shown(VELOCITY, size), 3) for size in sizes)
                 text += f", sd {deviation}"
-                text += f", between {lower} and {upper}" if lower and upper else ""
+                text += f", between {ends[0]} and {ends[1]}" if ends and all(ends) else ""
             return text
 
         rows = []
@@ -173,7 +172,7 @@ class Impact:
                 text += f": give {first}{' and ' if first else ''}{self.helpful[-1]}"
             rows.append(("NOT FOUND", text))
         for vehicle in vehicles:
-            drivers = self.drivers_of(f"S{vehicle}")
+            drivers = self.drivers.get(f"S{vehicle}", ())[:DRIVERS]
             named = [f"{name} {100 * share:.0f} %" for name, share in drivers if share >= _SHARE]
             if named:
                 rows.append(("DEPENDS ON", f"{vehicle}'s speed: {', '.join(named)}"))

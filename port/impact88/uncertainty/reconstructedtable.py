@@ -13,7 +13,7 @@ from ..plaintable import number, paragraph, table
 from ..reconstruction import adjustment
 from ..reconstruction.adjustment import Reconstruction, typed_friction
 from ..reconstruction.geometry import within_doubles
-from ..reconstruction.solutiontable import Impact, completed, in_turn
+from ..reconstruction.solutiontable import DRIVERS, Impact, completed, in_turn
 from ..reconstruction.state import COURSES, FORCES, SPEEDS
 from ..units import RULES, System, written
 from .boundstable import unbounded
@@ -26,8 +26,8 @@ _ANSWERS = ("SA", "SB", "DVA", "DVB")
 """What the answer holds, known within limits or not."""
 QUANTILES = (0.05, 0.5, 0.95)
 """The median and the middle 90 % of the draws."""
-MOST_CORRELATED, DRIVERS = 7, 3
-"""Columns of the tables: what 96 characters hold."""
+MOST_CORRELATED = 7
+"""Columns of correlations: what 96 characters hold."""
 ILL_POSED = 0.25
 """From this share of the largest speed, a velocity's standard deviation is called ill-posed."""
 TOO_FAR = 3.0
@@ -84,16 +84,6 @@ class Measured(Impact):
             shares = responses**2 / (np.square(responses).sum() or 1.0)
             ranked = np.argsort(-shares, kind="stable")
             self.drivers[name] = [(solution.system.observations[i], shares[i]) for i in ranked]
-
-    def spread_of(self, name: str) -> tuple[float, float, float] | None:
-        if name not in self.names:
-            return None
-        bound = self.ranges.get(name)
-        ends = (bound.lower, bound.upper) if bound else (math.nan, math.nan)
-        return self.deviations[name], *ends
-
-    def drivers_of(self, name: str) -> Sequence[tuple[str, float]]:
-        return self.drivers.get(name, ())[:DRIVERS]
 
     @within_doubles
     def warnings(self, units: System = RULES) -> list[str]:
