@@ -54,11 +54,12 @@ ORDINARY = {"E": 0.37, "EM": -0.61, "MUP": 0.43}
 """Coefficients at which nothing special happens."""
 CHUNK = 1 << 12
 """Scenes solved at a time: bounds the memory."""
+# of these twice or a hundredth as much changes none of 260 problems
 TIE = 1e-14
 """Sliding below this share of the largest speed is rounding, and counts as line 400's tie."""
-_RANK, _NOTHING, _OPEN, _MISMATCH = 1e-12, 1e-12, 1e-9, 1e-9
-"""Singular values, denominators of coefficients, what is left open in a quantity, and equations'
-mismatch: smaller shares of the largest are rounding."""
+_NOTHING, _OPEN = 1e-12, 1e-9
+"""Smaller shares of the largest are rounding: of singular values and denominators of coefficients;
+of what is left open in a quantity, and equations' mismatch."""
 
 
 class UnsolvableError(UserError):
@@ -110,7 +111,7 @@ class Solution:
     def contradictory(self) -> NDArray[np.bool_]:
         """Whether the known values contradict one another beyond rounding."""
         speeds = [np.abs(self.values[n]) for n in (*VELOCITIES, *FINAL_STATE) if n in self.values]
-        return np.asarray(self.mismatch > 1e-9 * np.max(speeds, axis=0))
+        return np.asarray(self.mismatch > _OPEN * np.max(speeds, axis=0))
 
 
 @within_doubles
@@ -369,7 +370,7 @@ def _determined(given: Mapping[str, Any], wanted: Sequence[str], point: bool) ->
         **{n: given[n] for n in UNKNOWNS if n in given and not (point and n == "EM")},
         **{f"error of {name}": np.sqrt((error[name] ** 2).sum(axis=0)) for name in wanted},
         "sliding": rows[-1] * system.speed,
-        "mismatch": np.where(mismatch > _MISMATCH * sizes, mismatch * system.speed, 0.0),
+        "mismatch": np.where(mismatch > _OPEN * sizes, mismatch * system.speed, 0.0),
         "gyration": np.broadcast_to(system.gyration, count),
         "parts": parts,
     }
@@ -382,7 +383,7 @@ def _pseudo_inverse(matrix: Array) -> tuple[Array, Array]:
     """
     finite = np.asarray(np.isfinite(matrix).all(axis=(1, 2)))
     u, s, vt = np.linalg.svd(np.where(finite[:, None, None], matrix, 0.0), full_matrices=False)
-    kept, v = s > _RANK * s.max(axis=1, initial=0.0)[:, None], vt.swapaxes(1, 2)
+    kept, v = s > _NOTHING * s.max(axis=1, initial=0.0)[:, None], vt.swapaxes(1, 2)
     pseudo = (v * np.where(kept, 1 / s, 0.0)[:, None]) @ u.swapaxes(1, 2)
     return pseudo, np.eye(matrix.shape[2]) - (v * kept[:, None]) @ vt
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import notebook
 from ..names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
-from ..plaintable import number, paragraph, table
+from ..plaintable import fixed, number, paragraph, table
 from ..reconstruction import adjustment
 from ..reconstruction.adjustment import Reconstruction, typed_friction
 from ..reconstruction.geometry import within_doubles
@@ -169,10 +169,10 @@ class Measured(Impact):
             item = self.solution.system.known[a.name]
             half = math.nan if item.kind == "normal" else a.tolerance
             sizes = [(a.measured, 6), (half, 3), (item.standard_deviation, 3)]
-            cells = [number(units.factor(a.name) * x, n) for x, n in (*sizes, (a.adjusted, 6))]
-            rows.append(
-                [a.name, *cells, f"{a.moved + 0.0:.2f}", units.label(quantity(a.name).unit)]
-            )
+            rounding = abs(a.adjusted) < 1e-9 * item.standard_deviation
+            sizes.append((0.0 if rounding else a.adjusted, 6))
+            cells = [number(units.factor(a.name) * x, n) for x, n in sizes]
+            rows.append([a.name, *cells, fixed(a.moved, 2), units.label(quantity(a.name).unit)])
         heading = ["known", "measured", "half-width", "sd", "adjusted", "moved, tolerances", "unit"]
         return [
             *table(rows, heading, left=(0, 6)),
