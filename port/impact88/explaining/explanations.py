@@ -130,10 +130,11 @@ def _reread(page: PageEvidence, rereads: Iterable[Reread]) -> Iterator[Cause]:
     """Inputs put right, with what results are then still a slip away."""
     best = math.inf
     for reread in rereads:
-        wrong = page.left(reread.scored.scene, reread.scored.outcome, reread.changes)
+        scene, outcome, wrong = reread.scored.scene, reread.scored.outcome, reread.scored.wrong
         least = sum(map(_believed, reread.changes)) + _SLIP * (len(wrong) - page.most_left)
         if reread.changes and least <= min(best + _WORSE, _MOST_BITS):
-            for cause in _slipped(page, reread.changes, wrong, reread.scored.outcome.fields):
+            left = page.left(scene, outcome, reread.changes)
+            for cause in _slipped(page, reread.changes, left, outcome.fields):
                 best = min(best, _weight(cause))
                 yield cause
 

@@ -94,6 +94,7 @@ class Rows:
         self._every = [
             case._replace(scene=scene)
             for row in table()
+            if row.inputs
             for case in self._made(row)
             for scene in (case.scene, *with_opposite_mu(case.scene))
         ]
@@ -118,7 +119,7 @@ class Rows:
     def exchanges(self) -> Iterator[tuple[Row, list[Change]]]:
         """Printed inputs in each other's place, where that is no rarer than two digits misread."""
         for row in table():
-            names = all(isinstance(made, str) for made in row.inputs.values())
+            names = row.inputs and all(isinstance(made, str) for made in row.inputs.values())
             for made in self._made(row) if names and row.bits < 2 * BITS[DIGIT] else ():
                 changes = self._changes(made)
                 if {change.field for change in changes} <= set(self._printed):
@@ -147,7 +148,7 @@ class Rows:
         typed: dict[str, str] = {}
         in_full: dict[str, str] = {}
         within: dict[str, tuple[float, float]] = {}
-        most = max((self._places[name] for name in row.inputs), default=0)
+        most = max(self._places[name] for name in row.inputs)
         for name, made in row.inputs.items():
             if isinstance(made, str) and made != "x":
                 typed[name] = self._scene[made]
