@@ -85,7 +85,7 @@ class PageEvidence:
     are read clean; ``most_left``: how many numbers a cause may leave unexplained."""
 
     def __init__(self, found: Judged) -> None:
-        self.found, self.shown, self.recovered = found, found.shown, found.recovered
+        self.found, self.paper, self.recovered = found, found.paper, found.recovered
         self.checks = {check.name: check for check in found.fields}
         self.checks |= {f"reply {check.name}": check for check in found.replies}
         self.base = differing(found)
@@ -101,7 +101,7 @@ class PageEvidence:
         }
         self.texts = {
             name: reading.text
-            for name, reading in self.shown.fields.items()
+            for name, reading in self.paper.fields.items()
             if reading.clean and value_of(reading.text) is not None
         }
         self.numbers = {name: [float(text)] for name, text in self.texts.items()} | self.results
@@ -157,7 +157,7 @@ class PageEvidence:
                 wrong |= {name}
         # what contradicts the program's number contradicts a cause that predicts the same
         wrong |= {n for n, value in self._contradicted.items() if predicted.get(n, value) == value}
-        wrong |= {"ENDING"} if self.shown.ending not in (None, outcome.ending) else set()
+        wrong |= {"ENDING"} if self.paper.ending not in (None, outcome.ending) else set()
         for check in self.found.replies:
             read = check.status in (Status.READ, Status.CONTRADICTED)
             if read and not same_value(check.printed or "", scene.get(check.name, "")):
@@ -180,7 +180,7 @@ def differing(found: Judged) -> frozenset[str]:
     replies = set(map(id, found.replies))
     return frozenset(
         [f"{'reply ' * (id(check) in replies)}{check.name}" for check in found.contradicted]
-        + [f"label {label.name}" for label in found.shown.mislabelled]
+        + [f"label {label.name}" for label in found.paper.mislabelled]
     )
 
 

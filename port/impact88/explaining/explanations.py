@@ -75,8 +75,8 @@ def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) ->
             lambda: (*rows.searched(), *_exchanged_and_slipped(page, rows, rereading)),
             lambda: other_programs(page),
         ):
-            whole = [cause.bits for cause in causes if not cause.left]
-            if in_time() and min(whole, default=math.inf) > _ENOUGH:
+            costs = [cause.bits for cause in causes if not cause.left]
+            if in_time() and min(costs, default=math.inf) > _ENOUGH:
                 causes += more()
         longer = any(page.decimals(name) > (FIELDS[name].places or 9) for name in page.texts)
         accused = any(_accuses(cause) and not cause.left for cause in causes)
@@ -114,7 +114,7 @@ def _labels(page: PageEvidence) -> Iterator[Cause]:
     the program prints."""
     wrong = [
         label
-        for label in page.shown.mislabelled
+        for label in page.paper.mislabelled
         if label.name in page.checks and page.checks[label.name].same
     ]
     if wrong:
@@ -261,11 +261,11 @@ def _adds_to(cause: Cause, other: Cause) -> bool:
 def _described(page: PageEvidence, change: Change) -> dict[str, Any]:
     """A number put right, where it stands, and what to ask of the paper there."""
     kind, name, printed, would_be = change
-    readings = page.shown.replies if name.startswith("reply ") else page.shown.fields
+    readings = page.paper.replies if name.startswith("reply ") else page.paper.fields
     name = name.removeprefix("reply ")
     reading = readings.get(name)
     label = kind in (LABELS_EXCHANGED, LABEL_WRONG)
-    place = next((check for check in page.shown.labels if label and check.name == name), reading)
+    place = next((check for check in page.paper.labels if label and check.name == name), reading)
     line, column = (place.line, place.column) if place else (None, None)
     look = ""
     if place and (label or kind in slips.BITS):
@@ -274,7 +274,7 @@ def _described(page: PageEvidence, change: Change) -> dict[str, Any]:
             index = next(at for at in range(len(printed)) if printed[at] != would_be[at])
             asked = f"{printed[index]} {'an' if would_be[index] == '8' else 'a'} {would_be[index]}"
             if index < len(reading.region):
-                at = page.shown.page.place(reading.region[index].offset)
+                at = page.paper.page.place(reading.region[index].offset)
         look = f"line {at[0]}, column {at[1]}: is this {asked}?"
     return {
         "kind": kind, "field": name, "printed": printed, "would_be": would_be,

@@ -272,11 +272,11 @@ def other_programs(page: PageEvidence) -> Iterator[Cause]:
         """How many of the numbers each of so many programs leaves unexplained."""
         found = np.zeros(count, np.intp)
         for name, number in numbers.items():
-            shown = names.get(SHOWN + name, run.names[SHOWN + name])
+            column = names.get(SHOWN + name, run.names[SHOWN + name])
             places = FIELDS[name].places
             unit = 0.0 if places is None else 10.0 ** -max(places, page.decimals(name))
             slack = _ROUGH * abs(number) + 0.05 * unit
-            ahead = np.broadcast_to(shown, (count, 1))[:, 0] - number
+            ahead = np.broadcast_to(column, (count, 1))[:, 0] - number
             found += ~((ahead >= -slack) & (ahead <= unit + slack))
         return found
 

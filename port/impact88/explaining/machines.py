@@ -53,7 +53,7 @@ _PIS = ("3.1416", "3.14159", "3.1415927", "3.141592654", "3.14")
 
 def causes(page: PageEvidence) -> Iterator[Cause]:
     """Every other machine and way to print, tried; of those of one kind the best."""
-    known = all(reading.clean for reading in page.shown.fields.values())
+    known = all(reading.clean for reading in page.paper.fields.values())
     best: dict[str, Cause] = {}
     for cause in _causes(page):
         kind = f"{cause.kind} {cause.note}" if cause.note.startswith("on line") else cause.kind
@@ -67,8 +67,8 @@ def causes(page: PageEvidence) -> Iterator[Cause]:
 def _causes(page: PageEvidence) -> Iterator[Cause]:
     scene = page.recovered.scene
     # as another machine was given it: the printed numbers
-    shown = {**page.recovered.assumed, **page.texts}
-    typed = scene | {name: shown[name] for name in INPUTS if name in shown and name != "MUP"}
+    texts = {**page.recovered.assumed, **page.texts}
+    typed = scene | {name: texts[name] for name in INPUTS if name in texts and name != "MUP"}
     numbers = (_PI, *(pi for _, _, pi in _DOUBLES), *map(float, _PIS))
     near = dict(zip(numbers, _near(page, typed, numbers), strict=True))
     if near[_PI]:

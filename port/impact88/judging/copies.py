@@ -93,7 +93,7 @@ class CopyPages:
         ending = ZERO_DETERMINANT if ZERO_DETERMINANT in done.printout else done.error
         return Outcome(fields, ending), done.page.split("\n")
 
-    def judged(self, shown: Printout, recovered: Recovered, besides: Mapping[int, str]) -> Judged:
+    def judged(self, paper: Printout, recovered: Recovered, besides: Mapping[int, str]) -> Judged:
         """The printout judged by the copy's page for the scene that comes nearest. ``besides``: its
         lines that only the copy prints."""
 
@@ -101,8 +101,8 @@ class CopyPages:
             return sum(check.status != Status.READ for check in [*found.fields, *found.replies])
 
         best = None
-        for scene in self._scenes(shown, recovered.scene):
-            found = self._judged(shown, recovered, scene, besides)
+        for scene in self._scenes(paper, recovered.scene):
+            found = self._judged(paper, recovered, scene, besides)
             if best is None or wrong(found) < wrong(best):
                 best = found
             if not wrong(best):
@@ -113,19 +113,19 @@ class CopyPages:
     def put_right(self, found: Judged, right: Mapping[str, str]) -> Judged | None:
         """A printout, judged before, judged again with other inputs printed, by field; None where
         the copy prints them for no text that is tried."""
-        ways = [_ways(name, text) for name, text in right.items()]
-        for texts in product(*ways):
+        choices = [_typed_texts(name, text) for name, text in right.items()]
+        for texts in product(*choices):
             typed = dict(zip(map(scene_name, right), texts, strict=True))
             scene = {**found.recovered.scene, **typed}
             own = [check for check in found.replies if check.name.startswith("line ")]
             besides = {check.line or 0: check.printed or "" for check in own}
-            other = self._judged(found.shown, found.recovered, scene, besides)
+            other = self._judged(found.paper, found.recovered, scene, besides)
             printed = other.recovered.outcome.fields
             if all(printed.get(name) == text for name, text in right.items()):
                 return other
         return None
 
-    def _scenes(self, shown: Printout, scene: dict[str, str]) -> Iterator[dict[str, str]]:
+    def _scenes(self, paper: Printout, scene: dict[str, str]) -> Iterator[dict[str, str]]:
         """The scene as recovered, with MU typed with either sign; then with angles as the page has
         them, and as others that print so, where the copy prints those otherwise."""
         either = [scene, *with_opposite_mu(scene)]
@@ -135,15 +135,15 @@ class CopyPages:
             printed = {
                 name: text
                 for name in ANGLES
-                if (text := shown.text(name)) is not None and fields.get(name) != text
+                if (text := paper.text(name)) is not None and fields.get(name) != text
             }
             for rank in range(_TEXTS if printed else 0):
-                texts = {name: _ways(name, text)[rank:] for name, text in printed.items()}
+                texts = {name: _typed_texts(name, text)[rank:] for name, text in printed.items()}
                 yield {**typed, **{name: some[0] for name, some in texts.items() if some}}
 
     def _judged(
         self,
-        shown: Printout,
+        paper: Printout,
         recovered: Recovered,
         scene: dict[str, str],
         besides: Mapping[int, str],
@@ -155,9 +155,9 @@ class CopyPages:
             label._replace(state=LabelState.EXACT, doubt=False)
             if self._labels.get(label.name, label.printed) == label.read
             else label
-            for label in shown.labels
+            for label in paper.labels
         ]
-        shown = replace(shown, labels=labels)
+        paper = replace(paper, labels=labels)
         own = set(map(_plain, lines))
         of_kind = {_plain(line, "#"): line.strip() for line in lines}
         wrong = [
@@ -168,7 +168,7 @@ class CopyPages:
             for number, line in besides.items()
             if _plain(line) not in own
         ]  # fmt: skip
-        return judge(shown, replace(recovered, scene=scene, outcome=outcome), wrong)
+        return judge(paper, replace(recovered, scene=scene, outcome=outcome), wrong)
 
 
 pages_of = lru_cache(maxsize=1)(CopyPages)
@@ -199,7 +199,7 @@ def _plain(line: str, number: str = "") -> str:
     return _NUMBER.sub(said, "".join(line.split()))
 
 
-def _ways(name: str, printed: str) -> list[str]:
+def _typed_texts(name: str, printed: str) -> list[str]:
     """Texts that may have been typed where this is printed."""
     if name == "MUP":
         return [printed, opposite(printed)]

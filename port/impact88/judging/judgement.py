@@ -102,7 +102,7 @@ class Judged:
     """A printout held against the page of the scene that was recovered: every number, the replies,
     the ending, and the verdict."""
 
-    shown: Printout
+    paper: Printout
     recovered: Recovered
     fields: list[FieldCheck]
     replies: list[FieldCheck]
@@ -116,28 +116,28 @@ class Judged:
         return [check for check in every if check.status == Status.CONTRADICTED]
 
 
-def judge(shown: Printout, recovered: Recovered, others: Sequence[FieldCheck] = ()) -> Judged:
+def judge(paper: Printout, recovered: Recovered, others: Sequence[FieldCheck] = ()) -> Judged:
     """The printout, judged. ``others``: replies that were compared elsewhere."""
-    replies = [_reply(shown, recovered, name, reading) for name, reading in shown.replies.items()]
-    every = _fields(shown, recovered), [*replies, *others], _ending(shown, recovered)
-    found = Judged(shown, recovered, *every, Verdict.IDENTICAL)
+    replies = [_reply(paper, recovered, name, reading) for name, reading in paper.replies.items()]
+    every = _fields(paper, recovered), [*replies, *others], _ending(paper, recovered)
+    found = Judged(paper, recovered, *every, Verdict.IDENTICAL)
     found.verdict = _verdict(found)
     return found
 
 
 def _verdict(found: Judged) -> Verdict:
-    shown, missing = found.shown, found.recovered.missing
-    if shown.mislabelled:
+    paper, missing = found.paper, found.recovered.missing
+    if paper.mislabelled:
         return Verdict.DIFFERS
     if found.contradicted:
-        misread = shown.badly_read or (shown.machine_read and missing)
+        misread = paper.badly_read or (paper.machine_read and missing)
         return Verdict.INCOMPLETE if misread else Verdict.DIFFERS
     unread = any(check.status in (Status.NOT_READ, Status.NOT_COMPARED) for check in found.fields)
-    if unread or found.ending.same is None or missing or shown.fragment_of_run or shown.unread:
+    if unread or found.ending.same is None or missing or paper.fragment_of_run or paper.unread:
         return Verdict.INCOMPLETE
     doubtful = any(check.status != Status.READ for check in [*found.fields, *found.replies])
-    beside = any(piece.beside for piece in shown.left_over) or bool(shown.remarks)
-    if doubtful or beside or any(label.doubt for label in shown.labels):
+    beside = any(piece.beside for piece in paper.left_over) or bool(paper.remarks)
+    if doubtful or beside or any(label.doubt for label in paper.labels):
         return Verdict.IDENTICAL_AS_READ
     return Verdict.IDENTICAL
 
@@ -145,15 +145,15 @@ def _verdict(found: Judged) -> Verdict:
 # --- numbers -------------------------------------------------------------------------------------
 
 
-def _fields(shown: Printout, recovered: Recovered) -> list[FieldCheck]:
+def _fields(paper: Printout, recovered: Recovered) -> list[FieldCheck]:
     """Every field that is printed or should be, in the order of the printout."""
     checks = []
-    row = _angle_row(shown, recovered)
+    row = _angle_row(paper, recovered)
     for name in FIELDS:
         text = recovered.outcome.fields.get(name)
-        reading = reading_of(shown.page, row[name]) if name in row else shown.fields.get(name)
+        reading = reading_of(paper.page, row[name]) if name in row else paper.fields.get(name)
         if reading is None and text is None:
-            expected = recovered.missing and not shown.ending
+            expected = recovered.missing and not paper.ending
             if not expected or (name in FINAL_SPINS and recovered.scene["M"] != "6"):
                 continue
         check = _check(name, reading, text)
@@ -164,7 +164,7 @@ def _fields(shown: Printout, recovered: Recovered) -> list[FieldCheck]:
             if name in row and name != ANGLES[0] and not reading.region[0].gap:
                 match = match._replace(spots=(Spot(0, "", "", Doubt.BLANK), *match.spots))
             check.status = _status(match, reading.region, text)
-            check.doubts = _doubts(shown, reading, match.spots)
+            check.doubts = _doubts(paper, reading, match.spots)
             if check.status is Status.READ:
                 check.printed = text
         elif not recovered.missing:
@@ -202,18 +202,18 @@ def _hardly_read(match: Match, text: str) -> bool:
     return len(text) > 2 and 2 * match.exact + alike < len(text)
 
 
-def _angle_row(shown: Printout, recovered: Recovered) -> dict[str, Region]:
+def _angle_row(paper: Printout, recovered: Recovered) -> dict[str, Region]:
     """Where the angles stand in a row that blanks alone do not cut; none where it is plain."""
     texts = tuple(recovered.outcome.fields.get(name, "") for name in ANGLES)
-    cuts = cut_as(shown.angle_row, texts) if shown.angle_row and all(texts) else ()
+    cuts = cut_as(paper.angle_row, texts) if paper.angle_row and all(texts) else ()
     pairs = zip(ANGLES, cuts, strict=bool(cuts))
-    return {name: shown.angle_row[start:stop] for name, (start, stop) in pairs}
+    return {name: paper.angle_row[start:stop] for name, (start, stop) in pairs}
 
 
-def _doubts(shown: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Doubtful]:
+def _doubts(paper: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Doubtful]:
     starts = [*(glyph.offset for glyph in reading.region), reading.stop]
     return [
-        Doubtful(*shown.page.place(starts[spot.at]), starts[spot.at], *spot[1:3], str(spot.doubt))
+        Doubtful(*paper.page.place(starts[spot.at]), starts[spot.at], *spot[1:3], str(spot.doubt))
         for spot in spots
     ]
 
@@ -221,7 +221,7 @@ def _doubts(shown: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Do
 # --- replies, and the ending ---------------------------------------------------------------------
 
 
-def _reply(shown: Printout, recovered: Recovered, name: str, reading: Reading) -> FieldCheck:
+def _reply(paper: Printout, recovered: Recovered, name: str, reading: Reading) -> FieldCheck:
     """A reply shown at a prompt against the velocity of the scene, as a number; laid beside its
     text as typed or as printed, with or without its first glyph, whichever explains it best."""
     value = recovered.scene[name]
@@ -234,13 +234,13 @@ def _reply(shown: Printout, recovered: Recovered, name: str, reading: Reading) -
     seen = stored_and_printed(value)
     texts = sorted({value, seen[1]} if seen else {value})
     parts = filter(None, (reading, without_mark(reading)))
-    ways = [(part, compare(part.region, text)) for part in parts for text in texts]
-    part, match = min(ways, key=lambda way: way[1].cost)
+    matches = [(part, compare(part.region, text)) for part in parts for text in texts]
+    part, match = min(matches, key=lambda pair: pair[1].cost)
     check.status, how = Status.NOT_READ, Doubt.ILLEGIBLE
     if any(same_value(text, value) for text, _, _ in reply_ways(reading)):
         check.status, how = Status.DOUBTFUL, Doubt.LOOK_ALIKE
     elif reading.clean or (match.contradicts and not _hardly_read(match, value)):
-        check.status, check.doubts = Status.CONTRADICTED, _doubts(shown, part, match.spots)
+        check.status, check.doubts = Status.CONTRADICTED, _doubts(paper, part, match.spots)
         return check
     place = reading.line, reading.column, reading.start
     check.doubts = [Doubtful(*place, reading.text, value, str(how))]
@@ -253,13 +253,13 @@ def same_value(text: str, other: str) -> bool:
     return seen is not None and expected is not None and seen[0] == expected[0]
 
 
-def _ending(shown: Printout, recovered: Recovered) -> FieldCheck:
+def _ending(paper: Printout, recovered: Recovered) -> FieldCheck:
     """How the printout ends against how the replay does; one that is cut off shows no message."""
     recomputed = recovered.outcome.ending
-    unsure = recovered.missing or shown.ending is None
+    unsure = recovered.missing or paper.ending is None
     status = Status.NOT_COMPARED if unsure else Status.CONTRADICTED
-    status = Status.READ if shown.ending == recomputed else status
-    return FieldCheck("ENDING", shown.ending, recomputed, status)
+    status = Status.READ if paper.ending == recomputed else status
+    return FieldCheck("ENDING", paper.ending, recomputed, status)
 
 
 # --- looking past a reader's mistakes ------------------------------------------------------------
@@ -280,8 +280,8 @@ def looked_past(found: Judged, rereading: Rereading) -> Judged | None:
     The scene that explains most decides, and every other that explains the page as well must
     bear it out: a digit altered in one angle can be made good by a sign of the angle beside it.
     """
-    shown, recovered = found.shown, found.recovered
-    no_reader = not shown.machine_read or shown.fragment_of_run or shown.ending or shown.unread
+    paper, recovered = found.paper, found.recovered
+    no_reader = not paper.machine_read or paper.fragment_of_run or paper.ending or paper.unread
     if no_reader or recovered.missing:
         return None
     apart = set(recovered.apart)
@@ -293,7 +293,7 @@ def looked_past(found: Judged, rereading: Rereading) -> Judged | None:
     for run in runs:
         if run.cost <= runs[0].cost + _AS_WELL:
             scene = replace(recovered, scene=run.scene, assumed=run.assumed, outcome=run.outcome)
-            judged = judge(shown, scene)
+            judged = judge(paper, scene)
             if not settled(judged.fields, judged.replies):
                 return None
             best = best or judged

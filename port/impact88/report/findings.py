@@ -92,11 +92,11 @@ def report(
     units = system_of(entries.units)
     given = {n for n, text in entries.values.items() if text.strip()}
     scene = placed(SCENE, given)
-    whole = set(scene) - {"M"} <= given <= {*scene, *MOVES, "correlations"}
+    forward = set(scene) - {"M"} <= given <= {*scene, *MOVES, "correlations"}
     check_names(
         given - {"correlations"}, placed((*KNOWABLE, *MOVES), given), "name used here", source
     )
-    found = (_forward if whole else _inverse)(entries, source, samples, seed, units)
+    found = (_forward if forward else _inverse)(entries, source, samples, seed, units)
     drawing = None
     if set(SCENE) <= set(found.scene):  # what is not determined cannot be drawn
         # as wide, in mm, as both papers leave between their margins, less a little
@@ -223,14 +223,14 @@ def _inverse(entries: Entries, source: str, samples: int, seed: int, units: Syst
 
 def _amount(name: str, value: float, units: System, like: float = math.nan) -> str:
     """A value as it is shown: two digits of its standard deviation, or five of itself."""
-    shown = value * units.factor(name)
-    if math.isnan(shown):
+    amount = value * units.factor(name)
+    if math.isnan(amount):
         return ""
-    if math.isinf(shown):
+    if math.isinf(amount):
         return "unbounded"
     if like > 0 and math.isfinite(like):
-        return fixed(shown, max(0, 1 - math.floor(math.log10(like * units.factor(name)))))
-    return f"{shown:,.0f}" if 1e4 <= abs(shown) < 1e12 else number(shown, 4)
+        return fixed(amount, max(0, 1 - math.floor(math.log10(like * units.factor(name)))))
+    return f"{amount:,.0f}" if 1e4 <= abs(amount) < 1e12 else number(amount, 4)
 
 
 def _sentences(found: Findings, units: System) -> list[str]:
@@ -265,8 +265,8 @@ def _answer(found: Findings, units: System) -> Table:
     for name in found.main:
         if name in found.values:
             spread = found.spreads.get(name, Spread())
-            shown = (found.values[name], *spread[:5])[: len(heads)]
-            cells = [_amount(name, x, units, spread.deviation) for x in shown]
+            numbers = (found.values[name], *spread[:5])[: len(heads)]
+            cells = [_amount(name, x, units, spread.deviation) for x in numbers]
             rows.append([name, quantity(name).meaning, *cells, _unit(name, units)])
     headings = ["", "result", *heads, "unit"]
     left = (0, 1, len(headings) - 1)

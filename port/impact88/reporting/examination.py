@@ -93,14 +93,14 @@ def _printed(
         pages = pages_of(copy)
         text, lines, besides = pages.prepared(text)
     every = read_printouts(text, where)
-    for number, shown in enumerate(every, 1):
+    for number, paper in enumerate(every, 1):
         if copy:
-            end = shown.page.place(shown.stop)[0] if number < len(every) else len(lines)
+            end = paper.page.place(paper.stop)[0] if number < len(every) else len(lines)
             own = {line: besides.pop(line) for line in sorted(besides) if line <= end}
-            result = _against(pages, pages.judged(shown, recover(shown, given), own))
+            result = _against(pages, pages.judged(paper, recover(paper, given), own))
             result.renumber(lines)
         else:
-            result = _verified(shown, given)
+            result = _verified(paper, given)
         result.file, result.number = path, number
         yield result
 
@@ -143,26 +143,26 @@ def verify(
     return found.results
 
 
-def _verified(shown: Printout, given: Mapping[str, str] | None) -> Verification:
+def _verified(paper: Printout, given: Mapping[str, str] | None) -> Verification:
     """The verdict on one printout, with explanations where it differs."""
-    begun, recovered = process_time(), recover(shown, given)
+    begun, recovered = process_time(), recover(paper, given)
     in_doubt = recovered.row_in_doubt
     rereading = Rereading(recovered, apart=True)
-    found, better = judge(shown, recovered), None
+    found, better = judge(paper, recovered), None
     wrong = in_doubt or found.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE)
-    if wrong and not shown.mislabelled:
+    if wrong and not paper.mislabelled:
         better = looked_past(found, rereading)
     if in_doubt and not better:
-        found = judge(shown, without_angles(recovered))
+        found = judge(paper, without_angles(recovered))
     result = _result(better or found)
     if result.verdict is Verdict.DIFFERS:
         from ..explaining.explanations import explain
 
         result.explanations = explain(found, rereading, lambda: process_time() - begun < BUDGET)
         altered = any(len(cause.changes) <= MOST_ALTERED for cause in result.explanations[:1])
-        if shown.machine_read and not altered and not shown.mislabelled:
+        if paper.machine_read and not altered and not paper.mislabelled:
             result.verdict, result.explanations = Verdict.INCOMPLETE, []
-    if result.verdict is Verdict.INCOMPLETE and shown.machine_read and result.differing:
+    if result.verdict is Verdict.INCOMPLETE and paper.machine_read and result.differing:
         result.remarks.append(
             f"{len(result.differing)} numbers are read otherwise than the program prints them, and "
             "the page is read too poorly to separate alterations from misreadings"
@@ -189,17 +189,17 @@ def _against(pages: CopyPages, found: Judged) -> Verification:
 
 
 def _result(found: Judged) -> Verification:
-    shown, scene = found.shown, found.recovered.scene_or_missing()
+    paper, scene = found.paper, found.recovered.scene_or_missing()
     read = {scene_name(check.name) for check in found.fields if check.status == Status.READ}
     guessed = [
         name for name, text in scene.items() if text is not None and name not in {"M", *read}
     ]
     return Verification(
-        "-", 1, shown.line, found.verdict, scene, found.fields, found.replies, found.ending,
+        "-", 1, paper.line, found.verdict, scene, found.fields, found.replies, found.ending,
         missing=found.recovered.missing, guessed=guessed,
-        remarks=[*map(str, shown.remarks), *shown.notes, *filter(None, [shown.unread])],
-        left_over=shown.left_over, labels=shown.labels, start=shown.start, stop=shown.stop,
-        text=shown.page.text if shown.page else "",
+        remarks=[*map(str, paper.remarks), *paper.notes, *filter(None, [paper.unread])],
+        left_over=paper.left_over, labels=paper.labels, start=paper.start, stop=paper.stop,
+        text=paper.page.text if paper.page else "",
     )  # fmt: skip
 
 

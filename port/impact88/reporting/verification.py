@@ -124,13 +124,13 @@ class Verification:
 
     def as_json(self) -> dict[str, Any]:
         """The object `impact88 verify --json` prints."""
-        whole = {"printout": self.number, "span": [self.start, self.stop]}
-        whole |= {name: _plain(getattr(self, name)) for name in _IN_JSON}
+        described = {"printout": self.number, "span": [self.start, self.stop]}
+        described |= {name: _plain(getattr(self, name)) for name in _IN_JSON}
         if self.copy:
-            whole["listing"] = self.copy
+            described["listing"] = self.copy
         if self.cells:
-            whole |= {"cells": self.cells, "basis": self.basis}
-        return stamped("verify", whole)
+            described |= {"cells": self.cells, "basis": self.basis}
+        return stamped("verify", described)
 
 
 _IN_JSON = (
@@ -336,7 +336,7 @@ def findings(found: Judged) -> Iterator[str]:
             f"{', '.join(retyped)} in a form Applesoft never prints (a zero before the point or at "
             "the end, a plus sign): retyped, or made by another program"
         )
-    regions = [reading.region[:-1] for reading in found.shown.fields.values()]
+    regions = [reading.region[:-1] for reading in found.paper.fields.values()]
     text = "".join(glyph.char for region in regions for glyph in region)
     if text.count(",") >= 3 and "." not in text:
         yield "decimal commas throughout: retyped, or made by another program"
@@ -346,7 +346,7 @@ def findings(found: Judged) -> Iterator[str]:
             f"no line of final spins: read as M = {m}; with M = {'6' if m == '4' else '4'} the "
             "program prints the same numbers but for that line"
         )
-    elif m == "4" and "M" not in recovered.missing and not found.shown.has_final_spins:
+    elif m == "4" and "M" not in recovered.missing and not found.paper.has_final_spins:
         yield "no line of final spins: the results are those of M = 4, not of M = 6"
 
 
