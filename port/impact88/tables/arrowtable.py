@@ -23,7 +23,6 @@ from .rows import (
     Put,
     Reader,
     Rows,
-    heading,
     scene_names,
 )
 
@@ -95,12 +94,12 @@ def _encodable(text: str) -> str:
 
 
 @contextmanager
-def write(path: str, form: str, delimiter: str, names: Sequence[str]) -> Iterator[Put]:
+def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
     """Write a Parquet or Arrow file, whose schema is the first block's."""
     pa = library("pyarrow", "arrow", "this format")
     from pyarrow import parquet
 
-    headings = [_encodable(heading(name)) for name in names]
+    headings = list(map(_encodable, headings))
     opened: list[Any] = []
 
     def array(name: str, column: Column) -> Any:

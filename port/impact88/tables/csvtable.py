@@ -31,7 +31,6 @@ from .rows import (
     Put,
     Reader,
     Rows,
-    heading,
     scene_names,
     shortest,
 )
@@ -277,7 +276,7 @@ def _joined(arrays: Sequence[Any], delimiter: str, ends: str) -> Any:
 
 
 @contextmanager
-def write(path: str, form: str, delimiter: str, names: Sequence[str]) -> Iterator[Put]:
+def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
     """Write a CSV table. Blocks of pyarrow's texts and of arrays go out through pyarrow."""
     ends = f'[{re.escape(delimiter)}"\r\n]'
 
@@ -300,6 +299,6 @@ def write(path: str, form: str, delimiter: str, names: Sequence[str]) -> Iterato
 
     with writing(path) as file:
         through_arrow = False
-        put([(name, [heading(name)]) for name in names])
+        put([(text, [text]) for text in headings])
         through_arrow = arrow_available() and hasattr(file, "buffer")
         yield put

@@ -18,7 +18,7 @@ from ..files import replacing
 from ..names import SCENE
 from .cells import plain, typed
 from .npztable import check_unpacked
-from .rows import BLOCK_ROWS, Column, Named, Put, Reader, Rows, heading, scene_names
+from .rows import BLOCK_ROWS, Column, Named, Put, Reader, Rows, scene_names
 
 LONGEST_CELL = 32_767
 """Characters that Excel has in a cell."""
@@ -110,12 +110,12 @@ def _cell(value: Any) -> Any:
 
 
 @contextmanager
-def write(path: str, form: str, delimiter: str, names: Sequence[str]) -> Iterator[Put]:
+def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
     """Write a workbook."""
     openpyxl = library("openpyxl", "excel", "an .xlsx")
     book = openpyxl.Workbook(write_only=True)
     sheet = book.create_sheet("impact88")
-    sheet.append([_cell(heading(name)) for name in names])
+    sheet.append([_cell(text) for text in headings])
     count = 1
 
     def put(columns: Named) -> None:

@@ -145,7 +145,7 @@ def _cells(name: str, column: Column) -> list[str]:
 
 
 @contextmanager
-def write(path: str, form: str, delimiter: str, names: Sequence[str]) -> Iterator[Put]:
+def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
     """Write a JSON Lines table, of blocks that need not all have the same columns."""
     with writing(path) as file:
 

@@ -21,7 +21,7 @@ from ..errors import UserError, quoted
 from ..files import ESCAPED, replacing
 from ..names import SCENE
 from .cells import typed
-from .rows import Column, Put, Reader, Rows, heading, scene_names
+from .rows import Column, Put, Reader, Rows, scene_names
 
 MOST_ARRAYS = 10_000
 """A table has some fifty columns."""
@@ -132,7 +132,7 @@ def _array(name: str, column: Column) -> NDArray[Any]:
 
 
 @contextmanager
-def write(path: str, form: str, delimiter: str, names: Sequence[str]) -> Iterator[Put]:
+def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
     """Write an .npz table as numpy.savez does, but of arrays with any name."""
     parts: list[list[NDArray[Any]]] = []
     yield lambda columns: parts.append([_array(*column) for column in columns])
@@ -140,9 +140,9 @@ def write(path: str, form: str, delimiter: str, names: Sequence[str]) -> Iterato
         replacing(path, "wb") if path != "-" else nullcontext(sys.stdout.buffer) as file,
         zipfile.ZipFile(file, "w") as archive,
     ):
-        for name, column in zip(names, zip(*parts, strict=True), strict=bool(parts)):
+        for name, column in zip(headings, zip(*parts, strict=True), strict=bool(parts)):
             # a fixed date: the same arrays give the same bytes
-            escaped = f"{heading(name)}.npy".encode("utf-8", ESCAPED).decode()
+            escaped = f"{name}.npy".encode("utf-8", ESCAPED).decode()
             with archive.open(zipfile.ZipInfo(escaped), "w", force_zip64=True) as out:
                 array = column[0] if len(column) == 1 else np.concatenate(column)
                 np.lib.format.write_array(out, np.asanyarray(array), allow_pickle=False)

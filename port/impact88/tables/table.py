@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ..errors import UserError, quoted
 from ..names import SCENE
-from .rows import Reader, Rows
+from .rows import Reader, Rows, heading
 
 FORMATS = {
     **dict.fromkeys((".csv", ".tsv", ".txt"), "csv"),
@@ -35,8 +35,8 @@ _MODULES = {
     **dict.fromkeys(("parquet", "feather"), ("arrowtable", "a table of typed columns")),
 }
 """Format -> its module, and what it is called where its columns are those of the first block. A
-module has ``read(path, form, encoding)`` and ``write(path, form, delimiter, names)``, which gives a
-function that takes a block's columns by name; each imports what it needs."""
+module has ``read(path, form, encoding)`` and ``write(path, form, delimiter, headings)``, which
+gives a function that takes a block's columns by name; each imports what it needs."""
 _TEXTS = ("csv", "jsonl")
 
 
@@ -81,7 +81,8 @@ def open_writer(
         raise UserError(f"{form} is not for {place}; expected -o FILE.{form}")
     dropped = {*results, *(() if scene_too else SCENE)}
     kept = [name for name in source.names if name not in dropped]
-    with _module(form).write(path, form, source.delimiter, [*kept, *results]) as put:
+    headings = [heading(name) for name in (*kept, *results)]
+    with _module(form).write(path, form, source.delimiter, headings) as put:
 
         def write(rows: Rows, found: Mapping[str, NDArray[Any]]) -> None:
             late = [name for name in rows.late if name not in dropped]
