@@ -24,10 +24,12 @@ except ImportError:
     ) from None
 
 DIGITS = 50
+"""Those promised: 20 more than are written, and three times a double's, whose errors they judge."""
 WRITTEN = 30
 """Of the digits, in an oracle's answer: as many as the chapter's reference cases have."""
 GUARD = 15
-"""Working digits beyond those promised, besides what the spread of a scene's numbers may cost."""
+"""Working digits beyond those promised, besides what the spread of a scene's numbers may cost: with
+twice as many none of 1,560 results of five populations changes in 30 digits."""
 LONGEST_EXPONENT = 3
 """Digits of the largest exponents that are computed with."""
 

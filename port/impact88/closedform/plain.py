@@ -22,18 +22,21 @@ Array = NDArray[Any]
 
 PLAIN = {float, int, np.float64}
 NAMES = tuple(SCENE)
-FEW = 2048
-"""Scenes up to which copying their columns is cheaper than looking at each; and as many show of
-what kind the next ones are."""
+FEW = 4096
+"""Scenes up to which copying their columns is cheaper than looking at each: of 3,000 half as many
+takes 1.4 times, of 5,000 twice as many .9 times, of 7,000 as long. The first half as many show of
+what kind the next ones are; looking at twice as many takes 4 % of a call with 16,384."""
 KEPT = 1 << 28
 """Bytes up to which results are rows of one array, which is paged in twice as fast as arrays of
 their own but is kept as long as one of them, and up to which that memory is used again once nobody
 holds any of it: all results of a million scenes, which take 70 instead of 250 to 500 ns a scene; a
 quarter holds none."""
 WORTH_KEEPING = 1 << 17
-"""Bytes from which fresh memory has to be paged in; less is had from what was freed."""
+"""Bytes from which the C library gives memory back when it is freed, and fresh memory has to be
+paged in; twice or half as much makes no call slower or faster."""
 WORTH_A_THREAD = 32768
-"""Scenes for each thread from which it pays: half a millisecond of the compiled machine."""
+"""Scenes for each thread from which it pays: half a millisecond of the compiled machine. With half
+as many a thread's start is a tenth of its work; with twice as many calls with 65,536 have one."""
 
 
 class _Survey:
@@ -128,7 +131,7 @@ def solve_plain(
             where[len(arrays) :] = data.ctypes.data + 8 * np.arange(len(numbers))
         else:
             return None
-        made = _prepared(survey.order, survey.kinds(min(count, FEW)), wanted)
+        made = _prepared(survey.order, survey.kinds(count if count <= FEW else FEW // 2), wanted)
         if made is None:
             return None
         program, read, places, used = made
