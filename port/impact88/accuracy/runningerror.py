@@ -25,7 +25,8 @@ SMALLEST_PIVOT = 1e-9
 WORST_DIVISOR = 0.25
 """Relative error of a divisor from which the first order says nothing; twice as much is unsafe."""
 TWO_BYTES = 2.0**-16
-"""What the bytes below a second and third byte of zeros are worth, of the top one."""
+"""What is below a mantissa's top byte is less, in that byte's units, where its second and third byte
+are zero."""
 
 
 class Uncertain(ArithmeticError):

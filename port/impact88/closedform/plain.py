@@ -35,8 +35,9 @@ WORTH_KEEPING = 1 << 17
 """Bytes from which the C library gives memory back when it is freed, and fresh memory has to be
 paged in; twice or half as much makes no call slower or faster."""
 WORTH_A_THREAD = 32768
-"""Scenes for each thread from which it pays: half a millisecond of the compiled machine. With half
-as many a thread's start is a tenth of its work; with twice as many calls with 65,536 have one."""
+"""Scenes for each thread from which it pays: half a millisecond of the compiled machine, of which
+starting a thread takes a fifth. With half as many two fifths; with twice as many calls with 65,536
+scenes have one thread."""
 
 
 class _Survey:
