@@ -25,8 +25,8 @@ SMALLEST_PIVOT = 1e-9
 WORST_DIVISOR = 0.25
 """Relative error of a divisor from which the first order says nothing; twice as much is unsafe."""
 TWO_BYTES = 2.0**-16
-"""What is below a mantissa's top byte is less, in that byte's units, where its second and third byte
-are zero."""
+"""What is below a mantissa's top byte is less, in that byte's units, where its second and third
+byte are zero."""
 
 
 class Uncertain(ArithmeticError):

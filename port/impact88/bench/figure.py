@@ -18,8 +18,8 @@ _ROW, _PANELS = 56.0, 3
 """Millimetres from a row of panels to the next: the panels' 38, a title of three lines, numbers and
 axis below; panels that fit the width."""
 _TIMES, _ERRORS = (1e-9, 2e-2), (1e-17, 1e4)
-"""Ends of the axes: a nanosecond is a twentieth of what memory alone takes, 20 ms some ten times what
-50 digits take; an error of 0 stands at the lower end."""
+"""Ends of the axes: a nanosecond is a twentieth of what memory alone takes, 20 ms some ten times
+what 50 digits take; an error of 0 stands at the lower end."""
 _CONDITIONS, _SHARES = (1.0, 1e16), (1e-4, 1.0)
 """No condition is below 1, and from 1e16 on no digit of a double is left; one scene of 10,000."""
 _LABEL = "relative error of the final velocities"
