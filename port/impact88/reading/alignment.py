@@ -185,8 +185,6 @@ def _in_number(char: str, reply: bool) -> int:
     return COSTS["letter in number" if letter else "look-alike in number"]
 
 
-# --- texts ---------------------------------------------------------------------------------------
-
 WINDOW = 9000
 """Glyphs aligned at a time: a dozen printouts."""
 _WHOLE = 20

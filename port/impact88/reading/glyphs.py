@@ -124,9 +124,6 @@ def letters(region: Iterable[Glyph]) -> str:
     return "".join(glyph.char for glyph in region)
 
 
-# --- the noisy channel ----------------------------------------------------------------------------
-
-
 _CHANNEL: dict[str, list[list[str]]] = {}
 """The rows of `channel.txt`, by section."""
 for _line in resources.files(__package__).joinpath("channel.txt").read_text("utf-8").splitlines():

@@ -106,9 +106,6 @@ def clean(region: Region) -> str | None:
     return text if is_number(text) and not any(glyph.gap for glyph in region[1:]) else None
 
 
-# --- what glyphs are, given what is printed ------------------------------------------------------
-
-
 def compare(region: Region, printed: str, cut: bool = False, sign_free: bool = False) -> Match:
     """How the glyphs are explained by what the program prints.
 
@@ -245,13 +242,9 @@ def _in_pieces(chars: str) -> bool:
     return chars[-1] in ")}]" or chars[0] in "([{"
 
 
-# --- what glyphs may have been -------------------------------------------------------------------
-
 _BEAM = 48
 """Ways to read a number that are followed up; ten times as many where glyphs may be anything."""
 _MOST_ILLEGIBLE = 4
-
-
 Ways = tuple[tuple[str, float], ...]
 
 
@@ -329,8 +322,6 @@ def _may_be(region: Glyphs, index: int, wild: bool) -> dict[str, float]:
         return dict.fromkeys(".0123456789" if index else "-0123456789", price)
     return printed_for(char)
 
-
-# --- the row of angles ---------------------------------------------------------------------------
 
 _CUTS = 400
 _SURPLUS = 12

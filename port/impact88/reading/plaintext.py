@@ -66,8 +66,6 @@ def _sense(text: str) -> tuple[int, int]:
     return sum(mark in text.upper() for mark in _MARKS), dashes - 5 * text.count("�")
 
 
-# --- markup --------------------------------------------------------------------------------------
-
 _MARKUP = re.compile(
     r"""(?mx) ^(?:\s*>)+                                   # quotes of a mail
     | <(?:/?[a-zA-Z][^<>\n]{0,80}|!--.*?--)>               # HTML
@@ -154,8 +152,6 @@ def _groups_joined(text: str) -> str:
         return text
     return _GROUPED.sub(lambda number: number.group().replace(".", "\u2009"), text)
 
-
-# --- words with places ---------------------------------------------------------------------------
 
 _TAG = re.compile(r"""<([\w:]+)((?:"[^"]*"|'[^']*'|[^"'<>])*)>([^<]*)""")
 _ATTRIBUTE = re.compile(r"""\b([\w:]++)\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s"'>]+))""")

@@ -106,9 +106,6 @@ def _independent_of(
     return replays.Outcome(fields, None)
 
 
-# --- what each input may have been ---------------------------------------------------------------
-
-
 def _choices(
     shown: Printout, given: Mapping[str, str]
 ) -> tuple[list[Column], dict[str, dict[str, str]], set[str]]:

@@ -61,10 +61,9 @@ class Grid(NamedTuple):
 
     def shows(self, line: int, cell: int) -> bool:
         """Whether a cell lies on the picture, and not beyond an edge that was cut off."""
-        corners = self.corners[line]
-        if not 0 <= cell < len(corners) - 1:
+        if not 0 <= cell < len(self.corners[line]) - 1:
             return False
-        x, y = corners[cell : cell + 2].reshape(-1, 2).T
+        x, y = self.around(line, cell).T
         slack = 0.1 * self.pitch
         height, width = self.size
         return bool(x.min() > -slack and x.max() < width + slack and 0 <= y.mean() < height)
@@ -94,8 +93,7 @@ def _lines(points: Points, level: Floats) -> list[tuple[float, float]]:
     counts = np.zeros((rows.max() + 1, columns.max() + 2))
     np.add.at(counts, (rows, columns), 1.0)
     counts = ndimage.uniform_filter1d(counts, 3, axis=0) + 0.0
-    pairs = counts[:, :-1] + counts[:, 1:]
-    dense = np.sort(pairs, axis=1)[:, -1]
+    dense = (counts[:, :-1] + counts[:, 1:]).max(axis=1)
     typical = np.percentile(dense[dense > 0], 75) if np.any(dense > 0) else 1.0
     grain = np.percentile(dense, 30)  # fewer rows than that are between lines on no page
     inked = dense > grain + 0.2 * (typical - grain)

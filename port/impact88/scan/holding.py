@@ -170,8 +170,6 @@ def held(grid: Grid, known: Sequence[tuple[Read, Candidate]]) -> list[list[Cell]
     return cells
 
 
-# --- the verdict ---------------------------------------------------------------------------------
-
 HOLDS, DIFFERS, LABEL, EMPTY, FOREIGN, KIND = -0.12, 0.3, 0.1, -0.15, 20.0, 15.0
 """A cell with a smaller margin is the character predicted; one with a larger is another; a label
 with a smaller margin holds; blank paper with a larger one is not blank; a cell this many times as

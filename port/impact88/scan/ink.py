@@ -14,6 +14,7 @@ from scipy import ndimage
 
 Floats = NDArray[np.float64]
 Image = NDArray[np.float32]
+Slope = tuple[float, float]
 
 _BLOCK = 24
 """Pixels a side of the blocks whose brightness is the paper's; larger than any stroke."""
@@ -78,9 +79,6 @@ def points_of(ink: Image, fold: int = 1) -> Points:
     across, down = np.array([x, y]) + random.random((2, len(x)), np.float32)
     height, width = ink.shape
     return Points(fold * across - width / 2, fold * down - height / 2, float(max(ink.shape)))
-
-
-Slope = tuple[float, float]
 
 
 def slopes(points: Points) -> Slope:

@@ -7,7 +7,6 @@ This is the one module that knows how text is recovered.
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
-from types import MappingProxyType
 from typing import NamedTuple
 
 from ..applesoft.decimaltext import is_number
@@ -63,7 +62,7 @@ class Read:
             total += WORST if column < 0 else min(float(row[column]), WORST)
         return total
 
-    def page(self, known: Mapping[str, str] = MappingProxyType({})) -> tuple[str, dict[str, int]]:
+    def page(self, known: Mapping[str, str] | None = None) -> tuple[str, dict[str, int]]:
         """The printout as text, as far as its lines were found, and where its numbers begin.
         ``known``: numbers of which more is known than was read."""
         page, starts = "", {}
@@ -72,7 +71,7 @@ class Read:
             for name, text, _ in row.pieces:
                 if name:
                     starts[name] = len(page)
-                page += known.get(name) or self.text(name) if name else text
+                page += (known or {}).get(name) or self.text(name) if name else text
         return page, starts
 
 
