@@ -136,7 +136,6 @@ COSTS = {" ".join(name): int(cost) for *name, cost in _CHANNEL["costs"]}
 GAP_COSTS = {name: [int(cost) for cost in costs] for name, *costs in _CHANNEL["gaps"]}
 """What a glyph costs by the gap before it."""
 _TYPED = 8
-_DECADES = 4.0
 
 
 def _counted(kind: str) -> dict[str, tuple[int, dict[str, int]]]:
@@ -161,7 +160,7 @@ def label_cost(printed: str, read: str) -> int:
     total, seen = _OF_LABELS.get(printed, (1, {}))
     cost = COSTS["unseen"]
     if read in seen:
-        cost = round(-100 * log10(seen[read] / total) / _DECADES)
+        cost = round(-25 * log10(seen[read] / total))
     if printed == "=" and read in "-~_":  # rather the number's
         return COSTS["dash for ="]
     if printed == "*" and not read.isdigit():
@@ -179,7 +178,7 @@ def printed_for(read: str) -> dict[str, float]:
     best = max(shares.values(), default=0.0)
     likely = sorted(shares.items(), key=lambda one: -one[1])
     return {
-        printed: COSTS["look-alike"] / 100 + log10(best / share) / _DECADES
+        printed: COSTS["look-alike"] / 100 + log10(best / share) / 4
         for printed, share in likely
         if share >= best / 5
     }

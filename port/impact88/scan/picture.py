@@ -13,10 +13,11 @@ from ..files import called
 from .ink import Image
 
 _DOTS_PER_INCH = 300
-"""Of a PDF's page: the least at which office scanners write text; a cell then has 20 to 40."""
+"""Of a PDF's page: a character of 10 or 12 an inch is 25 to 30 pixels wide."""
 _MOST_PIXELS = 60_000_000
-"""Of a page: A3 at 500 dots an inch; its arrays take a gigabyte."""
+"""Of a page: more than A3 at 500 dots an inch."""
 _MOST_PAGES = 200
+"""Of a file, at a second or two each."""
 
 
 class Page(NamedTuple):
