@@ -34,7 +34,8 @@ DRIVERS, _SHARE = 3, 0.05
 _LEFT, _WIDTH = 16, 104
 """Characters of the answer's labels and lines."""
 _NOISE = 1e-9
-"""Of the largest quantity of the same unit: less is rounding, and printed as 0."""
+"""Of the largest quantity of the same unit: less is rounding, and printed as 0; twice as much
+prints the same of 100 solutions."""
 _ROWS = (
     ("x", "length/time", ("UX", "VAX", "VX", "VBX")),
     ("y", "length/time", ("UY", "VAY", "VY", "VBY")),
