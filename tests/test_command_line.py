@@ -415,7 +415,14 @@ def test_the_result_is_utf_8_whatever_the_locale(tmp_path: Path) -> None:
 def test_a_missing_library_is_no_bug(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.delitem(sys.modules, "impact88.commands.solve_command", raising=False)
+    monkeypatch.delitem(sys.modules, "impact88.commands.solving", raising=False)
     monkeypatch.setitem(sys.modules, "numpy", None)
     assert main(["solve", "cases.csv"]) == 2
     assert "numpy is not installed; expected: pip install numpy" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["solve", "run", "delta-v"])
+def test_help_does_not_wait_for_numpy(command: str) -> None:
+    code = f"import sys; from impact88.cli import main; main(['help', {command!r}]); "
+    code += "sys.exit('numpy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True).returncode == 0

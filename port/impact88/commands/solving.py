@@ -1,0 +1,241 @@
+"""Tables solved in blocks of rows, whatever the format; bad rows are reported apart."""
+
+import csv
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager, nullcontext, suppress
+from itertools import chain
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..closedform.columns import INERTIAS, UNUSED_BY_POINTS, examine, refusals
+from ..closedform.share import resolved, share_of
+from ..closedform.solve import share_typed, solve
+from ..doubles import is_number
+from ..errors import UserError, note, quoted
+from ..fields import ZERO_DETERMINANT
+from ..files import called, replacing
+from ..names import DEFAULT_M, RESULTS, SCENE, check_names
+from ..progress import progress
+from ..scene import VALUE_LIMIT, Entries, Scene, entries_in, sample
+from ..status import Status
+from ..tables.cells import TableUnits, check_scene_columns, filled, numbers, point_masses
+from ..tables.rows import BadCell, Rows
+from ..tables.sweep import read_ranges, read_sweep
+from ..tables.table import ahead, behind, format_of, may_wait, open_reader, open_writer
+from . import options
+
+Results = dict[str, NDArray[Any]]
+
+SHOWN = 20
+"""Bad rows listed on stderr when no file takes them all: a screen, and twice as many are two."""
+
+
+def solve_table(args: options.Args) -> int:
+    """Returns 1 when a row is bad or ended with an Applesoft error."""
+    path = args.cases
+    if bool(path) == bool(args.sample):
+        raise UserError("expected one table or scene: CASES, or --sample 1, 2 or 3")
+    one_scene = path is None or path.lower().endswith(".toml")
+    if args.sweep and not one_scene:
+        raise UserError("--sweep is for one scene; expected CASES to be a scene file (.toml)")
+    source_format = "csv" if one_scene else format_of(path, args.form)
+    to = args.to or (source_format if args.output == "-" else None)
+    result_format = format_of(args.output, to)
+    arithmetic, known = _float64, [*RESULTS]
+    if args.arithmetic == "applesoft":
+        arithmetic, known = _applesoft, [n for n, q in RESULTS.items() if q.line or n == "KF"]
+    what = f"result of --arithmetic {args.arithmetic}"
+    wanted = options.names_given(args.outputs, known, "--outputs", what) or known
+    with ExitStack() as stack:
+        swept: dict[str, Any] = {}
+        if one_scene:
+            scene = Scene.from_toml(path, args.units) if path else sample(args.sample)
+            options.note_remarks(scene.entries)
+            swept = read_ranges(options.sweeps(args.sweep), scene.units)
+            source = stack.enter_context(read_sweep(scene, swept, scene.units))
+        else:
+            source = stack.enter_context(open_reader(path, source_format, args.encoding))
+        blocks = iter(source)
+        first = next(blocks, None)
+        blocks = chain([] if first is None else [first], blocks)
+        filling = _filling(args) if args.scene else None
+        system = args.units or (filling.units if filling else None)
+        units = TableUnits(source.names, system, first, where=called(path or "--sample"))
+        given = options.settings(args.set, others=("inf",), units=units.system.name or None)
+        if filling:
+            given = {n: t for n, t in filling.values.items() if n not in source.names} | given
+        points = given.get("M", "4" if "M" in source.names else "6") == "4"
+        check_scene_columns({*source.names, *given}, points)
+        if swept:  # the rest is the same in every row
+            source.names = [name for name in source.names if name in swept]
+        elif units.strict:
+            source.names = units.headings(source.names)
+        added = ["ERROR", "LINE"] if arithmetic is _applesoft else []
+        headings = units.headings([*wanted, *added])
+        scene_too = bool(swept) or not args.results_only
+        writer = open_writer(args.output, result_format, source, headings, scene_too)
+        write = stack.enter_context(writer)
+        complain = stack.enter_context(_complaints(args.errors))
+        meter = stack.enter_context(progress(source.total, "solve", "B"))
+        if not may_wait(args.output):
+            write = stack.enter_context(behind(write))
+        if not may_wait(path or ""):
+            blocks = stack.enter_context(ahead(blocks))
+        units.based = given
+        adverse = place = 0
+        for rows in blocks:
+            for name, text in given.items():
+                rows.columns.pop(name, None)  # and with it the heading of another unit
+                rows.columns[name] = [text] * rows.count
+            # a name without a column has empty cells: a complaint where a row looks at them
+            nothing = [None] * rows.count
+            rows.columns |= {name: nothing for name in SCENE if name not in rows.columns}
+            rows.columns["M"] = filled(rows.columns["M"], DEFAULT_M)
+            results = arithmetic(rows, units, wanted)
+            write(rows, units.shown(results))
+            adverse += complain(rows.complaints())
+            if "ERROR" in results:
+                ended = results["ERROR"]
+                adverse += int(np.count_nonzero((ended != "") & (ended != ZERO_DETERMINANT)))
+            meter.update(rows.place - place)
+            place = rows.place
+    return int(adverse > 0)
+
+
+def _filling(args: options.Args) -> Entries:
+    """What fills the columns that the table lacks."""
+    entries = entries_in(args.scene, args.units, single=True)
+    options.note_remarks(entries)
+    entries.values = {name: text for name, text in entries.values.items() if text}
+    check_names(entries.values, SCENE, "value of a scene", called(args.scene))
+    return entries
+
+
+def _float64(rows: Rows, units: TableUnits, wanted: Sequence[str]) -> Results:
+    """The closed form in double precision."""
+    columns = numbers(rows, units)
+    _read_shares(rows, columns)
+    unread = {index for index, *_ in rows.bad}
+    refused = rows.count > 0 and examine(columns).refused is not None
+    for refusal in refusals(columns) if refused else ():
+        values = np.broadcast_to(columns[refusal.column], rows.count)
+        found = np.flatnonzero(np.broadcast_to(refusal.where, rows.count)).tolist()
+        for index in sorted({*found} - unread):
+            unread.add(index)
+            rows.bad.append((index, refusal.column, f"{float(values[index])!r} {refusal.reason}"))
+    return _blanked(solve(columns, wanted), unread)
+
+
+def _blanked(results: Results, unread: set[int]) -> Results:
+    """The results, none for the rows ``unread``."""
+    nothing = {"STATUS": Status.NOT_FINITE, "ERROR": "", "LINE": 0}
+    for name, result in results.items():
+        result[sorted(unread)] = nothing.get(name, np.nan)
+    return results
+
+
+def _read_shares(rows: Rows, columns: dict[str, NDArray[np.float64]]) -> None:
+    """Read the cells of MU that are shares of the critical friction, and withdraw the complaints
+    about them."""
+    places = [index for index, column, _ in rows.bad if column == "MU"]
+    cells = {at: share_of(rows.columns["MU"][at]) for at in places}
+    found = {at: share for at, share in cells.items() if share is not None}
+    if found:
+        at = list(found)
+        shared = {n: np.broadcast_to(x, (rows.count,))[at] for n, x in columns.items()}
+        columns["MU"] = columns["MU"].copy()
+        columns["MU"][at] = share_typed(shared, list(found.values()))
+        rows.bad = [bad for bad in rows.bad if bad[1] != "MU" or bad[0] not in found]
+
+
+def _applesoft(rows: Rows, units: TableUnits, wanted: Sequence[str]) -> Results:
+    """The listing's own arithmetic, `impact88.replay`."""
+    from ..replay import replay
+
+    points = point_masses(rows)
+    columns = {n: _texts(n, column, units) for n, column in rows.scene().items()}
+    for name in UNUSED_BY_POINTS if points.any() else ():
+        # the program reads them all the same
+        default = "1" if name in INERTIAS else "0"
+        for index in np.flatnonzero(points).tolist():
+            if columns[name][index] in (None, "", "NAN"):
+                columns[name][index] = default
+    for index, cell in enumerate(columns["MU"]):
+        if share_of(cell) is not None:
+            scene = {name: column[index] for name, column in columns.items() if name in SCENE}
+            with suppress(UserError, ValueError, TypeError):  # the cell's complaint follows
+                columns["MU"][index] = resolved(scene, "")[0]
+    unread = {index for index, *_ in rows.bad}
+    try:
+        # nearly always all cells can be read, and looking at each takes as long as solving
+        replayed = None if unread else replay(columns)
+    except (ValueError, TypeError):  # UserError, or cells of several types
+        replayed = None
+    if replayed is None:
+        _complain(rows, columns, unread)
+        for column in columns.values():
+            for index in unread:
+                column[index] = "6"
+        replayed = replay(columns)
+    results: Results = {name: replayed.floats(name) for name in wanted}
+    error = np.where(replayed.zero_determinant, ZERO_DETERMINANT, replayed.error)
+    return _blanked({**results, "ERROR": error, "LINE": replayed.line}, unread)
+
+
+def _texts(name: str, column: Any, units: TableUnits) -> list[Any]:
+    """A column as texts that INPUT may read, those with a unit in base units."""
+    if isinstance(column, np.ndarray):
+        column = [repr(x).removesuffix(".0").upper() for x in column.tolist()]
+    texts = [text.strip().upper() if isinstance(text, str) else text for text in column]
+    for index, text in enumerate(column) if units.converts(name) else ():
+        if isinstance(text, str) and any(map(str.isdigit, text)):
+            with suppress(UserError):
+                texts[index] = units.cell(name, text)
+    return texts
+
+
+def _complain(rows: Rows, columns: dict[str, list[Any]], unread: set[int]) -> None:
+    """Add what Applesoft cannot read to ``rows.bad``, the first of every row not yet ``unread``."""
+    for name, column in columns.items():
+        for index, text in enumerate(column):
+            if index in unread:
+                continue
+            if text is None or text == "":
+                reason = "is empty; expected a number"
+            elif not (isinstance(text, str) and is_number(text)):
+                reason = f"{quoted(text)} is not a number that Applesoft reads"
+            elif len(text) > VALUE_LIMIT:
+                reason = f"has more than {VALUE_LIMIT} characters"
+            else:
+                continue
+            unread.add(index)
+            rows.bad.append((index, name, reason))
+
+
+@contextmanager
+def _complaints(path: str | None) -> Iterator[Callable[[Sequence[BadCell]], int]]:
+    """A function that says of bad cells what is wrong, to a file or of the first to stderr, and
+    returns how many there are."""
+    count = 0
+    with replacing(path) if path else nullcontext() as file:
+        rows = csv.writer(file, lineterminator="\n") if file else None
+        if rows:
+            rows.writerow(BadCell._fields)
+
+        def take(cells: Sequence[BadCell]) -> int:
+            nonlocal count
+            if rows:
+                rows.writerows(sorted(cells))
+            else:
+                for cell in sorted(cells)[: max(0, SHOWN - count)]:
+                    note("solve", str(cell))
+            count += len(cells)
+            return len(cells)
+
+        yield take
+    if (path and count) or count > SHOWN:
+        where = f": see {path}" if path else "; --errors FILE lists all of them"
+        unsolved = f"{count:,} row{'s' if count > 1 else ''} could not be solved"
+        note("solve", f"{unsolved}{where}")
