@@ -14,6 +14,7 @@ from captures import ROOT
 from impact88.cli import main
 from impact88.errors import UserError
 from impact88.program.emulated import ListingCopy
+from impact88.program.run import run
 from impact88.reporting.examination import Verdict, examine
 from impact88.scene import sample
 
@@ -160,3 +161,9 @@ def test_a_line_retyped_wrong_is_named(tmp_path: Path) -> None:
     first = result.explanations[0]
     assert first.kind == "a changed line of the listing"
     assert first.note.startswith("line 490: A66 = 1 + 2*em, should be 1 - 2*em")
+
+
+def test_a_copy_that_prints_nothing_is_refused(tmp_path: Path) -> None:
+    copy = copy_of(re.sub(r"PRINT[^:\n]*", "REM", LISTING), tmp_path)
+    found = examine("-", None, copy, data=run(sample(1)).page.encode())
+    assert "office.bas: no printout of the program" in (found.error or "")
