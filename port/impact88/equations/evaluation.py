@@ -5,13 +5,14 @@ Arrays have the scenes last, edits before them: (K, n), or (1, n) of what edits 
 
 from collections import ChainMap
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..names import SCENE
-from .spelling import COMPARISONS, NEGATIVE, TYPED, Expression, Spelling
+from .spelling import COMPARISONS, NEGATIVE, TYPED, Expression, Spelling, nodes
 
 Floats = NDArray[np.float64]
 Columns = Mapping[str, Any]
@@ -31,17 +32,16 @@ _OPERATIONS: dict[str, Callable[..., Any]] = {
 }
 
 
-def value(node: Expression, names: Columns, known: dict[int, Any] | None = None) -> Any:
+def value(node: Expression, names: Columns, known: Mapping[int, Any] = MappingProxyType({})) -> Any:
     """The value of an expression, or what is a value already. ``known``: values of nodes by id."""
+    if isinstance(node, tuple):
+        if id(node) in known:
+            return known[id(node)]
+        function = _OPERATIONS.get(node[0]) or getattr(np, node[0])
+        return function(*[value(part, names, known) for part in node[1:]])
     if isinstance(node, str):
         return np.pi if node == "pi" else names[node]
-    if not isinstance(node, tuple):
-        return node
-    known = {} if known is None else known
-    if id(node) not in known:
-        function = _OPERATIONS.get(node[0]) or getattr(np, node[0])
-        known[id(node)] = function(*[value(part, names, known) for part in node[1:]])
-    return known[id(node)]
+    return node
 
 
 _ERRORS: dict[str, Callable[..., Any]] = {
@@ -192,6 +192,9 @@ class Run:
             line, own = self.spelling.statements[index], self._own[index]
             seen = self.names if line.target else {**self.names, **self._unknown}
             known: dict[int, Any] = {}
+            for node in reversed([node for side in line.sides for node in nodes(side)]):
+                if isinstance(node, tuple):
+                    known[id(node)] = value(node, seen, known)
             values = [[value(side, seen, known) for side in edits[place][key]] for place in places]
             wholes = [sides[0] if line.target else np.subtract(*sides) for sides in (own, *values)]
             shape = np.broadcast_shapes((1, self.size), *map(np.shape, wholes))
