@@ -34,13 +34,13 @@ _Axis = tuple[tuple[float, float], str, Sequence[tuple[float, str]]]
 
 def _finish(drawing: Drawing, low: float, rows: Sequence[Row], note: str) -> Drawing:
     """With a key from ``low`` on, and the rows in words."""
-    told = [
+    summaries = [
         f"{row['name']} on {row['population']}: {row['seconds']:.2g} s, median "
         f"{row['median']:.2g}, largest {row['largest']:.2g}"
         for row in rows
         if "median" in row
     ]
-    drawing.description = f"{drawing.description}. {'; '.join(told)}."
+    drawing.description = f"{drawing.description}. {'; '.join(summaries)}."
     look = {"mpmath": ((0.4, 0.6), GREY), **_MARKS}
     samples = {row["name"]: (row["name"], *look[row["method"]][::-1]) for row in rows}
     drawing.height = 2 - key(drawing, low + 8, *samples.values(), note=note)

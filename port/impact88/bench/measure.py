@@ -131,7 +131,7 @@ def measure(
             found = method.velocities(columns)
             error = relative_errors(found, hi, lo)
             fine = np.isfinite(error)
-            told, scaled = error[fine], relative_errors(found, hi, lo, sizes)[fine]
+            answered, scaled = error[fine], relative_errors(found, hi, lo, sizes)[fine]
             condition = solved["COND"][fine]
             timed = max(10, round(effort * method.timed))
             works.append((method, method.prepare(enlarged(columns, timed)), []))
@@ -139,11 +139,11 @@ def measure(
                 {
                     **{"population": name, "method": method.key, "name": method.name},
                     **{"scenes": count, "timed": timed, "unanswered": int(count - fine.sum())},
-                    "median": float(np.median(told)),
-                    "per_mille": float(np.quantile(told, 0.999)),
-                    "largest": float(told.max()),
+                    "median": float(np.median(answered)),
+                    "per_mille": float(np.quantile(answered, 0.999)),
+                    "largest": float(answered.max()),
                     "over_condition": float((scaled / condition).max() / method.roundoff),
-                    "over_sensitivity": float((told / sensitive[fine]).max() / method.roundoff),
+                    "over_sensitivity": float((answered / sensitive[fine]).max() / method.roundoff),
                     **{"errors": scaled, "conditions": condition},
                 }
             )
@@ -176,11 +176,11 @@ def components(populations: Sequence[str], count: int, seed: int) -> list[Row]:
             for place, result in enumerate(COMPONENTS):
                 true = hi[:, place]
                 error = np.abs((found[result] - true) - lo[:, place])
-                told = np.isfinite(error) & (true != 0)
-                relative = error[told] / np.abs(true[told])
-                over = error[told] / (DOUBLE * (moved[result] + np.abs(true))[told])
+                usable = np.isfinite(error) & (true != 0)
+                relative = error[usable] / np.abs(true[usable])
+                over = error[usable] / (DOUBLE * (moved[result] + np.abs(true))[usable])
                 row: Row = {"population": label, "result": result}
-                row["median"] = float(np.median(relative)) if told.any() else 0.0
+                row["median"] = float(np.median(relative)) if usable.any() else 0.0
                 row["largest"] = float(relative.max(initial=0.0))
                 rows.append({**row, "over_rounding": float(over.max(initial=0.0))})
     return rows

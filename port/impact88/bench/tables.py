@@ -64,11 +64,11 @@ def results(rows: Sequence[Row]) -> str:
     """One table for each population."""
     parts = []
     for name in dict.fromkeys(row["population"] for row in rows):
-        mine = [{**row, "per_second": 1 / row["seconds"]} for row in rows]
-        mine = [row for row in mine if row["population"] == name]
+        measured = [{**row, "per_second": 1 / row["seconds"]} for row in rows]
+        measured = [row for row in measured if row["population"] == name]
         what = POPULATIONS[name]
-        parts.append(f"{name} ({what.level}): {what.meaning}; {mine[0]['scenes']:,} scenes")
-        parts.append(listing(mine, _RESULTS) + "\n")
+        parts.append(f"{name} ({what.level}): {what.meaning}; {measured[0]['scenes']:,} scenes")
+        parts.append(listing(measured, _RESULTS) + "\n")
     parts.append(
         "relative error of the final velocities; cond: COND, sens: sensitivity to the scene's\n"
         "numbers, u: unit roundoff (2^-32 for Applesoft, 2^-53 for double), each for the worst\n"
@@ -114,11 +114,11 @@ def ratios(rows: Sequence[Row], roof: float) -> str:
     return "\n".join(lines)
 
 
-def machine(told: Mapping[str, Any]) -> str:
+def machine(row: Mapping[str, Any]) -> str:
     text = (
-        f"{told['processor']}, {told['cores']} cores; Python {told['python']}, numpy "
-        f"{told['numpy']}, impact88 {told['impact88']} ({told['instructions'] or 'numpy alone'})"
+        f"{row['processor']}, {row['cores']} cores; Python {row['python']}, numpy "
+        f"{row['numpy']}, impact88 {row['impact88']} ({row['instructions'] or 'numpy alone'})"
     )
-    if told["load"] is not None and told["load"] > BUSY:
-        text += f"\nthe machine was busy (load {told['load']}): times are longer than they could be"
+    if row["load"] is not None and row["load"] > BUSY:
+        text += f"\nthe machine was busy (load {row['load']}): times are longer than they could be"
     return text

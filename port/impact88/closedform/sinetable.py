@@ -33,9 +33,9 @@ def turn() -> list[float]:
             x, y = x * cosine - y * sine, x * sine + y * cosine
     rising = [y for _, y in points] + [x for x, _ in reversed(points[:-1])]
     half = rising + rising[-2:0:-1]
-    whole = half + [-y for y in half]
-    whole[STEPS // 2] = 0.0
-    return whole + whole[:_QUARTER]
+    full = half + [-y for y in half]
+    full[STEPS // 2] = 0.0
+    return full + full[:_QUARTER]
 
 
 def _series(term: Decimal, x: Decimal, first: int) -> Decimal:

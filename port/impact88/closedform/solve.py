@@ -128,18 +128,18 @@ def _solved(
 ) -> dict[str, Array]:
     given, shape = sources(columns)
     count = math.prod(shape)
-    whole, _ = rooms([name for name in wanted if out is None or name not in out], shape)
+    made, _ = rooms([name for name in wanted if out is None or name not in out], shape)
     if out is not None:
         arrays = [x.base if isinstance(x, np.flatiter) else x for x in given.values()]
         check_room(out, wanted, shape, arrays)
-        whole |= {name: out[name] for name in wanted if name in out}
-    results: dict[str, Array] = {name: whole[name].reshape(count) for name in wanted}
+        made |= {name: out[name] for name in wanted if name in out}
+    results: dict[str, Array] = {name: made[name].reshape(count) for name in wanted}
     if not wanted:
         return {}
     many = workers(count, threads, SHARED_TILE)
     tile = TILE if many == 1 else SHARED_TILE
     shared_out(partial(_solve_part, given, results, tile, sign), count, many)
-    return {name: whole[name] for name in wanted}
+    return {name: made[name] for name in wanted}
 
 
 def share_typed(columns: Mapping[str, Any], share: Any) -> Array:

@@ -157,9 +157,9 @@ def traced(
     for name in names:
         column = table.column(name, name in varying)
         given[name] = Noted(table.combine("real_ordinary", column), unit, True)
-    shown = {name: noted(table, x) for name, x in make(unit, given).items()}
-    shown[ODD] = table.combine("odd", unit.marked, varies=True)
-    return Program(shown, ["COPY"] * len(shown))
+    results = {name: noted(table, x) for name, x in make(unit, given).items()}
+    results[ODD] = table.combine("odd", unit.marked, varies=True)
+    return Program(results, ["COPY"] * len(results))
 
 
 def computed(
