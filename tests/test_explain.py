@@ -149,6 +149,12 @@ def test_point_mass_with_arms_left() -> None:
     assert (found.kind, found.remaining) == ("M = 4 with DA, DB left", 0)
 
 
+def test_a_slip_is_put_right_to_what_the_program_prints() -> None:
+    """Never to .25 with a zero before it, which it prints otherwise."""
+    text = run(sample(3)).page.replace("VY= 58.667", "EY= 58.667").replace("314066", "314166")
+    assert "would be 0." not in "; ".join(map(str, explanations(text)))
+
+
 def test_another_m() -> None:
     """A point-mass printout whose results are those of the full solution."""
     full = replays.run_once(sample(1)).fields

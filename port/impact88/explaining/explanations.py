@@ -129,12 +129,11 @@ def _labels(page: PageEvidence) -> Iterator[Cause]:
 def _reread(page: PageEvidence, rereads: Iterable[Reread]) -> Iterator[Cause]:
     """Inputs put right, with what results are then still a slip away."""
     best = math.inf
-    for reread in rereads:
-        scene, outcome, wrong = reread.scored.scene, reread.scored.outcome, reread.scored.wrong
-        least = sum(map(_believed, reread.changes)) + _SLIP * (len(wrong) - page.most_left)
-        if reread.changes and least <= min(best + _WORSE, _MOST_BITS):
-            left = page.left(scene, outcome, reread.changes)
-            for cause in _slipped(page, reread.changes, left, outcome.fields):
+    for changes, run in rereads:
+        least = sum(map(_believed, changes)) + _SLIP * (len(run.wrong) - page.most_left)
+        if changes and least <= min(best + _WORSE, _MOST_BITS):
+            left = page.left(run.scene, run.outcome, changes) | run.wrong & set(INPUTS)
+            for cause in _slipped(page, changes, left, run.outcome.fields):
                 best = min(best, _weight(cause))
                 yield cause
 
@@ -146,7 +145,8 @@ def _exchanged_and_slipped(page: PageEvidence, rows: Rows, rereading: Rereading)
         for reread in rereading.best(1, texts):
             changes = (*exchanged, *reread.changes)
             bits = row.bits + sum(map(_believed, reread.changes))
-            left = page.left(reread.scored.scene, reread.scored.outcome, changes)
+            run = reread.scored
+            left = page.left(run.scene, run.outcome, changes) | run.wrong & set(INPUTS)
             for cause in _slipped(page, changes, left):
                 yield replace(cause, bits=bits, note=row.note)
 
