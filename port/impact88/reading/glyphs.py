@@ -135,7 +135,7 @@ COSTS = {" ".join(name): int(cost) for *name, cost in _CHANNEL["costs"]}
 """What departures from the page cost, in hundredths of one wrong letter."""
 GAP_COSTS = {name: [int(cost) for cost in costs] for name, *costs in _CHANNEL["gaps"]}
 """What a glyph costs by the gap before it."""
-_TYPED = 8
+_TYPED = 8  # readings that a shape counts for; doubled, 4 of 47 texts are weighed otherwise
 
 
 def _counted(kind: str) -> dict[str, tuple[int, dict[str, int]]]:

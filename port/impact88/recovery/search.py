@@ -38,7 +38,7 @@ _UNREAD = 0.6
 """What a result costs of which hardly anything was read, or that the page does not have."""
 _OTHER_BITS = 0.02
 """What it costs that a number was typed with zeros that do not show, by the rank of that text."""
-_MOST = 160
+_MOST = 160  # combinations that are replayed
 _ROOM = 30_000
 """Combinations of the rest tried with the likeliest of masses and velocities."""
 _CLOSELY = 5_000

@@ -34,7 +34,7 @@ _UNLIKE = 0.4
 """Bits more for each rank in the likeness of two digits' shapes."""
 _TWO_SLIPS = 6.05
 """What two slips may cost: two digits misread as those least like them (3.02 each)."""
-_REPLAYED = 60
+_REPLAYED = 60  # combinations of slips that are replayed
 _ALIKE = {
     text[0]: text[1:]
     for text in "0869 1742 2713 3859 4917 5638 6805 7129 83069 94807".split()

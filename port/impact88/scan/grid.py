@@ -16,7 +16,7 @@ CELL_WIDTH = 16
 """Pixels across a cell after sampling: the least at which 3 and 8 of a dot matrix stay apart."""
 SLACK = 2
 """Pixels of picture kept on each side of a cell, for the shifts that are tried."""
-_LEAST_HEIGHT, _MOST_LINES = 5, 64
+_LEAST_HEIGHT, _MOST_LINES = 5, 64  # pixels, lines; doubled, the verdicts of 5 pages stay
 _INKED = 0.25
 """Darkness, of full ink, from which a cell is inked: of 2,405 blank cells one in a thousand is
 darker than 0.27, of 7,648 others one in a thousand is lighter than 0.44."""

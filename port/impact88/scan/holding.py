@@ -20,7 +20,7 @@ from .layout import SPACED, Place, Sheet
 from .scenes import WORST, Candidate, Read
 from .typeface import BLANK, READABLE, distances, hands_of, sample_of, typeface_of
 
-_NOISE = 3.0
+_NOISE = 3.0  # usual distances that means are apart at least; doubled, 5 verdicts of 5 stay
 _LEAST_NOISE = 0.1
 """The usual distance of a cell from its mean on an excellent scan, in units of the root of its
 energy; pages drawn by a program have 0.01 to 0.04, and there any other hand is a hundred times as
