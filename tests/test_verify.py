@@ -282,3 +282,10 @@ def test_exact_values_and_warnings_stand_beside(tmp_path) -> None:
     assert exact["XB"].exact == "14.52"
     assert exact["XB"].difference == "-0.01"
     assert exact["XB"].same is True
+
+
+def test_a_digit_in_the_first_prompt_is_left_over() -> None:
+    page = run(sample(1)).page.replace("Vax,Vay", "Vax,Va5y", 1)
+    (found,) = verify(page)
+    assert found.verdict is Verdict.IDENTICAL_AS_READ
+    assert [piece.text for piece in found.left_over] == ["5"]

@@ -63,7 +63,7 @@ class Page:
         full = 0 < max(lengths) <= 80 and lengths.count(max(lengths)) >= 3
         self.width = max(lengths) if full else 0
         self.glyphs = tuple(self._read())
-        starts = [at for at, glyph in enumerate(self.glyphs) if glyph.gap is Gap.LINE]
+        starts = [at for at, glyph in enumerate(self.glyphs) if glyph.gap is Gap.LINE or not at]
         self.lines = [range(*one) for one in pairwise([*starts, len(self.glyphs)])]
 
     def _read(self) -> Iterator[Glyph]:
