@@ -28,7 +28,9 @@ CORRECTIONS = 3
 """Times the walls are put right; with a single time bounds of reconstructions are up to
 8 % narrower."""
 ITERATIONS = 20
-"""Of the interior-point method, after which walls are passed by 1e-13; after 14 by 2e-6."""
+"""Of the interior-point method, at most: each leaves about a fifth of what the last one did."""
+CENTRED = 1e-8
+"""Where it ends: ended by the iterations alone it takes twice the time."""
 
 
 class Landscape(Protocol):
@@ -184,10 +186,13 @@ def _best_between_walls(
     push = 1 / np.maximum(room, 0.1)
     for _ in range(ITERATIONS):
         mean = 0.1 * (room * push).mean(axis=1)[:, None]
+        going = mean > CENTRED
+        if not going.any():
+            break
         off = most - np.einsum("crk,ck->cr", every, step) - room
         want = (mean - push * off) / room
         right = goal - np.einsum("crk,cr->ck", every, want)
-        matrix = np.einsum("crk,cr,crl->ckl", every, push / room, every)
+        matrix = every.swapaxes(1, 2) @ (every * (push / room)[:, :, None])
         finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
         matrix[~finite], right[~finite] = np.eye(k), 0.0
         try:
@@ -196,6 +201,6 @@ def _best_between_walls(
             break
         away = off - np.einsum("crk,ck->cr", every, move)
         pushed = (mean - push * (room + away)) / room
-        first, second = longest(room, away), longest(push, pushed)
+        first, second = going * longest(room, away), going * longest(push, pushed)
         step, room, push = step + first * move, room + first * away, push + second * pushed
     return np.asarray(np.clip(np.nan_to_num(step * unit), low, high))
