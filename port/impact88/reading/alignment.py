@@ -85,8 +85,8 @@ field (of a prompt, its reply's slot), and the states of the label's letters."""
 
 def letter_of(state: int) -> str:
     """The letter of a label that a state is, "" for any other."""
-    one = STATES[state]
-    return one.name if one.kind in ("letter", "loose") else ""
+    entry = STATES[state]
+    return entry.name if entry.kind in ("letter", "loose") else ""
 
 
 @lru_cache(maxsize=1)
@@ -99,9 +99,9 @@ def _jumps() -> tuple[Costs, Costs, Costs]:
         least = [(row[:, None] + second).min(axis=0) for row in first]
         return np.array(np.minimum(least, _MOST))
 
-    missed = np.cumsum([_missing(one) for one in STATES], dtype=np.int32)
+    missed = np.cumsum([_missing(state) for state in STATES], dtype=np.int32)
     size = len(STATES)
-    between = [place for place, one in enumerate(STATES) if one.kind == "between"]
+    between = [place for place, state in enumerate(STATES) if state.kind == "between"]
     passed = np.where(np.tri(size, k=-1), _MOST, missed[None] - missed[:, None])
     absent = [COSTS["line may be missing" if n in _OPTIONAL else "line"] for n in range(len(_ROWS))]
     skipped = np.where(np.eye(size), 0, _MOST).astype(np.int32)
@@ -109,29 +109,29 @@ def _jumps() -> tuple[Costs, Costs, Costs]:
         skipped[0, start] = COSTS["begins"]
         for stop in range(number, len(between)):
             skipped[start, between[stop]] = sum(absent[number:stop])
-    ends = np.array([COSTS["ends"] if _closes(one) else _MOST for one in STATES])
+    ends = np.array([COSTS["ends"] if _closes(state) else _MOST for state in STATES])
     skips = then(passed[:, [0, *between]], skipped[[0, *between]][:, between])
     ways = np.minimum(passed, then(skips, passed[between]))
     ways = np.minimum(ways, ends[:, None] + ways[0])
     ways[:, 0] = np.minimum(ways[:, 0], ends)
-    closing = [place for place, one in enumerate(STATES) if _closes(one) or not place]
+    closing = [place for place, state in enumerate(STATES) if _closes(state) or not place]
     into = np.roll(ways, 1, axis=1)
     into[:, [0, *between]] = ways[:, [0, *between]]
     jumps = np.array([into] * len(Gap))
-    numbers = np.flatnonzero([one.kind == "number" for one in STATES])
-    for place, one in enumerate(STATES):
-        if one.name == "=" or (one.kind == "letter" and one.name.isalpha()):
-            before = [number for number in numbers if STATES[number].line == one.line]
+    numbers = np.flatnonzero([state.kind == "number" for state in STATES])
+    for place, state in enumerate(STATES):
+        if state.name == "=" or (state.kind == "letter" and state.name.isalpha()):
+            before = [number for number in numbers if STATES[number].line == state.line]
             jumps[Gap.NONE, before, place] += COSTS["label without gap"]
     staying = np.zeros((len(Gap), size), np.int16)
-    for place, one in enumerate(STATES):
-        if place and STATES[place - 1].name == "=" and one.kind == "number":
+    for place, state in enumerate(STATES):
+        if place and STATES[place - 1].name == "=" and state.kind == "number":
             others = np.arange(size) != place - 1
             jumps[:, others, place] += np.array(GAP_COSTS["unlabelled"])[:, None]
-        if one.kind == "number":
-            reply, angle = one.line < PROMPTS, one.line == ANGLE_ROW
+        if state.kind == "number":
+            reply, angle = state.line < PROMPTS, state.line == ANGLE_ROW
             staying[:, place] = GAP_COSTS["reply" if reply else "angle" if angle else "number"]
-            if angle and one.name != ANGLES[0]:
+            if angle and state.name != ANGLES[0]:
                 jumps[Gap.NONE, :, place] += COSTS["angle without gap"]
             elif not angle:
                 before = numbers[numbers != place]
@@ -225,7 +225,9 @@ def align(
             chars[exponent.start()] = "0"  # as good as a figure, and no label
         parts = _parts(start, _states(chars, [glyph.gap for glyph in window]))
         found = parts if last else parts[:-1] or parts[:1]
-        numbers = [sum(STATES[one].kind == "number" for one in {*part.values()}) for part in found]
+        numbers = [
+            sum(STATES[place].kind == "number" for place in {*part.values()}) for part in found
+        ]
         whole = max(numbers, default=0) >= _WHOLE
         budget.left = Budget.left if whole else budget.left - len(window)
         yield from found

@@ -81,16 +81,16 @@ def label_checks(
     the numbers."""
     checks = []
     for name, printed, start, stop, read in _seen(page, found, slots):
-        others = {text for one, text, _ in found if _kind(one) == _kind(name)} - {printed}
+        others = {text for label, text, _ in found if _kind(label) == _kind(name)} - {printed}
         state, doubt = _state(_kind(name), printed, read, others)
         checks.append(
             LabelCheck(name, printed, read, state, doubt, *page.place(start), start, stop)
         )
-    marks += sum(one.state is LabelState.DAMAGED for one in checks)
-    pairs = {(one.printed, one.read) for one in checks}
-    for at, one in enumerate(checks if marks >= READERS else ()):
-        if one.state is LabelState.CONTRADICTORY and (one.read, one.printed) not in pairs:
-            checks[at] = one._replace(state=LabelState.DAMAGED)
+    marks += sum(check.state is LabelState.DAMAGED for check in checks)
+    pairs = {(check.printed, check.read) for check in checks}
+    for at, check in enumerate(checks if marks >= READERS else ()):
+        if check.state is LabelState.CONTRADICTORY and (check.read, check.printed) not in pairs:
+            checks[at] = check._replace(state=LabelState.DAMAGED)
     return checks
 
 
@@ -109,15 +109,15 @@ def _seen(
         return letters(page.glyphs[index] for index in at)
 
     words = words_before(page, slots)
-    of_angles = [one for one in found if one[0] in ANGLES]
+    of_angles = [label for label in found if label[0] in ANGLES]
     heading, row = of_angles[: len(ANGLES)], of_angles[len(ANGLES) :]
     headed = [index for _, _, at in heading for index in at]
     if headed:
         yield from _heading(page, min(headed), max(headed))
-    for one in found:
-        name, printed, at = one
+    for label in found:
+        name, printed, at = label
         retyped = bool(headed) or any(at for _, _, at in row)
-        if (one in heading and (retyped or name not in slots)) or (one in row and not at):
+        if (label in heading and (retyped or name not in slots)) or (label in row and not at):
             continue
         word = range(*words.get(name, (0, 0)))
         if word and read(at[-len(word) :]) != read(word):

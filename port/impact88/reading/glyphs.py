@@ -64,7 +64,7 @@ class Page:
         self.width = max(lengths) if full else 0
         self.glyphs = tuple(self._read())
         starts = [at for at, glyph in enumerate(self.glyphs) if glyph.gap is Gap.LINE or not at]
-        self.lines = [range(*one) for one in pairwise([*starts, len(self.glyphs)])]
+        self.lines = [range(*ends) for ends in pairwise([*starts, len(self.glyphs)])]
 
     def _read(self) -> Iterator[Glyph]:
         last = 0  # where the glyph before ended
@@ -142,7 +142,7 @@ def _counted(kind: str) -> dict[str, tuple[int, dict[str, int]]]:
     """By printed glyph: how often it was printed, and how often it was read as what."""
     counts = {}
     for printed, total, *readings in _CHANNEL[f"{kind}s"]:
-        counts[printed] = (int(total), {one[0]: int(one[1:]) for one in readings})
+        counts[printed] = (int(total), {reading[0]: int(reading[1:]) for reading in readings})
     for printed, *shapes in _CHANNEL[f"{kind} shapes"]:
         seen = counts[printed][1]
         seen.update({read: seen.get(read, 0) + _TYPED for read in "".join(shapes)})
@@ -176,7 +176,7 @@ def printed_for(read: str) -> dict[str, float]:
     every = _OF_NUMBERS.items()
     shares = {printed: seen[read] / total for printed, (total, seen) in every if read in seen}
     best = max(shares.values(), default=0.0)
-    likely = sorted(shares.items(), key=lambda one: -one[1])
+    likely = sorted(shares.items(), key=lambda item: -item[1])
     return {
         printed: COSTS["look-alike"] / 100 + log10(best / share) / 4
         for printed, share in likely

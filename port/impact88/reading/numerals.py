@@ -119,7 +119,7 @@ def compare(region: Region, printed: str, cut: bool = False, sign_free: bool = F
         return Match(_SPECK, (Spot(0, text, printed, Doubt.LOOK_ALIKE),), 0)
     if other is not None and value_of(other) == value_of(printed):
         return Match(_SLIGHT, (Spot(0, text, printed, Doubt.RETYPED),), len(printed))
-    return _compared(tuple(one[:2] for one in region[:LONGEST]), printed, cut, sign_free)
+    return _compared(tuple(glyph[:2] for glyph in region[:LONGEST]), printed, cut, sign_free)
 
 
 @lru_cache(maxsize=20000)
@@ -250,7 +250,7 @@ Ways = tuple[tuple[str, float], ...]
 
 def candidates(region: Region, most: int = 40, sign_free: bool = False) -> Ways:
     """The printable texts that glyphs may have been, with what each costs, cheapest first."""
-    return _candidates(tuple(one[:2] for one in region[:LONGEST]), most, sign_free)
+    return _candidates(tuple(glyph[:2] for glyph in region[:LONGEST]), most, sign_free)
 
 
 def taken_for(region: Region, sign_free: bool) -> str | None:
@@ -260,11 +260,13 @@ def taken_for(region: Region, sign_free: bool) -> str | None:
         return text
     ways = candidates(region, 1, sign_free)
     # a glyph that looks like no figure within a number is illegible
-    strange = [not (one.char in NUMERIC or printed_for(one.char) or one.gap) for one in region]
+    strange = [
+        not (glyph.char in NUMERIC or printed_for(glyph.char) or glyph.gap) for glyph in region
+    ]
     figures = [at for at, glyph in enumerate(region) if glyph.char.isdigit()] or [0]
     if ways and not any(strange[figures[0] + 1 : figures[-1]]):
         return ways[0][0]
-    text = "".join(one.char if one.char in NUMERIC else ILLEGIBLE for one in region)[:LONGEST]
+    text = "".join(glyph.char if glyph.char in NUMERIC else ILLEGIBLE for glyph in region)[:LONGEST]
     return text if any(map(str.isdigit, text)) or text in ("?", "??", "???") else None
 
 
@@ -285,7 +287,7 @@ def _candidates(region: Glyphs, most: int, sign_free: bool) -> Ways:
         for text, cost in ways.items():
             parted = gap and text
             blank = _SLIGHT if parted else 0.0
-            some = [(text + one, cost + blank + price) for one, price in may_be.items()]
+            some = [(text + reading, cost + blank + price) for reading, price in may_be.items()]
             if parted and gap is Gap.BLANK and char.isdigit() and "." not in text:
                 some.append((f"{text}.{char}", cost + _FOREIGN))
             if char in "-.+" or (char == "0" and text in ("", "-")):
@@ -294,8 +296,8 @@ def _candidates(region: Glyphs, most: int, sign_free: bool) -> Ways:
             elif char not in NUMERIC and char != ILLEGIBLE:
                 last = index + 1 == len(region) or not text
                 some.append((text, cost + (_SPECK if last else _MARK)))
-            for one, price in some:
-                following[one] = min(price, following.get(one, price))
+            for longer, price in some:
+                following[longer] = min(price, following.get(longer, price))
             if parted:  # what follows is left over
                 figures = sum(part[0].isdigit() for part in region[index:])
                 stop = cost + _SPECK * (len(region) - index) / 2 + _FOREIGN * figures

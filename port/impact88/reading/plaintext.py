@@ -233,8 +233,8 @@ def _lines_of(words: Sequence[_Word]) -> str:
     for line in lines:
         line.sort(key=lambda word: word.left)
         text += line[0].text
-        for one, word in pairwise(line):
-            gap = round((word.left - one.left - one.width) / letter)
+        for earlier, word in pairwise(line):
+            gap = round((word.left - earlier.left - earlier.width) / letter)
             text += " " * min(max(1, gap), _PRINTER) + word.text
         text += "\n"
     return text

@@ -151,16 +151,19 @@ class Printout:
     @property
     def mislabelled(self) -> list[LabelCheck]:
         """The labels that say another number than the one that stands there."""
-        return [one for one in self.labels if one.state is LabelState.CONTRADICTORY]
+        return [label for label in self.labels if label.state is LabelState.CONTRADICTORY]
 
     @property
     def marks(self) -> int:
         """How many marks of an optical reader its numbers bear: those that nobody types so, in
         pieces or with more than O for 0 and l for 1, and specks beside them."""
-        specks = (one.beside and not one.whole and len(one.text) <= 3 for one in self.left_over)
+        specks = (
+            piece.beside and not piece.whole and len(piece.text) <= 3 for piece in self.left_over
+        )
         return sum(specks) + sum(
-            any(glyph.gap for glyph in one.region[1:]) or not _TYPED.issuperset(letters(one.region))
-            for one in self.fields.values()
+            any(glyph.gap for glyph in field.region[1:])
+            or not _TYPED.issuperset(letters(field.region))
+            for field in self.fields.values()
         )
 
     @property
@@ -240,12 +243,12 @@ class Printout:
             (
                 name,
                 "".join(map(letter_of, own)),
-                [at for at, one in self._states.items() if one in own],
+                [at for at, state in self._states.items() if state in own],
             )
             for name, own in LABELS
         ]
         self.labels = label_checks(self.page, found, read, marks)
-        wrong = {one.name for one in self.mislabelled}
+        wrong = {label.name for label in self.mislabelled}
         self.misread_letters = self._misread("*ABCDEFGHIJKLMNOPQRSTUVWXYZ", wrong)
 
     def _crop(self) -> None:
@@ -276,7 +279,7 @@ class Printout:
         """Whether a label and its number, or a prompt, was read."""
         if sum(line < PROMPTS for line in self._exact.values()) >= _PROMPT_LETTERS:
             return True
-        numbers = {name for name, one in self.fields.items() if any(map(str.isdigit, one.text))}
+        numbers = {name for name, field in self.fields.items() if any(map(str.isdigit, field.text))}
         if not numbers.issuperset(ANGLES[:-1]):
             numbers -= set(ANGLES)
         read = {self._states[index] for index in self._exact}
@@ -395,22 +398,24 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     if budget.stopped is not None:
         line, column = page.place(page.glyphs[budget.stopped].offset)
         reason = f"what follows line {line}, column {column} was not read: there is too much of it"
-        found = [one for one in found if len(one.fields) >= _PART]
+        found = [printout for printout in found if len(printout.fields) >= _PART]
     if not found:
         expected = "expected text with labels such as MA= ... MB= ... VAX= ... VAY= ..."
         raise UserError(f"no printout of the program in it; {reason or expected}", where)
     found[-1].unread = reason
     _keep_left_over(page, found)
-    for one in found:
-        one.check_labels()
-        one.notes += _normalised(page.text[one.start : one.stop])
+    for printout in found:
+        printout.check_labels()
+        printout.notes += _normalised(page.text[printout.start : printout.stop])
     found[0].notes += _left_out(text, page.text)
     return found
 
 
 _ALIKE = str.maketrans("0QL1|!582’`", "OOIIIISBZ''")
 _DIGITS = str.maketrans("OQIL|!", "001111")
-_MESSAGES = {f"{one}ERROR": f"?{one} ERROR" for one in CODES} | {ZERO_DETERMINANT: ZERO_DETERMINANT}
+_MESSAGES = {f"{code}ERROR": f"?{code} ERROR" for code in CODES} | {
+    ZERO_DETERMINANT: ZERO_DETERMINANT
+}
 _ENDINGS = {re.sub("[ ']", "", said).translate(_ALIKE): shown for said, shown in _MESSAGES.items()}
 _ENDING = re.compile(r"\??(" + "|".join(map("'?".join, _ENDINGS)) + ")")
 _IN_LINE = re.compile("[I1L|!]N([0-9OQIL|!]{1,5})")
@@ -419,14 +424,14 @@ _IN_LINE = re.compile("[I1L|!]N([0-9OQIL|!]{1,5})")
 def _printouts(page: Page, budget: Budget) -> Iterator[Printout]:
     """The printouts of each stretch of text up to where a run ended early."""
     text = letters(page.glyphs)
-    commands = {at for one in _SLOT_COMMAND.finditer(text) for at in range(*one.span())}
+    commands = {at for match in _SLOT_COMMAND.finditer(text) for at in range(*match.span())}
     start = 0
     for message in [*_ENDING.finditer(text.translate(_ALIKE)), None]:
         stop = message.start() if message else len(text)
         aligned = [*align(page.glyphs, start, stop, budget, commands)]
         if notes := _notes(page, start, stop, aligned):
             aligned = [*align(page.glyphs, start, stop, budget, notes | commands)]
-        found = [one for states in aligned if (one := Printout(page, states)).read()]
+        found = [printout for states in aligned if (printout := Printout(page, states)).read()]
         if message and found:
             start = found[-1].end(message, text)
         yield from found
@@ -459,7 +464,7 @@ def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
     it, or with the first. A line is of the page where a number stands on it, half of its glyphs are
     letters as they are printed, or it is a row of asterisks; what stands beside a number
     may bear on the page, and so may another line that holds a number or one of the labels."""
-    roles = {index: role for one in found for index, role in one.roles().items()}
+    roles = {index: role for printout in found for index, role in printout.roles().items()}
     for line in page.lines:
         kinds = [roles.get(index) for index in line]
         numbered = "number" in kinds
@@ -477,7 +482,7 @@ def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
                 words = re.split(r"[^A-Za-z]+", text) if whole else ()
                 named = {word.upper() if len(word) > 2 else word for word in words} & _LABEL_WORDS
                 beside = numbered or figure or bool(named)
-                above = [one for one in found if one.line <= number] or found[:1]
+                above = [printout for printout in found if printout.line <= number] or found[:1]
                 above[-1].left_over.append(Piece(text, number, column, *span, beside, whole))
 
 
@@ -495,7 +500,7 @@ def _normalised(text: str) -> list[str]:
 def _left_out(text: str, unwrapped: str) -> list[str]:
     """That lines were left out as markup or as lines of a program."""
     pairs = zip(text.splitlines(), unwrapped.splitlines(), strict=False)
-    gone = [any(map(str.isalpha, one)) and not other.strip() for one, other in pairs]
+    gone = [any(map(str.isalpha, line)) and not other.strip() for line, other in pairs]
     what = "1 line is" if sum(gone) == 1 else f"{sum(gone)} lines are"
     what += " markup or lines of a BASIC program, and not read: the first is line "
     return [f"{what}{gone.index(True) + 1}"] if any(gone) else []

@@ -69,7 +69,9 @@ def recover(shown: Printout, given: Mapping[str, str] | None = None) -> Recovere
     best = search.best(columns)
     unconvincing = len(best.wrong) > _UNCONVINCING
     if unconvincing:  # how many characters marks for the illegible stand for nobody knows
-        marks = (name for name, one in shown.fields.items() if set(letters(one.region)) == {"?"})
+        marks = (
+            name for name, field in shown.fields.items() if set(letters(field.region)) == {"?"}
+        )
         lost |= {scene_name(name) for name in marks if name in INPUTS} - set(given)
     missing = [name for name in map(scene_name, INPUTS) if name in lost]
     outcome = _independent_of(missing, best.scene, best.outcome) if missing else best.outcome
@@ -165,9 +167,9 @@ def reply_ways(reply: Reading) -> list[tuple[str, str, float]]:
     """What was typed at a prompt, what it then prints, and what it costs to believe. The prompt's
     own question mark may have been read as a digit before the number."""
     ways: dict[str, float] = {}
-    for one, cost in ((reply, 0.0), (without_mark(reply), 0.5)):
-        if one is not None:
-            texts = {one.text: 0.0} if one.clean else dict(candidates(one.region, 8))
+    for way, cost in ((reply, 0.0), (without_mark(reply), 0.5)):
+        if way is not None:
+            texts = {way.text: 0.0} if way.clean else dict(candidates(way.region, 8))
             ways = {text: cost + price for text, price in texts.items()} | ways
     return [
         (text, seen[1], cost)

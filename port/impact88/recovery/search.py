@@ -151,11 +151,13 @@ class Search:
         better they are with the more of the rest, ``room`` for the best. ``limit``: what all inputs
         may cost to believe, and the energy; ``wrong``: results that tell most."""
         first = dict(
-            pair for one in columns for pair in zip(one.names, one.options[0][0], strict=True)
+            pair
+            for column in columns
+            for pair in zip(column.names, column.options[0][0], strict=True)
         )
         # the energy says nothing of the inertia of what does not spin
         moving = KINETIC - {inertia for inertia, spin in _SPINS if not _number(first[spin])}
-        kinetic = [place for place, one in enumerate(columns) if moving & set(one.names)]
+        kinetic = [place for place, column in enumerate(columns) if moving & set(column.names)]
         others = [place for place in range(len(columns)) if place not in kinetic]
         some = combinations([columns[place] for place in kinetic], room, limit)
         picks = np.zeros((len(some), len(columns)), np.intp, "F")
@@ -169,10 +171,10 @@ class Search:
         rest = combinations([columns[place] for place in others], room, limit - spent.min())
         beliefs = _believing([columns[place] for place in others], rest)
         parts = []
-        for rank, (one, before) in enumerate(zip(picks[order], spent, strict=True), 1):
+        for rank, (pick, before) in enumerate(zip(picks[order], spent, strict=True), 1):
             count = int(np.searchsorted(beliefs, limit - before, side="right"))
             part = np.zeros((min(count, max(2, room // rank**2)), len(columns)), np.intp, "F")
-            part[:] = one
+            part[:] = pick
             part[:, others] = rest[: len(part)]
             parts.append(part)
         return self.screened(columns, np.concatenate(parts), most, wrong)
@@ -180,16 +182,20 @@ class Search:
     def screened(self, columns: Columns, picks: Picks, most: int, wrong: Names = ()) -> Picks:
         """The ``most`` combinations that explain most, by double precision."""
         telling = sorted(_TELLING, key=lambda name: name not in wrong)[:4]
-        few = [one for one in self.expected if one.default == MISMATCH and one.name in telling]
+        few = [
+            result
+            for result in self.expected
+            if result.default == MISMATCH and result.name in telling
+        ]
         for count, enough, expected in ((_CLOSELY, 4 * _CLOSELY, few), (most, most, self.expected)):
             if len(picks) > enough:
                 value = _values(columns, picks)
                 value["MU"] = self._typed_mu(value)
                 costs = _believing(columns, picks)
-                results = in_doubles(value, [one.name for one in expected])
-                for one in expected:
-                    cost = one.mismatch(results[one.name])
-                    spun = one.name not in FINAL_SPINS or value["M"] == 6
+                results = in_doubles(value, [result.name for result in expected])
+                for result in expected:
+                    cost = result.mismatch(results[result.name])
+                    spun = result.name not in FINAL_SPINS or value["M"] == 6
                     costs = costs + np.where(spun, cost, MISMATCH)
                 picks = picks[np.argsort(costs, kind="stable")[:count]]
         return picks
@@ -247,7 +253,7 @@ class Search:
         scenes = []
         for pick, cost in zip(picks.tolist(), _believing(columns, picks), strict=True):
             taken = zip(columns, pick, strict=True)
-            scene = {one.names[0]: one.options[index][0][0] for one, index in taken}
+            scene = {column.names[0]: column.options[index][0][0] for column, index in taken}
             scenes.append((scene, best.assumed, extra + float(cost)))
         return min([best, *self._scored(scenes)], key=_cost)
 
@@ -261,10 +267,10 @@ class Search:
         """Scenes, each with the texts assumed printed and what it costs to believe, replayed."""
         outcomes = replays.run_all([scene for scene, _, _ in scenes])
         for (scene, assumed, cost), outcome in zip(scenes, outcomes, strict=True):
-            costs = dict.fromkeys((one.name for one in self.expected), MISMATCH)
-            for one in self.expected:
-                if text := outcome.fields.get(one.name):
-                    costs[one.name] = one.texts.get(text, one.default)
+            costs = dict.fromkeys((result.name for result in self.expected), MISMATCH)
+            for result in self.expected:
+                if text := outcome.fields.get(result.name):
+                    costs[result.name] = result.texts.get(text, result.default)
             wrong = {
                 name for name, text in assumed.items() if outcome.fields.get(name, text) != text
             }
@@ -275,7 +281,7 @@ class Search:
             costs.update(dict.fromkeys(wrong, MISMATCH))
             absent = set(outcome.fields) - set(self.shown.fields) - self._lost_inputs
             total = cost + sum(costs.values()) + _UNREAD * len(absent)
-            differing = frozenset(name for name, one in costs.items() if one >= AGREES)
+            differing = frozenset(name for name, price in costs.items() if price >= AGREES)
             yield Scored(total, scene, assumed, outcome, differing)
 
 

@@ -98,7 +98,7 @@ class Rereading:
             taken = zip(INPUTS, pick, strict=False)
             changes = tuple(self._slips[name][at - 1][1] for name, at in taken if at)
             rereads.append(Reread(changes, scored))
-        return sorted(rereads, key=lambda one: one.scored.cost)
+        return sorted(rereads, key=lambda reread: reread.scored.cost)
 
     @cached_property
     def _columns(self) -> list[Column]:
@@ -123,7 +123,9 @@ class Rereading:
         for name, text in self._base.items():
             possible = printable if name in self._recovered.assumed else is_number
             changes = (Change(kind, name, text, other) for other, kind in misreadings(text).items())
-            some = [(0.7 + one.bits / 5, one) for one in changes if possible(one.would_be)]
+            some = [
+                (0.7 + change.bits / 5, change) for change in changes if possible(change.would_be)
+            ]
             slips[name] = sorted(some, key=lambda pair: (pair[0], pair[1].would_be))
         return slips
 
@@ -178,8 +180,14 @@ def _slips_of(text: str) -> Iterator[tuple[str, str]]:
             yield COUNT, sign + size[:place] + size[place + 1 :] + exponent
         for digit in "0123456789":
             yield COUNT, sign + size[:place] + digit + size[place:] + exponent
-    for one, two in combinations(places[:9], 2):
-        for first in "0123456789".replace(text[one], ""):
+    for first_place, two in combinations(places[:9], 2):
+        for first in "0123456789".replace(text[first_place], ""):
             for second in "0123456789".replace(text[two], ""):
-                other = text[:one] + first + text[one + 1 : two] + second + text[two + 1 :]
+                other = (
+                    text[:first_place]
+                    + first
+                    + text[first_place + 1 : two]
+                    + second
+                    + text[two + 1 :]
+                )
                 yield TWO_DIGITS, other

@@ -30,7 +30,7 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
     scale = min(1.0, _WIDEST / width)
     size = (max(1, round(width * scale)), max(1, round(height * scale)))
     kinds = [(cell, state(cell), leaf.grid.around(*cell.place)) for cell in leaf.cells]
-    doubted = [one for one in kinds if one[1] != "holds"]
+    doubted = [box for box in kinds if box[1] != "holds"]
     margins = [cell.margin for cell in leaf.cells if cell.name and cell.predicted != BLANK]
     counts, _ = np.histogram(np.clip(margins, -1.5, 1.499), bins=60, range=(-1.5, 1.5))
     return {
@@ -70,7 +70,7 @@ def _strips(
     if not doubted:
         return []
     # the printouts on a grid share their mean characters
-    everything = [cell for one in leaves if one.grid is leaf.grid for cell in one.cells]
+    everything = [cell for other in leaves if other.grid is leaf.grid for cell in other.cells]
     sample = sample_of(leaf.grid, [cell.place for cell in everything])
     typeface = typeface_of(sample, ["" if cell.cut else cell.predicted for cell in everything])
 

@@ -106,7 +106,7 @@ def _pitch(xs: list[Floats], height: float, span: float) -> float:
     a stroke at each side of their cell.)"""
     size, low = 1 << 15, min(float(x.min()) for x in xs)
     gaps = [np.bincount((2 * (_gaps(x, height) - low)).astype(int), minlength=2) for x in xs]
-    power = sum(np.abs(np.fft.rfft(one, size)) ** 2 / one.sum() for one in gaps)
+    power = sum(np.abs(np.fft.rfft(gap, size)) ** 2 / gap.sum() for gap in gaps)
     first, last = (int(2 * height * part) for part in _PITCHES)
     first = max(first, int(2 * span / _MOST_COLUMNS))
     chosen = np.arange(size // last, size // max(first, 2) + 1)
@@ -138,8 +138,8 @@ def _bend(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> tupl
     for x, y in zip(xs, ys, strict=True):
         gaps = _gaps(x, pitch)
         stretch = np.floor(gaps / (12 * pitch)).astype(int)
-        for one in np.unique(stretch):
-            inside = gaps[stretch == one]
+        for part in np.unique(stretch):
+            inside = gaps[stretch == part]
             near = np.abs(x - inside.mean()) < 12 * pitch
             sums.append(np.exp(2j * np.pi * inside / pitch).sum())
             places.append((inside.mean(), y[near].mean() if near.any() else y.mean()))
@@ -160,8 +160,8 @@ def _bend(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> tupl
     curved = strong * np.exp(turn * curves @ sited[3:5])
     clear = np.stack([np.abs((wide * sums) @ narrow) for sums in curved]) / np.abs(strong).sum()
     clear -= _STRAIN * np.abs(curves).sum(axis=1)[:, None, None] / pitch
-    one = np.unravel_index(int(np.argmax(clear)), clear.shape)
-    best = np.array([0, stretches[one[2]], slants[one[1]], *curves[one[0]], 0])
+    spot = np.unravel_index(int(np.argmax(clear)), clear.shape)
+    best = np.array([0, stretches[spot[2]], slants[spot[1]], *curves[spot[0]], 0])
     weights = np.abs(total)
     for reach in (0.35, 0.35, 0.3, 0.3, 0.25, 0.25, 0.2, 0.2):
         # what is off by a good part of a pitch counts less
@@ -253,7 +253,7 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
 
     pictures = [sampled(line) for line in range(len(lines))]
     edges, ends = left + np.arange(count + 1) * pitch, np.array([-0.65, 0.65]) * height
-    corners = [np.stack(place(*np.meshgrid(edges, one + ends))).T for one in middles]
+    corners = [np.stack(place(*np.meshgrid(edges, middle + ends))).T for middle in middles]
     return Grid(pictures, middles / pitch, corners, pitch, clarity, ink.shape, turns)
 
 
@@ -287,7 +287,7 @@ def _risen(
     moves = np.zeros(len(every), int)
     for _ in range(3):
         mean = np.mean(
-            [one[reach + m : reach + m + size] for one, m in zip(every, moves, strict=True)], 0
+            [row[reach + m : reach + m + size] for row, m in zip(every, moves, strict=True)], 0
         )
         fits = np.stack([every[:, k : k + size] @ mean for k in range(2 * reach + 1)], axis=1)
         moves = np.argmax(fits, axis=1) - reach

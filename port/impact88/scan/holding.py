@@ -82,7 +82,7 @@ def predicted(read: Read, candidate: Candidate) -> Iterator[tuple[str, str, Plac
 def reply_of(read: Read, name: str, scene: dict[str, str]) -> str:
     """What was typed at a prompt to give the scene's velocities: of the ways to write them as many
     characters as stand there, the one that fits best."""
-    written = [_written(scene[one]) for one in REPLIES[name[-1]]]
+    written = [_written(scene[symbol]) for symbol in REPLIES[name[-1]]]
     ways = [comma.join(three) for three in product(*written) for comma in (",", ", ")]
     length = len(read.costs[name])
     return min(ways, key=lambda way: read.cost(name, way) + abs(len(way) - length))
@@ -109,7 +109,7 @@ def held(grid: Grid, known: Sequence[tuple[Read, Candidate]]) -> list[list[Cell]
     """Every cell of each printout's predicted page, with its margin."""
     if not known:
         return []
-    rows = [(which, *one) for which, pair in enumerate(known) for one in predicted(*pair)]
+    rows = [(which, *row) for which, pair in enumerate(known) for row in predicted(*pair)]
     every = np.arange(len(rows))
     names = np.array([character for _, _, character, _ in rows])
     of_number = np.array([bool(name) for _, name, _, _ in rows])
@@ -133,8 +133,8 @@ def held(grid: Grid, known: Sequence[tuple[Read, Candidate]]) -> list[list[Cell]
         if mean is None:
             alone[cell] = True
         else:
-            one, weight = distances(sample.at(np.array([cell])), mean[None])
-            distance[cell], ink[cell] = one[0, 0], weight[0, 0]
+            far, weight = distances(sample.at(np.array([cell])), mean[None])
+            distance[cell], ink[cell] = far[0, 0], weight[0, 0]
     pale = bool(np.percentile(ink[~np.isin(names, list(" .,-"))], 1) < _EVEN)
     # what is weakly inked is as far from every mean as its ink allows
     distance, apart = distance / ink**2, apart / ink[:, None] ** 2
@@ -262,7 +262,7 @@ def state(cell: Cell) -> str:
 def _retyped(cell: Cell, others: Sequence[Cell]) -> bool:
     """Whether a cell belongs to a reply that is another in several cells, or in a mark: one number
     can be typed in many ways, and what was typed never outranks what was printed."""
-    several = sum(one.name == cell.name for one in others) > 1
+    several = sum(other.name == cell.name for other in others) > 1
     digits = cell.predicted.isdigit() and cell.other.isdigit()
     return cell.name.startswith("REPLY") and (several or not digits)
 

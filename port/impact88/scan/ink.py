@@ -91,17 +91,19 @@ def slopes(points: Points) -> Slope:
     def sharpest(tried: Iterable[Slope], part: int, width: float) -> Slope:
         """Those along which the page is divided most sharply into lines and gaps."""
 
-        def sharpness(one: Slope) -> float:
-            level = (y - x * (one[0] + one[1] * y / span))[::part]
+        def sharpness(tilt: Slope) -> float:
+            level = (y - x * (tilt[0] + tilt[1] * y / span))[::part]
             counts = np.bincount(((level - level.min()) / width).astype(int)).astype(float)
             return float(np.sum(np.diff(counts) ** 2))
 
         return max(tried, key=sharpness)
 
     few = max(1, len(x) // 15_000)
-    slope, key = sharpest(((one, 0.0) for one in np.arange(-0.1, 0.1001, 0.004)), few, 2 * step)
+    slope, key = sharpest(((rise, 0.0) for rise in np.arange(-0.1, 0.1001, 0.004)), few, 2 * step)
     keystones = product(np.arange(-0.12, 0.1201, 0.02), (-0.002, 0, 0.002))
-    slope, key = sharpest(((slope + turn, one) for one, turn in keystones), few, 1.5 * step)
+    slope, key = sharpest(
+        ((slope + turn, keystone) for keystone, turn in keystones), few, 1.5 * step
+    )
     for width in (0.002, 0.001, 0.0005):
         steps = product((-1, 0, 1), (-8, -4, 0, 4, 8))
         slope, key = sharpest([(slope + i * width, key + j * width) for i, j in steps], 1, step)

@@ -178,7 +178,7 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
     inked, blank = np.clip(padded, -6, 6) / 2, -np.clip(padded, 0, 6) / 2
     left = [np.r_[0.0, np.cumsum(np.clip(row, 0, None))] for row in odds]
     lost = [
-        sum(one[max(row.margin, 0)] for one in left[row.start : row.start + row.used])
+        sum(column[max(row.margin, 0)] for column in left[row.start : row.start + row.used])
         + _WRAPPED * (row.used == 2)
         for row, _ in tried
     ]
@@ -192,7 +192,7 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
             fits[row.margin][row.start, row.used, line] = fit
     alone = [float(np.clip(row, 0, 6).sum()) for row in odds]
     aligned = {margin: _aligned(fits[margin], alone) for margin in margins}
-    margin = max(margins, key=lambda one: aligned[one][0])
+    margin = max(margins, key=lambda edge: aligned[edge][0])
     sheets = [Sheet()]
     for key in aligned[margin][1]:
         if key is None:
@@ -242,7 +242,7 @@ def _aligned(fits: _Fits, alone: Sequence[float]) -> tuple[float, list[_Key | No
             for to_i, to_j, value, told in steps:
                 if (to_i, to_j) not in best or value > best[to_i, to_j][0]:
                     best[to_i, to_j] = value, (i, j), told
-    at = max(((count, 0), (count, last)), key=lambda one: best[one][0])
+    at = max(((count, 0), (count, last)), key=lambda place: best[place][0])
     total, found = best[at][0], list[_Key | None]()
     while at != (0, 0):
         _, before, told = best[at]

@@ -96,8 +96,8 @@ def scene_of(read: Read, seeds: Sequence[dict[str, str]] = ()) -> Candidate | No
             if not best or best[0].cost < _SETTLED:
                 break
             before = best[0].cost
-            for one in best:
-                best = _weighed(read, [*_neighbours(read, one)], known)
+            for candidate in best:
+                best = _weighed(read, [*_neighbours(read, candidate)], known)
             if best[0].cost > before - 0.5:
                 break
         if best and best[0].cost < _SETTLED:
@@ -118,7 +118,7 @@ def _weighed(
             if not name.startswith("REPLY"):
                 cost += read.cost(name, fields.get(name))
         known[key] = Candidate(scene, outcome, cost)
-    return sorted(known.values(), key=lambda one: one.cost)[:_KEPT]
+    return sorted(known.values(), key=lambda candidate: candidate.cost)[:_KEPT]
 
 
 def _outcomes(scenes: list[dict[str, str]]) -> list[Outcome]:
@@ -143,28 +143,30 @@ def _direct(read: Read) -> Iterator[dict[str, str]]:
 def scenes_in(text: str) -> list[dict[str, str]]:
     """The scenes of the printouts in a text, as far as they are recovered."""
     try:
-        recovered = [recover(one) for one in read_printouts(text) if not one.fragment]
+        recovered = [
+            recover(printout) for printout in read_printouts(text) if not printout.fragment
+        ]
     except UserError:
         return []
-    return [one.scene for one in recovered if not one.missing]
+    return [found.scene for found in recovered if not found.missing]
 
 
-def borne_out(one: Candidate, shown: Mapping[str, str]) -> Candidate:
+def borne_out(candidate: Candidate, shown: Mapping[str, str]) -> Candidate:
     """The scene with some inputs as the paper shows them, where the program's page is otherwise the
     same: results bear out neither an angle nor an arm that they do not depend on."""
-    scene = one.scene | {scene_name(name): text for name, text in shown.items()}
+    scene = candidate.scene | {scene_name(name): text for name, text in shown.items()}
     for outcome in _outcomes([scene]) if shown else ():
-        if outcome.fields == {**one.outcome.fields, **shown}:
-            return Candidate(scene, outcome, one.cost)
-    return one
+        if outcome.fields == {**candidate.outcome.fields, **shown}:
+            return Candidate(scene, outcome, candidate.cost)
+    return candidate
 
 
-def _neighbours(read: Read, one: Candidate) -> Iterator[dict[str, str]]:
+def _neighbours(read: Read, candidate: Candidate) -> Iterator[dict[str, str]]:
     """Scenes that differ in one character of one input, and those of the reply's numbers."""
     for name in [name for name in INPUTS if name in read.costs]:
         typed, seen = scene_name(name), read.text(name)
-        text = one.outcome.fields.get(name) or seen
-        turned = typed == "MU" and one.scene["MU"].startswith("-") != text.startswith("-")
+        text = candidate.outcome.fields.get(name) or seen
+        turned = typed == "MU" and candidate.scene["MU"].startswith("-") != text.startswith("-")
         # its last figure may have been altered to a nought, or erased
         texts = [seen or "0"]
         for shown in dict.fromkeys((text, seen, seen.ljust(len(read.costs[name]), "0"))):
@@ -174,10 +176,10 @@ def _neighbours(read: Read, one: Candidate) -> Iterator[dict[str, str]]:
         if name in ANGLES:  # whose last figure, erased, leaves a wider gap
             texts += [seen + last for last in "0123456789"]
         for changed in texts:
-            yield {**one.scene, typed: opposite(changed) if turned else changed}
-        yield {**one.scene, typed: opposite(text)}
-    yield {**one.scene, "M": "4" if one.scene["M"] == "6" else "6"}
-    yield {**one.scene, **_typed(read)}
+            yield {**candidate.scene, typed: opposite(changed) if turned else changed}
+        yield {**candidate.scene, typed: opposite(text)}
+    yield {**candidate.scene, "M": "4" if candidate.scene["M"] == "6" else "6"}
+    yield {**candidate.scene, **_typed(read)}
 
 
 def _typed(read: Read) -> dict[str, str]:

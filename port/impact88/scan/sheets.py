@@ -52,14 +52,14 @@ def looked(grey: Image, seeds: Sequence[dict[str, str]] = ()) -> list[Leaf]:
     ink = ink_of(grey)
     most, found = 0.0, list[tuple[Grid, list[Sheet]]]()
     for fold, turns in product((1, 2), _turns(ink)):
-        laid = [(one, sheets_of(one.odds(), one.tops)) for one in grids_of(ink, turns, fold)]
+        laid = [(grid, sheets_of(grid.odds(), grid.tops)) for grid in grids_of(ink, turns, fold)]
         sheets = [sheet for _, some in laid for sheet in some]
         gain = sum(sheet.gain for sheet in sheets)
         if gain > most:
             most, found = gain, laid
         if any(sheet.whole and sheet.gain > _UPRIGHT for sheet in sheets):
             break
-    return [leaf for one in found for leaf in _leaves(*one, seeds)]
+    return [leaf for pair in found for leaf in _leaves(*pair, seeds)]
 
 
 def _turns(ink: Image) -> list[int]:
@@ -67,7 +67,7 @@ def _turns(ink: Image) -> list[int]:
     its sides; lines of text make rows of ink and gaps, seen from the right side."""
     small = ink[::4, ::4]
     steps = (np.abs(np.diff(small.mean(axis=axis))) for axis in (0, 1))
-    across, down = (float(np.percentile(one, 95)) for one in steps)  # beyond edges of the paper
+    across, down = (float(np.percentile(step, 95)) for step in steps)  # beyond edges of the paper
     return [0, 2, 1, 3] if down >= across else [1, 3, 0, 2]
 
 
@@ -90,7 +90,7 @@ def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) ->
     before = [leaf.found for leaf in known]
     for leaf in known:
         leaf.found = leaf.found and borne_out(leaf.found, _shown(leaf.cells))
-    if any(leaf.found is not one for leaf, one in zip(known, before, strict=True)):
+    if any(leaf.found is not earlier for leaf, earlier in zip(known, before, strict=True)):
         _hold(grid, known)
     for leaf in known:
         if leaf.found:
