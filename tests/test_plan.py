@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from impact88.closedform.impactprograms import by_numpy
+from impact88.closedform.plan import Plan
 from impact88.native.formulas import ExpressionTable
 from impact88.native.schedule import Schedule
 from passes import passes
@@ -32,7 +32,7 @@ def run(plan):
     results = {name: np.empty(LENGTH) for name in plan.results}
     varying = [COLUMNS[name] for name in plan.columns]
     with np.errstate(all="ignore"):
-        by_numpy(plan, varying, results, {"fixed": 1.75}, 4)
+        Plan(plan).run(varying, results, {"fixed": 1.75}, 4)
     return results
 
 
@@ -122,5 +122,5 @@ def test_sign_rule_keeps_the_sign_on_either_zero(zero):
     plan = planned({"x": table.against(table.column("a", True), table.column("b", True))})
     found = {"x": np.empty(3)}
     columns = [np.array([1.5, -1.5, 2.0]), np.array([zero, zero, 5e-324])]
-    by_numpy(plan, columns, found, {}, 3)
+    Plan(plan).run(columns, found, {}, 3)
     assert found["x"].tolist() == [1.5, -1.5, -2.0]

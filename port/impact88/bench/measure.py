@@ -17,7 +17,7 @@ import numpy as np
 
 from .. import native
 from ..accuracy.errorbound import APPLESOFT, DOUBLE, movements, scales, sensitivity
-from ..closedform.impactprograms import by_numpy
+from ..closedform.plan import Plan
 from ..closedform.solve import TILE, solve
 from ..names import FINAL_VELOCITIES, SCENE
 from ..native.formulas import ExpressionTable
@@ -66,7 +66,7 @@ def mover(columns: Mapping[str, Any], results: Mapping[str, Any]) -> Callable[[]
     program = Program(dict.fromkeys(results, sum(others, first)), ["RESULT"] * len(results))
     read = [columns[name] for name in program.columns]
     if native.library is None:
-        return partial(by_numpy, program, read, results, {}, TILE)
+        return partial(Plan(program).run, read, results, {}, TILE)
     return lambda: program.run(addresses(read), addresses(results.values()), count)
 
 

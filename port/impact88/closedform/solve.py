@@ -21,9 +21,10 @@ from ..processors import shared_out, workers
 from ..scene import check_mapping
 from ..status import Status
 from .columns import Source, examine, part, sources
-from .impactprograms import CIRCLE, by_numpy, program_for
+from .impactprograms import CIRCLE, program_for
 from .onescene import ALL, in_order, solve_one
 from .plain import check_room, rooms, solve_plain
+from .plan import Plan
 from .share import share_of
 
 Array = NDArray[Any]
@@ -201,7 +202,7 @@ def _solve_part(
         program = program_for(block.kinds, tuple(results), sign)
         columns = [block.varying[name] for name in program.columns]
         if native.library is None:
-            by_numpy(program, columns, into, fixed, tile)
+            Plan(program).run(columns, into, fixed, tile)
         else:
             program.run(addresses(columns), addresses(into.values()), end - at, CIRCLE, fixed)
         if block.refused is not None:
