@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import captures
+import impact88
 import printouts
 from impact88.errors import UserError
 from impact88.fields import ANGLES, FIELDS
@@ -173,3 +174,17 @@ def test_truncated_anywhere_reads_or_is_refused() -> None:
         whole = [name for name, reading in shown.fields.items() if not reading.cut]
         expected = texts(SAMPLE)
         assert all(shown.text(name) == expected[name] for name in whole if name not in ANGLES)
+
+
+@pytest.mark.parametrize("note", ["\n   177\n", "seen 1988\n", "12\n", "-8.78\n", "VAX= 3.449\n"])
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_what_stands_below_the_angles_is_none_of_them(number: int, note: str) -> None:
+    page = impact88.run(impact88.sample(number)).page
+    end = page.index("\n", page.index("TB GA\n") + len("TB GA\n")) + 1
+    (read,) = impact88.read_printouts(page[:end] + note + page[end:])
+    (exact,) = impact88.read_printouts(page)
+    assert [read.fields[name].text for name in ANGLES] == [
+        exact.fields[name].text for name in ANGLES
+    ]
+    (verification,) = impact88.verify(page[:end] + note + page[end:])
+    assert verification.verdict.name == "IDENTICAL_AS_READ"

@@ -140,6 +140,7 @@ class Printout:
                     self._slots[name] = (start, first)
                 elif first <= start <= sign < stop - 1:
                     self._slots[name] = (sign + 1, stop)
+        self._part_row()
         self._exact = {
             index: STATES[state].line
             for index, state in states.items()
@@ -147,6 +148,21 @@ class Printout:
         }
         self.start, self.stop = self.page.span(min(states), max(states) + 1)
         self.line, self.column = self.page.place(self.start)
+
+    def _part_row(self) -> None:
+        """A line of five clean numbers is the row of angles; what stands below it is none of it."""
+        glyphs = self.page.glyphs
+        places = [index for name in ANGLES for index in self._slots.get(name, ())]
+        starts = places[:1]
+        for index in range(min(places, default=0) + 1, max(places, default=0)):
+            if glyphs[index].gap is Gap.LINE:
+                parts = list(zip(starts, [*starts[1:], index], strict=True))
+                clean = all(numerals.clean(glyphs[i:j]) for i, j in parts)
+                if clean and len(parts) == len(ANGLES):
+                    self._slots.update(zip(ANGLES, parts, strict=True))
+                return
+            if glyphs[index].gap:
+                starts.append(index)
 
     @property
     def mislabelled(self) -> list[LabelCheck]:
