@@ -455,6 +455,20 @@ def test_a_program_may_poke_its_own_text_and_variables(program, byte):
     machine.screen_text()
 
 
+@pytest.mark.parametrize(
+    ("expression", "printed"),
+    [
+        ('256^I%/"128"<>.5', "\n?TYPE MISMATCH ERROR\a IN 10"),
+        ('7/"ABCDEFG">.5', "\n?TYPE MISMATCH ERROR\a IN 10"),
+        ('256^1/"128"<>.5', "\n?OVERFLOW ERROR\a IN 10"),
+        ('.001/"A"="A"', "0\n"),
+        ('3/"A"', "\n?TYPE MISMATCH ERROR\a IN 10"),
+    ],
+)
+def test_a_string_as_divisor_divides_by_its_descriptor(expression, printed):
+    assert displayed(f"10 PRINT {expression}") == printed  # as the ROM answers
+
+
 def test_a_program_run_before_leaves_nothing_behind():
     text = '10 A=A+1:B$=B$+"X":PRINT A;B$;FRE(0);RND(1)\n20 POKE 2055,66'
     shown = [displayed(text), displayed("10 POKE 2055,67:A=7"), displayed(text)]

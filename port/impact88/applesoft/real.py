@@ -190,7 +190,23 @@ def divide(left: Number, right: Number) -> Number:
     if e > 255:
         raise overflow()
     # an exponent of 0 before that 1 is added does not make a zero here, it loses the sign
-    return normalise(e, (m1 << 33) // m2 << 6, s1 ^ s2 if e > 1 else 0)
+    digits = (m1 << 33) // m2 if m2 >> 39 else _digits(m1 >> 8, m2 >> 8)
+    return normalise(e, digits << 6, s1 ^ s2 if e > 1 else 0)
+
+
+def _digits(dividend: int, divisor: int) -> int:
+    """The ROM's loop of shifts and subtractions, 34 bits: by a string's descriptor, whose top bit
+    may be clear, it gives no quotient; what is left is compared only where its own top bit is set.
+    """
+    digits, larger = 0, dividend >= divisor
+    for _ in range(34):
+        digits = digits << 1 | larger
+        if larger:
+            dividend = dividend - divisor & 0xFFFFFFFF
+        dividend <<= 1
+        larger = bool(dividend >> 32) or (dividend >> 31 == 1 and dividend >= divisor)
+        dividend &= 0xFFFFFFFF
+    return digits
 
 
 def compare(stored: Number, right: Number) -> int:

@@ -180,8 +180,6 @@ class Expressions(Variables):
                         fac = ONE if left[0] and fac[0] else ZERO
                 except ApplesoftError as error:
                     raise placed(error, sp - ERROR_DEPTHS[min(doing, POWER)]) from None
-                except ValueError:  # a divisor whose top bit is clear: a string's address
-                    self.refuse("a string as divisor")
                 waits = last < PRECEDENCES[operator]
             if not waits:
                 self.txtptr = pos
