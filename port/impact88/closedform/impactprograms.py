@@ -3,10 +3,8 @@ pass over the scenes, or by numpy one step after another (`plan`)."""
 
 import struct
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE
 from ..native.formulas import Expression, ExpressionTable
@@ -17,7 +15,6 @@ from .impact import impact
 
 Kinds = tuple[str, ...]
 """Of each column, see `closedform.columns.Block`."""
-Array = NDArray[Any]
 
 _CIRCLE = np.frombuffer(
     struct.pack(

@@ -25,7 +25,6 @@ from .state import COURSES, DIRECTIONS, FORCES, KNOWABLE, OTHERS, QUANTITIES, SP
 from .system import PARAMETERS, SPINS, System
 from .unknowns import UnsolvableError, check_physical, solve_for, typed
 
-Array = NDArray[Any]
 Floats = NDArray[np.float64]
 Progress = Callable[[int], object]
 
