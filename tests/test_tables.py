@@ -9,6 +9,7 @@ import json
 import math
 import re
 import struct
+import time
 
 import numpy as np
 import pytest
@@ -299,6 +300,47 @@ def test_every_format_gives_the_same_bits(tmp_path, form):
         rounding = 0 if form != "xlsx" else 1e-15 if name in SCENE else 1e-11
         assert two == pytest.approx(one, rel=rounding, abs=0)
     assert tables[0][0]["note"] == tables[1][0]["note"]
+
+
+FORMULAS = [
+    "=1+1",
+    '=HYPERLINK("http://x")',
+    "=cmd|' /C calc'!A0",
+    "+1",
+    "-1+2",
+    "@SUM(A1)",
+    "'=1",
+    "#N/A",
+]
+
+
+@pytest.mark.parametrize("form", ["csv", "xlsx"])
+def test_a_text_that_looks_like_a_formula_stays_a_text(tmp_path, form):
+    openpyxl = pytest.importorskip("openpyxl")
+    first, there, back = (tmp_path / name for name in ("a.csv", f"b.{form}", "c.csv"))
+    first.write_text(csv_text([{**TEXTS, "note": text} for text in FORMULAS]), "utf-8")
+    assert main(["solve", str(first), "-o", str(there), "--outputs", "VAX"]) == 0
+    if form == "xlsx":
+        sheet = openpyxl.load_workbook(there).worksheets[0]
+        assert {cell.data_type for row in sheet.iter_rows() for cell in row} <= {"s", "n"}
+    assert main(["solve", str(there), "-o", str(back), "--outputs", "VAX"]) == 0
+    _, blocks = read(back)
+    assert [text for rows in blocks for text in rows.columns["note"]] == FORMULAS
+
+
+def test_one_table_is_the_same_workbook_on_any_day(tmp_path, monkeypatch):
+    pytest.importorskip("openpyxl")
+    first = tmp_path / "a.csv"
+    first.write_text(csv_text([TEXTS]), "utf-8")
+    written = []
+    for day in (1, 2):
+        # the clocks that openpyxl and zipfile read
+        monkeypatch.setattr(time, "localtime", lambda *_, day=day: (2020, 1, day, *[0] * 6))
+        monkeypatch.setattr(time, "time", lambda day=day: day * 86_400.0)
+        path = tmp_path / f"{day}.xlsx"
+        assert main(["solve", str(first), "-o", str(path)]) == 0
+        written.append(path.read_bytes())
+    assert written[0] == written[1]
 
 
 def test_parquet_takes_types_as_they_are(tmp_path, capsys):

@@ -2,9 +2,11 @@
 header. A number is taken by the digits that read back to the double stored; openpyxl writes 16
 digits of one, so that the last bit may differ."""
 
+import datetime
 import io
 import math
 import os
+import shutil
 import zipfile
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import closing, contextmanager
@@ -22,7 +24,8 @@ from .rows import BLOCK_ROWS, Column, Named, Put, Reader, Rows, scene_names
 
 LONGEST_CELL = 32_767
 """Characters that Excel has in a cell."""
-
+WRITTEN = datetime.datetime(1988, 1, 1)
+"""Date of every part of a workbook, so that one table is the same bytes whenever it is written."""
 
 _Lines = Generator[tuple[int, tuple[Any, ...]], None, None]
 
@@ -99,8 +102,27 @@ def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
         yield Reader(names, _blocks(names, lines, path))
 
 
-def _cell(value: Any) -> Any:
-    """What Excel can hold of a value: no number is an empty cell, no text is a formula."""
+class _Archive(zipfile.ZipFile):
+    """A zip archive whose bytes depend on nothing but what is written into it."""
+
+    def _entry(self, name: str) -> zipfile.ZipInfo:
+        entry = zipfile.ZipInfo(name, WRITTEN.timetuple()[:6])
+        entry.compress_type = zipfile.ZIP_DEFLATED
+        return entry
+
+    def writestr(self, name: Any, data: str | bytes, *args: Any, **keywords: Any) -> None:
+        """Write a part without the date of today."""
+        super().writestr(self._entry(name), data, *args, **keywords)
+
+    def write(self, filename: Any, arcname: Any = None, *args: Any, **keywords: Any) -> None:
+        """Copy a file into the archive without its date."""
+        with open(filename, "rb") as part, self.open(self._entry(arcname), "w") as entry:
+            shutil.copyfileobj(part, entry)
+
+
+def _value(value: Any) -> Any:
+    """The value as Excel can hold it: a NaN is an empty cell, a character that is not one of XML's
+    is replaced, and a longer text than a cell holds is cut."""
     if isinstance(value, float) and not math.isfinite(value):
         return None if math.isnan(value) else str(value)
     if isinstance(value, str):
@@ -114,8 +136,20 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
     """Write a workbook."""
     openpyxl = library("openpyxl", "excel", "an .xlsx")
     book = openpyxl.Workbook(write_only=True)
+    book.properties.created = book.properties.modified = WRITTEN
     sheet = book.create_sheet("impact88")
-    sheet.append([_cell(text) for text in headings])
+
+    def cell(value: Any) -> Any:
+        """A cell of the value; a text that begins as a formula does stays a text."""
+        value = _value(value)
+        if not (isinstance(value, str) and value.startswith("=")):
+            return value
+        text = openpyxl.cell.WriteOnlyCell(sheet, value)
+        text.data_type = "s"
+        text.quotePrefix = True  # a spreadsheet program keeps it a text when it is edited
+        return text
+
+    sheet.append([cell(text) for text in headings])
     count = 1
 
     def put(columns: Named) -> None:
@@ -128,7 +162,7 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
         if count > 1_048_576:
             raise UserError("a sheet has at most 1,048,576 rows; expected to write CSV")
         for row in rows:
-            sheet.append([_cell(cell) for cell in row])
+            sheet.append([cell(value) for value in row])
 
     with replacing(path, "wb") as file:
         packed = io.BytesIO()  # a zip file that cannot be finished complains on stderr
@@ -137,7 +171,7 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
                 yield put
             finally:  # and so does a sheet left open
                 sheet.close()
-            book.save(packed)
+            openpyxl.writer.excel.ExcelWriter(book, _Archive(packed, "w")).save()
         except OSError as error:  # openpyxl's own temporary files have no name of the user's
             raise UserError(f"cannot be written: {error.strerror or error}", path) from None
         file.write(packed.getbuffer())
