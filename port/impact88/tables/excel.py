@@ -140,9 +140,9 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
     sheet = book.create_sheet("impact88")
 
     def cell(value: Any) -> Any:
-        """A cell of the value; a text that begins as a formula does stays a text."""
+        """Return a cell of the value; a text that looks like a formula or an error stays a text."""
         value = _value(value)
-        if not (isinstance(value, str) and value.startswith("=")):
+        if not (isinstance(value, str) and value.startswith(("=", "#"))):
             return value
         text = openpyxl.cell.WriteOnlyCell(sheet, value)
         text.data_type = "s"
