@@ -6,9 +6,11 @@ import base64
 import contextlib
 import json
 import re
+import select
 import signal
 import socket
 import subprocess
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -18,6 +20,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 from urllib.parse import urlsplit
+from urllib.request import url2pathname
 
 import pytest
 
@@ -63,6 +66,10 @@ def asked(method: str = "GET", path: str = f"/{TOKEN}/", **headers: str) -> int 
     return guard.refusal(named, method, path, port=PORT, token=TOKEN)
 
 
+OPENED = {"Sec_Fetch_Mode": "navigate", "Sec_Fetch_Dest": "document"}
+"""Headers of a tab that shows a page as a whole."""
+
+
 # --- who is answered ---------------------------------------------------------------------------
 
 
@@ -92,6 +99,12 @@ def asked(method: str = "GET", path: str = f"/{TOKEN}/", **headers: str) -> int 
         ({"Sec_Fetch_Site": "none"}, None),
         ({"Sec_Fetch_Site": "cross-site"}, 403),
         ({"Sec_Fetch_Site": "same-site"}, 403),
+        ({"Sec_Fetch_Site": "cross-site", **OPENED}, None),
+        ({"Sec_Fetch_Site": "cross-site", **OPENED, "path": f"/{TOKEN}/signs.svg"}, 403),
+        ({"Sec_Fetch_Site": "cross-site", **OPENED, "path": "/other/"}, 404),
+        ({"Sec_Fetch_Site": "cross-site", **OPENED, "Sec_Fetch_Dest": "iframe"}, 403),
+        ({"Sec_Fetch_Site": "cross-site", **OPENED, "Sec_Fetch_Mode": "no-cors"}, 403),
+        ({"Sec_Fetch_Site": "cross-site", **OPENED, "method": "POST", "Origin": "null"}, 403),
     ],
 )
 def test_only_the_desks_own_page_is_answered(request_: Any, status: int | None) -> None:
@@ -528,6 +541,15 @@ def test_what_is_known_is_saved_as_the_commands_file(
     assert refused.json["problem"].startswith("k.toml: 'QQ' is not a name used here")
 
 
+@pytest.mark.parametrize("changes", [{"MA": "-3000"}, {"E": "-2"}, {"MU": "-10", "UX": "1E38"}])
+def test_every_answer_is_json_that_a_browser_reads(client: Client, changes: dict[str, str]) -> None:
+    def refuse(constant: str) -> None:
+        pytest.fail(f"{constant} is not JSON")
+
+    answer = client.post("collision", {"values": {**sample(1), **changes}, "units": ""})
+    assert json.loads(answer.get_data(), parse_constant=refuse)["answer"]
+
+
 def test_why_there_is_no_solution_is_told() -> None:
     known = reconstruction.known_of_sample(3)["values"]
     told = reconstruction.answer({name: text for name, text in known.items() if name != "E"})
@@ -664,6 +686,10 @@ def asking() -> Iterator[workers.Bench]:
 
 
 RANGED = {"values": {**sample(1), "MU": "0.7 .. 0.9"}}
+SLOW = {
+    "values": {**sample(1), **{n: f"{sample(1)[n]} +- 0.1" for n in "MU E UX VY GA PA".split()}}
+}
+"""A question that is still being answered when it is stopped."""
 
 
 def test_a_newer_question_ends_the_older_and_another_page_waits(asking: workers.Bench) -> None:
@@ -684,7 +710,7 @@ def test_a_newer_question_ends_the_older_and_another_page_waits(asking: workers.
 
 
 def test_stopping_ends_what_a_page_waits_for_and_no_other_pages(asking: workers.Bench) -> None:
-    thread, outcome = in_thread(lambda: asking.ask("page", "bounds_answer", **RANGED))
+    thread, outcome = in_thread(lambda: asking.ask("page", "bounds_answer", **SLOW))
     process = worker(asking)
     asking.stop("other")
     assert process.is_alive()
@@ -692,6 +718,24 @@ def test_stopping_ends_what_a_page_waits_for_and_no_other_pages(asking: workers.
     thread.join()
     assert [type(one) for one in outcome] == [workers.SupersededError]
     wait_until(lambda: not process.is_alive())
+
+
+def test_a_process_killed_while_it_waits_is_started_again(asking: workers.Bench) -> None:
+    for pause in (False, True):
+        asking.ask("page", "bounds_answer", **RANGED)
+        (process,) = asking._pool._pool_manager.worker_manager.workers.values()
+        process.kill()
+        if pause:  # the pool has given up
+            wait_until(lambda: not asking._pool.active)
+        assert asking.ask("page", "bounds_answer", **RANGED)["inputs"]
+
+
+def test_too_many_questions_are_refused(
+    asking: workers.Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(workers, "_places", threading.Semaphore(0))
+    with pytest.raises(UserError, match="questions wait"):
+        asking.ask("page", "bounds_answer", **RANGED)
 
 
 def test_what_takes_too_long_is_ended_and_told(
@@ -767,6 +811,72 @@ def test_half_open_connections_stall_nobody(started: Any) -> None:
     finally:
         for one in waiting:
             one.close()
+
+
+def test_connections_that_were_refused_keep_nobody_out(started: Any) -> None:
+    """More connections than may wait, each answered once: a new one is answered all the same."""
+    parts = urlsplit(started[1])
+    refused = []
+    try:
+        for _ in range(halfopen.MAX_WAITING + 6):
+            connection = HTTPConnection("127.0.0.1", parts.port, timeout=20)
+            connection.request("GET", "/")
+            assert connection.getresponse().read() == b""
+            refused.append(connection)
+        for _ in range(3):
+            own = HTTPConnection("127.0.0.1", parts.port, timeout=20)
+            own.request("GET", parts.path)
+            assert own.getresponse().status == 200
+            own.close()
+    finally:
+        for connection in refused:
+            connection.close()
+
+
+def test_stop_is_answered_while_many_pages_wait(started: Any) -> None:
+    parts = urlsplit(started[1])
+    origin = f"http://127.0.0.1:{parts.port}"
+
+    def post(path: str, page: str, body: Any = None) -> HTTPConnection:
+        connection = HTTPConnection("127.0.0.1", parts.port, timeout=60)
+        headers = {"Origin": origin, "X-Desk-Page": page}
+        connection.request("POST", parts.path + path, json.dumps(body), headers)
+        return connection
+
+    question = {**RANGED, "units": ""}
+    waiting = [post("bounds", f"page {number}", question) for number in range(20)]
+    last, stop = waiting[-1], post("stop/bounds", "page 19")
+    assert stop.getresponse().status == 200
+    assert last.getresponse().status == 409
+    # one process answers in turn: were the stop answered in turn, too, all others were before it
+    still = [one for one in waiting[:-1] if not select.select([one.sock], [], [], 0)[0]]
+    assert still
+    for connection in (*waiting, stop):
+        connection.close()
+
+
+def test_the_browsers_arguments_hold_no_token(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Whoever lists processes sees the arguments; the file they name is its owner's."""
+    opened: list[str] = []
+    content: list[str] = []
+
+    def served(*_: Any) -> None:
+        wait_until(lambda: bool(opened))
+        path = Path(url2pathname(urlsplit(opened[0]).path))
+        assert path.stat().st_mode & 0o777 == 0o600
+        content.append(path.read_text("utf-8"))
+
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(serving.webbrowser, "open", opened.append)
+    monkeypatch.setattr(serving, "_run", served)
+    announced: list[str] = []
+    serving.serve(0, True, announced.append)
+    token = urlsplit(announced[0]).path.strip("/")
+    assert token not in opened[0]
+    assert announced[0] in content[0]
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_request_has_its_time() -> None:

@@ -6,6 +6,7 @@ question replaced by a newer one is 409.
 """
 
 import json
+import math
 import re
 import threading
 from base64 import b64decode
@@ -15,6 +16,7 @@ from typing import Any
 
 import flask
 from flask import Blueprint, Flask, Response, abort, request
+from flask.json.provider import DefaultJSONProvider
 from jinja2 import ChoiceLoader, PackageLoader
 from markupsafe import Markup, escape
 from werkzeug.exceptions import HTTPException
@@ -102,6 +104,26 @@ def drivers(bound: Mapping[str, Any]) -> str:
     return ", ".join(f"{name} {number(swing, 3)}" for name, swing in ranked if swing > least)
 
 
+class FiniteJSONProvider(DefaultJSONProvider):
+    """JSON as browsers read it: a number that is none (a critical friction coefficient that is not
+    defined) is null."""
+
+    def dumps(self, obj: Any, **keywords: Any) -> str:
+        """Return ``obj`` as JSON."""
+        try:
+            return super().dumps(obj, allow_nan=False, **keywords)
+        except ValueError:
+            return super().dumps(_without_nan(obj), allow_nan=False, **keywords)
+
+
+def _without_nan(part: Any) -> Any:
+    if isinstance(part, Mapping):
+        return {name: _without_nan(value) for name, value in part.items()}
+    if isinstance(part, list | tuple):
+        return [_without_nan(value) for value in part]
+    return None if isinstance(part, float) and not math.isfinite(part) else part
+
+
 FILTERS: dict[str, Callable[..., Any]]
 FILTERS = {"quantity": quantity, "symbol": symbol, "unit": unit}
 FILTERS |= {"digits": digits, "drivers": drivers}
@@ -110,6 +132,7 @@ FILTERS |= {"digits": digits, "drivers": drivers}
 def application(desk: Desk, port: int, token: str) -> Flask:
     """The WSGI application that answers for ``desk`` at 127.0.0.1:``port``, below ``token``."""
     app = Flask(__name__, static_url_path=f"/{token}/static")
+    app.json = FiniteJSONProvider(app)
     app.config["MAX_CONTENT_LENGTH"] = LARGEST_BODY
     app.jinja_env.filters |= FILTERS
     packages = (__package__ or "", "impact88.report")

@@ -11,6 +11,8 @@ from typing import Protocol
 
 LARGEST_BODY = 16_000_000
 """Bytes of the largest request that is taken: a box of printouts for one report."""
+MAX_QUESTIONS = 56
+"""Questions that may wait for a process at a time; each keeps a thread of the server."""
 
 HEADERS = {
     "Content-Security-Policy": (
@@ -50,6 +52,11 @@ def refusal(headers: Headers, method: str, path: str, *, port: int, token: str) 
     elif origin not in {f"http://{host}" for host in hosts}:
         return 403
     # "none": typed in, or opened by another program
-    if headers.get("Sec-Fetch-Site", "none") not in ("same-origin", "none"):
-        return 403
-    return None
+    if headers.get("Sec-Fetch-Site", "none") in ("same-origin", "none"):
+        return None
+    # the file that leads the browser here (`serving.leading_file`) is another site; a page that
+    # a whole tab shows can be read by nobody else
+    opens = path == f"/{token}/" and headers.get("Sec-Fetch-Mode", "") == "navigate"
+    if method == "GET" and opens and headers.get("Sec-Fetch-Dest", "") == "document":
+        return None
+    return 403

@@ -6,9 +6,12 @@ from typing import Any
 
 from waitress.channel import HTTPChannel  # type: ignore[import-untyped]
 
-HEADER_SECONDS, BODY_SECONDS, WAITING = 10.0, 60.0, 64
-"""For a request's header, of which a page's own takes a millisecond; for the whole request: 16 MB
-take a second; connections without a whole request, of which a browser keeps six."""
+HEADER_SECONDS = 10.0
+"""Longest time for a request's header; that of a page takes a millisecond."""
+BODY_SECONDS = 60.0
+"""Longest time for a whole request; 16 MB take a second."""
+MAX_WAITING = 64
+"""Connections without a whole request that are kept; a browser keeps six."""
 
 
 class Channel(HTTPChannel):  # type: ignore[misc]
@@ -40,8 +43,9 @@ def guarded(server: Any) -> None:
         accept()
         channels = server.active_channels.values()
         waiting = [c for c in channels if not (c.requests or c.total_outbufs_len)]
-        if len(waiting) > WAITING:
-            min(waiting, key=lambda channel: (channel.served, channel.last_activity)).handle_close()
+        if len(waiting) > MAX_WAITING:
+            # whoever was served before: a refusal is an answer too, and anybody can have one
+            min(waiting, key=lambda channel: channel.last_activity).handle_close()
 
     def maintenance(now: float) -> None:
         maintain(now)

@@ -2,23 +2,38 @@
 
 import logging
 import mimetypes
+import os
 import secrets
 import socket
 import sys
+import tempfile
 import threading
 import webbrowser
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 from ..errors import UserError
-from .guard import LARGEST_BODY
+from .guard import LARGEST_BODY, MAX_QUESTIONS
 
 HOST = "127.0.0.1"
-THREADS, LARGEST_HEADER, CONNECTIONS = 8, 32_768, 256
-"""Requests answered at a time (computing waits in one); bytes of a header, of which a browser
-sends a thousand; connections: four times those that may wait (`halfopen.WAITING`), and fewer than
-the 512 sockets that `select` takes on Windows."""
+THREADS = MAX_QUESTIONS + 8
+"""Requests answered at a time: those that wait for a process, and some that need none."""
+LARGEST_HEADER = 32_768
+"""Bytes of the largest header that is taken; a browser sends a thousand."""
+CONNECTIONS = 256
+"""Connections kept: four times those that may wait (`halfopen.MAX_WAITING`), and fewer than the 512
+sockets that `select` takes on Windows."""
+
+LEADING_PAGE = """<!doctype html>
+<meta charset="utf-8">
+<meta name="referrer" content="no-referrer">
+<meta http-equiv="refresh" content="0; url={address}">
+<title>impact88 desk</title>
+<p><a href="{address}">impact88 desk</a></p>
+"""
 
 
 def listening(port: int) -> socket.socket:
@@ -54,10 +69,29 @@ def serve(port: int, browser: bool, announce: Callable[[str], object]) -> None:
         token = secrets.token_urlsafe(18)
         address = f"http://{HOST}:{number}/{token}/"
         announce(address)
-        if browser:
-            # the connection is queued by the socket, so the browser starts while we import
-            threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
-        _run(listener, number, token)
+        with ExitStack() as stack:
+            if browser:
+                opened = stack.enter_context(leading_file(address))
+                # the connection is queued by the socket, so the browser starts while we import
+                threading.Thread(target=webbrowser.open, args=(opened,), daemon=True).start()
+            _run(listener, number, token)
+
+
+@contextmanager
+def leading_file(address: str) -> Iterator[str]:
+    """Yield the URL of a file, readable by its owner only, that leads a browser to ``address``.
+
+    A browser's arguments stand in the list of processes, which every user of a machine can read: an
+    address with its token does not belong there.
+    """
+    handle, path = tempfile.mkstemp(prefix="impact88-desk-", suffix=".html")  # mode 0600
+    try:
+        with open(handle, "w", encoding="utf-8") as file:
+            file.write(LEADING_PAGE.format(address=address))
+        yield Path(path).as_uri()
+    finally:
+        with suppress(OSError):
+            os.unlink(path)
 
 
 def _run(listener: socket.socket, port: int, token: str) -> None:

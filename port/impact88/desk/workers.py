@@ -7,15 +7,21 @@ advance, keeps it between questions, ends it with its question and starts anothe
 import multiprocessing
 import threading
 from concurrent.futures import CancelledError
+from concurrent.futures.process import BrokenProcessPool
 from importlib import import_module
 from typing import Any
 
 from pebble import ProcessExpired, ProcessFuture, ProcessPool
 
 from ..errors import UserError
+from .guard import MAX_QUESTIONS
 
 ANSWERED_WITHIN = 60.0
 """Seconds, after which the process is ended; the slowest scans at hand take ten when idle."""
+
+
+_places = threading.Semaphore(MAX_QUESTIONS)
+"""One for each question that waits for an answer, whatever its kind."""
 
 
 class SupersededError(Exception):
@@ -32,25 +38,48 @@ class Bench:
 
     def __init__(self, module: str) -> None:
         self._module = f"{__package__}.{module}"
-        spawn: Any = multiprocessing.get_context("spawn")
-        self._pool = ProcessPool(1, 0, _warm, (self._module,), spawn)
+        self._pool = self._new_pool()
         self._lock = threading.Lock()
         self._asked: dict[str, ProcessFuture[Any]] = {}
 
+    def _new_pool(self) -> ProcessPool:
+        spawn: Any = multiprocessing.get_context("spawn")
+        return ProcessPool(1, 0, _warm, (self._module,), spawn)
+
     def warm(self) -> None:
         """Start the process, so that the first question need not wait for it."""
-        assert self._pool.active
+        with self._lock:
+            self._ensure_active()
+
+    def _ensure_active(self) -> None:
+        """Start a process, also where the one before could not be kept: pebble gives a pool up when
+        its process is killed while it waits for work."""
+        if not self._pool.active:
+            self._pool = self._new_pool()
+            assert self._pool.active
 
     def ask(self, page: str, function: str, /, **arguments: Any) -> Any:
-        """What a function of the module returns. Raises UserError with what is wrong with the
-        question, SupersededError, and BrokenError."""
+        """Return what a function of the module returns. Raises UserError with what is wrong with
+        the question, or where too many wait; SupersededError; and BrokenError."""
+        if not _places.acquire(blocking=False):
+            raise UserError(f"{MAX_QUESTIONS} questions wait for an answer; expected fewer pages")
+        try:
+            try:
+                return self._wait(page, function, arguments)
+            except BrokenProcessPool:  # it was killed while it waited, so not by this question
+                return self._wait(page, function, arguments)
+        finally:
+            _places.release()
+
+    def _wait(self, page: str, function: str, arguments: dict[str, Any]) -> Any:
         with self._lock:
             self._cancel(page)
+            self._ensure_active()
             question = self._module, function, arguments
             asked = self._asked[page] = self._pool.schedule(_answer, question, {}, ANSWERED_WITHIN)
         try:
             return asked.result()
-        except UserError:
+        except (UserError, BrokenProcessPool):
             raise
         except CancelledError:
             raise SupersededError from None

@@ -110,9 +110,11 @@ class _Archive(zipfile.ZipFile):
         entry.compress_type = zipfile.ZIP_DEFLATED
         return entry
 
-    def writestr(self, name: Any, data: str | bytes, *args: Any, **keywords: Any) -> None:
+    def writestr(  # type: ignore[override]
+        self, name: str, data: str | bytes
+    ) -> None:
         """Write a part without the date of today."""
-        super().writestr(self._entry(name), data, *args, **keywords)
+        super().writestr(self._entry(name), data)
 
     def write(self, filename: Any, arcname: Any = None, *args: Any, **keywords: Any) -> None:
         """Copy a file into the archive without its date."""
