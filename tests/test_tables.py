@@ -477,3 +477,25 @@ def test_missing_columns_are_named():
     check_scene_columns(list(SCENE)[:-1])
     with pytest.raises(UserError, match="no column GA PA"):
         check_scene_columns([n for n in SCENE if n not in ("GA", "PA", "M")])
+
+
+@pytest.mark.parametrize("form", ["feather", "parquet", "xlsx", "npz"])
+def test_a_damaged_file_is_no_fault_of_ours(tmp_path, monkeypatch, capsys, form):
+    """Bytes changed at random: status 0 to 2 and a line that names the file, never a bug."""
+    pytest.importorskip("pyarrow")
+    first, whole = tmp_path / "a.csv", tmp_path / f"whole.{form}"
+    first.write_text(csv_text([{**TEXTS, "note": "é"}] * 5), "utf-8")
+    assert main(["solve", str(first), "-o", str(whole), "--outputs", "VAX"]) == 0
+    data = whole.read_bytes()
+    rng = np.random.default_rng(88)
+    path = tmp_path / f"damaged.{form}"
+    for case in range(60):
+        damaged = bytearray(data)
+        for place in rng.integers(0, len(data), (1, 3, 20)[case % 3]):
+            damaged[place] = rng.integers(0, 256)
+        path.write_bytes(damaged[: rng.integers(1, len(data))] if case % 5 == 0 else damaged)
+        capsys.readouterr()
+        status = main(["solve", str(path), "--outputs", "VAX", "-o", str(tmp_path / "o.csv")])
+        err = capsys.readouterr().err
+        assert status in (0, 1, 2), (case, err)
+        assert status != 2 or str(path) in err.splitlines()[-1]

@@ -81,6 +81,37 @@ def _naming(path: str, done: str) -> Iterator[None]:
         raise UserError(f"cannot be {done}: {why}", path) from None
 
 
+@contextmanager
+def decoding(path: str, message: str = "cannot be read") -> Iterator[None]:
+    """Turn whatever a library raises while it decodes a named file into a UserError.
+
+    Libraries raise what they like at bytes that are not what they expect (zlib.error, struct.error,
+    UnicodeDecodeError, SystemError ...). Only the library's calls belong within: an error of this
+    package's own code is a bug.
+
+    Parameters
+    ----------
+    path : str
+        The file, and the place in it where that is known.
+    message : str
+        What is said before the library's reason.
+
+    Raises
+    ------
+    UserError
+        For any exception but those that say something else: memory that ran out, a closed pipe.
+    """
+    try:
+        yield
+    except (UserError, MemoryError, BrokenPipeError):
+        raise
+    except Exception as error:
+        if isinstance(error, OSError) and error.strerror:
+            raise UserError(f"cannot be read: {error.strerror}", path) from None
+        reason = str(error).partition("\n")[0] or type(error).__name__
+        raise UserError(f"{message}: {reason}", path) from None
+
+
 class Source(io.RawIOBase):
     """The bytes of a file or of standard input; an error in reading them is a UserError that names
     it. ``count``: the bytes read so far."""

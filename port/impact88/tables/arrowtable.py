@@ -5,13 +5,13 @@ digits. What was text in a CSV becomes doubles where it is a scene's, and stays 
 """
 
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import Any
 
 import numpy as np
 
 from ..errors import UserError, library
-from ..files import ESCAPED, replacing
+from ..files import ESCAPED, decoding, replacing
 from ..names import SCENE
 from .cells import typed
 from .rows import (
@@ -62,30 +62,40 @@ def _scene_column(pa: Any, rows: Rows, name: str, array: Any, where: str) -> Col
 def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
     """Open a Parquet or Arrow file. Raises UserError if it is not one."""
     pa = library("pyarrow", "arrow", "this format")
-    try:
-        if form == "parquet":
-            from pyarrow import parquet
+    with ExitStack() as stack:
+        with decoding(path):
+            if form == "parquet":
+                from pyarrow import parquet
 
-            with parquet.ParquetFile(path, memory_map=True) as file:
+                file = stack.enter_context(parquet.ParquetFile(path, memory_map=True))
+                headings, count = file.schema_arrow.names, file.metadata.num_rows
                 batches = file.iter_batches(BLOCK_ROWS, use_threads=pa.cpu_count() > 1)
-                names = scene_names(file.schema_arrow.names, path)
-                yield Reader(names, _blocks(pa, names, batches, path), file.metadata.num_rows)
-        else:
-            with pa.memory_map(path) as source:
-                file = pa.ipc.open_file(source)
-                names = scene_names(file.schema.names, path)
-                batches = [file.get_batch(at) for at in range(file.num_record_batches)]
-                slices = (
-                    batch.slice(first, BLOCK_ROWS)
-                    for batch in batches
-                    for first in range(0, batch.num_rows, BLOCK_ROWS)
-                )
-                count = sum(batch.num_rows for batch in batches)
-                yield Reader(names, _blocks(pa, names, slices, path), count)
-    except pa.ArrowException as error:
-        raise UserError(f"cannot be read: {str(error).partition(chr(10))[0]}", path) from None
-    except FileNotFoundError:
-        raise UserError("cannot be read: No such file or directory", path) from None
+            else:
+                file = pa.ipc.open_file(stack.enter_context(pa.memory_map(path)))
+                headings, count = file.schema.names, None
+                batches = _slices(file)
+        names = scene_names(headings, path)
+        yield Reader(names, _blocks(pa, names, _validated(batches, path), path), count)
+
+
+def _slices(file: Any) -> Iterator[Any]:
+    for at in range(file.num_record_batches):
+        batch = file.get_batch(at)
+        batch.validate(full=True)  # before it is cut: offsets of a damaged file lead anywhere
+        for first in range(0, batch.num_rows, BLOCK_ROWS):
+            yield batch.slice(first, BLOCK_ROWS)
+
+
+def _validated(batches: Iterable[Any], path: str) -> Iterator[Any]:
+    """Yield the batches, each checked whole. Raises UserError for what the library refuses."""
+    batches = iter(batches)
+    while True:
+        with decoding(path):
+            batch = next(batches, None)
+            if batch is None:
+                return
+            batch.validate(full=True)
+        yield batch
 
 
 def _encodable(text: str) -> str:

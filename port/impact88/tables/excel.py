@@ -9,14 +9,14 @@ import os
 import shutil
 import zipfile
 from collections.abc import Generator, Iterator, Sequence
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from itertools import chain, islice
 from typing import Any
 
 import numpy as np
 
-from ..errors import UserError, library, quoted
-from ..files import replacing
+from ..errors import UserError, library
+from ..files import decoding, replacing
 from ..names import SCENE
 from .cells import plain, typed
 from .npztable import check_unpacked
@@ -31,22 +31,22 @@ _Lines = Generator[tuple[int, tuple[Any, ...]], None, None]
 
 
 def _lines(path: str) -> _Lines:
-    """The rows that hold anything, with their numbers. Whatever openpyxl raises on arbitrary bytes
-    is a UserError."""
+    """Yield the rows that hold anything, with their numbers. Raises UserError."""
     openpyxl = library("openpyxl", "excel", "an .xlsx")
-    try:
-        with zipfile.ZipFile(path) as archive:
-            check_unpacked(archive.infolist(), os.path.getsize(path), path)
-        with closing(openpyxl.load_workbook(path, read_only=True, data_only=True)) as book:
-            for number, row in enumerate(book.worksheets[0].iter_rows(values_only=True), 1):
-                if any(cell is not None for cell in row):
-                    yield number, row
-    except OSError as error:
-        raise UserError(f"cannot be read: {error.strerror or error}", path) from None
-    except UserError:
-        raise
-    except Exception as error:
-        raise UserError(f"is not an .xlsx workbook: {quoted(str(error))}", path) from None
+    with ExitStack() as stack:
+        with decoding(path, "is not an .xlsx workbook"):
+            with zipfile.ZipFile(path) as archive:
+                check_unpacked(archive.infolist(), os.path.getsize(path), path)
+            book = openpyxl.load_workbook(path, read_only=True, data_only=True)
+            stack.enter_context(closing(book))
+            rows = enumerate(book.worksheets[0].iter_rows(values_only=True), 1)
+        while True:
+            with decoding(path, "is not an .xlsx workbook"):
+                number, row = next(rows, (0, ()))
+            if not number:
+                return
+            if any(cell is not None for cell in row):
+                yield number, row
 
 
 def _blocks(names: list[str], lines: _Lines, where: str) -> Iterator[Rows]:
