@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import re
 from fractions import Fraction
 from math import pi
 
@@ -167,8 +168,103 @@ def test_notations(name: str, text: str, expected: float | Fraction) -> None:
 
 @pytest.mark.parametrize(("name", "text"), REFUSED)
 def test_what_is_refused_says_what_is_taken(name: str, text: str) -> None:
-    with pytest.raises(UserError, match=r"expected|is not a unit of|units of two systems"):
+    with pytest.raises(UserError, match=r"expected|write|is not a unit of|units of two systems"):
         based(name, text)
+
+
+def suggested(name: str, text: str) -> list[str]:
+    """The texts that the message of a refusal says to write; fails where the text is read."""
+    with pytest.raises(UserError) as caught:
+        based(name, text)
+    _, _, advice = str(caught.value).partition("; write ")
+    forms = re.findall(r"""'((?:[^'\\]|\\.)*)'|"([^"]*)\"""", advice)
+    return [single.replace("\\'", "'") or double for single, double in forms]
+
+
+SPEEDS = {"mph": MPH, " mph": MPH, " km/h": Fraction(1, 36) * 10 / FOOT, " ft/s": 1}
+RANGES = (
+    "{} - {}{u}",
+    "{}-{}{u}",
+    "{}–{}{u}",
+    "{} to {}{u}",
+    "from {} to {}{u}",
+    "between {} and {}{u}",
+    "{} … {}{u}",
+    "{}...{}{u}",
+    "{}{u} - {}{u}",
+    "{}{u} to {}{u}",
+)
+
+
+def test_what_a_message_says_to_write_is_what_was_typed() -> None:
+    """Amounts of which the meaning is known, written in habits that are not accepted."""
+    rng = random.Random(41)
+    for _ in range(int(os.environ.get("IMPACT88_SWEEP", 1)) * 300):
+        unit = rng.choice(list(SPEEDS))
+        low, high = sorted(Fraction(rng.randint(10, 990), 10) for _ in range(2))
+        comma = rng.choice([False, True])
+        numbers = [f"{float(n):.{rng.choice([1, 2])}f}" for n in (low, high)]
+        if comma:
+            numbers = [number.replace(".", ",") for number in numbers]
+        text = rng.choice(RANGES).format(*numbers, u=unit)
+        forms = suggested("UX", text)
+        assert len(forms) == 1, text
+        lower, upper = map(float, _base(forms[0]).split(" .. "))
+        scale = _scale(unit)
+        assert (lower, upper) == pytest.approx((low * scale, high * scale), rel=1e-15), text
+
+
+def test_feet_and_inches_with_dashes() -> None:
+    rng = random.Random(42)
+    for _ in range(int(os.environ.get("IMPACT88_SWEEP", 1)) * 100):
+        feet, inches, eighths = rng.randint(1, 9), rng.randint(1, 11), rng.randint(1, 7)
+        whole = Fraction(feet) + Fraction(inches, 12)
+        text, expected = rng.choice(
+            [
+                (f"{feet}'-{inches}\"", whole),
+                (f"{feet}′–{inches}″", whole),
+                (f"{feet} ft - {inches} in", whole),
+                (f"{feet} ft, {inches} in", whole),
+                (f"{feet}'{inches}", whole),
+                (f"{feet}'-{inches} {eighths}/8\"", whole + Fraction(eighths, 96)),
+                (f"{feet} ft {inches}-{eighths}/8 in", whole + Fraction(eighths, 96)),
+            ]
+        )
+        forms = suggested("DA", text)
+        assert [read("DA", form) for form in forms] == pytest.approx([float(expected)]), text
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "values"),
+    [
+        ("MA", "1,548 kg", (1548, 1.548)),
+        ("MA", "1,548 .. 1,600 kg", ((1548, 1600), (1.548, 1.6))),
+        ("MA", "1.548,5 kg", (1548.5,)),
+        ("MA", "3 000 lb", (3000 * POUND / SLUG,)),
+        ("DA", "1,78 m", (1.78,)),
+        ("E", "0,5", (0.5,)),
+        ("UX", "–30 mph", (-44,)),
+        ("UX", "approx. 30 mph", (44,)),
+        ("UX", "-35 – -30 mph", ((-35 * MPH, -44),)),
+        ("IA", "2600 kgm2", (2600,)),
+        ("UX", "30 mph 2 mph", ()),
+        ("UX", "30 lb", ()),
+        ("UX", "30 mph, 35 mph", ()),
+    ],
+)
+def test_what_may_be_two_things_is_asked(name: str, text: str, values: tuple[object, ...]) -> None:
+    found = [tuple(map(float, _base(form, name).split(" .. "))) for form in suggested(name, text)]
+    expected = [value if isinstance(value, tuple) else (value,) for value in values]
+    assert found == [pytest.approx(tuple(map(float, value))) for value in expected]  # type: ignore[arg-type]
+
+
+def _base(text: str, name: str = "UX") -> str:
+    return based(name, text)
+
+
+def _scale(unit: str) -> Fraction:
+    """Of a unit of speed, what its numbers are multiplied with in its own system's base."""
+    return Fraction(10, 36) if "km" in unit else Fraction(SPEEDS[unit])
 
 
 SIZES = {

@@ -25,7 +25,7 @@ from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
 from math import inf
-from typing import NamedTuple
+from typing import NamedTuple, NoReturn
 
 from .doubles import BARE, digits, double, is_number
 from .errors import UserError, quoted
@@ -392,19 +392,45 @@ def _split(text: str, count: int) -> list[Amount]:
     return found[0]
 
 
+def is_amount(text: str, rule: str) -> bool:
+    """Return whether a text is an amount of what ``rule`` measures, or limits of one, with no comma
+    that may be a decimal one."""
+    try:
+        value = _Value("", text, rule, "", advise=False)
+        based = value.based(RULES, False)
+    except UserError:
+        return False
+    if value.notation.kind != "range":
+        return True
+    lower, _, upper = based.partition(" .. ")
+    return double(lower) <= double(upper)
+
+
+def _accepted_forms(text: str, rule: str) -> str:
+    """How an amount is written that is not accepted as it stands; nothing where that is unclear."""
+    from .suggestions import suggestions  # needed for a message only
+
+    forms = suggestions(text.translate(_MEANT), lambda form: is_amount(form, rule))
+    return f"write {' or '.join(map(quoted, forms))}" if forms else ""
+
+
 class _Value:
     """The text of one entry, and what it measures. Raises UserError for what is not an amount."""
 
-    def __init__(self, name: str, text: str, rule: str, source: str) -> None:
+    def __init__(self, name: str, text: str, rule: str, source: str, advise: bool = True) -> None:
+        self.text, self.advise = text, advise
         self.entry, self.rule, self.source = f"{name} = {text}", rule, source
         try:
             self.notation = parse(text)
         except ValueError:
-            raise UserError(
-                f"{name} = {quoted(text)} is not an amount; {ACCEPTED}", source
-            ) from None
+            self._refuse(f"{name} = {quoted(text)} is not an amount")
         for unit in self.notation.units:
-            check_unit(unit, rule, self.entry, source)
+            try:
+                check_unit(unit, rule, self.entry, source)
+            except UserError as error:
+                if not (advise and (forms := _accepted_forms(text, rule))):
+                    raise
+                raise UserError(f"{error}; {forms}") from None
         if self.notation.share and (rule == PERCENT or "%" in self.notation.units):
             raise UserError(f"{self.entry}: percent of a percentage; expected '37 +- 2'", source)
 
@@ -435,7 +461,7 @@ class _Value:
         scale = system.scale(self.rule) if usual or amount.units else Fraction(1)
         for (number, _), size in zip(amount.parts, known, strict=True):
             if "," in number and (not size or size[1] != "us"):
-                self._refuse(f"the comma of {number} may be a decimal one")
+                self._refuse(f"{self.entry}: the comma of {number} may be a decimal one")
         number = amount.parts[0][0]
         if sizes == [scale] and "/" not in number:
             return amount.sign + number.replace(",", "")
@@ -443,11 +469,12 @@ class _Value:
             parts = zip(amount.parts, sizes, strict=True)
             value = float(sum(_fraction(number) * size for (number, _), size in parts) / scale)
         except (OverflowError, ZeroDivisionError):
-            self._refuse("too large for a double")
+            self._refuse(f"{self.entry}: too large for a double")
         return "0" if not value else ("-" if amount.sign == "-" else "") + digits(value)
 
-    def _refuse(self, why: str) -> None:
-        raise UserError(f"{self.entry}: {why}; {ACCEPTED}", self.source)
+    def _refuse(self, what: str) -> NoReturn:
+        advice = (self.advise and _accepted_forms(self.text, self.rule)) or ACCEPTED
+        raise UserError(f"{what}; {advice}", self.source)
 
 
 _UNITLESS = (NUMBER, ANGLE, SPIN, PERCENT)
