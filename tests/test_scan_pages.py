@@ -155,6 +155,10 @@ def test_an_input_that_no_result_bears_out_is_what_the_paper_shows() -> None:
         (b"\x89PNG\r\n\x1a\nnothing", "is not a picture that can be read"),
         (b"%PDF-1.4 nothing", "is not a PDF that can be read"),
         (saved(Pillow.new("L", (400, 300), 255), "PNG"), "no printout was found in the picture"),
+        (saved(Pillow.new("L", (1, 1), 255), "PNG"), "no printout was found in the picture"),
+        (saved(Pillow.new("L", (1, 100_000), 0), "PNG"), "no printout was found in the picture"),
+        (saved(Pillow.new("RGB", (100_000, 1)), "PNG"), "no printout was found in the picture"),
+        (saved(Pillow.new("1", (8000, 8000)), "PNG"), "8000 x 8000 pixels; expected at most"),
     ],
 )
 def test_what_is_no_page(data: bytes, message: str, tmp_path: Path) -> None:
@@ -162,6 +166,56 @@ def test_what_is_no_page(data: bytes, message: str, tmp_path: Path) -> None:
     assert examined.error is not None
     assert message in examined.error
     assert not examined.results
+
+
+@pytest.mark.parametrize(
+    ("pages", "points", "message"),
+    [
+        (1, 14_400, "page 1 is 200 x 200 inches; expected at most 60 inches a side"),
+        (201, 200, "has 201 pages; expected at most 200"),
+        (2, 200, "no printout was found in the picture"),
+    ],
+)
+def test_pdfs_are_refused_before_they_are_rendered(pages: int, points: int, message: str) -> None:
+    pdfium = pytest.importorskip("pypdfium2", reason="the extra scan is not installed")
+    document = pdfium.PdfDocument.new()
+    for _ in range(pages):
+        document.new_page(points, points)
+    file = io.BytesIO()
+    document.save(file)
+    examined = examine("page.pdf", data=file.getvalue())
+    assert examined.error is not None
+    assert message in examined.error
+
+
+def test_a_page_that_takes_too_much_time_or_memory_is_refused_with_its_number(monkeypatch) -> None:
+    """The process that renders is ended, or ends, and the caller goes on."""
+    pdfium = pytest.importorskip("pypdfium2", reason="the extra scan is not installed")
+    from impact88.scan import pdfpages
+
+    document = pdfium.PdfDocument.new()
+    document.new_page(4000, 4000)
+    file = io.BytesIO()
+    document.save(file)
+    monkeypatch.setattr(pdfpages, "MAX_SECONDS", 0.001)
+    with pytest.raises(pdfpages.PdfError, match="page 1 takes more than"):
+        list(pdfpages.render_pages(file.getvalue(), 400))
+    monkeypatch.undo()
+    with pytest.raises(pdfpages.PdfError, match="page 1 cannot be rendered within 512 MB"):
+        list(pdfpages.render_pages(file.getvalue(), 40_000))
+
+
+def test_a_picture_larger_than_is_read_has_its_boxes_in_the_pixels_of_its_file(monkeypatch) -> None:
+    from impact88.scan import picture
+
+    with Pillow.open(PAGES / "clean-001.png") as page:
+        grey = page.convert("L")
+    monkeypatch.setattr(picture, "MAX_SIDE", max(grey.size))
+    large = grey.resize((2 * grey.width, 2 * grey.height))
+    (result,) = examine("page.png", data=saved(large, "PNG")).results
+    assert result.verdict is examined("clean-001.png")[0].verdict
+    for one, two in zip(result.cells, examined("clean-001.png")[0].cells, strict=True):
+        assert np.allclose(one["box"], 2 * np.array(two["box"]), atol=6)
 
 
 @pytest.mark.parametrize("beside", [Verdict.IDENTICAL, Verdict.INCOMPLETE])
@@ -246,11 +300,11 @@ def test_a_text_layer_must_agree_and_another_readers_words_decide_nothing(monkey
 
     row = next(row for row in TRUTH if row["file"] == "clean-001.png")
     with Pillow.open(PAGES / row["file"]) as page:
-        grey = np.asarray(page.convert("L"), np.float32)
+        grey = np.asarray(page.convert("L"))
     (right,) = examined(row["file"])
     number = next(one for one in right.fields if one.name == "KI").printed
     wrong = right.text.replace(number, number[:-1] + "1379"[number[-1] == "1"])
-    pages = [Page(1, np.full((300, 400), 255, np.float32)), Page(2, grey, wrong)]
+    pages = [Page(1, np.full((300, 400), 255, np.uint8)), Page(2, grey, wrong)]
     monkeypatch.setattr(scanned, "pages_of", lambda data, path: pages)
     (result,) = scanned.verified("page.pdf", b"", right.text)
     assert result.verdict is Verdict.INCOMPLETE

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import json
 import re
+from contextlib import suppress
 from functools import cache
 from typing import Any
 
@@ -544,6 +545,16 @@ def test_words_with_places_are_laid_out(form: Any) -> None:
 def test_damaged_words_with_places_are_refused(text: str) -> None:
     with pytest.raises(UserError, match=r"damaged|no words"):
         read_printouts(text)
+
+
+@pytest.mark.parametrize("number", ["nan", "inf", "-inf", "1e308", "1e9", "4e-300"])
+@pytest.mark.parametrize("place", ["HPOS", "VPOS", "WIDTH", "HEIGHT"])
+def test_places_that_no_page_has_are_refused_or_laid_out(number: str, place: str) -> None:
+    """In a word alone, and in one of many; never an error of another kind."""
+    for text in (SAMPLE, "KE"):
+        words = re.sub(f'{place}="[0-9]+"', f'{place}="{number}"', alto(text), count=1)
+        with suppress(UserError):
+            read_printouts(words)
 
 
 def test_reading_ends_where_there_is_too_much_text() -> None:

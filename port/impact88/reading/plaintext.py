@@ -156,6 +156,8 @@ def _groups_joined(text: str) -> str:
 _TAG = re.compile(r"""<([\w:]+)((?:"[^"]*"|'[^']*'|[^"'<>])*)>([^<]*)""")
 _ATTRIBUTE = re.compile(r"""\b([\w:]++)\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s"'>]+))""")
 _BOX = re.compile(r"\bbbox +(-?[0-9]+) +(-?[0-9]+) +(-?[0-9]+) +(-?[0-9]+)")
+_FARTHEST = 1e7  # pixels, or tenths of a millimetre
+_NARROWEST = 0.01  # width of a letter, in the same units
 _PRINTER = 80
 """Columns of a printer's line: no gap is wider."""
 
@@ -181,12 +183,20 @@ def laid_out(text: str, where: str) -> str:
     try:
         for page, word, *place in _rows(text) if table else _elements(text):
             if word.strip():
-                pages.setdefault(page, []).append(_Word(word.strip(), *map(float, place)))
+                pages.setdefault(page, []).append(_Word(word.strip(), *map(_pixels, place)))
     except (KeyError, TypeError, ValueError):
         raise UserError("is damaged: the place of a word is not a number", where) from None
     if not pages:
         raise UserError("holds no words with places; expected hOCR, ALTO or TSV of a page", where)
     return "\n\n".join(map(_lines_of, pages.values()))
+
+
+def _pixels(text: str) -> float:
+    """Return a place as a number. Raises ValueError for one that no page has, nan and inf too."""
+    value = float(text)
+    if not abs(value) < _FARTHEST:
+        raise ValueError(text)
+    return value
 
 
 def _rows(text: str) -> Iterator[list[str]]:
@@ -228,7 +238,8 @@ def _lines_of(words: Sequence[_Word]) -> str:
         if not lines or middle - before >= word.height / 2:
             lines.append([])
         lines[-1].append(word)
-    letter = median(word.width / len(word.text) for word in words) or 1.0
+    letter = median(word.width / len(word.text) for word in words)
+    letter = letter if letter > _NARROWEST else 1.0
     text = ""
     for line in lines:
         line.sort(key=lambda word: word.left)

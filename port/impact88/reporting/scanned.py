@@ -5,6 +5,8 @@ from functools import partial
 from itertools import takewhile
 from typing import Any
 
+import numpy as np
+
 from ..errors import UserError
 from ..fields import FIELDS, REPLIES
 from ..files import called
@@ -15,6 +17,8 @@ from ..reading.printout import read_printouts
 from ..scan.exhibit import exhibit, shown
 from ..scan.grid import Grid
 from ..scan.holding import RATES, Cell, state
+from ..scan.ink import Floats
+from ..scan.paper import Paper, papers_of
 from ..scan.picture import Page, pages_of
 from ..scan.scenes import scenes_in
 from ..scan.sheets import Leaf, looked
@@ -30,12 +34,14 @@ def verified(path: str, data: bytes, seed: str = "") -> Iterator[Verification]:
     seeds = scenes_in(seed)
     with progress(None, "pages read", "page") as meter:
         for page in pages_of(data, path):
-            leaves = looked(page.grey, [*seeds, *scenes_in(page.text)])
             found: list[Verification] = []
-            for leaf in leaves:
-                result = _verification(path, len(results) + len(found) + 1, page, leaf)
-                result.exhibit = partial(exhibit, page.grey, leaves, leaf)
-                found.append(result)
+            for paper in papers_of(page.picture):
+                leaves = looked(paper.grey, [*seeds, *scenes_in(page.text)])
+                for leaf in leaves:
+                    number = len(results) + len(found) + 1
+                    result = _verification(path, number, page, paper, leaf)
+                    result.exhibit = partial(exhibit, paper.grey, leaves, leaf)
+                    found.append(result)
             if page.text.strip():
                 _layered(found, page.text)
             if not found:
@@ -79,7 +85,7 @@ def _layered(results: list[Verification], text: str) -> None:
                 result.verdict = Verdict.INCOMPLETE
 
 
-def _verification(path: str, number: int, page: Page, leaf: Leaf) -> Verification:
+def _verification(path: str, number: int, page: Page, paper: Paper, leaf: Leaf) -> Verification:
     settled = leaf.judged.verdict is not Verdict.INCOMPLETE
     known = {name: _printed(cells) for name, cells in leaf.by_name.items()} if settled else {}
     text, starts = leaf.read.page(known)
@@ -101,7 +107,7 @@ def _verification(path: str, number: int, page: Page, leaf: Leaf) -> Verificatio
             check.start = starts[check.name]
             check.stop = check.start + len(check.printed)
     result.cells = [
-        _described(cell, page, leaf.grid)
+        _described(cell, page, paper, leaf.grid)
         for cell in leaf.cells  # blanks and labels that hold are not told
         if (cell.name and cell.predicted != BLANK) or state(cell) != "holds"
     ]
@@ -153,14 +159,21 @@ def _replies(leaf: Leaf) -> Iterator[FieldCheck]:
                 yield _check(leaf, name, "".join(cell.predicted for cell in part), part)
 
 
-def _described(cell: Cell, page: Page, grid: Grid) -> dict[str, Any]:
+def _box(corners: Floats, page: Page, paper: Paper, turns: int) -> list[float]:
+    """Return left, top, right, bottom of a region of the upright sheet in the file's picture as it
+    lies, in pixels."""
+    x, y = corners.T
+    height, width = paper.grey.shape
+    x, y = ((x, y), (width - y, x), (width - x, height - y), (y, height - x))[turns]
+    x, y = page.scale * paper.place(np.stack([x, y], axis=-1)).T
+    return [round(float(v), 1) for v in (x.min(), y.min(), x.max(), y.max())]
+
+
+def _described(cell: Cell, page: Page, paper: Paper, grid: Grid) -> dict[str, Any]:
     """A cell as JSON; ``box``: left, top, right, bottom in the picture as it lies, in pixels."""
-    x, y = grid.around(*cell.place).T
-    height, width = page.grey.shape
-    x, y = ((x, y), (width - y, x), (width - x, height - y), (y, height - x))[grid.turns]
     return {
         "page": page.number,
-        "box": [round(float(v), 1) for v in (x.min(), y.min(), x.max(), y.max())],
+        "box": _box(grid.around(*cell.place), page, paper, grid.turns),
         "field": cell.name or None,
         "predicted": cell.predicted,
         "state": state(cell),

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from .ink import Floats, Image, Points, points_of, resized, slopes
+from .ink import Floats, Image, Points, resized, slopes
 
 CELL_WIDTH = 16
 """Pixels across a cell after sampling: the least at which 3 and 8 of a dot matrix stay apart."""
@@ -34,6 +34,7 @@ the given photographs flat."""
 _GUTTER, _COLUMN = 6, 0.25
 """The least gap between printouts side by side, in 300ths of the page, some three characters of
 160, and the least part of the ink that is a column: angles at the end of their line are none."""
+FEWEST_POINTS = 500  # a page has more ink
 _COARSE = 80
 """Stretches of a dozen cells from which the starts are found, those with the clearest gaps."""
 
@@ -175,13 +176,11 @@ def _bend(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> tupl
     return best, float(np.abs(turned.sum()) / weights.sum())
 
 
-def grids_of(ink: Image, turns: int, fold: int) -> list[Grid]:
+def grids_of(ink: Image, points: Points, turns: int) -> list[Grid]:
     """The grids of a page turned by quarters to the left: one, or those of columns side by side.
-    ``fold``: pixels a side that are taken together to find them."""
+    ``points``: of the ink as it lies."""
     ink = np.ascontiguousarray(np.rot90(ink, turns))
-    points = points_of(ink, fold)
-    if len(points.x) < 500:  # too little ink for a page
-        return []
+    points = points.turned(turns)
     slope, keystone = slopes(points)
     grids = [_grid(ink, part, slope, keystone, turns) for part in _columns(points, slope)]
     return [grid for grid in grids if grid]

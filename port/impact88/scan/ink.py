@@ -62,6 +62,12 @@ class Points(NamedTuple):
     y: Floats
     span: float
 
+    def turned(self, turns: int) -> "Points":
+        """Return the same places after the picture was turned to the left by quarters."""
+        x, y = self.x, self.y
+        x, y = ((x, y), (y, -x), (-x, -y), (-y, x))[turns]
+        return Points(x, y, self.span)
+
 
 def points_of(ink: Image, fold: int = 1) -> Points:
     """The inked places of a picture, single specks left out; ``fold`` pixels a side are taken

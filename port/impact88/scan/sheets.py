@@ -11,9 +11,9 @@ import numpy as np
 from ..fields import INPUTS
 from ..judging.judgement import Verdict
 from ..reading.alignment import MAY_BE_MISSING
-from .grid import Grid, grids_of
+from .grid import FEWEST_POINTS, Grid, grids_of
 from .holding import Cell, Judged, held, judged, state
-from .ink import Image, ink_of
+from .ink import Image, ink_of, points_of
 from .layout import Sheet, sheets_of
 from .scenes import Candidate, Read, borne_out, scene_of
 from .typeface import BLANK, read_numbers
@@ -26,6 +26,9 @@ _LEGIBLE = 300.0
 _REGULAR = 0.7
 """Clarity of the columns from which printouts are told apart and scenes searched for: of 1,302
 printouts that got a verdict the least had .85."""
+
+_LEAST_SIDE = 100
+"""Pixels of the shorter side of a picture that is looked at; 13 lines of 5 pixels have as many."""
 
 
 @dataclass
@@ -49,10 +52,18 @@ class Leaf:
 def looked(grey: Image, seeds: Sequence[dict[str, str]] = ()) -> list[Leaf]:
     """All printouts of a page, upright or turned by quarters. ``seeds``: scenes that another reader
     found; they are tried beside those of the picture."""
+    if min(grey.shape) < _LEAST_SIDE:
+        return []
     ink = ink_of(grey)
     most, found = 0.0, list[tuple[Grid, list[Sheet]]]()
-    for fold, turns in product((1, 2), _turns(ink)):
-        laid = [(grid, sheets_of(grid.odds(), grid.tops)) for grid in grids_of(ink, turns, fold)]
+    order = _turns(ink)
+    for fold, turns in product((1, 2), order):
+        if turns == order[0]:
+            points = points_of(ink, fold)
+            if len(points.x) < FEWEST_POINTS:
+                break
+        grids = grids_of(ink, points, turns)
+        laid = [(grid, sheets_of(grid.odds(), grid.tops)) for grid in grids]
         sheets = [sheet for _, some in laid for sheet in some]
         gain = sum(sheet.gain for sheet in sheets)
         if gain > most:
