@@ -14,11 +14,11 @@ from ..judging.judgement import Doubtful, FieldCheck, Status, Verdict
 from ..names import SCENE
 from ..progress import progress
 from ..reading.printout import read_printouts
+from ..scan.cleaning import Paper, papers_of
 from ..scan.exhibit import exhibit, shown
 from ..scan.grid import Grid
 from ..scan.holding import RATES, Cell, state
 from ..scan.ink import Floats
-from ..scan.paper import Paper, papers_of
 from ..scan.picture import Page, pages_of
 from ..scan.scenes import scenes_in
 from ..scan.sheets import Leaf, looked
