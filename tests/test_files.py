@@ -234,9 +234,11 @@ def test_the_longest_name_a_file_can_have_is_written(folder: Path, letter: str) 
 
 _WORKS_ON_CONTROL_C = (
     "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler);"
+    "[signal.signal(getattr(signal, n), signal.SIG_DFL) for n in ('SIGTERM', 'SIGHUP')];"
     "from impact88.cli import main; sys.exit(main(sys.argv[1:]))"
 )
-"""A shell's background job ignores control-C, and so would the commands started here."""
+"""A shell's background job ignores control-C, and one behind nohup SIGHUP: so would the commands
+started here, which inherit that."""
 
 
 def _until(true: Callable[[], bool]) -> None:
