@@ -2,9 +2,9 @@
 
 *To the double*: no farther off than rounding allows in the best of programs. *To the digits
 claimed*: the exact value rounded to the digits it is written with. *As elimination does*: no
-farther off than the usual ways allow, elimination unit roundoff times the condition number of a 6
-by 6 matrix times the largest unknown (on the vectors at most 0.03 of it), contact impulses their
-running error bound. Where rounding decides which way the contact slides, either way is right.
+farther off than rounding may take a correct program in any of the spellings (`tolerance`), result
+by result. Where rounding decides which way the contact slides, either way is right; where it may
+leave no digit, or too few are written to tell, a number that shares none is not compared.
 """
 
 import re
@@ -17,11 +17,12 @@ from numpy.typing import NDArray
 from ..accuracy import errorbound
 from ..closedform.solve import solve
 from ..doubles import double
-from ..equations.evaluation import BESIDE, Run, running_errors
-from ..equations.spelling import A_IMPULSE, IMPULSES, LISTING, spellings
+from ..equations.evaluation import BESIDE, Run
+from ..equations.spelling import A_IMPULSE, spellings
 from ..errors import quoted
-from ..names import FINAL_VELOCITIES, PIVOT, SCENE
+from ..names import FINAL_VELOCITIES, SCENE
 from ..tables.rows import Rows
+from . import tolerance
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -48,8 +49,10 @@ HALF = 0.5 + 1e-9
 """Of the last digit written."""
 
 COLUMNS = (*SCENE, *(f"{row}_{name}" for row in BESIDE for name in SCENE))
-ABSENT, DOUBLE, DIGITS, ELIMINATION, DIFFER = range(5)
-"""How a result agrees; absent where one side has none."""
+ABSENT, DOUBLE, DIGITS, ELIMINATION, DIFFER, LOST = range(6)
+"""How a result agrees; absent where one side has none, lost where no digit of it can be told."""
+NO_DIGIT = 0.1
+"""Off by more than this share of its size, a result shares no digit with ours."""
 
 
 class Case(NamedTuple):
@@ -57,8 +60,10 @@ class Case(NamedTuple):
 
     ``scene``: each row's, and those of the rows before and after (`COLUMNS`); ``units``: the last
     digit written of ``values`` (0 where there is none); ``sizes``: what errors are a share of;
-    ``best``, ``loose``: the shares that the best of programs, and the usual ways, may be off in
-    double precision; ``per_unit``: the latter in other arithmetic, per unit roundoff.
+    ``tight``, ``loose``: how far the best of programs, and a correct one of any spelling, may be
+    off in double precision (the latter is no larger than the former where that was enough);
+    ``per_unit``: the largest of a row's, as a share of its size, per unit roundoff; ``no_digit``:
+    the share off by which a number has no digit in common with ours.
     """
 
     names: tuple[str, ...]
@@ -68,9 +73,10 @@ class Case(NamedTuple):
     ours: Floats
     sizes: Floats
     condition: Floats
-    best: Floats
+    tight: Floats
     loose: Floats
     per_unit: Floats
+    no_digit: Floats
 
     def part(self, rows: NDArray[np.intp]) -> "Case":
         """Some of the rows."""
@@ -90,15 +96,16 @@ class Case(NamedTuple):
         """How each result agrees, and the difference as a share of its size, (results, rows)."""
         with np.errstate(all="ignore"):
             off = np.abs(self.values - self.ours)
-            last_bits = 2 * np.spacing(np.abs(self.ours))
-            tight, loose = (share * self.sizes + last_bits for share in (self.best, self.loose))
             written = self.units * HALF
             # nothing there to measure by: as a share of what they have
             measure = np.where(self.sizes > 0, self.sizes, np.abs(self.values))
             relative = np.minimum(np.where(off > 0, off / measure, 0.0), np.finfo(float).max)
-            given = np.isfinite(self.values) & np.isfinite(self.ours)
-            within = (~given, off <= tight, off <= written + tight, off <= written + loose)
-            return np.select(within, range(DIFFER), DIFFER), relative
+            absent = ~(np.isfinite(self.values) & np.isfinite(self.ours))
+            differ = off > written + self.loose
+            lost = relative > self.no_digit
+            within = (absent, differ, lost, off <= self.tight, off <= written + self.tight)
+            grades = np.select(within, (ABSENT, DIFFER, LOST, DOUBLE, DIGITS), ELIMINATION)
+            return grades, relative
 
 
 def joined(cases: Sequence[Case]) -> Case:
@@ -130,29 +137,31 @@ def _case(
     """The case, and the rows in which rounding decides which way the contact slides."""
     ours = {name: column.astype(float) for name, column in solve(scene).items()}
     sizes = errorbound.scales(scene, ours)
-    best = errorbound.relative_bounds(ours["COND"], 1.0)
-    spent = running_errors(spellings()[IMPULSES], scene)
-    largest = np.nanmax(np.abs([ours[name] for name in FINAL_VELOCITIES]), 0, initial=0.0)
-    # the larger condition number, by row sums, of the two 6 by 6 matrices as they stand
-    matrices = (Run(spellings()[title], scene).system({})[0][0] for title in (LISTING, A_IMPULSE))
-    conditions = np.array([np.linalg.cond(matrix, np.inf) for matrix in matrices])
-    eliminated = np.where(np.isnan(conditions), np.inf, conditions).max(0) * largest
-    shares = [np.fmax(eliminated, spent[name][1]) / sizes[name] for name in FINAL_VELOCITIES]
-    sliding, off = spent["gt"]
-    undecided = np.abs(sliding) <= off * errorbound.DOUBLE
-    undecided &= (scene["MU"] != PIVOT) & (scene["MU"] != 0)
-    per_unit = np.fmax(best, np.max(np.where(np.isfinite(shares), shares, 0.0), axis=0))
     columns = np.stack([scene[name] for name in SCENE])
     beside = (np.roll(columns, step, -1) for step in BESIDE.values())
     values, units = (np.stack(column) for column in zip(*theirs.values(), strict=True))
     mine, measures = (np.stack([found[name] for name in theirs]) for found in (ours, sizes))
-    tight, loose = (
-        share * errorbound.DOUBLE if rtol is None else np.full(best.size, rtol)
-        for share in (best, per_unit)
-    )
+    least, undecided = tolerance.of_the_best(scene, ours, sizes)
+    tight = np.stack([least[name] for name in theirs])
+    if rtol is not None:
+        tight = rtol * measures + 2 * np.spacing(np.abs(mine))
+    loose = tight.copy()
+    per_unit = np.max([least[name] / sizes[name] for name in FINAL_VELOCITIES], 0)
+    beyond = (np.abs(values - mine) > tight + units * HALF).any(0)
+    if rtol is None and (rows := np.flatnonzero(beyond)).size:
+        few, some, their_sizes, floor = (
+            {name: column[rows] for name, column in found.items()}
+            for found in (scene, ours, sizes, least)
+        )
+        most = tolerance.of_any(few, some, their_sizes, floor, theirs)
+        loose[:, rows] = [most[name] for name in theirs]
+        shares = [most[name] / their_sizes[name] for name in FINAL_VELOCITIES]
+        per_unit[rows] = np.max(np.where(np.isfinite(shares), shares, 0.0), axis=0)
     scenes = np.concatenate([columns, *beside])
-    found = (scenes, values, units, mine, measures, ours["COND"], tight, loose, per_unit)
-    case = Case(tuple(theirs), *found)
+    # a tolerance of the user's own is taken as it is
+    no_digit = np.full(len(values[0]), NO_DIGIT if rtol is None else np.inf)
+    found = (scenes, values, units, mine, measures, ours["COND"], tight, loose)
+    case = Case(tuple(theirs), *found, per_unit / errorbound.DOUBLE, no_digit)
     return case, np.flatnonzero(undecided)
 
 
@@ -191,7 +200,7 @@ def violated(case: Case) -> dict[str, Bools]:
     """
     spelling, scene = spellings()[A_IMPULSE], case.columns
     point = scene["M"] == 4
-    slack = case.units * 0.5 + case.loose * case.sizes
+    slack = case.units * 0.5 + case.loose
     given = dict(zip(case.names, zip(case.values, slack, strict=True), strict=True))
     for name in ("WAF", "WBF"):
         kept = scene[name[:2]]

@@ -25,7 +25,7 @@ from ..tables.cells import TableUnits, check_scene_columns, numbers
 from ..tables.rows import BadCell, Rows
 from ..tables.table import format_of, open_reader
 from . import agreement
-from .agreement import ABSENT, DIFFER, ELIMINATION, Case
+from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, Case
 from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, Diagnosis
 from .trials import Program
 from .vectors import FAILURE
@@ -41,7 +41,8 @@ NOTHING_HERE = "theirs gives numbers where the equations have no solution"
 NOTHING_THERE = "theirs gives nothing where there is a result"
 REFUSED = "theirs refuses a vector of the class failure, as it may"
 UNREADABLE = "the row could not be read"
-REASONS = (UNREADABLE, NO_RESULT, NOTHING_HERE, REFUSED, NOTHING_THERE)
+NO_DIGIT = "a number shares no digit with ours, where rounding or the digits written leave none"
+REASONS = (UNREADABLE, NO_RESULT, NOTHING_HERE, REFUSED, NO_DIGIT, NOTHING_THERE)
 HARMLESS = (NO_RESULT, REFUSED)
 """Reasons that no program is to be blamed for."""
 
@@ -74,13 +75,15 @@ class Tally:
 
     def add(self, grades: NDArray[np.intp], relative: NDArray[np.float64]) -> None:
         """Count a block's rows."""
-        absent, double, digits, elimination, differ = np.bincount(grades, minlength=5).tolist()
-        self.compared += grades.size - absent
+        counts = np.bincount(grades, minlength=LOST + 1).tolist()
+        absent, double, digits, elimination, differ, lost = counts
+        self.compared += grades.size - absent - lost
         self.double += double
         self.digits += digits
         self.elimination += elimination
         self.differ += differ
-        self.largest = float(relative.max(initial=self.largest, where=grades > ABSENT))
+        judged = (grades > ABSENT) & (grades < LOST)
+        self.largest = float(relative.max(initial=self.largest, where=judged))
 
 
 @dataclass
@@ -281,8 +284,9 @@ def _compare_block(
         given[~readable] = np.nan
     case = agreement.case_of(scene, theirs, rtol)
     grades, relative = case.judged()
-    compared, wrong = (grades > ABSENT).any(0), (grades == DIFFER).any(0)
-    solved = compared & np.isfinite(case.ours)
+    wrong, lost = (grades == DIFFER).any(0), (grades == LOST).any(0)
+    compared = ((grades > ABSENT) & (grades < LOST)).any(0) & (wrong | ~lost)
+    solved = (grades > ABSENT).any(0) & np.isfinite(case.ours)
     for place, tally in enumerate(comparison.tallies.values()):
         tally.add(grades[place], relative[place])
         tally.missing += int((solved[place] & (grades[place] == ABSENT)).sum())
@@ -293,7 +297,7 @@ def _compare_block(
     solvable, answered = np.isfinite(case.ours).any(0), np.isfinite(case.values).any(0)
     kinds = rows.columns.get("class", [""] * rows.count)
     refused = solvable & ~answered & np.array([str(kind) == FAILURE for kind in kinds], bool)
-    conditions = (~readable, ~solvable & ~answered, ~solvable, refused)
+    conditions = (~readable, ~solvable & ~answered, ~solvable, refused, lost)
     reasons = np.select(conditions, REASONS[:-1], REASONS[-1])
     for reason in REASONS:
         if found := (rows.first + np.flatnonzero(~compared & (reasons == reason))).tolist():

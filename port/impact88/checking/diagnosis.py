@@ -103,9 +103,10 @@ class Diagnosis:
         worst = share.argmax(0), np.arange(wrong.size)
         self._off = share[worst]
         digits = np.where(np.isfinite(off) & (sizes > 0), written / sizes, 0.0)
-        self._room = np.fmax(digits[worst], case.loose)
-        near = np.fmin(np.fmax(4 * case.loose, _CLOSE), _EXPLAINED * self._off)
-        self._limits = np.where(wrong, near, np.fmax(case.loose, _CLOSE)) * sizes + written
+        loose = np.where(sizes > 0, case.loose / sizes, 0.0)
+        self._room = np.fmax(digits[worst], loose[worst])
+        near = np.fmin(np.fmax(4 * loose, _CLOSE), _EXPLAINED * self._off)
+        self._limits = np.where(wrong, near, np.fmax(loose, _CLOSE)) * sizes + written
         if not self._by_digits():
             self._by_search()
             if self._open.sum() > (1 - BORNE_OUT) * wrong.sum():

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..names import SCENE
-from .spelling import COMPARISONS, NEGATIVE, TYPED, Expression, Spelling, nodes
+from .spelling import NEGATIVE, TYPED, Expression, Spelling, nodes
 
 Floats = NDArray[np.float64]
 Columns = Mapping[str, Any]
@@ -42,43 +42,6 @@ def value(node: Expression, names: Columns, known: Mapping[int, Any] = MappingPr
     if isinstance(node, str):
         return np.pi if node == "pi" else names[node]
     return node
-
-
-_ERRORS: dict[str, Callable[..., Any]] = {
-    **dict.fromkeys(("+", "-", "hypot"), lambda v, x, y, dx, dy: dx + dy),
-    "*": lambda v, x, y, dx, dy: np.abs(x) * dy + np.abs(y) * dx,
-    "/": lambda v, x, y, dx, dy: (dx + np.abs(v) * dy) / np.abs(y),
-    "**": lambda v, x, y, dx, dy: 2 * np.abs(x) * dx,
-    "sin": lambda v, x, dx: np.abs(np.cos(x)) * dx,
-    "cos": lambda v, x, dx: np.abs(np.sin(x)) * dx,
-    NEGATIVE: lambda v, x, dx: dx - np.abs(v),
-    "where": lambda v, p, x, y, dp, dx, dy: np.where(p, dx, dy) - np.abs(v),
-}
-"""What an operation makes of the errors of its operands, its own rounding aside."""
-
-
-def running_errors(spelling: Spelling, scene: Columns) -> Mapping[str, tuple[Any, Any]]:
-    """All that a spelling without equations computes for scenes (columns of n), and how far
-    rounding may have taken each, in units of roundoff."""
-    names: dict[str, tuple[Any, Any]] = {
-        f"{TYPED}{name}": (column, np.abs(column)) for name, column in scene.items()
-    }
-
-    def bounded(node: Expression) -> tuple[Any, Any]:
-        if isinstance(node, str):
-            return (np.pi, 0.0) if node == "pi" else names[node]
-        if not isinstance(node, tuple):
-            return node, 0.0
-        values, errors = zip(*map(bounded, node[1:]), strict=True)
-        found = value((node[0], *values), {})
-        if node[0] in COMPARISONS:
-            return found, 0.0
-        return found, _ERRORS[node[0]](found, *values, *errors) + np.abs(found)
-
-    with np.errstate(all="ignore"):
-        for statement in spelling.statements:
-            names[statement.target] = bounded(statement.sides[0])
-    return names
 
 
 RESIDUAL = "off_"
