@@ -8,6 +8,7 @@ import gzip
 import os
 import subprocess
 import tarfile
+from contextlib import contextmanager
 from pathlib import Path
 
 from setuptools import build_meta
@@ -30,6 +31,28 @@ def epoch():
     return int(Path("pyproject.toml").stat().st_mtime)
 
 
+COMMIT_FILE = Path("port/impact88/commit.txt")
+
+
+@contextmanager
+def commit_recorded():
+    """Within, the package holds the hash of the commit it is built from, where that is known; an
+    unpacked source distribution holds it already."""
+    commit = os.environ.get("IMPACT88_COMMIT", "")
+    if not commit and Path(".git").exists():
+        asked = ["git", "describe", "--always", "--exclude=*", "--abbrev=12", "--dirty"]
+        done = subprocess.run(asked, capture_output=True, text=True, check=False)
+        commit = done.stdout.strip()
+    if COMMIT_FILE.exists() or not commit:
+        yield
+        return
+    COMMIT_FILE.write_text(f"{commit}\n", encoding="ascii")
+    try:
+        yield
+    finally:
+        COMMIT_FILE.unlink()
+
+
 if os.environ.get("IMPACT88_PURE") == "1":  # a wheel for every machine, without the compiled part
     Distribution.has_ext_modules = lambda self: False
 
@@ -39,13 +62,15 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     nothing of Python's, so that it serves any version from the lowest on."""
     os.environ["SOURCE_DATE_EPOCH"] = str(epoch())
     settings = {"--build-option": ["--py-limited-api=cp311"], **(config_settings or {})}
-    return build_meta.build_wheel(wheel_directory, settings, metadata_directory)
+    with commit_recorded():
+        return build_meta.build_wheel(wheel_directory, settings, metadata_directory)
 
 
 def build_sdist(sdist_directory, config_settings=None):
     """Everything that is in the repository, tests included, so that they run from it."""
     manifest_maker.template = ".ci/manifest"
-    name = build_meta.build_sdist(sdist_directory, config_settings)
+    with commit_recorded():
+        name = build_meta.build_sdist(sdist_directory, config_settings)
     path = Path(sdist_directory, name)
     then = epoch()
     with tarfile.open(path) as built:

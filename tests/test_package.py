@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import shutil
+import subprocess
 import tomllib
 from fnmatch import fnmatch
 from importlib import import_module
@@ -109,7 +111,7 @@ def test_version_stands_in_one_place(project: dict[str, Any]) -> None:
     assert "version" in project["project"]["dynamic"]
     place = project["tool"]["setuptools"]["dynamic"]["version"]["attr"]
     assert place == "impact88.version.__version__"
-    assert re.fullmatch(r"\d+\.\d+\.\d+", impact88.__version__)
+    assert re.fullmatch(r"\d+\.\d+\.\d+(\.dev\d+)?", impact88.__version__)
     assert version("impact88") == impact88.__version__
 
 
@@ -125,3 +127,28 @@ def test_every_public_name_is_there_whatever_was_imported_before(name: str) -> N
     module = import_module(f"impact88.{place or name}")
     public = getattr(impact88, name)
     assert public is (getattr(module, inner or name) if place else module)
+
+
+def test_the_commit_is_said_where_it_is_known(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A distribution holds it, a checkout is asked, and any other copy does not know."""
+    from impact88 import version as module
+
+    folder = tmp_path / "port" / "impact88"
+    folder.mkdir(parents=True)
+    monkeypatch.setattr(module, "__file__", str(folder / "version.py"))
+    assert module.commit() is None
+    assert module.full_version() == impact88.__version__
+    git = ["git", "-C", str(tmp_path), "-c", "user.name=a", "-c", "user.email=a@example.org"]
+    if shutil.which("git"):
+        subprocess.run([*git, "init", "-q"], check=True)
+        (tmp_path / "file").write_text("1", "utf-8")
+        subprocess.run([*git, "add", "file"], check=True)
+        subprocess.run([*git, "commit", "-q", "-m", "first"], check=True)
+        head = subprocess.check_output([*git, "rev-parse", "HEAD"], text=True).strip()
+        assert module.commit() == head[:12]
+        (tmp_path / "file").write_text("2", "utf-8")
+        assert module.commit() == f"{head[:12]}-dirty"
+    (folder / "commit.txt").write_text("0123456789ab\n", "ascii")
+    assert module.full_version() == f"{impact88.__version__} (commit 0123456789ab)"

@@ -132,7 +132,7 @@ def test_links_work_wherever_readme_is_shown() -> None:
     assert [link for link in links if not link.startswith("#")] == []
 
 
-PAGES = ["README.md", "port/GUIDE.md", "port/README.md", "tests/README.md"]
+PAGES = ["README.md", "port/GUIDE.md", "port/README.md", "port/CHANGELOG.md", "tests/README.md"]
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -101,6 +101,29 @@ def test_faithful_path_imports_no_third_party(name: str) -> None:
         }, module
 
 
+def needed(name: str) -> set[str]:
+    """A module and all that it imports, and they in turn, on first use too."""
+    seen, waiting = set(), {name}
+    while waiting:
+        module = waiting.pop()
+        seen.add(module)
+        waiting |= rooms()[module] - seen
+    return seen
+
+
+GROUND = {f"impact88.{name}" for name in ("names", "fields", "doubles", "errors")}
+"""Tables of names and fields, decimal text to double, and the error users are shown."""
+FAITHFUL = {"impact88.program.listing", "impact88.program.arithmetics"}
+
+
+def test_the_faithful_path_needs_no_other_room() -> None:
+    """Whatever else this project grows, what prints the 1988 digits stands alone."""
+    for name in sorted(FILES):
+        if name in FAITHFUL or name.startswith("impact88.applesoft"):
+            own = {n for n in needed(name) if n.startswith("impact88.applesoft")}
+            assert needed(name) <= own | FAITHFUL | GROUND, name
+
+
 def test_no_module_name_is_used_twice() -> None:
     """A traceback, a test and a search name a module by its last part."""
     names = Counter(

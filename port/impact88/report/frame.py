@@ -14,7 +14,7 @@ from typing import Any
 
 from .. import native
 from ..errors import library
-from ..version import __version__
+from ..version import full_version
 
 PAPERS = {"letter": "8.5in 11in", "a4": "210mm 297mm"}
 """Paper -> its size in CSS."""
@@ -78,7 +78,7 @@ def capture_hashes() -> list[tuple[str, str]]:
 def versions() -> dict[str, str]:
     """Versions of this package, of Python and numpy, and the machine."""
     return {
-        "impact88": __version__,
+        "impact88": full_version(),
         "python": f"{platform.python_implementation()} {platform.python_version()}",
         # importlib.metadata would import email and socket
         "numpy": getattr(sys.modules.get("numpy"), "__version__", "not installed"),
