@@ -42,7 +42,8 @@ def _text(stream: io.TextIOWrapper) -> str:
 
 def process(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:
     """Run ``impact88 ARGUMENTS`` as a process of its own, text in and out as UTF-8."""
-    options.setdefault("input", "")
+    if "stdin" not in options:
+        options.setdefault("input", "")
     return subprocess.run(
         [COMMAND, *arguments],
         capture_output=True,

@@ -1,9 +1,10 @@
 """The ] prompt of an Apple II Plus with the restored listing loaded: LIST it, retype a line, RUN.
 With a file: load that program, run it, and leave when it ends.
 
-At the prompt LOAD FILE and SAVE FILE read and write program text (not with --no-dos), control-C
-breaks a running program, control-D leaves. Graphics, tape, paddles, shapes and machine code are
-tokenised and listed, but not done: ?SYNTAX ERROR.
+FILE holds numbered lines as they are typed or as LIST prints them, in rows of any width, or a
+tokenised program as disk tools extract it. At the prompt LOAD FILE reads such a file and SAVE FILE
+writes text (not with --no-dos), control-C breaks a running program, control-D leaves. Graphics,
+tape, paddles, shapes and machine code are tokenised and listed, but not done: ?SYNTAX ERROR.
 
 examples:
   impact88 basic                          the restored listing at the prompt
@@ -13,16 +14,20 @@ examples:
 exit status: 0 the program ended; 1 an Applesoft error, or more than --max-statements; 2 bad input
 """
 
+import os
 import signal
 import sys
 from contextlib import ExitStack, suppress
+from stat import S_ISREG
+from typing import IO
 
 from ..applesoft.console import EndOfInput
 from ..applesoft.errorcodes import ApplesoftError
 from ..emulator.emulator import Applesoft
 from ..emulator.faults import TooManyStatements
+from ..emulator.programfile import read_program
 from ..errors import UserError, note
-from ..files import called, packaged_text, read_text, replacing, typed_line
+from ..files import called, packaged_bytes, read_bytes, replacing, typed_line
 from ..program.run import page
 from . import options
 from .run_command import MACHINE, check_slot
@@ -126,7 +131,9 @@ def main(args: options.Args) -> int:
             if args.prompt or not args.program:
                 if terminal.person:
                     print(BANNER.format("it" if args.program else "the 1988 listing"))
-                machine.prompt(lambda line: not args.no_dos and _disk_command(machine, terminal))
+                machine.prompt(
+                    lambda line: not args.no_dos and _disk_command(machine, terminal, args.printer)
+                )
                 print()
         except TooManyStatements:
             terminal.end_row()
@@ -140,15 +147,47 @@ def main(args: options.Args) -> int:
 def load_program(machine: Applesoft, path: str | None) -> None:
     """Load a file, or the restored listing. Raises UserError."""
     if path is None:
-        text, where = packaged_text("impact88.legacy", LISTING), LISTING
+        data, where = packaged_bytes("impact88.legacy", LISTING), LISTING
     else:
-        text, where = read_text(path, limit=PROGRAM_LIMIT), called(path)
+        data, where = read_bytes(path, limit=PROGRAM_LIMIT), called(path)
     try:
-        machine.load(text)
-    except ValueError as error:
+        program = read_program(data)
+        machine.machine.load(program.lines)
+    except UserError as error:
         raise UserError(f"{error}; expected a program, one numbered line a row", where) from None
     except ApplesoftError:
         raise UserError("does not fit into 48K", where) from None
+    for remark in program.remarks:
+        note("basic", f"{where}: {remark}")
+
+
+def _same_file(path: str, stream: IO[str]) -> bool:
+    """Return whether a stream reads or writes the regular file of that name."""
+    try:
+        file = os.stat(path)
+        return S_ISREG(file.st_mode) and os.path.samestat(file, os.fstat(stream.fileno()))
+    except (OSError, ValueError, AttributeError):  # no such file; a stream closed or of no file
+        return False
+
+
+def save_program(machine: Applesoft, path: str, printer: str | None) -> None:
+    """Write the program as text, and say on stderr if it is not what the machine holds. Raises
+    UserError, also for a file that this command reads or writes otherwise."""
+    if printer and os.path.realpath(path) == os.path.realpath(printer):
+        raise UserError("is the printer's paper; expected another file", path)
+    if any(_same_file(path, stream) for stream in (sys.stdin, sys.stdout, sys.stderr)):
+        raise UserError("is the input or the output of this command; expected another file", path)
+    text = machine.source()
+    with replacing(path) as file:
+        file.write(text)
+    try:
+        lines = read_program(text).lines
+    except UserError as error:
+        note("basic", f"{path}: text cannot hold this program: {error}")
+        return
+    held = [line for line in machine.machine.lines() if line not in lines]
+    if held:
+        note("basic", f"{path}: text cannot hold line {held[0][0]} as it is; LOAD makes another")
 
 
 def _run_file(machine: Applesoft, terminal: Terminal, *, stay: bool) -> int:
@@ -171,7 +210,7 @@ def _run_file(machine: Applesoft, terminal: Terminal, *, stay: bool) -> int:
     return int(error is not None)
 
 
-def _disk_command(machine: Applesoft, terminal: Terminal) -> bool:
+def _disk_command(machine: Applesoft, terminal: Terminal, printer: str | None) -> bool:
     """LOAD and SAVE, which the disk system would take; whether the last line was one."""
     word, _, name = terminal.last.strip().partition(" ")
     name = name.strip()
@@ -181,8 +220,7 @@ def _disk_command(machine: Applesoft, terminal: Terminal) -> bool:
         if word == "LOAD":
             load_program(machine, name)
         else:
-            with replacing(name) as file:
-                file.write(machine.source())
+            save_program(machine, name, printer)
     except UserError as error:
         note("basic", str(error))
     return True

@@ -12,6 +12,7 @@ from ..applesoft.real import to_stored
 from .faults import Fault, Restart
 from .machine import Machine
 from .memory import AFTER_TYPING, INPUT_BUFFER, INTEGER, MARKS, STRING
+from .programfile import read_program
 from .tokens import LINE_LIMIT, split_number, tokenise, untokenised
 
 PROMPT = "]"
@@ -79,28 +80,23 @@ class Applesoft:
     def screen_text(self) -> str:
         return self.machine.screen.text()
 
-    def load(self, text: str) -> None:
-        """A program from text, one numbered line a row, in place of the one there is. Small letters
-        are capitals outside quotes and remarks. Raises ValueError, naming the row, for one without
-        a number up to 63999 or longer than could be typed, and ApplesoftError OUT OF MEMORY; the
-        program that was there stays then."""
-        lines: list[tuple[int, bytes]] = []
-        for row, line in enumerate(text.split("\n"), 1):
-            if not line.strip():
-                continue
-            try:
-                numbered = split_number(line.rstrip("\r"))
-            except ValueError as error:
-                raise ValueError(f"row {row}: {error}") from None
-            if numbered is None:
-                raise ValueError(f"row {row} has no line number")
-            number, rest = numbered
-            tokens = tokenise(rest, folded=True)
-            if len(tokens) > LINE_LIMIT:
-                has = f"row {row} has {len(tokens)} characters and keywords"
-                raise ValueError(f"{has}; a line that can be typed has {LINE_LIMIT}")
-            lines.append((number, tokens))
-        self.machine.load(lines)
+    def load(self, program: str | bytes) -> None:
+        """Load a program in place of the one there is.
+
+        Parameters
+        ----------
+        program : str or bytes
+            Numbered lines, or the bytes of a file: a text as it is typed or as LIST prints it, or a
+            tokenised program (see `programfile.read_program`).
+
+        Raises
+        ------
+        UserError
+            For what is no program; names the row. The program that was there stays.
+        ApplesoftError
+            OUT OF MEMORY; the program that was there stays.
+        """
+        self.machine.load(read_program(program).lines)
 
     def type_line(self, text: str) -> ApplesoftError | None:
         """What the machine does with a line typed at the prompt, small letters as capitals. Returns

@@ -10,14 +10,18 @@ from ..applesoft.real import Number, integer
 from .expressions import Expressions, byte_of
 from .faults import Fault, fault_if, located
 from .memory import ADDRESSES, DIGITS, DIRECT, HEADER, INPUT_BUFFER, MINUS
+from .programfile import INDENT, WRAP_COLUMN
 from .screen import HEIGHT, WIDTH
-from .tokens import CLOSE, COLON, COMMA, DATA, FIRST, QUOTE, SEMICOLON, TOKENS, spelling
+from .tokens import CLOSE, COLON, COMMA, DATA, QUOTE, SEMICOLON, TOKENS, listed
 from .variables import IS_STRING, descriptor
 
 TAB, SPC = TOKENS["TAB("], TOKENS["SPC("]
-ZONE, LAST_ZONE_FROM, WRAP_COLUMN, INDENT, LAST_NUMBER = 16, 24, 33, 5, 0xFFFF
-"""Columns of the ROM: a comma's zones, and from where on it begins a new line; from where on LIST
-goes on in the next row after a character or a keyword, indented; and its last line's number."""
+ZONE = 16
+"""Columns from one of a comma's zones to the next."""
+LAST_ZONE_FROM = 24
+"""The column from which on a comma begins a new row."""
+LAST_NUMBER = 0xFFFF
+"""The last line that LIST looks for."""
 IN_ROM, IN_STACK_PAGE = 0xD000, 0x100
 """Where messages and the digits of a number stand; only the page counts."""
 FROM_REPLY, FROM_KEY, FROM_DATA, BAD_REPLY, BREAK_CODE, AFTER_GET = 0, 0x40, 0x98, 254, 255, 0xFF40
@@ -126,7 +130,7 @@ class InputOutput(Expressions):
             self.show_number(integer(number))
             self.put(" ")
             for byte in ram[line + HEADER : ram.index(0, line + HEADER)]:
-                self.put(chr(byte) if byte < FIRST else f" {spelling(byte)} ")
+                self.put(listed(byte))
                 if self.screen.column >= WRAP_COLUMN:
                     self.put("\n")
                     self.screen.column = INDENT

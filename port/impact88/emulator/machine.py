@@ -515,9 +515,9 @@ class Machine(InputOutput):
             address = self.word(address)
 
     def load(self, lines: Iterable[tuple[int, bytes]]) -> None:
-        """Put lines in place of the program. Raises OUT OF MEMORY, and changes nothing then."""
-        numbered = sorted(dict(lines).items())
-        image = b"".join(_linked(*line) for line in numbered if line[1]) + END_MARK
+        """Put lines, in their order, in place of the program. Raises OUT OF MEMORY, and changes
+        nothing then."""
+        image = b"".join(_linked(*line) for line in lines) + END_MARK
         fault_if(self.txttab + len(image) >= self.memsiz, "OUT OF MEMORY", self.sp)
         self.ram[self.txttab : self.txttab + len(image)] = image
         self.vartab = self.txttab + len(image)

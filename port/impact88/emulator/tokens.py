@@ -101,18 +101,22 @@ def split_number(text: str) -> tuple[int, str] | None:
 
 
 def untokenised(tokens: bytes) -> str:
-    """Statement text that tokenises into ``tokens``: blanks stand around keywords, except after REM
-    and DATA, whose text is kept. PRINT is written as a question mark where its letters would make
-    another word with those before: ``PO?``."""
+    """Return statement text that tokenises into ``tokens``: blanks stand around keywords, except
+    after REM and DATA, whose text is kept. PRINT is written as a question mark where its letters
+    would make another word with those before: ``PO?``. Between a colon and REM or DATA stands no
+    blank, so that a line is not taken for LIST's, which puts one of its own before their text."""
     for print_word in ("PRINT", "?"):
         text, keyword = "", False
-        for byte in tokens:
+        for place, byte in enumerate(tokens):
             keyword = byte >= FIRST and byte not in (REM, DATA)
             if byte < FIRST:
                 text += chr(byte)
                 continue
             word = print_word if byte == PRINT else spelling(byte)
-            text += word if not text or text.endswith((" ", "(")) else f" {word}"
+            apart = text and not text.endswith((" ", "("))
+            if not keyword and text.endswith(":") and place < len(tokens) - 1:
+                apart = False
+            text += f" {word}" if apart else word
             if keyword and not word.endswith("("):
                 text += " "
         text = text.rstrip(" ") if keyword else text
@@ -126,3 +130,8 @@ def spelling(token: int) -> str:
     after a zero that ends the table and the word."""
     index = token - FIRST
     return _LISTED[index] if index < len(_LISTED) else ""
+
+
+def listed(byte: int) -> str:
+    """What LIST writes for a byte of a line."""
+    return chr(byte) if byte < FIRST else f" {spelling(byte)} "

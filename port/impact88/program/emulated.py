@@ -90,8 +90,7 @@ class ListingCopy:
         data = files.read_bytes(path, LARGEST_COPY)
         self.file, self.sha256 = files.called(path), sha256(data).hexdigest()
         try:
-            text = data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
-            self._lines = _listed(text)
+            self._lines = _listed(data)
         except (ValueError, ApplesoftError) as error:
             raise UserError(f"is not an Applesoft program: {error}", path) from None
         if not self._lines:
@@ -151,10 +150,10 @@ def _items(statement: str, verb: str) -> list[str]:
     return [item.strip() for item in match["items"].split(",")] if match and found else []
 
 
-def _listed(text: str) -> dict[int, list[str]]:
+def _listed(program: str | bytes) -> dict[int, list[str]]:
     """The statements of a program by line, as LIST shows them."""
     machine = Applesoft()
-    machine.load(text)
+    machine.load(program)
     pairs = (line.strip().partition(" ") for line in machine.source().splitlines())
     return {int(number): list(_statements(rest)) for number, _, rest in pairs}
 
