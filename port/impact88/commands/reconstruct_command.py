@@ -27,9 +27,11 @@ IA = "estimate +- 20%" (impact88 scene --help says from what).
 PDOF: where the force comes from, clockwise from the vehicle's front (A faces TA + 180, B faces TB).
 A vehicle that skids to rest: SAF = "skid 62 ft at 0.7 +- .05" is the speed v = sqrt(2 MU g D).
 
-EM says how much of the relative spin the moment at C gives back: 0, the vehicles spin alike after
-the impact; -1, the moment is elastic; +1, there is none. Typical values, fitted to eleven staged
-collisions (Table 2, Section V; speed changes and energy lost depend little on EM):
+EM says how much of the relative spin, as the impulse alone would make it, the moment at C leaves
+(Equation 18): 0, none, the vehicles spin alike after the impact; -1, a third of it, in the same
+direction (nothing is reversed; RR0 in the results is that part); +1, all, there is no moment.
+Typical values, fitted to eleven staged collisions (Table 2, Section V; speed changes and energy
+lost depend little on EM):
 
   E     0 to .26, half of them below .075
   EM    near -.5 front to front and front to rear; -.43 to -.91 front to side

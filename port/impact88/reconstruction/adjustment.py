@@ -20,6 +20,7 @@ from ..errors import UserError
 from ..mappings import within_limits
 from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, SCENE, VELOCITIES, check_names
 from ..uncertainty.uncertain import Uncertain, fixed
+from .evidence import Evidence, weigh
 from .geometry import GEOMETRY, with_point_masses, within_doubles
 from .state import COURSES, DIRECTIONS, FORCES, KNOWABLE, OTHERS, QUANTITIES, SPEEDS, State
 from .system import PARAMETERS, SPINS, System
@@ -342,14 +343,40 @@ class Reconstruction:
         return tuple(names) if len(rows) == null.shape[1] else ()
 
     @cached_property
-    def _responses(self) -> Floats:
-        """Of the scaled variables (rows) to an error of each observation by its deviation."""
+    def _unit_responses(self) -> tuple[Floats, Floats]:
+        """Return how scaled variables (rows) answer to an error of each observation by its
+        deviation, and which part of such an error each observation's own adjustment shows."""
         jacobian = self.system.slopes(self.x)
         count = len(self.system.conditions)
         _, free = pseudo_inverse(jacobian[:count])
         narrowed, _ = pseudo_inverse(jacobian[count:] @ free)
-        fits = self.assumed and self.redundancy
-        return np.asarray(free @ narrowed * (np.sqrt(self.squares / fits) if fits else 1.0))
+        responses = np.asarray(free @ narrowed)
+        return responses, 1 - np.einsum("ij,ji->i", jacobian[count:], responses)
+
+    @property
+    def _responses(self) -> Floats:
+        # of assumed tolerances nothing but the misfit is known
+        return np.asarray(self._unit_responses[0] * (self.evidence.widening if self.assumed else 1))
+
+    @cached_property
+    def evidence(self) -> Evidence:
+        """The verdict on the evidence: whether the measured values can all be true."""
+        return self.weighed()
+
+    @within_doubles
+    def weighed(self, inside: bool | None = None) -> Evidence:
+        """Return the verdict on the evidence; ``inside``: whether an impact lies within all limits
+        at once."""
+        shown = dict(zip(self.system.observations, self._unit_responses[1].tolist(), strict=True))
+        known = self.system.known
+        values = {
+            a.name: (
+                *(a.measured, a.adjusted),
+                *((a.adjusted - a.measured) / known[a.name].standard_deviation, shown[a.name]),
+            )
+            for a in self.adjusted
+        }
+        return weigh(self.squares, self.redundancy, values, inside, self.assumed)
 
     @within_doubles
     def responses(self, names: Sequence[str]) -> Floats:
@@ -359,7 +386,8 @@ class Reconstruction:
 
     @within_doubles
     def deviations(self, names: Sequence[str]) -> dict[str, float]:
-        """First-order standard deviations."""
+        """Return first-order standard deviations, as the tolerances make them: of values that
+        contradict one another they say nothing until multiplied by ``evidence.widening``."""
         sizes = np.sqrt(np.square(self.responses(names)).sum(axis=1))
         return dict(zip(names, sizes.tolist(), strict=True))
 

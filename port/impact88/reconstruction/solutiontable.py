@@ -83,6 +83,10 @@ class Impact:
         self.ranges: Mapping[str, Any] = {}
         self.drivers: Mapping[str, Sequence[tuple[str, float]]] = {}
 
+    def headline(self, units: System) -> Sequence[tuple[str, str]]:
+        """Return what is said before the answer: label and text."""
+        return ()
+
     def warnings(self, units: System = RULES) -> list[str]:
         """What a reader must know, in sentences."""
         return sentences(int(self.values.get("STATUS", 0)), self.values)
@@ -151,7 +155,7 @@ class Impact:
                 text += f", between {ends[0]} and {ends[1]}" if ends and all(ends) else ""
             return text
 
-        rows = []
+        rows = [*self.headline(units)]
         vehicles = "A" if math.isinf(values.get("MB", math.inf)) else "AB"
         for vehicle in vehicles:
             text, course = size(vehicle, name := f"S{vehicle}"), f"H{vehicle}"

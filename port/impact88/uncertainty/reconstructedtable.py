@@ -30,8 +30,6 @@ MOST_CORRELATED = 7
 """Columns of correlations: what 96 characters hold."""
 ILL_POSED = 0.25
 """From this share of the largest speed, a velocity's standard deviation is called ill-posed."""
-TOO_FAR = 3.0
-"""From so many tolerances on an adjustment is called a contradiction."""
 
 
 def _along_an_axis(solution: Reconstruction, name: str) -> bool:
@@ -79,11 +77,18 @@ class Measured(Impact):
         if samples and names and not solution.assumed:
             self.draws = draws(solution, names, samples, seed, progress)
             self.ranges = ranges(solution, names, seed, self.draws, progress)
+        infeasible = any(math.isnan(bound.lower) for bound in self.ranges.values())
+        self.evidence = solution.weighed(False if infeasible else None)
+        if not solution.assumed:
+            self.deviations = {n: x * self.evidence.widening for n, x in self.deviations.items()}
         self.drivers: dict[str, list[tuple[str, float]]] = {}
         for name, responses in zip(names, solution.responses(names), strict=True):
             shares = responses**2 / (np.square(responses).sum() or 1.0)
             ranked = np.argsort(-shares, kind="stable")
             self.drivers[name] = [(solution.system.observations[i], shares[i]) for i in ranked]
+
+    def headline(self, units: System) -> list[tuple[str, str]]:
+        return [("EVIDENCE", self.evidence.text(units))]
 
     @within_doubles
     def warnings(self, units: System = RULES) -> list[str]:
@@ -102,9 +107,6 @@ class Measured(Impact):
                 "neither sign of MU is the one that line 400 gives it: no friction that opposes "
                 "the sliding before the impact joins what is known"
             )
-        moved = [
-            f"{a.name} by {number(a.moved, 2)}" for a in solution.adjusted if abs(a.moved) > TOO_FAR
-        ]
         if solution.assumed:
             unit = f" {units.label('length')}" if units is not RULES else ""
             lines.append(
@@ -113,9 +115,10 @@ class Measured(Impact):
                 f"{number(units.shown('length', solution.system.gyration), 4)}{unit}); "
                 "deviations are those of the misfit"
             )
-        elif moved:
+        elif self.evidence.contradictory:
             lines.append(
-                f"the measured values contradict one another: moved, tolerances: {', '.join(moved)}"
+                f"{self.evidence.text(units)}; standard deviations are widened "
+                f"{number(self.evidence.widening, 3)} times"
             )
         lines += self._ill_posed(units)
         if any(math.isnan(bound.lower) for bound in self.ranges.values()):
@@ -226,6 +229,7 @@ class Measured(Impact):
             "adjusted": adjusted,
             "redundancy": solution.redundancy,
             "sum_of_squares": solution.squares,
+            "evidence": self.evidence.as_json(units),
             "equal_tolerances_assumed": solution.assumed,
             "uncertainty": {name: self._uncertain(name, units) for name in self.names},
             "correlations": {"names": self.names, "matrix": self.correlations},
@@ -263,8 +267,40 @@ class Reconstructions(list[Reconstruction]):
 
 
 def reconstruct(known: Mapping[str, Uncertain | float | str]) -> Reconstructions:
-    """`reconstruction.adjustment.reconstruct`, whose result a notebook can show.
+    """Return every impact that agrees with what is known of it.
 
+    Equations 13 to 18 hold exactly, and so do exact values. Where more is known than needed, values
+    with a tolerance are adjusted by least squares.
+
+    Parameters
+    ----------
+    known : mapping of str to float, str or Uncertain
+        What is known, by name (``UX`` ... ``WB``, ``VAX`` ... ``WBF``, ``E``, ``EM``, ``MU`` or
+        ``MUP``, ``SA``, ``HA``, ``DVA``, ``PDOFA``, ``EL`` and so on), in one consistent set of
+        units. The vehicles and their geometry must be known. A number is exact; a text such as
+        ``"41 +- 2"`` or an `Uncertain` is known within its tolerance. M is 6 where left out.
+
+    Returns
+    -------
+    list of Reconstruction
+        Possible impacts before those that break physics, each group ordered by the sum of squared
+        adjustments. Each has ``values``, ``adjusted``, ``evidence`` (whether the measurements can
+        all be true), ``deviations(names)`` and ``scene()``.
+
+    Raises
+    ------
+    UserError
+        For a name or a value that cannot be used, and for exact values that contradict one another
+        beside others with a tolerance.
+    UnsolvableError
+        Where what is known determines nothing of what is not.
+
+    Notes
+    -----
+    Equations 13 to 18 of the chapter; MU is the size of line 280, whose sign line 400 chooses.
+
+    Examples
+    --------
     >>> known = {name: text for name, text in impact88.sample(1).items() if name != "MU"}
     >>> best, *others = impact88.reconstruct({**known, "VAX": "-13.3 +- 0.5"})
     >>> round(best.values["VAX"], 1)

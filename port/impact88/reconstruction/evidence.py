@@ -1,0 +1,167 @@
+"""The verdict on the evidence: whether the measured values of a reconstruction can all be true.
+
+The sum of squared adjustments, each in standard deviations, of r values more than needed follows
+the chi-square distribution of r degrees of freedom where the tolerances are right (Mikhail and
+Ackermann, *Observations and Least Squares*, 1976). What a value adds to that sum, by which the sum
+falls when the value is left out, is the square of its standardized residual (Baarda, *A Testing
+Procedure for Use in Geodetic Networks*, 1968).
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..names import quantity
+from ..plaintable import number
+from ..units import RULES, System
+
+CONTRADICTION = 1e-3
+"""Values whose sum of squares is reached with less probability contradict one another: one set of
+true measurements in a thousand is accused."""
+STRAIN = 0.05
+"""With less probability they agree poorly."""
+EQUALLY = 0.9
+"""Values that add at least this share of what the largest adds are named with it."""
+MOST_NAMED = 3  # values at odds that are named
+AGREE, STRAINED, CONTRADICT = "agree", "agree poorly", "contradict"
+UNCHECKED = "not checked"
+
+
+@dataclass(frozen=True)
+class AtOdds:
+    """One measured value against the others: ``residual``, how far it is off, in standard
+    deviations of that; ``without``: the probability of the sum of squares of the others alone, nan
+    where nothing would be left to check."""
+
+    name: str
+    measured: float
+    adjusted: float
+    residual: float
+    without: float
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """``verdict``: `AGREE`, `STRAINED`, `CONTRADICT` or, where nothing is known more than needed,
+    `UNCHECKED`; ``squares`` of ``redundancy`` values more than needed; ``probability`` of as many
+    or more, nan where not checked; ``at_odds``: the values most at odds with the others, the worst
+    first; ``inside``: whether an impact lies within all limits at once, None where that was not
+    asked; ``exact``: the values are exact, and deviations those of the misfit."""
+
+    verdict: str
+    squares: float
+    redundancy: int
+    probability: float
+    at_odds: Sequence[AtOdds]
+    inside: bool | None = None
+    exact: bool = False
+
+    @property
+    def contradictory(self) -> bool:
+        return self.verdict == CONTRADICT
+
+    @property
+    def widening(self) -> float:
+        """What standard deviations are multiplied by where the values contradict one another: the
+        root of the sum of squares over the redundancy; else 1."""
+        return math.sqrt(self.squares / self.redundancy) if self.contradictory else 1.0
+
+    def text(self, units: System = RULES) -> str:
+        """Return the verdict in a sentence or two."""
+        if self.verdict == UNCHECKED:
+            return "not checked: no more is known than needed, so no measurement tests another"
+        if self.exact:
+            return f"these exact values contradict one another; {self.named(units)}"
+        sums = (
+            f"sum of squared adjustments {number(self.squares, 3)} (sd) where about "
+            f"{self.redundancy} is expected; probability {number(self.probability, 2)}"
+        )
+        if not self.contradictory:
+            return f"the measurements {self.verdict}: {sums}"
+        if self.probability >= CONTRADICTION:
+            sums = f"no impact lies within all limits at once; {sums}"
+        return f"these measurements contradict one another; {self.named(units)}: {sums}"
+
+    def named(self, units: System = RULES) -> str:
+        """Return the values most at odds, each as measured and as adjusted."""
+        parts = []
+        for item in self.at_odds:
+            factor, unit = units.factor(item.name), units.unit(item.name)
+            amounts = (number(x * factor, 4) for x in (item.measured, item.adjusted))
+            text = " measured, ".join(amounts)
+            meaning = quantity(item.name).meaning
+            parts.append(f"{item.name} ({meaning}), {text} {unit}".rstrip() + " adjusted")
+        text = "most at odds: " + "; ".join(parts)
+        if len(self.at_odds) > 1:
+            text += ", each as much"
+        if not self.exact and self.at_odds and all(item.without >= STRAIN for item in self.at_odds):
+            any_one = "any one of them" if len(self.at_odds) > 1 else "it"
+            text += f"; without {any_one} the others agree"
+        return text
+
+    def as_json(self, units: System = RULES) -> dict[str, Any]:
+        """Return the same for a program."""
+        rows = [
+            {
+                "name": item.name,
+                "measured": item.measured * units.factor(item.name),
+                "adjusted": item.adjusted * units.factor(item.name),
+                "standardized_residual": item.residual,
+                "probability_without": item.without,
+            }
+            for item in self.at_odds
+        ]
+        return {
+            "verdict": self.verdict,
+            "text": self.text(units),
+            "probability": self.probability,
+            "within_all_limits": self.inside,
+            "most_at_odds": rows,
+        }
+
+
+def weigh(
+    squares: float,
+    redundancy: int,
+    values: Mapping[str, tuple[float, float, float, float]],
+    inside: bool | None = None,
+    exact: bool = False,
+) -> Evidence:
+    """Return the verdict on adjusted values.
+
+    ``values``: by name the measured and the adjusted value, the adjustment in standard deviations,
+    and the redundancy number (the part of an error of the value that its adjustment shows, 0 to 1).
+    """
+    if redundancy < 1:
+        return Evidence(UNCHECKED, squares, redundancy, math.nan, (), inside)
+    probability = chi_square_tail(squares, redundancy)
+    items = []
+    for name, (measured, adjusted, moved, shown) in values.items():
+        if shown > 1e-9:
+            residual = moved / math.sqrt(shown)
+            rest = max(squares - residual * residual, 0.0)
+            without = chi_square_tail(rest, redundancy - 1) if redundancy > 1 else 1.0
+            items.append(AtOdds(name, measured, adjusted, residual, without))
+    items.sort(key=lambda item: -abs(item.residual))
+    worst = [x for x in items if x.residual**2 >= EQUALLY * items[0].residual ** 2][:MOST_NAMED]
+    verdict = AGREE if probability >= STRAIN else STRAINED
+    if exact or probability < CONTRADICTION or inside is False:
+        verdict = CONTRADICT
+    probability = math.nan if exact else probability
+    return Evidence(verdict, squares, redundancy, probability, tuple(worst), inside, exact)
+
+
+def chi_square_tail(squares: float, freedom: int) -> float:
+    """Return the probability that a chi-square variate of ``freedom`` degrees, 1 or more, is at
+    least ``squares``: the finite sums of Abramowitz and Stegun 26.4.4 and 26.4.5."""
+    half = squares / 2
+    if half > 700:
+        return 0.0
+    odd = freedom % 2
+    total = math.erfc(math.sqrt(half)) if odd else 0.0
+    term = math.exp(-half) * (2 * math.sqrt(half / math.pi) if odd else 1.0)
+    for step in range((freedom - odd) // 2):
+        total += term
+        term *= half / (step + 1 + odd / 2)
+    return min(total, 1.0)
