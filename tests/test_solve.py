@@ -172,6 +172,53 @@ def test_momentum_is_conserved_and_the_energies_agree(data):
     assert np.all(np.abs(lost - r["LOSS"] * r["KI"] / 100) <= 1e-10 * (r["KI"] + r["KF"]))
 
 
+@pytest.mark.parametrize("name", ["casework", "pivots", "quarter-turns", "heavy", "em-half"])
+def test_the_energies_lost_are_the_work_of_each_impulse_and_sum_to_the_loss(name):
+    """Computed again from velocities and impulses alone."""
+    g = scenes(name, 400, 42)
+    r = solve(g)
+    ga = np.radians(g["GA"])
+    c, s = np.cos(ga), np.sin(ga)
+    before = r["XA"] - r["XB"], r["YA"] - r["YB"]
+    after = r["XAF"] - r["XBF"], r["YAF"] - r["YBF"]
+    x, y = (u + v for u, v in zip(before, after, strict=True))
+    spins = g["WA"] - g["WB"] + r["WAF"] - r["WBF"]
+    work = {
+        "ELN": -r["PN"] * (c * x + s * y) / 2,
+        "ELT": -r["PT"] * (c * y - s * x) / 2,
+        "ELM": -r["PM"] * spins / 2,
+    }
+    size = r["KI"] + np.abs(r["PN"] * np.hypot(x, y)) + np.abs(r["PT"] * np.hypot(x, y))
+    for part, expected in work.items():
+        assert np.all(np.abs(r[part] - expected) <= 1e-8 * size), part
+    lost = r["ELN"] + r["ELT"] + r["ELM"]
+    terms = np.abs(r["ELN"]) + np.abs(r["ELT"]) + np.abs(r["ELM"])
+    assert np.all(np.abs(lost - r["LOSS"] * r["KI"] / 100) <= 1e-14 * (r["KI"] + terms))
+
+
+def test_energy_equivalent_speeds():
+    """Each vehicle takes half of the loss, a car before a barrier all of it; none of a gain."""
+    g = scenes("casework", 200, 7)
+    r = solve(g)
+    lost = r["LOSS"] * r["KI"] / 100
+    taken = g["MA"] * r["EESA"] ** 2 / 2 + g["MB"] * r["EESB"] ** 2 / 2
+    np.testing.assert_allclose(taken, np.maximum(lost, 0), rtol=1e-12, atol=1e-9)
+    np.testing.assert_allclose(g["MA"] * r["EESA"] ** 2, g["MB"] * r["EESB"] ** 2, rtol=1e-12)
+    still = {"VX": 0, "VY": 0, "WB": 0}
+    wall = {**RUN_1, **still, "MB": np.inf, "IB": np.inf}
+    found = solve(wall)
+    lost = found["LOSS"] * found["KI"] / 100
+    assert found["EESA"] == pytest.approx(np.sqrt(2 * lost / RUN_1["MA"]), rel=1e-14)
+    assert found["EESB"] == 0
+    among = solve({**wall, "MB": np.array([120.0, np.inf]), "IB": np.array([2e3, np.inf])})
+    assert among["EESA"][1] == found["EESA"]
+    # head on into a wall without rebound the equivalent speed is the speed
+    square = {**wall, "E": 0, "MU": 0, "M": 4, "GA": 0, "UX": -50, "UY": 0}
+    assert solve(square)["EESA"] == pytest.approx(50, rel=1e-15)
+    gained = solve({**RUN_1, "GA": 150})
+    assert (gained["EESA"], gained["EESB"]) == (0, 0)
+
+
 def test_defining_equations_hold():
     """Equations 15, 16 and 18, from the results alone."""
     g = scenes("casework", 300, 11)

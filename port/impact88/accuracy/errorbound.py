@@ -93,7 +93,7 @@ def scales(scene: Mapping[str, Any], solved: Mapping[str, Any]) -> dict[str, Flo
         size = {
             **dict.fromkeys(RESULTS, speed),
             **dict.fromkeys(_SPINS, spin),
-            **dict.fromkeys(("KI", "KF"), 2 * energy),
+            **dict.fromkeys(("KI", "KF", "ELN", "ELT", "ELM"), 2 * energy),
             "LOSS": 200 * energy / np.abs(solved["KI"]),
             **dict.fromkeys(("PN", "PT"), 2 * mass * speed),
             "PM": 2 * np.fmax(inertia * spin, mass * speed * arm),

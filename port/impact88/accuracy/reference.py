@@ -213,8 +213,9 @@ def _contact_velocities(t: Terms, velocities: list[Any], suffix: str) -> dict[st
 
 
 def _energies(t: Exact, P: Sequence[Number], after: list[Number]) -> dict[str, Number]:
-    """Lines 320, 580, 590 and 690; the percentage by the work of the impulse at the mean of the
-    relative velocities before and after."""
+    """Lines 320, 580, 590 and 690; what is lost by the work of the impulse at the mean of the
+    relative velocities before and after; the energy equivalent speeds, half of the loss in each
+    body or all of it before a rigid one."""
     g, before = t.g, t.before()
     bodies = ["MA", "MA", "MB", "MB", *([] if t.point else ["IA", "IB"])]
 
@@ -225,14 +226,21 @@ def _energies(t: Exact, P: Sequence[Number], after: list[Number]) -> dict[str, N
 
     initial = energy(before)
     values = {"KI": initial, "KF": energy(after)}
+    (an, at, bn, bt), s, c = t.arms, t.s, t.c
+    ax, ay, bx, by, wa, wb = (u + v for u, v in zip(before, after, strict=True))
+    if t.point:
+        wa = wb = mpmath.mpf(0)
+    normal = total(c * ax, s * ay, -c * bx, -s * by, an * wa, bn * wb)
+    sliding = total(c * ay, -s * ax, -c * by, s * bx, at * wa, bt * wb)
+    moved = normal, sliding, total(wa, -wb)
+    # the impulse's work is half of its product with the sum of the velocities before and after
+    losses = [-p * v / 2 for p, v in zip(P, moved, strict=True)]
+    values |= dict(zip(("ELN", "ELT", "ELM"), losses, strict=True))
+    loss = total(*losses)
     if initial:
-        (an, at, bn, bt), s, c = t.arms, t.s, t.c
-        ax, ay, bx, by, wa, wb = (u + v for u, v in zip(before, after, strict=True))
-        if t.point:
-            wa = wb = mpmath.mpf(0)
-        normal = total(c * ax, s * ay, -c * bx, -s * by, an * wa, bn * wb)
-        sliding = total(c * ay, -s * ax, -c * by, s * bx, at * wa, bt * wb)
-        moved = normal, sliding, total(wa, -wb)
-        work = total(*(p * v for p, v in zip(P, moved, strict=True)))
-        values["LOSS"] = -50 * work / initial
+        values["LOSS"] = 100 * loss / initial
+    rigid = mpmath.isinf(g["MA"]) or mpmath.isinf(g["MB"])
+    part = max(loss, mpmath.mpf(0)) / (1 if rigid else 2)
+    for name, inverse in zip(("EESA", "EESB"), t.inverses[:2], strict=True):
+        values[name] = mpmath.sqrt(2 * part * inverse)
     return values

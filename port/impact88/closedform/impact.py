@@ -224,9 +224,26 @@ def impact(
     KI = kinetic_energy(inertias, (UX, UY, WA, VX, VY, WB))
     final_spins = unless_point(spin_a), unless_point(spin_b)
     KF = kinetic_energy(inertias, (VAX, VAY, final_spins[0], VBX, VBY, final_spins[1]))
-    # Twice the energy lost: the work of P and M at the mean relative velocities, negated. KI - KF
-    # would lose digits when little is lost.
-    lost = -(((1.0 - E) * gn) * PN + PT * (gt + slip) + PM * (gw + spins * H))
+    # Twice the energy lost by each impulse: its work at the mean of the relative velocities before
+    # and after, negated. KI - KF would lose digits when little is lost.
+    crushed, rubbed = ((1.0 - E) * gn) * PN, PT * (gt + slip)
+    twisted = PM * (gw + spins * H)
+    lost = -(crushed + rubbed + twisted)
+
+    # of an impact that gains energy nothing is left for crush; NaN stays NaN
+    twice_crush = table.choose(lost < 0.0, zero, lost)
+    root_of_all, root_of_half = table.root(twice_crush), table.root(0.5 * twice_crush)
+
+    def equivalent_speed(inverse_mass: Expression, other: Expression) -> Expression:
+        """The speed whose kinetic energy is the body's part of the loss: half, or all of it where
+        the other body is a rigid barrier. Roots apart: the product of a large energy and a large
+        inverse mass may overflow."""
+        own = root_of_half
+        if other.is_constant(inf):
+            own = root_of_all
+        elif infinite:
+            own = table.choose(table.equals(other, inf), root_of_all, root_of_half)
+        return own * table.root(inverse_mass)
 
     def change_size(inverse_mass: Expression) -> Expression:
         """Of a center's velocity, by operations that every machine rounds alike."""
@@ -254,6 +271,8 @@ def impact(
         **{"XBF": VBX - D1 * spin_b, "YBF": VBY + D2 * spin_b},
         **{"KI": KI, "KF": KF, "LOSS": (50.0 * lost) / KI, "COND": COND, "MUP": MUP},
         **{"MUC": critical_numerator / critical_denominator},
+        **{"ELN": -0.5 * crushed, "ELT": -0.5 * rubbed, "ELM": -0.5 * twisted},
+        **{"EESA": equivalent_speed(ma, MB), "EESB": equivalent_speed(mb, MA)},
         **{"DVA": change_size(ma), "DVB": change_size(mb)},
         "STATUS": sum(bits[1:], bits[0]),
     }
