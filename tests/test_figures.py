@@ -7,7 +7,7 @@ import os
 import re
 import subprocess
 import sys
-from itertools import combinations
+from itertools import combinations, permutations
 from xml.etree import ElementTree
 
 import numpy as np
@@ -791,3 +791,91 @@ class TestToScale:
         first, second = (path.read_text("utf-8") for path in (small, large))
         assert 'width="850mm"' in second
         assert first.partition("viewBox")[2] == second.partition("viewBox")[2]
+
+
+RENDERED = {
+    "scene": "scene --sample 1",
+    "point masses": "scene --sample 2",
+    "strip": "strip --sample 3",
+    "friction": "friction --sample 1",
+    "sweep": "sweep --sample 1 --sweep GA=-50:-10:21",
+    "histogram": "histogram --sample 1 --range MU=.5..1.2 --samples 500",
+    "tornado": "tornado --sample 1 --range MU=.5..1.2 --range UX=+-2",
+    "planar": "planar",
+    **{kind: kind for kind in command.OF_NOTHING},
+}
+RENDERED_DOTS = 120
+"""Per inch."""
+
+
+class TestRendered:
+    """Every kind as SVG, PNG and PDF, each painted by another program: one picture."""
+
+    @pytest.mark.parametrize("kind", RENDERED)
+    def test_one_picture_in_every_format(self, capsys, tmp_path, monkeypatch, kind):
+        resvg_py = pytest.importorskip("resvg_py")
+        pypdfium2 = pytest.importorskip("pypdfium2")
+        image = pytest.importorskip("PIL.Image")
+        from io import BytesIO
+
+        import matplotlib
+
+        monkeypatch.setattr(canvas, "DOTS_PER_INCH", RENDERED_DOTS)
+        for ending in canvas.FORMATS:
+            line = [*RENDERED[kind].split(), "-o", str(tmp_path / f"x.{ending}")]
+            assert main(["figure", *line]) == 0, capsys.readouterr().err
+        png = image.open(tmp_path / "x.png").convert("L")
+        page = pypdfium2.PdfDocument(tmp_path / "x.pdf")[0]
+        pdf = page.render(scale=RENDERED_DOTS / 72).to_pil().convert("L")
+        drawn = (tmp_path / "x.svg").read_text("utf-8")
+        fonts = matplotlib.get_data_path() + "/fonts/ttf"
+        drawn = resvg_py.svg_to_bytes(
+            svg_string=drawn,
+            dpi=96,
+            width=png.width,
+            background="#ffffff",
+            skip_system_fonts=True,
+            font_dirs=[fonts],
+        )
+        svg = image.open(BytesIO(bytes(drawn))).convert("L")
+        ink = {}
+        for name, picture in (("png", png), ("pdf", pdf), ("svg", svg)):
+            assert np.abs(np.subtract(picture.size, png.size)).max() <= 1, name
+            grey = np.asarray(picture.resize(png.size))
+            ink[name] = grey < 120, grey < 245
+            edge = np.concatenate([grey[0], grey[-1], grey[:, 0], grey[:, -1]])
+            assert edge.min() > 245, f"{name}: something touches the page's edge"
+        for one, other in permutations(ink, 2):
+            near = ink[other][1].copy()
+            for _ in range(3):  # dots
+                wider = near.copy()
+                wider[1:] |= near[:-1]
+                wider[:-1] |= near[1:]
+                wider[:, 1:] |= near[:, :-1]
+                wider[:, :-1] |= near[:, 1:]
+                near = wider
+            alone = ink[one][0] & ~near
+            assert not alone.any(), f"{alone.sum()} dots of {one} are not in {other}"
+
+    def test_an_outline_is_closed_in_every_format(self, tmp_path, monkeypatch):
+        """An open outline that ends where it began keeps its last edge: matplotlib's Polygon
+        drops it."""
+        image = pytest.importorskip("PIL.Image")
+        monkeypatch.setattr(canvas, "DOTS_PER_INCH", 50.8)
+        corners = (10 - 10j, 30 - 10j, 30 - 30j, 10 - 30j, 10 - 10j)
+        for dash in ((), (3.0, 1.0)):
+            drawing = Drawing(40, "a square", height=40, items=[Path(corners, "#000000", 1, dash)])
+            canvas.save(drawing, str(tmp_path / "x.png"))
+            dark = np.asarray(image.open(tmp_path / "x.png").convert("L")) < 128
+            edges = dark[20, 22:58], dark[60, 22:58], dark[22:58, 20], dark[22:58, 60]
+            for edge in edges:
+                assert edge.mean() > (0.6 if dash else 0.99)
+
+    def test_a_title_that_does_not_print_is_shown_with_escapes(self, tmp_path):
+        title = "Main \x1b[31m and \u202e4th\x00 \ud800"
+        drawing = scene_drawing(sample(1), title=title)
+        canvas.save(drawing, str(tmp_path / "x.svg"))
+        shown = ElementTree.parse(tmp_path / "x.svg").getroot()[0].text
+        assert shown == r"Main \x1b[31m and \u202e4th\x00 \ud800"
+        for ending in ("png", "pdf"):
+            canvas.save(drawing, str(tmp_path / f"x.{ending}"))

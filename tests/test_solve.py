@@ -189,8 +189,8 @@ def test_the_energies_lost_are_the_work_of_each_impulse_and_sum_to_the_loss(name
         "ELM": -r["PM"] * spins / 2,
     }
     size = r["KI"] + np.abs(r["PN"] * np.hypot(x, y)) + np.abs(r["PT"] * np.hypot(x, y))
-    for part, expected in work.items():
-        assert np.all(np.abs(r[part] - expected) <= 1e-8 * size), part
+    for name_of_loss, expected in work.items():
+        assert np.all(np.abs(r[name_of_loss] - expected) <= 1e-8 * size), name_of_loss
     lost = r["ELN"] + r["ELT"] + r["ELM"]
     terms = np.abs(r["ELN"]) + np.abs(r["ELT"]) + np.abs(r["ELM"])
     assert np.all(np.abs(lost - r["LOSS"] * r["KI"] / 100) <= 1e-14 * (r["KI"] + terms))

@@ -48,7 +48,9 @@ ARGUMENTS = (
 
 def main(args: options.Args) -> None:
     from ..report.findings import report, write_workbook
+    from ..report.frame import check_page_name
 
+    check_page_name(args.output)
     source = options.source_of(args)
     if source is None or bool(args.scene) == bool(args.sample):
         raise UserError(options.ONE_EXPECTED)

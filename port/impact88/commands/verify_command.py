@@ -63,6 +63,10 @@ def main(args: options.Args) -> int:
     for option in _ON_REPORT:
         if getattr(args, option) and not args.report:
             raise UserError(f"--{option} is for the report; expected --report FILE.html with it")
+    if args.report:
+        from ..report.frame import check_page_name
+
+        check_page_name(args.report)
     asked = args.scene or args.sample or args.set
     given = dict(options.one_scene(args)) if asked else None
     copy = None

@@ -6,6 +6,7 @@ import contextlib
 import logging
 import os
 import sys
+from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ from .drawing import MM_PER_POINT, Drawing, Path, Text, dashes, text_runs
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from matplotlib.path import Path as Outline
 
 FORMATS = ("svg", "png", "pdf")
 DOTS_PER_INCH = 300
@@ -58,12 +60,32 @@ def _role(role: str) -> str:
     return f' class="{escape(role)}"' if role else ""
 
 
+def _pieces(path: Path) -> Sequence[tuple[complex, ...]]:
+    """Return the lines that a path draws: dashes as pieces of their own, because some renderers
+    know no dashed strokes and others start them elsewhere."""
+    return dashes(path.points, path.dash) if path.dash and not path.fill else [path.points]
+
+
+def _outline(path: Path) -> Outline:
+    """Return the path for matplotlib. Its Polygon would drop the last point of an open outline
+    that ends where it began."""
+    from matplotlib.path import Path as Outline
+
+    vertices: list[tuple[float, float]] = []
+    codes: list[int] = []
+    for piece in _pieces(path):
+        vertices += [(point.real, point.imag) for point in piece]
+        codes += [Outline.MOVETO, *[Outline.LINETO] * (len(piece) - 1)]
+    if path.fill:
+        vertices.append(vertices[0])
+        codes.append(Outline.CLOSEPOLY)
+    return Outline(vertices, codes)
+
+
 def _path(path: Path) -> str:
-    # dashes as pieces of their own: some renderers know no stroke-dasharray
-    pieces = dashes(path.points, path.dash) if path.dash and not path.fill else [path.points]
     steps = " ".join(
         "M" + " L".join(f"{_number(point.real)} {_number(-point.imag)}" for point in piece)
-        for piece in pieces
+        for piece in _pieces(path)
     )
     close = "Z" if path.fill else ""
     look = f'fill="{path.fill or "none"}"'
@@ -124,7 +146,7 @@ def _quiet() -> Any:
 def painted(drawing: Drawing) -> Figure:
     """The drawing as a matplotlib figure of exactly its size, tied to no screen."""
     from matplotlib.figure import Figure
-    from matplotlib.patches import Polygon
+    from matplotlib.patches import PathPatch
     from matplotlib.patheffects import Stroke
 
     size, points = drawing.enlarged, drawing.enlarged / MM_PER_POINT
@@ -135,15 +157,12 @@ def painted(drawing: Drawing) -> Figure:
     halo = [Stroke(linewidth=0.5 * points, foreground="white")]
     for order, item in enumerate(drawing.items, 10):
         if isinstance(item, Path):
-            dashes = tuple(part / item.width for part in item.dash)
             axes.add_patch(
-                Polygon(
-                    [(point.real, point.imag) for point in item.points],
-                    closed=bool(item.fill),
+                PathPatch(
+                    _outline(item),
                     facecolor=item.fill or "none",
                     edgecolor=item.stroke or "none",
                     linewidth=points * item.width if item.stroke else 0,
-                    linestyle=(0, dashes) if dashes else "-",
                     joinstyle="round",
                     zorder=order,
                 )

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import UserError
+from ..errors import UserError, printable
 
 DRAWABLE = 1e100
 """The largest number that is drawn: products of some must be doubles too."""
@@ -153,6 +153,12 @@ class Drawing:
     items: list[Path | Text] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
     enlarged: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Show what does not print in a user's title as an escape: no SVG may hold a control
+        character, and a mark may turn the writing direction of all that follows."""
+        self.title = printable(self.title)
+        self.description = printable(self.description)
 
     def add(self, *items: Path | Text | Label) -> None:
         """Draw something over all that is there, or note a label."""

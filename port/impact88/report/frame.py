@@ -4,6 +4,7 @@ A page is one HTML file without any other, laid out for Letter or A4 when a brow
 same input gives the same bytes: nothing on it comes from a clock.
 """
 
+import os
 import platform
 import sys
 from collections.abc import Sequence
@@ -13,7 +14,7 @@ from importlib import resources
 from typing import Any
 
 from .. import native
-from ..errors import library
+from ..errors import UserError, library, printable
 from ..version import full_version
 
 PAPERS = {"letter": "8.5in 11in", "a4": "210mm 297mm"}
@@ -39,7 +40,9 @@ def render(
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
+        finalize=_printed,
     )
+    title, case = printable(title), printable(case)
     running = f"Case {case}" if case else title
     page = environment.get_template(template).render(
         title=title,
@@ -52,6 +55,22 @@ def render(
         **content,
     )
     return f"{page}\n"
+
+
+def _printed(value: Any) -> Any:
+    """Return a text of the user's with escapes for what does not print; markup as it is."""
+    return printable(value, "\n\t") if type(value) is str else value
+
+
+def check_page_name(path: str) -> None:
+    """Raise UserError where the name of a page to be written promises another format."""
+    ending = os.path.splitext(path)[1].lower()
+    if ending not in ("", ".html", ".htm"):
+        raise UserError(
+            f"a report is an HTML page; expected a name that ends in .html (a browser prints it, "
+            f"also to PDF), not in {ending}",
+            path,
+        )
 
 
 @lru_cache(maxsize=1)
