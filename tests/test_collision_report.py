@@ -140,3 +140,28 @@ def test_a_sample_and_changed_values(tmp_path: Path, capsys: Any) -> None:
     assert "44.4" in text  # percent of the kinetic energy, as in the guide
     assert main(asked) == 2
     assert "expected one scene" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["x.pdf", "x.docx", "x.PDF", "x.txt"])
+def test_a_page_is_not_written_under_another_formats_name(
+    tmp_path: Path, capsys: Any, name: str
+) -> None:
+    path = tmp_path / name
+    assert main(["report", "--sample", "1", "-o", str(path)]) == 2
+    assert main(["verify", str(tmp_path / "p.txt"), "--report", str(path)]) == 2
+    said = capsys.readouterr().err
+    assert said.count("expected a name that ends in .html") == 2
+    assert not path.exists()
+
+
+def test_what_does_not_print_is_shown_with_escapes(tmp_path: Path) -> None:
+    source, page = tmp_path / "case.toml", tmp_path / "case.html"
+    lines = [f'{name} = "{value}"' for name, value in sample(1).items()]
+    head = ['title = "Main \\u001b[31m and \\u202e4th"', 'case = "7\\u0007"']
+    source.write_text("\n".join([*head, *lines, 'MA_source = "a\\u202eb"']), encoding="utf-8")
+    assert main(["report", str(source), "-o", str(page), "--samples", "0"]) == 0
+    text = page.read_text("utf-8")
+    assert text.replace("\n", "").isprintable()
+    assert r"Main \x1b[31m and \u202e4th" in text
+    assert r"Case 7\x07" in text
+    assert r"a\u202eb" in text

@@ -38,6 +38,7 @@ from impact88.figures.drawing import (
 from impact88.figures.scenegeometry import plan
 from impact88.figures.sceneview import scene_drawing, scene_svg
 from impact88.figures.views import configurations
+from impact88.names import RESULTS, SCENE, quantity
 from impact88.scene import Scene, sample
 from impact88.uncertainty.bounds import bounds
 from impact88.uncertainty.ranges import read_inputs
@@ -404,6 +405,15 @@ class TestText:
         assert second.imag < first.imag
         assert second.real == pytest.approx(text_width("V", 10))
 
+    @pytest.mark.parametrize("name", [*RESULTS, *SCENE])
+    def test_a_symbol_is_one_letter_with_its_whole_subscript(self, name):
+        """v_ax is v with ax below, not v with a below and x beside."""
+        symbol = quantity(name).symbol
+        runs = pieces(symbol)
+        if "_" in symbol and "/" not in symbol:
+            assert [below for _, below in runs] == [False, True], runs
+            assert runs[1][0] == symbol.partition("_")[2]
+
     def test_labels_keep_off_lines_and_texts(self):
         drawing = Drawing(60, "t", height=60)
         drawing.items += arrow(30 - 55j, 30 - 5j)
@@ -670,6 +680,29 @@ class TestCharts:
 
 
 class TestCommand:
+    def texts(self, capsys, tmp_path, line):
+        """The texts of a figure, and its dark lines' roles, from its SVG."""
+        path = tmp_path / "x.svg"
+        assert main(["figure", *line.split(), "-o", str(path)]) == 0, capsys.readouterr().err
+        root = ElementTree.parse(path).getroot()
+        texts = ["".join(e.itertext()) for e in root if e.tag.endswith("text")]
+        return texts, [e.get("class") for e in root if e.tag.endswith("path")]
+
+    def test_axes_are_named_without_remarks_and_the_unit_one(self, capsys, tmp_path):
+        texts, _ = self.texts(capsys, tmp_path, "sweep --sample 1 --sweep MU=0:1:11")
+        assert "equivalent friction coefficient" in texts
+        assert not [text for text in texts if ";" in text or text.endswith(", 1")]
+
+    def test_a_line_in_a_bar_only_where_the_result_goes_beyond_its_ends(self, capsys, tmp_path):
+        line = "tornado --sample 1 --range MU=.5..0.9 --range UX=+-2 --outputs DVA"
+        texts, roles = self.texts(capsys, tmp_path, line)
+        assert "whisker" not in roles
+        assert "in between" not in texts
+        line = "tornado --sample 1 --range GA=+-40 --outputs DVA"
+        texts, roles = self.texts(capsys, tmp_path, line)
+        assert roles.count("whisker") == 2
+        assert "in between" in texts
+
     def run(self, capsys, *arguments):
         status = main(["figure", *arguments])
         out, err = capsys.readouterr()
@@ -832,7 +865,7 @@ class TestRendered:
         drawn = resvg_py.svg_to_bytes(
             svg_string=drawn,
             dpi=96,
-            width=png.width,
+            zoom=RENDERED_DOTS / 96,
             background="#ffffff",
             skip_system_fonts=True,
             font_dirs=[fonts],
@@ -840,8 +873,8 @@ class TestRendered:
         svg = image.open(BytesIO(bytes(drawn))).convert("L")
         ink = {}
         for name, picture in (("png", png), ("pdf", pdf), ("svg", svg)):
-            assert np.abs(np.subtract(picture.size, png.size)).max() <= 1, name
-            grey = np.asarray(picture.resize(png.size))
+            assert np.ptp([picture.size, png.size], axis=0).max() <= 2, name
+            grey = np.asarray(picture)[: png.height, : png.width]
             ink[name] = grey < 120, grey < 245
             edge = np.concatenate([grey[0], grey[-1], grey[:, 0], grey[:, -1]])
             assert edge.min() > 245, f"{name}: something touches the page's edge"

@@ -72,7 +72,7 @@ def _outline(path: Path) -> Outline:
     from matplotlib.path import Path as Outline
 
     vertices: list[tuple[float, float]] = []
-    codes: list[int] = []
+    codes: list[Any] = []
     for piece in _pieces(path):
         vertices += [(point.real, point.imag) for point in piece]
         codes += [Outline.MOVETO, *[Outline.LINETO] * (len(piece) - 1)]
@@ -204,7 +204,10 @@ def save(drawing: Drawing, path: str) -> None:
         about |= {"Subject": drawing.description, "CreationDate": None}
     with _quiet(), matplotlib.rc_context():
         matplotlib.rcdefaults()
-        matplotlib.rcParams.update({"font.family": "DejaVu Sans", "pdf.fonttype": 42})
+        # without hinting a text is as wide as the layout reckons with, at any resolution
+        matplotlib.rcParams.update(
+            {"font.family": "DejaVu Sans", "pdf.fonttype": 42, "text.hinting": "no_hinting"}
+        )
         figure = painted(drawing)
         with replacing(path, "wb") as file:
             figure.savefig(file, format=ending, dpi=DOTS_PER_INCH, metadata=about)

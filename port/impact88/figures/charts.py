@@ -26,6 +26,8 @@ sweep, ten a millimetre; the largest friction coefficient swept."""
 _LEFT, _TOP, _BELOW, _DASHED, _DOTTED = 13.0, 6.0, 3.3, (1.3, 0.8), (0.4, 0.6)
 """In mm: room for the numbers left of a panel and the name above it; from the axis down to the
 numbers' baseline; dashes told apart in print."""
+_CLEAR = 2.0
+"""In mm: from an axis's name to the page's edge, at least."""
 _UNPHYSICAL, _PALE = "#f7dfae", "#c6dff0"
 
 MARKS = {"o": (24, 0), "s": (4, 45), "D": (4, 0), "^": (3, 90), "v": (3, -90), ">": (3, 0)}
@@ -85,6 +87,13 @@ def powers(low: float, high: float, step: int) -> list[tuple[float, str]]:
     ]
 
 
+def label_lines(drawing: Drawing, box: Box, label: str) -> list[str]:
+    """Return the lines of the name below an axis: in its middle, and clear of the page's edges."""
+    middle = (box.left + box.right) / 2
+    beside = min(middle, drawing.width - middle) - _CLEAR
+    return d.wrapped(label, min(box.width + 8, 2 * beside))
+
+
 class Panel:
     """Two axes around ``box``; the numbers stand below and left of it, the upper axis's name above
     it, the lower one's below. ``x`` and ``y`` are (lowest, highest), on a grid if ``log``."""
@@ -109,7 +118,7 @@ class Panel:
         corner, right, _, top = box.corners
         for end in (right, top):
             drawing.add(Path((corner, end), BLACK, 0.2, role="axis"))
-        up, left = 1j * box.height, -1.5 - 0.8j
+        up, left = 1j * box.height, -2.0 - 0.8j
         for axis, given, inward, outward, shift, look in (
             (self.x, x_ticks, up, -0.9j, -1j * _BELOW, ("middle", "x tick")),
             (self.y, y_ticks, box.width, -0.9, left, ("end", "y tick")),
@@ -122,9 +131,8 @@ class Panel:
                     drawing.add(Path((at, at + inward), "#dddddd", 0.14, role="grid"))
                 drawing.add(Path((at, at + outward), BLACK, 0.2, role="tick"))
                 drawing.add(Text(at + shift, text, anchor=look[0], role=look[1]))
-        room = box.width + 8
         at = complex((box.left + box.right) / 2, box.bottom - _BELOW - ROW + 0.2)
-        for line in d.wrapped(x_label, room) if x_label else []:
+        for line in label_lines(drawing, box, x_label) if x_label else []:
             drawing.add(Text(at, line, anchor="middle", role="x label"))
             at -= 1j * ROW
         if y_label:
@@ -191,9 +199,14 @@ def key(drawing: Drawing, y: float, *entries: tuple[str, str, Any], note: str = 
 
 
 def _label(name: str, units: System) -> str:
+    """The name of an axis: the quantity's meaning, without what its table says besides, and the
+    unit where it has one."""
     what = quantity(name)
+    meaning: str = what.meaning.partition(";")[0]
+    if what.unit == "1":
+        return meaning
     unit = {"percent": "%"}.get(what.unit, units.label(what.unit))
-    return f"{what.meaning}, {unit}"
+    return f"{meaning}, {unit}"
 
 
 def _check_count(outputs: Sequence[str]) -> None:
@@ -270,7 +283,8 @@ def tornado(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
         low, high = result.limits[source]
         amount = f"{short(low)} … {short(high)} {units.unit(source)}".strip()
         texts[source] = f"{quantity(source).symbol}  {amount}"
-    left = max(d.text_width(text, TEXT) for text in texts.values()) + 3.5
+    left = max(d.text_width(text, TEXT) for text in texts.values()) + 4.5
+    beyond = False
     top = drawing.heading() - 2
     for name in names:
         bound = result.bounds[name]
@@ -289,10 +303,17 @@ def tornado(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
                 start, stop = panel.at(bound.nominal, -place), panel.at(value, -place)
                 bar = d.extent((start - 1.3j, stop + 1.3j)).corners
                 drawing.add(Path(bar, d.BLUE, 0.2, fill=colour, role=f"{source} {end}"))
-            panel.line([drive.lowest, drive.highest], [-place] * 2, BLACK, 0.3, role="whisker")
+            # only where the result goes beyond what the input's limits give
+            inner = bound.nominal, drive.at_low, drive.at_high
+            for whisker in ((drive.lowest, min(inner)), (max(inner), drive.highest)):
+                if whisker[1] - whisker[0] > 1e-9 * (limits[0][1] - limits[0][0]):
+                    panel.line(whisker, [-place] * 2, BLACK, 0.3, role="whisker")
+                    beyond = True
         panel.rule(bound.nominal, role="nominal")
-        top = box.bottom - 11.5 - ROW * (len(d.wrapped(_label(name, units), box.width + 8)) - 1)
-    looks = (("at its upper limit", d.BLUE, None), ("in between", BLACK, ()))
+        top = box.bottom - 11.5 - ROW * (len(label_lines(drawing, box, _label(name, units))) - 1)
+    looks: list[tuple[str, str, Any]] = [("at its upper limit", d.BLUE, None)]
+    if beyond:
+        looks.append(("in between", BLACK, ()))
     drawing.height = 2 - key(drawing, top, ("at its lower limit", d.WHITE, None), *looks)
     return drawing
 
@@ -325,7 +346,7 @@ def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]
     impact is unphysical. Raises UserError for more results than fit a page."""
     _check_count(outputs)
     units = system_of(getattr(scene, "units", None))
-    titles = (f"Results against {quantity(name).meaning}", _label(name, units))
+    titles = (f"Results against {quantity(name).meaning.partition(';')[0]}", _label(name, units))
     own, words = numbers_of(scene)[name], ("this scene", "unphysical: see STATUS")
     groups = [[output] for output in outputs]
     return _along(scene, name, np.asarray(values), groups, own, ~0, titles, words)

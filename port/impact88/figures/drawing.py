@@ -69,7 +69,7 @@ class Path(NamedTuple):
 
 
 class Text(NamedTuple):
-    """One line at its baseline. ``_x`` and ``_{xy}`` in ``text`` are subscripts; ``anchor`` is
+    """One line at its baseline. ``_xy`` and ``_{x, y}`` in ``text`` are subscripts; ``anchor`` is
     start, middle or end; ``size`` in points."""
 
     at: complex
@@ -181,7 +181,7 @@ class Drawing:
 
 def pieces(text: str) -> list[tuple[str, bool]]:
     """``text`` cut at its subscripts: (piece, whether it is one)."""
-    found = re.finditer(r"_\{([^}]*)\}|_(.?)|[^_]+", text)
+    found = re.finditer(r"_\{([^}]*)\}|_([^\W_]+)|_|[^_]+", text)
     return [(m[1] or m[2] or "", True) if m[0][0] == "_" else (m[0], False) for m in found]
 
 
