@@ -10,8 +10,8 @@ from math import pi
 
 import pytest
 
+from impact88.case import in_base_units as in_base
 from impact88.errors import UserError
-from impact88.scene import in_base_units as in_base
 
 FOOT, POUND = Fraction("0.3048"), Fraction("0.45359237")
 SLUG = POUND * Fraction("9.80665") / FOOT

@@ -369,11 +369,16 @@ def test_what_was_estimated_is_said_and_outlines_are_kept(client: Client) -> Non
     lines = [f'{n} = "{t}"' for n, t in sample(1).items() if n != "IA"]
     text = "\n".join([*lines, 'IA = "estimate"', "LA = 15", "BA = 6"])
     read = client.post("scene?name=s", text.encode()).json
-    assert float(read["values"]["IA"]) == pytest.approx(143.5 * (15**2 + 6**2) / 12, rel=1e-3)
-    assert "is estimated: MA (LA² + BA²)/12" in read["remarks"][0]
+    assert read["values"]["IA"] == "estimate"
     asked = {"values": {**read["values"], **read["extra"]}, "title": "", "units": ""}
     assert "A drawn as measured, 15 by 6." in client.post("figure", asked).get_data(as_text=True)
-    assert b'LA = "15"' in client.post("file/collision", asked).data
+    told = client.post("collision", asked).json
+    inertia = float(told["oracle"]["scene"]["IA"])
+    assert inertia == pytest.approx(143.5 * (15**2 + 6**2) / 12, rel=1e-3)
+    assert "is estimated: MA (LA² + BA²)/12" in told["remarks"][0]
+    saved = client.post("file/collision", asked).data
+    assert b"LA = 15" in saved
+    assert b'IA = "estimate"' in saved
     known = client.post("known?name=k", text.encode()).json
     assert known["values"]["IA"] == read["values"]["IA"]
 
@@ -381,8 +386,11 @@ def test_what_was_estimated_is_said_and_outlines_are_kept(client: Client) -> Non
 def test_a_contact_point_in_a_vehicles_own_axes_is_worked_out(client: Client) -> None:
     text = "".join(f'{n} = "{t}"\n' for n, t in sample(1).items() if n not in ("DA", "PA"))
     read = client.post("scene?name=s", (text + "CAF = 3\nCAL = 4\n").encode()).json
-    assert float(read["values"]["DA"]) == 5
-    assert float(read["values"]["PA"]) == pytest.approx(53.13010235)
+    assert read["extra"] == {"CAF": "3", "CAL": "4"}
+    asked = {"values": {**read["values"], **read["extra"]}, "title": "", "units": ""}
+    scene = client.post("collision", asked).json["oracle"]["scene"]
+    assert float(scene["DA"]) == 5
+    assert float(scene["PA"]) == pytest.approx(53.13010235)
 
 
 @pytest.mark.parametrize("number", [1, 2, 3])
@@ -420,7 +428,7 @@ def test_an_unusable_scene_file_is_named(client: Client, data: bytes, problem: s
 def test_the_figure_is_the_commands_own(client: Client, tmp_path: Path, own: Own) -> None:
     path = tmp_path / "scene.svg"
     own("figure", "scene", "--sample", "3", "-o", str(path))
-    drawn = client.post("figure", {"values": dict(sample(3)), "title": sample(3).title})
+    drawn = client.post("figure", client.post("sample/3").json)
     _, _, element = path.read_text(encoding="utf-8").partition("?>\n")
     assert drawn.get_data(as_text=True) == element
 

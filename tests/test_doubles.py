@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from impact88.applesoft import decimaltext
+from impact88.case import check_value
 from impact88.cli import main
 from impact88.doubles import double, doubles, is_number
 from impact88.errors import UserError
-from impact88.scene import check_value
 from impact88.tables.cells import TableUnits, numbers
 from impact88.tables.rows import Rows
 from impact88.uncertainty import uncertain

@@ -73,7 +73,7 @@ class TestFromTheSize:
     def test_beside_a_known_inertia_it_is_an_outline(self):
         found = estimated(MA="100", LA="15", BA="6")
         assert found["IA"] == sample(1)["IA"]
-        assert found.entries.outlines == {"LA": 15.0, "BA": 6.0}
+        assert found.case.outlines == {"LA": 15.0, "BA": 6.0}
         assert not found.estimated
 
     @pytest.mark.parametrize(
@@ -126,4 +126,6 @@ class TestMarks:
         assert main(["reconstruct", str(tmp_path / "r.toml"), "--for", "UX,VX", "--json"]) == 0
         shown = capsys.readouterr()
         assert "impact88: IA = 3745 +- 15% is estimated" in shown.err
-        assert main(["reconstruct", str(tmp_path / "r.toml"), "--set", "IA=estimate"]) == 2
+        again = ["reconstruct", str(tmp_path / "r.toml"), "--set", "IA=estimate", "--for", "UX,VX"]
+        assert main(again) == 0
+        assert "impact88: IA = 3745 is estimated" in capsys.readouterr().err

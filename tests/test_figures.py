@@ -219,7 +219,7 @@ class TestPlan:
 
     def test_units_and_title_are_shown(self, tmp_path):
         path = tmp_path / "us.toml"
-        text = sample(1).to_toml().replace("title = ", 'units = "us"\ntitle = ', 1)
+        text = sample(1).to_toml().replace('units = "chapter"', 'units = "us"', 1)
         path.write_text(text, encoding="utf-8")
         scene = Scene.from_toml(str(path))
         drawing = scene_drawing(scene, solved(scene), title=scene.title)
@@ -278,7 +278,7 @@ class TestPlan:
         length = abs(shaft.points[0] - head.points[0])
         shown = abs(np.subtract(*bar.points))
         assert shown / length == pytest.approx(10 / 29.04)
-        assert any(text.text == "speed 10" for text in drawing.texts())
+        assert any(text.text == "10 ft/s" for text in drawing.texts())
         length = one(drawing, "length scale")
         side = np.subtract(*one(drawing, "A whole").points[1:3])
         shown = abs(np.subtract(*length.points) / side)
@@ -453,7 +453,7 @@ class TestCanvas:
             canvas.save(drawing, str(path))
             assert path.read_bytes().startswith(start)
             # what a reader who cannot see it misses goes with it; the drawing's words are texts
-            assert b"Vehicle A: speed 29.04 before" in path.read_bytes()
+            assert b"Vehicle A: speed 29.04 ft/s before" in path.read_bytes()
         assert sorted(p.suffix for p in tmp_path.iterdir()) == [".pdf", ".png", ".svg"]
 
     def test_nobody_elses_settings_change_a_figure(self, tmp_path, monkeypatch):
@@ -778,14 +778,14 @@ class TestToScale:
     def test_measured_outlines_are_drawn_and_said(self):
         text = sample(1).to_toml() + "LA = 16\nBA = 6\n"
         scene = Scene.from_toml_text(text, "s.toml")
-        a, b = plan(scene, None, scene.entries.outlines).vehicles
+        a, b = plan(scene, None, scene.case.outlines).vehicles
         assert (a.length, a.width) == (16, 6)
         assert b.length / b.width == pytest.approx(2.6)
         drawing = scene_drawing(scene, solved(scene))
         notes = " ".join(text.text for text in drawing.texts() if text.role == "note")
-        assert "A drawn as measured, 16 by 6." in notes
+        assert "A drawn as measured, 16 by 6 ft." in notes
         assert "Outline of B from I/m" in notes
-        assert f"Closing speed {math.hypot(29.04 + 14.52, 25.15):.4g}." in notes
+        assert f"Closing speed {math.hypot(29.04 + 14.52, 25.15):.4g} ft/s." in notes
 
     def test_force_and_change_of_velocity(self):
         scene = sample(1)

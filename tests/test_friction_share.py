@@ -46,7 +46,7 @@ def test_a_scene_has_the_share(number: int, share: int) -> None:
     found = {name: float(x) for name, x in solve(scene.numbers(), ("MUP", "MUC", "STATUS")).items()}
     assert found["MUP"] == pytest.approx(share / 100 * found["MUC"], rel=1e-12)
     assert found["STATUS"] == {120: 4096, -10: 8192}.get(share, 0)
-    assert f"is {share} % of the critical friction" in scene.entries.remarks["MU"]
+    assert f"is {share} % of the critical friction" in scene.remarks["MU"]
 
 
 def test_it_stays_the_share_when_the_scene_changes() -> None:

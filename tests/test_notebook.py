@@ -47,7 +47,7 @@ def test_verification(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
 
 
 def test_bounds(capsys: pytest.CaptureFixture[str]) -> None:
-    values: dict[str, Any] = impact88.sample(1).numbers()
+    values: dict[str, Any] = {**impact88.sample(1).numbers(), "units": "chapter"}
     values["MU"] = impact88.Uncertain("uniform", 0.8, 0.7, 0.9)
     answer = impact88.bounds(values, ["DVA"], samples=1000)
     asked = "--sample 1 --range MU=.7..0.9 --outputs DVA --samples 1000".split()

@@ -100,7 +100,10 @@ class TestNames:
     [
         ("reconstruct --sample 1", r"DELTA-V +A 16\.2.*\n +B 24\.2"),
         ("chapter delta-v --sample 3 --set LOSS=37.4", r"37\.4 +39\.0981 +25\.8856"),
-        ("chapter barrier --sample 1", r"BEFORE IMPACT +A 29, heading 180\nDELTA-V +A 37\.3"),
+        (
+            "chapter barrier --sample 1",
+            r"BEFORE IMPACT +A 29 ft/s \(19\.8 mph\), heading 180\nDELTA-V +A 37\.3",
+        ),
     ],
 )
 def test_a_sample_is_known_wherever_a_scene_is_read(

@@ -80,7 +80,7 @@ def _run(name: str, arguments: Sequence[str]) -> int:
     module = import_module(module_of(name))
     from .commands import options
     from .commands.helptext import Formatter
-    from .scene import known_template
+    from .scenefile import known_template
 
     parser = _Parser(
         prog=f"impact88 chapter {name}" if name in CHAPTER else f"impact88 {name}",

@@ -11,9 +11,10 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from .case import RANGES, Case, check_mapping, is_share
 from .doubles import digits, double
 from .errors import UserError, quoted
-from .scene import RANGES, Scene, check_mapping, entries_of, is_share
+from .scene import Scene
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,21 +32,38 @@ def in_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
 
 def _in_base(values: Mapping[str, Any]) -> tuple[Mapping[str, Any], str | None]:
     check_mapping(values)
+    if isinstance(values, Case):
+        return values.values, values.units
     texts = {name: value for name, value in values.items() if isinstance(value, str)}
     if isinstance(values, Scene) or not texts:
         return values, None
     if "units" in texts:
         texts |= {n: repr(v).upper() for n, v in values.items() if type(v) in (int, float)}
-    found = entries_of(texts, "values")
+    case = Case(texts, "values")
     kept = {name: value for name, value in values.items() if name not in texts}
-    if found.units:
+    if case.units:
         from .uncertainty.uncertain import Uncertain
-        from .units import system_of
 
         for n, v in kept.items():
-            factor = system_of(found.units).factor(n)
+            factor = case.system.factor(n)
             kept[n] = v.over(factor) if isinstance(v, Uncertain) else in_doubles(n, v) / factor
-    return {**kept, **found.values}, found.units
+    based = dict(case.values)
+    if "M" not in texts:  # where it is needed it is 6
+        del based["M"]
+    # a blank is no number, and is refused where it is looked at
+    based |= {n: text for n, text in texts.items() if not text.strip()}
+    if case.correlations:
+        based["correlations"] = case.correlations
+    return {**kept, **based}, case.units
+
+
+def base_system(values: Mapping[str, Any]) -> str | None:
+    """Return the name of the system whose units the values have in base units; None where they name
+    none."""
+    from .units import system_of
+
+    named = values.units if isinstance(values, Scene | Case) else _in_base(values)[1]
+    return None if named is None else system_of(named).base_name
 
 
 def in_doubles(name: str, values: Any) -> Array:
@@ -121,12 +139,15 @@ def texts(values: Mapping[str, Any]) -> dict[str, str]:
     """Every value as a text in base units; numbers by their shortest digits. Raises UserError."""
     check_mapping(values)
     given = {n: v if isinstance(v, str) else _shortest(n, v) for n, v in values.items()}
-    return entries_of(given, "values").values
+    return Case(given, "values").values
 
 
 def typed(values: Mapping[str, Any]) -> Scene:
     """A scene of such texts. Raises UserError."""
-    return values if isinstance(values, Scene) else Scene(texts(values))
+    if isinstance(values, Scene):
+        return values
+    check_mapping(values)
+    return Scene({n: v if isinstance(v, str) else _shortest(n, v) for n, v in values.items()})
 
 
 def _shortest(name: str, value: Any) -> str:

@@ -24,12 +24,12 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
-from math import inf
-from typing import NamedTuple, NoReturn
+from math import inf, isfinite
+from typing import Any, NamedTuple, NoReturn
 
 from .doubles import BARE, digits, double, is_number
 from .errors import UserError, quoted
-from .names import quantity
+from .names import PIVOT, quantity
 
 _FOOT = Fraction("0.3048")
 _POUND = Fraction("0.45359237")
@@ -151,14 +151,56 @@ def _product(text: str, arc: bool, force: bool) -> tuple[Dimension, Fraction, st
     return dimension, size, systems.pop() if systems else ""
 
 
+class Convention(NamedTuple):
+    """Directions other than the listing's. ``axes``: "sae": y to the right of x, angles and spins
+    clockwise; ``headings``: "compass": headings of the vehicles' fronts and courses clockwise from
+    north, which is y (with "sae" x)."""
+
+    axes: str = ""
+    headings: str = ""
+
+    def turned(self, name: str) -> tuple[int, int] | None:
+        """Return sign and offset (degrees) by which a value in the listing's axes is shown, and a
+        shown one read; None where it is the same."""
+        if self.headings and name in COURSES:
+            # A faces TA + 180
+            return -1, (0 if self.axes else 90) + (180 if name == "TA" else 0)
+        return (-1, 0) if self.axes and name in MIRRORED else None
+
+
+AXES = ("listing", "sae")
+"""What ``axes = "..."`` and ``--axes`` may say."""
+HEADINGS = ("listing", "compass")
+"""What ``headings = "..."`` and ``--headings`` may say."""
+COURSES = ("TA", "TB", "HA", "HB", "HAF", "HBF")
+"""Directions of vehicles and velocities."""
+MIRRORED = frozenset(
+    "UY WA VY WB VAY WAF VBY WBF YA YB YAF YBF GA PA PB TA TB HA HB HAF HBF PT PM MUP MUC "
+    "CAY CBY CY".split()
+)
+"""What has the other sign where y and the sense of turning are the other way round. Left and right,
+forward and PDOF are said in the vehicle, and stay."""
+
+
 class System(NamedTuple):
     """A consistent set and how its quantities are written. ``base``: sizes of its length and mass
     in m and kg (its time is the second); ``usual``: the unit of a bare number, by what it
-    measures."""
+    measures; ``convention``: directions, where they are not the listing's."""
 
     name: str
     base: tuple[Fraction, Fraction]
     usual: dict[str, str]
+    convention: Convention | None = None
+
+    @property
+    def is_bare(self) -> bool:
+        """Whether no units are given: rules stand for units, and values are shown as they are."""
+        return not self.usual
+
+    @property
+    def base_name(self) -> str:
+        """The name of the system that is shown in these base units."""
+        return "si" if self.base == _METRES else "chapter"
 
     def scale(self, rule: str) -> Fraction:
         """The size in m, kg, s and radians of one base unit of what ``rule`` measures."""
@@ -180,10 +222,26 @@ class System(NamedTuple):
         """What a quantity's value in base units is multiplied with to be shown."""
         return self.shown(quantity(name).unit, 1.0)
 
+    def displayed(self, name: str, value: Any) -> Any:
+        """Return values in base units and the listing's axes, numbers or arrays, as they are shown.
+        The factor is put right by the last digits, so that what was typed as -25 is -25 again."""
+        if isinstance(value, float) and isfinite(value):
+            return double(shown_text(name, digits(value), self))
+        turn = self.convention.turned(name) if self.convention else None
+        if turn is None:
+            factor = self.factor(name)
+            return value if factor == 1 else value * factor
+        sign, offset = turn
+        if self.convention and self.convention.headings and name in COURSES:
+            return (offset + sign * value) % 360.0
+        # the pivot's -10 is no friction
+        sign = 1 - 2 * (value != PIVOT) if name == "MUP" else sign
+        return sign * value * self.factor(name)
+
     def unit(self, name: str) -> str:
         """The unit a quantity is shown in; nothing for a mere number or where none is known."""
         label = self.label(quantity(name).unit)
-        known = self is not RULES and label not in (NUMBER, PERCENT, "bits")
+        known = not self.is_bare and label not in (NUMBER, PERCENT, "bits")
         return label if known else ""
 
     def heading(self, name: str) -> str:
@@ -212,12 +270,12 @@ RULES = System("", _METRES, {})
 def base_of(system: System) -> str:
     """The base units in words."""
     base = "m, kg, s" if system.base == _METRES else "ft, slug, s"
-    return base if system is not RULES else "any consistent units"
+    return base if not system.is_bare else "any consistent units"
 
 
 def gravity_in(system: System) -> float | None:
     """Standard gravity in the system's base units; None where there are no units."""
-    return None if system is RULES else float(_GRAVITY / system.base[0])
+    return None if system.is_bare else float(_GRAVITY / system.base[0])
 
 
 def system_of(name: str | None) -> System:
@@ -266,9 +324,9 @@ def check_unit(unit: str, rule: str, what: str, source: str) -> None:
 
 def written(values: Mapping[str, float], system: System) -> dict[str, float]:
     """Values in base units as they are shown."""
-    if system is RULES:
+    if system.is_bare and not system.convention:
         return dict(values)
-    return {name: value * system.factor(name) for name, value in values.items()}
+    return {name: system.displayed(name, value) for name, value in values.items()}
 
 
 ACCEPTED = (
@@ -450,7 +508,11 @@ class _Value:
                 continue
             bare = not amount.units and common is None
             if bare and strict and self.rule not in _UNITLESS and _fraction(amount.parts[0][0]):
-                raise UserError(f"{self.entry} has no unit, and others have", self.source)
+                raise UserError(
+                    f"{self.entry} has no unit, and others have; expected one, or the system of "
+                    f'bare numbers: units = "{system.name}" (--units {system.name})',
+                    self.source,
+                )
             numbers.append(self._number(amount, common or system.usual.get(self.rule, ""), system))
         return self.notation.layout.format(*numbers).lstrip()
 
@@ -508,9 +570,11 @@ def nominal(name: str, text: str, source: str) -> str:
     if first is None:
         raise UserError(f"{name} = {text!r} is not an amount; {ACCEPTED}", source)
     numbers = [a.sign + a.parts[0][0] for a in (first, amounts[-1]) if a]
+    shares = name in SHARED and any("%" in amount.units for amount in amounts if amount)
+    share = " %" if shares else ""
     if kind not in ("range", "uniform"):
-        return numbers[0]
-    return digits(float(sum(map(_fraction, numbers)) / 2))
+        return numbers[0] + share
+    return digits(float(sum(map(_fraction, numbers)) / 2)) + share
 
 
 def _taken_apart(name: str, text: str, source: str) -> tuple[str, list[_Value]]:
@@ -551,9 +615,9 @@ def in_base(
     system = system or system_using(
         [use for _, values in held.values() for value in values for use in value.uses], source
     )
-    strict = strict and system is not RULES
+    strict = strict and not system.is_bare
     for name, (layout, values) in held.items():
-        if values and (system is not RULES or not BARE.issuperset(entries[name])):
+        if values and (not system.is_bare or not BARE.issuperset(entries[name])):
             entries[name] = layout.format(*(v.based(system, strict) for v in values))
     return entries, system.name or None
 
@@ -564,9 +628,102 @@ def converted(name: str, text: str, system: System) -> str:
     return layout.format(*(v.based(system, False) for v in values)) if values else text
 
 
+def convention_named(axes: str | None, headings: str | None, source: str) -> Convention | None:
+    """Return the convention of that name; None for the listing's own. Raises UserError."""
+    for name, text, known in (("axes", axes, AXES), ("headings", headings, HEADINGS)):
+        if text and text.lower() not in known:
+            expected = " or ".join(f'"{word}"' for word in known)
+            raise UserError(f"{name} = {quoted(text)}; expected {expected}", source)
+    chosen = Convention(*((text or "").lower().replace("listing", "") for text in (axes, headings)))
+    return chosen if any(chosen) else None
+
+
+def in_listing_axes(texts: Mapping[str, str], system: System, source: str) -> dict[str, str]:
+    """Return texts in base units, from the directions of ``system`` to the listing's. Raises
+    UserError."""
+    assert system.convention is not None
+    turns = {name: system.convention.turned(name) for name in texts}
+    return {
+        name: text if turn is None else turned(name, text, *turn, source)
+        for name, text in texts.items()
+        for turn in [turns[name]]
+    }
+
+
+def opposite(text: str) -> str:
+    """Return a number, or limits, in base units with the other sign."""
+    return turned("", text, -1, 0)
+
+
+def turned(name: str, text: str, sign: int, offset: int, source: str = "") -> str:
+    """Return a number, or limits, of ``offset + sign * value``."""
+    if name in SHARED and "%" in text:
+        raise UserError(f"{name} = {text}: a share has no sign to turn; expected MU", source)
+    try:
+        kind, amounts, _, layout = parse(text)
+    except ValueError:
+        raise UserError(f"{name} = {quoted(text)} is not an amount; {ACCEPTED}", source) from None
+    if name == "MUP" and kind == "fixed" and double(text) == PIVOT:
+        return text
+    numbers = [amount.sign + amount.parts[0][0] if amount else "" for amount in amounts]
+    places = {"around": 1, "normal": 1, "triangular": 3}.get(kind, len(numbers))
+    turned = [_number_turned(text, sign, offset) if text else "" for text in numbers[:places]]
+    numbers = [
+        *(reversed(turned) if kind in ("range", "uniform", "triangular") else turned),
+        *(numbers[places:2] if kind == "normal" else numbers[places:]),
+    ]
+    if kind == "normal" and len(amounts) == 4:
+        ends = [amount.sign + amount.parts[0][0] for amount in amounts[2:] if amount]
+        numbers += [_number_turned(text, sign, offset) for text in reversed(ends)]
+    return layout.format(*numbers).lstrip()
+
+
+def _number_turned(text: str, sign: int, offset: int) -> str:
+    """Return ``offset + sign * value`` of a number, its digits kept where only the sign changes."""
+    if not double(text):
+        return str(offset) if offset else text
+    if not offset and sign < 0:
+        return text[1:] if text[0] == "-" else "-" + text.removeprefix("+")
+    return digits(float(offset + sign * _fraction(text)))
+
+
+def middle_of(name: str, text: str, system: System, source: str) -> str:
+    """Return the middle of a text as it was written, with its unit: what a tolerance alone is
+    around."""
+    if text.strip().startswith("estimate"):
+        return "estimate"
+    try:
+        kind, amounts, *_ = parse(text)
+    except ValueError:
+        return text
+    common = {unit for amount in amounts if amount for unit in amount.units}
+    unit = common.pop() if len(common) == 1 else ""
+    first = amounts[1 if kind == "triangular" else 0]
+    if first is None:
+        return ""
+    if kind not in ("range", "uniform"):
+        words = [f"{number} {own or unit}".strip() for number, own in first.parts]
+        return first.sign + " ".join(words)
+    ends = [amount for amount in amounts if amount]
+    if all(len(end.parts) == 1 for end in ends) and (unit or not any(e.units for e in ends)):
+        middle = (
+            sum(_fraction(end.parts[0][0]) * (-1 if end.sign == "-" else 1) for end in ends) / 2
+        )
+        return f"{digits(float(middle))} {unit}".strip()
+    based = nominal(name, converted(name, text, system), source)
+    rule = quantity(name).unit
+    base = SYSTEMS[system.base_name].usual.get(rule, "")
+    return f"{based} {base}".strip()
+
+
 def shown_text(name: str, text: str, system: System) -> str:
-    """A number in base units as one of the system's usual units: the fewest digits that are read
-    as the same number again; as it stands where no factor is needed."""
+    """A number in base units as one of the system's usual units, in its directions: the fewest
+    digits that are read as the same number again; as it stands where no factor is needed."""
+    turn = system.convention.turned(name) if system.convention else None
+    if turn and any(map(str.isdigit, text)) and "%" not in text:
+        text = turned(name, text, *turn)
+        if is_number(text) and turn[1]:
+            return digits(double(text) % 360.0)
     factor = system.factor(name)
     if factor == 1 or not is_number(text):
         return text

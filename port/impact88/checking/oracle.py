@@ -51,7 +51,7 @@ def answer(
             whole |= {"scene": {name: scene[name] for name in SCENE}, **next(answers)}
             if scene.units:
                 whole["units"] = base_of(system_of(scene.units))
-            if remarks := [*scene.entries.remarks.values()]:
+            if remarks := [*scene.remarks.values()]:
                 whole["remarks"] = remarks
         yield stamped("oracle", whole)
 

@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import native
+from ..case import check_mapping
 from ..errors import UserError
 from ..mappings import in_base, in_doubles
 from ..names import PIVOT, RESULTS, listed
 from ..native.program import addresses
 from ..processors import shared_out, workers
-from ..scene import check_mapping
 from ..status import Status
 from .columns import Source, examine, part, sources
 from .impactprograms import CIRCLE, program_for

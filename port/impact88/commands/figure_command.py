@@ -39,7 +39,7 @@ from ..figures.drawing import Drawing
 from ..figures.sceneview import scene_drawing
 from ..figures.views import colinear, configurations, planar, strip_drawing
 from ..names import FINAL_VELOCITIES, RESULTS, missing
-from ..scene import Scene, entries_in, numbers_of
+from ..scene import Scene, numbers_of
 from ..tables.sweep import read_ranges
 from . import options
 
@@ -112,21 +112,21 @@ def _drawn(args: options.Args) -> Drawing:
 
 def _barrier(args: options.Args) -> Drawing:
     """A vehicle against a barrier, its approach and its rebound."""
-    known, units = options.known_values(args, (*VEHICLE, "M"))
+    names = (*VEHICLE, "M")
+    case = options.known_case(args, names, single=True)
+    known = {name: item.nominal for name, item in options.read_known(case, names).items()}
     if absent := [name for name in VEHICLE if name not in known]:
         raise UserError(missing(absent), args.scene)
     found = barrier(known, ("VAX", "VAY", "WAF", "STATUS"))
     result = {name: value.item() for name, value in found.items()}
     # as heavy as a drawing needs it: an infinite mass has no outline
     wall = {"MB": 1e9 * known["MA"], "IB": 1e9 * known["IA"]}
-    file = args.scene not in (None, "-")
-    sizes = entries_in(args.scene, args.units, True).outlines if file else {}
     return scene_drawing(
         {**BARRIER, **known, **wall},
         {**result, "VBX": 0.0, "VBY": 0.0, "WBF": 0.0},
         title="Barrier",
-        units=units,
-        outlines=sizes,
+        units=case.system,
+        outlines=case.outlines,
     )
 
 
@@ -135,7 +135,7 @@ def _swept(args: options.Args) -> Drawing:
     if args.ranges:
         raise UserError("sweep takes --sweep NAME=LOW:HIGH:COUNT, not --range")
     scene = options.one_scene(args)
-    ranges = read_ranges(options.sweeps(args.sweep), scene.units)
+    ranges = read_ranges(options.sweeps(args.sweep), scene.case)
     if len(ranges) != 1:
         raise UserError("expected one --sweep NAME=LOW:HIGH:COUNT, such as --sweep MU=0:1:51")
     ((name, run),) = ranges.items()

@@ -12,22 +12,13 @@ from contextlib import contextmanager
 from functools import partial
 from math import isfinite
 
+from ..case import OWN_AXES, OWN_NAMES, RANGES, Case, check_value, in_base_units, is_share
 from ..doubles import double
 from ..errors import UserError, note, quoted
 from ..files import called, check_apart
 from ..names import SCENE, check_names
-from ..scene import (
-    OWN_AXES,
-    RANGES,
-    SAMPLES,
-    Entries,
-    Scene,
-    check_value,
-    entries_in,
-    in_base_units,
-    is_share,
-    sample,
-)
+from ..scene import SAMPLES, Scene, sample
+from ..scenefile import case_in
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -134,6 +125,22 @@ UNITS = value(
     "units of bare numbers: us (lb, mph, ft), chapter (slug, ft/s, ft), metric (kg, km/h, m) "
     "or si (kg, m/s, m), unless the file names its own",
 )
+CONVENTION = (
+    UNITS,
+    choice(
+        "--axes",
+        ("listing", "sae"),
+        "directions of the file's numbers, unless it names its own: listing (y to the left of x, "
+        "angles counterclockwise) or sae (y to the right, angles clockwise)",
+    ),
+    choice(
+        "--headings",
+        ("listing", "compass"),
+        "headings and courses, unless the file names its own: listing (from the x axis) or compass "
+        "(clockwise from north, which is y, or x of the sae axes)",
+    ),
+)
+"""What the numbers of a file are in."""
 ENCODING = value("--encoding", "NAME", "encoding of a text that is not UTF-8, such as cp1252")
 SWEEP = repeatable(
     "--sweep", "NAME=LOW:HIGH:COUNT", "run a value of a scene file through COUNT values"
@@ -147,13 +154,13 @@ MOVE = value(
 ONE_SCENE = (
     reads("scene", "FILE.toml", "a scene file (- is stdin)", nargs="?"),
     SAMPLE,
-    UNITS,
+    *CONVENTION,
 )
 """A scene: a file, or ``--sample``."""
 KNOWN = (
     reads("scene", "FILE.toml", "what is known (- is stdin)", nargs="?"),
     setting("give or change a value; an empty one makes it unknown"),
-    UNITS,
+    *CONVENTION,
 )
 """What is known of a problem."""
 SOLUTION = (
@@ -275,15 +282,14 @@ def set_pairs(texts: Sequence[str], allowed: Collection[str] | None = None) -> d
     return given
 
 
-def settings(
-    texts: Sequence[str], others: Collection[str] = (), units: str | None = None
-) -> dict[str, str]:
-    """What ``--set`` gives of a scene: the text of a number for each name, in base units.
-    ``others``: texts taken although they are not numbers; ``units``: the system of bare numbers.
-    Raises UserError."""
-    given, _ = in_base_units(set_pairs(texts, tuple(SCENE)), "--set", units)
+def settings(texts: Sequence[str], units: str | None = None) -> dict[str, str]:
+    """Return what ``--set`` gives for all rows of a table: the text of a number for each name, in
+    base units; ``units``: the system of bare numbers. Raises UserError."""
+    changes = set_pairs(texts, tuple(SCENE))
+    case = changed(Case({}, "--set", units), changes, "--set").single()
+    given = {name: case.values[name] for name in changes if name in case.given}
     for name, text in given.items():
-        if text not in others and not (name == "MU" and is_share(text)):
+        if not (name == "MU" and is_share(text)):
             check_value(name, text, "--set")
     return given
 
@@ -319,122 +325,110 @@ def source_of(args: Args) -> str | None:
     return called(args.scene) if args.scene else f"sample {number}" if number else None
 
 
-def entries_given(args: Args, single: bool = False) -> Entries:
-    """The entries of the file or of ``--sample``, with their remarks on stderr; empty where neither
-    is given. Raises UserError where both are."""
-    if source_of(args) is None:
-        return Entries({}, {}, args.units)
-    if args.scene:
-        entries = entries_in(args.scene, args.units, single)
-        note_remarks(entries)
+def case_given(args: Args) -> Case:
+    """Return the case that the file or ``--sample`` gives, changed by ``--set``; an empty one where
+    neither is given. What ``--set`` may change a command says by the names it takes. Raises
+    UserError."""
+    chosen = (args.units, getattr(args, "axes", None), getattr(args, "headings", None))
+    source = source_of(args)
+    if source is None:
+        case = Case({}, "--set", *chosen)
+    elif args.scene:
+        case = case_in(args.scene, *chosen)
     else:
-        entries = sample(args.sample).entries
-        entries.units = args.units
-    return entries
+        case = sample(args.sample).case.shown_in(*chosen)
+    return changed(case, set_pairs(args.set, None), "--set")
+
+
+def changed(case: Case, changes: Mapping[str, str], option: str) -> Case:
+    """Return the case with what an option changes. Raises UserError."""
+    return case.replaced(changes, option) if changes else case
 
 
 def known_values(args: Args, allowed: Collection[str]) -> tuple[dict[str, float], System]:
-    """What is known of a problem: the values of a flat TOML file or a sample, changed by ``--set``,
-    in base units, and the system they were written in. What is not known is left out of the file,
-    or left empty as in a template; an empty setting makes a value unknown; of a value
-    within limits the middle is taken. Raises UserError, naming file and name, for names not
-    ``allowed``, texts that are not amounts, and where nothing is given."""
-    values, units = known_within_limits(args, allowed, single=True)
-    return {name: item.nominal for name, item in values.items()}, units
+    """Return the numbers that are known of a problem, in base units, and what they are shown in; of
+    values within limits the middle. See `known_within_limits`."""
+    values, system = known_within_limits(args, allowed, single=True)
+    return {name: item.nominal for name, item in values.items()}, system
 
 
 def known_within_limits(
     args: Args, allowed: Collection[str], single: bool = False
 ) -> tuple[dict[str, Uncertain], System]:
-    """The same, but each value a number or known within limits (`uncertainty.uncertain`) unless
-    ``single``; a setting's ``+- D`` is around the file's value. Of a sample the names ``allowed``
-    are taken."""
-    from ..units import system_of
+    """Return what is known of a problem, each value a number or known within limits in base units,
+    and what they are shown in. What is not known is left out of the file, or left empty as in a
+    template; an empty setting makes a value unknown. Of a sample the names ``allowed`` are taken.
+    Raises UserError, naming file and name, for names not ``allowed``, texts that are not amounts,
+    and where nothing is given."""
+    case = known_case(args, allowed, single)
+    return read_known(case, allowed), case.system
 
+
+def known_case(args: Args, allowed: Collection[str], single: bool = False) -> Case:
+    """Return the case of a problem, see `known_within_limits`; how it was understood is said on
+    stderr."""
     source = source_of(args) or ""
     if not source and not args.set:
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
-    entries = entries_given(args, single)
+    set_pairs(args.set, (*allowed, *OWN_NAMES))
+    case = case_given(args)
+    case = case.single() if single else case
     if args.scene:
-        for name in set(sum(OWN_AXES.values(), ())).intersection(entries.values) - {*allowed}:
+        for name in set(sum(OWN_AXES.values(), ())).intersection(case.values) - {*allowed}:
             raise UserError(
                 f"{name} is known within limits, which impact88 bounds takes; expected a "
                 f"number, or limits for D{name[1]} and P{name[1]}",
                 source,
             )
-        check_names(entries.values, allowed, "name used here", source)
-    values = {
-        name: _within_limits(name, text, source, entries.units)
-        for name, text in entries.values.items()
-        if text and name in allowed
+        named = [name for name in case.values if name != "M" or "M" in case.given]
+        check_names(named, allowed, "name used here", source)
+        if case.correlations:
+            check_names(["correlations"], allowed, "name used here", source)
+    note_remarks(case)
+    return case
+
+
+def read_known(case: Case, allowed: Collection[str]) -> dict[str, Uncertain]:
+    """Return a case's values among the names ``allowed``."""
+    return {
+        name: _within_limits(name, text, case.place(name), case.units)
+        for name, text in case.values.items()
+        if name in allowed
     }
-    given, named = _in_base(set_pairs(args.set, allowed), "--set", entries.units, args.scene)
-    for name, text in given.items():
-        center = values[name].nominal if name in values else None
-        if text:
-            values[name] = _within_limits(name, text, "--set", named, center)
-        else:
-            values.pop(name, None)
-    return values, system_of(named)
 
 
-def _in_base(
-    changes: Mapping[str, str], option: str, units: str | None, path: str | None
-) -> tuple[dict[str, str], str | None]:
-    """What an option changes, in base units, and the system of all: that of the file, or of the
-    changes where the file has none, whose bare numbers are then base units, which is said."""
-    given, own = in_base_units(changes, option, units)
-    if units or own:
-        from ..units import remarks
-
-        for line in remarks(changes, units or own or "").values():
-            note(None, line)
-    if own and not units and path:
-        from ..units import base_of, system_of
-
-        note(None, f"{called(path)} names no units: taken to be in {base_of(system_of(own))}")
-    return given, units or own
-
-
-def note_remarks(entries: Entries, based: str = "") -> None:
-    """Say on stderr how a file's entries were understood: estimates, middles, units; and in one
+def note_remarks(case: Case | Scene, based: str = "") -> None:
+    """Say on stderr how a case's entries were understood: estimates, middles, units; and in one
     line with it what is ``based`` on the base units."""
-    lines = list(entries.remarks.values())
-    if based and entries.units:
+    lines = list(case.remarks.values())
+    if based and case.units in ("us", "metric"):  # the others are shown in their base units
         from ..units import base_of, system_of
 
-        lines = ["; ".join([f"{based} is in {base_of(system_of(entries.units))}", *lines])]
+        lines = ["; ".join([f"{based} is in {base_of(system_of(case.units))}", *lines])]
     for line in lines:
         note(None, line)
 
 
-def _within_limits(
-    name: str, text: str, source: str, units: str | None, center: float | None = None
-) -> Uncertain:
+def _within_limits(name: str, text: str, source: str, units: str | None) -> Uncertain:
     from ..uncertainty.uncertain import fixed, read
 
     if any(mark in text for mark in (*RANGES, "skid")) or is_share(text):
-        return read(text, f"{source}: {name}", center, units)
-    return fixed(_double(name, text, source))
-
-
-def _double(name: str, text: str, source: str) -> float:
+        return read(text, f"{source}: {name}", units=units)
     value = double(check_value(name, text, source))
     if not isfinite(value):
         raise UserError(f"{name} = {text} is too large for a double", source)
-    return value
+    return fixed(value)
 
 
 def scene_given(args: Args, based: str = "") -> Scene | None:
-    """The scene that file or sample name, with what ``--set`` and ``--move-contact`` change; None
-    where neither is given. How its entries were understood is said on stderr, and what of the
+    """Return the scene that file or sample name, with what ``--set`` and ``--move-contact`` change;
+    None where neither is given. How its entries were understood is said on stderr, and what of the
     answer is ``based`` on other units than the scene's. Raises UserError."""
     if source_of(args) is None:
         return None
-    scene = Scene.from_toml(args.scene, args.units) if args.scene else sample(args.sample)
-    if changes := settings(args.set, units=scene.units):
-        scene = scene.replaced(changes)
-    note_remarks(scene.entries, based)
+    set_pairs(args.set, (*SCENE, *OWN_NAMES))
+    scene = Scene.of(case_given(args))
+    note_remarks(scene, based)
     if (move := getattr(args, "move_contact", None)) is None:
         return scene
     from ..reconstruction.geometry import moved_texts
@@ -442,10 +436,12 @@ def scene_given(args: Args, based: str = "") -> Scene | None:
     parts = [part.strip() for part in move.split(",")]
     if len(parts) != 2:
         raise UserError(f"--move-contact {move}: expected DX,DY, such as 1,-0.5")
-    given = {"CX": parts[0], "CY": parts[1]}
-    texts, _ = in_base_units(given, "--move-contact", scene.units)
-    moves = (_double(name, text, "--move-contact") for name, text in texts.items())
-    return scene.replaced(moved_texts(scene, *moves))
+    case = scene.case
+    moves = Case({"CX": parts[0], "CY": parts[1]}, "--move-contact", case.units).values
+    numbers = [double(check_value(name, moves[name], "--move-contact")) for name in ("CX", "CY")]
+    texts = case.written(moved_texts(scene, *numbers))
+    nothing = {name: "" for pair in OWN_AXES.values() for name in pair if name in case.texts}
+    return Scene.of(case.replaced({**nothing, **texts}, "--move-contact"))
 
 
 def one_scene(args: Args) -> Scene:
@@ -483,13 +479,13 @@ def explored(args: Args, outputs: list[str], keep: bool = False) -> Bounds:
     from ..uncertainty.boundstable import in_units
     from ..uncertainty.ranges import read_correlations, read_inputs
 
-    if (source := source_of(args)) is None:
+    if source_of(args) is None:
         raise UserError(ONE_EXPECTED)
-    entries = entries_given(args)
     changes = pairs([*args.set, *args.ranges], "--range", "NAME=RANGE, such as MU='.7 .. .9'")
-    changes, units = _in_base(changes, "--range", entries.units, args.scene)
+    case = case_given(argparse.Namespace(**{**vars(args), "set": []}))
     problem = "reconstruction" if args.reconstruct else "forward"
-    inputs = read_inputs(entries.values, changes, problem, source)
+    inputs = read_inputs(case, changes, problem)
+    note_remarks(inputs.case)
     correlations = dict(inputs.correlations)
     for text in args.correlations:
         names, equals, number = text.partition("=")
@@ -516,4 +512,4 @@ def explored(args: Args, outputs: list[str], keep: bool = False) -> Bounds:
             keep_draws=keep,
             progress=meter.update,
         )
-    return in_units(found, units)
+    return in_units(found, inputs.case.system)

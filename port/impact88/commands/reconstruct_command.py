@@ -53,9 +53,12 @@ exit status: 0 solved; 2 bad input, or unknowns that are not determined
 import argparse
 import sys
 from collections.abc import Sequence
+from math import isclose
 
+from ..case import OWN_AXES, OWN_NAMES, SOURCE, Case
 from ..errors import UserError, note
 from ..files import replacing
+from ..names import SCENE
 from ..progress import progress
 from ..reconstruction.adjustment import (
     Reconstruction,
@@ -65,10 +68,9 @@ from ..reconstruction.adjustment import (
 )
 from ..reconstruction.solutiontable import Exact, Impact
 from ..reconstruction.state import KNOWABLE, QUANTITIES
-from ..scene import shown_texts, template
+from ..scenefile import template
 from ..uncertainty.reconstructedtable import Measured
 from ..uncertainty.uncertain import Uncertain
-from ..units import System
 from . import options
 
 ARGUMENTS = (
@@ -88,13 +90,14 @@ def main(args: options.Args) -> None:
     if args.old:
         raise UserError("--scene is not an option here; expected --write-scene FILE")
     wanted = options.names_given(args.outputs, QUANTITIES, "--outputs") or None
-    known, units = options.known_within_limits(args, KNOWABLE)
+    case = options.known_case(args, KNOWABLE)
+    known, units = options.read_known(case, KNOWABLE), case.system
     known, friction = share_resolved(known)
     if friction:
         note(None, friction)
     found: Sequence[Impact]
     if args.write_scene or needs_adjustment(known, wanted):
-        found = _reconstructed(known, wanted, args, units)
+        found = _reconstructed(known, wanted, args, case)
     else:
         numbers = {name: item.nominal for name, item in known.items()}
         found = Exact.all_of(numbers, wanted, args.contact_time, options.source_of(args))
@@ -102,7 +105,7 @@ def main(args: options.Args) -> None:
 
 
 def _reconstructed(
-    known: dict[str, Uncertain], wanted: list[str] | None, args: options.Args, units: System
+    known: dict[str, Uncertain], wanted: list[str] | None, args: options.Args, case: Case
 ) -> list[Measured]:
     try:
         with progress(None, "reconstruct", "impacts") as meter:
@@ -113,7 +116,7 @@ def _reconstructed(
         if any(name not in solution.values for solution in solutions):
             raise UserError(f"{name} is not determined by what is known", options.source_of(args))
     if args.write_scene:
-        _write_scene(solutions, args, units)
+        _write_scene(solutions, args, case)
     found = []
     for solution in solutions:
         with progress(None, "reconstruct", "impacts") as meter:
@@ -122,12 +125,23 @@ def _reconstructed(
     return found
 
 
-def _write_scene(solutions: list[Reconstruction], args: options.Args, units: System) -> None:
+def _write_scene(solutions: list[Reconstruction], args: options.Args, case: Case) -> None:
+    """Write the impact found as a scene: what was known as it was typed, unless it was adjusted."""
     if len(solutions) > 1:
         raise UserError(f"{len(solutions)} impacts agree with what is known; expected one")
-    texts = {name: repr(value).upper() for name, value in solutions[0].scene().items()}
-    texts["M"] = "4" if texts["M"] == "4.0" else "6"
+    values = solutions[0].scene()
+    adjusted = {
+        item.name
+        for item in solutions[0].adjusted
+        if not isclose(item.adjusted, item.measured, rel_tol=1e-9)
+    }
+    kept = {n for n in case.given if n in (*SCENE, *OWN_NAMES) and n not in adjusted}
+    own = {kind + v for v, axes in OWN_AXES.items() if axes[0] in case.given for kind in "DP"}
+    found = {n: value for n, value in values.items() if n not in kept | own and n != "M"}
+    notes = {n: t for n, t in case.texts.items() if n.removesuffix(SOURCE) in kept}
+    title = f"Reconstructed from {options.source_of(args) or '--set'}"
+    texts = {**case.about, "title": title, **notes, **case.written(found)}
+    texts.setdefault("M", "4" if values["M"] == 4 else "6")
     with replacing(args.write_scene) as file:
-        title = f"Reconstructed from {options.source_of(args) or '--set'}"
-        file.write(template(shown_texts(texts, units.name or None), title, units.name))
+        file.write(template(Case(texts, args.write_scene)))
     print(f"scene written to {args.write_scene}", file=sys.stderr)

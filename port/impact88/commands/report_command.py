@@ -23,9 +23,11 @@ exit status: 0 written; 2 bad input
 
 import csv
 
+from ..case import Case
 from ..errors import UserError
 from ..files import decode, read_bytes, replacing
-from ..scene import SOURCE, TOML_LIMIT, entries_of, sample, toml_texts
+from ..scene import sample
+from ..scenefile import TOML_LIMIT, template, toml_texts
 from . import options
 
 ARGUMENTS = (
@@ -54,15 +56,20 @@ def main(args: options.Args) -> None:
     source = options.source_of(args)
     if source is None or bool(args.scene) == bool(args.sample):
         raise UserError(options.ONE_EXPECTED)
-    scene = sample(args.sample).to_toml().encode() if args.sample else b""
-    data = scene or read_bytes(args.scene, TOML_LIMIT)
-    texts = toml_texts(decode(data, source), source)
-    for name, text in options.set_pairs(args.set).items():
-        texts |= {name: text, name + SOURCE: "changed with --set"}
-    entries = entries_of(texts, source, args.units)
-    options.note_remarks(entries)
-    asked = {n: getattr(args, n) for n in ("samples", "seed", "case", "title", "paper")}
-    page, tables = report(entries, source, data, **asked)
+    chosen = (args.units, args.axes, args.headings)
+    if args.sample:
+        case = sample(args.sample).case.shown_in(*chosen)
+        data = template(case).encode()
+    else:
+        data = read_bytes(args.scene, TOML_LIMIT)
+        case = Case(toml_texts(decode(data, source), source), source, *chosen)
+    changes = options.set_pairs(args.set)
+    case = options.changed(case, changes, "--set")
+    case = case.noted({n: "changed with --set" for n in changes if n in case.given})
+    options.note_remarks(case)
+    asked = {n: getattr(args, n) for n in ("samples", "seed", "title", "paper")}
+    asked["number"] = args.case
+    page, tables = report(case, source, data, **asked)
     with replacing(args.output) as out:
         out.write(page)
     if args.csv:

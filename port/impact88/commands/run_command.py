@@ -19,9 +19,10 @@ from contextlib import ExitStack
 from itertools import chain, repeat
 
 from ..applesoft.console import PRINTER_SLOT, Console, EndOfInput
+from ..case import OWN_NAMES, Case, check_value
 from ..errors import UserError
 from ..files import replacing, typed_line
-from ..names import VELOCITIES
+from ..names import SCENE, VELOCITIES
 from ..program.arithmetics import ARITHMETICS
 from ..program.run import Run, page, start
 from ..scene import Scene, published_data
@@ -77,7 +78,7 @@ def check_slot(args: options.Args) -> None:
 def main(args: options.Args) -> int:
     check_slot(args)
     scene = options.scene_given(args, "the program's page")
-    data = dict(scene or published_data() | options.settings(args.set, units=args.units))
+    data = dict(scene or _published(args))
     given = [name for name in VELOCITIES if name in data]
     if given and len(given) < len(VELOCITIES):
         missing = " ".join(name for name in VELOCITIES if name not in data)
@@ -98,6 +99,15 @@ def main(args: options.Args) -> int:
     elif run.error and sys.stdout.isatty():
         print()  # the ROM leaves the cursor there; a shell's prompt wants a line of its own
     return int(bool(run.error))
+
+
+def _published(args: options.Args) -> dict[str, str]:
+    """Return the listing's own data, with what ``--set`` changes or adds."""
+    data = Case({**published_data(), "units": "chapter"}, "the listing").shown_in(args.units)
+    changes = options.set_pairs(args.set, (*SCENE, *OWN_NAMES))
+    case = options.changed(data, changes, "--set").single()
+    options.note_remarks(case, "the program's page" if args.set else "")
+    return {n: check_value(n, text, "--set") for n, text in case.values.items() if n in SCENE}
 
 
 def _run(args: options.Args, data: Mapping[str, str], typed: Sequence[str] | None) -> Run:

@@ -16,8 +16,9 @@ examples:
   impact88 scene --sample 2         the scene of the Appendix's second sample run
 """
 
-from ..scene import SIGNS, Scene, sample, template
-from ..units import SYSTEMS, system_named
+from ..scene import sample
+from ..scenefile import SIGNS, template
+from ..units import system_named
 from . import options
 
 __doc__ = (__doc__ or "").format(signs=SIGNS)
@@ -27,10 +28,5 @@ ARGUMENTS = (options.SAMPLE, options.UNITS, options.OUTPUT)
 
 def main(args: options.Args) -> None:
     system = system_named(args.units, "--units").name if args.units else None
-    scene = sample(args.sample) if args.sample else None
-    if scene and system:
-        # the chapter's samples are in ft, slug and s
-        unit = SYSTEMS["chapter"].unit
-        texts = {name: f"{text} {unit(name)}".strip() for name, text in scene.items()}
-        scene = Scene.from_mapping({**texts, "units": system})
-    print(scene.to_toml() if scene else template(units=system), end="")
+    case = sample(args.sample).case.shown_in(system) if args.sample else None
+    print(template(case, system), end="")

@@ -51,7 +51,7 @@ ARGUMENTS = (
     options.sample_option("the scene of a published run in place of CASES"),
     options.setting("a value for all rows, in place of a column"),
     options.SWEEP,
-    options.UNITS,
+    *options.CONVENTION,
     options.flag("--results-only", "leave out the scene's own columns; others are passed through"),
     options.reads("--scene", "FILE.toml", "a scene file for the columns the table lacks"),
     options.ENCODING,

@@ -1,7 +1,8 @@
 """Tables solved in blocks of rows, whatever the format; bad rows are reported apart."""
 
+import argparse
 import csv
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from itertools import chain
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..case import OWN_NAMES, VALUE_LIMIT, Case, check_value, is_share
 from ..closedform.columns import INERTIAS, UNUSED_BY_POINTS, examine, refusals
 from ..closedform.share import resolved, share_of
 from ..closedform.solve import share_typed, solve
@@ -18,12 +20,13 @@ from ..fields import ZERO_DETERMINANT
 from ..files import called, replacing
 from ..names import DEFAULT_M, RESULTS, SCENE, check_names
 from ..progress import progress
-from ..scene import VALUE_LIMIT, Entries, Scene, entries_in, sample
+from ..scenefile import case_in
 from ..status import Status
 from ..tables.cells import TableUnits, check_scene_columns, filled, numbers, point_masses
 from ..tables.rows import BadCell, Rows
-from ..tables.sweep import read_ranges, read_sweep
+from ..tables.sweep import estimates, read_ranges, read_sweep
 from ..tables.table import ahead, behind, format_of, may_wait, open_reader, open_writer
+from ..units import Convention, convention_named
 from . import options
 
 Results = dict[str, NDArray[Any]]
@@ -51,21 +54,34 @@ def solve_table(args: options.Args) -> int:
     with ExitStack() as stack:
         swept: dict[str, Any] = {}
         if one_scene:
-            scene = Scene.from_toml(path, args.units) if path else sample(args.sample)
-            options.note_remarks(scene.entries)
-            swept = read_ranges(options.sweeps(args.sweep), scene.units)
-            source = stack.enter_context(read_sweep(scene, swept, scene.units))
+            options.set_pairs(args.set, (*SCENE, *OWN_NAMES))
+            case = options.case_given(argparse.Namespace(**{**vars(args), "scene": path}))
+            options.note_remarks(case.single())
+            swept = read_ranges(options.sweeps(args.sweep), case)
+            source = stack.enter_context(read_sweep(case, swept))
         else:
             source = stack.enter_context(open_reader(path, source_format, args.encoding))
         blocks = iter(source)
         first = next(blocks, None)
         blocks = chain([] if first is None else [first], blocks)
-        filling = _filling(args) if args.scene else None
-        system = args.units or (filling.units if filling else None)
-        units = TableUnits(source.names, system, first, where=called(path or "--sample"))
-        given = options.settings(args.set, others=("inf",), units=units.system.name or None)
-        if filling:
-            given = {n: t for n, t in filling.values.items() if n not in source.names} | given
+        beside = case if one_scene else _filling(args) if args.scene else None
+        system = beside.units if beside else args.units
+        units = TableUnits(
+            source.names, system or args.units, first, where=called(path or "--sample")
+        )
+        units.convention = _convention(args, beside)
+        given: dict[str, str] = {}
+        inertias: dict[str, Callable[[str], str]] = {}
+        if not one_scene:
+            changes = options.set_pairs(args.set, (*SCENE, *OWN_NAMES))
+            if beside is None:
+                chosen = (units.system.name or None, args.axes, args.headings)
+                beside = Case({}, "--set", *chosen)
+            elif not beside.units and not units.system.is_bare:
+                _refuse_bare(beside, units)
+            beside = options.changed(beside, changes, "--set").single()
+            given = _given(beside, changes, source.names)
+            inertias = {n: estimate for n, estimate in estimates(beside).items() if n in given}
         points = given.get("M", "4" if "M" in source.names else "6") == "4"
         check_scene_columns({*source.names, *given}, points)
         if swept:  # the rest is the same in every row
@@ -89,6 +105,8 @@ def solve_table(args: options.Args) -> int:
             for name, text in given.items():
                 rows.columns.pop(name, None)  # and with it the heading of another unit
                 rows.columns[name] = [text] * rows.count
+            for name, estimate in inertias.items():
+                rows.columns[name] = _estimated(rows, units, name, estimate)
             # a name without a column has empty cells: a complaint where a row looks at them
             nothing = [None] * rows.count
             rows.columns |= {name: nothing for name in SCENE if name not in rows.columns}
@@ -104,13 +122,57 @@ def solve_table(args: options.Args) -> int:
     return int(adverse > 0)
 
 
-def _filling(args: options.Args) -> Entries:
-    """What fills the columns that the table lacks."""
-    entries = entries_in(args.scene, args.units, single=True)
-    options.note_remarks(entries)
-    entries.values = {name: text for name, text in entries.values.items() if text}
-    check_names(entries.values, SCENE, "value of a scene", called(args.scene))
-    return entries
+def _filling(args: options.Args) -> Case:
+    """Return the case that fills the columns that the table lacks."""
+    case = case_in(args.scene, args.units, args.axes, args.headings)
+    options.note_remarks(case.single())
+    check_names(case.single().values, SCENE, "value of a scene", called(args.scene))
+    return case
+
+
+def _convention(args: options.Args, beside: Case | None) -> Convention | None:
+    """Return the directions of a table's numbers: the case's beside it, or the options'."""
+    if beside is not None:
+        return beside.system.convention
+    return convention_named(args.axes, args.headings, "")
+
+
+def _refuse_bare(case: Case, units: TableUnits) -> None:
+    """Raise UserError where a scene's bare numbers measure what the table has units for."""
+    for name in case.values:
+        if name in case.given and units.leaves_open(name):
+            system = units.system.name
+            raise UserError(
+                f"{name} = {case.given[name]} has no unit, and the table's columns have; expected "
+                f'one, or units = "{system}" in the file (--units {system})',
+                case.source,
+            )
+
+
+def _given(case: Case, changes: Collection[str], columns: Collection[str]) -> dict[str, str]:
+    """Return what takes the place of a table's columns, or stands for those it lacks: texts in base
+    units."""
+    given = {n: t for n, t in case.values.items() if n in case.given or n not in (*columns, "M")}
+    given = {n: t for n, t in given.items() if n in changes or n not in columns}
+    for name, text in given.items():
+        if text != "inf" and not (name == "MU" and is_share(text)):
+            check_value(name, text, case.source)
+    return given
+
+
+def _estimated(
+    rows: Rows, units: TableUnits, name: str, estimate: Callable[[str], str]
+) -> list[str | None]:
+    """Return a column of inertias estimated from each row's own mass; nothing for a mass that is
+    none, or no car's."""
+    texts: list[str | None] = []
+    for cell in rows.columns.get(f"M{name[1]}") or [None] * rows.count:
+        try:
+            mass = cell if isinstance(cell, str) else repr(float(cell)).upper()
+            texts.append(estimate(units.cell(f"M{name[1]}", mass)))
+        except (UserError, TypeError, ValueError):
+            texts.append(None)
+    return texts
 
 
 def _float64(rows: Rows, units: TableUnits, wanted: Sequence[str]) -> Results:

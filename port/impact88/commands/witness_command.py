@@ -19,8 +19,10 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
+from ..case import OWN_NAMES
 from ..checking.vectors import scenes
 from ..errors import UserError
+from ..names import SCENE
 from ..progress import progress
 from ..scene import SAMPLES, Scene, sample
 from ..witness import hearing
@@ -74,16 +76,15 @@ def main(args: options.Args) -> int:
 def _jobs(args: options.Args) -> list[Job]:
     """What is to be done; all input is read before the machine is started."""
     jobs: list[Job] = []
-    changes = options.settings(args.set)
+    changes = options.set_pairs(args.set, (*SCENE, *OWN_NAMES))
     asked = args.scenes or args.captures is not None or args.random or args.programs
     for number in [args.sample] if args.sample else () if asked else SAMPLES:
-        scene = sample(number).replaced(changes)
+        scene = Scene.of(options.changed(sample(number).case, changes, "--set"))
         changed = partial(hearing.hear_scene, name=f"sample {number}", scene=scene)
         jobs.append(changed if changes else partial(hearing.hear_sample, number=number))
     for path in args.scenes:
-        given = Scene.from_toml(path, args.units)
-        scene = given.replaced(options.settings(args.set, units=given.units))
-        options.note_remarks(scene.entries)
+        scene = Scene.from_toml(path, args.units).replaced(changes)
+        options.note_remarks(scene)
         jobs.append(partial(hearing.hear_scene, name=path, scene=scene))
     if args.captures is not None:
         if args.captures != "all" and not args.captures.isdecimal():

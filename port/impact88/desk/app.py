@@ -26,7 +26,8 @@ from ..files import packaged_text
 from ..names import DEFAULT_M, SCENE, quantity
 from ..plaintable import number
 from ..reconstruction.state import KNOWABLE
-from ..scene import SAMPLES, SIGNS, sample
+from ..scene import SAMPLES, sample
+from ..scenefile import SIGNS
 from ..version import __version__
 from . import collision, reconstruction
 from .forms import digits, filled_in

@@ -9,25 +9,19 @@ from collections.abc import Mapping
 from itertools import groupby
 from typing import Any, NamedTuple
 
+from ..case import Case, check_value
 from ..doubles import double, doubles_of, is_number
 from ..emulator.screen import shown_character
 from ..errors import UserError
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE, quantity
 from ..plaintable import number
-from ..scene import (
-    Scene,
-    check_value,
-    entries_of,
-    in_base_units,
-    is_share,
-    sample,
-    template,
-    toml_texts,
-)
+from ..reconstruction.geometry import placed
+from ..scene import Scene, sample
+from ..scenefile import template, toml_texts
 from ..schemas import stamped
 from ..uncertainty import uncertain
-from ..units import System, system_of
-from .forms import OUTLINES, entries, outline_lines, units_shown, without_rounding
+from ..units import RULES, System
+from .forms import entries, units_shown, without_rounding
 
 DRAWS = 20_000
 """Random draws for the bounds' quantiles: half a second at most with every value a range."""
@@ -54,21 +48,20 @@ _ANSWER = (
 
 
 class Form(NamedTuple):
-    """The form as read: ``texts`` for the program, the ``entries`` they were made of, in base units
-    of the system ``units``; the names given as ``ranges``; ``problems`` by name; the names still
-    ``missing``; how entries were understood (``remarks``)."""
+    """The form as read: its ``case``, and the ``scene`` of it where it is complete; the names given
+    as ``ranges``; ``problems`` by name; the names still ``missing``; how entries were understood
+    (``remarks``)."""
 
-    texts: dict[str, str]
-    entries: dict[str, str]
-    units: str | None
+    case: Case | None
+    scene: Scene | None
     ranges: list[str]
     problems: dict[str, str]
     missing: list[str]
     remarks: list[str]
 
     @property
-    def complete(self) -> bool:
-        return not self.problems and not self.missing
+    def system(self) -> System:
+        return self.case.system if self.case else RULES
 
 
 def warm() -> None:
@@ -76,40 +69,45 @@ def warm() -> None:
     figure(dict(sample(1)))
 
 
-def read(values: Mapping[str, str], units: str = "") -> Form:
-    """The form's texts; ``units``: the system of bare numbers, or nothing."""
-    given = entries({name: values.get(name, "") for name in SCENE}, units)
-    missing = [name for name in SCENE if name not in given.texts.keys() | given.problems.keys()]
-    form = Form({}, given.texts, given.units, [], given.problems, missing, [])
-    for name, text in given.texts.items():
+def read(values: Mapping[str, str], units: str = "", title: str = "") -> Form:
+    """Return the form as read; ``units``: the system of bare numbers, or nothing."""
+    case, problems = entries(values, units, title)
+    if case is None:
+        empty = [name for name in SCENE if not values.get(name, "").strip()]
+        return Form(None, None, [], problems, empty, [])
+    ranges: list[str] = []
+    for name, text in case.values.items():
         try:
-            form.texts[name] = _number_text(name, text, form.ranges)
+            if _varies(name, text):
+                ranges.append(name)
         except UserError as error:
-            form.problems[name] = str(error)
-    if form.complete and is_share(form.texts["MU"]):
+            problems[name] = str(error)
+    if double_or_none(case.values["M"]) not in (4, 6):
+        problems["M"] = "M: expected 6, or 4 for point masses"
+    # a form shows the M that it takes
+    given = {n for n in case.values if n != "M" or "M" in case.given}
+    missing = [name for name in placed(SCENE, given) if name not in given | problems.keys()]
+    scene = None
+    if not problems and not missing:
         try:
-            scene = Scene(form.texts)
+            scene = Scene.of(case)
         except UserError as error:
-            form.problems["MU"] = str(error)
-        else:
-            form.texts["MU"] = scene["MU"]
-            form.remarks.append(scene.entries.remarks["MU"])
-    return form
+            problems["MU"] = str(error)
+    remarks = scene.remarks if scene else case.remarks
+    return Form(case, scene, ranges, problems, missing, list(remarks.values()))
 
 
-def _number_text(name: str, text: str, ranges: list[str]) -> str:
-    """The text the program is given for one value; a range's name is added to ``ranges``."""
-    if not is_number(text):
-        item = uncertain.read(text, name)
-        if item.varies:
-            ranges.append(name)
-        if item.share:
-            return f"{number(100 * item.nominal, _NOMINAL_DIGITS)} %"
-        text = number(item.nominal, _NOMINAL_DIGITS)
-    check_value(name, text, "")
-    if name == "M" and double(text) not in (4, 6):
-        raise UserError("expected 6, or 4 for point masses", "M")
-    return text
+def _varies(name: str, text: str) -> bool:
+    """Return whether a value is known within limits. Raises UserError for what is none."""
+    if is_number(text):
+        check_value(name, text, "")
+        return False
+    return uncertain.read(text, name).varies
+
+
+def double_or_none(text: str) -> float | None:
+    """Return the number that a text is, None for another."""
+    return double(text) if is_number(text) else None
 
 
 def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
@@ -125,11 +123,11 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     form = read(values, units)
     parts = ("problems", "missing", "ranges", "remarks")
     found: dict[str, Any] = {part: getattr(form, part) for part in parts}
-    found["units"] = units_shown(form.units)
-    if form.complete:
-        scene = Scene(form.texts, source="the form")
+    found["units"] = units_shown(form.system)
+    if form.scene:
+        scene = form.scene
         known = oracle([scene], reference=False)[0]
-        results, system, machine = known["results"], system_of(form.units), loaded(scene)
+        results, system, machine = known["results"], form.system, loaded(scene)
         exact = {n: row["double"] for n, row in results.items() if row["double"] is not None}
         finished(machine)
         found |= {
@@ -154,7 +152,7 @@ def _answer(scene: Scene, exact: Mapping[str, float], system: System) -> list[di
         if not values.keys() >= set(names):
             continue
         rule = quantity(names[0]).unit
-        amounts = {name: system.shown(rule, values[name]) for name in names}
+        amounts = {name: system.displayed(name, values[name]) for name in names}
         texts = [
             {"name": name, "text": number(value, _ANSWER_DIGITS), "value": value}
             for name, value in amounts.items()
@@ -178,7 +176,7 @@ def _rows(
     rows = []
     for name, exact in doubles.items():
         if name != "STATUS":
-            value, label = exact * system.factor(name), system.unit(name)
+            value, label = system.displayed(name, float(exact)), system.unit(name)
             row = {**RESULTS[name]._asdict(), "printed": results[name]["printed"] or ""}
             row |= {"exact": number(exact, _DIGITS), "value": value, "label": label}
             rows.append({**row, "shown": f"{number(value)} {label}" if label else ""})
@@ -192,14 +190,10 @@ def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
     from ..figures.sceneview import scene_drawing
 
     form = read(values, units)
-    if not form.complete:
+    if not form.scene:
         raise UserError("there is no complete scene to draw")
-    scene = Scene(form.texts, source="the form")
-    result = solve(doubles_of(scene), [*FINAL_VELOCITIES, "STATUS"])
-    given = {name: values[name] for name in OUTLINES if values.get(name)}
-    outlines = {n: double(t) for n, t in in_base_units(given, "", units or None)[0].items()}
-    title, system = title or "Scene from above", system_of(form.units)
-    return svg(scene_drawing(scene, result, title=title, units=system, outlines=outlines))
+    result = solve(doubles_of(form.scene), [*FINAL_VELOCITIES, "STATUS"])
+    return svg(scene_drawing(form.scene, result, title=title or "Scene from above"))
 
 
 def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
@@ -210,30 +204,30 @@ def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     from ..uncertainty.ranges import read_inputs
 
     form = read(values, units)
-    if not form.complete or not form.ranges:
+    if not form.case or not form.scene or not form.ranges:
         raise UserError("there are no ranges to explore")
-    inputs = read_inputs(form.entries, {}, source="the form")
+    inputs = read_inputs(form.case)
     answered = bounds(inputs.values, correlations=inputs.correlations, samples=DRAWS)
-    return stamped("bounds", as_json(in_units(answered, form.units)))
+    return stamped("bounds", as_json(in_units(answered, form.system)))
 
 
 def scene_file(values: Mapping[str, str], title: str, units: str = "") -> str:
     """The form as a scene file, its texts as they were typed. Raises UserError."""
-    for problem in read(values, units).problems.values():
+    form = read(values, units, title)
+    for problem in form.problems.values():
         raise UserError(problem)
-    texts = {name: values.get(name, "").strip() for name in SCENE}
-    return template(texts, title, units) + outline_lines(values)
+    return template(form.case)
 
 
 def sample_scene(which: int) -> dict[str, Any]:
     """A published run as a file is read. Raises UserError."""
     scene = sample(which)
-    return {"values": dict(scene), "title": scene.title or "", "units": ""}
+    return {"values": dict(scene), "title": scene.title or "", "units": scene.units}
 
 
 def case_report(text: str, name: str) -> str:
     """The page that `impact88 report` writes for the text of a file. Raises UserError."""
     from ..report.findings import report
 
-    entries = entries_of(toml_texts(text, name), name)
-    return report(entries, name, text.encode(), samples=DRAWS, seed=0)[0]
+    case = Case(toml_texts(text, name), name)
+    return report(case, name, text.encode(), samples=DRAWS, seed=0)[0]

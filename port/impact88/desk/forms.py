@@ -4,13 +4,14 @@ import math
 from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
+from ..case import ABOUT, OWN_AXES, SOURCE, Case, in_base_units
 from ..errors import UserError
-from ..estimates import SIZES, WORD
+from ..estimates import SIZES
 from ..files import decode
-from ..names import CHAPTER, RESULTS, SCENE, check_names, quantity
+from ..names import CHAPTER, DEFAULT_M, RESULTS, SCENE, check_names, quantity
 from ..plaintable import number
-from ..scene import OWN_AXES, SOURCE, entries_of, in_base_units, toml_texts
-from ..units import base_of, system_of
+from ..scenefile import toml_texts
+from ..units import System, base_of
 
 UNITS = "units"
 """The problem that belongs to no single value."""
@@ -22,40 +23,40 @@ _WHOSE_BASE = {"us": "chapter", "metric": "si"}
 """The system whose bare numbers are the base units of another."""
 
 
-class Entries(NamedTuple):
-    """``texts`` in base units, without blank ones; ``units``: the system they were written in, or
-    None; ``problems`` by name."""
+class Form(NamedTuple):
+    """The ``case`` that a form's texts make, None where they make none, and ``problems`` by
+    name."""
 
-    texts: dict[str, str]
-    units: str | None
+    case: Case | None
     problems: dict[str, str]
 
 
-def entries(values: Mapping[str, str], units: str) -> Entries:
-    """The entries of a form; ``units``: the system chosen for bare numbers, or nothing."""
-    written = {name: text.strip() for name, text in values.items() if text.strip()}
-    chosen = units or None
+def entries(values: Mapping[str, str], units: str, title: str = "") -> Form:
+    """Return the case of a form; ``units``: the system chosen for bare numbers, or nothing."""
+    texts = {name: text.strip() for name, text in values.items() if text.strip()}
+    texts = {n: t for n, t in texts.items() if n.removesuffix(SOURCE) in texts}
+    about = {"title": title, "units": units}
+    texts |= {name: text for name, text in about.items() if text}
     try:
-        return Entries(*in_base_units(written, "", chosen), {})
+        return Form(Case(texts, ""), {})
     except UserError as error:
         together = str(error)
-    texts: dict[str, str] = {}
     problems: dict[str, str] = {}
-    for name, text in written.items():
-        try:
-            texts |= in_base_units({name: text}, "", chosen)[0]
-        except UserError as error:
-            problems[name] = str(error)
-    return Entries(texts, chosen, problems or {UNITS: together})
+    for name, text in texts.items():
+        if name not in ABOUT and not name.endswith(SOURCE):
+            try:
+                in_base_units({name: text}, "", units or None)
+            except UserError as error:
+                problems[name] = str(error)
+    return Form(None, problems or {UNITS: together})
 
 
-def units_shown(units: str | None) -> dict[str, Any]:
+def units_shown(system: System) -> dict[str, Any]:
     """The system's ``name``, its ``base`` in words, ``labels`` of bare numbers by what they
     measure."""
-    system = system_of(units)
     rules = {row.unit for table in (SCENE, RESULTS, CHAPTER) for row in table.values()}
     labels = {rule: system.label(rule) for rule in sorted(rules)}
-    return {"name": units or "", "base": base_of(system), "labels": labels}
+    return {"name": system.name, "base": base_of(system), "labels": labels}
 
 
 def without_rounding(values: Mapping[str, float], share: float) -> dict[str, float]:
@@ -72,38 +73,36 @@ def without_rounding(values: Mapping[str, float], share: float) -> dict[str, flo
 
 
 def filled_in(data: bytes, name: str, allowed: Collection[str]) -> dict[str, Any]:
-    """A flat TOML file as a form has it: ``values`` by the names ``allowed``, ``title``, ``units``,
-    what stands beside the fields (``extra``), and how entries were understood (``remarks``). Texts
-    stay as they are unless an inertia is estimated or the contact point is given in a vehicle's own
-    axes: then all are worked out, in base units. Raises UserError naming file and line."""
+    """Return a flat TOML file as a form has it.
+
+    Returns
+    -------
+    dict
+        ``values`` by the names ``allowed``, as they stand in the file; ``title`` and ``units``;
+        ``extra``: what stands beside the fields and is computed with and saved again, such as
+        sources, the case's number, lengths and widths, the contact point in a vehicle's own axes.
+
+    Raises
+    ------
+    UserError
+        For a file that is no case, naming file and line.
+    """
     if len(data) > LARGEST:
         raise UserError(f"is larger than {LARGEST:,} bytes, the limit here", name)
     texts = toml_texts(decode(data, name), name)
-    title, units = texts.get("title", ""), texts.get("units", "").lower()
-    values = {
-        entry: text
-        for entry, text in texts.items()
-        if entry not in ("case", "title", "units") and not entry.endswith(SOURCE)
-    }
-    read: dict[str, Any] = {"title": title, "units": units}
-    extra = {entry: values.pop(entry) for entry in OUTLINES if entry in values}
+    own = tuple(axis for axes in OWN_AXES.values() for axis in axes)
+    entries = [entry for entry in texts if entry not in ABOUT and not entry.endswith(SOURCE)]
+    check_names(entries, (*allowed, *own, *OUTLINES), "name used here", name)
+    values = {entry: text for entry, text in texts.items() if entry in allowed}
+    if "M" in allowed:
+        values.setdefault("M", DEFAULT_M)
+    shown = ("title", "units")
+    read: dict[str, Any] = {part: texts.get(part, "") for part in shown}
+    read["units"] = read["units"].lower()
+    extra = {n: t for n, t in texts.items() if n not in values and n not in shown}
     if extra:
         read["extra"] = extra
-    own = {axis for axes in OWN_AXES.values() for axis in axes}.intersection(texts)
-    if own or extra or WORD in " ".join(values.values()):
-        written = {entry: text for entry, text in texts.items() if text}
-        found = entries_of(written, name, single=bool(own))
-        if own or found.estimated:
-            values = found.values
-            read["units"] = _WHOSE_BASE.get(found.units or "", found.units or "")
-            read["remarks"] = list(found.remarks.values())
-    check_names(values, allowed, "name used here", name)
     return {**read, "values": values}
-
-
-def outline_lines(values: Mapping[str, str]) -> str:
-    """The lines of a file for the lengths and widths among some values."""
-    return "".join(f'{name} = "{values[name]}"\n' for name in OUTLINES if values.get(name))
 
 
 def digits(value: float | None, count: int) -> str:

@@ -5,16 +5,18 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..case import Case
 from ..errors import UserError
 from ..names import FINAL_STATE, SCENE, VELOCITIES, check_names, quantity
 from ..plaintable import number
 from ..reconstruction.state import KNOWABLE
-from ..scene import known_template, sample
+from ..scene import sample
+from ..scenefile import known_template
 from ..schemas import stamped
 from ..uncertainty import uncertain
 from ..uncertainty.uncertain import Uncertain
-from ..units import system_of
-from .forms import OUTLINES, Entries, digits, entries, outline_lines, units_shown, without_rounding
+from ..units import RULES
+from .forms import digits, entries, units_shown, without_rounding
 
 DRAWS, _DIGITS, _DIGITS_TO_GO_ON = 20_000, 6, 12
 """Random draws for the quantiles, as many as for a collision's bounds; digits of a value shown, as
@@ -45,19 +47,20 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     from ..reconstruction.solutiontable import Exact, Impact
     from ..uncertainty.reconstructedtable import Measured
 
-    given = entries(values, units)
-    system = system_of(given.units)
+    case, problems = entries(values, units)
+    system = case.system if case else RULES
     known: dict[str, Uncertain] = {}
-    for name, text in given.texts.items():
+    for name, text in case.values.items() if case else ():
         try:
-            known[name] = _read(name, text, given.units)
+            known[name] = _read(name, text, system.name or None)
         except UserError as error:
-            given.problems[name] = str(error)
-    answered: dict[str, Any] = {"problems": given.problems, "units": units_shown(given.units)}
+            problems[name] = str(error)
+    answered: dict[str, Any] = {"problems": problems, "units": units_shown(system)}
     answered |= {"waiting": "", "object": None, "solutions": []}
+    answered["remarks"] = list(case.remarks.values()) if case else []
     try:
-        if given.problems:
-            raise UserError(f"To be corrected: {' '.join(given.problems)}.")
+        if problems or case is None:
+            raise UserError(f"To be corrected: {' '.join(problems)}.")
         found: Sequence[Impact]
         if adjustment.needs_adjustment(known):
             found = [Measured(solution, DRAWS) for solution in adjustment.reconstruct(known)]
@@ -69,7 +72,7 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     answered["object"] = stamped(
         "reconstruct", {"solutions": [numbers for numbers, _ in solutions]}
     )
-    answered["solutions"] = [_solution(given, *solution) for solution in solutions]
+    answered["solutions"] = [_solution(case, known, *solution) for solution in solutions]
     return answered
 
 
@@ -78,8 +81,10 @@ def _read(name: str, text: str, units: str | None) -> Uncertain:
     return uncertain.read(text, name, units=units)
 
 
-def _solution(given: Entries, values: Mapping[str, Any], printed: str) -> dict[str, Any]:
-    system = system_of(given.units)
+def _solution(
+    case: Case, known: Mapping[str, Uncertain], values: Mapping[str, Any], printed: str
+) -> dict[str, Any]:
+    system = case.system
 
     def what(name: str) -> dict[str, Any]:
         return {**quantity(name)._asdict(), "unit": system.label(quantity(name).unit)}
@@ -115,32 +120,34 @@ def _solution(given: Entries, values: Mapping[str, Any], printed: str) -> dict[s
         "columns": [head for head in _COLUMNS if any(row["columns"][head] for row in rows)],
         "adjusted": adjusted,
         "warnings": values["warnings"],
-        "scene": _scene({} if given.units else given.texts, found),
+        "scene": _scene(case, known, found),
     }
 
 
-def _scene(texts: Mapping[str, str], values: Mapping[str, float | None]) -> dict[str, str] | None:
-    """The impact found as the texts of a scene, exact values as they were typed."""
+def _scene(
+    case: Case, known: Mapping[str, Uncertain], values: Mapping[str, float | None]
+) -> dict[str, str] | None:
+    """Return the impact found as the texts of a scene; what is known exactly as it was typed."""
     entries: dict[str, str] = {}
     for name in SCENE:
         value = values.get(name)
         if value is None or not math.isfinite(value):
             return None
-        typed = texts.get(name, "").strip()
-        exact = typed and uncertain.read(typed, name) == uncertain.fixed(value)
-        entries[name] = typed if exact else number(value, _DIGITS_TO_GO_ON)
+        exact = name in case.given and name in known and not known[name].varies
+        typed = exact and not known[name].share
+        entries[name] = case.given[name] if typed else number(value, _DIGITS_TO_GO_ON)
     return entries
 
 
 def known_file(values: Mapping[str, str], units: str = "") -> str:
-    """What is known as the file that `impact88 reconstruct` reads. Raises UserError."""
-    texts = {name: text.strip() for name, text in values.items() if name not in OUTLINES}
-    given = entries(texts, units)
-    for problem in given.problems.values():
+    """Return what is known as the file that `impact88 reconstruct` reads. Raises UserError."""
+    case, problems = entries(values, units)
+    for problem in problems.values():
         raise UserError(problem)
-    for name, text in given.texts.items():
-        _read(name, text, given.units)
-    return known_template(KNOWABLE, texts, units) + "\n" + outline_lines(values)
+    assert case is not None
+    for name, text in case.values.items():
+        _read(name, text, case.units)
+    return known_template(KNOWABLE, case) + "\n"
 
 
 def known_of_sample(which: int) -> dict[str, Any]:
@@ -156,4 +163,4 @@ def known_of_sample(which: int) -> dict[str, Any]:
     }
     values = {name: text for name, text in scene.items() if name not in (*VELOCITIES, "MU")}
     values["MUP"] = number(results["MUP"]["double"], _DIGITS_TO_GO_ON)
-    return {"values": {**values, **after}, "title": scene.title or "", "units": ""}
+    return {"values": {**values, **after}, "title": scene.title or "", "units": scene.units}

@@ -13,7 +13,7 @@ from ..errors import UserError
 from ..names import PIVOT, quantity
 from ..scene import numbers_of
 from ..status import Status
-from ..units import System, system_of
+from ..units import RULES, System, system_of
 from . import drawing as d
 from .drawing import BLACK, GREY, ROW, TEXT, Box, Drawing, Path, Text, short
 
@@ -209,6 +209,12 @@ def _label(name: str, units: System) -> str:
     return f"{meaning}, {unit}"
 
 
+def _system(scene: Any) -> System:
+    """Return what a scene's values are shown in."""
+    case = getattr(scene, "case", None)
+    return case.system if case else RULES
+
+
 def _check_count(outputs: Sequence[str]) -> None:
     if len(outputs) > MOST_PANELS:
         raise UserError(f"{len(outputs)} results do not fit a page; expected {MOST_PANELS} at most")
@@ -345,7 +351,7 @@ def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]
     """Results of a scene along one of its values, a panel each; shaded where STATUS says that the
     impact is unphysical. Raises UserError for more results than fit a page."""
     _check_count(outputs)
-    units = system_of(getattr(scene, "units", None))
+    units = _system(scene)
     titles = (f"Results against {quantity(name).meaning.partition(';')[0]}", _label(name, units))
     own, words = numbers_of(scene)[name], ("this scene", "unphysical: see STATUS")
     groups = [[output] for output in outputs]
@@ -368,7 +374,7 @@ def _along(
     from ..closedform.solve import solve
 
     numbers: dict[str, Any] = numbers_of(scene)
-    units = system_of(getattr(scene, "units", None))
+    units = _system(scene)
     outputs = [output for group in groups for output in group]
     factors = {output: units.factor(output) for output in (name, *outputs)}
     found = solve({**numbers, name: axis}, [*outputs, "STATUS"])

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..reconstruction.geometry import clock
-from ..units import RULES, System, system_of
+from ..units import RULES, System
 from . import drawing as d
 from .canvas import Svg, svg
 from .drawing import ROW, Box, Drawing, Label, Path, Text, View, place, short
@@ -56,9 +56,10 @@ def planned(
     outlines: Mapping[str, float] | None,
 ) -> tuple[Plan, System]:
     """A scene in plan, with outlines and units as it carries them unless they are given."""
-    if outlines is None and hasattr(scene, "entries"):
-        outlines = scene.entries.outlines
-    return plan(scene, result, outlines), units or system_of(getattr(scene, "units", None))
+    case = getattr(scene, "case", None)
+    if outlines is None and case is not None:
+        outlines = case.outlines
+    return plan(scene, result, outlines), units or (case.system if case else RULES)
 
 
 def scene_svg(scene: Any, result: Mapping[str, Any] | None = None) -> Svg:
@@ -254,7 +255,7 @@ def draw_bodies(drawing: Drawing, vehicles: Sequence[Vehicle], at: View) -> None
 
 def with_unit(value: float, rule: str, units: System) -> str:
     """An amount in the units shown, named where they have names."""
-    label = "" if units is RULES else units.label(rule)
+    label = "" if units.is_bare else units.label(rule)
     return f"{short(units.shown(rule, value))} {label}".strip()
 
 
@@ -275,7 +276,7 @@ def _key(drawing: Drawing, field: _Field, y: float, units: System) -> float:
         bar = [Path((0, end), d.BLACK, 0.4, role=f"{word} scale")]
         bar += [Path((x - 0.7j, x + 0.7j), d.BLACK, 0.4) for x in (0, end)]
         unit = f" {units.label(rule)}"
-        return bar, f"{word} {short(amount)}" if units is RULES else short(amount) + unit
+        return bar, f"{word} {short(amount)}" if units.is_bare else short(amount) + unit
 
     left = [(velocity("before"), "velocity before"), (velocity("after"), "velocity after")]
     plane = [Path((0, sample), d.BLACK, 0.3, PLANE)]
@@ -355,7 +356,7 @@ def _notes(shapes: Plan, units: System) -> list[str]:
     barrier = len(shapes.bodies) < 2
     if not barrier:
         first.append(f"Closing speed {with_unit(shapes.closing, _SPEED, units)}.")
-    if units is not RULES:
+    if not units.is_bare:
         first.append(f"Speeds in {units.label(_SPEED)}, spins in {units.label(_SPIN)}.")
     notes = [" ".join(first)]
     if shapes.apart:

@@ -19,10 +19,10 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ..case import OWN_AXES
 from ..closedform.degrees import sin_cos as real_sin_cos
 from ..doubles import double
 from ..errors import BEYOND_DOUBLES, UserError
-from ..scene import OWN_AXES
 
 Array = NDArray[Any]
 P = ParamSpec("P")

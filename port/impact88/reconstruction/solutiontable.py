@@ -144,7 +144,7 @@ class Impact:
                 return f"{vehicle} unknown"
             speed = units.shown(VELOCITY, values[name])
             text = f"{vehicle} {number(speed, 3)}"
-            if units is not RULES:
+            if not units.is_bare:
                 road, factor = _ROAD.get(unit, ("", 0.0))
                 text += f" {unit}" + (f" ({number(speed * factor, 3)} {road})" if road else "")
             if name in self.drivers:

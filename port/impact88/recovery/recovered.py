@@ -9,12 +9,12 @@ comparison.
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from ..case import VALUE_LIMIT
 from ..fields import ANGLES, FINAL_SPINS, INPUTS, scene_name
 from ..names import SCENE
 from ..reading.glyphs import letters
 from ..reading.numerals import candidates
 from ..reading.printout import Printout, Reading
-from ..scene import VALUE_LIMIT
 from . import replays
 from .search import Column, Search, column_of
 from .typedtext import stored_and_printed

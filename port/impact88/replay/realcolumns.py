@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..case import check_mapping
 from ..errors import UserError
 from ..names import DEFAULT_M, SCENE, VELOCITIES
-from ..scene import check_mapping
 from .reals import Floats, Packed, from_packed
 from .textcolumns import read
 from .unit import NEVER, Ints, Unit, key

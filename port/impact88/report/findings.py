@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..case import ABOUT, Case
 from ..errors import UserError, library
 from ..figures.canvas import svg
 from ..figures.sceneview import scene_drawing
@@ -15,9 +16,8 @@ from ..names import DEFAULT_M, SCENE, check_names, quantity
 from ..plaintable import fixed, number
 from ..reconstruction.geometry import MOVES, clock, moved, placed
 from ..reconstruction.state import KNOWABLE
-from ..scene import Entries
 from ..status import sentences
-from ..units import RULES, System, base_of, system_of
+from ..units import System, base_of
 from .frame import render
 
 DRIVERS = 3
@@ -76,37 +76,35 @@ class Findings(NamedTuple):
 
 
 def report(
-    entries: Entries,
+    case: Case,
     source: str,
     data: bytes,
     *,
     samples: int,
     seed: int,
-    case: str = "",
+    number: str = "",
     title: str = "",
     paper: str = "",
 ) -> tuple[str, list[Table]]:
     """The page of what a file (``source``, its bytes ``data``) says of a collision: forward for
     a whole scene with nothing after the impact, else reconstructed; and its tables. Raises
     UserError."""
-    units = system_of(entries.units)
-    given = {n for n, text in entries.values.items() if text.strip()}
+    units = case.system
+    given = {n for n, text in case.values.items() if text.strip()}
     scene = placed(SCENE, given)
-    forward = set(scene) - {"M"} <= given <= {*scene, *MOVES, "correlations"}
-    check_names(
-        given - {"correlations"}, placed((*KNOWABLE, *MOVES), given), "name used here", source
-    )
-    found = (_forward if forward else _inverse)(entries, source, samples, seed, units)
+    forward = set(scene) - {"M"} <= given <= {*scene, *MOVES}
+    check_names(given, placed((*KNOWABLE, *MOVES), given), "name used here", source)
+    found = (_forward if forward else _inverse)(case, source, samples, seed, units)
     drawing = None
     if set(SCENE) <= set(found.scene):  # what is not determined cannot be drawn
         # as wide, in mm, as both papers leave between their margins, less a little
-        look = (150.0, "Scene from above", units, entries.outlines)
+        look = (150.0, "Scene from above", units, case.outlines)
         drawing = scene_drawing(found.scene, found.values, *look)
-    tables = [_answer(found, units), *_details(found, entries, units)]
+    tables = [_answer(found, units), *_details(found, case, units)]
     page = render(
         "collision.html",
-        title=title or entries.title or "Planar impact of two vehicles",
-        case=case or entries.case or "",
+        title=title or case.title or "Planar impact of two vehicles",
+        case=number or case.case or "",
         paper=paper or ("letter" if units.name in ("us", "chapter", "") else "a4"),
         files=[(source, data)],
         found=found,
@@ -114,12 +112,12 @@ def report(
         if any(spread.low == spread.low for spread in found.spreads.values())
         else "",
         base=base_of(units),
-        units="any consistent set" if units is RULES else f"those of the file ({units.name})",
+        units="any consistent set" if units.is_bare else f"those of the file ({units.name})",
         answer=_sentences(found, units),
         tables=tables,
         drawing=svg(drawing) if drawing else "",
         figure_caption=drawing.description if drawing else "",
-        remarks=[*entries.remarks.values(), *found.remarks],
+        remarks=[*case.remarks.values(), *found.remarks],
     )
     return page, tables
 
@@ -143,13 +141,13 @@ def _cell(text: str) -> float | str | None:
         return text or None
 
 
-def _forward(entries: Entries, source: str, samples: int, seed: int, units: System) -> Findings:
+def _forward(case: Case, source: str, samples: int, seed: int, units: System) -> Findings:
     from ..closedform.solve import share_typed, solve
     from ..reconstruction.solutiontable import completed
     from ..uncertainty.bounds import bounds
     from ..uncertainty.ranges import read_inputs
 
-    inputs = read_inputs(entries.values, {}, "forward", source)
+    inputs = read_inputs(case)
     nominal = moved({name: item.nominal for name, item in inputs.values.items()})
     if inputs.values["MU"].share:
         nominal["MU"] = share_typed(nominal, nominal["MU"])
@@ -183,12 +181,12 @@ def _forward(entries: Entries, source: str, samples: int, seed: int, units: Syst
     return Findings(False, values, FORWARD, spreads, remarks, scene)
 
 
-def _inverse(entries: Entries, source: str, samples: int, seed: int, units: System) -> Findings:
+def _inverse(case: Case, source: str, samples: int, seed: int, units: System) -> Findings:
     from ..reconstruction.adjustment import reconstruct
     from ..uncertainty.reconstructedtable import Measured
     from ..uncertainty.uncertain import read
 
-    texts = {n: text for n, text in entries.values.items() if text.strip() and n in KNOWABLE}
+    texts = {n: text for n, text in case.values.items() if text.strip() and n in KNOWABLE}
     texts.setdefault("M", DEFAULT_M)
     known = {n: read(t, f"{source}: {n}", units=units.name or None) for n, t in texts.items()}
     try:
@@ -273,15 +271,15 @@ def _answer(found: Findings, units: System) -> Table:
     return Table("Answer", headings, rows, left, caption if found.spreads else "")
 
 
-def _details(found: Findings, entries: Entries, units: System) -> list[Table]:
+def _details(found: Findings, case: Case, units: System) -> list[Table]:
     rows = []
-    for name, text in entries.given.items():
-        if name in ("title", "case", "units", "correlations") or not text.strip():
+    for name, text in case.given.items():
+        if name in ABOUT or not text.strip():
             continue
         bare = not any(map(str.isalpha, text.replace("e", "").replace("E", ""))) and "°" not in text
         unit = units.unit(name) if bare and "'" not in text else ""
-        source = [entries.sources.get(name, "")]
-        source += ["estimate: " + entries.estimated[name]] if name in entries.estimated else []
+        source = [case.sources.get(name, "")]
+        source += ["estimate: " + case.estimated[name]] if name in case.estimated else []
         rows.append([name, quantity(name).meaning, text, unit, "; ".join(filter(None, source))])
     headings = ["", "input", "given", "unit", "source"]
     tables = [Table("Inputs as given", headings, rows, (0, 1, 3, 4))]

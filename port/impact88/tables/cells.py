@@ -12,18 +12,20 @@ from numpy.typing import NDArray
 
 from .. import doubles
 from ..closedform.columns import UNUSED_BY_POINTS
+from ..doubles import is_number
 from ..errors import UserError, quoted
 from ..names import RESULTS, SCENE, quantity
 from ..units import (
     NUMBER,
-    RULES,
     SYSTEMS,
+    Convention,
     System,
     check_unit,
     converted,
     size_of,
     system_named,
     system_using,
+    turned,
     units_in,
 )
 from .rows import ArrowTexts, Column, Heading, Rows, heading
@@ -49,6 +51,7 @@ class TableUnits:
     ) -> None:
         self.units: dict[str, str] = {}
         self.based: Collection[str] = ()
+        self.convention: Convention | None = None
         self.strict = False
         compared = [name for name in names if name in SCENE or name in results]
         for name in compared:
@@ -58,11 +61,11 @@ class TableUnits:
                 self.units[name] = unit
         used = [(unit, quantity(name).unit) for name, unit in self.units.items()]
         self.system = system_named(given, "--units") if given else system_using(used, where)
-        if self.system is RULES and first is not None:
+        if self.system.is_bare and first is not None:
             self.system = system_using(_units_in_cells(first), where)
-            self.strict = self.system is not RULES
+            self.strict = not self.system.is_bare
         elif not given and (bare := [name for name in compared if self.leaves_open(name)]):
-            if self.system is not RULES:
+            if not self.system.is_bare:
                 # beside ft, slug and ft/s, or m, kg and m/s, bare numbers are such too
                 self.system = SYSTEMS["si" if self.system.base == SYSTEMS["si"].base else "chapter"]
             if any(self.factor(name) != 1 for name in self.units):
@@ -88,17 +91,24 @@ class TableUnits:
 
     def converts(self, name: str) -> bool:
         """Whether a column's texts have to be looked at."""
-        return name not in self.based and (self.system is not RULES or name in self.units)
+        return name not in self.based and (not self.system.is_bare or name in self.units)
 
     def cell(self, name: str, text: str) -> str:
         """One cell in base units, exactly. Raises UserError for what is not an amount."""
         unit = self._unit(name)
         usual = {quantity(name).unit: unit} if unit else {}
-        if self.system is RULES and (found := system_using(units_in(name, text), "")) is not RULES:
+        if self.system.is_bare and not (found := system_using(units_in(name, text), "")).is_bare:
             raise UserError(
                 f"{quoted(text)}: expected its unit in the heading, or --units {found.name}"
             )
-        return converted(name, text, System("", self.system.base, usual))
+        based = converted(name, text, System("", self.system.base, usual))
+        turn = self.convention.turned(name) if self.convention else None
+        return turned(name, based, *turn) if turn and is_number(based) else based
+
+    def turned(self, name: str, values: Any) -> Any:
+        """Return numbers in base units in the listing's axes."""
+        turn = self.convention.turned(name) if self.convention else None
+        return values if turn is None or name in self.based else turn[1] + turn[0] * values
 
     def headings(self, results: Sequence[str]) -> list[str]:
         """Names with the headings they have here: ``DVA [mph]``."""
@@ -107,8 +117,8 @@ class TableUnits:
 
     def shown(self, results: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
         """Results in base units as they are shown."""
-        factors = {n: self.system.factor(n) for n in results if n in RESULTS}
-        return {n: v * factors[n] if factors.get(n, 1.0) != 1 else v for n, v in results.items()}
+        system = self.system._replace(convention=self.convention)
+        return {n: system.displayed(n, v) if n in RESULTS else v for n, v in results.items()}
 
 
 def _units_in_cells(rows: Rows) -> list[tuple[str, str]]:
@@ -185,7 +195,7 @@ def _numbers(
     bare_refused = units.strict and units.converts(name) and units.leaves_open(name)
     values = None if bare_refused else _plain_numbers(column)
     if values is not None:
-        return values if factor == 1 else values * factor
+        return units.turned(name, values if factor == 1 else values * factor)
     values = np.full(rows.count, np.nan)
     cells = list(column)
     already = {index for index, *_ in rows.bad}
@@ -195,12 +205,12 @@ def _numbers(
         number = _number(cell)
         try:
             if not isinstance(number, str):
-                values[index] = number * factor
+                values[index] = units.turned(name, number * factor)
                 if bare_refused and number:
                     raise UserError(f"{cell} has no unit, and others have")
             elif isinstance(cell, str) and any(map(str.isdigit, cell)):
                 values[index] = doubles.double(units.cell(name, cell))
-                cells[index] = f"{values[index] / factor:.15g}"
+                cells[index] = f"{units.turned(name, values[index]) / factor:.15g}"
                 rows.columns[name] = cells
             else:
                 raise UserError(number)

@@ -1,16 +1,17 @@
 """A scene swept: a table whose rows are one scene with some values running through ranges."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import lru_cache
 from itertools import islice, product
 from math import isfinite, prod
 from typing import NamedTuple
 
+from ..case import Case
 from ..doubles import digits, double, is_number
 from ..errors import UserError, quoted
 from ..names import SCENE, check_names
-from ..scene import in_base_units
-from ..units import shown_text, system_of
+from ..units import nominal, units_in
 from .rows import BLOCK_ROWS, Column, Heading, Reader, Rows
 
 MOST = 10_000_000
@@ -32,18 +33,25 @@ class Range(NamedTuple):
         return [*(self.low + i * step for i in range(self.steps - 1)), self.high]
 
 
-def read_ranges(texts: Mapping[str, str], units: str | None = None) -> dict[str, Range]:
-    """Name -> range, in base units, of texts LOW:HIGH:COUNT; ``units``: the system of bare numbers,
-    the scene's. Raises UserError naming the value and the form."""
+def read_ranges(texts: Mapping[str, str], case: Case) -> dict[str, Range]:
+    """Return name -> range, in base units, of texts LOW:HIGH:COUNT, each an edit of the ``case``.
+    Raises UserError naming the value and the form."""
     check_names(texts, tuple(SCENE), "value of a scene", "--sweep")
     ranges = {}
     for name, text in texts.items():
         parts = [part.strip() for part in text.split(":")]
         if len(parts) != 3 or not parts[2].isdigit():
             raise UserError(f"--sweep {name}: {quoted(text)} is not LOW:HIGH:COUNT, such as 0:1:51")
-        limits = in_base_units({name: " .. ".join(parts[:2])}, "--sweep", units)[0][name]
-        ends = limits.split(" .. ")
-        if len(ends) != 2 or not all(map(is_number, ends)):
+        for part in parts[:2]:
+            nominal(name, part, f"--sweep {name}")
+        units = {unit for part in parts[:2] for unit, _ in units_in(name, part)}
+        if len(units) == 1:  # the unit of one end is the other's
+            unit = units.pop()
+            parts = [
+                p if units_in(name, p) or i == 2 else f"{p} {unit}" for i, p in enumerate(parts)
+            ]
+        ends = [case.replaced({name: part}, "--sweep").values[name] for part in parts[:2]]
+        if not all(map(is_number, ends)):
             raise UserError(f"--sweep {name}: {quoted(text)} is not LOW:HIGH:COUNT, such as 0:1:51")
         low, high, count = double(ends[0]), double(ends[1]), int(parts[2])
         if not (isfinite(low) and isfinite(high)) or not 1 <= count <= MOST:
@@ -54,25 +62,46 @@ def read_ranges(texts: Mapping[str, str], units: str | None = None) -> dict[str,
     return ranges
 
 
-def _blocks(scene: Mapping[str, str], ranges: Mapping[str, Range]) -> Iterator[Rows]:
+def _blocks(case: Case, texts: Mapping[str, str], ranges: Mapping[str, Range]) -> Iterator[Rows]:
+    inertias = {name: estimate for name, estimate in estimates(case).items() if name in texts}
     grid = product(*(map(digits, r.values()) for r in ranges.values()))
     while block := list(islice(grid, BLOCK_ROWS)):
-        columns: dict[str, Column] = {n: [t] * len(block) for n, t in scene.items()}
+        columns: dict[str, Column] = {n: [t] * len(block) for n, t in texts.items()}
         columns |= dict(zip(ranges, zip(*block, strict=True), strict=True))
+        for name, estimate in inertias.items():
+            if f"M{name[1]}" in ranges:
+                columns[name] = [estimate(mass) for mass in columns[f"M{name[1]}"]]
         yield Rows(len(block), columns)
 
 
+def estimates(case: Case) -> dict[str, Callable[[str], str]]:
+    """Return, for each yaw inertia that the case has estimated, the function that gives it as text
+    for the text of another mass."""
+
+    def estimate_of(name: str) -> Callable[[str], str]:
+        @lru_cache(maxsize=4096)
+        def estimate(mass: str) -> str:
+            changed = case.replaced({f"M{name[1]}": mass}).single()
+            return changed.written({name: changed.values[name]})[name]
+
+        return estimate
+
+    return {name: estimate_of(name) for name in case.estimated}
+
+
 @contextmanager
-def read_sweep(
-    scene: Mapping[str, str], ranges: Mapping[str, Range], units: str | None = None
-) -> Iterator[Reader]:
-    """A reader of the scene's texts with every combination of the ranges' values, the last range
-    running fastest; in the system ``units``, the values that have a unit headed with it."""
-    system = system_of(units)
+def read_sweep(case: Case, ranges: Mapping[str, Range]) -> Iterator[Reader]:
+    """Yield a reader of the case's texts with every combination of the ranges' values, the last
+    range running fastest; in the case's system, the values that have a unit headed with it. What
+    depends on a value that runs, an estimated inertia or a share of the critical friction, is
+    that of each scene."""
+    system = case.system
+    values = case.single().values
+    scene = {name: values[name] for name in SCENE if name in values}
     headed = {n: Heading(n, system.heading(n), system.unit(n)) for n in scene}
-    texts: dict[str, str] = {headed[n]: shown_text(n, t, system) for n, t in scene.items()}
+    texts: dict[str, str] = {headed[n]: t for n, t in case.written(scene).items()}
     swept: dict[str, Range] = {}
     for n, values in ranges.items():
-        low, high = (system.factor(n) * limit for limit in values[:2])
+        low, high = (system.displayed(n, float(limit)) for limit in values[:2])
         swept[headed[n]] = Range(low, high, values.steps)
-    yield Reader(list(texts), _blocks(texts, swept), prod(r.steps for r in ranges.values()))
+    yield Reader(list(texts), _blocks(case, texts, swept), prod(r.steps for r in ranges.values()))

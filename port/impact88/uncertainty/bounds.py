@@ -19,13 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import status
+from ..case import check_mapping
 from ..closedform.solve import quantities, share_typed
 from ..errors import UserError
-from ..mappings import within_limits
+from ..mappings import base_system, within_limits
 from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, VELOCITIES, check_names, listed
 from ..reconstruction.geometry import MOVES, moved
 from ..reconstruction.outcome import forward_model, reconstruction_model
-from ..scene import check_mapping
 from .boundstable import Bound, Bounds, Drive, Spread
 from .extremes import CORNERS_IN_FULL, Extremes, Piece, merged
 from .ranges import complete, read_correlations
@@ -138,6 +138,7 @@ def bounds(
         corners_in_full=len(box.inputs) <= CORNERS_IN_FULL,
         correlations=pairs,
         draws=draws if keep_draws else {},
+        units=base_system(values),
     )
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field, fields, is_dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from textwrap import wrap
 from typing import Any, Self
 
@@ -13,7 +13,7 @@ from .. import notebook
 from ..names import quantity
 from ..plaintable import number, plain
 from ..plaintable import table as columns
-from ..units import RULES, system_of, written
+from ..units import System, system_of, written
 from .uncertain import Uncertain
 
 Array = NDArray[np.float64]
@@ -117,32 +117,81 @@ class Bounds:
         return notebook.preformatted(table(self))
 
 
-def in_units(found: Bounds, name: str | None) -> Bounds:
-    """What was found in base units, in those of the system of that name; as it is for None."""
-    units = system_of(name)
-    if units is RULES:
+def in_units(found: Bounds, system: System | str | None) -> Bounds:
+    """Return what was found in base units and the listing's axes as ``system`` (or its name) shows
+    it; as it is for None."""
+    system = system_of(system) if system is None or isinstance(system, str) else system
+    if system.is_bare and not system.convention:
         return found
 
-    def times(value: Any, factor: float) -> Any:
-        if isinstance(value, float | np.ndarray):
-            return value * factor
-        if isinstance(value, dict):
-            return {key: times(item, factor) for key, item in value.items()}
-        if isinstance(value, tuple):
-            return tuple(times(item, factor) for item in value)
-        if not is_dataclass(value):
-            return value
-        kept = ("rank_correlation", "at_lower", "at_upper")
-        numbers = {f.name: getattr(value, f.name) for f in fields(value) if f.name not in kept}
-        others = {n: written(getattr(value, n), units) for n in kept[1:] if hasattr(value, n)}
-        return replace(value, **times(numbers, factor), **others)  # type: ignore[type-var]
+    def place(name: str, value: Any) -> Any:
+        """Return a value where it is shown; limits of a direction stay in order."""
+        turn = system.convention.turned(name) if system.convention else None
+        if turn and turn[1]:
+            return turn[1] + turn[0] * value
+        return system.displayed(name, value)
 
-    parts = ("inputs", "limits", "bounds", "spreads", "drives", "draws")
-    named = {part: getattr(found, part).items() for part in parts}
-    changed: dict[str, Any] = {
-        part: {n: times(x, units.factor(n)) for n, x in of} for part, of in named.items()
-    }
-    return replace(found, **changed, units=units.name)
+    def is_turned(name: str) -> bool:
+        turn = system.convention.turned(name) if system.convention else None
+        return turn is not None and turn[0] < 0
+
+    def ends(name: str, low: Any, high: Any) -> tuple[Any, Any]:
+        return (high, low) if is_turned(name) else (low, high)
+
+    def bound(name: str, value: Bound) -> Bound:
+        """Return a bound whose lower side is the lower one as shown."""
+        lower, upper = ends(name, value.lower, value.upper)
+        corner_lower, corner_upper = ends(name, value.corner_lower, value.corner_upper)
+        at_lower, at_upper = ends(name, value.at_lower, value.at_upper)
+        lower_warnings, upper_warnings = ends(name, value.lower_warnings, value.upper_warnings)
+        return Bound(
+            place(name, value.nominal),
+            place(name, lower),
+            place(name, upper),
+            written(at_lower, system),
+            written(at_upper, system),
+            place(name, corner_lower),
+            place(name, corner_upper),
+            lower_warnings,
+            upper_warnings,
+        )
+
+    def spread(name: str, value: Spread) -> Spread:
+        quantiles = value.quantiles
+        if is_turned(name):  # shares are tabled in pairs about the half
+            values = [*reversed(quantiles.values())]
+            shares = [round(1 - share, 12) for share in reversed(quantiles)]
+            quantiles = dict(zip(shares, values, strict=True))
+        shown = {share: place(name, quantile) for share, quantile in quantiles.items()}
+        deviation = value.deviation * system.factor(name)
+        return Spread(place(name, value.mean), deviation, shown)
+
+    def drive(output: str, name: str, value: Drive) -> Drive:
+        low, high = ends(name, value.at_low, value.at_high)
+        lowest, highest = ends(output, value.lowest, value.highest)
+        rank = value.rank_correlation * (-1 if is_turned(name) != is_turned(output) else 1)
+        return Drive(rank, *(place(output, end) for end in (low, high, lowest, highest)))
+
+    def uncertain(name: str, item: Uncertain) -> Uncertain:
+        low, high = ends(name, item.low, item.high)
+        deviation = item.deviation * system.factor(name)
+        shown = {"low": place(name, low), "high": place(name, high), "deviation": deviation}
+        return replace(item, nominal=place(name, item.nominal), **shown)
+
+    limits = {n: ends(n, *pair) for n, pair in found.limits.items()}
+    return replace(
+        found,
+        inputs={n: uncertain(n, item) for n, item in found.inputs.items()},
+        limits={n: (place(n, low), place(n, high)) for n, (low, high) in limits.items()},
+        bounds={n: bound(n, value) for n, value in found.bounds.items()},
+        spreads={n: spread(n, value) for n, value in found.spreads.items()},
+        drives={
+            output: {name: drive(output, name, value) for name, value in drives.items()}
+            for output, drives in found.drives.items()
+        },
+        draws={n: place(n, values) for n, values in found.draws.items()},
+        units=system.name or None,
+    )
 
 
 def as_json(bounds: Bounds) -> dict[str, Any]:

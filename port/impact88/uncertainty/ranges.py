@@ -7,11 +7,14 @@ solution of the nominal values: how well would the initial velocities have been 
 """
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
+from ..case import OWN_NAMES, Case, is_range
+from ..doubles import digits, double
 from ..errors import UserError
-from ..names import DEFAULT_M, FINAL_VELOCITIES, SCENE, VELOCITIES, check_names
+from ..names import FINAL_VELOCITIES, SCENE, VELOCITIES, check_names
 from ..reconstruction.geometry import MOVES, moved, placed
+from ..units import opposite
 from . import uncertain
 from .uncertain import Uncertain
 
@@ -23,10 +26,12 @@ AFTER = (*FINAL_VELOCITIES, "MUP")
 @dataclass(frozen=True)
 class Inputs:
     """What `impact88.bounds` takes: ``values`` by name, ``correlations`` by pair of names;
-    ``derived``: names whose values are the forward solution's."""
+    ``derived``: names whose values are the forward solution's; ``case``: what they were read
+    from."""
 
     values: dict[str, Uncertain]
     correlations: dict[Pair, float]
+    case: Case
     derived: tuple[str, ...] = ()
 
 
@@ -50,59 +55,86 @@ def complete(given: Collection[str], problem: str, source: str | None = None) ->
 
 
 def read_inputs(
-    texts: Mapping[str, str],
-    changes: Mapping[str, str],
+    texts: Mapping[str, str] | Case,
+    changes: Mapping[str, str] | None = None,
     problem: str = "forward",
     source: str = "scene",
 ) -> Inputs:
-    """The inputs of ``problem`` (forward or reconstruction) from a file's texts by name and the
-    ``changes`` made to them; ``+- D`` in a change is around the file's value. Raises UserError for
-    unknown or missing names and for texts that are no value or range."""
-    entries = {"M": DEFAULT_M, **texts}
-    entries.pop("title", None)
-    correlations = read_correlations(entries.pop("correlations", ""), source)
-    scene = placed(SCENE, entries)
-    check_names(entries, (*scene, *AFTER, *MOVES), "name used here", source)
-    wanted = placed(input_names(problem), entries)
-    check_names(changes, (*wanted, *MOVES), f"value of the {problem} problem", "--range")
-    values = {
-        name: uncertain.read(text, f"{source}, {name}")
-        for name, text in entries.items()
-        if name in (*scene, *MOVES) or problem != "forward"
-    }
+    """Return the inputs of ``problem`` (forward or reconstruction).
+
+    Parameters
+    ----------
+    texts
+        A case, or texts as a file has them, of which messages say ``source``.
+    changes
+        What is changed of it: ``+- D`` is around the value there.
+
+    Raises
+    ------
+    UserError
+        For unknown or missing names and for texts that are no value or range.
+    """
+    case = texts if isinstance(texts, Case) else Case(texts, source)
+    source, changes = case.source, changes or {}
+    forward = problem == "forward"
+    scene = placed(SCENE, case.values)
+    check_names(case.values, (*scene, *AFTER, *MOVES), "name used here", source)
+    wanted = placed(input_names(problem), {**case.values, **changes})
+    # what only the forward solution is made of has one value
+    single = [name for name, text in changes.items() if not forward and not is_range(text)]
+    allowed = (*wanted, *MOVES, *OWN_NAMES, *(name for name in scene if name in single))
+    check_names(changes, allowed, f"value of the {problem} problem", "--range")
+    early = {name: text for name, text in changes.items() if name not in AFTER}
+    case = case.replaced(early, "--range") if early else case
     derived: tuple[str, ...] = ()
-    if problem != "forward" and not set(AFTER) & set(values) and not set(AFTER) <= set(changes):
-        values |= _forward_solution(values, source)
+    if not forward and not set(AFTER) & set(case.values) and not set(AFTER) <= set(changes):
+        solution = _forward_solution(case)
         derived = tuple(name for name in AFTER if name not in changes)
-    for name, text in changes.items():
-        center = values[name].nominal if name in values else 0.0 if name in MOVES else None
-        values[name] = uncertain.read(text, f"--range {name}", center)
+        case = case.replaced(case.written(solution))
+    late = {name: text for name, text in changes.items() if name in AFTER}
+    case = case.replaced(late, "--range") if late else case
+    values = _read(case, (*scene, *MOVES) if forward else tuple(case.values))
     wanted = (*complete(values, problem, source), *(name for name in MOVES if name in values))
-    return Inputs({name: values[name] for name in wanted}, correlations, derived)
+    correlations = read_correlations(case.correlations, source)
+    return Inputs({name: values[name] for name in wanted}, correlations, case, derived)
 
 
-def _forward_solution(values: Mapping[str, Uncertain], source: str) -> dict[str, Uncertain]:
-    """The final velocities and MUP of the forward solution of the nominal values."""
+def _read(case: Case, names: Collection[str]) -> dict[str, Uncertain]:
+    return {
+        name: uncertain.read(text, _where(case, name))
+        for name, text in case.values.items()
+        if name in names
+    }
+
+
+def _where(case: Case, name: str) -> str:
+    """Return what messages call a value: ``FILE, NAME``, ``--range NAME``."""
+    place = case.place(name)
+    return f"{place} {name}" if place.startswith("--") else f"{place}, {name}"
+
+
+def _forward_solution(case: Case) -> dict[str, str]:
+    """Return the final velocities and MUP of the forward solution of the nominal values, as texts
+    in base units; MUP has the limits of MU."""
+    values = _read(case, tuple(case.values))
     missing = [name for name in placed(SCENE, values) if name not in values]
     if missing:
         raise UserError(
             f"neither final velocities ({' '.join(AFTER)}) nor the whole scene to have them from "
             f"({' '.join(missing)} missing)",
-            source,
+            case.source,
         )
     from ..closedform.solve import share_typed, solve
 
     scene = moved({name: item.nominal for name, item in values.items()})
-    friction = values["MU"]
-    if friction.share:
-        friction = uncertain.fixed(float(share_typed(scene, friction.nominal)))
-        scene = {**scene, "MU": friction.nominal}
+    friction = case.values["MU"]
+    if values["MU"].share:
+        friction = digits(float(share_typed(scene, values["MU"].nominal)))
+        scene["MU"] = double(friction)
     solved = solve(scene, AFTER)
-    if float(solved["MUP"]) == -friction.nominal:
-        friction = replace(
-            friction, nominal=-friction.nominal, low=-friction.high, high=-friction.low
-        )
-    result = {name: uncertain.fixed(float(solved[name])) for name in FINAL_VELOCITIES}
+    if float(solved["MUP"]) == -scene["MU"]:
+        friction = opposite(friction)
+    result = {name: digits(float(solved[name])) for name in FINAL_VELOCITIES}
     return {**result, "MUP": friction}
 
 

@@ -108,7 +108,7 @@ class Measured(Impact):
                 "the sliding before the impact joins what is known"
             )
         if solution.assumed:
-            unit = f" {units.label('length')}" if units is not RULES else ""
+            unit = f" {units.label('length')}" if not units.is_bare else ""
             lines.append(
                 "the known values contradict one another and none has a tolerance: all known "
                 "velocities were given the same one (spins that divided by the radius of gyration, "

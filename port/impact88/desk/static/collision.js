@@ -3,8 +3,7 @@ import { ask, asked, attempt, drawInto, element, newest, page, save, settled, sh
 
 const form = () => page("collision-form");
 const inputs = () => [...form().querySelectorAll("fieldset input")];
-let readRemarks = []; // how a file's entries were understood
-let extra = {}; // lengths and widths from a file: drawn, and saved again
+let extra = {}; // what a file has beside the fields: computed with, and saved again
 const values = () => ({ ...extra, ...Object.fromEntries(inputs().map((input) => [input.name, input.value])) });
 const question = () => ({ values: values(), title: page("collision-title").value, units: page("collision-units").value });
 const trouble = (error) => tell(page("collision-trouble"), error);
@@ -111,8 +110,7 @@ const answer = newest(async () => {
   }
   trouble(null);
   showProblems(told.problems, told.ranges);
-  const remarks = [...readRemarks, ...told.remarks];
-  tell(page("collision-remarks"), remarks.length && { message: remarks.join(" ") });
+  tell(page("collision-remarks"), told.remarks.length && { message: told.remarks.join(" ") });
   showUnits(form(), told.units);
   page("collision-base").textContent = told.units.base;
   const ranged = told.ranges.length > 0 && Boolean(told.oracle);
@@ -136,7 +134,6 @@ const answer = newest(async () => {
 function load(scene) {
   for (const input of inputs()) input.value = scene.values[input.name] ?? "";
   extra = scene.extra ?? {};
-  readRemarks = scene.remarks ?? [];
   page("collision-title").value = scene.title;
   page("collision-units").value = scene.units ?? "";
   answer();

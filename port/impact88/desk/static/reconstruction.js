@@ -7,12 +7,9 @@ const ticks = () => [...form().querySelectorAll("input[data-for]")];
 const tickOf = (input) => page(`${input.id}-known`);
 const toleranceOf = (input) => page(`${input.id}-tolerance`);
 const WITHIN = /^(.*\S)\s*(?:\+-|±)\s*(\S.*)$/;
-let extra = {}; // lengths and widths from a file: drawn, and saved again
-const question = () => ({ values: values(), units: page("reconstruction-units").value });
+let extra = {}; // what a file has beside the fields: computed with, and saved again
+const question = () => ({ values: { ...extra, ...values() }, units: page("reconstruction-units").value });
 const trouble = (error) => tell(page("reconstruction-trouble"), error);
-
-/** The question with what stands beside the form. */
-const whole = () => ({ ...question(), values: { ...extra, ...values() } });
 
 /** The values that count: those always known, and those ticked. */
 function values() {
@@ -95,6 +92,7 @@ const solve = settled(async () => {
   }
   trouble(null);
   showProblems(told.problems);
+  tell(page("reconstruction-remarks"), told.remarks.length && { message: told.remarks.join(" ") });
   showUnits(form(), told.units);
   latest = told.solutions;
   const whole = told.solutions.length > 0;
@@ -116,7 +114,6 @@ function answer() {
 
 function load(given) {
   extra = given.extra ?? {};
-  tell(page("reconstruction-remarks"), given.remarks?.length && { message: given.remarks.join(" ") });
   for (const input of inputs()) {
     put(input, given.values[input.name] ?? "");
     const tick = tickOf(input);
@@ -155,10 +152,10 @@ export function reconstruction() {
     });
   });
   page("reconstruction-save").addEventListener("click", () => doing(async () =>
-    save(await ask("file/reconstruction", whole()))));
+    save(await ask("file/reconstruction", question()))));
   page("reconstruction-report").addEventListener("click", () => doing(async () => {
     const busy = page("reconstruction-busy");
-    const response = await watched(busy, "Writing the report", "bounds", ask("case-report/reconstruction", whole()));
+    const response = await watched(busy, "Writing the report", "bounds", ask("case-report/reconstruction", question()));
     if (response) await save(response);
   }));
   page("reconstruction-print").addEventListener("click", () => print());
