@@ -245,8 +245,8 @@ class Case:
         None stays. Raises UserError."""
         if not (units or axes or headings):
             return self
-        about = {"units": units, "axes": axes, "headings": headings}
-        about = {name: text for name, text in about.items() if text}
+        asked = {"units": units, "axes": axes, "headings": headings}
+        about = {name: text for name, text in asked.items() if text}
         there = type(self)({**self.about, **about}, self.source)
         based = {name: text for name, text in self._based.items() if is_number(text)}
         return type(self)({**self.texts, **there.written(based), **about}, self.source)

@@ -32,8 +32,6 @@ def in_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
 
 def _in_base(values: Mapping[str, Any]) -> tuple[Mapping[str, Any], str | None]:
     check_mapping(values)
-    if isinstance(values, Case):
-        return values.values, values.units
     texts = {name: value for name, value in values.items() if isinstance(value, str)}
     if isinstance(values, Scene) or not texts:
         return values, None
@@ -62,7 +60,7 @@ def base_system(values: Mapping[str, Any]) -> str | None:
     none."""
     from .units import system_of
 
-    named = values.units if isinstance(values, Scene | Case) else _in_base(values)[1]
+    named = values.units if isinstance(values, Scene) else _in_base(values)[1]
     return None if named is None else system_of(named).base_name
 
 

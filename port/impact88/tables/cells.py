@@ -195,7 +195,8 @@ def _numbers(
     bare_refused = units.strict and units.converts(name) and units.leaves_open(name)
     values = None if bare_refused else _plain_numbers(column)
     if values is not None:
-        return units.turned(name, values if factor == 1 else values * factor)
+        scaled = values if factor == 1 else values * factor
+        return np.asarray(units.turned(name, scaled))
     values = np.full(rows.count, np.nan)
     cells = list(column)
     already = {index for index, *_ in rows.bad}

@@ -101,7 +101,7 @@ def read_sweep(case: Case, ranges: Mapping[str, Range]) -> Iterator[Reader]:
     headed = {n: Heading(n, system.heading(n), system.unit(n)) for n in scene}
     texts: dict[str, str] = {headed[n]: t for n, t in case.written(scene).items()}
     swept: dict[str, Range] = {}
-    for n, values in ranges.items():
-        low, high = (system.displayed(n, float(limit)) for limit in values[:2])
-        swept[headed[n]] = Range(low, high, values.steps)
+    for n, run in ranges.items():
+        low, high = (system.displayed(n, limit) for limit in run[:2])
+        swept[headed[n]] = Range(low, high, run.steps)
     yield Reader(list(texts), _blocks(case, texts, swept), prod(r.steps for r in ranges.values()))
