@@ -9,14 +9,13 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
-from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..doubles import double
 from ..errors import UserError, quoted
-from ..files import called, replacing
+from ..files import called
 from ..mappings import texts
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..plaintable import plain
@@ -27,6 +26,7 @@ from ..tables.table import format_of, open_reader
 from . import agreement
 from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, Case
 from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, Diagnosis
+from .junit import Suite
 from .trials import Program
 from .vectors import FAILURE
 
@@ -341,28 +341,17 @@ def write_junit(path: str, name: str, comparison: Comparison, strict: bool) -> N
     """Write the JUnit report that systems for continuous integration read: a failing test for every
     row that disagrees, one test for those that agree, one for each reason why rows were not
     compared (failing with ``strict``). Raises UserError when the place cannot be written to."""
-    suite = ElementTree.Element("testsuite", name=f"impact88 compare {name}")
-
-    def test(name: str, outcome: str = "", message: str = "") -> None:
-        case = ElementTree.SubElement(suite, "testcase", classname="impact88.compare", name=name)
-        if outcome:
-            ElementTree.SubElement(case, outcome, message=message)
-
-    test(f"{comparison.agreeing} of {comparison.rows} rows agree")
+    suite = Suite(f"impact88 compare {name}")
+    suite.test(f"{comparison.agreeing} of {comparison.rows} rows agree")
     for row in comparison.differences:
         place = f"row {row.row}" + (f", id {row.id}" if row.id else "")
         said = f"{row.result} {row.theirs}, here {row.ours:.12g}, off by {row.relative:.2g}"
-        test(place, "failure", f"{said}; {row.cause}")
+        suite.test(place, "failure", f"{said}; {row.cause}")
     for bad in comparison.bad:
-        test(f"row {bad.row}", "error", str(bad))
+        suite.test(f"row {bad.row}", "error", str(bad))
     for said in comparison.silent:
-        test(said, "failure" if strict else "skipped", said)
+        suite.test(said, "failure" if strict else "skipped", said)
     for reason, skipped in comparison.not_compared.items():
         if reason in HARMLESS:
-            test(f"{skipped.rows} rows: {reason}", "skipped", reason)
-    suite.set("tests", str(len(suite)))
-    for count, outcome in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped")):
-        suite.set(count, str(len(suite.findall(f"testcase/{outcome}"))))
-    ElementTree.indent(suite)
-    with replacing(path, "wb") as file:
-        ElementTree.ElementTree(suite).write(file, "utf-8", xml_declaration=True)
+            suite.test(f"{skipped.rows} rows: {reason}", "skipped", reason)
+    suite.write(path)

@@ -33,10 +33,11 @@ def _head(vector: dict[str, Any]) -> list[str]:
     return [vector["id"], vector["class"], vector["expect"], " ".join(vector["flags"])]
 
 
-def write_kit(place: str, count: int, seed: int) -> list[str]:
+def write_kit(place: str, count: int, seed: int, reference: bool = True) -> list[str]:
     """Write the kit into a folder, which is made where it is not there, or into one archive (.zip);
-    the names of its files. Raises UserError where the place cannot be written to."""
-    found = list(vectors(count, seed))
+    the names of its files. ``reference``: with 30 digits. Raises UserError where the place cannot
+    be written to, and where they need mpmath."""
+    found = list(vectors(count, seed, reference))
     texts = {
         "vectors.csv": "".join(flat(found)),
         "vectors.jsonl": "".join(json.dumps(vector, ensure_ascii=False) + "\n" for vector in found),

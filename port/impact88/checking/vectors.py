@@ -5,13 +5,16 @@ Three classes in turn: ``casework`` (as reports hold them), ``edge`` (one limit 
 vector on any machine."""
 
 import gzip
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from itertools import count as count_from
 from itertools import islice
 from math import cos, radians, sin
 from random import Random
 from typing import Any
 
+import numpy as np
+
+from ..closedform.solve import solve
 from ..doubles import doubles_of
 from ..files import packaged_bytes
 from ..names import FINAL_VELOCITIES, SCENE
@@ -44,12 +47,24 @@ def vectors(
                 "id": f"{seed}-{index:06d}",
                 "class": kind,
                 "label": label,
-                "expect": ANSWER if kind != FAILURE else REFUSE if None in finals else EITHER,
+                "expect": _expected(kind, None not in finals),
                 "flags": found["status"],
                 "comment": f"{label}; the 1988 program {ends}",
                 "scene": scene,
             }
             yield stamped("vectors", head | found)
+
+
+def expectation(kind: str, scene: Mapping[str, str]) -> str:
+    """Return what is asked of a program by a scene of a class, the scene's results looked at."""
+    finals = solve(doubles_of(scene), FINAL_VELOCITIES)
+    return _expected(kind, all(np.isfinite(finals[name]) for name in FINAL_VELOCITIES))
+
+
+def _expected(kind: str, has_solution: bool) -> str:
+    if kind != FAILURE:
+        return ANSWER
+    return EITHER if has_solution else REFUSE
 
 
 def published() -> str:

@@ -7,6 +7,10 @@ explained: every small mistake in the equations, some 38,000 in nine spellings o
 conventions are made here too, alone and two together, and the one that gives their numbers is
 named, with the rows that bear it out. What could not be compared is listed on standard error.
 
+With --kit DIR the table is judged as answers to the vectors of that kit (impact88 oracle --kit):
+every id once, its inputs bit for bit, all final velocities, an answer where one is due and no
+number where there is none. It prints a result per class and label and one line for a badge.
+
 Conventions (axes, signs, units, how close is close, vector classes): impact88 schema conventions.
 
 examples:
@@ -14,23 +18,29 @@ examples:
   impact88 compare theirs.jsonl --json
   impact88 compare theirs.jsonl --strict --junit results.xml
   impact88 compare theirs.csv --set EM=1 --set M=6
+  impact88 compare --kit kit theirs.csv --junit conformance.xml
 
 exit status: 0 everything agrees; 1 something does not, or a row could not be read (with --strict:
-or was not compared); 2 bad input
+or was not compared; with --kit: a vector does not pass); 2 bad input
 """
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 
 from ..accuracy.errorbound import DOUBLE
+from ..checking import conformance
 from ..checking.agreement import EQUATIONS
 from ..checking.compare import HARMLESS, Comparison, compare, write_junit
+from ..checking.conformance import REASONS, Conformance, check_conformance
 from ..errors import UserError, note, shown
 from ..tables.table import format_of
 from . import options
 
 SHOWN = 20
 """Unreadable rows listed on stderr: a screen, and twice as many are two."""
+FIRST = 5
+"""Vectors shown for each reason why some do not pass."""
 
 ARGUMENTS = (
     options.reads("theirs", "THEIRS", "the table (- is standard input, CSV)"),
@@ -47,7 +57,8 @@ ARGUMENTS = (
     ),
     options.flag("--strict", "rows, cells and columns that were not compared are failures"),
     options.flag("--no-causes", "judge only; look for no causes"),
-    options.writes("--junit", "FILE", "write a JUnit report, a test a row"),
+    options.reads("--kit", "KIT", "judge as answers to the vectors of this kit, folder or .zip"),
+    options.writes("--junit", "FILE", "write a JUnit report, a test a row (with --kit: a vector)"),
     options.UNITS,
     options.ENCODING,
     options.JSON,
@@ -59,6 +70,8 @@ def main(args: options.Args) -> int:
     given = options.settings(args.set, units=args.units)
     if args.rtol is not None and not 0 <= args.rtol < 1:
         raise UserError(f"--rtol is {args.rtol}; expected a share such as 1e-9")
+    if args.kit is not None:
+        return _conformance(args)
     comparison = compare(
         args.theirs,
         format_of(args.theirs, args.form),
@@ -74,6 +87,46 @@ def main(args: options.Args) -> int:
     for line in _notes(comparison):
         note("compare", line)
     return int(bool(comparison.differing or comparison.bad or (args.strict and comparison.silent)))
+
+
+def _conformance(args: options.Args) -> int:
+    """Judge the table as answers to a kit's vectors."""
+    for option, value in (("--set", args.set), ("--units", args.units), ("--rtol", args.rtol)):
+        if value:
+            raise UserError(f"{option}: a kit's inputs and tolerances are its own; expected none")
+    form = format_of(args.theirs, args.form)
+    done = check_conformance(args.kit, args.theirs, form, args.encoding)
+    if args.junit:
+        conformance.write_junit(args.junit, done)
+    options.show(args, "conformance", done.as_json, lambda: _conformance_lines(done))
+    for name in done.unknown[:SHOWN]:
+        note("compare", f"column {name} is not recognised")
+    return int(not done.conforms)
+
+
+def _conformance_lines(done: Conformance) -> Iterator[str]:
+    yield f"{'class':<30}  passed  failed"
+    for name, count in done.counts("kind").items():
+        yield f"{name:<30}  {count['passed']:>6}  {count['failed']:>6}"
+    yield f"of those that pass, {done.refused} are refused, as they may be"
+    if done.failures:
+        yield f"\n{'label':<30}  passed  failed"
+        for name, count in done.counts("label").items():
+            if count["failed"]:
+                yield f"{name:<30}  {count['passed']:>6}  {count['failed']:>6}"
+    reasons = Counter(verdict.reason for verdict in done.failures)
+    for reason, count in reasons.most_common():
+        yield f"\n{count} vectors: {REASONS[reason]}"
+        for verdict in [v for v in done.failures if v.reason == reason][:FIRST]:
+            place = f"row {verdict.row}" if verdict.row else "no row"
+            detail = f": {shown(verdict.detail, 100)}" if verdict.detail else ""
+            yield f"  {verdict.vector.id} ({verdict.vector.label}), {place}{detail}"
+    if done.strays:
+        yield f"\n{len(done.strays)} rows are no vector's"
+        yield from (f"  {stray}" for stray in done.strays[:FIRST])
+    if done.failures:
+        yield "\nimpact88 compare without --kit looks for the cause"
+    yield f"\n{done.badge}"
 
 
 def _notes(comparison: Comparison) -> Iterator[str]:

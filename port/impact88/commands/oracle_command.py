@@ -17,7 +17,7 @@ examples:
   impact88 oracle --vectors 1000 --seed 7 -o vectors.jsonl
   impact88 oracle --vectors 100 --class failure
   impact88 oracle --vectors 1000 --to csv | their-program | impact88 compare -
-  impact88 oracle --kit kit
+  impact88 oracle --kit kit          then impact88 compare --kit kit theirs.csv
 
 exit status: 0 every line was answered; 1 some lines could not be used; 2 no usable input at all
 """
@@ -40,7 +40,13 @@ ARGUMENTS = (
     options.OUTPUT,
     options.flag("--no-reference", "leave out the 30 digits"),
     options.count("--vectors", 1, 10**7, "write N test vectors"),
-    options.seed("of the test vectors"),
+    options.count(
+        "--seed",
+        0,
+        2**63,
+        f"of the test vectors (default: 0; of a kit {vectors.PUBLISHED_SEED}, the published ones)",
+        metavar="S",
+    ),
     options.choice("--class", vectors.CLASSES, "vectors of this class only", dest="only"),
     options.choice("--to", ("jsonl", "csv"), "csv: the scenes of --vectors as a flat table"),
     # what is typed for --to csv; in the help --csv names a file, that of `report`
@@ -48,8 +54,9 @@ ARGUMENTS = (
     options.writes(
         "--kit",
         "DIR",
-        "write vectors, conventions and programs that answer them, in five languages and a "
-        "spreadsheet, into a folder or one archive (KIT.zip)",
+        "write vectors, conventions, a README and programs that answer them, in five languages "
+        "and a spreadsheet, into a folder or one archive (KIT.zip); the published vectors, unless "
+        "--vectors or --seed say otherwise",
     ),
     options.flag("--published", "write the published vectors"),
     options.UNITS,
@@ -66,8 +73,11 @@ def main(args: options.Args) -> int:
         if given and not wanted:
             raise UserError(f"{option} is for test vectors; expected --vectors N with it")
     if args.kit is not None:
-        print("\n".join(kit.write_kit(args.kit, args.vectors or vectors.PUBLISHED, args.seed)))
+        count = args.vectors or vectors.PUBLISHED
+        seed = vectors.PUBLISHED_SEED if args.seed is None else args.seed
+        print("\n".join(kit.write_kit(args.kit, count, seed, not args.no_reference)))
         return 0
+    args.seed = args.seed or 0
     if args.published:
         print(vectors.published(), end="")
         return 0

@@ -17,6 +17,7 @@ NUMBERS = {
     "oracle": 1,
     "vectors": 2,
     "compare": 1,
+    "conformance": 1,
     "verify": 2,
     "selfcheck": 1,
     "witness": 1,
@@ -24,7 +25,8 @@ NUMBERS = {
     "reconstruct": 2,
     **dict.fromkeys(("colinear", "delta-v", "example", "staged"), 1),
 }
-"""Name of a form -> its number. Names are those of the commands, and the oracle's ``vectors``."""
+"""Name of a form -> its number. Names are those of the commands, the oracle's ``vectors``, and
+``conformance`` for compare --kit."""
 CONVENTIONS = "conventions"
 
 
