@@ -115,8 +115,8 @@ def _conformance_lines(done: Conformance) -> Iterator[str]:
             if count["failed"]:
                 yield f"{name:<30}  {count['passed']:>6}  {count['failed']:>6}"
     reasons = Counter(verdict.reason for verdict in done.failures)
-    for reason, count in reasons.most_common():
-        yield f"\n{count} vectors: {REASONS[reason]}"
+    for reason, failed in reasons.most_common():
+        yield f"\n{failed} vectors: {REASONS[reason]}"
         for verdict in [v for v in done.failures if v.reason == reason][:FIRST]:
             place = f"row {verdict.row}" if verdict.row else "no row"
             detail = f": {shown(verdict.detail, 100)}" if verdict.detail else ""
