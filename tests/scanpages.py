@@ -10,6 +10,7 @@ import io
 import json
 import math
 import random
+import re
 import sys
 from collections.abc import Iterator
 from functools import cache
@@ -25,9 +26,12 @@ KINDS = (
     *("clean", "hard", "photo"),
     *("altered", "font", "pasted", "line", "erased", "labels"),
     *("pins", "carbon", "columns", "half", "turned"),
+    *("sign", "point", "digit", "appended", "typedline", "beside", "word"),
 )
-"""The first three genuine, the next six not; the last five genuine, in ways of their own."""
+"""The first three genuine, the next six not; five genuine, in ways of their own; on the last seven
+something was added in the page's own type."""
 FORGED = KINDS[3:9]
+ADDED = KINDS[14:]
 FONTS = {
     "liberation": "truetype/liberation/LiberationMono-Regular.ttf",
     "courierprime": "opentype/courier-prime/Courier Prime.otf",
@@ -255,9 +259,64 @@ def _mislabelled(text: str, choose: random.Random) -> tuple[str, tuple[str, str,
     return text[:at] + new + text[at + len(new) :], (old, new, at)
 
 
+_LINES = (
+    "VAX SHOULD READ {}, KE LOSS {} %",
+    "KE LOSS= {} %",
+    "VAX= {} VAY= {}",
+    "CORRECTED: IA= {}",
+    "RUN {} SUPERSEDES RUN {}",
+)
+
+
+def _number_places(lines: list[str]) -> list[tuple[int, int, int]]:
+    """Row, and first and last column, of the numbers from the first printed input on."""
+    first = next(k for k, line in enumerate(lines) if "MA=" in line and "IB" in line)
+    return [
+        (row, match.start(), match.end())
+        for row in range(first, len(lines))
+        for match in re.finditer(r"-?[0-9.]+(?:E-[0-9]+)?", lines[row])
+        if re.search("[A-Z]= ?$", lines[row][: match.start()]) or "=" not in lines[row]
+    ]
+
+
+def _added(lines: list[str], kind: str, choose: random.Random) -> tuple[list[str], Any]:
+    """The lines with something typed where the program prints a blank; what, and where."""
+    new = [*lines]
+    places = _number_places(lines)
+    number = f"{choose.uniform(1, 90):.{choose.choice((0, 1, 2, 3))}f}"
+    if kind == "typedline":
+        row = choose.choice([len(new), *(k for k in range(places[0][0], len(new)) if not new[k])])
+        text = choose.choice(_LINES).format(number, choose.randint(2, 99))
+        new[row : row + 1] = [text] if row < len(new) else ["", text]
+        return new, (kind, "", text, [row, 0])
+    if kind in ("beside", "word"):
+        row = choose.choice(places)[0]
+        text = f"VAX= {number}" if kind == "beside" else choose.choice(("NOT", "KE", "VAX", "WB="))
+        column = len(new[row]) + (choose.randint(3, 8) if kind == "beside" else 1)
+        new[row] = new[row].ljust(column) + text
+        return new, (kind, "", text, [row, column])
+    spots = []
+    for row, start, stop in places:
+        line = f"{lines[row]}  "
+        before, digit = line[start - 1 : start], line[start] != "-"
+        if kind == "appended" and line[stop] == " ":
+            spots.append((row, stop, choose.choice("0123456789")))
+        elif kind == "sign" and before == " " and digit:
+            spots.append((row, start - 1, "-"))
+        elif kind == "digit" and before == " " and digit:
+            spots.append((row, start - 1, choose.choice("123456789")))
+        elif kind == "point" and "." not in line[start:stop]:
+            spots += [(row, start - 1, ".")] * (before == " " and digit)
+            spots += [(row, stop, ".")] * (line[stop] == " ")
+    row, column, character = choose.choice(spots)
+    line = new[row].ljust(column + 1)
+    new[row] = line[:column] + character + line[column + 1 :]
+    return new, (kind, " ", character, [row, column])
+
+
 def page(kind: str, choose: random.Random, of: list[str]) -> tuple[Image.Image, dict[str, Any]]:
     """One page of a kind, and its truth; ``of``: the fonts that may be used."""
-    plain = kind in ("clean", "photo", *FORGED)
+    plain = kind in ("clean", "photo", *FORGED, *ADDED)
     font = choose.choice([one for one in of if not plain or one not in DOTS])
     sizes = (36, 42, 48) if plain and kind not in FORGED else (30, 36, 42)
     pixels = choose.choice((22, 28, 34, 40) if kind == "hard" else sizes)
@@ -274,12 +333,14 @@ def page(kind: str, choose: random.Random, of: list[str]) -> tuple[Image.Image, 
             shown[0], altered = _altered(prints[0], choose)
     by_hand = kind in ("font", "pasted", "line", "erased")
     lines = _styled(prints if by_hand else shown, style)
+    if kind in ADDED:
+        lines, altered = _added(lines, kind, choose)
     leading = choose.choice((1.0, 1.1)) if kind == "hard" else 1.0
     paper = drawn(lines, font, pixels, leading)
     if altered and by_hand:
         _forge(paper, kind, lines, _styled(shown, style), font, pixels, leading, choose, of)
     paper = _aged(paper, kind, pixels, choose)
-    if altered:
+    if altered and kind in FORGED:
         altered = (kind, *altered)
     grey = Image.fromarray(np.clip(paper, 0, 255).astype(np.uint8))
     quality = choose.choice((None, None, 85, 70)) if kind != "photo" else choose.randint(60, 90)

@@ -20,6 +20,7 @@ from ..scan.grid import Grid
 from ..scan.holding import RATES, Cell, state
 from ..scan.ink import Floats
 from ..scan.picture import Page, pages_of
+from ..scan.residue import Mark
 from ..scan.scenes import scenes_in
 from ..scan.sheets import Leaf, looked
 from ..scan.typeface import BLANK
@@ -36,11 +37,11 @@ def verified(path: str, data: bytes, seed: str = "") -> Iterator[Verification]:
         for page in pages_of(data, path):
             found: list[Verification] = []
             for paper in papers_of(page.picture):
-                leaves = looked(paper.grey, [*seeds, *scenes_in(page.text)])
-                for leaf in leaves:
+                seen = looked(paper.grey, [*seeds, *scenes_in(page.text)], paper.coloured)
+                for leaf in seen.leaves:
                     number = len(results) + len(found) + 1
                     result = _verification(path, number, page, paper, leaf)
-                    result.exhibit = partial(exhibit, paper.grey, leaves, leaf)
+                    result.exhibit = partial(exhibit, paper.grey, seen.leaves, leaf)
                     found.append(result)
             if page.text.strip():
                 _layered(found, page.text)
@@ -111,6 +112,7 @@ def _verification(path: str, number: int, page: Page, paper: Paper, leaf: Leaf) 
         for cell in leaf.cells  # blanks and labels that hold are not told
         if (cell.name and cell.predicted != BLANK) or state(cell) != "holds"
     ]
+    result.marks = [_marked(mark, page, paper, leaf.grid) for mark in leaf.marks]
     if leaf.judged.reason:
         result.remarks.append(f"page {page.number}: {leaf.judged.reason}")
     result.findings += [
@@ -167,6 +169,21 @@ def _box(corners: Floats, page: Page, paper: Paper, turns: int) -> list[float]:
     x, y = ((x, y), (width - y, x), (width - x, height - y), (y, height - x))[turns]
     x, y = page.scale * paper.place(np.stack([x, y], axis=-1)).T
     return [round(float(v), 1) for v in (x.min(), y.min(), x.max(), y.max())]
+
+
+def _marked(mark: Mark, page: Page, paper: Paper, grid: Grid) -> dict[str, Any]:
+    """A mark as JSON; ``line`` and ``cell`` from 1, where it stands on the grid."""
+    return {
+        "page": page.number,
+        "box": _box(mark.corners, page, paper, grid.turns),
+        "kind": str(mark.kind),
+        "reads": mark.reads,
+        "line": mark.place.line + 1 if mark.place else None,
+        "cell": mark.place.cell + 1 if mark.place else None,
+        "touches": mark.touches,
+        "beside": mark.beside,
+        "bears": mark.bears,
+    }
 
 
 def _described(cell: Cell, page: Page, paper: Paper, grid: Grid) -> dict[str, Any]:

@@ -44,6 +44,7 @@ MEANINGS = {
 """What a verdict says."""
 
 DOUBTFUL, NOTES = "doubtful places", "notes on the reading"
+MARKS = "on the page and not printed by the program"
 EXPLAINED = "possible explanations, best first"
 
 
@@ -52,7 +53,8 @@ class Verification:
     """The result for one printout; `as_json` gives the documented object.
 
     ``guessed``: inputs whose printed number was not read exactly, or not at all; ``unseen``: what
-    the page cannot show; ``left_over``: text that belongs to no field and no label; ``copy``: the
+    the page cannot show; ``marks``: of a picture, all ink in and near the printout that the program
+    does not print; ``left_over``: text that belongs to no field and no label; ``copy``: the
     listing it is held against where that is not the restored one; ``page``: of a picture, its
     page, ``basis``: how sure its margins are, and ``exhibit``: what shows its cells in the report.
 
@@ -80,6 +82,7 @@ class Verification:
     left_over: list[Piece] = field(default_factory=list)
     labels: list[LabelCheck] = field(default_factory=list)
     cells: list[dict[str, Any]] = field(default_factory=list)
+    marks: list[dict[str, Any]] = field(default_factory=list)
     basis: str = ""
     exhibit: Callable[[], dict[str, Any]] | None = field(default=None, repr=False)
     page: int | None = None
@@ -129,7 +132,7 @@ class Verification:
         if self.copy:
             described["listing"] = self.copy
         if self.cells:
-            described |= {"cells": self.cells, "basis": self.basis}
+            described |= {"cells": self.cells, "marks": self.marks, "basis": self.basis}
         return stamped("verify", described)
 
 
@@ -228,6 +231,7 @@ def sections(result: Verification) -> dict[str, list[str]]:
     ]
     every = {
         DOUBTFUL: doubtful,
+        MARKS: list(_marks(result.marks)),
         EXPLAINED: _explained(result),
         "the page cannot show": result.unseen,
         "what the page shows besides": result.findings,
@@ -236,6 +240,38 @@ def sections(result: Verification) -> dict[str, list[str]]:
     }
     return {heading: said for heading, said in every.items() if said}
 
+
+_MARK_WORDS = {
+    "character": "{reads!r} typed where the program prints a blank",
+    "type": "typed text that the program does not print: {reads!r}",
+    "mark": "a mark like no character of the page",
+    "stroke": "ink larger than a character: pen, stamp or stain",
+    "coloured ink": "ink of another colour than the page's type",
+    "straight line": "a straight line",
+    "hole": "a hole",
+    "edge of the sheet": "a dark edge of the sheet",
+}
+_COUNTED = {"straight line": "lines", "hole": "holes", "edge of the sheet": "dark edges"}
+
+
+def _marks(marks: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """What the program does not print: what bears on the verdict each by itself."""
+    for mark in marks:
+        if mark["bears"] or mark["kind"] not in _COUNTED:
+            x, y, _, _ = mark["box"]
+            place = f"line {mark['line']}, cell {mark['cell']}" if mark["line"] else ""
+            place = place or f"{x:.0f} pixels from the left, {y:.0f} from the top"
+            said = f"page {mark['page']}, {place}: {_MARK_WORDS[mark['kind']].format(**mark)}"
+            beside = mark["beside"] and not mark["line"] and not mark["touches"]
+            said += ", in or beside a line of the printout" if beside else ""
+            touches = ", ".join(mark["touches"])
+            yield said + (f"; touches {touches}" if touches and mark["kind"] not in _TYPED else "")
+    for kind, words in _COUNTED.items():
+        if count := sum(mark["kind"] == kind and not mark["bears"] for mark in marks):
+            yield f"{count} {words if count > 1 else kind}, away from the printed lines"
+
+
+_TYPED = ("character", "type")
 
 _DOUBTS: dict[str, str] = {
     Doubt.LOOK_ALIKE: "read {read!r} where the program prints {printed!r} ({program})",

@@ -12,9 +12,11 @@ from .picture import Picture
 
 @dataclass
 class Paper:
-    """One sheet: its picture in ``grey``, 0 black and 255 white, and what was done to get it."""
+    """One sheet: its picture in ``grey``, 0 black and 255 white; ink of
+    another colour than the type's in ``coloured``, from 0 to 1; and what was done to get it."""
 
     grey: Image
+    coloured: Image | None = None
     remarks: list[str] = field(default_factory=list)
 
     def place(self, points: Floats) -> Floats:

@@ -23,8 +23,9 @@ _MOST_STRIPS = 24
 
 def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
     """One of a page's printouts: ``page``, ``width`` and ``height`` of its picture; ``cells``, each
-    with its corners on it; ``strips``, those in doubt, and how many ``more`` there are; ``bars``,
-    margins in 60 steps from -1.5 to 1.5."""
+    with its corners on it; ``marks``, what the program does not print, in the same way;
+    ``strips``, the cells in doubt, and how many ``more`` there are; ``bars``, margins in 60 steps
+    from -1.5 to 1.5."""
     upright = np.rot90(grey, leaf.grid.turns)
     height, width = upright.shape
     scale = min(1.0, _WIDEST / width)
@@ -47,6 +48,15 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
             }
             for cell, kind, around in kinds
             if kind != "holds" or (cell.name and cell.predicted != BLANK)
+        ],
+        "marks": [
+            {
+                "kind": str(mark.kind),
+                "reads": mark.reads,
+                "bears": mark.bears,
+                "corners": (scale * mark.corners).tolist(),
+            }
+            for mark in leaf.marks
         ],
         "strips": _strips(upright, leaves, doubted[:_MOST_STRIPS], leaf),
         "more": max(0, len(doubted) - _MOST_STRIPS),

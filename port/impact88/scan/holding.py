@@ -6,10 +6,12 @@ relative to how far those two means are apart: -1 is the predicted glyph itself,
 What margins allow to be said stands before `RATES`.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
+from enum import Enum
 from itertools import product
+from operator import attrgetter
 
 import numpy as np
 
@@ -31,8 +33,18 @@ another font are farther."""
 _EVEN = 0.8
 """The strength of ink, 1 for the page's usual, that 99 % of the cells have on evenly inked paper:
 0.82 and more on seven pages of which a digit was erased, 0.4 to 0.75 on those that lost some."""
-_BESIDE = 2
-"""Blank cells that are looked at after the last character of a line."""
+
+
+class Added(Enum):
+    """What stands where the program prints a blank."""
+
+    NOTHING = 0
+    CHARACTER = 1
+    """In a line, or at its end: it changes a number or a label."""
+    TYPE = 2
+    """Typed text beside a line, or at a reply."""
+    MARK = 3
+    """Ink like no character of the page."""
 
 
 @dataclass
@@ -55,6 +67,8 @@ class Cell:
     hand: str = ""
     cut: bool = False
     lost: bool = False
+    fit: float = 0.0
+    added: Added = Added.NOTHING
 
 
 def predicted(read: Read, candidate: Candidate) -> Iterator[tuple[str, str, Place]]:
@@ -75,8 +89,15 @@ def predicted(read: Read, candidate: Candidate) -> Iterator[tuple[str, str, Plac
             for character in shown:
                 yield name, character, row.place(column)
                 column += 1
-        for beyond in range(column, column + _BESIDE):
-            yield "", BLANK, row.place(beyond)
+
+
+def _blanks(grid: Grid, sheet: Sheet, inked: set[Place]) -> Iterator[tuple[str, str, Place]]:
+    """The cells of a printout's lines in which the program prints nothing."""
+    for row in sheet.rows.values():
+        for line in range(row.start, row.start + row.used):
+            for cell in range(len(grid.corners[line]) - 1):
+                if (place := Place(line, cell)) not in inked:
+                    yield "", BLANK, place
 
 
 def reply_of(read: Read, name: str, scene: dict[str, str]) -> str:
@@ -109,12 +130,18 @@ def held(grid: Grid, known: Sequence[tuple[Read, Candidate]]) -> list[list[Cell]
     """Every cell of each printout's predicted page, with its margin."""
     if not known:
         return []
-    rows = [(which, *row) for which, pair in enumerate(known) for row in predicted(*pair)]
+    rows: list[tuple[int, str, str, Place]] = []
+    for which, pair in enumerate(known):
+        printed = [*predicted(*pair)]
+        places = {place for *_, place in printed}
+        blanks = _blanks(grid, pair[0].sheet, places)
+        rows += [(which, *row) for row in (*printed, *blanks)]
     every = np.arange(len(rows))
     names = np.array([character for _, _, character, _ in rows])
     of_number = np.array([bool(name) for _, name, _, _ in rows])
     cut = [
-        not grid.shows(*place) or known[which][0].sheet.beyond(place) for which, *_, place in rows
+        not grid.shows(*place) or (character != BLANK and known[which][0].sheet.beyond(place))
+        for which, _, character, place in rows
     ]
     sample = sample_of(grid, [place for *_, place in rows])
     typeface = typeface_of(sample, np.where(cut, "", names).tolist())
@@ -157,6 +184,13 @@ def held(grid: Grid, known: Sequence[tuple[Read, Candidate]]) -> list[list[Cell]
             step = np.maximum(step, apart[cell])
         margins = np.where(allowed, (distance[cell] - apart[cell]) / step, -np.inf)
         other = int(np.argmax(margins))
+        fit = 0.0
+        if character == BLANK:
+            # of little marks each is near in its own small step: the nearest in ink counts
+            other = int(np.argmin(apart[cell, :-1]))
+            gain = float(distance[cell] - apart[cell, other])
+            margins[other] = gain / max(float(energy[other]), 1e-6)
+            fit = gain / max(float(distance[cell]), 1e-6)
         margin, seen = float(margins[other]), characters[other]
         if hands[cell] and not alone[cell]:
             seen = hands[cell]
@@ -165,14 +199,70 @@ def held(grid: Grid, known: Sequence[tuple[Read, Candidate]]) -> list[list[Cell]
         count = counts[own[cell]], counts[other] if seen == characters[other] else 0
         lost = pale and characters[other] == BLANK
         compared = margin, seen, float(relative[cell] / level), beyond, *count
-        measured = Cell(place, name, character, *compared, hands[cell], cut[cell], lost)
+        measured = Cell(place, name, character, *compared, hands[cell], cut[cell], lost, fit)
         cells[which].append(measured)
+    for own_cells in cells:
+        own_cells.sort(key=attrgetter("place"))
+        _find_added(own_cells)
     return cells
 
 
-HOLDS, DIFFERS, LABEL, EMPTY, FOREIGN, KIND = -0.12, 0.3, 0.1, -0.15, 20.0, 15.0
+def _find_added(cells: Sequence[Cell]) -> None:
+    """Say of the blanks of a printout which hold characters: those within a line or at its end are
+    added to it, others are text beside it."""
+    blanks = [cell for cell in cells if cell.predicted == BLANK and not (cell.name or cell.cut)]
+    typed = {cell.place: cell for cell in blanks if _is_typed(cell)}
+    # where several blanks hold a little ink, a mark as small may be a speck
+    specks = sum(cell.other in _SMALL and cell.margin > SPECK for cell in blanks)
+    for cell in blanks:
+        if cell.place not in typed and cell.margin > INKED_SMALL:
+            cell.added = Added.MARK
+    printed = {cell.place: cell for cell in cells if cell.predicted != BLANK}
+    for (line, at), run in _runs(typed):
+        inked = [place.cell for place in printed if place.line == line]
+        sides = [printed.get(Place(line, side)) for side in (at - 1, at + len(run))]
+        names = [side.name for side in sides if side and side.name]
+        within = bool(inked) and min(inked) < at < max(inked)
+        changed = (within or any(sides)) and len(run) <= MOST_DIFFERING
+        small = all(cell.other in _SMALL for cell in run)
+        changed = changed and not (small and specks > MOST_SPECKS)
+        reply = any(name.startswith("REPLY") for name in names)
+        if changed and not reply and (within or names or at > min(inked)):
+            for cell in run:
+                cell.added = Added.CHARACTER
+                cell.name = names[0] if names else ""
+        else:
+            for cell in run:
+                cell.added = Added.TYPE
+
+
+def _is_typed(cell: Cell) -> bool:
+    """Whether a blank holds ink like a character of the page."""
+    least = INKED_SMALL if cell.other in _SMALL else INKED
+    return cell.margin > least and cell.fit > FIT and cell.other_count > 1
+
+
+def _runs(cells: Mapping[Place, Cell]) -> Iterator[tuple[Place, list[Cell]]]:
+    """Cells next to each other on a line, with the place of the first."""
+    for place in sorted(cells):
+        if Place(place.line, place.cell - 1) in cells:
+            continue
+        run, at = [cells[place]], place.cell + 1
+        while Place(place.line, at) in cells:
+            run.append(cells[Place(place.line, at)])
+            at += 1
+        yield place, run
+
+
+INKED = 0.35  # margin of a blank cell from which it holds a character
+INKED_SMALL = 0.5  # the same of a point, a comma, a dash, which are as light as specks
+SPECK = 0.25  # margin of a blank from which a speck is seen in it
+MOST_SPECKS = 2  # of a page on which a mark as small as a point is taken for one
+FIT = 0.6  # the least part of the ink in a blank that the character explains
+_SMALL = frozenset(".,-:'`*")
+HOLDS, DIFFERS, LABEL, FOREIGN, KIND = -0.12, 0.3, 0.1, 20.0, 15.0
 """A cell with a smaller margin is the character predicted; one with a larger is another; a label
-with a smaller margin holds; blank paper with a larger one is not blank; a cell this many times as
+with a smaller margin holds; a cell this many times as
 far from a mean as is usual was not made by that type; a label that is nearer than this to another
 letter's mean is that letter."""
 RATES = (
@@ -239,9 +329,9 @@ def state(cell: Cell) -> str:
     if cell.cut:
         return "doubtful" if cell.name and cell.predicted != BLANK else "holds"
     if cell.predicted == BLANK:
-        if cell.margin < EMPTY or cell.other in _MARKS:
-            return "holds" if cell.margin < DIFFERS or not cell.name else "doubtful"
-        return "differs" if cell.margin > DIFFERS else "doubtful"
+        if cell.added is Added.CHARACTER:
+            return "differs"
+        return "doubtful" if cell.name and cell.margin > INKED else "holds"
     if (cell.hand and cell.count < 2) or (cell.lost and cell.margin > HOLDS):
         return "doubtful"
     if not cell.name:

@@ -57,10 +57,9 @@ class Read:
         if len(text) == len(costs) + 1 and text.startswith("-"):
             # a faint sign before an angle is taken for a blank
             return WORST + min(self._cost(costs, text[1:]), self._cost(costs, text[:-1]))
-        for row, character in zip(costs, text.ljust(len(costs)), strict=False):
-            column = READABLE.find(character)
-            total += WORST if column < 0 else min(float(row[column]), WORST)
-        return total
+        # a character added before a number moves none of its others
+        sides = {text.ljust(len(costs)), text.rjust(len(costs))}
+        return total + min(_summed(costs, side) for side in sides)
 
     def page(self, known: Mapping[str, str] | None = None) -> tuple[str, dict[str, int]]:
         """The printout as text, as far as its lines were found, and where its numbers begin.
@@ -73,6 +72,14 @@ class Read:
                     starts[name] = len(page)
                 page += (known or {}).get(name) or self.text(name) if name else text
         return page, starts
+
+
+def _summed(costs: Floats, text: str) -> float:
+    total = 0.0
+    for row, character in zip(costs, text, strict=False):
+        column = READABLE.find(character)
+        total += WORST if column < 0 else min(float(row[column]), WORST)
+    return total
 
 
 class Candidate(NamedTuple):

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import groupby, product
-from operator import attrgetter
+from itertools import product
 
 import numpy as np
 
@@ -12,9 +11,10 @@ from ..fields import INPUTS
 from ..judging.judgement import Verdict
 from ..reading.alignment import MAY_BE_MISSING
 from .grid import FEWEST_POINTS, Grid, grids_of
-from .holding import Cell, Judged, held, judged, state
-from .ink import Image, ink_of, points_of
+from .holding import Added, Cell, Judged, held, judged, state
+from .ink import Floats, Image, ink_of, points_of
 from .layout import Sheet, sheets_of
+from .residue import Explained, Mark, Residue, residue_of
 from .scenes import Candidate, Read, borne_out, scene_of
 from .typeface import BLANK, read_numbers
 
@@ -34,26 +34,55 @@ _LEAST_SIDE = 100
 @dataclass
 class Leaf:
     """One printout of a page: the grid it stands on, what was read and where, the verdict, the
-    scene found, and its cells held against the program's page."""
+    scene found, its cells held against the program's page, and the marks in and near it that the
+    program's page does not explain."""
 
     grid: Grid
     read: Read
     judged: Judged
     found: Candidate | None = None
     cells: list[Cell] = field(default_factory=list)
+    marks: list[Mark] = field(default_factory=list)
 
     @cached_property
     def by_name(self) -> dict[str, list[Cell]]:
         """The cells of each number and reply, in order."""
-        by_name = groupby(self.cells, attrgetter("name"))
-        return {name: [*cells] for name, cells in by_name if name}
+        by_name: dict[str, list[Cell]] = {}
+        for cell in self.cells:
+            if cell.name:
+                by_name.setdefault(cell.name, []).append(cell)
+        return by_name
+
+    @cached_property
+    def lines(self) -> set[int]:
+        """The lines of the grid that it takes."""
+        rows = self.read.sheet.rows.values()
+        return {line for row in rows for line in range(row.start, row.start + row.used)}
+
+    def apart(self, corners: Floats) -> float:
+        """How far a region of the sheet is from its lines, in pixels."""
+        own = np.concatenate([self.grid.corners[line].reshape(-1, 2) for line in self.lines])
+        gaps = np.maximum(own.min(axis=0) - corners.max(axis=0), 0)
+        gaps += np.maximum(corners.min(axis=0) - own.max(axis=0), 0)
+        return float(np.hypot(*gaps))
 
 
-def looked(grey: Image, seeds: Sequence[dict[str, str]] = ()) -> list[Leaf]:
-    """All printouts of a page, upright or turned by quarters. ``seeds``: scenes that another reader
-    found; they are tried beside those of the picture."""
+@dataclass
+class Looked:
+    """A sheet that was looked at: its printouts, and what else is on it."""
+
+    leaves: list[Leaf] = field(default_factory=list)
+    residue: Residue = field(default_factory=Residue)
+
+
+def looked(
+    grey: Image, seeds: Sequence[dict[str, str]] = (), coloured: Image | None = None
+) -> Looked:
+    """All printouts of a page, upright or turned by quarters, and all else that is on it.
+    ``seeds``: scenes that another reader found; they are tried beside those of the picture;
+    ``coloured``: ink that is not in ``grey``."""
     if min(grey.shape) < _LEAST_SIDE:
-        return []
+        return Looked()
     ink = ink_of(grey)
     most, found = 0.0, list[tuple[Grid, list[Sheet]]]()
     order = _turns(ink)
@@ -70,7 +99,29 @@ def looked(grey: Image, seeds: Sequence[dict[str, str]] = ()) -> list[Leaf]:
             most, found = gain, laid
         if any(sheet.whole and sheet.gain > _UPRIGHT for sheet in sheets):
             break
-    return [leaf for pair in found for leaf in _leaves(*pair, seeds)]
+    leaves = [leaf for pair in found for leaf in _leaves(*pair, seeds)]
+    return Looked(leaves, _rest(ink, coloured, leaves))
+
+
+def _rest(ink: Image, coloured: Image | None, leaves: Sequence[Leaf]) -> Residue:
+    """What the printouts of a page do not explain; each mark is put down to one of them, too."""
+    if not any(leaf.cells for leaf in leaves):
+        return Residue()
+    turns = leaves[0].grid.turns
+    grids = {id(leaf.grid): leaf.grid for leaf in leaves}
+    explained = []
+    for key, grid in grids.items():
+        own = [leaf for leaf in leaves if id(leaf.grid) == key]
+        cells = [cell for leaf in own for cell in leaf.cells]
+        explained.append(Explained(grid, cells, {line for leaf in own for line in leaf.lines}))
+    upright = None if coloured is None else np.rot90(coloured, turns)
+    residue = residue_of(np.rot90(ink, turns), upright, explained)
+    for mark in residue.marks:
+        leaf = min(leaves, key=lambda leaf: leaf.apart(mark.corners))
+        leaf.marks.append(mark)
+        if mark.bears and leaf.judged.verdict is Verdict.IDENTICAL:
+            leaf.judged.verdict = Verdict.IDENTICAL_AS_READ
+    return residue
 
 
 def _turns(ink: Image) -> list[int]:
@@ -105,7 +156,10 @@ def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) ->
         _hold(grid, known)
     for leaf in known:
         if leaf.found:
-            leaf.judged = judged(leaf.read.sheet, leaf.found, leaf.cells)
+            found = leaf.found
+            if wrongly := _divided_wrongly(leaf):
+                found = found._replace(cost=found.cost - wrongly)
+            leaf.judged = judged(leaf.read.sheet, found, leaf.cells)
     # the printouts of a page share their mean characters: one misplaced spoils them for all
     if any(leaf.judged.verdict is Verdict.INCOMPLETE for leaf in leaves):
         for leaf in leaves:
@@ -130,6 +184,21 @@ def _shown(cells: Sequence[Cell]) -> dict[str, str]:
         if cell.name in texts:
             texts[cell.name] += cell.other if state(cell) == "differs" else cell.predicted
     return {name: text.strip() for name, text in texts.items()}
+
+
+def _divided_wrongly(leaf: Leaf) -> float:
+    """What the first reading cost numbers that hold, on lines to which a character was added: where
+    it fills the blank after a number the line is divided elsewhere."""
+    assert leaf.found
+    added = {cell.place.line for cell in leaf.cells if cell.added is Added.CHARACTER}
+    cost = 0.0
+    for name, cells in leaf.by_name.items():
+        printed = [cell for cell in cells if cell.predicted != BLANK]
+        beside = any(cell.place.line in added for cell in printed)
+        reply = name.startswith("REPLY") or name not in leaf.read.costs
+        if beside and not reply and all(state(cell) == "holds" for cell in printed):
+            cost += leaf.read.cost(name, leaf.found.outcome.fields.get(name))
+    return cost
 
 
 def _mistaken(leaf: Leaf) -> bool:
