@@ -14,7 +14,7 @@ have numbers of their own it stands for E alone. `RETIRED` bits are not set any 
 
 from collections.abc import Mapping
 from enum import IntFlag
-from math import copysign, cos, hypot, inf, isfinite, isinf, nan, radians, sin
+from math import copysign, cos, hypot, inf, isfinite, isinf, nan, radians, sin, sqrt
 from typing import Any
 
 
@@ -93,27 +93,63 @@ def sentences(status: int, values: Mapping[str, Any] | None = None) -> list[str]
 
 
 def admissible_friction(status: int, values: Mapping[str, Any]) -> list[str]:
-    """Which sign of MU is admissible and how large it may be, if ``status`` says that it is not.
-    ``values``: MUC and MUP of the impact; MU, GA, XA YA XB YB as far as they are known."""
+    """Which sign of MU is admissible and how large it may be, if ``status`` says that it is not,
+    and what is assumed for that. ``values``: MUC and MUP of the impact; the scene, PN and PM as far
+    as they are known."""
     names = ("MUC", "MUP", "MU", "GA", "XA", "YA", "XB", "YB")
     critical, used, typed, plane, xa, ya, xb, yb = (float(values.get(n, nan)) for n in names)
     if not status & _FRICTION or not isfinite(critical) or not used:
         return []
     if critical * used > 0 and status & Status.FRICTION_WRONG_DIRECTION:
         critical = -copysign(inf, used)  # the pivot pulls: nothing ends the sliding
-    text = f"admissible here: P_t/P_n {_up_to(critical)}"
+    back = _forth_and_back(values)
+    text = f"admissible here: P_t/P_n {_up_to(critical, back)}"
     if abs(typed) > 0:  # MU is known
-        text += f", that is MU {_up_to(critical * typed / used)} as typed"
+        turn = typed / used
+        text += f", that is MU {_up_to(critical * turn, back * turn)} as typed"
+    if back:
+        text += (
+            f"; {back:.4g} by sliding forth and back, the normal impulse being what it is in this "
+            "impact"
+        )
+    if values.get("M", 6) != 4 and values.get("EM", 0) != 1:
+        text += "; assumed: the moment impulse grows in proportion to the normal impulse"
     sliding = (ya - yb) * cos(radians(plane)) - (xa - xb) * sin(radians(plane))
     if typed == used and abs(sliding) <= 1e-12 * hypot(xa - xb, ya - yb):
         text += "; without sliding before the impact line 400 keeps the sign of MU"
     return [text]
 
 
-def _up_to(limit: float) -> str:
+_SLIDING = ("GA", "DA", "DB", "TA", "PA", "TB", "PB", "MA", "MB", "IA", "IB", "WA", "WB")
+_SLIDING = (*_SLIDING, "UX", "UY", "VX", "VY", "PN", "PM")
+
+
+def _forth_and_back(values: Mapping[str, Any]) -> float:
+    """Return the P_t/P_n that friction makes at most against the sliding before the impact where
+    the normal impulse reverses it in between (see `closedform.statusbits.slides_forth_and_back`);
+    0 where that adds nothing, or is not known."""
+    if values.get("M", 6) == 4 or not all(name in values for name in _SLIDING):
+        return 0.0
+    g = {name: float(values[name]) for name in _SLIDING}
+    a, b = radians(g["TA"] + g["PA"] - g["GA"]), radians(g["TB"] + g["PB"] - g["GA"])
+    an, at = g["DA"] * sin(a), -g["DA"] * cos(a)
+    bn, bt = g["DB"] * sin(b), -g["DB"] * cos(b)
+    x, y, plane = g["UX"] - g["VX"], g["UY"] - g["VY"], radians(g["GA"])
+    before = y * cos(plane) - x * sin(plane) + at * g["WA"] + bt * g["WB"]
+    turning = (an * at / g["IA"] + bn * bt / g["IB"]) * g["PN"]
+    turning += (at / g["IA"] - bt / g["IB"]) * g["PM"]
+    yielding = 1 / g["MA"] + 1 / g["MB"] + at * at / g["IA"] + bt * bt / g["IB"]
+    size = abs(turning)
+    if not (before * turning < 0 and 0.5 * size < abs(before) < 2 * size and g["PN"] > 0):
+        return 0.0
+    most = (sqrt(2 * abs(before) * size) - size) ** 2 / (size * yielding)
+    return -copysign(most / g["PN"], before)
+
+
+def _up_to(limit: float, back: float = 0.0) -> str:
     if isinf(limit):
         return "above 0" if limit > 0 else "below 0"
-    if abs(limit) < 5e-10:
+    low, high = min(limit, back, 0.0), max(limit, back, 0.0)
+    if high - low < 5e-10:
         return "= 0 only"
-    low, high = sorted((0.0, limit))
     return f"from {low:.4g} to {high:.4g}"

@@ -91,7 +91,8 @@ def report(
     # no arms and no moment; mu is signed here, and -10 is no pivot
     arms, pivot = (none, none, none, none), (pn, critical * pn)
     lost = 2 * (ki - kf)
-    found = findings(van - vbn, pn, *arms, lost, ki, e, none, mu, *pivot, none, total)
+    sliding = none, none, none  # without arms no normal impulse turns it round
+    found = findings(van - vbn, pn, *arms, lost, ki, e, none, mu, *pivot, *sliding, none, total)
     named = dict(zip(names, values, strict=True)) | {"STATUS": bits(found)}
     return {name: np.broadcast_to(value, shape) for name, value in named.items()}
 

@@ -256,8 +256,11 @@ def impact(
     # Over 10^4 scenes of each of the benchmark's populations within a factor 5 of it for 98 % and
     # within 55 always; for EM within 1e-1 to 1e-16 of 1/2, for 91 % and 400.
     COND = 3.0 * cond
+    turning = (an * at * ia + bn * bt * ib) * PN + kt * PM
+    yielding = R + (at * at * ia + bt * bt * ib)
     status = findings(
-        *(gn, PN, at, bt, DA, DB, lost, KI, E, EM, sliding, pivot_n, pivot_t, COND),
+        *(gn, PN, at, bt, DA, DB, lost, KI, E, EM, sliding, pivot_n, pivot_t),
+        *(gt, turning, yielding, COND),
         VAX + VAY + VBX + VBY + WAF + WBF,
     )
     bits = [condition * float(bit) for bit, condition in status.items()]

@@ -21,18 +21,28 @@ LISTING_MISREADS = PIVOT
 """Line 510 takes any MU not above this for a pivot."""
 
 
-def friction_faults(gn: Any, pn: Any, mu: Any, pivot_pn: Any, pivot_pt: Any) -> tuple[Any, Any]:
-    """(above critical, wrong direction): where friction cannot make an impact.
+def friction_faults(
+    gn: Any,
+    pn: Any,
+    mu: Any,
+    pivot_pn: Any,
+    pivot_pt: Any,
+    gt: Any = 0.0,
+    turning: Any = 0.0,
+    yielding: Any = 0.0,
+) -> tuple[Any, Any]:
+    """Return (above critical, wrong direction): where friction cannot make an impact.
 
     ``gn``: normal relative velocity before, ``pn``: normal impulse on A, ``mu``: P_t/P_n with its
     sign, 0 for a pivot; ``pivot_pn``, ``pivot_pt``: the impulse on A if the sliding ended at
-    separation. They broadcast.
+    separation; ``gt``, ``turning``, ``yielding``: see `slides_forth_and_back`. They broadcast.
 
     In an approach (gn < 0, Pn > 0) friction is admissible from 0 to what ends the sliding, the
     pivot's P_t/P_n, MUC; with more it is reversed. The direction of the sliding before the impact
-    decides nothing: a normal impulse on eccentric contact can turn it round without friction. Where
-    the pivot's normal impulse would pull, no friction ends the sliding, and any in the pivot's
-    direction is admissible. Where MUC is 0 none is.
+    decides nothing by itself: a normal impulse on eccentric contact can turn it round without
+    friction, and before it does friction may act the other way. Where the pivot's normal impulse
+    would pull, no friction ends the sliding, and any in the pivot's direction is admissible. Where
+    MUC is 0 none is.
     """
     room = FRICTION_TOLERANCE
     approach, limited, down = (gn < 0) & (pn > 0), pivot_pn > 0, pivot_pt < 0
@@ -42,7 +52,38 @@ def friction_faults(gn: Any, pn: Any, mu: Any, pivot_pn: Any, pivot_pt: Any) -> 
     backward = approach & (down & (mu > room) | ~down & (mu < -room))
     none = limited & (most <= room * pivot_pn)
     above = approach & limited & (down & (forward_down > most) | ~down & (forward_up > most))
-    return above | backward & none, backward & ~none & (most > 0)
+    above = above | backward & none
+    wrong = backward & ~none & (most > 0)
+    excused = slides_forth_and_back(pn, mu, gt, turning, yielding)
+    return above & ~excused, wrong & ~excused
+
+
+def slides_forth_and_back(pn: Any, mu: Any, gt: Any, turning: Any, yielding: Any) -> Any:
+    """Return where friction can make the impact by acting against the sliding before it for as
+    long as that lasts, and the other way, less long, after the normal impulse has reversed it.
+
+    ``gt``: the sliding before, along t; ``turning``: K Pn, what the normal impulse, and the moment
+    in proportion to it, adds to the sliding; ``yielding``: K_tt, what a unit of the tangential
+    impulse adds.
+
+    Let friction of coefficient m act against the sliding, and the normal impulse reverse it after
+    p1 = abs(gt)/(m K_tt + abs(K)) of Pn. What is left in the end is Pt = m (Pn - 2 p1) along the
+    sliding before. Its least value over m is
+
+        -Pn (w - abs(K))^2 / (abs(K) K_tt)  with  w^2 = 2 abs(gt K)/Pn,
+
+    for abs(gt/K) between Pn/2 and 2 Pn. Below that, it only ever acts along the sliding before;
+    above, friction that ends the sliding is the most. Written here without the root: with b =
+    2 abs(gt) - abs(K) Pn and a = abs(Pt) K_tt, b >= a and (b - a)^2 >= 4 abs(K) Pn a.
+    """
+    size = abs(turning)
+    across = (abs(mu) - FRICTION_TOLERANCE) * (pn * yielding)
+    left = abs(gt) + abs(gt) - size
+    rest = left - across
+    # by what fails, so that what is not known excuses
+    straight = (gt * turning >= 0) | (mu * gt >= 0)
+    outside = (left <= 0) | (left >= 3.0 * size)
+    return ~(straight | outside | (rest < 0) | (rest * rest < 4.0 * (size * across)))
 
 
 def findings(
@@ -59,6 +100,9 @@ def findings(
     friction_mu: Any,
     pivot_pn: Any,
     pivot_pt: Any,
+    gt: Any,
+    turning: Any,
+    yielding: Any,
     condition: Any,
     sum_of_velocities: Any,
 ) -> dict[Status, Any]:
@@ -68,9 +112,11 @@ def findings(
     ``arm_a``, ``arm_b``: the tangential lever arms, minus the distances of A's and B's center from
     the contact plane, each towards its own side; ``da``, ``db``: the distances to the contact
     point; ``twice_lost`` and ``initial``: energies; ``friction_mu``: MU with its sign, 0 for a
-    pivot; ``pivot_pn``, ``pivot_pt``: see `friction_faults`; ``condition``: COND. They broadcast.
+    pivot; ``pivot_pn``, ``pivot_pt``, ``gt``, ``turning``, ``yielding``: see `friction_faults`;
+    ``condition``: COND. They broadcast.
     """
-    above, wrong = friction_faults(gn, pn, friction_mu, pivot_pn, pivot_pt)
+    sliding = gt, turning, yielding
+    above, wrong = friction_faults(gn, pn, friction_mu, pivot_pn, pivot_pt, *sliding)
     # what the sum of velocities does not show, the energies and the quotients do
     finite = abs(sum_of_velocities) < inf
     finite = finite & (abs(initial - 0.5 * twice_lost) < inf) & (abs(twice_lost / initial) < inf)

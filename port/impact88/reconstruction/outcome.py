@@ -94,9 +94,21 @@ def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Ar
             # energies that are not known are not numbers that are not finite
             *(np.where(np.isnan(lost), 0.0, lost), np.where(np.isnan(initial), 1.0, initial)),
             *(e, np.where(here.point, 0.0, em), np.where(mu == PIVOT, 0.0, mu)),
-            *(ending["PN"], ending["PT"], np.asarray(condition), sum(known, np.zeros(()))),
+            *(ending["PN"], ending["PT"], state.relative_before[1], *_turning(here, value)),
+            *(np.asarray(condition), sum(known, np.zeros(()))),
         )
         return np.asarray(bits(findings(*operands)), np.uint16)
+
+
+def _turning(here: Geometry, value: Mapping[str, Any]) -> tuple[Any, Any]:
+    """Return what the normal and the moment impulse add to the sliding, and what a unit of the
+    tangential one does."""
+    a, b = here.inverse_ia, here.inverse_ib
+    by_normal = here.an * here.at * a + here.bn * here.bt * b
+    by_moment = here.at * a - here.bt * b
+    moment = np.where(here.point, 0.0, value.get("PM", np.nan))
+    yielding = here.inverse_mass + here.at * here.at * a + here.bt * here.bt * b
+    return by_normal * value["PN"] + by_moment * moment, yielding
 
 
 def forces(impulse: Any, contact_time: Any) -> dict[str, Array]:
