@@ -8,5 +8,9 @@ Analysis" in *Automotive Engineering and Litigation* (Garland Law Publishing, Ne
 ``run2-as-printed.txt`` and ``table3-as-printed.txt`` are the three published printouts.
 ``table1.csv`` and ``table2.csv`` hold Tables 1 and 2, each cell as printed and as it must be read,
 ``emendations.csv`` the evidence for every cell that is not as printed or is doubtful.
+``nhtsa-oblique-offset.csv`` and ``iihs-small-overlap.csv`` are tests that others published later,
+numbers as they stand there: four oblique offset tests of the NHTSA with the results of a planar
+impact model (Rose et al., SAE 2006-01-0908), and 21 small overlap tests with what was measured
+(Brach's matrix, kept in the validation folder of the public repository joe-cormier/pycrash).
 ``ERRATA.md`` tells every difference, its evidence, and what cannot be restored.
 """

@@ -120,8 +120,8 @@ def admissible_friction(status: int, values: Mapping[str, Any]) -> list[str]:
     return [text]
 
 
-_SLIDING = ("GA", "DA", "DB", "TA", "PA", "TB", "PB", "MA", "MB", "IA", "IB", "WA", "WB")
-_SLIDING = (*_SLIDING, "UX", "UY", "VX", "VY", "PN", "PM")
+_BODIES = ("GA", "DA", "DB", "TA", "PA", "TB", "PB", "MA", "MB", "IA", "IB", "WA", "WB")
+_SLIDING = (*_BODIES, "UX", "UY", "VX", "VY", "PN", "PM")
 
 
 def _forth_and_back(values: Mapping[str, Any]) -> float:

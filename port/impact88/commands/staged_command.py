@@ -6,6 +6,7 @@ cell by cell beside its recomputation, the differences explained. Units: ft, s, 
   --measured  energy and momentum of the measured velocities, nothing fitted
   --claims    what the text says of its method, checked on the collisions
   --table N   table 1 or 2 itself, emended
+  --validation  25 crash tests published since, beside what is computed for them
 
 FILE.toml is another staged collision, with the listing's names: vehicles and geometry, the
 velocities before (UX UY WA VX VY WB) and after (VAX VAY WAF VBX VBY WBF), with or without units.
@@ -29,7 +30,7 @@ from dataclasses import asdict
 from math import isfinite, sqrt
 from typing import Any
 
-from ..chapter import staged
+from ..chapter import staged, validation
 from ..errors import BEYOND_DOUBLES, UserError
 from ..names import FINAL_STATE, VELOCITIES, missing
 from ..plaintable import fixed, paragraph, table
@@ -46,6 +47,7 @@ ARGUMENTS = (
         options.flag("--cells", "emended and doubtful cells, evidence"),
         options.flag("--measured", "energy and momentum as measured, beside Table 2"),
         options.flag("--claims", "the chapter's claims, checked"),
+        options.flag("--validation", "crash tests published since, recomputed"),
         options.choice("--table", (1, 2), "print a table, emended", type=int),
     ],
     options.JSON,
@@ -56,7 +58,7 @@ ARGUMENTS = (
 def main(args: options.Args) -> int:
     views: dict[str, Callable[[], list[str]]] = {
         **{"fit": _fits, "measured": _measured, "claims": _claims, "cells": _cells},
-        "table": lambda: _table(args.table),
+        **{"validation": _validation, "table": lambda: _table(args.table)},
     }
     view = next((name for name in views if getattr(args, name)), None)
     if args.scene is not None or args.set:
@@ -143,6 +145,39 @@ def _claims() -> list[str]:
         rows = [[claim.varied, extent(claim.sides), extent(claim.others), claim.unit]]
         lines += ["", *table(rows, ["  varied", "front to side", "others", ""], left=(0, 3)), ""]
     return lines[:-1]
+
+
+def _validation() -> list[str]:
+    found = validation.checks()
+    lines = ["Crash tests published since the chapter, and what is computed for them", ""]
+    for source, words in validation.SOURCES.items():
+        own = [check for check in found if check.source == source]
+        quantities = list(dict.fromkeys((check.quantity, check.unit) for check in own))
+        rows: dict[str, list[str]] = {}
+        for check in own:
+            digits = {"1": 3, "°/s": 0, "mph": 1, "ft/s": 1}[check.unit]
+            pair = f"{fixed(check.reported, digits)} {fixed(check.computed, digits)}"
+            rows.setdefault(check.test, [check.test]).append(pair)
+        lines += [*paragraph(f"{words[0].upper()}{words[1:]}: {own[0].kind}, computed"), ""]
+        names = [f"{name}" + (f", {unit}" if unit != "1" else "") for name, unit in quantities]
+        lines += [*table(rows.values(), ["test", *names]), ""]
+    rows_of_medians = [
+        [source, quantity, "" if unit == "1" else unit, kind, str(count), *figures]
+        for source, quantity, unit, kind, count, *sizes in validation.medians(found)
+        for figures in [[fixed(size, 3 if unit == "1" else 2) for size in sizes]]
+    ]
+    heading = ["sizes of the differences", "", "", "from", "numbers", "median", "largest"]
+    return [
+        *lines,
+        *table(rows_of_medians, heading, left=(0, 1, 2, 3)),
+        "",
+        *paragraph(
+            "NHTSA: a model with friction at its critical value and no moment impulse; the "
+            "published numbers are rounded. IIHS: e and friction as published, so that what "
+            "remains against the measurement is that model's; a radius of gyration of "
+            f"{validation.GYRATION**0.5:.2f} ft is taken for every car, none is published."
+        ),
+    ]
 
 
 def _closures(
@@ -281,4 +316,5 @@ def _everything() -> dict[str, Any]:
         ],
         "fit_of_8_with_reconstructed_velocity_of_A": fits(staged.with_8a_reconstructed()),
         "comparison": [asdict(c) for c in staged.comparison()],
+        "validation": [check._asdict() for check in validation.checks()],
     }
