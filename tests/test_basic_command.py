@@ -158,6 +158,18 @@ def test_what_is_not_done_is_said(program):
     assert done.stderr == "impact88 basic: HGR is not supported: text only, no machine code\n"
 
 
+def test_what_is_passed_over_is_said_however_the_program_ends(program):
+    text = '10 PRINT CHR$(4);"READ IN":INPUT A$:PRINT A$'
+    said = "impact88 basic: the disk command READ was passed over: there is no disk\n"
+    done = impact88("basic", program(text), input="TYPED\n")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "?TYPED\nTYPED\n", said)
+    done = impact88("basic", program(text))
+    assert done.returncode == 2
+    assert done.stderr.startswith(said)
+    done = impact88("basic", program(f"{text}:GOTO 10"), "--max-statements", "3", input="A\n")
+    assert said in done.stderr
+
+
 def test_control_c_breaks_a_program(program):
     process = subprocess.Popen(
         [COMMAND, "basic", program('10 PRINT "ON"\n20 N=N+1:GOTO 20')],

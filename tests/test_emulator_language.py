@@ -245,6 +245,53 @@ def test_what_is_not_done_is_said():
     assert machine.machine.refused == ["CALL 24576", "GR", "PDL"]
 
 
+def test_disk_commands_are_named_once_and_passed_over():
+    machine = Applesoft(dos=True)
+    machine.load(
+        '10 D$=CHR$(4):PRINT D$;"OPEN OUT,L20":PRINT D$"write OUT":PRINT "RESULT"\n'
+        '20 PRINT D$;"OPEN B":PRINT D$:PRINT D$"PR#0":PRINT "X"D$"CLOSE"'
+    )
+    machine.run()
+    assert machine.take_output() == "RESULT\nX\x04CLOSE\n"
+    assert machine.machine.passed_over == [
+        "the disk command OPEN was passed over: there is no disk",
+        "the disk command WRITE was passed over: there is no disk",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("program", "named"),
+    [
+        ("10 A=PEEK(-16336):A=PEEK(-16336)", [49200]),
+        ("10 A=PEEK(78)+PEEK(79)", [78, 79]),
+        ("10 POKE 6,1:A=PEEK(6)+PEEK(7)", [7]),
+        ("10 A=PEEK(256)+PEEK(511)+PEEK(512)+PEEK(768)", [256, 511]),
+        ("10 A=PEEK(53248)", [53248]),
+        ("10 FOR I=1 TO 9:A=PEEK(-16336+I):NEXT", [*range(49201, 49209)]),
+        ("10 A=PEEK(103)+PEEK(51)+PEEK(36)+PEEK(40)+PEEK(222)+PEEK(-1101)+PEEK(85)+PEEK(201)", []),
+        ("10 A=PEEK(-16384)+PEEK(-16368)+PEEK(241)+PEEK(0)", []),
+    ],
+)
+def test_peeks_at_what_is_not_modelled_are_named(program, named):
+    machine, _ = session(program)
+    assert machine.machine.passed_over[:8] == [
+        f"PEEK ({address}) gave 0: that byte is not modelled" for address in named
+    ]
+    assert len(machine.machine.passed_over) <= 9
+
+
+def test_a_program_that_waits_for_a_key_in_vain():
+    machine = Applesoft()
+    machine.load("10 WAIT -16384,128")
+    with pytest.raises(EndOfInput):
+        machine.run()
+    machine.load("10 IF PEEK(-16384)>127 THEN PRINT PEEK(-16384)\n20 CALL -756")
+    machine.machine.console.ready = lambda: False  # nobody types yet
+    machine.feed("A")
+    machine.run()
+    assert machine.take_output() == ""
+
+
 def test_a_line_feed_keeps_the_column():
     assert displayed('10 PRINT "A";CHR$(10);"B";POS(0)') == "A\nB2\n"
 

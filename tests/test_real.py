@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from impact88.applesoft import decimaltext, real
+from impact88.applesoft import decimaltext, functions, real
 from impact88.applesoft.errorcodes import CODES, ApplesoftError
 from impact88.applesoft.operators import Real
 
@@ -52,6 +52,52 @@ def test_the_published_floor():
 
 def test_the_digits_typed_matter():
     assert of("90315.8817").stored() != of("90315.88170").stored()
+
+
+@pytest.mark.parametrize(
+    ("exponent", "left", "sign"),
+    [
+        ("3", 0, 1),
+        ("4", 3, 0),
+        ("2147483647", 0, 1),
+        ("2147483646", 3, 0),
+        ("2147483649", 0, 0),
+        ("2147483648", 3, 1),
+        ("4294967297", 0, 0),
+        ("4294967297", 3, 1),
+    ],
+)
+def test_the_sign_of_a_huge_power_hangs_on_what_int_left(exponent, left, sign):
+    """From 2^31 on INT does not look at the number; an earlier one's byte is still there."""
+    minus_one, exponent = decimaltext.number("-1"), decimaltext.number(exponent)
+    assert functions.power_and_byte(minus_one, exponent, left)[0][2] == sign
+    if not left:
+        assert functions.power(minus_one, exponent)[2] == sign
+
+
+@pytest.mark.parametrize(
+    ("does", "argument", "byte"),
+    [
+        (functions.integer_part, "3.7", 3),
+        (functions.integer_part, "-.5", 255),
+        (functions.integer_part, "259", 3),
+        (functions.integer_part, "2147483647", 255),
+        (functions.integer_part, "2147483648", 77),
+        (functions.exponential_and_byte, "2", 2),
+        (functions.exponential_and_byte, "-87.9", 129),
+        (functions.exponential_and_byte, "-89", 77),
+        (functions.square_root_and_byte, "9", 1),
+        (functions.square_root_and_byte, "0", 77),
+        (functions.sine_and_byte, "13", 2),
+        (functions.sine_and_byte, "1E20", 77),
+        (functions.cosine_and_byte, "-1", 0),
+        (functions.cosine_and_byte, "-2", 255),
+        (functions.tangent_and_byte, "-1", 255),
+    ],
+)
+def test_the_byte_that_int_leaves(does, argument, byte):
+    """Whole turns of an angle, doublings of a power, or what was there before."""
+    assert does(decimaltext.number(argument), 77)[1] == byte
 
 
 def test_a_power_is_no_product():

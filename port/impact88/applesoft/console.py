@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 CONTROL_C, CONTROL_D, CONTROL_H, CONTROL_U, CONTROL_X = "\x03\x04\x08\x15\x18"
-ESCAPE, BELL = "\x1b\a"
+ESCAPE, BELL, RETURN = "\x1b\a\r"
 PROMPT = "\0"
 """The prompt character Applesoft gives the monitor's line reader: it is sent, and shows nothing."""
 LINE_LIMIT, WARNING, BUFFER = 239, 248, 256
@@ -33,6 +33,7 @@ Device = Callable[[str], object]
 Read = Callable[[str, int], "tuple[Any, int]"]
 
 _SLOT_COMMAND = r" *[Pp][Rr] *# *([0-7])"
+_COMMAND_WORD = r" *([A-Za-z]+#?)"
 _END = ("", ":")
 """Of a reply: a colon ends it as it ends a statement."""
 
@@ -68,7 +69,9 @@ class Editor:
 class Console:
     """A screen, a keyboard, and what stands between them and a program. ``dos``: whether a disk
     system takes its commands; ``echo``: whether typed lines go into the output; ``editor``: the
-    screen's side of typing; ``reply``: the last one that INPUT got."""
+    screen's side of typing; ``reply``: the last one that INPUT got; ``ready``: whether the keyboard
+    has a line now, for a program that looks at it without waiting; ``passed_over``: is told the
+    word of each disk command that is not done."""
 
     def __init__(
         self,
@@ -88,6 +91,10 @@ class Console:
         self._line_begins = True
         self._command: str | None = None
         self._keys = ""
+        self._code = ord(RETURN)
+        self._pressed = False
+        self.ready: Callable[[], bool] = lambda: True
+        self.passed_over: Callable[[str], object] = lambda word: None
         self.editor = Editor()
         self.reply: Reply | None = None
 
@@ -107,6 +114,8 @@ class Console:
             if self._line_begins:  # of a disk's commands only PR# concerns a program's output
                 if match := re.match(_SLOT_COMMAND, self._command):
                     self.select(int(match[1]))
+                elif match := re.match(_COMMAND_WORD, self._command):
+                    self.passed_over(match[1].upper())
                 self._command = None
 
     def select(self, slot: int) -> None:
@@ -121,18 +130,42 @@ class Console:
     def read_key(self) -> str:
         """One key, as GET reads it: not shown, not made upper case; RETURN after a line's last.
         Raises EndOfInput."""
-        if not self._keys:
-            typed = self.keyboard()
-            if typed is None:
-                raise EndOfInput
-            self._keys = keyed(typed) if isinstance(typed, Keys) else keyed(typed) + "\r"
+        if not (self._keys or self._take_keys()):
+            raise EndOfInput
         key, self._keys = self._keys[0], self._keys[1:]
+        self._code, self._pressed = ord(key), False
         return key
+
+    def _take_keys(self) -> bool:
+        """Take the keyboard's next line as keys; False if there is none."""
+        typed = self.keyboard()
+        if typed is not None:
+            self._keys = keyed(typed) if isinstance(typed, Keys) else keyed(typed) + RETURN
+        return typed is not None
+
+    def key_code(self, *, wait: bool = False) -> int:
+        """The byte at $C000: the code of the key pressed last, with its top bit until that key is
+        read or cleared. One that waits is pressed now. ``wait``: for one that does not yet. Raises
+        EndOfInput, if it is to wait."""
+        if not self._pressed:
+            waiting = self._keys or ((wait or self.ready()) and self._take_keys())
+            if wait and not waiting:
+                raise EndOfInput
+            if waiting:
+                self._code, self._pressed = ord(self._keys[0]), True
+        return self._code | 0x80 if self._pressed else self._code
+
+    def clear_key(self) -> None:
+        """$C010: the key that $C000 shows is done with."""
+        if self._pressed:
+            self._keys = self._keys[1:]
+            self._pressed = False
 
     def _typed_line(self) -> str:
         """What is left of a line that GET began, or the next one."""
+        self._code, self._pressed = ord(RETURN), False
         if self._keys:
-            typed, self._keys = self._keys.rstrip("\r"), ""
+            typed, self._keys = self._keys.rstrip(RETURN), ""
             return typed
         line = self.keyboard()
         if line is None:
@@ -140,25 +173,31 @@ class Console:
         return line
 
     def read_line(self, prompt: str = PROMPT) -> str:
-        """One line from the keyboard as the monitor reads it: upper case, edited, echoed. Raises
-        EndOfInput."""
+        """One line from the keyboard as Applesoft takes it from the monitor. Raises EndOfInput."""
         self.put(prompt)
+        return "".join(self.line_buffer(prompt))[:LINE_LIMIT]
+
+    def line_buffer(self, prompt: str, start: int = 0) -> list[str]:
+        """GETLN1: a line from the keyboard, upper case, edited, echoed, as the characters of the
+        monitor's buffer; those before ``start`` are passed over, and empty here. ``prompt``: what
+        an abandoned line begins anew with. Raises EndOfInput."""
         typed = capitals(self._typed_line())
-        if typed.isprintable() and len(typed) <= WARNING:
+        if typed.isprintable() and start + len(typed) <= WARNING:
             self.editor.echo(typed, self._echo)
+            kept = [""] * start + [*typed]
         else:
-            typed = self._edited(prompt, typed)
+            kept = self._edited(prompt, typed, start)
         self.editor.end_line(not self.echo)
         self._echo("\n")
         self._line_begins = True
-        return typed[:LINE_LIMIT]
+        return kept
 
-    def _edited(self, prompt: str, typed: str) -> str:
+    def _edited(self, prompt: str, typed: str, start: int) -> list[str]:
         """The line that the keys make. Control-H takes back a character, control-X the line,
         control-U takes the character under the cursor, ESC and a key move the cursor. The bell
         rings when the line is nearly full; a full one is abandoned, as if by control-X."""
         keys = deque(typed)
-        kept: list[str] = []
+        kept = [""] * start
         while keys:
             key = keys.popleft()
             if key == ESCAPE:
@@ -179,7 +218,7 @@ class Console:
             if key == CONTROL_X or len(kept) == BUFFER:
                 kept.clear()
                 self._echo("\\\n" + prompt)
-        return "".join(kept)
+        return kept
 
     def _escape(self, keys: deque[str]) -> None:
         """ESC: the keys I, J, K and M move the cursor and wait for more, any other is the last."""

@@ -10,6 +10,9 @@ from . import real
 from .errorcodes import illegal_quantity, overflow
 from .real import BIAS, ZERO, Number
 
+IntAndByte = tuple[Number, int]
+"""A result, and the low byte of what INT, which was taken on the way, found last."""
+
 
 def stored_reals(text: str) -> tuple[Number, ...]:
     """Constants from their hexadecimal bytes, separated by blanks."""
@@ -69,20 +72,35 @@ def logarithm(x: Number) -> Number:
     return real.multiply(LN_TWO, real.add(f, real.integer(e - BIAS)))
 
 
+def integer_part(x: Number, left: int = 0) -> IntAndByte:
+    """INT, and the low byte of the result, which the ROM leaves in memory. It does not look for the
+    byte of a number of 32 bits or more before the point, and what was ``left`` before stays."""
+    integral = real.floor(x)
+    return integral, (real.to_integer(integral) & 0xFF if x[0] < real.INTEGER_EXPONENT else left)
+
+
 def exponential(x: Number) -> Number:
     """EXP: e to the x. Raises OVERFLOW; underflows to zero."""
-    turns = _over_ln_two(x)
-    doublings = exponential_integer(x)
-    exponent = doublings + 129 & 0xFF if turns[0] < BIAS + 8 else 0
+    return exponential_and_byte(x)[0]
+
+
+def exponential_and_byte(x: Number, left: int = 0) -> IntAndByte:
+    """EXP, and the byte of INT. It takes x apart with INT, unless that is out of range at first
+    sight."""
+    e, m, s = turns = _over_ln_two(x)
+    if e < BIAS + 8:
+        doublings = real.to_integer((e, m & ~0xFF, s))
+        exponent, left = doublings + 129 & 0xFF, doublings & 0xFF
+    else:
+        doublings = exponent = 0
     if not exponent and not x[2]:
         raise overflow()
     if exponent <= 1:
-        return ZERO
-    e, m, _ = polynomial(
-        EXP_COEFFICIENTS, real.negate(real.subtract(real.integer(doublings), turns))
-    )
+        return ZERO, left
+    fraction = real.negate(real.subtract(real.integer(doublings), turns))
+    e, m, _ = polynomial(EXP_COEFFICIENTS, fraction)
     e = real.product_exponent(exponent - 1, e)
-    return (e, m, 0) if e else ZERO
+    return ((e, m, 0) if e else ZERO), left
 
 
 def _over_ln_two(x: Number) -> Number:
@@ -97,31 +115,31 @@ def _over_ln_two(x: Number) -> Number:
     return e, m, s
 
 
-def exponential_integer(x: Number) -> int:
-    """The whole number of doublings in EXP (x), which EXP finds with INT; 0 when it is out of
-    range and EXP does not look for it."""
-    e, m, s = _over_ln_two(x)
-    return real.to_integer((e, m & ~0xFF, s)) if e < BIAS + 8 else 0
-
-
 def power(left: Number, right: Number) -> Number:
     """left ^ right = EXP (right * LOG (left)), so X ^ 2 is not X * X. Raises ILLEGAL QUANTITY for a
-    negative left with a right that is not whole, OVERFLOW."""
+    negative left with a right that is not whole, OVERFLOW. A negative left to a power of 2^31 or
+    more is positive, as where nothing has taken INT before."""
+    return power_and_byte(left, right)[0]
+
+
+def power_and_byte(left: Number, right: Number, byte: int = 0) -> IntAndByte:
+    """left ^ right, and the byte of INT. Of a negative left the byte that INT of right leaves tells
+    whether that is odd: from 2^31 on an older number's."""
     if not right[0]:
-        return exponential(ZERO)
+        return exponential_and_byte(ZERO)
     left = real.rounded(left)
     if not left[0]:
-        return ZERO
-    p = real.rounded(right)
+        return ZERO, byte
+    exponent = real.rounded(right)
     odd = False
     if left[2]:
-        if real.compare(p, real.floor(p)):
+        integral, byte = integer_part(exponent, byte)
+        if real.compare(exponent, integral):
             raise illegal_quantity()
-        # beyond 32 bits the ROM still looks at the mantissa's last bit
-        odd = bool((p[1] >> 8 if p[0] >= real.INTEGER_EXPONENT else real.to_integer(p)) & 1)
+        odd = bool(byte & 1)
         left = real.negate(left)
-    result = exponential(real.multiply(p, logarithm(left)))
-    return real.negate(result) if odd else result
+    result, byte = exponential_and_byte(real.multiply(exponent, logarithm(left)), byte)
+    return (real.negate(result) if odd else result), byte
 
 
 def square_root(x: Number) -> Number:
@@ -129,11 +147,16 @@ def square_root(x: Number) -> Number:
     return power(x, HALF)
 
 
+def square_root_and_byte(x: Number, left: int = 0) -> IntAndByte:
+    """SQR, and the byte of INT."""
+    return power_and_byte(x, HALF, left)
+
+
 @lru_cache(maxsize=64)  # a program asks for the sine of the same few angles over and over
-def _sine(x: Number) -> tuple[Number, bool, Number]:
+def _sine(x: Number) -> tuple[Number, bool, Number, Number]:
     """The sine, and what TAN needs: the quadrant flag, and the reduced argument, a fraction of a
-    turn in -1/4 ... 1/4, rounded."""
-    f = real.rounded(real.divide(x, TWO_PI))
+    turn in -1/4 ... 1/4, rounded; then what INT is taken of, the argument in turns."""
+    turns = f = real.rounded(real.divide(x, TWO_PI))
     f = real.subtract(QUARTER, real.subtract(f, real.floor(f)))
     beyond_first_quarter = f[2]
     flag = False
@@ -148,7 +171,7 @@ def _sine(x: Number) -> tuple[Number, bool, Number]:
     if beyond_first_quarter:
         f = real.negate(f)
     f = real.rounded(f)
-    return odd_polynomial(SIN_COEFFICIENTS, f), flag, f
+    return odd_polynomial(SIN_COEFFICIENTS, f), flag, f, turns
 
 
 def sine(x: Number) -> Number:
@@ -163,11 +186,27 @@ def cosine(x: Number) -> Number:
 
 def tangent(x: Number) -> Number:
     """TAN of x radians: the sine over a cosine folded from the same reduced argument."""
-    of_sine, flag, reduced = _sine(real.rounded(x))
+    of_sine, flag, reduced, _ = _sine(real.rounded(x))
     f = real.add(QUARTER, real.negate(real.absolute(reduced)))
     if flag:
         f = real.negate(f)
     return real.divide(of_sine, odd_polynomial(SIN_COEFFICIENTS, f))
+
+
+def sine_and_byte(x: Number, left: int = 0) -> IntAndByte:
+    """SIN, and the byte of INT."""
+    result, _, _, turns = _sine(x)
+    return result, integer_part(turns, left)[1]
+
+
+def cosine_and_byte(x: Number, left: int = 0) -> IntAndByte:
+    """COS, and the byte of INT."""
+    return sine_and_byte(real.add(HALF_PI, x), left)
+
+
+def tangent_and_byte(x: Number, left: int = 0) -> IntAndByte:
+    """TAN, and the byte of INT."""
+    return tangent(x), sine_and_byte(real.rounded(x), left)[1]
 
 
 def arc_tangent(x: Number) -> Number:

@@ -44,7 +44,8 @@ ZERO: Number = (0, 0, 0)
 
 
 def rounded(x: Number) -> Number:
-    """The value as it is stored: 32 bits, by the extension's top bit alone. Raises OVERFLOW."""
+    """ROUND $EB72: the value as it is stored: 32 bits, by the extension's top bit alone. Raises
+    OVERFLOW."""
     e, m, s = x
     extension = m & 0xFF
     if not extension:
@@ -60,7 +61,7 @@ def rounded(x: Number) -> Number:
 
 
 def normalise(e: int, m: int, s: int) -> Number:
-    """The number with a 40-bit mantissa ``m`` whose top bits may be clear.
+    """NORMALIZE $E82E: the number with a 40-bit mantissa ``m`` whose top bits may be clear.
 
     Zero if the top 32 bits are all clear, whatever the extension holds; zero too, without a word,
     when the exponent runs out.
@@ -84,7 +85,8 @@ def absolute(x: Number) -> Number:
 
 
 def add(left: Number, right: Number) -> Number:
-    """left + right: the left operand rounded, the right one with its extension. Raises OVERFLOW.
+    """FADDT $E7C1: left + right, the left operand rounded, the right one with its extension. Raises
+    OVERFLOW.
 
     The operand with the smaller exponent is shifted right; what falls below 40 bits is lost.
     """
@@ -129,7 +131,8 @@ def subtract(left: Number, right: Number) -> Number:
 
 
 def multiply(left: Number, right: Number) -> Number:
-    """left * right: the left operand rounded, the right one with its extension. Raises OVERFLOW."""
+    """FMULTT $E982: left * right, the left operand rounded, the right one with its extension.
+    Raises OVERFLOW."""
     e1, m1, s1 = left
     e2, m2, s2 = right
     if not e1 or not e2:
@@ -176,7 +179,8 @@ def _multiply_with_defect(m1: int, m2: int) -> int:
 
 
 def divide(left: Number, right: Number) -> Number:
-    """left / right, both rounded. Raises DIVISION BY ZERO (for 0 / 0 too) and OVERFLOW."""
+    """FDIVT $EA69: left / right, both rounded. Raises DIVISION BY ZERO (for 0 / 0 too) and
+    OVERFLOW."""
     e2, m2, s2 = rounded(right)
     if not e2:
         raise division_by_zero()
@@ -210,7 +214,8 @@ def _digits(dividend: int, divisor: int) -> int:
 
 
 def compare(stored: Number, right: Number) -> int:
-    """1 if the accumulator ``right`` is larger than ``stored``, 0 if equal, -1 if smaller.
+    """FCOMP $EBB2: 1 if the accumulator ``right`` is larger than ``stored``, 0 if equal, -1 if
+    smaller.
 
     Sign, then exponent, then the upper three mantissa bytes; only when all agree, the last byte
     against the accumulator's last byte plus the top bit of its extension. That addition carries
@@ -236,7 +241,7 @@ def compare(stored: Number, right: Number) -> int:
 
 
 def to_integer(x: Number) -> int:
-    """The floor of ``x``, extension counted, as a Python integer."""
+    """QINT $EBF2: the floor of ``x``, extension counted, as a Python integer."""
     e, m, s = x
     if s:
         m = -m
@@ -244,7 +249,7 @@ def to_integer(x: Number) -> int:
 
 
 def floor(x: Number) -> Number:
-    """INT: the largest whole number not above ``x``, its extension counted; extension 0.
+    """INT $EC23: the largest whole number not above ``x``, its extension counted; extension 0.
 
     A number of 32 bits or more before the point stays as it is, extension and all.
     """

@@ -4,7 +4,8 @@ With a file: load that program, run it, and leave when it ends.
 FILE holds numbered lines as they are typed or as LIST prints them, in rows of any width, or a
 tokenised program as disk tools extract it. At the prompt LOAD FILE reads such a file and SAVE FILE
 writes text (not with --no-dos), control-C breaks a running program, control-D leaves. Graphics,
-tape, paddles, shapes and machine code are tokenised and listed, but not done: ?SYNTAX ERROR.
+tape, paddles, shapes and machine code are tokenised and listed, but not done: ?SYNTAX ERROR. There
+is no disk: a program's disk commands are passed over. Either is said on stderr at the end.
 
 examples:
   impact88 basic                          the restored listing at the prompt
@@ -15,6 +16,7 @@ exit status: 0 the program ended; 1 an Applesoft error, or more than --max-state
 """
 
 import os
+import select
 import signal
 import sys
 from contextlib import ExitStack, suppress
@@ -83,6 +85,15 @@ class Terminal:
         self.last = line or ""
         return line
 
+    def ready(self) -> bool:
+        """Whether a program that looks for a key finds one: a file or a pipe has them waiting, a
+        terminal what has been typed with RETURN."""
+        if not self.typing:
+            return True
+        with suppress(OSError, ValueError):  # no file that can be waited for
+            return bool(select.select([sys.stdin], [], [], 0)[0])
+        return False
+
     def _ask(self) -> str | None:
         """A line with the terminal's editing; what stands in the row is given as the prompt, so
         that editing does not wipe it out."""
@@ -113,6 +124,9 @@ def main(args: options.Args) -> int:
             terminal.read, terminal.show, printer, dos=not args.no_dos, echo=not terminal.typing
         )
 
+        machine.machine.console.ready = terminal.ready
+        stack.callback(_say_what_was_not_done, machine)
+
         def interrupt(number: int, frame: object) -> None:
             """Break the program between two statements, or what is being typed."""
             if terminal.waiting:
@@ -139,9 +153,14 @@ def main(args: options.Args) -> int:
             terminal.end_row()
             note("basic", f"stopped after {args.max_statements} statements")
             return 1
-        for what in machine.machine.refused:
-            note("basic", f"{what} is not supported: text only, no machine code")
         return status
+
+
+def _say_what_was_not_done(machine: Applesoft) -> None:
+    for what in machine.machine.refused:
+        note("basic", f"{what} is not supported: text only, no machine code")
+    for sentence in machine.machine.passed_over:
+        note("basic", sentence)
 
 
 def load_program(machine: Applesoft, path: str | None) -> None:

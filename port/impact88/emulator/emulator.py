@@ -12,6 +12,7 @@ from ..applesoft.real import to_stored
 from .faults import Fault, Restart
 from .machine import Machine
 from .memory import AFTER_TYPING, INPUT_BUFFER, INTEGER, MARKS, STRING
+from .memory import PROMPT as PROMPT_BYTE
 from .programfile import read_program
 from .tokens import LINE_LIMIT, split_number, tokenise, untokenised
 
@@ -105,6 +106,7 @@ class Applesoft:
 
     def enter(self, text: str) -> ApplesoftError | None:
         """The same for a line as it is."""
+        self.machine.ram[PROMPT_BYTE] = ord(PROMPT) | 0x80
         self.machine.errflg >>= 1
         self.machine.error = None
         if text.strip(" "):

@@ -34,12 +34,20 @@ SIGNS, TRUTHS = (1, 2, 4), {1: 4, 0: 2, -1: 1}
 """CPRTYP's bits for >, = and <; CPRMASK's by what `compare` says of the right operand."""
 
 NUMERIC: dict[str, Callable[[Number], Number]] = {
-    **{"SGN": functions.sign, "ABS": real.absolute, "LOG": functions.logarithm},
-    **{"ATN": functions.arc_tangent, "SQR": functions.square_root, "EXP": functions.exponential},
-    **{"COS": functions.cosine, "SIN": functions.sine, "TAN": functions.tangent},
+    "SGN": functions.sign,
+    "ABS": real.absolute,
+    "LOG": functions.logarithm,
+    "ATN": functions.arc_tangent,
 }
-LOOKING_FOR_INT = ("SQR", "EXP", "COS", "SIN", "TAN")
-"""Functions that ask for an INT on their way."""
+TAKING_INT: dict[str, Callable[[Number, int], functions.IntAndByte]] = {
+    "INT": functions.integer_part,
+    "SQR": functions.square_root_and_byte,
+    "EXP": functions.exponential_and_byte,
+    "COS": functions.cosine_and_byte,
+    "SIN": functions.sine_and_byte,
+    "TAN": functions.tangent_and_byte,
+}
+"""INT, and functions that take it on their way: what they leave in CHARAC counts for ^."""
 FUNCTION_DEPTHS = {"SQR": 8, "EXP": 7}
 """How far below a formula's entry they find their errors; others 5."""
 WORDS = {token: word for word, token in TOKENS.items()}
@@ -169,7 +177,7 @@ class Expressions(Variables):
                             order = compare(left, fac)
                         fac = ONE if relation >> 1 & TRUTHS[order] else ZERO
                     elif doing == POWER:
-                        fac = self.power(left, fac)
+                        fac, self.charac = functions.power_and_byte(left, fac, self.charac)
                     elif doing == NEGATE:
                         fac = real.negate(fac)
                     elif doing == NOT:
@@ -288,48 +296,15 @@ class Expressions(Variables):
         try:
             if word in NUMERIC:
                 result = NUMERIC[word](fac)
+            elif word in TAKING_INT:
+                result, self.charac = TAKING_INT[word](fac, self.charac)
             else:  # the method named for the function
                 result = getattr(self, f"_{word.rstrip('$').lower()}")(fac, sp - 5)
         except ApplesoftError as error:
             raise placed(error, sp - FUNCTION_DEPTHS.get(word, 5)) from None
-        if word in LOOKING_FOR_INT:
-            self.charac = word, ZERO, fac
         if self.valtyp and word not in ("CHR$", "STR$"):
             raise Fault("TYPE MISMATCH", sp - 3)
         return result
-
-    def _int(self, fac: Number, sp: int) -> Number:
-        integral = real.floor(fac)
-        if fac[0] < INTEGER_EXPONENT:
-            self.charac = to_integer(integral) & 0xFF
-        return integral
-
-    def power(self, left: Number, right: Number) -> Number:
-        """FPWRT: left ^ right. INT does not find the parity of a power of 2^32 or more, and leaves
-        that of an older number."""
-        result = functions.power(left, right)
-        if left[2] and rounded(right)[0] >= INTEGER_EXPONENT:
-            result = real.absolute(result)
-            if self._int_byte() & 1:
-                result = real.negate(result)
-        self.charac = "^", left, right
-        return result
-
-    def _int_byte(self) -> int:
-        """The low byte of what INT found last, be it within another function."""
-        if isinstance(self.charac, int):
-            return self.charac
-        word, left, x = self.charac
-        if word in ("SIN", "COS", "TAN"):
-            if word == "COS":
-                x = real.add(functions.HALF_PI, x)
-            return to_integer(rounded(real.divide(x, functions.TWO_PI))) & 0xFF
-        if word == "SQR":
-            left, x = x, functions.HALF
-        if word != "EXP":
-            base = real.absolute(rounded(left))
-            x = real.multiply(rounded(x), functions.logarithm(base)) if base[0] and x[0] else ZERO
-        return functions.exponential_integer(x) & 0xFF
 
     def _rnd(self, fac: Number, sp: int) -> Number:
         self.seed = functions.random(fac, self.seed)

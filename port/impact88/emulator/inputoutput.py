@@ -5,11 +5,11 @@ the values. Each variable is found, its value read and stored, then what follows
 values before a bad one stay. Only a comma, a colon or the end may follow.
 """
 
-from ..applesoft.console import CONTROL_C
+from ..applesoft.console import CONTROL_C, RETURN
 from ..applesoft.real import Number, integer
 from .expressions import Expressions, byte_of
 from .faults import Fault, fault_if, located
-from .memory import ADDRESSES, DIGITS, DIRECT, HEADER, INPUT_BUFFER, MINUS
+from .memory import ADDRESSES, DIGITS, DIRECT, HEADER, INPUT_BUFFER, MINUS, PROMPT
 from .programfile import INDENT, WRAP_COLUMN
 from .screen import HEIGHT, WIDTH
 from .tokens import CLOSE, COLON, COMMA, DATA, QUOTE, SEMICOLON, TOKENS, listed
@@ -27,6 +27,8 @@ IN_ROM, IN_STACK_PAGE = 0xD000, 0x100
 FROM_REPLY, FROM_KEY, FROM_DATA, BAD_REPLY, BREAK_CODE, AFTER_GET = 0, 0x40, 0x98, 254, 255, 0xFF40
 """INPFLG; codes of ONERR; what a bad GET puts in place of the line number: the machine believes it
 is at the prompt."""
+NO_PROMPT = 0x80
+"""The prompt while INPUT reads, which shows nothing."""
 REENTER, EXTRA_IGNORED = b"?REENTER\r", b"?EXTRA IGNORED\r"
 
 
@@ -130,12 +132,20 @@ class InputOutput(Expressions):
             self.show_number(integer(number))
             self.put(" ")
             for byte in ram[line + HEADER : ram.index(0, line + HEADER)]:
-                self.put(listed(byte))
+                self.put(listed(byte) if self.screen.shows else self._masked(listed(byte)))
                 if self.screen.column >= WRAP_COLUMN:
                     self.put("\n")
                     self.screen.column = INDENT
             line = self.word(line)
         self.put("\n")
+
+    def _masked(self, piece: str) -> str:
+        """What LIST sends of a piece under an unusual mask: a letter of which the mask leaves
+        nothing ends a keyword."""
+        for place, letter in enumerate(piece[1:-1], 1):
+            if not (ord(letter) | self.flash) & self.screen.mask & 0x7F:
+                return piece[: place + 1] + "\0 "
+        return piece
 
     def refuse_direct(self, sp: int) -> None:
         """ERRDIR. Raises ILLEGAL DIRECT at the prompt."""
@@ -144,6 +154,16 @@ class InputOutput(Expressions):
     def _put_in_buffer(self, text: str) -> None:
         data = text.encode("latin-1") + b"\0"
         self.ram[INPUT_BUFFER : INPUT_BUFFER + len(data)] = data
+
+    def get_line(self, start: int = 0, before: str | None = None) -> None:
+        """GETLN: a line into page 2, high bits set, from a place of it on; ``before``: what stands
+        before the prompt, if there is to be one."""
+        prompt = chr(self.ram[PROMPT] & 0x7F)
+        if before is not None:
+            self.put(before + prompt)
+        for place, key in enumerate([*self.console.line_buffer(prompt, start), RETURN]):
+            if key:
+                self.ram[INPUT_BUFFER + place] = ord(key) | 0x80
 
     def restore_(self) -> None:
         self.datptr = self.txttab - 1
@@ -157,6 +177,7 @@ class InputOutput(Expressions):
         else:
             self.put("?")
         self.refuse_direct(sp - 2)
+        self.ram[PROMPT] = NO_PROMPT
         try:
             reply = self.console.read_line()
         except KeyboardInterrupt:

@@ -18,13 +18,26 @@ from ..applesoft.real import ZERO, Number, add, compare, integer, rounded
 from .expressions import ONE, address_of
 from .faults import Fault, Restart, fault_if, placed
 from .inputoutput import BREAK_CODE, FROM_DATA, InputOutput
-from .memory import DIGITS, DIRECT, HEADER, INPUT_BUFFER, ROM, STACK, SUBFLG_SIMPLE, TEMPORARIES
+from .memory import (
+    DIGITS,
+    DIRECT,
+    HEADER,
+    INPUT_BUFFER,
+    KEYBOARD,
+    ROM,
+    STACK,
+    SUBFLG_SIMPLE,
+    TEMPORARIES,
+)
 from .screen import FLASHING, INVERSE, NORMAL
 from .tokens import BLANK, CLOSE, COLON, COMMA, FIRST, KEYWORDS, LAST_STATEMENT, OPEN, TOKENS
 from .variables import store
 
 FOR_SIZE, FOR_ROOM, GOSUB_SIZE, GOSUB_ROOM, NO_VARIABLE = 18, 74, 7, 64, -1
 """Bytes on the stack, and where the stack pointer has to be at least; a GOSUB's variable."""
+AFTER_CALL = 0x9E
+"""The place of page 2 where keys come to lie by CALL -678, which goes on amid the monitor's reading
+of a line with what CALL has left in a register."""
 END_MARK, BREAK = b"\0\0", b"\rBREAK"
 TO, THEN, STEP, GOSUB, GOTO, EQUAL = (TOKENS[word] for word in "TO THEN STEP GOSUB GOTO =".split())
 EVERY_BYTE = bytes(range(256))
@@ -224,12 +237,14 @@ class Machine(InputOutput):
         return place, self.byte(self.sp - 4)
 
     def wait_(self) -> None:
-        """WAIT: until bits come up, which nothing but control-C does here."""
+        """WAIT: until bits come up, which of a key's alone do here."""
         (place, mask), flip = self._address_and_byte(), 0
         if not self.at_end():
             self.expect(COMMA, self.sp - 6)
             flip = self.byte(self.sp - 4)
         while not (self.peek(place) ^ flip) & mask:
+            if place in KEYBOARD:
+                self.console.key_code(wait=True)
             self.pause()
 
     def call_(self) -> None:
@@ -240,6 +255,11 @@ class Machine(InputOutput):
             **{0xF328: self.forget_error, 0xD66C: self.clear, 0xD683: self.clear_stack},
             **{0xFD8E: partial(self.put, "\n"), 0xFF3A: bell, 0xFBDD: bell, 0xFCA8: int},  # WAIT
             **{0xFE80: partial(self.set_mode, INVERSE), 0xFE84: normal, 0xF273: normal},
+            0xFD0C: self.console.read_key,
+            0xFD5A: partial(self.get_line, AFTER_CALL),
+            0xFD67: partial(self.get_line, before="\n"),
+            0xFD6A: partial(self.get_line, before=""),
+            0xFD6F: self.get_line,
         }
         if place in routines:
             routines[place]()

@@ -48,7 +48,29 @@ for _address, _name, _word in re.findall(r"(\w+) (\w+)(\+?)", _PAGE_ZERO):
     POINTERS[int(_address, 16)] = _name, 0, 0xFF00 if _word else 0
     if _word:
         POINTERS[int(_address, 16) + 1] = _name, 8, 0x00FF
-OF_SCREEN = {32: "left", 33: "width", 34: "top", 35: "bottom", 36: "column", 37: "row", 50: "mask"}
+OF_SCREEN = {
+    32: ("left", 0, 0),
+    33: ("width", 0, 0),
+    34: ("top", 0, 0),
+    35: ("bottom", 0, 0),
+    36: ("column", 0, 0),
+    37: ("row", 0, 0),
+    40: ("address", 0, 0xFF00),
+    41: ("address", 8, 0x00FF),
+    50: ("mask", 0, 0),
+}
+"""The same for what `Screen` keeps."""
+KEYBOARD = range(0xC000, 0xC010)
+STROBE = range(0xC010, 0xC020)
+"""Where the last key is read, and cleared."""
+PROMPT = 0x33
+"""Where the monitor keeps the prompt that it shows when a line is read."""
+KEPT_IN_RAM = {*range(6), 10, 11, 12, PROMPT, *range(TEMPORARIES, TEMPORARIES_END)}
+KEPT_IN_RAM |= {0x30, 0xE4, 0xE7, 0xF1, 0xF9}
+"""Bytes of page 0 that are in ``ram`` as the ROM has them: with COLOR=, HCOLOR=, SCALE=, SPEED= and
+ROT=."""
+UNKEPT = range(0x200)
+"""Pages 0 and 1, of which most bytes are the ROM's own and are not kept here."""
 
 PLUS, MINUS = TOKENS["+"], TOKENS["-"]
 SUBFLG_SIMPLE = 0x80
@@ -68,18 +90,25 @@ Name = tuple[int, int, bool]
 """A name's two bytes as a number, the address behind it, and whether subscripts follow."""
 
 
+def _remember(things: list[str], thing: str) -> None:
+    """Add what is not there yet, up to a number of things."""
+    if thing not in things and len(things) <= REFUSALS:
+        things.append(thing if len(things) < REFUSALS else MORE_REFUSED)
+
+
 class Memory:
     """``ram``, the pointers, the devices, and the program's bytes from ``txtptr`` on.
 
     ``statements_left`` limits what a program may do; ``interrupted`` is control-C; ``refused``:
-    what was asked for and is not done here (drawing, tape, machine code); ``fac``: what the
+    what was asked for and is not done here (drawing, tape, machine code); ``passed_over``: what is
+    not done either, and ended in no error (a sentence each); ``poked``: addresses of pages 0 and 1
+    that the program has filled itself; ``fac``: what the
     accumulator held last, ``valtyp``: `IS_STRING` when it is a string; ``cprtyp``: what a formula
     left of its last relation, which the next string's + takes for a relation's signs; ``charac``:
-    CHARAC, in which INT leaves a byte too, or the function and its operands whose INT left it.
+    CHARAC, in which INT leaves a byte, too.
     """
 
     variables_changed: Callable[[], None]
-    charac: int | tuple[str, Number, Number]
 
     def __init__(
         self, keyboard: Keyboard, screen: Device, printer: Device | None, blanks: bool, **dos: bool
@@ -105,6 +134,9 @@ class Memory:
         self.interrupted = self.inttyp = self.broken = False
         self.statements_left: int | None = None
         self.refused: list[str] = []
+        self.passed_over: list[str] = []
+        self.poked: set[int] = set()
+        self.console.passed_over = self._pass_over_command
 
     def pause(self) -> None:
         """ISCNTC. Raises KeyboardInterrupt and TooManyStatements."""
@@ -116,9 +148,11 @@ class Memory:
             self.statements_left -= 1
 
     def refuse(self, what: str) -> None:
-        if what not in self.refused and len(self.refused) <= REFUSALS:
-            self.refused.append(what if len(self.refused) < REFUSALS else MORE_REFUSED)
+        _remember(self.refused, what)
         raise Fault("SYNTAX", self.sp - 4)
+
+    def _pass_over_command(self, word: str) -> None:
+        _remember(self.passed_over, f"the disk command {word} was passed over: there is no disk")
 
     def peek(self, address: int) -> int:
         """The byte at an address."""
@@ -126,10 +160,21 @@ class Memory:
             name, shift, _ = POINTERS[address]
             return int(getattr(self, name)) >> shift & 0xFF
         if address in OF_SCREEN:
-            return int(getattr(self.screen, OF_SCREEN[address])) & 0xFF
+            name, shift, _ = OF_SCREEN[address]
+            return int(getattr(self.screen, name)) >> shift & 0xFF
         if address in SEED:
             return to_stored(self.seed)[address - SEED.start]
-        return APPLE_II_PLUS.get(address, 0) if address >= ROM else self.ram[address]
+        if address in KEYBOARD:
+            return self.console.key_code()
+        if address in STROBE:
+            self.console.clear_key()
+            return 0
+        if address in APPLE_II_PLUS:
+            return APPLE_II_PLUS[address]
+        unkept = address in UNKEPT and address not in self.poked and address not in KEPT_IN_RAM
+        if unkept or address >= ROM:
+            _remember(self.passed_over, f"PEEK ({address}) gave 0: that byte is not modelled")
+        return 0 if address >= ROM else self.ram[address]
 
     def poke(self, address: int, value: int) -> None:
         """Put a byte at an address. A pointer poked may move the program or its variables."""
@@ -140,7 +185,8 @@ class Memory:
                 self.text_changed()
                 self.variables_changed()
         elif address in OF_SCREEN:
-            setattr(self.screen, OF_SCREEN[address], value)
+            name, shift, kept = OF_SCREEN[address]
+            setattr(self.screen, name, getattr(self.screen, name) & kept | value << shift)
         elif address in SEED:
             stored = bytearray(to_stored(self.seed))
             stored[address - SEED.start] = value
@@ -152,6 +198,10 @@ class Memory:
                 self.text_changed()
             elif changed and self.vartab <= address < self.strend:
                 self.variables_changed()
+            if address in UNKEPT:
+                self.poked.add(address)
+        elif address in STROBE:
+            self.console.clear_key()
 
     def word(self, address: int) -> int:
         return self.ram[address] | self.ram[address + 1] << 8

@@ -16,6 +16,9 @@ from ..applesoft.console import Editor
 WIDTH, HEIGHT, BASE, END, NORMAL, INVERSE, FLASHING = 40, 24, 0x400, 0x800, 0xFF, 0x3F, 0x7F
 """Of the monitor: the screen, where it lies, and its masks."""
 _BLANK, _SMALL_LETTERS = 0xA0, 0xE0  # codes on the screen
+_CONTROLS, _LINE_FEED = range(0x80, 0xA0), 0x8A
+"""Codes that show nothing; of them the screen obeys RETURN, control-J and control-H."""
+_USUAL_MASKS = (NORMAL, INVERSE, FLASHING)
 _SHOWS = re.compile("[^\0-\x09\x0b-\x1f]")
 """A character that shows, or the end of the line."""
 _TITLE, _TITLE_COLUMN = bytes(code | 0x80 for code in b"APPLE ]["), 15
@@ -48,6 +51,11 @@ class Screen(Editor):
         ram[BASE + _TITLE_COLUMN : BASE + _TITLE_COLUMN + len(_TITLE)] = _TITLE
         self.move_to_row(1)
 
+    @property
+    def shows(self) -> bool:
+        """Whether all characters show, as they do under the masks that the ROM sets."""
+        return self.mask in _USUAL_MASKS
+
     def write(self, text: str) -> None:
         gap = max(self.column - self._expected, 0) if self._blanks else 0
         sent = text
@@ -60,17 +68,24 @@ class Screen(Editor):
         self._expected = self.column - gap
 
     def _draw(self, text: str) -> None:
-        if text.isprintable() and self.column + len(text) < self.width:
+        if self.shows and text.isprintable() and self.column + len(text) < self.width:
             codes = text.encode("latin-1").translate(_codes(self.mask))
-            self._fill(self._address + self.column, codes)
+            self._fill(self.address + self.column, codes)
             self.column += len(text)
             return
         for character in text:
             if character >= " ":
                 code = character.encode("latin-1").translate(_codes(self.mask))
-                self._fill(self._address + self.column, code)
-                self._advance()
-            elif character in "\n\r":
+                if code[0] == _LINE_FEED:
+                    self._line_feed()
+                elif code[0] in _CONTROLS:  # a mask such as 128 leaves no more of it
+                    character = chr(code[0] & 0x7F)
+                else:
+                    self._fill(self.address + self.column, code)
+                    self._advance()
+            if character >= " ":
+                continue
+            if character in "\n\r":
                 self.column = 0
                 self._line_feed()
             elif character == "\b":
@@ -96,18 +111,18 @@ class Screen(Editor):
         ram, bottom = self._ram, max(self.bottom, self.top + 1)
         for upper, lower in row_moves(self.top, bottom, self.left, self.width):
             ram[upper] = ram[lower]
-        self._address = row_address(bottom - 1, self.left)
+        self.address = row_address(bottom - 1, self.left)
         self._clear_from(0)
         self.move_to_row(self.row)
 
     def _clear_from(self, column: int) -> None:
         """Blanks to the end of the window's row; one at least."""
         columns = max(self.width - column, 1)
-        self._fill(self._address + column, bytes([_BLANK]) * columns)
+        self._fill(self.address + column, bytes([_BLANK]) * columns)
 
     def _clear_rows(self, row: int, column: int) -> None:
         for place in range(row, max(row + 1, self.bottom)):
-            self._address = row_address(place, self.left)
+            self.address = row_address(place, self.left)
             self._clear_from(column if place == row else 0)
         self.move_to_row(self.row)
 
@@ -156,14 +171,14 @@ class Screen(Editor):
     def move_to_row(self, row: int) -> None:
         """VTAB. A POKE of ``row`` alone does not move the cursor until it changes rows."""
         self.row = row
-        self._address = row_address(row, self.left)
+        self.address = row_address(row, self.left)
 
     def stay_at(self, column: int) -> None:
         """After a line feed: the column is unchanged, and nothing has been skipped."""
         self.column = self._expected = column
 
     def under_cursor(self) -> str:
-        address = self._address + self.column
+        address = self.address + self.column
         code = self._ram[address] if address < END else 0
         return chr((code & 0xDF if code >= _SMALL_LETTERS else code) & 0x7F)
 

@@ -71,7 +71,7 @@ class Variables(Memory):
                 return
             length = ram[place]
             self.fretop -= length
-            ram[self.fretop : self.fretop + length] = ram[address : address + length]
+            self.move(address, self.fretop, length)
             self.put_word(place + 1, self.fretop)
 
     def room(self, length: int) -> int:
