@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from decimal import Decimal
 from importlib.resources import files
 
 import pytest
 
+from impact88.checking.captured import session
 from impact88.program.run import run
 from impact88.scene import sample
 
@@ -33,6 +35,22 @@ def test_printout_is_the_golden_file_to_the_character(
     number: int, name: str, golden_printout: Callable[[str, str], None]
 ) -> None:
     golden_printout(run(sample(number)).printout, name)
+
+
+def test_an_apple_printed_these_numbers_in_1980_and_no_double_does() -> None:
+    """COMPUTE!, September/October 1980, page 36, Table 5: interval halving, twenty steps twice."""
+    folder = files("impact88.golden") / "printouts"
+    printed = [Decimal(text) for text in (folder / "compute1980.txt").read_text("utf-8").split()]
+    _, displayed = session((folder / "compute1980.bas").read_text("utf-8"))
+    assert [Decimal(text) for text in displayed.split()] == printed
+    assert len(printed) == 40
+    doubles = []
+    for a, b, root in ((0.3, 0.4, 0.35740292), (2, 2.2, 2.1532922)):
+        for _ in range(20):
+            middle = (a + b) / 2
+            doubles.append(Decimal(f"{middle:.9g}"))
+            a, b = (middle, b) if middle < root else (a, middle)
+    assert sum(x == y for x, y in zip(doubles, printed, strict=True)) == 32
 
 
 @pytest.mark.parametrize(("number", "name"), PUBLISHED)

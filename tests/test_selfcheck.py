@@ -94,6 +94,13 @@ def test_a_changed_published_run_fails(few: Path) -> None:
     assert failing(few) == {"published"}
 
 
+@pytest.mark.parametrize(("old", "new"), [("0.357402897", "0.357402898"), ("2.15329228\n", "")])
+def test_a_changed_number_of_1980_fails(few: Path, old: str, new: str) -> None:
+    path = few / "printouts" / "compute1980.txt"
+    path.write_text(path.read_text("utf-8").replace(old, new), "utf-8")
+    assert failing(few) == {"published 1980"}
+
+
 def test_missing_captures_fail(few: Path) -> None:
     (few / "scenes.jsonl.gz").unlink()
     assert failing(few) == {"port", "replay", "closed form"}
