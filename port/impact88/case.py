@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections import namedtuple
 from collections.abc import Mapping
+from contextlib import suppress
 from types import MappingProxyType
 
 from .doubles import BARE, double, is_number
@@ -101,6 +102,8 @@ class Case:
         from .units import convention_named, in_listing_axes, system_of
 
         check_mapping(texts)
+        if not isinstance(source, str):
+            raise UserError(f"source is {quoted(source)}; expected what messages call the scene")
         for name, text in texts.items():
             if not isinstance(text, str):
                 raise UserError(f"{name} is {text!r}; expected the number's text", source)
@@ -155,6 +158,25 @@ class Case:
             for name in self.estimated if self.is_single else ():
                 values[name] = nominal(name, values[name], source)
         self.values = _with_contact_point(values, source)
+        self._remark()
+
+    def _remark(self) -> None:
+        """Add remarks on what is hardly meant."""
+        from . import plausibility
+
+        numbers: dict[str, float] = {}
+        for name, text in self.values.items():
+            if is_number(text):
+                numbers[name] = double(text)
+            elif is_range(text) and not self.is_single:
+                from .units import nominal
+
+                with suppress(ValueError):  # whoever reads the entry says what is wrong
+                    numbers[name] = double(nominal(name, text, self.source))
+        found = plausibility.remarks(numbers, self.given, self.system, self.outlines)
+        for name, text in found.items():
+            known = self.remarks.get(name)
+            self.remarks[name] = f"{known}; {text}" if known else text
 
     def __repr__(self) -> str:
         return f"Case({dict(self.texts)!r}, {self.source!r})"

@@ -21,7 +21,7 @@ from math import inf
 
 from .doubles import digits, double
 from .errors import UserError
-from .units import INERTIA, MASS, SYMBOLS, SYSTEMS, nominal
+from .units import INERTIA, MASS, SYMBOLS, SYSTEMS, System, nominal
 
 WORD = "estimate"
 """What stands in a file for an inertia that is not known."""
@@ -70,6 +70,25 @@ def _bias(least: int, most: int) -> str:
     """Return how far a rule lay above the yaw inertias of seven vehicles that were crash tested,
     the sport utilities farthest."""
     return f"; {least} to {most} % high on seven tested vehicles, sport utilities most"
+
+
+def rule_of(
+    vehicle: str, mass: float, outlines: Mapping[str, float], system: System
+) -> float | None:
+    """Return the yaw inertia that the rules give a vehicle of that mass, in base units; None where
+    neither its size is known nor its weight is a car's."""
+    if not 0 < mass < inf:
+        return None
+    length, width = (outlines.get(size) for size in SIZES[vehicle])
+    if length and width:
+        return mass * (length**2 + width**2) / 12
+    if system.is_bare:
+        return None
+    weight = mass * float(system.scale(MASS) / SYMBOLS["lb"][1])
+    if not CARS[0] <= weight <= CARS[1]:
+        return None
+    scale = float(SYSTEMS["us"].scale(INERTIA) / system.scale(INERTIA))
+    return (_SLOPE * weight - _OFFSET) * scale
 
 
 def _number(text: str, name: str, wanted: str, source: str) -> float:

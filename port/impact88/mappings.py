@@ -107,7 +107,15 @@ def _double(name: str, value: Any) -> float:
 
 def columns(values: Mapping[str, Any]) -> dict[str, Array]:
     """`in_base` and `in_doubles` of every value. Raises UserError."""
-    return {name: in_doubles(name, value) for name, value in in_base(values).items()}
+    import numpy as np
+
+    arrays = {name: in_doubles(name, value) for name, value in in_base(values).items()}
+    try:
+        np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
+        raise UserError(f"the columns' shapes do not broadcast together: {shapes}") from None
+    return arrays
 
 
 def within_limits(values: Mapping[str, Any]) -> dict[str, Uncertain]:

@@ -177,6 +177,8 @@ def check_names(
 ) -> None:
     """Raises UserError, with a hint where one is near, for a name that is not ``allowed``."""
     for name in names:
+        if not isinstance(name, str):
+            raise UserError(f"{name!r} is not a name; expected the text of a {what}", where)
         if name not in allowed:
             hint = did_you_mean(name, allowed)
             raise UserError(f"{name!r} is not a {what}{hint} (expected {' '.join(allowed)})", where)

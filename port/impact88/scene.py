@@ -14,7 +14,7 @@ from collections.abc import Hashable, Iterator, Mapping
 from . import notebook
 from .case import Case, check_mapping, check_value, is_share
 from .doubles import double
-from .errors import UserError
+from .errors import UserError, quoted
 from .files import packaged_text
 from .names import DEFAULT_M, SCENE, VELOCITIES, check_names, missing
 from .scenefile import case_in, template, toml_texts
@@ -117,6 +117,8 @@ class Scene(Mapping[str, str]):
     @classmethod
     def from_toml_text(cls, text: str, source: str, units: str | None = None) -> Self:
         """Return the scene in a TOML document; ``source`` names it in errors."""
+        if not isinstance(text, str):
+            raise UserError(f"{quoted(text)} is not the text of a file")
         return cls.of(Case(toml_texts(text, source), source, units))
 
     @property

@@ -5,6 +5,7 @@ Only the raw text of a value is used, never TOML's own idea of the number.
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Collection, Mapping, Sequence
 
@@ -29,6 +30,9 @@ def case_in(
     path: str, units: str | None = None, axes: str | None = None, headings: str | None = None
 ) -> Case:
     """Return the case in a TOML file (``-``: standard input). Raises UserError."""
+    if not isinstance(path, str | os.PathLike):
+        raise UserError(f"{quoted(path)} is not the name of a file")
+    path = os.fspath(path)
     return Case(toml_file(path), called(path), units, axes, headings)
 
 

@@ -238,6 +238,23 @@ class System(NamedTuple):
         sign = 1 - 2 * (value != PIVOT) if name == "MUP" else sign
         return sign * value * self.factor(name)
 
+    def is_turned(self, name: str) -> bool:
+        """Return whether a value grows here where it falls in the listing's axes."""
+        turn = self.convention.turned(name) if self.convention else None
+        return turn is not None and turn[0] < 0
+
+    def placed(self, name: str, value: Any) -> Any:
+        """Return `displayed` values, directions not brought within a turn: limits stay in order."""
+        turn = self.convention.turned(name) if self.convention else None
+        if turn and name in COURSES:
+            return turn[1] + turn[0] * value
+        return self.displayed(name, value)
+
+    def ends(self, name: str, low: Any, high: Any) -> tuple[Any, Any]:
+        """Return two limits as they are placed, the lower one first."""
+        low, high = (self.placed(name, end) for end in (low, high))
+        return (high, low) if self.is_turned(name) else (low, high)
+
     def unit(self, name: str) -> str:
         """The unit a quantity is shown in; nothing for a mere number or where none is known."""
         label = self.label(quantity(name).unit)
@@ -285,7 +302,7 @@ def system_of(name: str | None) -> System:
 
 def system_named(name: str, source: str) -> System:
     """The system of that name. Raises UserError."""
-    if name.lower() not in SYSTEMS:
+    if not isinstance(name, str) or name.lower() not in SYSTEMS:
         expected = " ".join(SYSTEMS)
         raise UserError(f"{quoted(name)} is not a system of units; expected {expected}", source)
     return SYSTEMS[name.lower()]
@@ -398,8 +415,8 @@ class Notation(NamedTuple):
 def parse(text: str) -> Notation:
     """A value or range taken apart. Raises ValueError for what is neither."""
     words = " ".join(text.replace("⁻¹", "^-1").replace("⁻²", "^-2").translate(_MEANT).split())
-    if "..." in words:
-        raise ValueError(text)
+    if "..." in words or any(c.isdecimal() and not c.isascii() for c in words):
+        raise ValueError(text)  # INPUT knows the Apple's digits alone
     for kind, pattern, counts, layout in _FORMS:
         if match := re.fullmatch(pattern, words):
             amounts: list[Amount | None] = []
@@ -722,7 +739,8 @@ def shown_text(name: str, text: str, system: System) -> str:
     turn = system.convention.turned(name) if system.convention else None
     if turn and any(map(str.isdigit, text)) and "%" not in text:
         text = turned(name, text, *turn)
-        if is_number(text) and turn[1]:
+        headings = system.convention is not None and system.convention.headings
+        if headings and name in COURSES and is_number(text):
             return digits(double(text) % 360.0)
     factor = system.factor(name)
     if factor == 1 or not is_number(text):

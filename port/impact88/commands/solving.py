@@ -4,6 +4,7 @@ import argparse
 import csv
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, nullcontext, suppress
+from functools import partial
 from itertools import chain
 from typing import Any
 
@@ -22,7 +23,7 @@ from ..names import DEFAULT_M, RESULTS, SCENE, check_names
 from ..progress import progress
 from ..scenefile import case_in
 from ..status import Status
-from ..tables.cells import TableUnits, check_scene_columns, filled, numbers, point_masses
+from ..tables.cells import Share, TableUnits, check_scene_columns, filled, numbers, point_masses
 from ..tables.rows import BadCell, Rows
 from ..tables.sweep import estimates, read_ranges, read_sweep
 from ..tables.table import ahead, behind, format_of, may_wait, open_reader, open_writer
@@ -71,7 +72,7 @@ def solve_table(args: options.Args) -> int:
         )
         units.convention = _convention(args, beside)
         given: dict[str, str] = {}
-        inertias: dict[str, Callable[[str], str]] = {}
+        inertias: dict[str, Callable[[Rows], list[str | None]]] = {}
         if not one_scene:
             changes = options.set_pairs(args.set, (*SCENE, *OWN_NAMES))
             if beside is None:
@@ -81,7 +82,11 @@ def solve_table(args: options.Args) -> int:
                 _refuse_bare(beside, units)
             beside = options.changed(beside, changes, "--set").single()
             given = _given(beside, changes, source.names)
-            inertias = {n: estimate for n, estimate in estimates(beside).items() if n in given}
+            inertias = {
+                name: partial(_estimated, units=units, name=name, estimate=estimate, case=beside)
+                for name, estimate in estimates(beside).items()
+                if name in given and f"M{name[1]}" in source.names
+            }
         points = given.get("M", "4" if "M" in source.names else "6") == "4"
         check_scene_columns({*source.names, *given}, points)
         if swept:  # the rest is the same in every row
@@ -106,7 +111,7 @@ def solve_table(args: options.Args) -> int:
                 rows.columns.pop(name, None)  # and with it the heading of another unit
                 rows.columns[name] = [text] * rows.count
             for name, estimate in inertias.items():
-                rows.columns[name] = _estimated(rows, units, name, estimate)
+                rows.columns[name] = estimate(rows)
             # a name without a column has empty cells: a complaint where a row looks at them
             nothing = [None] * rows.count
             rows.columns |= {name: nothing for name in SCENE if name not in rows.columns}
@@ -161,7 +166,7 @@ def _given(case: Case, changes: Collection[str], columns: Collection[str]) -> di
 
 
 def _estimated(
-    rows: Rows, units: TableUnits, name: str, estimate: Callable[[str], str]
+    rows: Rows, units: TableUnits, name: str, estimate: Callable[[str], str], case: Case
 ) -> list[str | None]:
     """Return a column of inertias estimated from each row's own mass; nothing for a mass that is
     none, or no car's."""
@@ -169,7 +174,8 @@ def _estimated(
     for cell in rows.columns.get(f"M{name[1]}") or [None] * rows.count:
         try:
             mass = cell if isinstance(cell, str) else repr(float(cell)).upper()
-            texts.append(estimate(units.cell(f"M{name[1]}", mass)))
+            based = units.cell(f"M{name[1]}", mass)
+            texts.append(estimate(case.written({f"M{name[1]}": based})[f"M{name[1]}"]))
         except (UserError, TypeError, ValueError):
             texts.append(None)
     return texts
@@ -209,6 +215,10 @@ def _read_shares(rows: Rows, columns: dict[str, NDArray[np.float64]]) -> None:
         shared = {n: np.broadcast_to(x, (rows.count,))[at] for n, x in columns.items()}
         columns["MU"] = columns["MU"].copy()
         columns["MU"][at] = share_typed(shared, list(found.values()))
+        cells_kept = list(rows.columns["MU"])
+        for index in at:  # a typed table holds the number
+            cells_kept[index] = Share(cells_kept[index], float(columns["MU"][index]))
+        rows.columns["MU"] = cells_kept
         rows.bad = [bad for bad in rows.bad if bad[1] != "MU" or bad[0] not in found]
 
 

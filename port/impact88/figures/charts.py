@@ -13,6 +13,7 @@ from ..errors import UserError
 from ..names import PIVOT, quantity
 from ..scene import numbers_of
 from ..status import Status
+from ..tables.sweep import swept_columns
 from ..units import RULES, System, system_of
 from . import drawing as d
 from .drawing import BLACK, GREY, ROW, TEXT, Box, Drawing, Path, Text, short
@@ -375,22 +376,24 @@ def _along(
 
     numbers: dict[str, Any] = numbers_of(scene)
     units = _system(scene)
+    case = getattr(scene, "case", None)
+    columns = swept_columns(case, name, axis) if case else {**numbers, name: axis}
     outputs = [output for group in groups for output in group]
-    factors = {output: units.factor(output) for output in (name, *outputs)}
-    found = solve({**numbers, name: axis}, [*outputs, "STATUS"])
+    found = solve(columns, [*outputs, "STATUS"])
     faulty = (found["STATUS"] & np.uint16(faults & 0xFFFF)) != 0
     for output in outputs:
         d.check_drawable(found[output], output)
     d.check_drawable(axis, name)
-    axis, own = axis * factors[name], own * factors[name]
-    here = {n: float(value) * factors[n] for n, value in solve(numbers, outputs).items()}
+    axis, own = units.placed(name, axis), units.placed(name, own)
+    limit = units.placed(name, limit) if limit else limit
+    here = {n: units.placed(n, float(value)) for n, value in solve(numbers, outputs).items()}
     summary = " ".join(f"{_label(output, units)}: {short(here[output])}." for output in outputs)
     drawing = Drawing(d.COLUMN, titles[0], f"In this scene: {summary}")
     top = drawing.heading() - _TOP
     entries: list[tuple[str, str, Any]] = []
     for group in groups:
         box = Box(_LEFT, top - 27, d.COLUMN - 3, top)
-        values = {output: found[output] * factors[output] for output in group}
+        values = {output: units.placed(output, found[output]) for output in group}
         y = span([x for output in group for x in (*values[output], here[output])])
         label = _label(group[0], units)
         if len(group) > 1:  # sizes

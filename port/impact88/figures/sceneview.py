@@ -42,7 +42,7 @@ def scene_drawing(
     shapes, units = planned(scene, result, units, outlines)
     drawing = Drawing(width, title, description(shapes, units))
     field = _Field(shapes, width, drawing.heading())
-    field.draw(drawing)
+    field.draw(drawing, mirrored=units.is_turned("UY"))
     y = _key(drawing, field, field.frame.bottom - ROW, units) - 2.4
     drawing.add(Path((2 + 1j * y, width - 2 + 1j * y), d.GREY, 0.2))
     table_and_notes(drawing, shapes, y, units)
@@ -134,7 +134,7 @@ class _Field:
             result["change"] = (center, center + self.per_speed * vehicle.change)
         return result
 
-    def draw(self, drawing: Drawing) -> None:
+    def draw(self, drawing: Drawing, mirrored: bool = False) -> None:
         at = self.at
         for vehicle in self.shapes.vehicles:
             if vehicle.wall:
@@ -166,7 +166,7 @@ class _Field:
         drawing.add(Path(d.circle(at(0), 0.75), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
         drawing.add(Path(d.circle(at(0), 0.2), None, fill=d.BLACK))
         drawing.add(Label(at(0), -self.shapes.tangent, "C", role="contact label"))
-        draw_axes(drawing, self.frame)
+        draw_axes(drawing, self.frame, mirrored)
         place(drawing, self.frame)
 
     def _draw_wall(self, drawing: Drawing, vehicle: Vehicle) -> None:
@@ -216,8 +216,9 @@ def name_label(vehicle: Vehicle, at: complex, towards: complex, size: float = 10
     return Label(at, towards, vehicle.name, size, colour, True, f"{vehicle.name} label")
 
 
-def draw_axes(drawing: Drawing, frame: Box) -> None:
-    """The x and y axes, in the corner of ``frame`` with the fewest lines."""
+def draw_axes(drawing: Drawing, frame: Box, mirrored: bool = False) -> None:
+    """The x and y axes, in the corner of ``frame`` with the fewest lines; ``mirrored``: y to the
+    right of x, as the SAE's axes have it."""
     side = 9.0
     lefts, bottoms = (frame.left, frame.right - side), (frame.bottom + 0.5, frame.top - side)
     corners = [complex(x, y) for x in lefts for y in bottoms]
@@ -225,7 +226,9 @@ def draw_axes(drawing: Drawing, frame: Box) -> None:
     ends = [path.points for path in drawing.paths() if path.stroke]
     crowd = [sum(box.overlaps(d.extent(points)) for points in ends) for box in boxes]
     origin = corners[crowd.index(min(crowd))] + 1 + 1j
-    for along, name, shift in ((1, "x", 0.7 - 0.7j), (1j, "y", 0.6 - 0.2j)):
+    if mirrored:
+        origin += 6j
+    for along, name, shift in ((1, "x", 0.7 - 0.7j), (-1j if mirrored else 1j, "y", 0.6 - 0.2j)):
         end = origin + 5.5 * along
         drawing.add(*d.arrow(origin, end, d.GREY, 0.25, head=1.5, role=f"{name} axis"))
         drawing.add(Text(end + shift, name, 7, colour=d.GREY, role=f"{name} label"))
@@ -333,12 +336,13 @@ def table_and_notes(drawing: Drawing, shapes: Plan, y: float, units: System) -> 
 
 def _cells(vehicle: Vehicle, shapes: Plan, units: System) -> list[str]:
     cells = [short(units.shown(_SPEED, vehicle.before.speed)), "–", "–", "–"]
-    after, spins = None if vehicle.wall else vehicle.after, [short(vehicle.before.spin), "–"]
+    turn = -1.0 if units.is_turned("WA") else 1.0
+    after, spins = None if vehicle.wall else vehicle.after, [short(turn * vehicle.before.spin), "–"]
     if after and vehicle.change is not None:
         cells[1:3] = (short(units.shown(_SPEED, v)) for v in (after.speed, abs(vehicle.change)))
         if shapes.impulse:
             cells[3] = f"{vehicle.pdof(shapes.impulse):.0f}°".replace("-", "−")
-        spins[1] = short(after.spin)
+        spins[1] = short(turn * after.spin)
     return cells + (["–", "–"] if shapes.numbers["M"] == 4 else spins)
 
 

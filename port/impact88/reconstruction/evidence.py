@@ -87,8 +87,8 @@ class Evidence:
         """Return the values most at odds, each as measured and as adjusted."""
         parts = []
         for item in self.at_odds:
-            factor, unit = units.factor(item.name), units.unit(item.name)
-            amounts = (number(x * factor, 4) for x in (item.measured, item.adjusted))
+            unit, sizes = units.unit(item.name), (item.measured, item.adjusted)
+            amounts = (number(units.placed(item.name, float(x)), 4) for x in sizes)
             text = " measured, ".join(amounts)
             meaning = quantity(item.name).meaning
             parts.append(f"{item.name} ({meaning}), {text} {unit}".rstrip() + " adjusted")
@@ -105,8 +105,8 @@ class Evidence:
         rows = [
             {
                 "name": item.name,
-                "measured": item.measured * units.factor(item.name),
-                "adjusted": item.adjusted * units.factor(item.name),
+                "measured": units.placed(item.name, float(item.measured)),
+                "adjusted": units.placed(item.name, float(item.adjusted)),
                 "standardized_residual": item.residual,
                 "probability_without": item.without,
             }

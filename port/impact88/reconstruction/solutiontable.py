@@ -160,7 +160,9 @@ class Impact:
         for vehicle in vehicles:
             text, course = size(vehicle, name := f"S{vehicle}"), f"H{vehicle}"
             if values.get(name) and course in values:
-                text += f", heading {number(values[course], 3)}".replace("-180", "180")
+                text += f", heading {number(units.displayed(course, values[course]), 3)}".replace(
+                    "-180", "180"
+                )
             rows.append(("BEFORE IMPACT", text))
         for vehicle in vehicles:
             text, origin = size(vehicle, f"DV{vehicle}"), values.get(f"PDOF{vehicle}", math.nan)

@@ -221,7 +221,7 @@ def _inverse(case: Case, source: str, samples: int, seed: int, units: System) ->
 
 def _amount(name: str, value: float, units: System, like: float = math.nan) -> str:
     """A value as it is shown: two digits of its standard deviation, or five of itself."""
-    amount = value * units.factor(name)
+    amount = float(units.displayed(name, float(value)))
     if math.isnan(amount):
         return ""
     if math.isinf(amount):
@@ -229,6 +229,11 @@ def _amount(name: str, value: float, units: System, like: float = math.nan) -> s
     if like > 0 and math.isfinite(like):
         return fixed(amount, max(0, 1 - math.floor(math.log10(like * units.factor(name)))))
     return f"{amount:,.0f}" if 1e4 <= abs(amount) < 1e12 else number(amount, 4)
+
+
+def _deviation(name: str, value: float, units: System) -> str:
+    """Return a standard deviation as it is shown, which has no sign."""
+    return _amount(name, value, units._replace(convention=None), value)
 
 
 def _sentences(found: Findings, units: System) -> list[str]:
@@ -241,7 +246,7 @@ def _sentences(found: Findings, units: System) -> list[str]:
             name = name.format(vehicle)
             like = found.spreads.get(name, Spread()).deviation
             if said := _amount(name, found.values.get(name, math.nan), units, like):
-                more = f" ± {_amount(name, like, units, like)}" if math.isfinite(like) else ""
+                more = f" ± {_deviation(name, like, units)}" if math.isfinite(like) else ""
                 words.append(f"{word} {said}{more} {units.unit(name)}".strip())
         pdof = found.values.get(f"PDOF{vehicle}", math.nan)
         if math.isfinite(pdof):
@@ -263,8 +268,14 @@ def _answer(found: Findings, units: System) -> Table:
     for name in found.main:
         if name in found.values:
             spread = found.spreads.get(name, Spread())
+            if units.is_turned(name):
+                spread = spread._replace(
+                    low=spread.high, high=spread.low, lower=spread.upper, upper=spread.lower
+                )
             numbers = (found.values[name], *spread[:5])[: len(heads)]
             cells = [_amount(name, x, units, spread.deviation) for x in numbers]
+            if len(cells) > 1:
+                cells[1] = _deviation(name, spread.deviation, units)
             rows.append([name, quantity(name).meaning, *cells, _unit(name, units)])
     headings = ["", "result", *heads, "unit"]
     left = (0, 1, len(headings) - 1)

@@ -236,6 +236,8 @@ def _number(cell: object) -> float | str:
     """The double that a cell is, or why it is none."""
     if cell is None or (isinstance(cell, str) and not cell.strip()):
         return "is empty; expected a number"
+    if isinstance(cell, Share):
+        return cell.number
     with suppress(ValueError, TypeError):
         if not isinstance(cell, str | bool):
             return float(cell)  # type: ignore[arg-type]
@@ -247,6 +249,19 @@ def _number(cell: object) -> float | str:
 def is_infinite(text: str) -> bool:
     """Whether a cell says inf, the mass and the inertia of a barrier; INPUT has no such number."""
     return text.strip().lower() == "inf"
+
+
+class Share(str):
+    """The text of a share of the critical friction, and the ``number`` that it is in its scene."""
+
+    __slots__ = ("number",)
+
+    number: float
+
+    def __new__(cls, text: str, number: float) -> "Share":
+        share = super().__new__(cls, text)
+        share.number = number
+        return share
 
 
 class Numeral(str):

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..closedform.solve import solve
+from ..doubles import is_number
 from ..errors import UserError, library
 from ..names import DEFAULT_M, SCENE
 from .cells import TableUnits, check_scene_columns, numbers
@@ -67,6 +68,8 @@ def solve_frame(
         texts: dict[str, Column]
         texts = {n: list(np.ravel(a)) for n, a in arrays.items() if a.dtype.kind not in "fiu"}
         table = TableUnits(found, units or getattr(scene, "units", None), Rows(0, texts))
+        if table.strict:
+            _check_units(found, given, scene or {}, table)
         columns = {n: _numbers(n, values, table) for n, values in given.items()}
         table.based = SCENE
         for name, value in (scene or {}).items():
@@ -88,6 +91,34 @@ def solve_frame(
     else:
         result = (_dataset if hasattr(frame, "data_vars") else _narwhals)(frame, solved)
     return cast(Frame, result)
+
+
+def _check_units(
+    names: Sequence[str],
+    given: Mapping[str, Any],
+    scene: Mapping[str, Any],
+    units: TableUnits,
+) -> None:
+    """Raise UserError for the first bare number that measures something, where cells have units and
+    nothing says what bare numbers are in."""
+    beside = {name: [value] for name, value in scene.items() if name in SCENE}
+    columns: dict[str, Any] = {
+        **beside,
+        **{str(name): np.ravel(given[heading(name)]) for name in names},
+    }
+    for name, cells in columns.items():
+        if not units.leaves_open(name):
+            continue
+        for cell in cells:
+            bare = isinstance(cell, int | float | np.number) or (
+                isinstance(cell, str) and is_number(cell)
+            )
+            if bare and cell == cell and float(cell):
+                system = units.system.name
+                raise UserError(
+                    f"{name} = {cell} has no unit, and others have; expected one, or "
+                    f'units="{system}" for bare numbers (--units {system})'
+                )
 
 
 def _numbers(name: str, values: Any, units: TableUnits) -> Array:

@@ -1,13 +1,13 @@
 """A scene swept: a table whose rows are one scene with some values running through ranges."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
 from itertools import islice, product
 from math import isfinite, prod
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from ..case import Case
+from ..case import Case, is_share
 from ..doubles import digits, double, is_number
 from ..errors import UserError, quoted
 from ..names import SCENE, check_names
@@ -87,6 +87,21 @@ def estimates(case: Case) -> dict[str, Callable[[str], str]]:
         return estimate
 
     return {name: estimate_of(name) for name in case.estimated}
+
+
+def swept_columns(case: Case, name: str, run: Sequence[float]) -> dict[str, Any]:
+    """Return a case's values in base units as `impact88.solve` takes them, one of them running:
+    numbers, a share of the critical friction, and inertias estimated from a mass that runs."""
+    values = case.single().values
+    columns: dict[str, Any] = {
+        n: values[n] if is_share(values[n]) else double(values[n]) for n in SCENE
+    }
+    for inertia in estimates(case):
+        if name == f"M{inertia[1]}":
+            masses = [case.written({name: float(mass)})[name] for mass in run]
+            singles = [case.replaced({name: mass}).single() for mass in masses]
+            columns[inertia] = [double(single.values[inertia]) for single in singles]
+    return {**columns, name: run}
 
 
 @contextmanager

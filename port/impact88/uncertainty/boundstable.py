@@ -124,26 +124,17 @@ def in_units(found: Bounds, system: System | str | None) -> Bounds:
     if system.is_bare and not system.convention:
         return found
 
-    def place(name: str, value: Any) -> Any:
-        """Return a value where it is shown; limits of a direction stay in order."""
-        turn = system.convention.turned(name) if system.convention else None
-        if turn and turn[1]:
-            return turn[1] + turn[0] * value
-        return system.displayed(name, value)
+    place = system.placed
 
-    def is_turned(name: str) -> bool:
-        turn = system.convention.turned(name) if system.convention else None
-        return turn is not None and turn[0] < 0
-
-    def ends(name: str, low: Any, high: Any) -> tuple[Any, Any]:
-        return (high, low) if is_turned(name) else (low, high)
+    def in_order(name: str, low: Any, high: Any) -> tuple[Any, Any]:
+        return (high, low) if system.is_turned(name) else (low, high)
 
     def bound(name: str, value: Bound) -> Bound:
         """Return a bound whose lower side is the lower one as shown."""
-        lower, upper = ends(name, value.lower, value.upper)
-        corner_lower, corner_upper = ends(name, value.corner_lower, value.corner_upper)
-        at_lower, at_upper = ends(name, value.at_lower, value.at_upper)
-        lower_warnings, upper_warnings = ends(name, value.lower_warnings, value.upper_warnings)
+        lower, upper = in_order(name, value.lower, value.upper)
+        corner_lower, corner_upper = in_order(name, value.corner_lower, value.corner_upper)
+        at_lower, at_upper = in_order(name, value.at_lower, value.at_upper)
+        lower_warnings, upper_warnings = in_order(name, value.lower_warnings, value.upper_warnings)
         return Bound(
             place(name, value.nominal),
             place(name, lower),
@@ -158,7 +149,7 @@ def in_units(found: Bounds, system: System | str | None) -> Bounds:
 
     def spread(name: str, value: Spread) -> Spread:
         quantiles = value.quantiles
-        if is_turned(name):  # shares are tabled in pairs about the half
+        if system.is_turned(name):  # shares are tabled in pairs about the half
             values = [*reversed(quantiles.values())]
             shares = [round(1 - share, 12) for share in reversed(quantiles)]
             quantiles = dict(zip(shares, values, strict=True))
@@ -167,22 +158,23 @@ def in_units(found: Bounds, system: System | str | None) -> Bounds:
         return Spread(place(name, value.mean), deviation, shown)
 
     def drive(output: str, name: str, value: Drive) -> Drive:
-        low, high = ends(name, value.at_low, value.at_high)
-        lowest, highest = ends(output, value.lowest, value.highest)
-        rank = value.rank_correlation * (-1 if is_turned(name) != is_turned(output) else 1)
+        low, high = in_order(name, value.at_low, value.at_high)
+        lowest, highest = in_order(output, value.lowest, value.highest)
+        rank = value.rank_correlation * (
+            -1 if system.is_turned(name) != system.is_turned(output) else 1
+        )
         return Drive(rank, *(place(output, end) for end in (low, high, lowest, highest)))
 
     def uncertain(name: str, item: Uncertain) -> Uncertain:
-        low, high = ends(name, item.low, item.high)
+        low, high = in_order(name, item.low, item.high)
         deviation = item.deviation * system.factor(name)
         shown = {"low": place(name, low), "high": place(name, high), "deviation": deviation}
         return replace(item, nominal=place(name, item.nominal), **shown)
 
-    limits = {n: ends(n, *pair) for n, pair in found.limits.items()}
     return replace(
         found,
         inputs={n: uncertain(n, item) for n, item in found.inputs.items()},
-        limits={n: (place(n, low), place(n, high)) for n, (low, high) in limits.items()},
+        limits={n: system.ends(n, *pair) for n, pair in found.limits.items()},
         bounds={n: bound(n, value) for n, value in found.bounds.items()},
         spreads={n: spread(n, value) for n, value in found.spreads.items()},
         drives={

@@ -161,7 +161,12 @@ class Measured(Impact):
         return lines
 
     def further(self, units: System) -> list[list[str]]:
-        return [self._adjustments(units), self._spreads(units), *self._connections()]
+        return [self._adjustments(units), self._spreads(units), *self._connections(units)]
+
+    def _correlations(self, units: System) -> Any:
+        """Return the correlations of results as they are shown."""
+        signs = np.array([-1.0 if units.is_turned(name) else 1.0 for name in self.names])
+        return np.asarray(self.correlations) * np.outer(signs, signs) if len(signs) else []
 
     def _adjustments(self, units: System) -> list[str]:
         count = self.solution.redundancy
@@ -171,10 +176,12 @@ class Measured(Impact):
         for a in self.solution.adjusted:
             item = self.solution.system.known[a.name]
             half = math.nan if item.kind == "normal" else a.tolerance
-            sizes = [(a.measured, 6), (half, 3), (item.standard_deviation, 3)]
             rounding = abs(a.adjusted) < 1e-9 * item.standard_deviation
-            sizes.append((0.0 if rounding else a.adjusted, 6))
-            cells = [number(units.factor(a.name) * x, n) for x, n in sizes]
+            adjusted = 0.0 if rounding else a.adjusted
+            measured, now = (units.placed(a.name, float(x)) for x in (a.measured, adjusted))
+            factor = units.factor(a.name)
+            sizes = [(measured, 6), (half * factor, 3), (item.standard_deviation * factor, 3)]
+            cells = [number(x, n) for x, n in (*sizes, (now, 6))]
             rows.append([a.name, *cells, fixed(a.moved, 2), units.label(quantity(a.name).unit)])
         heading = ["known", "measured", "half-width", "sd", "adjusted", "moved, tolerances", "unit"]
         return [
@@ -200,16 +207,18 @@ class Measured(Impact):
             if self.draws:
                 drawn, bound = self.draws.spread(name, QUANTILES), self.ranges[name]
                 cells.append(number(factor * drawn.deviation, 3))
-                limits = (*drawn.quantiles.values(), bound.lower, bound.upper)
-                cells += [number(factor * value, 5) for value in limits]
+                quantiles = [units.placed(name, q) for q in drawn.quantiles.values()]
+                quantiles = quantiles[::-1] if units.is_turned(name) else quantiles
+                limits = (*quantiles, *units.ends(name, bound.lower, bound.upper))
+                cells += [number(value, 5) for value in limits]
             rows.append([*cells, units.label(quantity(name).unit)])
         return table(rows, [*heading, "unit"], left=(0, len(heading))) if rows else []
 
-    def _connections(self) -> list[list[str]]:
+    def _connections(self, units: System) -> list[list[str]]:
         names = self.names
         # the unknowns themselves: courses and speeds are made of them
         at = [i for i, n in enumerate(names) if n not in (*SPEEDS, *COURSES)][:MOST_CORRELATED]
-        matrix = self.correlations
+        matrix = self._correlations(units)
         rows = [[names[i], *(f"{matrix[i, k]:.2f}" for k in at if k <= i)] for i in at]
         correlations = table(rows, ["correlation", *(names[i] for i in at)])
         driving = [
@@ -222,7 +231,11 @@ class Measured(Impact):
     def more(self, units: System) -> dict[str, Any]:
         solution, adjusted = self.solution, []
         for a in solution.adjusted:
-            sizes = {n: units.factor(a.name) * x for n, x in zip(a._fields[1:], a[1:], strict=True)}
+            sizes = {
+                "measured": units.placed(a.name, float(a.measured)),
+                "tolerance": units.factor(a.name) * a.tolerance,
+                "adjusted": units.placed(a.name, float(a.adjusted)),
+            }
             adjusted.append({"name": a.name, **sizes, "moved": a.moved})
         return {
             "undetermined": solution.undetermined,
@@ -232,7 +245,7 @@ class Measured(Impact):
             "evidence": self.evidence.as_json(units),
             "equal_tolerances_assumed": solution.assumed,
             "uncertainty": {name: self._uncertain(name, units) for name in self.names},
-            "correlations": {"names": self.names, "matrix": self.correlations},
+            "correlations": {"names": self.names, "matrix": self._correlations(units)},
             "draws_without_solution": self.draws.failed if self.draws else None,
             "not_searched": self.not_searched,
         }
@@ -245,15 +258,21 @@ class Measured(Impact):
         }
         if self.draws:
             drawn, bound = self.draws.spread(name, QUANTILES), self.ranges[name]
+            lower, upper = units.ends(name, bound.lower, bound.upper)
+            at = (bound.at_lower, bound.at_upper)
+            values = [units.placed(name, value) for value in drawn.quantiles.values()]
+            if units.is_turned(name):  # quantiles stand in pairs about the half
+                at, values = at[::-1], values[::-1]
+            quantiles = dict(zip(drawn.quantiles, values, strict=True))
             record |= {
-                "mean": drawn.mean * factor,
+                "mean": units.placed(name, drawn.mean),
                 "deviation": drawn.deviation * factor,
-                "quantiles": {f"{q:g}": v * factor for q, v in drawn.quantiles.items()},
-                "lower": bound.lower * factor,
-                "upper": bound.upper * factor,
+                "quantiles": {f"{q:g}": v for q, v in quantiles.items()},
+                "lower": lower,
+                "upper": upper,
                 "unbounded": unbounded(bound),
-                "at_lower": written(bound.at_lower, units),
-                "at_upper": written(bound.at_upper, units),
+                "at_lower": written(at[0], units),
+                "at_upper": written(at[1], units),
             }
         return record
 
