@@ -10,17 +10,21 @@ README, and other tests compare them.
 from __future__ import annotations
 
 import doctest
+import json
 import os
 import re
 import shlex
+import socket
 import subprocess
 from pathlib import Path
 
 import pytest
 
 from captures import ROOT
+from extras import run_with
 from impact88.cli import COMMANDS
 from impact88.names import SCENE
+from impact88.scene import sample
 from installed import COMMAND, impact88
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -124,12 +128,53 @@ def anchors(text: str) -> set[str]:
     return {re.sub(r"[^a-z0-9 -]", "", h.lower()).replace(" ", "-") for h in headings}
 
 
-def test_links_work_wherever_readme_is_shown() -> None:
-    """A package index shows this page alone: nothing but the page itself and the web is linked."""
+def test_links_lead_somewhere() -> None:
     links = [link for link in re.findall(r"\]\(([^)]+)\)", README) if "://" not in link]
     assert links
     assert {link.removeprefix("#") for link in links if link.startswith("#")} <= anchors(README)
-    assert [link for link in links if not link.startswith("#")] == []
+    files = [link.partition("#")[0] for link in links if not link.startswith("#")]
+    assert [link for link in files if not (ROOT / link).is_file()] == []
+
+
+def test_readme_links_what_the_faithful_path_is_checked_by() -> None:
+    for path in ("port/impact88/program/listing.py", "legacy/impact.bas", "legacy/ERRATA.md"):
+        assert f"]({path})" in README
+    assert "](golden/" in README
+
+
+TOURS: dict[str, tuple[str, ...]] = {
+    "verify --brief printout.txt": (),
+    "verify --report page.html printout.txt": ("report",),
+    "bounds crash.toml --outputs DVA,DVB": (),
+    "report crash.toml -o case.html": ("report",),
+    "figure scene crash.toml -o crash.svg": (),
+    "oracle --vectors 3 -o vectors.jsonl": ("oracle",),
+    "compare theirs.jsonl --strict": (),
+    "desk --no-browser --port {taken}": ("desk",),
+}
+"""README's tours, and the extras that README names for them."""
+
+
+@pytest.mark.parametrize(("line", "extras"), TOURS.items())
+def test_a_tour_needs_the_extras_it_names_and_no_other(
+    line: str, extras: tuple[str, ...], tmp_path: Path
+) -> None:
+    folder = tmp_path
+    (folder / "crash.toml").write_text(blocks("toml")[0], "utf-8")
+    (folder / "theirs.jsonl").write_text(json.dumps({**sample(1), "VAX": -13.263}), "utf-8")
+    impact88("run", "--sample", "1", "-o", "printout.txt", cwd=folder)
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        words = line.format(taken=taken.getsockname()[1]).split()
+        for extra in extras:
+            assert f"`{extra}`" in README or f"extra {extra}" in README
+            without = run_with((), *words, cwd=folder)
+            assert without.returncode == 2
+            assert f"pip install 'impact88[{extra}]'" in without.stderr
+        done = run_with(extras, *words, cwd=folder)
+    if words[0] == "desk":  # it would serve for ever: that all is there shows in what it lacks
+        assert "is not available" in done.stderr
+    else:
+        assert done.returncode in (0, 1), done.stderr
 
 
 PAGES = ["README.md", "port/GUIDE.md", "port/README.md", "port/CHANGELOG.md", "tests/README.md"]

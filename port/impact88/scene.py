@@ -12,6 +12,7 @@ import re
 from collections.abc import Hashable, Iterator, Mapping
 
 from . import notebook
+from .arguments import explains_arguments
 from .case import Case, check_mapping, check_value, is_share
 from .doubles import double
 from .errors import UserError, quoted
@@ -249,6 +250,7 @@ _SAMPLES = {
 SAMPLES = tuple(_SAMPLES)
 
 
+@explains_arguments
 def sample(number: int) -> Scene:
     """The scene of published run 1, 2 or 3. Raises UserError for another number.
 

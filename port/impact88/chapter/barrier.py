@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import explains_arguments
 from ..closedform.solve import solve
 from ..errors import UserError
 from ..mappings import in_base
@@ -34,6 +35,7 @@ RESULTS = (
 
 
 @np.errstate(all="ignore")  # what is not finite is said in words
+@explains_arguments
 def barrier(columns: Mapping[str, Any], outputs: Sequence[str] | None = None) -> dict[str, Any]:
     """The impact of vehicle A on a rigid barrier whose surface makes the angle GA with the y axis.
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import explains_arguments
 from ..closedform.statusbits import bits, findings
 from ..errors import UserError
 from ..mappings import columns
@@ -24,6 +25,7 @@ FINAL = ("VAN", "VAT", "VBN", "VBT")
 
 
 @np.errstate(all="ignore")  # what is not finite is said in words
+@explains_arguments
 def colinear(known: Mapping[str, Any]) -> dict[str, Array]:
     """Final velocities VAN VAT VBN VBT by Equations 9-12, and what `report` adds.
 
@@ -42,6 +44,7 @@ def colinear(known: Mapping[str, Any]) -> dict[str, Array]:
 
 
 @np.errstate(all="ignore")  # what is not finite is said in words
+@explains_arguments
 def colinear_inverse(known: Mapping[str, Any]) -> dict[str, Array]:
     """Initial velocities UN UT VN VT from the final ones, and what `report` adds.
 

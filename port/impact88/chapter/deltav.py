@@ -15,6 +15,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from ..arguments import explains_arguments
 from ..errors import UserError
 from ..mappings import columns
 from ..names import missing
@@ -32,6 +33,7 @@ GIVEN = ("MA", "MB", "SA", "SB", "LOSS")
 """What Equation 19 asks for."""
 
 
+@explains_arguments
 def delta_v(known: Mapping[str, Any], factor: float = AS_USED) -> dict[str, Array]:
     """DVA and DVB by Equation 19, by default with the factor 2/3 that Table 2 has.
 

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import explains_arguments
 from ..doubles import double
 from ..errors import UserError, quoted
 from ..files import called
@@ -182,6 +183,7 @@ class Comparison:
         return {name: plain(value) for name, value in whole.items()}
 
 
+@explains_arguments
 def compare(
     path: str | os.PathLike[str],
     form: str | None = None,

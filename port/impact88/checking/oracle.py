@@ -13,6 +13,7 @@ from typing import Any
 from .. import doubles, status
 from ..accuracy import errorbound
 from ..applesoft.operators import Real
+from ..arguments import explains_arguments
 from ..closedform.solve import solve
 from ..errors import UserError
 from ..mappings import typed
@@ -81,6 +82,7 @@ def _checked(scene: Scene) -> Scene:
     return scene
 
 
+@explains_arguments
 def oracle(
     scenes: Mapping[str, Any] | Iterable[Mapping[str, Any]], reference: bool = True
 ) -> list[dict[str, Any]]:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import native
+from ..arguments import explains_arguments
 from ..case import check_mapping
 from ..errors import UserError
 from ..mappings import in_base, in_doubles
@@ -42,6 +43,7 @@ back; when operations are short the other has not woken up by then, and the thre
 Measured on two cores: 1.6 times as fast as one with tiles this long, 1.1 times with `TILE`."""
 
 
+@explains_arguments
 def solve(
     columns: Mapping[str, object],
     outputs: Sequence[str] | str | None = None,

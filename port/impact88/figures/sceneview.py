@@ -5,6 +5,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..arguments import explains_arguments
 from ..reconstruction.geometry import clock
 from ..units import RULES, System
 from . import drawing as d
@@ -62,6 +63,7 @@ def planned(
     return plan(scene, result, outlines), units or (case.system if case else RULES)
 
 
+@explains_arguments
 def scene_svg(scene: Any, result: Mapping[str, Any] | None = None) -> Svg:
     """The scene as a self-contained SVG element, 85 mm wide, to stand in an HTML page or a file.
 

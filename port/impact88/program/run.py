@@ -11,6 +11,7 @@ from contextlib import nullcontext
 from .. import notebook
 from ..applesoft.console import Console
 from ..applesoft.operators import Real
+from ..arguments import explains_arguments
 from ..scene import Scene
 from . import arithmetics, listing, stepping
 from .arithmetics import Arithmetic
@@ -116,6 +117,7 @@ def start(
     )
 
 
+@explains_arguments
 def run(
     scene: Mapping[str, str],
     arithmetic: str | Arithmetic = "applesoft",

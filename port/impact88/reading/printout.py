@@ -14,6 +14,7 @@ from itertools import groupby
 from typing import NamedTuple
 
 from ..applesoft.errorcodes import CODES
+from ..arguments import explains_arguments
 from ..errors import UserError, quoted
 from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT
 from . import numerals
@@ -397,6 +398,7 @@ def _reply_parts(region: Region) -> list[Region]:
     return parts
 
 
+@explains_arguments
 def read_printouts(text: str, where: str = "text") -> list[Printout]:
     """The printouts in a text, in order. Raises UserError (naming ``where``) if there is none.
 

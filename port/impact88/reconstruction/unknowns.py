@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import explains_arguments
 from ..closedform.solve import solve
 from ..errors import UserError
 from ..mappings import columns
@@ -115,6 +116,7 @@ class Solution:
 
 
 @within_doubles
+@explains_arguments
 def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) -> list[Solution]:
     """Solve Equations 13-18 for what ``known`` leaves out.
 

@@ -14,6 +14,7 @@ result       what the caller gets
 from collections.abc import Mapping
 from typing import Any
 
+from ..arguments import explains_arguments
 from .blocks import replay_scenes
 from .realcolumns import read_columns
 from .result import Replay, field_names
@@ -21,6 +22,7 @@ from .result import Replay, field_names
 __all__ = ["Replay", "field_names", "replay"]
 
 
+@explains_arguments
 def replay(columns: Mapping[str, Any], fields: bool = False, threads: int | None = None) -> Replay:
     """Run the 1988 listing's own arithmetic on many scenes at once: what an Apple II Plus computes.
 

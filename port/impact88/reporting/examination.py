@@ -13,6 +13,7 @@ from time import process_time
 from typing import TYPE_CHECKING, Any, overload
 
 from .. import files
+from ..arguments import explains_arguments
 from ..errors import UserError, quoted
 from ..fields import scene_name
 from ..judging import beside
@@ -111,6 +112,7 @@ def verify(printout: Printout, given: Mapping[str, Any] | None = None) -> Verifi
 def verify(
     printout: str | bytes | os.PathLike[str], given: Mapping[str, Any] | None = None
 ) -> list[Verification]: ...
+@explains_arguments
 def verify(
     printout: Printout | str | bytes | os.PathLike[str], given: Mapping[str, Any] | None = None
 ) -> Verification | list[Verification]:

@@ -11,6 +11,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import explains_arguments
 from ..closedform.solve import solve
 from ..doubles import is_number
 from ..errors import UserError, library
@@ -23,6 +24,7 @@ Array = NDArray[Any]
 Solver = Callable[[Sequence[str], Callable[[str], Any]], dict[str, Array]]
 
 
+@explains_arguments
 def solve_frame(
     frame: Frame,
     outputs: Sequence[str] | str | None = None,

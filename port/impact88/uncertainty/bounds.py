@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import status
+from ..arguments import explains_arguments
 from ..case import check_mapping
 from ..closedform.solve import quantities, share_typed
 from ..errors import UserError
@@ -54,6 +55,7 @@ MOST_DRAWS = 100_000_000
 
 
 @np.errstate(all="ignore")
+@explains_arguments
 def bounds(
     values: Mapping[str, Uncertain | float | str],
     outputs: Sequence[str] | str | None = None,

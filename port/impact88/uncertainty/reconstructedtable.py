@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from .. import notebook
+from ..arguments import explains_arguments
 from ..names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..plaintable import fixed, number, paragraph, table
 from ..reconstruction import adjustment
@@ -285,6 +286,7 @@ class Reconstructions(list[Reconstruction]):
         return notebook.preformatted(in_turn([Measured(impact, 0) for impact in self]))
 
 
+@explains_arguments
 def reconstruct(known: Mapping[str, Uncertain | float | str]) -> Reconstructions:
     """Return every impact that agrees with what is known of it.
 

@@ -1,0 +1,107 @@
+"""What public functions say of an argument of another kind, and what their annotations admit."""
+
+from __future__ import annotations
+
+import contextlib
+import inspect
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+
+import impact88
+from impact88.argumentkinds import described, fits
+from impact88.arguments import explains_arguments
+
+SCENE = impact88.sample(1)
+NUMBERS = SCENE.numbers()
+KNOWN = {name: value for name, value in NUMBERS.items() if name != "MU"} | {"VAX": -13.263}
+COLINEAR = {"MA": 154.7, "MB": 99.1, "E": 0.071, "MUP": 0, "UN": -56.76, "UT": 0, "VN": 0, "VT": 0}
+CAR = {"DA": 7.59, "GA": -30, "PA": -19.8, "TA": 0, "MA": 143.5, "IA": 3728, "E": 0.1}
+CAR |= {"MU": 0.4, "EM": -1, "UX": -29, "UY": 0, "WA": 0}
+GOOD: dict[str, Any] = {
+    "solve": NUMBERS,
+    "run": SCENE,
+    "bounds": {**NUMBERS, "MU": "0.7 .. 0.9"},
+    "replay": {name: [text] for name, text in SCENE.items()},
+    "oracle": SCENE,
+    "verify": "x\n",
+    "sample": 1,
+    "solve_frame": [dict(NUMBERS)],
+    "read_printouts": "x\n",
+    "scene_svg": SCENE,
+    "solve_for": KNOWN,
+    "barrier": CAR,
+    "colinear": COLINEAR,
+    "delta_v": {"MA": 96, "MB": 145, "SA": 36.667, "SB": 58.667, "LOSS": 37.4},
+}
+THINGS = [None, 7, 2.5, b"\xff", "x", ["x"], [1], {1: 2}, object(), np.zeros((2, 2)), 1j]
+THINGS += [lambda *_: 0]
+
+
+def parameters(name: str) -> list[str]:
+    function = getattr(impact88, name)
+    return list(inspect.signature(function).parameters)
+
+
+@pytest.mark.parametrize(
+    ("name", "parameter"), [(name, p) for name in GOOD for p in parameters(name)]
+)
+def test_an_argument_of_another_kind_is_a_user_error(name: str, parameter: str) -> None:
+    function, first = getattr(impact88, name), parameters(name)[0]
+    quick = {"samples": 10} if name == "bounds" else {}
+    for thing in THINGS:
+        arguments = {first: GOOD[name], **quick, parameter: thing}
+        with contextlib.suppress(impact88.UserError):
+            function(**arguments)
+
+
+def test_an_error_that_no_argument_explains_stays_what_it_is() -> None:
+    @explains_arguments
+    def broken(number: int) -> int:
+        raise KeyError(number)
+
+    with pytest.raises(KeyError):
+        broken(3)
+    with pytest.raises(impact88.UserError, match="broken: number is 'x'; expected a whole number"):
+        broken("x")  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="missing"):
+        broken()  # type: ignore[call-arg]
+
+
+@pytest.mark.parametrize(
+    ("hint", "good", "bad", "words"),
+    [
+        (int, [3, np.int64(3)], [3.0, True, "3", None], "a whole number"),
+        (float, [3, 3.0, np.float32(3)], ["3", None, 1j, np.zeros(2)], "a number"),
+        (bool, [True, np.bool_(False)], [1, None, np.zeros(2)], "True or False"),
+        (str | None, ["", None], [b"", 3], "text or None"),
+        (
+            Sequence[str] | str,
+            ["x", ["x"], ("x",)],
+            [[1], {"x": 1}, 3],
+            "a sequence of text or text",
+        ),
+        (
+            Mapping[str, float],
+            [{"x": 1}],
+            [{1: 1}, {"x": "1"}, [1]],
+            "a mapping of text to a number",
+        ),
+        (Callable[[int], object], [len, int], [None, 3], "a function"),
+        (Literal["a", "b"], ["a"], ["c", None], "'a' or 'b'"),
+        (Iterable[str], [["x"], "x", iter([])], [3, None], "an iterable of text"),
+        (
+            tuple[str, int],
+            [("a", 1)],
+            [("a",), ("a", "b"), ["a", 1]],
+            "a tuple of text or a whole number",
+        ),
+        (Any, [None, 3], [], "any value"),
+    ],
+)
+def test_annotations(hint: Any, good: list[Any], bad: list[Any], words: str) -> None:
+    assert [value for value in good if not fits(value, hint)] == []
+    assert [value for value in bad if fits(value, hint)] == []
+    assert described(hint) == words
