@@ -1,42 +1,73 @@
-"""C text of the programs that `solve` runs most, for `native/kernels.h`: each compiled as a whole.
+"""C text of the impact as a whole, for `native/kernels.h`: one body for each kind of scene.
 
-test_native checks that the file is what the formulas say; ``--force-regen`` writes it anew.
+A body computes every result; the kernels made of it keep some, and the compiler leaves out what
+these do not need. test_native checks that the file is what the formulas say; ``--force-regen``
+writes it anew.
 """
 
 from __future__ import annotations
 
+import hashlib
 import math
 import textwrap
 from collections.abc import Iterator
 
-from impact88.closedform.impactprograms import KERNELS, program_for
+from impact88.closedform.impactprograms import ALL, BODIES, COLUMNS, KERNELS, program_for
 from impact88.native.program import Program
 
 HEAD = """\
 /* Made from the formulas of closedform/impact.py by tests/kernels.py: not to be edited. */
 
-#define COLUMN(name, p) const double *restrict name = place[p];
-#define RESULTS(name, p) double *restrict to_##name = place[p];
-#define STATUSES(name, p) uint16_t *restrict to_##name = (uint16_t *)place[p];
+#define COLUMN(name) const double *restrict name = in[AT_##name];
+#define RESULT_AT(name, p) double *restrict to_##name = out[p];
 """
+ARITHMETIC = ("ADD", "MULTIPLY", "PRODUCT_PLUS", "PRODUCTS_PLUS")
 CONDITIONS = ("EQUAL", "LESS", "LESS_OR_EQUAL", "EITHER", "BOTH", "NOT")
 
 
 def text() -> str:
     """The whole file."""
-    programs = {name: program_for(*kernel) for name, kernel in KERNELS.items()}
-    kernels = [_kernel(name, program) for name, program in programs.items()]
-    found = [f"X({name}, 0x{program.digest:016x})" for name, program in programs.items()]
-    return "\n".join([HEAD, *kernels, " \\\n    ".join(["#define KERNELS(X)", *found]), ""])
+    programs = {name: program_for(kinds, ALL) for name, kinds in BODIES.items()}
+    bodies = [_body(name, program) for name, program in programs.items()]
+    return "\n".join([HEAD, *_places(), *bodies, _table(), ""])
 
 
-def _kernel(name: str, program: Program) -> str:
+def digest() -> str:
+    """By what the library and the formulas know that they belong together."""
+    programs = (program_for(kinds, ALL) for kinds in BODIES.values())
+    text = " ".join(f"{program.digest:016x}" for program in programs)
+    return hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
+
+
+def _places() -> list[str]:
+    """Where columns and results are, and what the library says of its formulas."""
+    columns = ", ".join([*(f"AT_{name}" for name in COLUMNS), "COLUMNS"])
+    return [
+        *textwrap.wrap(f"enum column {{ {columns} }};", 96, subsequent_indent="    "),
+        f"#define RESULTS {len(ALL)}",
+        f"#define STATUS_AT {ALL.index('STATUS')}",
+        f'#define FORMULAS "{digest()}"',
+        "",
+    ]
+
+
+def _table() -> str:
+    """The kernels: the number of the body, its name, and the results each keeps, as bits."""
+    rows = []
+    for place, (name, results) in enumerate(KERNELS):
+        mask = sum(1 << ALL.index(result) for result in results)
+        rows.append(f"X({place}, {list(BODIES).index(name)}, {name}, {mask:#x})")
+    return " \\\n    ".join(["#define KERNELS(X)", *rows])
+
+
+def _body(name: str, program: Program) -> str:
     return "\n".join(
         [
-            f"static CLONES void {name}(",
-            "    double *const *place, const circle *circle, int64_t eights)",
+            f"static inline ALWAYS_INLINE void {name}(",
+            "    const double *const *in, double *const *out, const circle *circle,",
+            "    int64_t eights, const uint64_t wanted)",
             "{",
-            *(f"    {line}".replace("~", " ") for line in _pointers(program)),
+            *(f"    {line}" for line in _pointers(program)),
             "    EACH_OF_EIGHTS {",
             *(f"        {line}" for line in _lines(program)),
             "    }",
@@ -46,17 +77,18 @@ def _kernel(name: str, program: Program) -> str:
 
 
 def _pointers(program: Program) -> list[str]:
-    columns = [f"COLUMN({column}, {place})" for place, column in enumerate(program.columns)]
-    for place, result in enumerate(program.results, len(program.columns)):
-        columns.append(f"{'STATUSES' if result == 'STATUS' else 'RESULTS'}({result}, {place})")
-    return textwrap.wrap("@".join(columns).replace(", ", ",~").replace("@", " "), 96)
+    columns = [f"COLUMN({column})" for column in program.columns]
+    results = [f"RESULT_AT({name}, {place})" for place, name in enumerate(ALL)]
+    return [
+        line.replace("~", " ")
+        for line in textwrap.wrap(" ".join([*columns, *results]).replace(", ", ",~"), 92)
+    ]
 
 
 def _lines(program: Program) -> Iterator[str]:
-    at = [f"{column}[i]" for column in program.columns]
-    at += [f"to_{result}[i]" for result in program.results]
-    values = dict(enumerate(at))
-    for place, scalar in enumerate(program.scalars, len(at)):
+    values = {place: f"{column}[i]" for place, column in enumerate(program.columns)}
+    first, conditions = len(values), set[str]()
+    for place, scalar in enumerate(program.scalars, program.moving):
         assert isinstance(scalar, float)
         values[place] = "INFINITY" if math.isinf(scalar) else scalar.hex()
     for number, (operation, places) in enumerate(program.steps):
@@ -68,12 +100,19 @@ def _lines(program: Program) -> Iterator[str]:
             yield f"SINE_AND_COSINE({source}, s{number}, c{number});"
             continue
         *operands, to = places
-        formula = f"{operation}({', '.join(values[place] for place in operands)})"
+        texts = [values[place] for place in operands]
+        if operation in ARITHMETIC:  # a number of a condition, without leaving floating point
+            texts = [f"({x} ? 1.0 : 0.0)" if x in conditions else x for x in texts]
+        formula = f"{operation}({', '.join(texts)})"
         if operation in ("RESULT", "RESULT_OR_INFINITE", "BITS"):
-            yield f"{values[to]} = {formula};"
+            result = to - first
+            keeps = formula if operation != "BITS" else texts[0]
+            yield f"if (wanted >> {result} & 1) to_{ALL[result]}[i] = {keeps};"
         else:
             kind = "int64_t" if operation in CONDITIONS else "double"
             values[to] = f"v{number}"
+            if operation in CONDITIONS:
+                conditions.add(f"v{number}")
             yield f"{kind} v{number} = {formula};"
 
 

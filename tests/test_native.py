@@ -18,8 +18,9 @@ import impact88
 import kernels
 from impact88 import native
 from impact88.bench.populations import POPULATIONS, enlarged, scenes, texts
+from impact88.closedform import kernelcalls
 from impact88.closedform import solve as solving
-from impact88.closedform.impactprograms import KERNELS, program_for
+from impact88.closedform.impactprograms import ALL, BODIES, FORMULAS, KERNELS
 from impact88.closedform.plain import FEW
 from impact88.closedform.solve import TILE, quantities
 from impact88.names import RESULTS
@@ -54,8 +55,17 @@ def test_every_result_of_every_population(name, count):
 def test_what_is_compiled_as_a_whole_is_what_the_formulas_say(file_regression):
     file = Path(native.__file__).with_name("kernels.h")
     file_regression.check(kernels.text(), fullpath=file, encoding="ascii")
-    for kinds, results in KERNELS.values():
-        assert program_for(kinds, results).kernel
+    assert kernels.digest() == FORMULAS  # in impactprograms.py; then build the library again
+    assert kernelcalls.usable()
+
+
+def test_each_kernel_is_of_what_it_says():
+    """Every kind of scene has kernels for all results, each set of its own."""
+    for body in range(4):
+        assert native.library.kernel_of(body, (1 << len(ALL)) - 1)
+    for body, results in KERNELS:
+        bits = sum(1 << ALL.index(name) for name in results)
+        assert native.library.kernel_of(list(BODIES).index(body), bits)
 
 
 def odd(count: int, seed: int) -> dict[str, np.ndarray]:
@@ -223,3 +233,39 @@ def test_the_variable_turns_it_off(monkeypatch):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "None\n"
     assert impact88.accelerated
+
+
+@pytest.mark.parametrize("pivots", [0.0, 0.1, 0.5, 1.0])
+@pytest.mark.parametrize("unusable", [False, True])
+def test_constants_selections_pivots_and_an_unusable_scene(pivots, unusable):
+    """Each column as one number for all, and each result by itself: the bits of numpy."""
+    rng = np.random.default_rng(38)
+    count = 300
+    columns = scenes("casework", count, 38) | {"M": np.full(count, 6.0)}
+    columns["MU"] = np.where(rng.random(count) < pivots, -10.0, columns["MU"])
+    with native.switched_off():
+        expected = {}
+        for name in columns:
+            for value in {float(columns[name][0]), 0.0 if name[0] not in "MI" else 6.0}:
+                given = {**columns, name: value}
+                if unusable:
+                    other = "UX" if name != "UX" else "UY"
+                    given[other] = columns[other].copy()
+                    given[other][200] = np.nan
+                expected[name, value] = given, impact88.solve(given)
+    for given, whole in expected.values():
+        assert_same_bits(impact88.solve(given), whole)
+        for chosen in (*((name,) for name in RESULTS), SIX, ("DVA", "LOSS", "STATUS")):
+            found = impact88.solve(given, chosen)
+            assert_same_bits(found, {name: whole[name] for name in chosen})
+
+
+@pytest.mark.parametrize("change", [{"MB": np.inf, "IB": np.inf}, {"IB": np.inf}, {"MB": np.inf}])
+@pytest.mark.parametrize("mu", [0.3, -10.0])
+@pytest.mark.parametrize("constant", [False, True])
+def test_barriers_as_constants_and_as_columns(change, mu, constant):
+    columns = scenes("casework", 300, 4) | dict.fromkeys(("VX", "VY", "WB"), 0.0) | {"MU": mu}
+    columns |= {k: v if constant else np.full(300, v) for k, v in change.items()}
+    columns["TA"] = columns["TA"] + 7200.0
+    assert_same_bits(*both(columns))
+    assert_same_bits(*both({**columns, "VX": 1e-300, "WB": 1.0}))

@@ -153,8 +153,8 @@ def _extremes(columns: Sequence[Floats]) -> list[Limits]:
     where, found = addresses(columns[i] for i in order), np.empty((len(order), 2))
     count = len(columns[order[0]])
     many = sum(len(column) == count for column in columns)
-    survey = native.library.survey_kinds
-    survey(where.ctypes.data, many, len(order), count, found.ctypes.data, 0, 0)
+    extremes = native.library.find_extremes
+    extremes(where.ctypes.data, many, len(order), count, found.ctypes.data)
     return [(least, most) for least, most in found[np.argsort(order)].tolist()]
 
 

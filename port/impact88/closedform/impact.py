@@ -30,11 +30,14 @@ quantity is an `Expression`: what nobody asks for is noted and never computed.
 
 from collections.abc import Mapping, Sequence
 from math import inf
+from sys import float_info
 
 from ..names import PIVOT
 from ..native.formulas import Expression, ExpressionTable
 from .energy import kinetic_energy
 from .statusbits import findings
+
+LARGEST = float_info.max
 
 
 def impact(
@@ -215,10 +218,10 @@ def impact(
     WAF, WBF = unless_point(spin_a, scene["WA"]), unless_point(spin_b, scene["WB"])
 
     def finite(inertia: Expression) -> Expression:
-        """An infinite body is at rest and adds no energy."""
+        """An infinite body is at rest, exactly, before and after: times 0 any number will do."""
         if inertia.is_constant(inf):
             return zero
-        return table.choose(table.equals(inertia, inf), zero, inertia) if infinite else inertia
+        return table.minimum(inertia, LARGEST) if infinite else inertia
 
     inertias = [finite(x) for x in (MA, MB, IA, IB)]
     KI = kinetic_energy(inertias, (UX, UY, WA, VX, VY, WB))

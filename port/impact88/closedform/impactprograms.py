@@ -2,6 +2,7 @@
 pass over the scenes, or by numpy one step after another (`plan`)."""
 
 import struct
+from collections.abc import Iterable
 from functools import lru_cache
 
 import numpy as np
@@ -10,7 +11,7 @@ from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE
 from ..native.formulas import Expression, ExpressionTable
 from ..native.program import Program
 from . import degrees, sinetable
-from .columns import UNUSED_BY_POINTS
+from .columns import INERTIAS, UNUSED_BY_POINTS
 from .impact import impact
 
 Kinds = tuple[str, ...]
@@ -50,16 +51,54 @@ def program_for(kinds: Kinds, wanted: tuple[str, ...], sign: float | None = None
     return Program({x: found[x] for x in wanted}, [endings.get(x, "RESULT") for x in wanted])
 
 
-def varying(pivot: bool, point: bool) -> Kinds:
-    """The kinds where every column varies but MU of pivots and M."""
-    unused = dict.fromkeys(UNUSED_BY_POINTS if point else (), "unused")
-    kinds = {"M": "4" if point else "6", "MU": "pivot" if pivot else "array", **unused}
+def varying(pivot: bool, point: bool, infinite: bool = False, zeros: Iterable[str] = ()) -> Kinds:
+    """The kinds where every column varies but M, MU of pivots, and those that are 0; ``infinite``:
+    inertias may be."""
+    kinds = {"M": "4" if point else "6", **dict.fromkeys(zeros, "0")}
+    if infinite:
+        kinds |= dict.fromkeys(INERTIAS, "array with infinities")
+    if pivot:
+        kinds["MU"] = "pivot"
+    if point:
+        kinds |= dict.fromkeys(UNUSED_BY_POINTS, "unused")
     return tuple(kinds.get(name, "array") for name in SCENE)
 
 
-KERNELS = {
-    f"{name}_{len(results)}": (varying(name == "pivot", name == "point"), results)
-    for name in ("friction", "pivot", "point")
-    for results in (FINAL_VELOCITIES, tuple(RESULTS))
+ALL = tuple(RESULTS)
+COLUMNS = tuple(SCENE)
+FORMULAS = "c17815da84198d0a"
+"""Digest of the bodies' programs (tests/kernels.py): the library is of the same formulas."""
+
+BODIES: dict[str, Kinds] = {
+    "friction": varying(False, False, True),
+    "pivot": varying(True, False, True),
+    "point": varying(False, True, True),
+    "point_pivot": varying(True, True, True),
+    "friction_without_moment": varying(False, False, True, ["EM"]),
+    "smooth": varying(False, False, True, ["MU"]),
+    "friction_without_arms": varying(False, False, True, ["DA", "DB"]),
 }
-"""Kinds and results of the programs that the machine has as a whole (tests/kernels.py)."""
+"""Name -> kinds of what the machine has as a whole, written by tests/kernels.py. The first four are
+every scene there is; of the others all scenes of a call have to be."""
+_MOTION = ("VC", "VS", "XA", "YA", "XB", "YB", "KI", "MUP")
+_IMPULSES = ("PN", "PT", "PM", "MUP", "DVA", "DVB", "VC", "VS")
+_SETS = (
+    FINAL_VELOCITIES,
+    _MOTION,
+    _IMPULSES,
+    ("LOSS", "KI", "ELN", "ELT", "ELM", "EESA", "EESB", *_IMPULSES),
+    ("MUC", "MUP"),
+    ("COND", "MUP"),
+    ("XAF", "YAF", "XBF", "YBF", *FINAL_VELOCITIES),
+    ("KI", "KF", *FINAL_VELOCITIES),
+    ("STATUS",),
+    ("LOSS", "DVA", "DVB", "STATUS"),
+    ("LOSS", "DVA", "DVB", "STATUS", *FINAL_VELOCITIES),
+    ALL,
+)
+KERNELS = [
+    *((body, results) for body in ("friction", "pivot") for results in _SETS),
+    *((body, results) for body in ("point", "point_pivot") for results in (FINAL_VELOCITIES, ALL)),
+    *((body, FINAL_VELOCITIES) for body in list(BODIES)[4:]),
+]
+"""Body and results of each kernel, the cheapest first: the first that has what is wanted is run."""

@@ -7,7 +7,6 @@ infinite bodies, a division by zero, a result that is not finite) is left to the
 """
 
 import math
-from collections import defaultdict
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from operator import itemgetter
@@ -16,15 +15,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import native
-from ..names import PIVOT, RESULTS
-from ..native import program
-from .columns import INERTIAS, ORDINARY, UNUSED_BY_POINTS
-from .impactprograms import CIRCLE, program_for, varying
+from ..names import PIVOT
+from . import kernelcalls
+from .columns import INERTIAS, UNUSED_BY_POINTS
+from .impactprograms import ALL, program_for, varying
+from .kernelcalls import Call
 from .plain import NAMES, PLAIN
 from .written import written
 
-ALL = tuple(RESULTS)
 _M, _MU = NAMES.index("M"), NAMES.index("MU")
 _in_order = itemgetter(*NAMES)
 
@@ -48,8 +46,8 @@ def solve_one(values: tuple[Any, ...], wanted: tuple[str, ...]) -> dict[str, Any
         M, MU = values[_M], values[_MU]
         if M != 6 and M != 4:
             return None
-        if native.library is not None:
-            return by_machine(values, wanted, M == 4, MU == PIVOT)
+        if kernelcalls.usable():
+            return by_machine(values, wanted)
         results = _function(wanted, M == 4, MU == PIVOT)(*map(float, values))
     except ArithmeticError:
         return None
@@ -61,25 +59,20 @@ def solve_one(values: tuple[Any, ...], wanted: tuple[str, ...]) -> dict[str, Any
     return by_name
 
 
-class _Call:
-    """A call of the machine for one scene, prepared once: all results of a kind of scene."""
+class _Scene:
+    """A call of the machine for one scene, prepared once: all results."""
 
-    def __init__(self, point: bool, pivot: bool) -> None:
-        made = program_for(varying(pivot, point), ALL)
-        names = made.columns
-        self.scene, self.status = np.zeros(len(NAMES)), np.zeros(1, np.uint16)
+    def __init__(self) -> None:
+        self.values, self.status = np.zeros(len(NAMES)), np.zeros(1, np.uint16)
         self.results = np.zeros(len(ALL))
-        self.room = program.Room(made)
-        at = self.scene.ctypes.data + 8 * np.array([NAMES.index(name) for name in names], np.int64)
-        into = self.results.ctypes.data + 8 * np.arange(len(ALL))
-        into[-1] = self.status.ctypes.data  # STATUS
-        self.room.moving[:] = [*at, *into]
-        self._looked_at = at, np.array([ORDINARY[name] for name in names])
-        self.room.prepare(1, CIRCLE, *self._looked_at)
+        self.into = self.results.ctypes.data + 8 * np.arange(len(ALL))
+        self.into[ALL.index("STATUS")] = self.status.ctypes.data
+        self.call = Call(ALL)
+        self.call.columns[:] = self.values.ctypes.data + 8 * np.arange(len(NAMES))
 
 
-_calls: dict[tuple[bool, bool], list[_Call]] = defaultdict(list)
-"""Those of a kind that no thread uses."""
+_scenes: list[_Scene] = []
+"""Those that no thread uses."""
 
 
 @lru_cache(maxsize=256)
@@ -89,18 +82,15 @@ def _places(wanted: tuple[str, ...]) -> tuple[tuple[str, ...], NDArray[np.int64]
     return names, np.array([ALL.index(name) for name in names], np.int64)
 
 
-def by_machine(
-    values: tuple[Any, ...], wanted: tuple[str, ...], point: bool, pivot: bool
-) -> dict[str, Any] | None:
+def by_machine(values: tuple[Any, ...], wanted: tuple[str, ...]) -> dict[str, Any] | None:
     """`solve_one`, by the compiled machine."""
-    free = _calls[point, pivot]
-    call = free.pop() if free else _Call(point, pivot)
-    call.scene[:] = values
-    done = call.room.run()
+    scene = _scenes.pop() if _scenes else _Scene()
+    scene.values[:] = values
+    scene.call.run(scene.into, 1)
     names, places = _places(wanted)
-    found, status = call.results[places], call.status[0]
-    free.append(call)
-    if not done or not math.isfinite(sum(found.tolist())):
+    found, status = scene.results[places], scene.status[0]
+    _scenes.append(scene)
+    if not math.isfinite(sum(found.tolist())):
         return None
     by_name: dict[str, Any] = dict(zip(names, found, strict=True))
     if len(names) == len(wanted):

@@ -1,5 +1,5 @@
-"""Plain columns, all of one kind, by one call of the compiled machine a thread: hardly anything is
-done column by column, for `bounds` and root finders make many short calls."""
+"""Plain columns by one call of the compiled machine a thread: hardly anything is done column by
+column, for `bounds` and root finders make many short calls."""
 
 import math
 import sys
@@ -10,22 +10,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import native
 from ..errors import UserError
 from ..names import SCENE
-from ..native.program import Addresses, Program, addresses
-from ..processors import shared_out, workers
-from .columns import ORDINARY, UNUSED_BY_POINTS, alike_kind
-from .impactprograms import CIRCLE, program_for
+from ..native.program import Addresses, addresses
+from .kernelcalls import call_of
 
 Array = NDArray[Any]
 
 PLAIN = {float, int, np.float64}
 NAMES = tuple(SCENE)
+_FLOATS, _BITS = np.dtype(np.float64), np.dtype(np.uint16)
 FEW = 4096
-"""Scenes up to which copying their columns is cheaper than looking at each: of 3,000 half as many
-takes 1.4 times, of 5,000 twice as many .9 times, of 7,000 as long. The first half as many show of
-what kind the next ones are; looking at twice as many takes 4 % of a call with 16,384."""
+"""Scenes up to which columns of other types or in pieces are copied side by side by one call of
+numpy; more are left to the arrays, which take them in tiles."""
+VERY_FEW = 512
+"""Scenes up to which copying columns side by side is cheaper than asking each for its address."""
 KEPT = 1 << 28
 """Bytes up to which results are rows of one array, which is paged in twice as fast as arrays of
 their own but is kept as long as one of them, and up to which that memory is used again once nobody
@@ -34,72 +33,27 @@ quarter holds none."""
 WORTH_KEEPING = 1 << 17
 """Bytes from which the C library gives memory back when it is freed, and fresh memory has to be
 paged in; twice or half as much makes no call slower or faster."""
-WORTH_A_THREAD = 32768
-"""Scenes for each thread from which it pays: half a millisecond of the compiled machine, of which
-starting a thread takes a fifth. With half as many two fifths; with twice as many calls with 65,536
-scenes have one thread."""
 
 
-class _Survey:
-    """Values of some types, of which some are columns and the others numbers (``order``: columns
-    first): ``where`` they are, and what the machine finds of them: the least and the most of each
-    (``found``), its kind."""
+class _Layout:
+    """Values of some types: which are columns and which are numbers."""
 
     def __init__(self, types: tuple[type, ...]) -> None:
         self.columns = [i for i, kind in enumerate(types) if kind is np.ndarray]
         self.numbers = [i for i, kind in enumerate(types) if kind is not np.ndarray]
-        self.order = tuple(NAMES[i] for i in (*self.columns, *self.numbers))
+        self.order = np.array([*self.columns, *self.numbers])
+        self.steps = np.array([kind is np.ndarray for kind in types], np.int64)
         many = len(self.columns)
         # of copies side by side: what a scene more moves them by, and where they begin
         self.by_scene = 8 * np.array([*range(many), *[many] * len(self.numbers)])
         self.after = 8 * np.array([*[0] * many, *range(len(self.numbers))])
-        self.where = np.empty(len(NAMES), np.int64)
-        self.found = np.empty((len(NAMES), 2))
-        self._ordinary = np.array([ORDINARY[name] for name in self.order])
-        self._kinds = np.empty(len(NAMES), np.uint8)
-        self._columns = self.where.ctypes.data, many, len(NAMES)
-        self._rooms = tuple(x.ctypes.data for x in (self.found, self._ordinary, self._kinds))
-
-    def kinds(self, count: int) -> bytes:
-        native.library.survey_kinds(*self._columns, count, *self._rooms)
-        return self._kinds.tobytes()
-
-    def limits(self) -> Array:
-        """What the columns must keep to beyond the scenes surveyed."""
-        return np.where((self._kinds == ord("a"))[:, np.newaxis], self._ordinary, self.found)
 
 
 @lru_cache(maxsize=256)
-def _surveys(types: tuple[type, ...]) -> list[_Survey] | None:
-    """Those that no thread uses; None where not all values are arrays and plain numbers."""
+def _layout(types: tuple[type, ...]) -> _Layout | None:
+    """None where not all values are arrays and plain numbers."""
     plain = all(kind is np.ndarray or kind in PLAIN for kind in types)
-    return [] if plain and np.ndarray in types else None
-
-
-@lru_cache(maxsize=1024)
-def _prepared(
-    order: tuple[str, ...], found: bytes, wanted: tuple[str, ...]
-) -> tuple[Program, Addresses, dict[str, int], Addresses] | None:
-    """A program for values in some ``order``; where among them are the columns it reads, the
-    numbers it wants, and what has to stay as found. None where they have to be looked at."""
-    kinds = dict(zip(order, found.decode(), strict=True))
-    point = kinds["M"] == "4"
-    special = {("M", "4"): "4", ("MU", "p"): "pivot"}
-    for name, kind in kinds.items():
-        if point and name in UNUSED_BY_POINTS:
-            kinds[name] = "unused"
-        elif (name, kind) in special:
-            kinds[name] = special[name, kind]
-        elif kind in "?4p":
-            return None
-        else:
-            kinds[name] = {"a": "array", "s": "scalar"}.get(kind) or alike_kind(name, int(kind))
-    program = program_for(tuple(kinds[name] for name in NAMES), wanted)
-    place = {name: i for i, name in enumerate(order)}
-    read = np.array([place[name] for name in program.columns], np.int64)
-    fixed = {x: place[x] for x in program.scalars if isinstance(x, str)}
-    used = np.array([place[name] for name in order if kinds[name] != "unused"], np.int64)
-    return program, read, fixed, used
+    return _Layout(types) if plain and np.ndarray in types else None
 
 
 def solve_plain(
@@ -108,58 +62,46 @@ def solve_plain(
     threads: int | None,
     out: Mapping[str, Array] | None,
 ) -> dict[str, Array] | None:
-    """The results ``wanted`` of values in the table's order; None where they are not plain float64
-    columns of one shape and numbers, or have to be looked at."""
-    types = tuple(map(type, values))
-    free = _surveys(types)
-    if free is None:
+    """The results ``wanted`` of values in the table's order; None where they are not plain columns
+    of one shape and numbers."""
+    layout = _layout(tuple(map(type, values)))
+    if layout is None:
         return None
-    survey = free.pop() if free else _Survey(types)
+    arrays = [values[i] for i in layout.columns]
+    numbers = {i: values[i] for i in layout.numbers}
+    shape, count = arrays[0].shape, arrays[0].size
+    if count < 2 or not all(array.shape == shape for array in arrays):
+        return None
     try:
-        arrays = [values[i] for i in survey.columns]
-        numbers = [values[i] for i in survey.numbers]
-        shape, count, where = arrays[0].shape, arrays[0].size, survey.where
-        if count < 2 or not all(array.shape == shape for array in arrays):
-            return None
-        if count <= FEW:
-            data = np.concatenate([*arrays, numbers], None, dtype=np.float64, casting="same_kind")
-            np.multiply(survey.by_scene, count, out=where)
-            where += survey.after
-            where += data.ctypes.data
-        elif all(x.dtype == np.float64 and x.flags.c_contiguous for x in arrays):
-            data = np.array(numbers, np.float64)
-            where[: len(arrays)] = addresses(arrays)
-            where[len(arrays) :] = data.ctypes.data + 8 * np.arange(len(numbers))
+        if count > VERY_FEW and all(_is_plain(array) for array in arrays):
+            data = np.array(list(numbers.values()), np.float64)
+            where = np.concatenate(
+                [addresses(arrays), data.ctypes.data + 8 * np.arange(len(numbers))]
+            )
+        elif count <= FEW:
+            data = np.concatenate(
+                [*arrays, list(numbers.values())], None, dtype=np.float64, casting="same_kind"
+            )
+            where = data.ctypes.data + count * layout.by_scene + layout.after
         else:
             return None
-        made = _prepared(survey.order, survey.kinds(count if count <= FEW else FEW // 2), wanted)
-        if made is None:
-            return None
-        program, read, places, used = made
-        read, fixed = where[read], {name: survey.found[i, 0] for name, i in places.items()}
-        by_name, into = rooms(wanted if out is None else [x for x in wanted if x not in out], shape)
-        if out is not None:
-            check_room(out, wanted, shape, arrays)
-            by_name = {name: out[name] if name in out else by_name[name] for name in wanted}
-            into = addresses(by_name.values())
-        if count <= FEW:  # all have been looked at
-            program.run(read, into, count, CIRCLE, fixed)
-            return by_name
-        used = used[used < len(arrays)]
-        checked, limits, widths = where[used], survey.limits()[used], program.width[len(read) :]
-        short: list[int] = []
-
-        def part(start: int, stop: int) -> None:
-            at, to, seen = read + 8 * start, into + widths * start, checked + 8 * start
-            if program.run(at, to, stop - start, CIRCLE, fixed, seen, limits) < stop - start:
-                short.append(start)
-
-        shared_out(part, count, workers(count, threads, WORTH_A_THREAD))
-        return None if short else by_name
     except (TypeError, OverflowError):  # no numbers
         return None
-    finally:
-        free.append(survey)
+    by_name, into = rooms(wanted if out is None else [x for x in wanted if x not in out], shape)
+    if out is not None:
+        check_room(out, wanted, shape, arrays)
+        by_name = {name: out[name] if name in out else by_name[name] for name in wanted}
+        into = addresses(by_name.values())
+    with call_of(wanted) as call:
+        call.columns[layout.order] = where
+        call.steps[:] = layout.steps
+        call.choose_kernels(numbers)
+        call.run(into, count, threads)
+    return by_name
+
+
+def _is_plain(array: Array) -> bool:
+    return array.dtype == np.float64 and array.flags.c_contiguous and array.flags.aligned
 
 
 _kept: list[Array] = []
@@ -215,12 +157,43 @@ def check_room(
             raise UserError(
                 f"is not a result asked for; expected some of {' '.join(wanted)}", where
             )
-        dtype = np.dtype(np.uint16 if name == "STATUS" else np.float64)
+        dtype = _BITS if name == "STATUS" else _FLOATS
         if not isinstance(array, np.ndarray) or array.dtype != dtype or array.shape != shape:
             got = f"{array.dtype} {array.shape}" if isinstance(array, np.ndarray) else type(array)
             raise UserError(f"is {got}; expected an array of {dtype} {shape}", where)
-        if not (array.flags.c_contiguous and array.flags.writeable):
-            raise UserError("is not contiguous or not writable", where)
-        others = [*columns, *(other for key, other in out.items() if key != name)]
-        if any(np.may_share_memory(array, other) for other in others):
-            raise UserError("shares memory with a column or another result", where)
+        flags = array.flags
+        if not (flags.c_contiguous and flags.writeable and flags.aligned):
+            raise UserError("is not contiguous, not aligned or not writable", where)
+    _check_apart(out, columns)
+
+
+def _check_apart(out: Mapping[str, Array], columns: Sequence[Array]) -> None:
+    """Raises UserError where a result shares memory with a column or another result: one pass over
+    the stretches of memory by where they begin. Columns may overlap each other."""
+    stretches = [(*_stretch(array), name) for name, array in out.items()]
+    stretches += [(*_stretch(column), "") for column in columns]
+    last, holder = 0, ""  # where the results so far end, and which ends there
+    last_column = 0
+    for start, end, name in sorted(stretches):
+        if start == end:
+            continue
+        if start < last or (name and start < last_column):
+            raise UserError(
+                "shares memory with a column or another result", f"out, {name or holder}"
+            )
+        if name:
+            last, holder = max((last, holder), (end, name))
+        else:
+            last_column = max(last_column, end)
+
+
+def _stretch(array: Array) -> tuple[int, int]:
+    """Where an array's memory begins and ends."""
+    start = array.ctypes.data
+    if array.flags.c_contiguous:
+        return start, start + array.nbytes
+    if not array.size:
+        return start, start
+    moves = [(n - 1) * stride for n, stride in zip(array.shape, array.strides, strict=True)]
+    below, above = sum(min(0, move) for move in moves), sum(max(0, move) for move in moves)
+    return start + below, start + above + array.itemsize

@@ -55,12 +55,21 @@ def _result(value: Array, out: Array) -> None:
     np.add(value, 0.0, out=out)  # -0.0 becomes 0.0: a zero's sign would tell which path led to it
 
 
+def _minimum(a: Array, b: Array, out: Array) -> None:
+    np.minimum(a, b, out=out)
+
+
 OPERATIONS: dict[str, tuple[Callable[..., object], int]] = {
     **{"ADD": (np.add, 0), "SUBTRACT": (np.subtract, 0), "MULTIPLY": (np.multiply, 0)},
     **{"DIVIDE": (np.divide, 0), "NEGATIVE": (np.negative, 0), "SQRT": (np.sqrt, 0)},
     **{"ABSOLUTE": (np.absolute, 0), "EQUAL": (np.equal, 0), "LESS": (np.less, 0)},
     **{"LESS_OR_EQUAL": (np.less_equal, 0), "BOTH": (np.logical_and, 0)},
-    **{"EITHER": (np.logical_or, 0), "NOT": (np.logical_not, 0), "AGAINST": (_against, 0)},
+    **{
+        "EITHER": (np.logical_or, 0),
+        "MINIMUM": (_minimum, 0),
+        "NOT": (np.logical_not, 0),
+        "AGAINST": (_against, 0),
+    },
     "PRODUCT_PLUS": (_product(np.add), 1),
     "PRODUCT_MINUS": (_product(np.subtract), 1),
     "MINUS_PRODUCT": (_product(lambda product, c, out: np.subtract(c, product, out)), 1),

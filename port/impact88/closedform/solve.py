@@ -21,9 +21,10 @@ from ..names import PIVOT, RESULTS, listed
 from ..native.program import addresses
 from ..processors import shared_out, workers
 from ..status import Status
+from . import kernelcalls
 from .columns import Source, examine, part, sources
-from .impactprograms import CIRCLE, program_for
-from .onescene import ALL, in_order, solve_one
+from .impactprograms import ALL, CIRCLE, program_for
+from .onescene import in_order, solve_one
 from .plain import check_room, rooms, solve_plain
 from .plan import Plan
 from .share import share_of
@@ -110,7 +111,7 @@ def solve(
     values = in_order(columns)
     if values and wanted:
         few = solve_one(values, wanted) if out is None else None
-        if few is None and native.library is not None:
+        if few is None and kernelcalls.usable():
             few = solve_plain(values, wanted, threads, out)
         if few is not None:
             return few
@@ -198,9 +199,14 @@ def _solve_part(
     """Scenes ``start`` to ``stop``, block by block."""
     for at in range(start, stop, 2 * tile):
         end = min(at + 2 * tile, stop)
-        block = examine({name: part(source, at, end) for name, source in given.items()})
-        fixed = {name: float(values[0]) for name, values in block.fixed.items()}
+        values = {name: part(source, at, end) for name, source in given.items()}
         into = {name: array[at:end] for name, array in results.items()}
+        if sign is None and kernelcalls.usable() and RESULTS.keys() >= results.keys():
+            where = addresses(into.values())
+            kernelcalls.solve_columns(list(values.values()), tuple(results), where, end - at)
+            continue
+        block = examine(values)
+        fixed = {name: float(column[0]) for name, column in block.fixed.items()}
         program = program_for(block.kinds, tuple(results), sign)
         columns = [block.varying[name] for name in program.columns]
         if native.library is None:

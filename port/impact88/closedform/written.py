@@ -16,7 +16,13 @@ LARGE_ANGLE = 720.0
 the sums are then rounded no more coarsely than the angles people give are."""
 _FORMULAS = {
     **{"ADD": "{0} + {1}", "SUBTRACT": "{0} - {1}", "MULTIPLY": "{0} * {1}"},
-    **{"DIVIDE": "{0} / {1}", "NEGATIVE": "-{0}", "ABSOLUTE": "abs({0})", "SQRT": "sqrt({0})"},
+    **{
+        "DIVIDE": "{0} / {1}",
+        "NEGATIVE": "-{0}",
+        "ABSOLUTE": "abs({0})",
+        "SQRT": "sqrt({0})",
+        "MINIMUM": "min({0}, {1})",
+    },
     **{"EQUAL": "{0} == {1}", "LESS": "{0} < {1}", "LESS_OR_EQUAL": "{0} <= {1}"},
     **{"BOTH": "{0} and {1}", "EITHER": "{0} or {1}", "NOT": "not {0}"},
     **{"AGAINST": "-{0} if {1} > 0.0 else {0}", "CHOOSE": "{1} if {0} else {2}"},

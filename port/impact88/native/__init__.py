@@ -33,13 +33,15 @@ def _declared(found: ctypes.CDLL) -> ctypes.CDLL:
     """The library, with what its functions take and return. Raises AttributeError for one that has
     not all of them."""
     number, address = ctypes.c_int64, ctypes.c_void_p
-    found.survey_kinds.argtypes = [address, number, number, number, address, address, address]
-    found.run_program.argtypes = [address]
-    found.kernel_of.argtypes, found.kernel_of.restype = [ctypes.c_uint64], address
+    found.find_extremes.argtypes = [address, number, number, number, address]
+    found.run_program.argtypes, found.run_program.restype = [address], None
+    found.solve_impacts.argtypes, found.solve_impacts.restype = [address, number, number], None
+    found.kernel_of.argtypes, found.kernel_of.restype = [number, ctypes.c_uint64], address
+    found.formulas.restype = ctypes.c_char_p
     found.read_numbers.argtypes = [ctypes.c_char_p, number, address, address]
     found.write_numbers.argtypes = [address, number, address, address]
     found.instructions.restype = found.operations.restype = ctypes.c_char_p
-    for counts in (found.strip, found.most_places, found.run_program):
+    for counts in (found.strip, found.most_places):
         counts.restype = number
     return found
 

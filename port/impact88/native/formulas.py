@@ -199,5 +199,9 @@ class ExpressionTable:
         """``a`` where the condition holds, else ``b``."""
         return a if a is b else self.combine("choose", where, a, b)
 
+    def minimum(self, a: Expression, number: float) -> Expression:
+        """``a``, or ``number`` where that is less."""
+        return self.combine("minimum", a, self.constant(number))
+
     def equals(self, a: Expression, number: float) -> Expression:
         return self.combine("equal", a, self.constant(number))

@@ -6,6 +6,7 @@
 
    No Python here: the functions are called through ctypes, which releases the interpreter's lock. */
 
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -19,6 +20,12 @@
 #define EXPORT __attribute__((visibility("default")))
 #endif
 
+#ifdef _MSC_VER
+#define ALWAYS_INLINE __forceinline
+#else
+#define ALWAYS_INLINE __attribute__((always_inline))
+#endif
+
 /* One body, compiled for several instruction sets, chosen when the library is loaded. */
 #if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__)
 #define CLONES __attribute__((target_clones("default", "avx2", "arch=x86-64-v4")))
@@ -30,12 +37,6 @@
    (AVX-512, columns in cache); the working values of 128 fit the second-level cache. */
 #ifndef STRIP
 #define STRIP 128
-#endif
-
-/* Strips whose columns are looked at before any is computed: long runs through memory are what the
-   processor fetches ahead by itself, and so many scenes' columns stay in the second-level cache. */
-#ifndef AT_ONCE
-#define AT_ONCE 32
 #endif
 
 /* Values a program may keep at a time. */
@@ -55,7 +56,7 @@
    below. A condition is 1 or 0, a number's sign of zero counts for nothing. */
 #define UNARIES(X) X(NEGATIVE) X(ABSOLUTE) X(SQRT) X(NOT) X(RESULT) X(RESULT_OR_INFINITE)
 #define BINARIES(X) \
-    X(ADD) X(SUBTRACT) X(MULTIPLY) X(DIVIDE) X(AGAINST) X(EQUAL) X(LESS) X(LESS_OR_EQUAL) X(EITHER) X(BOTH)
+    X(ADD) X(SUBTRACT) X(MULTIPLY) X(DIVIDE) X(MINIMUM) X(AGAINST) X(EQUAL) X(LESS) X(LESS_OR_EQUAL) X(EITHER) X(BOTH)
 #define TERNARIES(X) X(PRODUCT_PLUS) X(PRODUCT_MINUS) X(MINUS_PRODUCT) X(CHOOSE)
 #define QUATERNARIES(X) X(PRODUCTS_PLUS) X(PRODUCTS_MINUS)
 #define OPERATIONS(X) \
@@ -74,6 +75,7 @@
 #define SUBTRACT(a, b) ((a) - (b))
 #define MULTIPLY(a, b) ((a) * (b))
 #define DIVIDE(a, b) ((a) / (b))
+#define MINIMUM(a, b) ((b) < (a) ? (b) : (a))
 #define AGAINST(a, b) ((b) > 0.0 ? -(a) : (a))
 #define EQUAL(a, b) ((a) == (b))
 #define LESS(a, b) ((a) < (b))
@@ -122,7 +124,7 @@ typedef struct {
 
 #include "reals.h"
 
-static inline __attribute__((always_inline)) void perform(
+static inline ALWAYS_INLINE void perform(
     const step *steps, int64_t count, double *const *place, const circle *circle, int64_t *odd,
     const int lanes)
 {
@@ -179,29 +181,12 @@ static inline __attribute__((always_inline)) void perform(
     }
 }
 
-/* Programs that are used most, each compiled as a whole: the same operations on numbers that stay in
-   registers. A program that has changed since is none of them. */
-typedef void (*kernel)(double *const *place, const circle *circle, int64_t eights);
-#define EACH_OF_EIGHTS INDEPENDENT for (int64_t i = 0; i < 8 * eights; i++)
-#include "kernels.h"
-
-EXPORT kernel kernel_of(uint64_t digest)
-{
-#define FOUND(name, its) if (digest == its) return name;
-    KERNELS(FOUND)
-    return 0;
-}
-
 /* A program, working memory for it, and scenes.
 
    Values have places. The first ``read`` are columns in memory, those up to ``moving`` results in
    memory of ``width`` bytes a scene, ``given`` says where. All others are strips of ``room`` that
    stay: first ``scalars``, numbers that are the same for all scenes; what the ``once`` first steps
-   make of them; and what the other steps need in between. ``room`` has a strip for each place.
-
-   whole: what does the same as all steps, or 0.
-
-   checked: columns of which every number must lie between limits[2k] and limits[2k + 1]. */
+   make of them; and what the other steps need in between. ``room`` has a strip for each place. */
 typedef struct {
     const step *steps;
     int64_t once, length;
@@ -211,64 +196,45 @@ typedef struct {
     const double *scalars;
     int64_t scalar_count;
     double *room;
-    int64_t places;
-    kernel whole;
-    const double *const *checked;
-    const double *limits;
-    int64_t checks, count;
+    int64_t places, count;
     const circle *circle;
 } call;
 
-/* Runs a program over ``count`` scenes and returns how many were done: fewer where a column left
-   the limits that the program relies on (nothing is written of the strip where it does). */
-EXPORT CLONES int64_t run_program(const call *its)
+/* Runs a program over ``count`` scenes. */
+EXPORT CLONES void run_program(const call *its)
 {
     const call c = *its;
     double *place[PLACES];
     int64_t odd[STRIP] = {0};
     for (int64_t p = 0; p < c.places; p++) place[p] = c.room + p * STRIP;
     const int lanes = STRIP;
-    if (!c.whole) {
-        for (int64_t k = 0; k < c.scalar_count; k++)
-            LOOP place[c.moving + k][i] = c.scalars[k];
-        perform(c.steps, c.once, place, c.circle, odd, STRIP);
-    }
+    for (int64_t k = 0; k < c.scalar_count; k++)
+        LOOP place[c.moving + k][i] = c.scalars[k];
+    perform(c.steps, c.once, place, c.circle, odd, STRIP);
     int64_t always[STRIP]; /* what the scenes share makes all of them odd */
     memcpy(always, odd, sizeof odd);
-    int64_t looked = 0;
     for (int64_t start = 0; start < c.count; start += STRIP) {
         int64_t many = c.count - start < STRIP ? c.count - start : STRIP;
-        int64_t full = many == STRIP, eights = (many + 7) / 8, padded = c.whole ? 8 * eights : STRIP;
-        if (start >= looked) {
-            looked = c.count - start < AT_ONCE * STRIP ? c.count : start + AT_ONCE * STRIP;
-            for (int64_t k = 0; k < c.checks; k++) {
-                const double *x = c.checked[k], least = c.limits[2 * k], most = c.limits[2 * k + 1];
-                int64_t outside = 0;
-                for (int64_t i = start; i < looked; i++) outside |= !((x[i] >= least) & (x[i] <= most));
-                if (outside) return start;
-            }
-        }
+        int64_t full = many == STRIP;
         memcpy(odd, always, sizeof odd);
         for (int64_t p = 0; p < c.moving; p++) {
             char *here = c.given[p] + start * c.width[p];
             place[p] = full ? (double *)here : c.room + p * STRIP;
             if (!full && p < c.read)
-                for (int i = 0; i < padded; i++) place[p][i] = ((double *)here)[i < many ? i : 0];
+                LOOP place[p][i] = ((double *)here)[i < many ? i : 0];
         }
-        if (c.whole) c.whole(place, c.circle, eights);
-        else perform(c.steps + c.once, c.length - c.once, place, c.circle, odd, STRIP);
+        perform(c.steps + c.once, c.length - c.once, place, c.circle, odd, STRIP);
         for (int64_t p = c.read; p < c.moving && !full; p++)
             memcpy(c.given[p] + start * c.width[p], place[p], (size_t)(many * c.width[p]));
     }
-    return c.count;
 }
 
+#include "impacts.h"
+
 /* The least and the largest of each column, both NaN where one is; of ``count`` numbers of the first
-   ``many`` columns, one of the others. What kind each is, where there are limits: a(rray), 0, 1 or
-   s(calar) within its limits, the one value (4 or -10) beyond them, ? else. */
-EXPORT CLONES void survey_kinds(
-    const double *const *columns, int64_t many, int64_t all, int64_t count, double *found,
-    const double *limits, char *kinds)
+   ``many`` columns, one of the others. */
+EXPORT CLONES void find_extremes(
+    const double *const *columns, int64_t many, int64_t all, int64_t count, double *found)
 {
     enum { lanes = 32 }; /* enough for every instruction set to keep several comparisons going */
     for (int64_t k = 0; k < all; k++) {
@@ -294,14 +260,8 @@ EXPORT CLONES void survey_kinds(
             odd[0] |= odd[i];
         }
         odd[0] |= x[0] != x[0];
-        double low = odd[0] ? NAN : least[0], high = odd[0] ? NAN : most[0];
-        found[2 * k] = low;
-        found[2 * k + 1] = high;
-        if (!limits) continue;
-        if (limits[2 * k] <= low && high <= limits[2 * k + 1])
-            kinds[k] = low < high ? 'a' : low == 0 ? '0' : low == 1 ? '1' : 's';
-        else
-            kinds[k] = low != high ? '?' : low == 4 ? '4' : low == -10 ? 'p' : '?';
+        found[2 * k] = odd[0] ? NAN : least[0];
+        found[2 * k + 1] = odd[0] ? NAN : most[0];
     }
 }
 

@@ -1,0 +1,221 @@
+/* The impact as a whole, over scenes of all kinds: each kind's formulas with numbers that stay in
+   registers (kernels.h), the same operations as the programs that numpy runs.
+
+   Scenes are taken a strip at a time. The kernel of the kind that most scenes of a strip are of runs
+   over all of it, on the columns themselves; scenes of another kind, or with angles of many turns,
+   are then collected, computed by their own kernel, and put in place. A scene whose numbers cannot
+   be used is NaN. Constants are strips filled once. */
+
+#define EACH_OF_EIGHTS INDEPENDENT for (int64_t i = 0; i < 8 * eights; i++)
+typedef void (*kernel)(
+    const double *const *in, double *const *out, const circle *circle, int64_t eights);
+
+#include "kernels.h"
+
+/* A body with the results it keeps: the compiler leaves out what these do not need. */
+#define KERNEL(number, kind, body, results) \
+    static CLONES void kernel_##number( \
+        const double *const *in, double *const *out, const circle *circle, int64_t eights) \
+    { \
+        body(in, out, circle, eights, results##u); \
+    }
+KERNELS(KERNEL)
+
+#define ROW(number, kind, body, results) {kind, results##u, kernel_##number},
+static const struct {
+    int64_t body;
+    uint64_t results;
+    kernel run;
+} kernels[] = {KERNELS(ROW)};
+
+/* The first kernel of a body that has all results wanted, or 0. */
+EXPORT kernel kernel_of(int64_t body, uint64_t wanted)
+{
+    for (size_t k = 0; k < sizeof kernels / sizeof *kernels; k++)
+        if (kernels[k].body == body && !(wanted & ~kernels[k].results)) return kernels[k].run;
+    return 0;
+}
+
+EXPORT const char *formulas(void) { return FORMULAS; }
+
+/* Strips whose columns are looked at before any is computed: long runs through memory are what the
+   processor fetches ahead by itself, and so many scenes' columns stay in the second-level cache. */
+#ifndef AT_ONCE
+#define AT_ONCE 32
+#endif
+
+#define UNUSED_BY_POINTS \
+    (1u << AT_DA | 1u << AT_DB | 1u << AT_PA | 1u << AT_PB | 1u << AT_TA | 1u << AT_TB \
+     | 1u << AT_IA | 1u << AT_IB | 1u << AT_EM)
+#define INERTIAS (1u << AT_MA | 1u << AT_MB | 1u << AT_IA | 1u << AT_IB)
+#define ANGLES (1u << AT_GA | 1u << AT_PA | 1u << AT_PB | 1u << AT_TA | 1u << AT_TB)
+#define LARGE_ANGLE 720.0 /* as in closedform/written.py */
+#define NOT_FINITE 64     /* of STATUS */
+enum kind { FRICTION, PIVOT, POINT, POINT_PIVOT, REFUSED, KINDS };
+
+/* ``column``: a number for each scene, or one for all where ``step`` is 0. ``result``: 0 where it is
+   not wanted. ``limits``: the least and the most of each column that is ordinary. */
+typedef struct {
+    const double *column[COLUMNS];
+    int64_t step[COLUMNS];
+    void *result[RESULTS];
+    kernel kernels[REFUSED];
+    const double *limits;
+    const circle *circle;
+} impacts;
+
+/* The kind of each scene of a strip, and whether an angle has to be brought within a turn. */
+static inline ALWAYS_INLINE void find_kinds(
+    const double *const *x, int64_t many, int64_t *kind, int64_t *turned)
+{
+    for (int64_t i = 0; i < many; i++) {
+        int64_t point = x[AT_M][i] == 4, bad = !(point | (x[AT_M][i] == 6)), large = 0;
+        for (int c = 0; c < AT_M; c++) {
+            int64_t asked = !point | !(UNUSED_BY_POINTS >> c & 1);
+            double y = x[c][i];
+            bad |= asked & (INERTIAS >> c & 1 ? !(y > 0) : !(fabs(y) <= DBL_MAX));
+            large |= asked & (ANGLES >> c & 1) & (fabs(y) > LARGE_ANGLE);
+        }
+        /* what is infinite is at rest, and one body at most */
+        int64_t a = x[AT_MA][i] == INFINITY, b = x[AT_MB][i] == INFINITY;
+        int64_t turn_a = !point & (x[AT_IA][i] == INFINITY), turn_b = !point & (x[AT_IB][i] == INFINITY);
+        bad |= a & ((x[AT_UX][i] != 0) | (x[AT_UY][i] != 0));
+        bad |= b & ((x[AT_VX][i] != 0) | (x[AT_VY][i] != 0));
+        bad |= (turn_a & (x[AT_WA][i] != 0)) | (turn_b & (x[AT_WB][i] != 0));
+        bad |= (a | turn_a) & (b | turn_b);
+        kind[i] = bad ? REFUSED : 2 * point + (x[AT_MU][i] == -10);
+        turned[i] = large & !bad;
+    }
+}
+
+/* Whether a number of a column is out of the ordinary, in scenes ``from`` to ``to``. */
+static inline ALWAYS_INLINE int64_t find_odd(const impacts *c, int64_t points, int64_t from, int64_t to)
+{
+    int64_t odd = 0;
+    for (int k = 0; k < AT_M; k++) {
+        if (!c->step[k] || (points && UNUSED_BY_POINTS >> k & 1)) continue;
+        const double *x = c->column[k], least = c->limits[2 * k], most = c->limits[2 * k + 1];
+        int64_t outside = 0;
+        for (int64_t i = from; i < to; i++) outside |= !((x[i] >= least) & (x[i] <= most));
+        odd |= outside;
+    }
+    return odd;
+}
+
+/* Scenes ``start`` to ``stop``. */
+EXPORT CLONES void solve_impacts(const impacts *its, int64_t start, int64_t stop)
+{
+    const impacts c = *its;
+    double fixed[COLUMNS][STRIP], copy[COLUMNS][STRIP], found[RESULTS][STRIP];
+    const double *in[COLUMNS], *copies[COLUMNS];
+    double *out[RESULTS], *finds[RESULTS];
+    int64_t odd_always = 0, odd_somewhere = 0, odd = 0, looked = start, only_points;
+    int64_t lanes = stop - start < STRIP ? (stop - start + 7) / 8 * 8 : STRIP;
+
+    only_points = !c.step[AT_M] && *c.column[AT_M] == 4;
+    for (int k = 0; k < COLUMNS; k++) {
+        copies[k] = copy[k];
+        if (c.step[k]) continue;
+        double y = *c.column[k];
+        if (ANGLES >> k & 1 && !(fabs(y) <= LARGE_ANGLE)) y = fmod(y, 360.0);
+        int64_t ordinary = k == AT_M ? y == 4 || y == 6
+                                     : y >= c.limits[2 * k] && y <= c.limits[2 * k + 1];
+        odd_always |= !ordinary && !(only_points && UNUSED_BY_POINTS >> k & 1);
+        for (int64_t i = 0; i < lanes; i++) fixed[k][i] = y;
+        in[k] = copies[k] = fixed[k];
+    }
+    for (int r = 0; r < RESULTS; r++) finds[r] = found[r];
+
+    for (int64_t at = start; at < stop; at += STRIP) {
+        int64_t many = stop - at < STRIP ? stop - at : STRIP, whole = many / 8;
+        if (at >= looked) {
+            looked = stop - at < AT_ONCE * STRIP ? stop : at + AT_ONCE * STRIP;
+            odd_somewhere = odd_always || find_odd(&c, only_points, at, looked);
+        }
+        odd = odd_always || (odd_somewhere && find_odd(&c, only_points, at, at + many));
+        for (int k = 0; k < COLUMNS; k++)
+            if (c.step[k]) in[k] = c.column[k] + at;
+        /* what is not wanted goes where nobody looks */
+        for (int r = 0; r < RESULTS; r++)
+            out[r] = c.result[r] && r != STATUS_AT ? (double *)c.result[r] + at : found[r];
+        uint16_t *status = c.result[STATUS_AT] ? (uint16_t *)c.result[STATUS_AT] + at : 0;
+
+        int64_t kind[STRIP], turned[STRIP], numbers[KINDS] = {0}, others = 0, most = FRICTION;
+        if (odd) {
+            find_kinds(in, many, kind, turned);
+            for (int64_t i = 0; i < many; i++) numbers[kind[i]] += !turned[i];
+        } else {
+            int64_t pivots = 0, points = 0, six = 0;
+            if (c.step[AT_MU])
+                for (int64_t i = 0; i < many; i++) pivots += in[AT_MU][i] == -10;
+            else
+                pivots = *in[AT_MU] == -10 ? many : 0;
+            if (c.step[AT_M])
+                for (int64_t i = 0; i < many; i++) {
+                    points += in[AT_M][i] == 4;
+                    six += in[AT_M][i] == 6;
+                }
+            else
+                points = *in[AT_M] == 4 ? many : 0, six = many - points;
+            int64_t alike = (pivots == 0 || pivots == many) && (points == many || six == many);
+            if (alike)
+                numbers[2 * (points == many) + (pivots == many)] = many;
+            else
+                for (int64_t i = 0; i < many; i++) {
+                    int64_t m = in[AT_M][i] == 4;
+                    kind[i] = m | (in[AT_M][i] == 6) ? 2 * m + (in[AT_MU][i] == -10) : REFUSED;
+                    turned[i] = 0;
+                    numbers[kind[i]]++;
+                }
+        }
+        for (int k = 0; k < REFUSED; k++)
+            if (numbers[k] > numbers[most]) most = k;
+        others = many - numbers[most];
+
+        if (numbers[most] && whole) {
+            c.kernels[most](in, out, c.circle, whole);
+            for (int64_t i = 0; i < 8 * whole && status; i++) status[i] = BITS(found[STATUS_AT][i]);
+        }
+        int64_t done = numbers[most] ? 8 * whole : 0;
+        /* the rest of the strip, and what is of another kind */
+        for (int k = 0; k < REFUSED && (others || done < many); k++) {
+            int64_t place[STRIP], n = 0;
+            if (!others) { /* all are of one kind */
+                if (k == most)
+                    for (int64_t i = done; i < many; i++) place[n++] = i;
+            } else
+                for (int64_t i = 0; i < many; i++) {
+                    place[n] = i;
+                    n += kind[i] == k && (k != most || turned[i] || i >= done);
+                }
+            if (!n) continue;
+            int64_t padded = (n + 7) / 8 * 8;
+            for (int col = 0; col < COLUMNS; col++) {
+                int64_t angle = odd && ANGLES >> col & 1;
+                if (!c.step[col]) continue;
+                const double *x = in[col];
+                double *y = copy[col];
+                copies[col] = y;
+                for (int64_t i = 0; i < n; i++) y[i] = x[place[i]];
+                for (int64_t i = 0; i < n && angle; i++)
+                    if (!(fabs(y[i]) <= LARGE_ANGLE)) y[i] = fmod(y[i], 360.0);
+                for (int64_t i = n; i < padded; i++) y[i] = y[0];
+            }
+            c.kernels[k](copies, finds, c.circle, padded / 8);
+            for (int r = 0; r < RESULTS; r++) {
+                if (!c.result[r]) continue;
+                if (r == STATUS_AT)
+                    for (int64_t i = 0; i < n; i++) status[place[i]] = BITS(found[r][i]);
+                else
+                    for (int64_t i = 0; i < n; i++) out[r][place[i]] = found[r][i];
+            }
+        }
+        if (others && numbers[REFUSED])
+            for (int64_t i = 0; i < many; i++)
+                for (int r = 0; r < RESULTS && kind[i] == REFUSED; r++) {
+                    if (!c.result[r]) continue;
+                    if (r == STATUS_AT) status[i] = NOT_FINITE;
+                    else out[r][i] = NAN;
+                }
+    }
+}
