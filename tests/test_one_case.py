@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 import impact88
+from impact88.case import Case
 from impact88.cli import main
 from impact88.desk import collision
 from impact88.desk.forms import filled_in
@@ -368,3 +369,51 @@ def test_an_option_is_the_edited_file(
             said.append((status, printed.out, printed.err.replace("--set", "case.toml"), drawn))
         assert said[0] == said[1], (command, name, text)
         assert said[0][0] == 0 or command.startswith(("bounds", "reconstruct", "run")), said[0]
+
+
+MIRROR = ("UY", "WA", "VY", "WB", "GA", "PA", "PB", "TA", "TB")
+
+
+def turned(case: Case, names: tuple[str, ...], by: Callable[[float], float]) -> Case:
+    return case.replaced({name: repr(by(float(case.texts[name]))) for name in names})
+
+
+WRONG: dict[str, tuple[Callable[[Case], Case], str]] = {
+    "velocities with y to the right": (lambda c: turned(c, ("UY", "VY"), lambda x: -x), "TB"),
+    "angles clockwise": (lambda c: turned(c, MIRROR[4:], lambda x: -x), "TB"),
+    "TA is where A faces": (lambda c: turned(c, ("TA",), lambda x: x + 180), "TA"),
+    "headings in radians": (lambda c: turned(c, ("TA", "TB"), math.radians), "TB"),
+    "compass bearings": (
+        lambda c: turned(turned(c, ("TA",), lambda x: 270 - x), ("TB",), lambda x: 90 - x),
+        "TA",
+    ),
+    "EM = 0 for no moment": (lambda c: c.replaced({"EM": "0"}), "EM"),
+    "pounds as slugs": (lambda c: turned(c, ("MA", "MB"), lambda x: 32.174 * x), "MA MB"),
+    "a European thousand": (lambda c: c.replaced({"MA": "1.548 kg"}), "MA"),
+    "lb ft2 as slug ft2": (lambda c: turned(c, ("IA",), lambda x: 32.174 * x), "IA"),
+    "inches as feet": (lambda c: turned(c, ("DA",), lambda x: 12 * x), "DA"),
+}
+
+
+@pytest.mark.parametrize("number", [1, 3])
+@pytest.mark.parametrize("wrong", WRONG)
+def test_a_wrong_convention_is_remarked(wrong: str, number: int) -> None:
+    case = impact88.sample(number).case
+    assert not impact88.Scene.of(case).remarks
+    edit, name = WRONG[wrong]
+    assert not {*name.split()}.isdisjoint(impact88.Scene.of(edit(case)).remarks)
+
+
+def test_remarks_keep_to_their_thresholds() -> None:
+    case = impact88.sample(1).case
+    for name, inside, outside in (
+        ("MA", "201 kg", "199 kg"),
+        ("MA", "59.9 t", "60.1 t"),
+        ("DA", "14.9 m", "15.1 m"),
+        ("UX", "-499 km/h", "-501 km/h"),
+        ("TB", "104.9", "105.1"),
+        ("TB", "15.1", "14.9"),
+        ("EM", "0.01", "0"),
+    ):
+        assert name not in impact88.Scene.of(case.replaced({name: inside})).remarks, inside
+        assert name in impact88.Scene.of(case.replaced({name: outside})).remarks, outside

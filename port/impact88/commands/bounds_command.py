@@ -2,7 +2,7 @@
 
   0.7 .. 0.9             between two values, none preferred
   0.8 +- 0.1             the same by middle and half width; also 143.5 +- 5%
-  +- 0.1, +- 5%          the same around the file's value (--range only)
+  +- 0.1, +- 5%          the same around the file's value (--set, --range)
   uniform 0.7 0.9        the same as 0.7 .. 0.9
   triangular 0.7 0.75 0.9          lower limit, most likely value, upper limit
   normal 0.8 0.05                  mean and standard deviation

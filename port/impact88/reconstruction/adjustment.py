@@ -670,6 +670,8 @@ def share_resolved(known: Mapping[str, Uncertain]) -> tuple[dict[str, Uncertain]
         spread = abs(item.deviation * scale)
         found = replace(item, nominal=value, low=low, high=high, deviation=spread, share=False)
     text = f"MU is {100 * item.nominal:g} % of the critical friction: {name} = {value:.9g}"
+    if any(x.varies for x in others.values()):
+        text += ", held at that number while the other values vary: bounds may be too narrow"
     return {**others, name: found}, text
 
 
