@@ -292,6 +292,24 @@ def test_a_program_that_waits_for_a_key_in_vain():
     assert machine.take_output() == ""
 
 
+@pytest.mark.parametrize(
+    ("program", "keys", "address", "data"),
+    [
+        # what the ROM left there: the descriptor of the last text, LIST's place in a line
+        ('10 PRINT "A";12', "", 0x55, (2, 0x00, 0x01)),
+        ('10 PRINT "A"+"BC"', "", 0x55, (3, 0xFD, 0xBF)),
+        ("10 STOP", "", 0x55, (2, 0x00, 0x01)),
+        ("STOP", "", 0x55, (7, 0x5D, 0xD3)),
+        ('10 PRINT "HELLO"', "LIST\n", 0x85, (4,)),
+        ('10 A=1:B=2:PRINT "HELLO"', "LIST\n", 0x85, (12,)),
+        ("10 INPUT A", "5\n", 0x33, (0xDD,)),
+    ],
+)
+def test_page_zero_after_a_run(program, keys, address, data):
+    machine, _ = session(program, keys)
+    assert tuple(machine.machine.peek(address + place) for place in range(len(data))) == data
+
+
 def test_a_line_feed_keeps_the_column():
     assert displayed('10 PRINT "A";CHR$(10);"B";POS(0)') == "A\nB2\n"
 

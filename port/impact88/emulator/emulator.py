@@ -17,6 +17,7 @@ from .programfile import read_program
 from .tokens import LINE_LIMIT, split_number, tokenise, untokenised
 
 PROMPT = "]"
+AT_PROMPT = ord(PROMPT) | 0x80
 
 
 class Applesoft:
@@ -106,11 +107,12 @@ class Applesoft:
 
     def enter(self, text: str) -> ApplesoftError | None:
         """The same for a line as it is."""
-        self.machine.ram[PROMPT_BYTE] = ord(PROMPT) | 0x80
         self.machine.errflg >>= 1
         self.machine.error = None
         if text.strip(" "):
+            self.machine.ram[PROMPT_BYTE] = AT_PROMPT
             self.machine.go(partial(self._take, text))
+            self.machine.ram[PROMPT_BYTE] = AT_PROMPT
         return self.machine.error
 
     def _take(self, text: str) -> None:

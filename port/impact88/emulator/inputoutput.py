@@ -12,7 +12,7 @@ from .faults import Fault, fault_if, located
 from .memory import ADDRESSES, DIGITS, DIRECT, HEADER, INPUT_BUFFER, MINUS, PROMPT
 from .programfile import INDENT, WRAP_COLUMN
 from .screen import HEIGHT, WIDTH
-from .tokens import CLOSE, COLON, COMMA, DATA, QUOTE, SEMICOLON, TOKENS, listed
+from .tokens import CLOSE, COLON, COMMA, DATA, FIRST, QUOTE, SEMICOLON, TOKENS, listed
 from .variables import IS_STRING, descriptor
 
 TAB, SPC = TOKENS["TAB("], TOKENS["SPC("]
@@ -22,14 +22,17 @@ LAST_ZONE_FROM = 24
 """The column from which on a comma begins a new row."""
 LAST_NUMBER = 0xFFFF
 """The last line that LIST looks for."""
-IN_ROM, IN_STACK_PAGE = 0xD000, 0x100
-"""Where messages and the digits of a number stand; only the page counts."""
+NUMBER_AT = 0x100
+"""Where FOUT puts the digits of a number."""
 FROM_REPLY, FROM_KEY, FROM_DATA, BAD_REPLY, BREAK_CODE, AFTER_GET = 0, 0x40, 0x98, 254, 255, 0xFF40
 """INPFLG; codes of ONERR; what a bad GET puts in place of the line number: the machine believes it
 is at the prompt."""
 NO_PROMPT = 0x80
 """The prompt while INPUT reads, which shows nothing."""
 REENTER, EXTRA_IGNORED = b"?REENTER\r", b"?EXTRA IGNORED\r"
+ERROR, IN, BREAK = b" ERROR\a", b" IN ", b"\rBREAK\a"
+MESSAGES_AT = {ERROR: 0xD350, IN: 0xD358, BREAK: 0xD35D, REENTER: 0xDCEF, EXTRA_IGNORED: 0xDCDF}
+"""Where the ROM's messages stand: a temporary string's descriptor shows it."""
 
 
 class InputOutput(Expressions):
@@ -53,16 +56,18 @@ class InputOutput(Expressions):
             self.screen.stay_at(column)
             self.put(other)
 
-    def show_message(self, text: bytes, address: int = IN_ROM) -> None:
-        """STROUT: a text that is no variable's, as a temporary string."""
-        self.used(descriptor(self.temporary(0, address, address >> 8)))
+    def show_message(self, text: bytes, address: int = 0) -> None:
+        """STROUT: a text that is no variable's, as a temporary string: a message of the ROM, or
+        what stands at an address."""
+        address = address or MESSAGES_AT[text]
+        self.used(descriptor(self.temporary(len(text), address, address >> 8)))
         self.fac = len(text), self.fac[1], 0
         self.show(text)
 
     def show_number(self, x: Number) -> None:
         """FOUT and STROUT. Raises FORMULA TOO COMPLEX."""
         self.charac = 0
-        self.show_message(self.digits(x), IN_STACK_PAGE)
+        self.show_message(self.digits(x), NUMBER_AT)
 
     def print_(self) -> None:
         sp, newline = self.sp - 2, True
@@ -129,15 +134,22 @@ class InputOutput(Expressions):
             number = self.word(line + 2)
             if number > (last or LAST_NUMBER):
                 break
+            self._keep_place(HEADER - 1)
             self.show_number(integer(number))
             self.put(" ")
-            for byte in ram[line + HEADER : ram.index(0, line + HEADER)]:
+            for place, byte in enumerate(ram[line + HEADER : ram.index(0, line + HEADER)], HEADER):
+                if byte >= FIRST:
+                    self._keep_place(place)
                 self.put(listed(byte) if self.screen.shows else self._masked(listed(byte)))
                 if self.screen.column >= WRAP_COLUMN:
                     self.put("\n")
                     self.screen.column = INDENT
             line = self.word(line)
         self.put("\n")
+
+    def _keep_place(self, place: int) -> None:
+        """LIST keeps its place in a line in the low byte of FORPNT."""
+        self.forpnt = self.forpnt & 0xFF00 | place & 0xFF
 
     def _masked(self, piece: str) -> str:
         """What LIST sends of a piece under an unusual mask: a letter of which the mask leaves

@@ -17,7 +17,7 @@ from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import ZERO, Number, add, compare, integer, rounded
 from .expressions import ONE, address_of
 from .faults import Fault, Restart, fault_if, placed
-from .inputoutput import BREAK_CODE, FROM_DATA, InputOutput
+from .inputoutput import BREAK, BREAK_CODE, ERROR, FROM_DATA, IN, InputOutput
 from .memory import (
     DIGITS,
     DIRECT,
@@ -38,7 +38,7 @@ FOR_SIZE, FOR_ROOM, GOSUB_SIZE, GOSUB_ROOM, NO_VARIABLE = 18, 74, 7, 64, -1
 AFTER_CALL = 0x9E
 """The place of page 2 where keys come to lie by CALL -678, which goes on amid the monitor's reading
 of a line with what CALL has left in a register."""
-END_MARK, BREAK = b"\0\0", b"\rBREAK"
+END_MARK = b"\0\0"
 TO, THEN, STEP, GOSUB, GOTO, EQUAL = (TOKENS[word] for word in "TO THEN STEP GOSUB GOTO =".split())
 EVERY_BYTE = bytes(range(256))
 KEPT = {
@@ -147,7 +147,7 @@ class Machine(InputOutput):
         self.error = error
         self.put(f"\n?{error.kind}")
         self.clear_stack()
-        self.message(b" ERROR")
+        self.message(ERROR)
         raise Restart
 
     def next_statements(self) -> None:
@@ -515,10 +515,10 @@ class Machine(InputOutput):
         self.end(BREAK)
 
     def message(self, text: bytes) -> None:
-        """A text, the bell, the line if there is one."""
-        self.show_message(text + b"\a")
+        """A message, and the line if there is one."""
+        self.show_message(text)
         if self.curlin < DIRECT:
-            self.show_message(b" IN ")
+            self.show_message(IN)
             self.show_number(integer(self.curlin))
 
     def cont(self) -> None:
