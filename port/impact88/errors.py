@@ -44,9 +44,17 @@ def quoted(value: object) -> str:
 class UserError(ValueError):
     """Input that cannot be used: one line saying what is wrong, where, and what is expected.
 
-    The command line prints the message on stderr and ends with status 2, without a
-    traceback. ``where`` is the place (file, row, field), put in front when given.
+    The command line prints the message on stderr and ends with status 2, without a traceback.
 
+    Parameters
+    ----------
+    message : str
+        What is wrong, and what is expected.
+    where : str, optional
+        The place (file, row, field), put in front.
+
+    Examples
+    --------
     >>> try:
     ...     impact88.sample(1).replaced({"MU": "much"})
     ... except impact88.UserError as error:

@@ -40,12 +40,12 @@ class Scene(Mapping[str, str]):
 
     Parameters
     ----------
-    values
+    values : mapping of str to str
         Texts by name as a file may have them: numbers, amounts with units, limits (whose middle is
         taken), a share of the critical friction, estimates; M is 6 where it is missing.
-    title, source
+    title, source : str, optional
         What the scene is called, and what messages call it.
-    units
+    units : str, optional
         The system of bare numbers, where no entry names one. The scene's texts are in its base
         units.
 
@@ -252,8 +252,25 @@ SAMPLES = tuple(_SAMPLES)
 
 @explains_arguments
 def sample(number: int) -> Scene:
-    """The scene of published run 1, 2 or 3. Raises UserError for another number.
+    """Return the scene of a published run.
 
+    Parameters
+    ----------
+    number : {1, 2, 3}
+        The run.
+
+    Returns
+    -------
+    Scene
+        Its 21 values in ft, slug and s, each as the listing or the printout has it.
+
+    Raises
+    ------
+    UserError
+        For another number.
+
+    Examples
+    --------
     >>> impact88.sample(2)["M"]
     '4'
     """

@@ -37,13 +37,36 @@ RESULTS = (
 @np.errstate(all="ignore")  # what is not finite is said in words
 @explains_arguments
 def barrier(columns: Mapping[str, Any], outputs: Sequence[str] | None = None) -> dict[str, Any]:
-    """The impact of vehicle A on a rigid barrier whose surface makes the angle GA with the y axis.
+    """Return the impact of vehicle A on a rigid barrier.
 
-    ``columns``: `VEHICLE` (numbers or arrays that broadcast), M 4 for a point mass; angles in
-    degrees, units any consistent set; ``outputs``: some of `RESULTS`, all by default. An approach
-    has the vehicle on the +n side of the barrier moving towards -n. Returns arrays by name. Raises
-    UserError for unknown or missing names.
+    The barrier's surface makes the angle GA with the y axis. An approach has the vehicle on the +n
+    side of the barrier moving towards -n.
 
+    Parameters
+    ----------
+    columns : mapping of str to float or array_like
+        The values of `VEHICLE` by the listing's names: mass, inertia, contact point, velocities
+        before, GA, E, MU, EM. They broadcast. Angles in degrees, spins in rad per unit of time, all
+        other units any consistent set. M is 6 where left out, 4 for a point mass.
+    outputs : sequence of str, optional
+        Results wanted, some of `RESULTS`; all by default.
+
+    Returns
+    -------
+    dict of str to ndarray
+        The results by name.
+
+    Raises
+    ------
+    UserError
+        For unknown or missing names.
+
+    Notes
+    -----
+    Equations 13 to 18 with MB and IB infinite and B at rest.
+
+    Examples
+    --------
     >>> car = {"DA": 7.59, "GA": -30, "PA": -19.8, "TA": 0, "MA": 143.5, "IA": 3728}
     >>> car |= {"E": 0.1, "MU": 0.4, "EM": -1, "UX": -29, "UY": 0, "WA": 0}
     >>> found = impact88.barrier(car)

@@ -27,12 +27,31 @@ FINAL = ("VAN", "VAT", "VBN", "VBT")
 @np.errstate(all="ignore")  # what is not finite is said in words
 @explains_arguments
 def colinear(known: Mapping[str, Any]) -> dict[str, Array]:
-    """Final velocities VAN VAT VBN VBT by Equations 9-12, and what `report` adds.
+    """Return the final velocities of a colinear impact.
 
-    ``known``: masses MA MB, coefficients E and MUP (signed P_t/P_n), initial velocities of A (UN
-    UT) and B (VN VT) along n and t; numbers or arrays, which broadcast. Raises UserError for a
-    name that is missing.
+    Parameters
+    ----------
+    known : mapping of str to float or array_like
+        Masses MA and MB, coefficients E and MUP (signed P_t/P_n), and the velocities before along n
+        and t: UN, UT of A and VN, VT of B. They broadcast; units are any consistent set.
 
+    Returns
+    -------
+    dict of str to ndarray
+        VAN, VAT, VBN, VBT, the velocities after, and what `report` adds: impulses, velocity
+        changes, energies.
+
+    Raises
+    ------
+    UserError
+        For a name that is missing.
+
+    Notes
+    -----
+    Equations 9 to 12.
+
+    Examples
+    --------
     >>> known = {"MA": 154.7, "MB": 99.1, "E": 0.071, "MUP": 0, "UN": -56.76}
     >>> found = impact88.colinear({**known, "UT": 0, "VN": 0, "VT": 0})
     >>> round(float(found["VAN"]), 3)
@@ -46,12 +65,30 @@ def colinear(known: Mapping[str, Any]) -> dict[str, Array]:
 @np.errstate(all="ignore")  # what is not finite is said in words
 @explains_arguments
 def colinear_inverse(known: Mapping[str, Any]) -> dict[str, Array]:
-    """Initial velocities UN UT VN VT from the final ones, and what `report` adds.
+    """Return the initial velocities of a colinear impact from its final ones.
 
-    ``known``: as for `colinear`, with the final velocities VAN VAT VBN VBT in place of the initial
-    ones. Errors of the final normal velocities grow as 1/e. Elements with e = 0 are NaN; raises
-    UserError for a name that is missing, and if e is 0 throughout: there is no inverse then.
+    Parameters
+    ----------
+    known : mapping of str to float or array_like
+        As for `colinear`, with the final velocities VAN, VAT, VBN, VBT in place of the initial
+        ones.
 
+    Returns
+    -------
+    dict of str to ndarray
+        UN, UT, VN, VT, the velocities before, and what `report` adds. Elements with E = 0 are NaN.
+
+    Raises
+    ------
+    UserError
+        For a name that is missing, and where E is 0 throughout: there is no inverse then.
+
+    Notes
+    -----
+    Equations 9 to 12 with 1/e in place of e: errors of the final normal velocities grow as 1/e.
+
+    Examples
+    --------
     >>> known = {"MA": 154.7, "MB": 99.1, "E": 0.071, "MUP": 0, "VAN": -33, "VBN": -37}
     >>> round(float(impact88.colinear_inverse({**known, "VAT": 0, "VBT": 0})["UN"]), 3)
     -56.56

@@ -35,13 +35,33 @@ GIVEN = ("MA", "MB", "SA", "SB", "LOSS")
 
 @explains_arguments
 def delta_v(known: Mapping[str, Any], factor: float = AS_USED) -> dict[str, Array]:
-    """DVA and DVB by Equation 19, by default with the factor 2/3 that Table 2 has.
+    """Return the velocity changes DVA and DVB that follow from a loss of energy.
 
-    ``known``: masses MA MB, sizes of the initial velocities SA SB, and LOSS, the kinetic energy
-    lost in percent of the initial (the chapter's 100 ΔT); numbers or arrays, which broadcast. A
-    negative loss gives NaN. Floats where every value given is a float above 0, else arrays. Raises
-    UserError for a name that is missing.
+    Parameters
+    ----------
+    known : mapping of str to float or array_like
+        Masses MA and MB, speeds before SA and SB, and LOSS, the kinetic energy lost in percent of
+        the initial (the chapter's 100 ΔT). They broadcast; units are any consistent set.
+    factor : float, default 2/3
+        The factor of Equation 19; Table 2 was made with the default.
 
+    Returns
+    -------
+    dict of str to float or ndarray
+        DVA and DVB: floats where every value given is a float above 0, else arrays. A negative loss
+        gives NaN.
+
+    Raises
+    ------
+    UserError
+        For a name that is missing.
+
+    Notes
+    -----
+    Equation 19.
+
+    Examples
+    --------
     >>> found = impact88.delta_v({"MA": 96, "MB": 145, "SA": 36.667, "SB": 58.667, "LOSS": 37.4})
     >>> {name: round(float(value), 2) for name, value in found.items()}
     {'DVA': 39.1, 'DVB': 25.89}

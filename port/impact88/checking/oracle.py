@@ -86,11 +86,29 @@ def _checked(scene: Scene) -> Scene:
 def oracle(
     scenes: Mapping[str, Any] | Iterable[Mapping[str, Any]], reference: bool = True
 ) -> list[dict[str, Any]]:
-    """What is known about each scene, or about the only one, see the module.
+    """Return all that is known of each scene, to check another program with.
 
-    A scene is a `Scene` or a mapping of names to decimal texts, or to numbers, which stand for
-    their shortest digits; M must be 4 or 6. Raises UserError.
+    Parameters
+    ----------
+    scenes : mapping, or iterable of mapping
+        Scenes as `Scene`, or as mappings of names to decimal texts or to numbers, which stand for
+        their shortest digits; M must be 4 or 6.
+    reference : bool, default True
+        Compute each result to 30 digits, too (extra ``oracle``).
 
+    Returns
+    -------
+    list of dict
+        For each scene the printout, each result as printed, stored, in double precision and to 30
+        digits, and its error bounds: the form of ``impact88 schema oracle``.
+
+    Raises
+    ------
+    UserError
+        For a scene that cannot be used, and where mpmath is needed and not installed.
+
+    Examples
+    --------
     >>> import impact88
     >>> (answer,) = impact88.oracle(impact88.sample(1))
     >>> answer["results"]["VAX"]["printed"], answer["results"]["VAX"]["stored"]

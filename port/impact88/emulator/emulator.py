@@ -23,12 +23,24 @@ AT_PROMPT = ord(PROMPT) | 0x80
 class Applesoft:
     """An Apple II Plus at the ``]`` prompt.
 
-    ``keyboard`` is asked for a line when what `feed` queued is used up; ``screen`` and ``printer``
-    take what is sent to them, which `take_output` collects when no screen is given. ``dos``:
-    whether a disk system takes control-D lines; ``echo``: whether typed lines are part of the
-    output; ``blanks``: whether skipped columns come out as blanks. ``after_line``,
-    ``statements_left`` and ``interrupted`` of `machine` are there to be set.
+    ``after_line``, ``statements_left`` and ``interrupted`` of its ``machine`` are there to be set.
 
+    Parameters
+    ----------
+    keyboard : callable, optional
+        Returns a line when what `feed` queued is used up, None at the end.
+    screen, printer : callable, optional
+        Take what is sent to them; `take_output` collects what is sent to the screen where none is
+        given.
+    dos : bool, default False
+        True where a disk system takes lines that begin with control-D.
+    echo : bool, default True
+        True where typed lines are part of the output.
+    blanks : bool, default True
+        True where skipped columns come out as blanks.
+
+    Examples
+    --------
     >>> apple = impact88.Applesoft()
     >>> apple.load("10 INPUT A: PRINT INT (100 * A)")
     >>> apple.feed("14.52")

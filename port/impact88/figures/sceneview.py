@@ -65,13 +65,28 @@ def planned(
 
 @explains_arguments
 def scene_svg(scene: Any, result: Mapping[str, Any] | None = None) -> Svg:
-    """The scene as a self-contained SVG element, 85 mm wide, to stand in an HTML page or a file.
+    """Return the scene from above as an SVG element, 85 mm wide, for an HTML page or a file.
 
-    ``scene``: an `impact88.Scene` or any mapping of the listing's names to texts or numbers;
-    ``result``: VAX, VAY, VBX, VBY, WAF, WBF and, where known, STATUS (see `impact88.solve`);
-    without it only what is before the impact is drawn. Units as the scene's. Raises UserError when
-    a value of the scene is missing or not a finite number.
+    Parameters
+    ----------
+    scene : Scene, or mapping of str to str or float
+        The scene, by the listing's names.
+    result : mapping of str to float, optional
+        VAX, VAY, VBX, VBY, WAF, WBF and, where known, STATUS (see `impact88.solve`), in the scene's
+        units; without it only what is before the impact is drawn.
 
+    Returns
+    -------
+    Svg
+        The SVG text, which a notebook shows as a picture.
+
+    Raises
+    ------
+    UserError
+        When a value of the scene is missing or not a finite number.
+
+    Examples
+    --------
     >>> impact88.scene_svg(impact88.sample(1))[:4]
     '<svg'
     """

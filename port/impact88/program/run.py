@@ -26,14 +26,26 @@ _UNPRINTED = {code: None for code in range(32) if chr(code) not in "\n\b"}
 
 
 class Run(namedtuple("Run", "printout error line reals A zero_determinant")):
-    """What a run left behind.
+    """The record of one run of the 1988 program.
 
-    ``printout``: every character sent, RETURN as newline; ``error``: the Applesoft error that ended
-    it, or None; ``line``: its line; ``reals``: every real variable that was assigned, as five
-    stored bytes in hexadecimal; ``A``: the array's ``dims`` (sizes) and ``data``, first subscript
-    fastest; None before line 360. In double precision the values are floats.
-    ``zero_determinant``: whether the program ended at line 1160.
+    Parameters
+    ----------
+    printout : str
+        Every character sent, RETURN as newline.
+    error : str or None
+        The Applesoft error that ended the run.
+    line : int or None
+        The line of the error.
+    reals : dict of str to str or float
+        Every real variable that was assigned, as its five stored bytes in hexadecimal; in double
+        precision a float.
+    A : dict or None
+        The array A: ``dims`` (sizes) and ``data``, first subscript fastest; None before line 360.
+    zero_determinant : bool
+        True where the program ended at line 1160.
 
+    Examples
+    --------
     >>> run = impact88.run(impact88.sample(1))
     >>> run.error, run.reals["KI"]
     (None, '91451476e4')
@@ -126,11 +138,34 @@ def run(
     slot: int = 0,
     after_line: stepping.AfterLine | None = None,
 ) -> Run:
-    """Run the program on a scene and keep everything; with ``after_line``, stop after every line.
+    """Run the 1988 program on a scene and return all that it leaves behind.
 
-    Printer output (``slot`` 1) is part of the printout. Raises UserError for an unknown arithmetic
-    and for a scene that could not be typed into the program (`Scene.check_typed`).
+    Parameters
+    ----------
+    scene : mapping of str to str
+        The scene: the digits typed count.
+    arithmetic : {"applesoft", "double"} or Arithmetic, default "applesoft"
+        What computes and writes numbers.
+    dos : bool, default True
+        True where a disk system takes lines that begin with control-D.
+    slot : int, default 0
+        The digit of line 190: 1 is the printer, whose output is part of the printout.
+    after_line : callable, optional
+        Called after every line with its number and the variables.
 
+    Returns
+    -------
+    Run
+        Printout, variables, error.
+
+    Raises
+    ------
+    UserError
+        For an unknown arithmetic, and for a scene that could not be typed into the program
+        (`Scene.check_typed`).
+
+    Examples
+    --------
     >>> impact88.run(impact88.sample(1)).page.splitlines()[-3]
     ' WA= -1.745 WB= -.8202'
     """

@@ -400,8 +400,27 @@ def _reply_parts(region: Region) -> list[Region]:
 
 @explains_arguments
 def read_printouts(text: str, where: str = "text") -> list[Printout]:
-    """The printouts in a text, in order. Raises UserError (naming ``where``) if there is none.
+    """Return the printouts in a text, in order.
 
+    Parameters
+    ----------
+    text : str
+        A page, or several, as typed in or as an OCR engine read them.
+    where : str, default "text"
+        What messages call the text.
+
+    Returns
+    -------
+    list of Printout
+        Each with the numbers it holds, ``fields``, by the names of `impact88.names`.
+
+    Raises
+    ------
+    UserError
+        Where there is no printout in it.
+
+    Examples
+    --------
     >>> (printout,) = impact88.read_printouts(impact88.run(impact88.sample(1)).page)
     >>> printout.fields["MA"].text
     '143.5'

@@ -71,13 +71,26 @@ class UnsolvableError(UserError):
 class Solution:
     """One solution: every quantity it has, by name, in the shape of the given values.
 
-    ``values``: velocities, E, EM, MUP, MU (to be typed into the listing), PN PT PM, as far as they
-    are determined; ``unknown``: what was solved for; ``amplification``: the error of each unknown
-    when every known velocity errs, independently, by one unit (a spin's unit is one of velocity
-    over ``gyration``, a coefficient's error is multiplied by the closing speed); ``agrees``:
-    whether the sign of MUP is the one line 400 gives; ``mismatch``: root mean square of what the
-    equations leave over, a velocity.
+    Parameters
+    ----------
+    values : dict of str to ndarray
+        Velocities, E, EM, MUP, MU (to be typed into the listing), PN, PT, PM, as far as they are
+        determined.
+    unknown : tuple of str
+        The quantities solved for.
+    amplification : dict of str to ndarray
+        The error of each unknown when every known velocity errs, independently, by one unit (a
+        spin's unit is one of velocity over ``gyration``, a coefficient's error is multiplied by the
+        closing speed).
+    agrees : ndarray of bool
+        True where the sign of MUP is the one line 400 gives.
+    mismatch : ndarray
+        Root mean square of the residuals of the equations, a velocity.
+    gyration : ndarray
+        The radius of gyration that makes spins of velocities.
 
+    Examples
+    --------
     >>> solution, *others = impact88.solve_for({**impact88.sample(1)})
     >>> float(solution.values["VAX"].round(3))
     -13.263
@@ -118,20 +131,39 @@ class Solution:
 @within_doubles
 @explains_arguments
 def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) -> list[Solution]:
-    """Solve Equations 13-18 for what ``known`` leaves out.
+    """Solve Equations 13-18 for the quantities that ``known`` leaves out.
 
-    ``known``: numbers or arrays that broadcast, by name: the vehicles and their geometry (M is 6
-    where left out, 4 for point masses; MB and IB may be infinite), velocities before (UX ... WB)
-    and after (VAX ... WBF), coefficients E, EM, and MUP or MU (-10: pivot). ``unknown``: the
-    quantities wanted, by default all that is left out; fewer may be determined though the rest is
-    not (Section VII finds UX and VY from Equations 13 and 14, no coefficient known).
+    Parameters
+    ----------
+    known : mapping of str to float or array_like
+        The vehicles and their geometry (M is 6 where left out, 4 for point masses; MB and IB may be
+        infinite), velocities before (UX ... WB) and after (VAX ... WBF), coefficients E, EM, and
+        MUP or MU (-10: pivot), by name. They broadcast.
+    unknown : iterable of str, optional
+        The quantities wanted, by default all that is left out; fewer may be determined though the
+        rest is not (Section VII finds UX and VY from Equations 13 and 14, no coefficient known).
 
-    Returns one `Solution`, or two where MU is known in size only and both signs agree with the
-    sliding they lead to: of single scenes those that agree, least-squares fits of contradictory
-    values only where nothing else is; of arrays those that agree anywhere. An element that is not
-    determined is NaN; where none is, raises `UnsolvableError` with the reason. Raises UserError for
-    names or numbers that cannot be used.
+    Returns
+    -------
+    list of Solution
+        One, or two where MU is known in size only and both signs agree with the sliding they lead
+        to: of single scenes those that agree, least-squares fits of contradictory values only where
+        nothing else is; of arrays those that agree anywhere. An element that is not determined is
+        NaN.
 
+    Raises
+    ------
+    UnsolvableError
+        With the reason, where no element is determined.
+    UserError
+        For names or numbers that cannot be used.
+
+    Notes
+    -----
+    Equations 13 to 18.
+
+    Examples
+    --------
     >>> known = {**impact88.sample(1)}
     >>> after = impact88.solve(known, impact88.names.FINAL_VELOCITIES)
     >>> for name in impact88.names.VELOCITIES:

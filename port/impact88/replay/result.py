@@ -29,10 +29,29 @@ class Replay:
     A scene that an error ended keeps what it had computed before, as on the machine, and has no
     later value: NaN as a float, 0 as a stored real, "" as a printed field (see `present`).
 
-    ``code``: 0, or the Applesoft error's code (53, 69, 133), 1 for ZERO DETERMINANT, 2 for an M
-    that is neither 4 nor 6 (not replayed). ``line``: the line of the listing that ended the scene
-    early (1160 for ZERO DETERMINANT), else 0. ``count``: the number of scenes.
+    Parameters
+    ----------
+    scenes : Scenes
+        The scenes that were replayed.
+    six : ndarray of bool
+        True where M is 6.
+    unit : Unit
+        The arithmetic unit, which holds each scene's error.
+    values : dict of str to ndarray
+        The stored reals by name.
 
+    Attributes
+    ----------
+    count : int
+        The number of scenes.
+    code : ndarray of int
+        0, or the Applesoft error's code (53, 69, 133), 1 for ZERO DETERMINANT, 2 for an M that is
+        neither 4 nor 6 (not replayed).
+    line : ndarray of int
+        The line of the listing that ended the scene early (1160 for ZERO DETERMINANT), else 0.
+
+    Examples
+    --------
     >>> found = impact88.replay({**impact88.sample(1), "MU": [".5", ".911"]})
     >>> found.printed("LOSS").tolist()
     ['44.43', '57.47']

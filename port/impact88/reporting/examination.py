@@ -118,12 +118,26 @@ def verify(
 ) -> Verification | list[Verification]:
     """Say of each printout whether it is what the 1988 program prints, and if not, why.
 
-    ``printout``: a text (a str of more than one line), a file's name or its bytes, for all the
-    printouts in it; or one of `impact88.read_printouts`, for one verdict. ``given``: inputs known
-    from elsewhere than the paper, texts or numbers by the scene's names, with units or without.
+    Parameters
+    ----------
+    printout : str, bytes, path-like or Printout
+        A text (a str of more than one line), a file's name, or a file's bytes: all printouts in it
+        are judged. Or one printout of `read_printouts`, for one verdict.
+    given : mapping of str to str or float, optional
+        Inputs known from elsewhere than the paper, by the scene's names, with units or without.
 
-    Raises UserError for a file that cannot be read or holds no printout.
+    Returns
+    -------
+    list of Verification, or Verification
+        A verdict for each printout; of a `Printout`, its own.
 
+    Raises
+    ------
+    UserError
+        For a file that cannot be read or holds no printout.
+
+    Examples
+    --------
     >>> import impact88
     >>> page = impact88.run(impact88.sample(1)).page
     >>> [found.verdict.name for found in impact88.verify(page)]

@@ -35,27 +35,40 @@ def solve_frame(
 ) -> Frame:
     """Solve the impact of every row, and return the frame with the results as further columns.
 
-    Args:
-        frame: a pandas or polars DataFrame, a pyarrow Table, an xarray Dataset, a structured
-            array, a list of dicts or a dict of columns, with columns named as the scene's
-            (``impact88.names.SCENE``), with their units where they have any (``UX [mph]``): the
-            results are then in the same system and say so (``DVA [mph]``). Further columns stay as
-            they are; a result takes the place of a column with its name. A pandas index is kept.
-        outputs: the result names wanted, all of them by default.
-        scene: values for the columns the frame lacks, such as ``impact88.sample(1)``; M is 6
-            where it is not given.
-        units: the system (us, chapter, metric, si) of columns that name no unit.
-        threads: as for `impact88.solve`.
-
-    Returns:
-        the same kind of frame; results are float64 (STATUS: a whole number).
-
     A row whose cell is missing (None, NaN, masked, null), no number or not allowed has NaN in every
     result and NOT_FINITE in STATUS. Texts count as `impact88.doubles` reads them.
 
-    Raises UserError for a frame of another kind, a missing scene column, and where narwhals is
-    needed and not installed.
+    Parameters
+    ----------
+    frame : DataFrame, Table, Dataset, structured array, list of dict or dict of columns
+        A pandas or polars DataFrame, a pyarrow Table, an xarray Dataset and so on, with columns
+        named as the scene's (`impact88.names.SCENE`), with their units where they have any (``UX
+        [mph]``): the results are then in the same system and say so (``DVA [mph]``). Further
+        columns stay as they are; a result takes the place of a column with its name. A pandas index
+        is kept.
+    outputs : sequence of str, or str, optional
+        The result names wanted; all by default.
+    scene : mapping of str to str or float, optional
+        Values for the columns the frame lacks, such as ``impact88.sample(1)``; M is 6 where it is
+        not given.
+    units : {"us", "chapter", "metric", "si"}, optional
+        The system of columns that name no unit.
+    threads : int, optional
+        As for `impact88.solve`.
 
+    Returns
+    -------
+    Frame
+        The same kind of frame; results are float64 (STATUS: a whole number).
+
+    Raises
+    ------
+    UserError
+        For a frame of another kind, a missing scene column, and where narwhals is needed and not
+        installed.
+
+    Examples
+    --------
     >>> rows = impact88.solve_frame([{"MU": 0.5}, {"MU": None}], "LOSS", scene=impact88.sample(1))
     >>> [round(row["LOSS"], 2) for row in rows]
     [44.43, nan]

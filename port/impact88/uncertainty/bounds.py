@@ -70,18 +70,48 @@ def bounds(
     keep_draws: bool = False,
     progress: Callable[[int], object] = lambda draws: None,
 ) -> Bounds:
-    """Bounds, Monte Carlo and sensitivities of a scene known within limits.
+    """Return bounds, random draws and sensitivities of a scene known within limits.
 
-    ``values``: every input of the problem (`input_names`; M is 6 where left out) as a number or an
-    `Uncertain`; ``outputs``: result names, for a reconstruction also UX ... WB, SA and SB (speeds);
-    ``correlations``: (name, name) -> correlation; ``sigmas``: where a normal without limits ends
-    for the bounds; ``exclude``: warnings (names of `WARNINGS`) whose scenes are left out of bounds
-    and draws alike, sweeps excepted; ``progress`` is told the draws done after each chunk. Units
-    are the scene's.
+    Parameters
+    ----------
+    values : mapping of str to float, str or Uncertain
+        Every input of the problem by name; M is 6 where left out. A number is exact; a text such as
+        "41 +- 2" or "0.7 .. 0.9", or an `Uncertain`, is known within limits. Units are the scene's.
+    outputs : sequence of str, or str, optional
+        Result names; for a reconstruction also UX ... WB, SA and SB (speeds). All by default.
+    problem : str, default "forward"
+        The problem: "forward", or a reconstruction.
+    samples : int, default 100000
+        Random draws.
+    seed : int, default 0
+        Random seed.
+    correlations : mapping of tuple of str to float, optional
+        Correlations of pairs of inputs.
+    sigmas : float, default 3
+        Cut-off for unbounded normal inputs in the search for bounds, in standard deviations.
+    quantiles : sequence of float, optional
+        Quantiles of the draws.
+    exclude : sequence of str, optional
+        Warnings (names of `WARNINGS`) whose scenes are left out of bounds and draws alike, sweeps
+        excepted.
+    keep_draws : bool, default False
+        Keep the draws.
+    progress : callable, optional
+        Called with the number of draws done after each chunk.
 
-    Raises UserError for a missing, unknown or unusable value, an unknown output, correlations that
-    contradict one another, and when the nominal inputs have no finite result.
+    Returns
+    -------
+    Bounds
+        Bounds, quantiles and sensitivities by output.
 
+    Raises
+    ------
+    UserError
+        For a missing, unknown or unusable value, an unknown output, correlations that contradict
+        one another, and when the nominal inputs have no finite result.
+
+    Examples
+    --------
     >>> found = impact88.bounds({**impact88.sample(1), "GA": "-30 +- 5"}, ["DVA"], samples=100)
     >>> round(found.bounds["DVA"].lower, 2), round(found.bounds["DVA"].upper, 2)
     (13.42, 18.37)

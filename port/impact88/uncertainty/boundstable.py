@@ -83,13 +83,42 @@ class Bound:
 class Bounds:
     """The answer of `bounds`.
 
-    ``inputs``: what varies, and ``limits``: the box; ``bounds`` and ``spreads`` by output,
-    ``drives`` by output, then input; ``warnings``: STATUS name -> share of the draws that carry it;
-    ``unusable``: share of the draws without a finite result or excluded, left out of the spreads;
-    ``evaluations``: scenes solved in search of the bounds; ``draws``: each output's draws, arrays
-    of the ``samples`` values, kept on request; ``units``: the system of units of all of it
-    (`in_units`), None for base units or any others that are consistent.
+    Parameters
+    ----------
+    problem : str
+        The problem that was solved.
+    inputs : dict of str to Uncertain
+        All inputs; those that vary have limits.
+    limits : dict of str to tuple of float
+        The box that was searched.
+    bounds : dict of str to Bound
+        Lower and upper bound of each output, attained within the box.
+    spreads : dict of str to Spread
+        Quantiles of the draws of each output.
+    drives : dict of str to dict of str to Drive
+        By output, then input: how far the input alone moves the output.
+    warnings : dict of str to float
+        STATUS name and the fraction of the draws that carry it.
+    unusable : float
+        Fraction of the draws without a finite result or excluded, left out of the spreads.
+    samples, seed : int
+        Number of draws and their random seed.
+    sigmas : float
+        Cut-off for unbounded normal inputs, in standard deviations.
+    evaluations : int
+        Scenes solved in search of the bounds.
+    corners_in_full : bool
+        True where every corner of the box was looked at.
+    correlations : dict of tuple of str to float
+        Correlations of inputs.
+    draws : dict of str to ndarray
+        Each output's draws, kept on request.
+    units : str, optional
+        The system of units of all of it (`in_units`); None for base units or any others that are
+        consistent.
 
+    Examples
+    --------
     >>> found = impact88.bounds({**impact88.sample(1), "MU": "0.7 .. 0.9"}, ["LOSS"], samples=100)
     >>> round(found.bounds["LOSS"].lower, 2), round(found.bounds["LOSS"].upper, 2)
     (52.93, 57.39)

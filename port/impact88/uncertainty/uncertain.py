@@ -38,10 +38,21 @@ if TYPE_CHECKING:
 class Uncertain:
     """A value known within limits, in the unit of the quantity it stands for.
 
-    ``kind`` is fixed, uniform, triangular or normal; ``nominal`` the mode, mean or middle; ``low``
-    and ``high`` are infinite for a normal without limits; ``deviation`` a normal's, else 0;
-    ``share``: all of them are shares of the critical friction (MU = "85 %").
+    Parameters
+    ----------
+    kind : {"fixed", "uniform", "triangular", "normal"}
+        Its distribution.
+    nominal : float
+        The middle, mode or mean.
+    low, high : float
+        Its limits; infinite for a normal without limits.
+    deviation : float, default 0
+        The standard deviation of a normal.
+    share : bool, default False
+        True where all of them are shares of the critical friction (MU = "85 %").
 
+    Examples
+    --------
     >>> impact88.Uncertain("uniform", 0.8, 0.7, 0.9).varies
     True
     """
