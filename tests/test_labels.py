@@ -229,3 +229,92 @@ def test_labels_that_read_as_each_other_are_exchanged_whoever_read_the_page() ->
     worn = SAMPLE.replace("*****", "KKKKK").replace("INITIAL", "1NITIAL")
     text = worn.replace("VAX=", "V@X=").replace("VBX=", "VAX=").replace("V@X=", "VBX=")
     assert one(text).verdict is Verdict.DIFFERS
+
+
+# --- every character belongs to the page, to a note that is shown, or bars IDENTICAL --------------
+
+
+@pytest.mark.parametrize(
+    "note", ["(WRONG: 31.2)", "[31.2]", "WRONG, 31.2", "<- 31.2", "ft/s", "OR -14.263"]
+)
+@pytest.mark.parametrize("name", ["MA", "UX", "LOSS", "VAX", "YBF"])
+def test_a_note_typed_beside_a_genuine_number_is_told_and_accuses_nothing(
+    note: str, name: str
+) -> None:
+    (place,) = [place for place in printouts.places(SAMPLE) if place.name == name]
+    result = one(f"{SAMPLE[: place.stop]} {note}{SAMPLE[place.stop :]}")
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert not result.differing
+    said = "\n".join(lines(result))
+    assert re.search(rf"{re.escape(note)}' left over beside a number", said)
+
+
+@pytest.mark.parametrize("figures", ["5", "31.2", "-1"])
+def test_figures_right_after_a_number_differ_and_are_shown_as_they_stand(figures: str) -> None:
+    result = one(SAMPLE.replace("-13.263", f"-13.263 {figures}"))
+    assert result.verdict is Verdict.DIFFERS
+    (check,) = result.differing
+    assert check.printed == f"-13.263 {figures}"
+
+
+INSERTED = (
+    *("-", ".", "5", "+", "X", "=", "31.2", " -", " 5", "\n5\n", "\n-\n", " VOID", " (31.2)"),
+    *(" <VAX 31.2>", "\nVAX= 31.2\n", "*", "(", ")", "%", ",", ":", "?", "E", "I", "O", "\x07"),
+    *("\u200b", "~", "_", "|", "/", "<b>", "<s>", "#", "\n10 REM VAX= 31.2\n", "\n- ", "> "),
+)
+
+
+@pytest.mark.captures
+def test_every_character_that_is_put_into_a_page_is_told() -> None:
+    """Bare IDENTICAL only with a note that shows it."""
+    rng = random.Random(41)
+    rows = printouts.normal_ends()
+    for number in range(printouts.SWEEP or 12):
+        page = rng.choice(rows)["printout"]
+        page = page if number % 2 else printouts.body(page)
+        at, text = rng.randrange(len(page)), rng.choice(INSERTED)
+        for result in map(verify, read_printouts(page[:at] + text + page[at:])):
+            if result.verdict is Verdict.IDENTICAL:
+                said = [line for line in lines(result) if line.startswith("  note:")]
+                control = sum("characters read as plain ones" in line for line in said)
+                assert len(said) > control or text in ("\x07", "\u200b"), (text, page[at - 20 : at])
+                assert said, text
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("INITIAL KE=", "INITIAL PN="), ("KE LOSS=", "KE GAIN="), ("INITIAL KE=", "SYSTEMS KE=")],
+)
+def test_another_word_of_a_label_of_two_contradicts(old: str, new: str) -> None:
+    result = one(SAMPLE.replace(old, new))
+    assert result.verdict is Verdict.DIFFERS
+    assert not result.differing
+
+
+def test_letters_read_as_others_are_told_where_they_leave_no_doubt() -> None:
+    result = one(SAMPLE.replace("INITIAL", "1NITIAL"))
+    assert result.verdict is Verdict.IDENTICAL
+    assert any("line 14: 1 for I" in remark for remark in result.remarks)
+
+
+@pytest.mark.parametrize(
+    ("page", "note"),
+    [
+        (SAMPLE.replace("MA= 143.5", "MA= <b>143.5</b>"), "markup passed over: 1 <b>, 1 </b>"),
+        (f"10 REM VAX= 31.2\n{SAMPLE}", "the first is line 1: 10 REM VAX= 31.2"),
+    ],
+)
+def test_markup_that_is_passed_over_is_named(page: str, note: str) -> None:
+    assert any(note in remark for remark in one(page).remarks)
+
+
+@pytest.mark.parametrize("typed", ["<VAX 31.2>", "<should be 31.2>"])
+def test_what_stands_in_angle_brackets_and_is_no_element_was_typed(typed: str) -> None:
+    result = one(SAMPLE.replace("-13.263", f"-13.263 {typed}"))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+
+
+def test_a_dash_in_front_of_one_line_is_no_list() -> None:
+    assert one(SAMPLE.replace(" -19.8", "- -19.8")).verdict is Verdict.IDENTICAL_AS_READ
+    items = "\n".join(f"- {line.strip()}" if line.strip() else "" for line in SAMPLE.split("\n"))
+    assert one(items.replace("- -19.8", "-19.8")).verdict is not Verdict.DIFFERS

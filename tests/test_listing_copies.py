@@ -12,10 +12,12 @@ import pytest
 import printouts
 from captures import ROOT
 from impact88.cli import main
+from impact88.emulator.emulator import Applesoft
 from impact88.errors import UserError
 from impact88.program.emulated import ListingCopy
 from impact88.program.run import run
 from impact88.reporting.examination import Verdict, examine
+from impact88.reporting.verification import summary
 from impact88.scene import sample
 
 LISTING = (ROOT / "legacy" / "impact.bas").read_text(encoding="utf-8")
@@ -167,3 +169,103 @@ def test_a_copy_that_prints_nothing_is_refused(tmp_path: Path) -> None:
     copy = copy_of(re.sub(r"PRINT[^:\n]*", "REM", LISTING), tmp_path)
     found = examine("-", None, copy, data=run(sample(1)).page.encode())
     assert "office.bas: no printout of the program" in (found.error or "")
+
+
+# --- copies as offices have them: their pages made as a person runs them -------------------------
+
+
+def renamed(text: str, pairs: dict[str, str]) -> str:
+    """Variables renamed outside quotes."""
+
+    def replaced(part: str) -> str:
+        return re.sub(r"[A-Z][A-Z0-9]*", lambda word: pairs.get(word[0], word[0]), part)
+
+    parts = [re.split(r'(".*?")', row) for row in text.split("\n")]
+    return "\n".join(
+        "".join(part if part.startswith('"') else replaced(part) for part in row) for row in parts
+    )
+
+
+REPLIES = ["-29.04,0,0", "14.52,25.15,0"]
+IN_MPH = ["-19.8,0,0", "9.9,17.15,0"]
+OFFICES: dict[str, tuple[str, list[str]]] = {
+    "velocities renamed": (renamed(LISTING, {"UX": "V1", "UY": "V2", "WA": "W1"}), REPLIES),
+    "inputs renamed": (
+        renamed(LISTING, {"MA": "M1", "MB": "M2", "EM": "R", "PA": "P1", "M": "Q"}), REPLIES
+    ),
+    "converted in place": (
+        changed(
+            (210, "210 INPUT UX,UY,WA:UX = UX * 1.46667:UY = UY * 1.46667"),
+            (230, "230 INPUT VX,VY,WB:VX = VX * 1.46667:VY = VY * 1.46667"),
+        ),
+        IN_MPH,
+    ),
+    "converted from others": (
+        changed(
+            (210, "210 INPUT S1,S2,WA:UX = S1 * 1.46667:UY = S2 * 1.46667"),
+            (230, "230 INPUT S3,S4,WB:VX = S3 * 1.46667:VY = S4 * 1.46667"),
+        ),
+        IN_MPH,
+    ),
+    "weights": (
+        changed(
+            (310, "310 INPUT W1,W2:MA = W1 / 32.2:MB = W2 / 32.2:IA = 3728:IB = 1961"),
+        ),
+        [*REPLIES, "4620,3085"],
+    ),
+}  # fmt: skip
+
+
+def run_as_a_person(text: str, replies: list[str]) -> str:
+    machine = Applesoft()
+    machine.load(text)
+    machine.feed(*replies)
+    machine.run()
+    return machine.take_output()
+
+
+@pytest.mark.parametrize("name", OFFICES)
+def test_pages_of_an_office_are_settled_by_its_copy(name: str, tmp_path: Path) -> None:
+    text, replies = OFFICES[name]
+    page, copy = run_as_a_person(text, replies), copy_of(text, tmp_path)
+    for genuine in (page, page[page.index("MA= ") :]):
+        assert verdicts(genuine, copy) <= set(SETTLED)
+        assert verdicts(genuine.replace("VAY= ", "VAY= 1"), copy) == {Verdict.DIFFERS}
+    assert verdicts(page.replace(replies[0], replies[0] + "5"), copy) == {Verdict.DIFFERS}
+
+
+def test_a_page_of_a_converting_copy_is_told_in_words_first() -> None:
+    page = run_as_a_person(*OFFICES["converted in place"])
+    (result,) = examine("-", data=page.encode()).results
+    assert result.verdict is Verdict.DIFFERS
+    first, second, *_ = summary(result)
+    assert "each velocity printed is 1.46667 times the reply" in first
+    assert "--listing" in second
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (changed((190, '190 INPUT "SLOT ";S')), r"asks for S \(INPUT\)"),
+        (
+            renamed(LISTING, {"MA": "Z"}).replace('"MA= "', '"MASS "').replace("310 Z", "311 Z"),
+            "MA: no variable",
+        ),
+    ],
+)
+def test_a_copy_whose_variables_are_not_plain_is_refused_by_name(
+    text: str, says: str, tmp_path: Path
+) -> None:
+    page = run(sample(1)).page
+    found = examine("-", None, copy_of(text, tmp_path), data=page.encode())
+    assert re.search(says, found.error or "")
+
+
+@pytest.mark.parametrize("width", [33, 40])
+def test_a_copy_as_list_printed_it_is_held_against(width: int, tmp_path: Path) -> None:
+    machine = Applesoft()
+    machine.load(COPIES["one line rounds"])
+    machine.enter("LIST" if width == 33 else "POKE 33,33: LIST")
+    listed = machine.take_output()
+    page = copy_of(COPIES["one line rounds"], tmp_path).run(sample(1)).page
+    assert verdicts(page, copy_of(listed, tmp_path)) == {Verdict.IDENTICAL}

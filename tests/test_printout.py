@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import zip_longest
+
 import pytest
 
 import captures
@@ -188,3 +190,43 @@ def test_what_stands_below_the_angles_is_none_of_them(number: int, note: str) ->
     ]
     (verification,) = impact88.verify(page[:end] + note + page[end:])
     assert verification.verdict.name == "IDENTICAL_AS_READ"
+
+
+# --- one printout, or two ------------------------------------------------------------------------
+
+
+@pytest.mark.captures
+@pytest.mark.parametrize("glyphs", [" ", "\n", "\f", " \n\r\f\t"])
+def test_blanks_breaks_and_form_feeds_anywhere_part_no_printout(glyphs: str) -> None:
+    """Where they cut the row of angles into more than five pieces, too."""
+    for seed, row in enumerate(printouts.sampled(printouts.normal_ends(), 6, seed=37)):
+        page = row["printout"] if seed % 2 else printouts.body(row["printout"])
+        for chance in (0.08, 0.3):
+            assert len(read_printouts(printouts._sprinkled(page, glyphs, chance, seed))) == 1
+
+
+def side_by_side(left: str, right: str, gap: int) -> str:
+    rows = [*zip_longest(left.split("\n"), right.split("\n"), fillvalue="")]
+    width = max(len(first) for first, _ in rows) + gap
+    return "\n".join(first.ljust(width) + second for first, second in rows)
+
+
+@pytest.mark.captures
+def test_printouts_side_by_side_are_read_each_in_its_column() -> None:
+    first, second, third = (row["printout"] for row in printouts.normal_ends()[20:23])
+    first, second, third = map(printouts.body, (first, second, third))
+    for page, count in (
+        (side_by_side(first, second, 2), 2),
+        (side_by_side(first, "\n\n\n" + second, 8), 2),
+        (side_by_side(first, side_by_side(second, third, 4), 4), 3),
+    ):
+        read = read_printouts(page)
+        assert [printout.text("MA") for printout in read] == [
+            texts(printout)["MA"] for printout in (first, second, third)[:count]
+        ]
+        place = read[1].fields["MA"]
+        line = page.split("\n")[place.line - 1]
+        assert line[place.column - 1 :].startswith(place.text)
+        assert [impact88.verify(printout).verdict.name for printout in read] == [
+            "IDENTICAL"
+        ] * count

@@ -17,7 +17,8 @@ from impact88.program.run import run
 from impact88.reading.printout import read_printouts
 from impact88.recovery.search import in_doubles
 from impact88.recovery.typedtext import stored_and_printed, texts_that_print
-from impact88.reporting.examination import Verdict, Verification, verify
+from impact88.reporting.examination import Verdict, Verification, examine, verify
+from impact88.reporting.verification import lines
 from impact88.scene import sample
 from installed import impact88
 from test_printout import SAMPLE
@@ -289,3 +290,66 @@ def test_a_digit_in_the_first_prompt_is_left_over() -> None:
     (found,) = verify(page)
     assert found.verdict is Verdict.IDENTICAL_AS_READ
     assert [piece.text for piece in found.left_over] == ["5"]
+
+
+# --- what a reader lost or damaged accuses nobody ------------------------------------------------
+
+
+@pytest.mark.captures
+def test_a_number_that_was_not_read_is_missing_and_no_other_takes_its_place() -> None:
+    """Its label stands alone before the next line: ``EM=`` above ``INITIAL KE=``."""
+    rng = random.Random(8)
+    ordinary = [row for row in printouts.normal_ends() if "E+" not in row["printout"]]
+    for row in printouts.sampled(ordinary, 5, seed=8):
+        page = printouts.body(row["printout"])
+        lost = [place for place in printouts.places(page) if place.name == "EM"]
+        lost += rng.sample(printouts.places(page), 1)
+        for place in lost:
+            text = page[: place.start].rstrip(" ") + page[place.stop :]
+            assert verified(text).verdict is Verdict.INCOMPLETE, place.name
+
+
+def test_a_number_that_hardly_depends_on_what_is_missing_is_not_compared() -> None:
+    """Large values of EM print nearly alike."""
+    scene = sample(1).replaced({"E": "-.1", "EM": "-.561", "MU": "-.975"})
+    text = run(scene).printout.replace(" EM= -.561", " EM=")
+    assert verified(text).verdict is Verdict.INCOMPLETE
+
+
+@pytest.mark.parametrize(
+    ("reply", "verdict"),
+    [
+        ("7-29.04,0,6", Verdict.IDENTICAL_AS_READ),  # the question mark was misread, too
+        ("?-29.04,0,6", Verdict.DIFFERS),
+        ("?-28.04,0,0", Verdict.DIFFERS),
+    ],
+)
+def test_a_reply_accuses_only_where_its_prompt_was_read(reply: str, verdict: Verdict) -> None:
+    text = run(sample(1)).page.replace("?-29.04,0,0", reply)
+    result = verified(text)
+    assert result.verdict is verdict
+    assert not result.differing
+    if verdict is Verdict.DIFFERS:
+        assert "reply at a prompt differs" in "\n".join(lines(result))
+
+
+def test_readings_of_one_paper_support_each_other() -> None:
+    """What one reader read right, another's slip does not contradict; what all read does."""
+    page = run(sample(1)).page
+    first, second = page.replace("-13.263", "-18.263"), page.replace("19.982", "19.932")
+    for readings, verdict in (
+        ((first, page), Verdict.IDENTICAL_AS_READ),
+        ((page, first), Verdict.IDENTICAL),
+        ((first, second), Verdict.IDENTICAL_AS_READ),
+        ((first, first.replace("INITIAL", "1NITIAL")), Verdict.DIFFERS),
+        ((first, page, first.replace("*****", "KKKKK")), Verdict.INCOMPLETE),
+        ((first, "nothing of it"), Verdict.DIFFERS),
+    ):
+        (result,) = examine("-", seed=readings[1:], data=readings[0].encode()).results
+        assert result.verdict is verdict, readings
+
+
+def test_what_is_shown_of_a_verdict_is_short() -> None:
+    found = verify(run(sample(1)).page)
+    assert len(repr(found)) < 200
+    assert found._repr_html_().count("IDENTICAL") == 1

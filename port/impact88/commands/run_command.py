@@ -148,7 +148,9 @@ def _run_of_copy(args: options.Args, scene: Scene | None) -> Run:
         raise UserError("--listing runs on a scene; expected a scene file or --sample")
     if args.arithmetic != "applesoft":
         raise UserError("--listing runs in the emulator; expected --arithmetic applesoft")
-    return ListingCopy(args.listing).run(scene, dos=not args.no_dos)
+    copy = ListingCopy(args.listing)
+    copy.check_variables()
+    return copy.run(scene, dos=not args.no_dos)
 
 
 def _typed_lines() -> Iterator[str | None]:

@@ -6,7 +6,8 @@ A scan or photograph (PNG, JPEG, TIFF, PDF; pip install 'impact88[scan]') is rea
 is held against the mean glyph that the page itself has for the character the program prints.
 
 verdicts:
-  IDENTICAL                 every number was read, and is what the program prints
+  IDENTICAL                 every number was read, and is what the program prints; no other text
+                            on the page holds a figure or a label
   IDENTICAL AS FAR AS READ  the program's page explains the paper; doubts are listed
   DIFFERS                   something contradicts every scene that the inputs allow
   INCOMPLETE                numbers are missing; what could be compared agrees
@@ -46,7 +47,10 @@ ARGUMENTS = (
     options.reads(
         "--text-from",
         "WORDS",
-        "what another reader made of the picture: tesseract's TSV, hOCR, ALTO or text",
+        "another reading of the same paper, any number of times: tesseract's TSV, hOCR, ALTO or "
+        "text; of a picture its inputs are tried",
+        action="append",
+        default=[],
     ),
     options.writes("--report", "FILE.html", "write a page for the case file"),
     options.sample_option("the inputs are those of a published run"),
@@ -74,13 +78,11 @@ def main(args: options.Args) -> int:
         from ..program.emulated import ListingCopy
 
         copy = ListingCopy(args.listing)
-    seed = ""
-    if args.text_from:
-        seed = decoded(files.read_bytes(args.text_from, LARGEST_FILE), args.text_from)
+    readings = [decoded(files.read_bytes(path, LARGEST_FILE), path) for path in args.text_from]
     status = 0
     examined = []
     for path in args.printouts:
-        file = examine(path, given, copy, seed)
+        file = examine(path, given, copy, readings)
         examined.append(file)
         _show(file, args)
         adverse = any(result.verdict is not Verdict.IDENTICAL for result in file.results)

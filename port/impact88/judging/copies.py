@@ -15,8 +15,9 @@ from typing import Any
 
 import numpy as np
 
+from ..doubles import double
 from ..errors import UserError
-from ..fields import ANGLES, ZERO_DETERMINANT, outcome_fields, scene_name
+from ..fields import ANGLES, INPUTS, ZERO_DETERMINANT, outcome_fields, scene_name
 from ..program.emulated import ListingCopy
 from ..program.run import run
 from ..reading.fieldlabels import LabelState
@@ -30,6 +31,10 @@ from .judgement import FieldCheck, Judged, Status, judge
 
 _TEXTS = 4
 """Texts that are tried for an angle: as printed, rounded, and two that the Apple prints so."""
+_CONVERTED = 1e-3
+"""Relative difference from which on a copy prints another number than was typed."""
+_TYPED_DIGITS = 9
+"""Digits that are tried for what was typed."""
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]+)?")
 
 
@@ -39,6 +44,7 @@ class CopyPages:
 
     def __init__(self, copy: ListingCopy) -> None:
         self.copy = copy
+        copy.check_variables()
         restored, own = run(sample(1)).page, copy.run(sample(1)).page
         self._order, self._own_order = _labelled(restored), _labelled(own)
         kinds = [{_plain(line, "#") for line in page.split("\n")} for page in (restored, own)]
@@ -116,7 +122,7 @@ class CopyPages:
         choices = [_typed_texts(name, text) for name, text in right.items()]
         for texts in product(*choices):
             typed = dict(zip(map(scene_name, right), texts, strict=True))
-            scene = {**found.recovered.scene, **typed}
+            scene = {**found.recovered.scene, **found.recovered.typed, **typed}
             own = [check for check in found.replies if check.name.startswith("line ")]
             besides = {check.line or 0: check.printed or "" for check in own}
             other = self._judged(found.paper, found.recovered, scene, besides)
@@ -130,6 +136,7 @@ class CopyPages:
         them, and as others that print so, where the copy prints those otherwise."""
         either = [scene, *with_opposite_mu(scene)]
         yield from either
+        yield from self._converted(paper, scene)
         for typed in either:
             fields = self._run(typed)[0].fields
             printed = {
@@ -140,6 +147,38 @@ class CopyPages:
             for rank in range(_TEXTS if printed else 0):
                 texts = {name: _typed_texts(name, text)[rank:] for name, text in printed.items()}
                 yield {**typed, **{name: some[0] for name, some in texts.items() if some}}
+
+    def _converted(self, paper: Printout, scene: dict[str, str]) -> Iterator[dict[str, str]]:
+        """The scene with what was typed where the copy converts it before it prints it: the replies
+        on the page, and numbers of few digits that print as the page has them."""
+        replies = {name: reply.text for name, reply in paper.replies.items() if reply.clean}
+        fields = self._run(scene)[0].fields
+        printed = {
+            scene_name(name): text
+            for name in INPUTS
+            if name != "MUP"
+            and (text := paper.text(name)) is not None
+            and _is_converted(scene[scene_name(name)], fields.get(name))
+        }
+        if not printed:
+            return
+        typed = {name: text for name, text in replies.items() if name in printed}
+        if len(typed) == len(printed):
+            yield from ({**other, **typed} for other in (scene, *with_opposite_mu(scene)))
+        scales = {
+            name: double(scene[name]) / double(fields[name]) for name in printed if fields.get(name)
+        }
+        for digits in range(1, _TYPED_DIGITS + 1):
+            trial = {
+                name: f"{float(f'{double(text) * scales[name]:.{digits}g}'):.{_TYPED_DIGITS}G}"
+                for name, text in printed.items()
+                if name not in typed and name in scales
+            }
+            shown = self._run({**scene, **typed, **trial})[0].fields
+            typed |= {
+                name: text for name, text in trial.items() if shown.get(name) == printed[name]
+            }
+        yield from ({**other, **typed} for other in (scene, *with_opposite_mu(scene)))
 
     def _judged(
         self,
@@ -168,11 +207,26 @@ class CopyPages:
             for number, line in besides.items()
             if _plain(line) not in own
         ]  # fmt: skip
-        return judge(paper, replace(recovered, scene=scene, outcome=outcome), wrong)
+        typed = {
+            name: text
+            for name, text in scene.items()
+            if name != "MU" and _is_converted(text, outcome.fields.get(name))
+        }
+        scene = {**scene, **{name: outcome.fields[name] for name in typed}}
+        judged = replace(recovered, scene=scene, outcome=outcome, typed=typed)
+        return judge(paper, judged, wrong)
 
 
 pages_of = lru_cache(maxsize=1)(CopyPages)
 """The pages of the copy that was asked for last: many files are held against one."""
+
+
+def _is_converted(typed: str, printed: str | None) -> bool:
+    """Whether a copy prints another number for an input than was typed; not one in its last
+    places, as a copy with another pi does."""
+    if not printed or not double(printed):
+        return False
+    return abs(double(typed) - double(printed)) > _CONVERTED * abs(double(printed))
 
 
 def _texts(printed: Printout) -> dict[str, str]:

@@ -11,10 +11,11 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any, NamedTuple
 
-from ..fields import ANGLES, FIELDS, FINAL_SPINS
+from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES
+from ..reading.fieldlabels import LabelState
 from ..reading.glyphs import Region
-from ..reading.numerals import Doubt, Match, Spot, compare, cut_as
-from ..reading.printout import Printout, Reading, reading_of
+from ..reading.numerals import Doubt, Match, Spot, compare, cut_as, note_start
+from ..reading.printout import Piece, Printout, Reading, reading_of
 from ..recovery.recovered import Recovered, reply_ways, without_mark
 from ..recovery.slips import Rereading
 from ..recovery.typedtext import stored_and_printed
@@ -100,7 +101,7 @@ class FieldCheck:
 @dataclass
 class Judged:
     """A printout held against the page of the scene that was recovered: every number, the replies,
-    the ending, and the verdict."""
+    the ending, and the verdict. ``notes``: text typed beside a number that was read exactly."""
 
     paper: Printout
     recovered: Recovered
@@ -108,6 +109,7 @@ class Judged:
     replies: list[FieldCheck]
     ending: FieldCheck
     verdict: Verdict
+    notes: list[Piece] = field(default_factory=list)
 
     @property
     def contradicted(self) -> list[FieldCheck]:
@@ -119,8 +121,11 @@ class Judged:
 def judge(paper: Printout, recovered: Recovered, others: Sequence[FieldCheck] = ()) -> Judged:
     """The printout, judged. ``others``: replies that were compared elsewhere."""
     replies = [_reply(paper, recovered, name, reading) for name, reading in paper.replies.items()]
-    every = _fields(paper, recovered), [*replies, *others], _ending(paper, recovered)
-    found = Judged(paper, recovered, *every, Verdict.IDENTICAL)
+    checks, notes = _fields(paper, recovered)
+    if all(check.status != Status.CONTRADICTED for check in checks):
+        _doubt_damaged_replies(paper, replies)
+    ending = _ending(paper, recovered)
+    found = Judged(paper, recovered, checks, [*replies, *others], ending, Verdict.IDENTICAL, notes)
     found.verdict = _verdict(found)
     return found
 
@@ -136,7 +141,7 @@ def _verdict(found: Judged) -> Verdict:
     if unread or found.ending.same is None or missing or paper.fragment_of_run or paper.unread:
         return Verdict.INCOMPLETE
     doubtful = any(check.status != Status.READ for check in [*found.fields, *found.replies])
-    beside = any(piece.beside for piece in paper.left_over) or bool(paper.remarks)
+    beside = any(piece.beside for piece in paper.left_over) or bool(found.notes or paper.remarks)
     if doubtful or beside or any(label.doubt for label in paper.labels):
         return Verdict.IDENTICAL_AS_READ
     return Verdict.IDENTICAL
@@ -145,9 +150,10 @@ def _verdict(found: Judged) -> Verdict:
 # --- numbers -------------------------------------------------------------------------------------
 
 
-def _fields(paper: Printout, recovered: Recovered) -> list[FieldCheck]:
-    """Every field that is printed or should be, in the order of the printout."""
-    checks = []
+def _fields(paper: Printout, recovered: Recovered) -> tuple[list[FieldCheck], list[Piece]]:
+    """Every field that is printed or should be, in the order of the printout; and the notes typed
+    beside numbers that were read."""
+    checks, notes = [], []
     row = _angle_row(paper, recovered)
     for name in FIELDS:
         text = recovered.outcome.fields.get(name)
@@ -160,6 +166,13 @@ def _fields(paper: Printout, recovered: Recovered) -> list[FieldCheck]:
         if reading is None:
             check.status = Status.NOT_READ
         elif text is not None:
+            noted = note_start(reading.region)
+            if noted < len(reading.region) and reading.region[:noted]:
+                own = compare(reading.region[:noted], text)
+                if not own.contradicts:
+                    notes.append(_note(paper, reading.region[noted:]))
+                    check.stop = reading.region[noted - 1].offset + 1
+                    reading = replace(reading, region=reading.region[:noted], stop=check.stop)
             match = compare(reading.region, text, reading.cut, reading.sign_free)
             if name in row and name != ANGLES[0] and not reading.region[0].gap:
                 match = match._replace(spots=(Spot(0, "", "", Doubt.BLANK), *match.spots))
@@ -167,10 +180,31 @@ def _fields(paper: Printout, recovered: Recovered) -> list[FieldCheck]:
             check.doubts = _doubts(paper, reading, match.spots)
             if check.status is Status.READ:
                 check.printed = text
+            elif check.printed == text or (
+                check.status is Status.CONTRADICTED and not reading.clean
+            ):
+                check.printed = _as_it_stands(paper, reading)
         elif not recovered.missing:
             check.status = Status.CONTRADICTED
         checks.append(check)
-    return checks
+    return checks, notes
+
+
+_SHOWN = 30
+"""Characters of a number's place that are shown."""
+
+
+def _as_it_stands(paper: Printout, reading: Reading) -> str:
+    """Return the text in a number's place, as it stands on the paper."""
+    end = reading.region[-1].offset + 1
+    text = " ".join(paper.page.text[reading.start : end].split())
+    return text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
+
+
+def _note(paper: Printout, region: Region) -> Piece:
+    start, stop = region[0].offset, region[-1].offset + 1
+    text = " ".join(paper.page.text[start:stop].split())
+    return Piece(text, *paper.page.place(start), start, stop, beside=True)
 
 
 def _check(name: str, reading: Reading | None, text: str | None) -> FieldCheck:
@@ -224,7 +258,7 @@ def _doubts(paper: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Do
 def _reply(paper: Printout, recovered: Recovered, name: str, reading: Reading) -> FieldCheck:
     """A reply shown at a prompt against the velocity of the scene, as a number; laid beside its
     text as typed or as printed, with or without its first glyph, whichever explains it best."""
-    value = recovered.scene[name]
+    value = recovered.typed.get(name, recovered.scene[name])
     if name in recovered.missing:
         return _check(name, reading, None)
     check = _check(name, reading, value)
@@ -243,8 +277,26 @@ def _reply(paper: Printout, recovered: Recovered, name: str, reading: Reading) -
         check.status, check.doubts = Status.CONTRADICTED, _doubts(paper, part, match.spots)
         return check
     place = reading.line, reading.column, reading.start
-    check.doubts = [Doubtful(*place, reading.text, value, str(how))]
+    shown = reading.text if reading.text != value else _as_it_stands(paper, reading)
+    check.doubts = [Doubtful(*place, shown, value, str(how))]
     return check
+
+
+def _doubt_damaged_replies(paper: Printout, replies: Sequence[FieldCheck]) -> None:
+    """Doubt the replies at a prompt that was itself misread, its letters or its question mark,
+    where every printed number is the program's: the reader damaged that line."""
+    misread = {label.name for label in paper.labels if label.state is LabelState.DAMAGED}
+    by_name = {check.name: check for check in replies}
+    for side, names in REPLIES.items():
+        own = [by_name[name] for name in names if name in by_name]
+        mark = own and own[0].name == names[0] and own[0].status is Status.DOUBTFUL
+        mark = mark or names[0] in paper.misread_prompts
+        for check in own if mark or f"REPLY_{side}" in misread else ():
+            if check.status is Status.CONTRADICTED:
+                check.status = Status.DOUBTFUL
+                place = check.line or 0, check.column or 0, check.start or 0
+                read, printed = check.printed or "", check.recomputed or ""
+                check.doubts = [Doubtful(*place, read, printed, str(Doubt.LOOK_ALIKE))]
 
 
 def same_value(text: str, other: str) -> bool:

@@ -16,8 +16,8 @@ from ..applesoft.errorcodes import ApplesoftError
 from ..emulator.emulator import Applesoft
 from ..emulator.faults import TooManyStatements
 from ..errors import UserError
-from ..names import SCENE
 from ..scene import Scene
+from .copyvariables import find_variables, key_of
 from .run import Run
 
 LISTING = "impact.bas"
@@ -68,8 +68,10 @@ STATEMENTS = 100_000
 
 _STATEMENT = re.compile(r'\s*REM.*|(?:"[^"]*"?|[^":])*', re.I | re.S)
 """A remark is one statement, whatever stands in it."""
-_NUMBER = r"[-+]?\s*(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]+)?"
-_ASSIGNED = re.compile(rf"(?P<before>\s*(?:LET\s*)?(?P<name>[A-Z]+)\s*=\s*){_NUMBER}\s*", re.I)
+_CONSTANT = r"[-+*/^(). 0-9]+(?:E\s*[-+]?\s*[0-9]+)?"
+_ASSIGNED = re.compile(
+    rf"(?P<before>\s*(?:LET\s*)?(?P<name>[A-Z][A-Z0-9]*)\s*=\s*){_CONSTANT}\s*", re.I
+)
 _LIST = re.compile(r"\s*(?P<verb>READ|INPUT|DATA)\b\s*(?:\"[^\"]*\"\s*;)?\s*(?P<items>.*)", re.I)
 
 
@@ -95,6 +97,25 @@ class ListingCopy:
             raise UserError(f"is not an Applesoft program: {error}", path) from None
         if not self._lines:
             raise UserError("holds no program; expected numbered lines of Applesoft", path)
+        restored = _listed(files.packaged_text("impact88.legacy", LISTING))
+        self._variables = find_variables(self._lines, restored)
+        self._values = {key: name for name, key in self._variables.of_value.items()}
+
+    def check_variables(self) -> None:
+        """Raise UserError where it is not plain which of the copy's variables takes a value of a
+        scene, or which value a variable that it asks for takes."""
+        if names := self._variables.missing:
+            raise UserError(
+                f"{', '.join(names)}: no variable of the copy is given a number and printed under "
+                "this label; expected the listing's names, or its labels",
+                self.file,
+            )
+        if names := self._variables.unknown:
+            raise UserError(
+                f"asks for {', '.join(names)} (INPUT), of which nothing is printed under a label "
+                "of the listing's; expected a copy that asks for a scene's values alone",
+                self.file,
+            )
 
     def changed_lines(self) -> list[ChangedLine]:
         """The lines in which the copy is another program than the restored listing; remarks and
@@ -113,7 +134,8 @@ class ListingCopy:
         machine = Applesoft(dos=dos, blanks=False)
         machine.load("\n".join(self._with(scene)))
         for names in self._lists("INPUT"):
-            machine.feed(",".join(scene.get(name.upper(), "0") for name in names))
+            values = (self._values.get(key_of(name), "") for name in names)
+            machine.feed(",".join(scene.get(value, "0") for value in values))
         machine.machine.statements_left = STATEMENTS
         try:
             return finished(machine)
@@ -133,11 +155,11 @@ class ListingCopy:
 
         def given(statement: str) -> str:
             if items := _items(statement, "DATA"):
-                read = [(item, next(names, "").upper()) for item in items]
-                return " DATA " + ",".join(scene[n] if n in SCENE else item for item, n in read)
+                read = [(item, self._values.get(key_of(next(names, "")))) for item in items]
+                return " DATA " + ",".join(scene[n] if n else item for item, n in read)
             match = _ASSIGNED.fullmatch(statement)
-            if match and match["name"].upper() in SCENE:
-                return match["before"] + scene[match["name"].upper()]
+            if match and (value := self._values.get(key_of(match["name"]))):
+                return match["before"] + scene[value]
             return statement
 
         for number, statements in self._lines.items():

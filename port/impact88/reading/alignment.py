@@ -156,18 +156,22 @@ def _closes(state: State) -> bool:
 
 
 @lru_cache(maxsize=2000)
-def _emitted(char: str) -> tuple[Costs, Costs]:
-    """What a glyph costs by state: that opens it, and one more of it; "" is none of the page's."""
+def _emitted(char: str, broken: bool = False) -> tuple[Costs, Costs]:
+    """What a glyph costs by state: that opens it, and one more of it; "" is none of the page's.
+    ``broken``: whether a line ends before it."""
+    opened = COSTS["letter opens number on a new line"] * (broken and char.isalpha())
     more = COSTS["inserted figure" if char.isdigit() else "inserted"]
     costs = []
-    for state in STATES:
+    for place, state in enumerate(STATES):
         if state.kind in ("outside", "between"):
             figure = COSTS["figure between"] * (char.isdigit() and state.kind == "between")
             costs.append([(COSTS[state.kind] + figure) * bool(char)] * 2)
         elif not char:
             costs.append([_MOST] * 2)
         elif state.kind == "number":
-            costs.append([_in_number(char, state.line < PROMPTS)] * 2)
+            cost = _in_number(char, state.line < PROMPTS)
+            labelled = STATES[place - 1].name == "="
+            costs.append([cost + opened * labelled, cost])
         else:
             costs.append([label_cost(state.name, char), more])
     enter, stay = np.array(costs, np.int16).T
@@ -191,6 +195,8 @@ _WHOLE = 20
 """Numbers of a page for which the budget is filled again; labels without end are aligned as 14."""
 _LABELS = re.compile("=|VAX|VAY|VBX|VBY|LOSS|M[AB]|[IDPTWXY][AB]|[UV][XY]")
 _EXPONENT = re.compile("(?<=[0-9.])E(?=[-+][0-9])")
+_ROW_PIECE = 10
+"""Glyphs of a row of angles that may stand outside between its pieces: one number."""
 _ASIDE = 1000
 """Glyphs that may stand between two parts of a page: half a page of text."""
 
@@ -243,7 +249,7 @@ def _states(chars: Sequence[str], gaps: Sequence[int]) -> list[int]:
     costs[0] = np.where(np.arange(len(STATES)), _MOST, 0)
     stays = np.empty(costs.shape, bool)
     for row, (char, gap) in enumerate(zip(chars, gaps, strict=True)):
-        enter, more = _emitted(char)
+        enter, more = _emitted(char, gap is Gap.LINE)
         move = (costs[row][:, None] + jumps[gap]).min(axis=0) + enter
         stay = costs[row] + more + staying[gap]
         stays[row] = stay <= move
@@ -272,4 +278,20 @@ def _parts(start: int, states: Sequence[int]) -> list[dict[int, int]]:
                 parts[-1].update(dict.fromkeys(range(last + 1, index), 0))
             parts[-1][index] = state
             last, before = index, state
-    return parts
+    return _rows_joined(parts)
+
+
+def _rows_joined(parts: Sequence[dict[int, int]]) -> list[dict[int, int]]:
+    """The same with a row of angles that blanks and line breaks cut into more than five pieces in
+    one: the pieces beyond begin no printout, for nothing of a page stands between them."""
+    row = [place for place, state in enumerate(STATES) if state.line == ANGLE_ROW]
+    joined: list[dict[int, int]] = []
+    for part in parts:
+        begin, end = min(part), max(joined[-1]) if joined else 0
+        if joined and joined[-1][end] in row and part[begin] in row and begin - end <= _ROW_PIECE:
+            rest = [index for index, state in part.items() if state in row]
+            joined[-1].update(part)
+            joined[-1].update(dict.fromkeys(range(end + 1, max(rest) + 1), row[-1]))
+        else:
+            joined.append(part)
+    return joined

@@ -167,9 +167,30 @@ def _state(kind: str, printed: str, read: str, others: set[str]) -> tuple[LabelS
     lost = read not in others and all(letter in left for letter in read)  # itself, with gaps
     if len(read + printed) > len("EL") and not lost:
         word = read.isascii() and read.isalpha()
-        if other < own - _CLEARER or (word and own >= _REACH * len(printed)):
+        strange = word and (own >= _REACH * len(printed) or _names_otherwise(printed, read))
+        if other < own - _CLEARER or strange:
             return LabelState.CONTRADICTORY, doubt
     return LabelState.DAMAGED, doubt
+
+
+_WORDS = {"INITIALKE": 7, "KELOSS": 2}
+"""Labels of two words: the letters of the first."""
+
+
+def _names_otherwise(printed: str, read: str) -> bool:
+    """Whether one word of a label of two is read as a word that is not this one."""
+    if printed not in _WORDS:
+        return False
+    words = printed[: _WORDS[printed]], printed[_WORDS[printed] :]
+    splits = ((read[:at], read[at:]) for at in range(len(read) + 1))
+    parts = min(splits, key=lambda parts: sum(map(_distance, words, parts)))
+    for word, part in zip(words, parts, strict=True):
+        left = iter(word)
+        lost = all(letter in left for letter in part)
+        kept = sum(letter == char for letter, char in zip(word, part, strict=False))
+        if not lost and 2 * kept < len(word) and _distance(word, part) >= _REACH * len(word):
+            return True
+    return False
 
 
 @lru_cache(maxsize=4096)

@@ -106,6 +106,33 @@ def clean(region: Region) -> str | None:
     return text if is_number(text) and not any(glyph.gap for glyph in region[1:]) else None
 
 
+_OPENING = frozenset("([{<")
+_CLASSIC = frozenset("OQILSZB")
+"""Letters that stand for figures often: two of them make no word."""
+
+
+def note_start(region: Region) -> int:
+    """Return where a note typed beside a clean number begins, the region's length if none does.
+
+    A note follows a gap and opens with a bracket or a word: ``-13.263 (WRONG: 31.2)``. A figure
+    right after a blank may be the number's own.
+    """
+    for at in range(1, len(region)):
+        if region[at].gap and clean(region[:at]) and _is_note(region[at:]):
+            return at
+    return len(region)
+
+
+def _is_note(rest: Region) -> bool:
+    end = next((at for at, glyph in enumerate(rest) if at and glyph.gap), len(rest))
+    word = [char for char in letters(rest[:end]) if char.isalpha()]
+    if not rest[0].char.isalpha():
+        return rest[0].char in _OPENING and len(rest) >= 3
+    strange = sum(char not in _CLASSIC for char in word)
+    alone = len(word) == end >= 2  # nothing but letters between two gaps
+    return len(word) >= 3 or strange >= 2 or (alone and strange > 0)
+
+
 def compare(region: Region, printed: str, cut: bool = False, sign_free: bool = False) -> Match:
     """How the glyphs are explained by what the program prints.
 
@@ -250,7 +277,14 @@ Ways = tuple[tuple[str, float], ...]
 
 def candidates(region: Region, most: int = 40, sign_free: bool = False) -> Ways:
     """The printable texts that glyphs may have been, with what each costs, cheapest first."""
-    return _candidates(tuple(glyph[:2] for glyph in region[:LONGEST]), most, sign_free)
+    noted = note_start(region)
+    ways = _candidates(tuple(glyph[:2] for glyph in region[:LONGEST]), most, sign_free)
+    if noted == len(region):
+        return ways
+    costs = dict(_candidates(tuple(glyph[:2] for glyph in region[:noted]), most, sign_free))
+    costs = {text: cost + _SPECK for text, cost in costs.items()}
+    costs |= {text: min(cost, costs.get(text, cost)) for text, cost in ways}
+    return tuple(sorted(costs.items(), key=lambda way: way[1])[:most])
 
 
 def taken_for(region: Region, sign_free: bool) -> str | None:

@@ -66,15 +66,24 @@ def _sense(text: str) -> tuple[int, int]:
     return sum(mark in text.upper() for mark in _MARKS), dashes - 5 * text.count("�")
 
 
+_ELEMENTS = (
+    "a|abbr|address|article|b|big|blockquote|body|br|caption|center|cite|code|col|colgroup|dd|div|"
+    "dl|dt|em|font|footer|form|h[1-6]|head|header|hr|html|i|img|kbd|li|link|main|meta|nav|ol|p|"
+    "pre|s|samp|section|small|span|strike|strong|style|sub|sup|table|tbody|td|tfoot|th|thead|"
+    "title|tr|tt|u|ul|var|[a-z]{1,3}:[a-z]+"
+)
+"""Elements of HTML; what else stands in angle brackets was typed."""
 _MARKUP = re.compile(
-    r"""(?mx) ^(?:\s*>)+                                   # quotes of a mail
-    | <(?:/?[a-zA-Z][^<>\n]{0,80}|!--.*?--)>               # HTML
+    rf"""(?mx) ^(?:\s*>)+                                   # quotes of a mail
+    | <(?:/?(?i:{_ELEMENTS})(?![\w:])[^<>\n]{{0,80}}|!--.*?--|[!?][a-zA-Z][^<>\n]{{0,80}})>
     | ^[ \t]*(?:```|~~~).*$                                # fences of Markdown, its list marks
-    | ^[ \t]*(?:[•*‣◦][ \t]+(?=[-A-Za-z(.0-9])|[-+][ \t]+(?=[-A-Za-z(]))
-    | ^[ \t]*[0-9]{1,5}[ ]+(?:                             # lines of a BASIC program
+    | ^[ \t]*[•*‣◦][ \t]+(?=[-A-Za-z(.0-9])
+    | ^[ \t]*[0-9]{{1,5}}[ ]+(?:                           # lines of a BASIC program
       (?:REM|PRINT|INPUT|IF|GOTO|GOSUB|FOR|NEXT|DIM|END|RETURN|DATA|ON)\b
       |[A-Z][A-Z0-9]*[$%]?(?:\([^)\n]*\))?[ ]?=[^=\n]*:).*$"""
 )
+_DASHED_ITEM = re.compile(r"(?m)^[ \t]*[-+][ \t]+(?=[-A-Za-z(])")
+"""An item of a list; a dash before a line by itself may be a minus."""
 _RTF = re.compile(r"\\[a-z]+-?[0-9]* ?|[{}]")
 _ENTITY = re.compile(r"&(?:#[0-9]{1,6}|#[xX][0-9a-fA-F]{1,6}|[a-zA-Z]{2,8});")
 _ROW_OF_TABLE = re.compile(r"(?m)^\s*\|.*\|\s*$")
@@ -111,6 +120,8 @@ def unwrapped(text: str) -> str:
             text = _NUMBERED.sub(_blank, text)
     if text.lstrip().startswith("{\\rtf"):
         text = _RTF.sub(_blank, text)
+    if len(_DASHED_ITEM.findall(text)) >= _LINES:
+        text = _DASHED_ITEM.sub(_blank, text)
     text = _ENTITY.sub(_entity, _MARKUP.sub(_blank, text))
     text = re.sub(r"\$(-|−)\$", r"  \1", text)
     text = re.sub(r"(?<=[VW])_\{?|(?<=[VW]_\{[abxy])\}|(?<=[VW]_\{[ab][xy])\}", _blank, text)
@@ -151,6 +162,62 @@ def _groups_joined(text: str) -> str:
     if not both or grouped < points - grouped:
         return text
     return _GROUPED.sub(lambda number: number.group().replace(".", "\u2009"), text)
+
+
+_FIRST_WORDS = re.compile(
+    r"(?i)(?<![A-Za-z])(?:ENTER +THE|MA *=|DA *=|PA\s+PB\s+TA|UX *=|VX *=|E *=|INITIAL +KE|"
+    r"VAX *=|VBX *=)"
+)
+"""What lines of a printout begin with, each of another line."""
+_SHARED = 4
+"""Kinds of lines that stand in both of two columns, at least."""
+_NARROW = 30
+"""Columns of text that the left one of two takes at least."""
+_GUTTER = 10
+"""Characters by which lines of the right column begin earlier or later than most."""
+_RAGGED = 4
+"""The same of lines without labels."""
+
+
+def columns(text: str) -> list[str]:
+    """Return the texts of printouts that stand side by side, the left one first; a text in one
+    column as it is. Each is the whole text with the other columns blanked out, so that every
+    character keeps its line and column."""
+    lines = text.split("\n")
+    left: list[re.Match[str]] = []
+    right: list[re.Match[str]] = []
+    cuts: list[int | None] = []
+    margin = min((len(line) - len(line.lstrip()) for line in lines if line.strip()), default=0)
+    for line in lines:
+        words = [*_FIRST_WORDS.finditer(line)]
+        first = words[0].start() - margin if words else 0
+        beyond = words if first >= _NARROW else words[1:]
+        left += words[: len(words) - len(beyond)]
+        right += beyond[:1]
+        cuts.append(beyond[0].start() if beyond else None)
+    gutter = round(median([word.start() for word in right] or [0]))
+    level = sum(abs(word.start() - gutter) <= _GUTTER for word in right)
+    shared = {*map(_plain_word, left)} & {*map(_plain_word, right)}
+    if len(shared) < _SHARED or 4 * level < 3 * len(right):
+        return [text]
+    own, others = [], []
+    for line, cut in zip(lines, cuts, strict=True):
+        at = _gutter_of(line, gutter) if cut is None else cut
+        own.append(line[:at].ljust(len(line)))
+        others.append(" " * len(line[:at]) + line[at:])
+    return ["\n".join(own), *columns("\n".join(others))]
+
+
+def _plain_word(match: re.Match[str]) -> str:
+    return "".join(match.group().upper().split())
+
+
+def _gutter_of(line: str, gutter: int) -> int:
+    """Return where the right column begins in a line without labels: behind the gap that ends
+    nearest to the gutter; the line's length where all of it is the left column's."""
+    gaps = [gap.end() for gap in re.finditer(r"^\s*|\s{2,}|\t", line) if gap.end() < len(line)]
+    nearest = min(gaps, key=lambda end: abs(end - gutter), default=len(line))
+    return nearest if abs(nearest - gutter) <= _RAGGED else len(line)
 
 
 _TAG = re.compile(r"""<([\w:]+)((?:"[^"]*"|'[^']*'|[^"'<>])*)>([^<]*)""")

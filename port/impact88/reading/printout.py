@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from ..applesoft.errorcodes import CODES
 from ..arguments import explains_arguments
-from ..errors import UserError, quoted
+from ..errors import UserError, printable, quoted
 from ..fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT
 from . import numerals
 from . import plaintext as pasted
@@ -88,7 +88,7 @@ class Piece(NamedTuple):
     whole: bool = False
 
 
-@dataclass
+@dataclass(repr=False)
 class Printout:
     """One printout as read.
 
@@ -101,7 +101,8 @@ class Printout:
     ``has_final_spins``: whether the final WA, WB line is, read or not: then M = N; ``left_over``:
     text that belongs nowhere; ``remarks``: what could not be read, and where; ``labels``: how each
     number is named; ``notes``: what was normalised or passed over; ``unread``: why the text was not
-    read to its end; ``misread_letters``: of labels and asterisks, how many were read as others.
+    read to its end; ``misread_letters``: of labels and asterisks, how many were read as others;
+    ``misread_prompts``: the first reply of each prompt whose question mark was.
     """
 
     page: Page = field(repr=False)
@@ -123,6 +124,7 @@ class Printout:
     notes: list[str] = field(default_factory=list)
     unread: str = ""
     misread_letters: int = 0
+    misread_prompts: set[str] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         glyphs, states = self.page.glyphs, self._states
@@ -141,14 +143,32 @@ class Printout:
                     self._slots[name] = (start, first)
                 elif first <= start <= sign < stop - 1:
                     self._slots[name] = (sign + 1, stop)
+        self._close_numbers()
         self._part_row()
         self._exact = {
             index: STATES[state].line
-            for index, state in states.items()
+            for index, state in self._states.items()
             if letter_of(state) == glyphs[index].char
         }
         self.start, self.stop = self.page.span(min(states), max(states) + 1)
         self.line, self.column = self.page.place(self.start)
+
+    def _close_numbers(self) -> None:
+        """End a number at the mark that the program prints right behind it, ``)`` or ``%``; what
+        follows the mark is none of it."""
+        glyphs = self.page.glyphs
+        for place, state in enumerate(STATES[1:], 1):
+            name = STATES[place - 1].name
+            if state.name not in (")", "%") or name not in self._slots:
+                continue
+            start, stop = self._slots[name]
+            for at in range(start + 1, stop - 1):
+                if glyphs[at].char == state.name and numerals.clean(glyphs[start:at]):
+                    self._slots[name] = (start, at)
+                    later = [index for index, own in self._states.items() if own == place]
+                    after = dict.fromkeys([*range(at + 1, stop), *later], 0)
+                    self._states = {**self._states, **after, at: place}
+                    break
 
     def _part_row(self) -> None:
         """A line of five clean numbers is the row of angles; what stands below it is none of it."""
@@ -165,6 +185,9 @@ class Printout:
             if glyphs[index].gap:
                 starts.append(index)
 
+    def __repr__(self) -> str:
+        return f"<Printout at line {self.line}: {len(self.fields)} numbers read>"
+
     @property
     def mislabelled(self) -> list[LabelCheck]:
         """The labels that say another number than the one that stands there."""
@@ -178,9 +201,10 @@ class Printout:
             piece.beside and not piece.whole and len(piece.text) <= 3 for piece in self.left_over
         )
         return sum(specks) + sum(
-            any(glyph.gap for glyph in field.region[1:])
-            or not _TYPED.issuperset(letters(field.region))
-            for field in self.fields.values()
+            any(glyph.gap for glyph in region[1:]) or not _TYPED.issuperset(letters(region))
+            for region in (
+                field.region[: numerals.note_start(field.region)] for field in self.fields.values()
+            )
         )
 
     @property
@@ -268,6 +292,20 @@ class Printout:
         wrong = {label.name for label in self.mislabelled}
         self.misread_letters = self._misread("*ABCDEFGHIJKLMNOPQRSTUVWXYZ", wrong)
 
+    def read_otherwise(self) -> list[str]:
+        """Return a note on the letters and marks of labels that were read as others and leave no
+        doubt which number is meant."""
+        told = {at for label in self.labels if label.doubt for at in range(label.start, label.stop)}
+        told |= {at for label in self.mislabelled for at in range(label.start, label.stop)}
+        places: dict[int, list[str]] = {}
+        for index, role in self.roles().items():
+            glyph, printed = self.page.glyphs[index], self._letter(index)
+            if role == "letter" and printed and glyph.offset not in told:
+                line, _ = self.page.place(glyph.offset)
+                places.setdefault(line, []).append(f"{glyph.char} for {printed}")
+        said = [f"line {line}: {', '.join(marks)}" for line, marks in sorted(places.items())]
+        return [f"letters and marks read as others: {'; '.join(said)}"] if said else []
+
     def _crop(self) -> None:
         """Where most lines that begin with a label lack its first letter, three at least, the
         margin is cut off, and what a line begins with is not to be relied on."""
@@ -340,6 +378,7 @@ class Printout:
         for at in range(1, min(len("Wa ?"), len(first))):
             if value is not None and numerals.value_of(first[at:]) == value:
                 if glyphs[start - 1].char != "?":
+                    self.misread_prompts.add(names[0])
                     self._remark("reply", start, " before the first number", first[:at])
                     parts[0] = parts[0][at:]
                 break
@@ -428,7 +467,22 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     if not isinstance(text, str):
         raise UserError(f"{quoted(text)}: expected a text; impact88.verify takes files and bytes")
     text = pasted.laid_out(text, where)
-    page = Page(pasted.unwrapped(text))
+    unwrapped = pasted.unwrapped(text)
+    columns = [_read_column(part) for part in pasted.columns(unwrapped)]
+    if not all(found for found, _ in columns):
+        columns = [_read_column(unwrapped)]
+    found = [printout for printouts, _ in columns for printout in printouts]
+    if not found:
+        expected = "expected text with labels such as MA= ... MB= ... VAX= ... VAY= ..."
+        raise UserError(f"no printout of the program in it; {columns[0][1] or expected}", where)
+    found[0].notes += [*_left_out(text, unwrapped), *_markup(text, unwrapped)]
+    return found
+
+
+def _read_column(text: str) -> tuple[list[Printout], str]:
+    """Return the printouts of a text that stands in one column, and why what follows them was not
+    read where that is so."""
+    page = Page(text)
     budget = Budget()
     found = [*_printouts(page, budget)]
     reason = ""
@@ -437,15 +491,14 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
         reason = f"what follows line {line}, column {column} was not read: there is too much of it"
         found = [printout for printout in found if len(printout.fields) >= _PART]
     if not found:
-        expected = "expected text with labels such as MA= ... MB= ... VAX= ... VAY= ..."
-        raise UserError(f"no printout of the program in it; {reason or expected}", where)
+        return [], reason
     found[-1].unread = reason
     _keep_left_over(page, found)
     for printout in found:
         printout.check_labels()
         printout.notes += _normalised(page.text[printout.start : printout.stop])
-    found[0].notes += _left_out(text, page.text)
-    return found
+        printout.notes += printout.read_otherwise()
+    return found, reason
 
 
 _ALIKE = str.maketrans("0QL1|!582’`", "OOIIIISBZ''")
@@ -534,10 +587,35 @@ def _normalised(text: str) -> list[str]:
     return [f"characters read as plain ones or passed over: {kinds}"] if kinds else []
 
 
+_MARKUP_SHOWN = 6
+"""Kinds of markup that are named."""
+
+
+def _markup(text: str, unwrapped: str) -> list[str]:
+    """Return a note on the markup that was passed over in lines that were read."""
+    runs: Counter[str] = Counter()
+    for line, other in zip(text.split("\n"), unwrapped.split("\n"), strict=False):
+        if not other.strip():
+            continue
+        blanked = "".join(
+            char if after.isspace() else " " for char, after in zip(line, other, strict=False)
+        )
+        runs.update(blanked.split())
+    kinds = [f"{count} {printable(run)}" for run, count in runs.most_common(_MARKUP_SHOWN)]
+    more = f" and {len(runs) - len(kinds)} more kinds" if len(runs) > len(kinds) else ""
+    return [f"markup passed over: {', '.join(kinds)}{more}"] if runs else []
+
+
 def _left_out(text: str, unwrapped: str) -> list[str]:
     """That lines were left out as markup or as lines of a program."""
-    pairs = zip(text.splitlines(), unwrapped.splitlines(), strict=False)
+    lines = text.split("\n")
+    pairs = zip(lines, unwrapped.split("\n"), strict=False)
     gone = [any(map(str.isalpha, line)) and not other.strip() for line, other in pairs]
+    if not any(gone):
+        return []
     what = "1 line is" if sum(gone) == 1 else f"{sum(gone)} lines are"
-    what += " markup or lines of a BASIC program, and not read: the first is line "
-    return [f"{what}{gone.index(True) + 1}"] if any(gone) else []
+    first = printable(lines[gone.index(True)].strip())
+    return [
+        f"{what} markup or lines of a BASIC program, and not read: the first is line "
+        f"{gone.index(True) + 1}: {first}"
+    ]

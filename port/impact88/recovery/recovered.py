@@ -7,7 +7,7 @@ comparison.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from ..case import VALUE_LIMIT
 from ..fields import ANGLES, FINAL_SPINS, INPUTS, scene_name
@@ -19,9 +19,9 @@ from . import replays
 from .search import Column, Search, column_of
 from .typedtext import stored_and_printed
 
-_STAND_INS = ("1.7", "230", "-41000")
+_STAND_INS = ("1.7", "230", "-41000", "-.4")
 """Put in place of an input that nothing determines; a field that prints the same with each of them
-does not depend on it."""
+does not depend on it. Large values of EM print nearly alike, so one is as EM is."""
 _MOST = 40
 """Texts of one input that are tried."""
 _REPLY_DISAGREES = 1.0
@@ -39,7 +39,8 @@ class Recovered:
     ``assumed`` the printed texts it goes with, by field; ``outcome`` is what the replay prints,
     without fields that depend on missing values; ``wrong`` names what it leaves unexplained;
     ``m_unknown``: whether M = 4 explains the page as well as 6 does; ``row_in_doubt``: whether the
-    row of angles was not read for certain and no way to read it explains the page."""
+    row of angles was not read for certain and no way to read it explains the page; ``typed``: of
+    inputs that a copy of the listing converts before it prints them, what was typed."""
 
     scene: dict[str, str]
     assumed: dict[str, str]
@@ -49,6 +50,7 @@ class Recovered:
     search: Search
     m_unknown: bool = False
     row_in_doubt: bool = False
+    typed: dict[str, str] = field(default_factory=dict)
 
     @property
     def apart(self) -> list[str]:

@@ -7,8 +7,9 @@ beside it and never change it.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from hashlib import sha256
+from operator import attrgetter
 from time import process_time
 from typing import TYPE_CHECKING, Any, overload
 
@@ -18,13 +19,14 @@ from ..errors import UserError, quoted
 from ..fields import scene_name
 from ..judging import beside
 from ..judging.judgement import Judged, Status, Verdict, judge, looked_past
+from ..judging.readings import judged_together, matching
 from ..mappings import texts
 from ..reading.plaintext import decoded
 from ..reading.printout import LARGEST_FILE, Printout, read_printouts
 from ..recovery.recovered import recover, without_angles
 from ..recovery.slips import Rereading
 from . import verification
-from .verification import Examined, Verification
+from .verification import Examined, Verification, Verifications
 
 if TYPE_CHECKING:
     from ..judging.copies import CopyPages
@@ -41,20 +43,20 @@ BUDGET = 2.0
 """Seconds of processor time after which no slower causes are tried; the slowest of 471 given scans
 takes 1.9."""
 
-__all__ = ["Examined", "Verdict", "Verification", "examine", "verify"]
+__all__ = ["Examined", "Verdict", "Verification", "Verifications", "examine", "verify"]
 
 
 def examine(
     path: str,
     given: Mapping[str, str] | None = None,
     copy: ListingCopy | None = None,
-    seed: str = "",
+    seed: str | Sequence[str] = "",
     data: bytes | None = None,
 ) -> Examined:
     """A file (``-``: standard input), every printout in it judged; what cannot be read is told.
     ``given``: texts of inputs by scene name, known from elsewhere; ``copy``: the listing it is held
-    against, in place of the restored one; ``seed``: what another reader made of a picture;
-    ``data``: the file's bytes where they are known."""
+    against, in place of the restored one; ``seed``: what other readers made of it, of a picture or
+    of the paper that a text is a reading of; ``data``: the file's bytes where they are known."""
     examined = Examined(path, None)
     try:
         data = files.read_bytes(path, LARGEST_PICTURE) if data is None else data
@@ -63,7 +65,12 @@ def examine(
         if picture and (given or copy):
             other = "a scene apart" if given else "a copy of the listing"
             raise UserError(f"{other} goes with text, not with a picture", files.called(path))
-        found = _pictured(path, data, seed) if picture else _printed(path, data, given, copy)
+        seeds = [text for text in ([seed] if isinstance(seed, str) else seed) if text]
+        if seeds and copy:
+            raise UserError("other readings go without a copy of the listing", files.called(path))
+        found = (
+            _pictured(path, data, seeds) if picture else _printed(path, data, given, copy, seeds)
+        )
         for result in found:
             result.sha256 = examined.sha256
             examined.results.append(result)
@@ -72,17 +79,21 @@ def examine(
     return examined
 
 
-def _pictured(path: str, data: bytes, seed: str) -> Iterator[Verification]:
+def _pictured(path: str, data: bytes, seeds: Sequence[str]) -> Iterator[Verification]:
     try:
         from .scanned import verified
     except ImportError as error:
         said = f"pictures need {error.name}, which is not installed; pip install 'impact88[scan]'"
         raise UserError(said, files.called(path)) from None
-    return map(completed, verified(path, data, seed))
+    return map(completed, verified(path, data, seeds))
 
 
 def _printed(
-    path: str, data: bytes, given: Mapping[str, str] | None, copy: ListingCopy | None
+    path: str,
+    data: bytes,
+    given: Mapping[str, str] | None,
+    copy: ListingCopy | None,
+    seeds: Sequence[str],
 ) -> Iterator[Verification]:
     where = files.called(path)
     if len(data) > LARGEST_FILE:
@@ -94,6 +105,7 @@ def _printed(
         pages = pages_of(copy)
         text, lines, besides = pages.prepared(text)
     every = read_printouts(text, where)
+    others = [_readings(other) for other in seeds]
     for number, paper in enumerate(every, 1):
         if copy:
             end = paper.page.place(paper.stop)[0] if number < len(every) else len(lines)
@@ -102,6 +114,8 @@ def _printed(
             result.renumber(lines)
         else:
             result = _verified(paper, given)
+            if seeds and result.verdict is not Verdict.IDENTICAL:
+                result = _by_all(result, [paper, *matching(paper, others)], given)
         result.file, result.number = path, number
         yield result
 
@@ -111,30 +125,39 @@ def verify(printout: Printout, given: Mapping[str, Any] | None = None) -> Verifi
 @overload
 def verify(
     printout: str | bytes | os.PathLike[str], given: Mapping[str, Any] | None = None
-) -> list[Verification]: ...
+) -> Verifications: ...
 @explains_arguments
 def verify(
     printout: Printout | str | bytes | os.PathLike[str], given: Mapping[str, Any] | None = None
-) -> Verification | list[Verification]:
+) -> Verification | Verifications:
     """Say of each printout whether it is what the 1988 program prints, and if not, why.
 
     Parameters
     ----------
-    printout : str, bytes, path-like or Printout
-        A text (a str of more than one line), a file's name, or a file's bytes: all printouts in it
-        are judged. Or one printout of `read_printouts`, for one verdict.
-    given : mapping of str to str or float, optional
-        Inputs known from elsewhere than the paper, by the scene's names, with units or without.
+    printout : str, bytes, os.PathLike or Printout
+        A text (a str of more than one line), a file's name, or its bytes, with any number of
+        printouts in it: text, or a picture or PDF of pages. Or one printout of
+        `impact88.read_printouts`.
+    given : mapping, optional
+        Inputs known from elsewhere than the paper: texts or numbers by the scene's names, with
+        units or without.
 
     Returns
     -------
-    list of Verification, or Verification
-        A verdict for each printout; of a `Printout`, its own.
+    Verifications or Verification
+        A list with the verdict on each printout, which a notebook shows whole; of one of
+        `read_printouts` its verdict.
 
     Raises
     ------
     UserError
         For a file that cannot be read or holds no printout.
+
+    Notes
+    -----
+    The inputs on the page are recovered, the listing is run with them in Applesoft's arithmetic,
+    and every digit and label is compared. Text that is none of the program's is listed, and bars
+    `Verdict.IDENTICAL` where it holds a figure or a label, or stands beside a number.
 
     Examples
     --------
@@ -156,7 +179,7 @@ def verify(
         raise UserError(f"{quoted(printout)}: expected a printout's text, a file's name or bytes")
     if found.error:
         raise UserError(found.error)
-    return found.results
+    return Verifications(found.results)
 
 
 def _verified(paper: Printout, given: Mapping[str, str] | None) -> Verification:
@@ -191,6 +214,38 @@ def _verified(paper: Printout, given: Mapping[str, str] | None) -> Verification:
     return completed(result)
 
 
+def _readings(text: str) -> list[Printout]:
+    """The printouts in another reading; none where it holds none."""
+    try:
+        return read_printouts(text)
+    except UserError:
+        return []
+
+
+def _by_all(
+    result: Verification, papers: Sequence[Printout], given: Mapping[str, str] | None
+) -> Verification:
+    """The verdict on a printout by several readings of it. It is accused only where each accuses it
+    by itself."""
+    found = judged_together(papers, given)
+    if found is None:
+        if len(papers) < 2:
+            result.remarks.append("no other reading given holds this printout")
+        return result
+    if found.verdict is Verdict.DIFFERS:
+        alone = [result, *(_verified(paper, given) for paper in papers[1:])]
+        if all(other.verdict is Verdict.DIFFERS for other in alone):
+            return result
+        found.verdict = Verdict.INCOMPLETE
+    together = _result(found)
+    together.findings = [
+        f"read {len(papers)} times: what one reading supports, another does not contradict",
+        *verification.findings(found),
+        *verification.given_apart(given or {}, together),
+    ]
+    return completed(together)
+
+
 def _against(pages: CopyPages, found: Judged) -> Verification:
     """The verdict on a printout as a page of an office's copy of the listing."""
     copy, result = pages.copy, _result(found)
@@ -201,6 +256,8 @@ def _against(pages: CopyPages, found: Judged) -> Verification:
     result.findings = verification.of_copy(copy, found)
     changed = [line._asdict() for line in copy.changed_lines()]
     result.copy = {"file": copy.file, "sha256": copy.sha256, "lines": changed}
+    if found.recovered.typed:  # the scene is as printed, and the copy asks for it as typed
+        return completed(result)
     return completed(result, pages.run_columns)
 
 
@@ -214,7 +271,8 @@ def _result(found: Judged) -> Verification:
         "-", 1, paper.line, found.verdict, scene, found.fields, found.replies, found.ending,
         missing=found.recovered.missing, guessed=guessed,
         remarks=[*map(str, paper.remarks), *paper.notes, *filter(None, [paper.unread])],
-        left_over=paper.left_over, labels=paper.labels, start=paper.start, stop=paper.stop,
+        left_over=sorted([*paper.left_over, *found.notes], key=attrgetter("start")),
+        labels=paper.labels, start=paper.start, stop=paper.stop,
         text=paper.page.text if paper.page else "",
     )  # fmt: skip
 

@@ -27,12 +27,13 @@ from ..scan.typeface import BLANK
 from .verification import Verification
 
 
-def verified(path: str, data: bytes, seed: str = "") -> Iterator[Verification]:
-    """Each printout in a picture or PDF. ``seed``: what another reader made of it; its scenes are
-    tried, and it decides nothing. Raises UserError when no printout is found."""
+def verified(path: str, data: bytes, seed: str | Sequence[str] = "") -> Iterator[Verification]:
+    """Each printout in a picture or PDF. ``seed``: what other readers made of it; their scenes
+    are tried, and they decide nothing. Raises UserError when no printout is found."""
     results: list[Verification] = []
     without = []
-    seeds = scenes_in(seed)
+    texts = [seed] if isinstance(seed, str) else seed
+    seeds = [scene for text in texts for scene in scenes_in(text)]
     with progress(None, "pages read", "page") as meter:
         for page in pages_of(data, path):
             found: list[Verification] = []

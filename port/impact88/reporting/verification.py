@@ -17,7 +17,7 @@ from ..files import called
 from ..judging.judgement import FieldCheck, Judged, Status, Verdict
 from ..plaintable import table
 from ..reading.fieldlabels import LabelCheck, LabelState
-from ..reading.numerals import Doubt
+from ..reading.numerals import Doubt, value_of
 from ..reading.printout import Piece
 from ..recovery.replays import run_once
 from ..recovery.typedtext import stored_and_printed
@@ -35,9 +35,10 @@ TITLES = {
 }
 
 MEANINGS = {
-    Verdict.IDENTICAL: "every printed number is what the 1988 program prints, digit for digit",
+    Verdict.IDENTICAL: "every number that was found on the page is what the 1988 program prints "
+    "for the inputs on it, digit for digit, and nothing that was examined speaks against it",
     Verdict.IDENTICAL_AS_READ: "the 1988 program's page explains the paper; what was not read "
-    "exactly is listed, and is to be looked at on the paper",
+    "exactly, or is none of the program's, is listed, and is to be looked at on the paper",
     Verdict.DIFFERS: "something on the paper contradicts every scene that its inputs allow",
     Verdict.INCOMPLETE: "numbers are missing or could not be read; what could be compared agrees",
 }
@@ -48,7 +49,7 @@ MARKS = "on the page and not printed by the program"
 EXPLAINED = "possible explanations, best first"
 
 
-@dataclass
+@dataclass(repr=False)
 class Verification:
     """The result for one printout; `as_json` gives the documented object.
 
@@ -122,6 +123,13 @@ class Verification:
         self.labels = [label._replace(line=lines[label.line - 1]) for label in self.labels]
         self.left_over = [piece._replace(line=lines[piece.line - 1]) for piece in self.left_over]
 
+    def __repr__(self) -> str:
+        exact = sum(check.same is True for check in self.fields)
+        return (
+            f"<Verification of printout {self.number} ({self.where}) of {called(self.file)!r}: "
+            f"{self.verdict.name}, {exact} of {len(self.fields)} numbers read exactly so>"
+        )
+
     def _repr_html_(self) -> str:
         return notebook.preformatted("\n".join(lines(self)))
 
@@ -134,6 +142,13 @@ class Verification:
         if self.cells:
             described |= {"cells": self.cells, "marks": self.marks, "basis": self.basis}
         return stamped("verify", described)
+
+
+class Verifications(list[Verification]):
+    """The verdicts on the printouts of one file, in their order; a notebook shows them whole."""
+
+    def _repr_html_(self) -> str:
+        return notebook.preformatted("\n".join(line for one in self for line in lines(one)))
 
 
 _IN_JSON = (
@@ -180,11 +195,18 @@ def summary(result: Verification) -> list[str]:
         said = [f"all {len(fields)} printed numbers are what {who} prints, digit for digit"]
     elif verdict is Verdict.DIFFERS:
         compared = sum(check.same is not None for check in fields)
-        said = [f"{compared} printed numbers compared, {len(result.differing)} differ"]
+        said = [*_of_another_copy(result)]
+        said.append(f"{compared} printed numbers compared, {len(result.differing)} differ")
+        replies = sum(check.same is False for check in result.replies)
+        if replies:
+            noun = "reply at a prompt differs" if replies == 1 else "replies at prompts differ"
+            said.append(f"{replies} {noun} from the velocities printed")
         if wrong := sum(label.state is LabelState.CONTRADICTORY for label in result.labels):
             said.append("1 label contradicts" if wrong == 1 else f"{wrong} labels contradict")
     elif verdict is Verdict.IDENTICAL_AS_READ:
         said.append(MEANINGS[verdict])
+    if result.page is None and verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ):
+        said.append(_examined(result))
     if missing:
         verb, it = ("is", "it") if len(missing) == 1 else ("are", "them")
         said.append(f"{', '.join(missing)} {verb} missing: what depends on {it} was not compared")
@@ -280,6 +302,7 @@ _DOUBTS: dict[str, str] = {
     Doubt.RETYPED: "read {whole}; the program prints {program}, never this form",
     Doubt.CUT: "cut off; the program prints {program}",
     Doubt.LEFT_OVER: "{read!r} left over beside {program}",
+    "another reading": "read {read!r} by another reader where the program prints {program}",
     "picture": "nearly as much like {read!r} as {printed!r} ({program})",
 }
 
@@ -328,10 +351,10 @@ _MOST_LINES = 12
 def _left_over(pieces: Sequence[Piece]) -> Iterator[str]:
     """What belongs to no number and no label: beside a number, or a whole line."""
     for piece in pieces:
-        if piece.beside and not piece.whole:
+        if not piece.whole:
             text = piece.text if len(piece.text) <= 40 else piece.text[:37] + "..."
             where = f"line {piece.line}, column {piece.column}"
-            yield f"{where}: {text!r} left over beside a number"
+            yield f"{where}: {text!r} left over{' beside a number' * piece.beside}"
     lines = sorted((piece for piece in pieces if piece.whole), key=lambda piece: not piece.beside)
     for piece in sorted(lines[:_MOST_LINES], key=lambda piece: piece.line):
         yield f"line {piece.line} does not belong to the program's page: {printable(piece.text)}"
@@ -354,6 +377,45 @@ def _explained(result: Verification) -> list[str]:
         before = cause.rank
         said += [f"   look at {where}" for where in cause.look[:4]]
     return said or ["no single slip explains this"]
+
+
+def _examined(result: Verification) -> str:
+    """Return what of a text was examined, in one sentence."""
+    replies = len(result.replies)
+    what = f"{len(result.fields)} numbers and their labels"
+    if replies:
+        what += f", {replies} replies at the prompts"
+    rest = "nothing else stands on the page"
+    if result.left_over:
+        rest = "what else stands on the page is listed below"
+    return f"examined: {what}; {rest}"
+
+
+def _of_another_copy(result: Verification) -> Iterator[str]:
+    """In words, where every number agrees and only replies or labels are not the listing's: what
+    may have printed such a page."""
+    if result.differing or result.copy or result.page is not None or not result.complete_scene:
+        return
+    wrong = [check for check in result.replies if check.same is False]
+    labels = [label for label in result.labels if label.state is LabelState.CONTRADICTORY]
+    if not wrong and not labels:
+        return
+    what = "what was typed at the prompts is not what it computed with"
+    if not wrong:
+        what = "its labels are not the listing's"
+    ratios = [_ratio(check) for check in wrong]
+    if len(wrong) > 1 and all(ratios) and max(ratios) - min(ratios) <= 1e-3 * abs(max(ratios)):
+        what += f" (each velocity printed is {ratios[0]:.6g} times the reply)"
+    yield f"the numbers agree, but {what}"
+    yield (
+        "another copy of the listing may have printed this page: if so, verify it with "
+        "--listing COPY"
+    )
+
+
+def _ratio(check: FieldCheck) -> float:
+    printed, typed = value_of(check.recomputed or ""), value_of(check.printed or "")
+    return float(printed / typed) if printed and typed else 0.0
 
 
 # --- what a page shows besides its numbers -------------------------------------------------------
