@@ -19,9 +19,11 @@ from ..closedform.solve import share_typed, solve
 from ..errors import UserError
 from ..mappings import within_limits
 from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, SCENE, VELOCITIES, check_names
+from ..status import Status
 from ..uncertainty.uncertain import Uncertain, fixed
 from .evidence import Evidence, weigh
 from .geometry import GEOMETRY, with_point_masses, within_doubles
+from .outcome import outcome
 from .state import COURSES, DIRECTIONS, FORCES, KNOWABLE, OTHERS, QUANTITIES, SPEEDS, State
 from .system import PARAMETERS, SPINS, System
 from .unknowns import UnsolvableError, check_physical, solve_for, typed
@@ -29,9 +31,14 @@ from .unknowns import UnsolvableError, check_physical, solve_for, typed
 Floats = NDArray[np.float64]
 Progress = Callable[[int], object]
 
-_STARTS = 120
-"""With half of them one of several impacts was missed in 2 of 48 problems seen from elsewhere (axes
-turned, mirrored, vehicles exchanged), with twice as many none more is found."""
+_STARTS = 240  # random starts in a batch
+_IDLE_BATCHES = 4
+"""The search ends when so many batches in turn find no further impact: the rarest of 80 random
+problems are found from one start in 200."""
+_MAX_BATCHES = 16  # of a search that keeps finding impacts
+_FITTED_STARTS = 120  # starts in a batch where nothing agrees exactly and a fit is sought
+_NEARBY = 0.3  # spread of starts around impacts that were found before
+_SAME = 1e-6  # scaled variables that differ by no more are of the same impact
 _TIGHTENED_FIRST, _TIGHTENED = 4, 12
 """Of the starts so many with tolerances tightened little by little, the second number where nothing
 is found by then, or something not determined. Twice as many find the same in 75 problems."""
@@ -59,6 +66,16 @@ _LIKELY = 4.0
 _FRICTIONS, _SETTLED = 40, 1e-12
 """Frictions tried, of which secants need six to ten, and the change of P_t/P_n at which it has
 settled. Half or twice as much finds the same in 60 problems."""
+_IMPOSSIBLE = (
+    Status.SEPARATING
+    | Status.PULLING
+    | Status.ENERGY_GAINED
+    | Status.E_OUT_OF_RANGE
+    | Status.EM_OUT_OF_RANGE
+    | Status.FRICTION_ABOVE_CRITICAL
+    | Status.FRICTION_WRONG_DIRECTION
+)
+"""What breaks physics."""
 _HELPFUL_FIRST = ("WAF", "WBF", "WA", "WB", "E", "MUP", "EM")
 """Of what is not known, what can be found out best."""
 
@@ -221,6 +238,24 @@ def _start(system: System, rng: np.random.Generator, count: int) -> Floats:
     return x
 
 
+def _face(system: System, starts: Floats) -> None:
+    """Turn the velocities of ``starts`` that run backwards along known courses around."""
+    for name, speed in COURSES.items():
+        rows = [system.variables.index(n) for n in SPEEDS[speed] if n in system.variables]
+        if name in system.known and len(rows) == 2:
+            angle = np.radians(system.nominal[name])
+            size = np.abs(starts[rows[0]])
+            starts[rows[0]], starts[rows[1]] = size * np.cos(angle), size * np.sin(angle)
+
+
+def _distinct(met: Floats, more: Floats) -> Floats:
+    """Return the columns of ``met`` and those of ``more`` that differ from all before."""
+    for column in more.T:
+        if not (np.abs(met - column[:, None]).max(axis=0, initial=0.0) < _SAME).any():
+            met = np.column_stack([met, column])
+    return met
+
+
 def _balanced(matrix: Floats) -> Floats:
     """A symmetric matrix in other units, so that no row is much larger than others: as many of its
     eigenvalues are negative."""
@@ -280,6 +315,30 @@ class Adjusted(NamedTuple):
         return (self.adjusted - self.measured) / self.tolerance
 
 
+class Searched(NamedTuple):
+    """How impacts were searched for: ``batches`` of random starts, ``starts`` in all, the last
+    ``idle`` batches without a further impact; ``single``: the equations are linear, or leave
+    something open, and no search is needed or possible."""
+
+    batches: int = 0
+    starts: int = 0
+    idle: int = 0
+    single: bool = False
+
+    def text(self, count: int) -> str:
+        """Return the statement of the search that found ``count`` impacts."""
+        impacts = "1 impact" if count == 1 else f"{count} impacts"
+        if self.single:
+            return f"{impacts}; the equations are linear, there is no other"
+        idle = f"the last {self.idle} found no other" if self.idle else "the last found a new one"
+        if self.batches <= 1:
+            return f"{impacts}, from {self.starts} starts"
+        return f"{impacts}; {self.batches} batches of starts ({self.starts} in all), {idle}"
+
+
+NOT_SEARCHED = Searched()
+
+
 @dataclass(frozen=True)
 class Reconstruction:
     """One impact that agrees with what is known.
@@ -306,12 +365,21 @@ class Reconstruction:
     squares: float
     assumed: bool = False
     against_sign: bool = False
+    search: Searched = NOT_SEARCHED
 
     @property
     def collides(self) -> bool:
         """Whether the contact points approach and push each other, as far as that is known."""
         state = self.system.state(self.x)
         return bool(state.relative_before[0] < 0 and self.values.get("PN", 1.0) > 0)
+
+    @cached_property
+    def impossible(self) -> Status:
+        """The bits of STATUS that no real impact has, none (0) where it may have been so."""
+        bits = Status(int(outcome(self.values)["STATUS"])) & _IMPOSSIBLE
+        if not self.collides:
+            bits |= Status.PULLING if self.values.get("PN", 1.0) <= 0 else Status.SEPARATING
+        return bits
 
     @cached_property
     def backwards(self) -> tuple[str, ...]:
@@ -454,40 +522,52 @@ def reconstruct(
             readings.append({**given, "MUP": turned})
     found: list[Reconstruction] = []
     failure: UserError | None = None
+    searches: list[_Search] = []
     # what contradicts itself in one reading of MU's sign may agree in the other
     for fits in (False, True):
         for reading in readings:
             try:
                 search = _Search(reading, progress)
                 found += search.found() if search.assumed == fits else []
+                searches.append(search)
             except UserError as error:
                 failure = error
         agreeing = [s for s in found if mu is None or _agrees(s, mu.nominal)]
         if agreeing:
-            return _preferred(agreeing)
+            return _ordered(agreeing, searches)
     fitted = [replace(s, against_sign=True) for s in found if s.redundancy]
     if fitted:
-        return _preferred(fitted)
+        return _ordered(fitted, searches)
     raise failure or UnsolvableError(
         "neither sign of MU agrees with the sliding it leads to (line 400): no friction that "
         "opposes the sliding joins what is known"
     )
 
 
-def _preferred(found: list[Reconstruction]) -> list[Reconstruction]:
-    """Of solutions the likely ones, the best first, of equally good ones those that collide and
-    have coefficients of impacts. A course is a direction: what drives backwards along one is kept
-    only where nothing else is."""
-
-    def order(solution: Reconstruction) -> tuple[float, bool, bool, bool]:
-        e, em = (solution.values.get(name, 0.0) for name in ("E", "EM"))
-        known = round(solution.squares, 9), not solution.collides
-        return (*known, not 0 <= e <= 1, not (-1 <= em <= 0 or em == 1))
-
+def _ordered(found: list[Reconstruction], searches: "Sequence[_Search]") -> list[Reconstruction]:
+    """Return the likely solutions in the order of physics: possible impacts before those that break
+    it or drive backwards along a known course, then by the sum of squared adjustments, then by the
+    kinetic energy before the impact, the slower first, which no axes or units change. A course is a
+    direction: what drives backwards along one is kept only where nothing else is."""
     ahead = [s for s in found if not s.backwards] or found
-    least = min(s.squares for s in ahead)
-    kept = [s for s in ahead if s.squares <= max(_LIKELY * least, 1e-9)]
-    return sorted(kept, key=order)
+    possible = [s for s in ahead if not s.impossible]
+    kept = []
+    for group in (possible, [s for s in ahead if s.impossible]):
+        least = min((s.squares for s in (group if group is possible else ahead)), default=0.0)
+        kept += [s for s in group if s.squares <= max(_LIKELY * least, 1e-9)]
+
+    def order(solution: Reconstruction) -> tuple[bool, float, int, float]:
+        broken = solution.impossible
+        energy = solution.values.get("KI", 0.0)
+        return bool(broken), float(f"{max(solution.squares, 1e-9):.6e}"), broken.bit_count(), energy
+
+    search = Searched(
+        sum(each.batches for each in searches),
+        sum(each.starts for each in searches),
+        min((each.idle for each in searches), default=0),
+        all(each.single for each in searches),
+    )
+    return [replace(s, search=search) for s in sorted(kept, key=order)]
 
 
 def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertain]:
@@ -525,15 +605,14 @@ class _Search:
 
     def __init__(self, known: Mapping[str, Uncertain], progress: Progress) -> None:
         self.solutions: list[Reconstruction] = []
+        self.open: list[Reconstruction] = []
         self.followed: list[Floats] = []
-        rng = np.random.default_rng(1988)
+        self.rng = np.random.default_rng(1988)
+        self.batches = self.starts = self.idle = 0
         plain = System(known, adjusted=False, progress=progress)
         loose = any(known[name].varies for name in PARAMETERS if name in known)
-        count = 1 if plain.linear and not loose else _STARTS  # one valley, without bends
-        # more conditions than variables: no start meets them, unless all do
-        tried = 1 if len(plain.conditions) > len(plain.variables) else count
-        x, left_over = straight(plain, _start(plain, rng, tried))
-        x = x[:, left_over <= _HOLDS]
+        self.linear = plain.linear and not loose  # one valley, without bends
+        x = self.exact_impacts(plain, 1 if plain.linear and not loose else _STARTS)
         self.at_hand = bool(x.shape[1])
         self.assumed = not self.at_hand and not any(item.varies for item in known.values())
         if self.assumed:
@@ -542,16 +621,82 @@ class _Search:
                 loose_one = Uncertain("normal", known[name].nominal, -np.inf, np.inf, deviation)
                 known = {**known, name: loose_one}
         self.system = System(known, adjusted=True, progress=progress)
-        self.begin = _start(self.system, rng, x.shape[1] or count)
+        count = x.shape[1] or (1 if self.linear else _FITTED_STARTS)
+        self.begin = _start(self.system, self.rng, count)
         if self.at_hand:
             state = plain.state(x)
             for row, name in enumerate(self.system.variables):
                 if name in VELOCITIES or name in IMPULSES:
                     self.begin[row] = state[name] / self.system.scales[row]
 
+    @property
+    def single(self) -> bool:
+        """Whether there is one impact, or nothing that tells impacts apart."""
+        return self.linear or not self.batches
+
+    def exact_impacts(self, plain: System, count: int) -> Floats:
+        """Return the impacts with every known value as it stands, a column each, sought in batches
+        of ``count`` starts until several batches find no further one."""
+        size = len(plain.variables)
+        # more conditions than variables: no start meets them, unless all do
+        tried = 1 if len(plain.conditions) > size else count
+        met = np.empty((size, 0))
+        for _ in range(_MAX_BATCHES):
+            starts = _start(plain, self.rng, tried)
+            if met.shape[1] and tried > 1:
+                # impacts are often found in pairs, as the roots of a quadratic equation
+                near, of = tried // 4, self.rng.integers(met.shape[1], size=tried // 4)
+                starts[:, :near] = met[:, of] * (1 + _NEARBY * starts[:, :near])
+                _face(plain, starts[:, near : 2 * near])
+            x, left_over = straight(plain, starts)
+            before, met = met.shape[1], _distinct(met, x[:, left_over <= _HOLDS])
+            if tried == 1 or (not met.shape[1] and len(plain.conditions) > size):
+                return met
+            self.batches, self.starts = self.batches + 1, self.starts + tried
+            self.idle = 0 if met.shape[1] > before else self.idle + 1
+            if met.shape[1] and not self.closed(plain, met[:, :1]):
+                return met  # a continuum of impacts
+            if self.idle == _IDLE_BATCHES:
+                break
+        return met
+
+    def closed(self, plain: System, x: Floats) -> bool:
+        """Return whether impacts stand apart from one another, as at ``x``."""
+        return not pseudo_inverse(plain.slopes(x))[1].shape[1]
+
     def found(self) -> list[Reconstruction]:
         """The solutions. Raises UnsolvableError where there are none."""
-        system, begin = self.system, self.begin
+        met = finite = False
+        for batch in range(_MAX_BATCHES):
+            before = len(self.solutions)
+            closely, sound = self.fit(self.begin, thorough=not batch)
+            met, finite = met or closely, finite or sound
+            if self.at_hand or self.begin.shape[1] == 1 or not met or self.is_open:
+                break
+            self.batches, self.starts = self.batches + 1, self.starts + self.begin.shape[1]
+            self.idle = 0 if len(self.solutions) > before else self.idle + 1
+            if self.idle == _IDLE_BATCHES:
+                break
+            self.begin = _start(self.system, self.rng, _FITTED_STARTS)
+        if not (met or finite):
+            raise np.linalg.LinAlgError("not finite")
+        if met and not (self.solutions or self.open):
+            raise UnsolvableError(
+                "the search for the impact nearest to what is known came to no end; expected wider "
+                "tolerances, or fewer values"
+            )
+        if not (self.solutions or self.open):
+            raise UnsolvableError(
+                "no impact agrees with all that is known exactly; expected tolerances ('+- D') for "
+                "what is measured"
+            )
+        return self.solutions or self.open
+
+    def fit(self, begin: Floats, thorough: bool) -> tuple[bool, bool]:
+        """Keep the solutions that the starts ``begin`` lead to: whether conditions were nearly met
+        anywhere, and whether numbers stayed finite. ``thorough``: with tolerances tightened little
+        by little, too."""
+        system = self.system
         ends, over = straight(system, begin)
         squares = np.square(system.left(system.state(ends))[len(system.conditions) :]).sum(axis=0)
         for i in np.argsort(np.broadcast_to(squares, over.shape), kind="stable").tolist():
@@ -561,33 +706,21 @@ class _Search:
                 self.follow(ends[:, i : i + 1])
         met = bool((over <= _NEARLY).any())
         few, more = begin[:, :_TIGHTENED_FIRST], begin[:, _TIGHTENED_FIRST:_TIGHTENED]
-        for some in () if self.at_hand else (few, more):
+        for some in () if self.at_hand or not thorough else (few, more):
             settled = begin.shape[1] == 1 or (some is more and not self.is_open)
-            if self.solutions and settled:
+            if (self.solutions or self.open) and settled:
                 break
             for start in some.T:
                 nearby, left_over = tightened(system, start[:, None])
                 if left_over <= _NEARLY:
                     met = True
                     self.follow(nearby)
-        if not (met or np.isfinite(over).any()):
-            raise np.linalg.LinAlgError("not finite")
-        if met and not self.solutions:
-            raise UnsolvableError(
-                "the search for the impact nearest to what is known came to no end; expected wider "
-                "tolerances, or fewer values"
-            )
-        if not self.solutions:
-            raise UnsolvableError(
-                "no impact agrees with all that is known exactly; expected tolerances ('+- D') for "
-                "what is measured"
-            )
-        return self.solutions
+        return met, bool(np.isfinite(over).any())
 
     @property
     def is_open(self) -> bool:
         """Whether the solution leaves something undetermined: there may be many as good."""
-        return bool(self.solutions) and bool(self.solutions[0].undetermined)
+        return bool(self.open) and not self.solutions
 
     def follow(self, nearby: Floats) -> None:
         """Keep the solution beside ``nearby``, if there is one."""
@@ -602,9 +735,9 @@ class _Search:
             return
         solution = _described(self.system, x, self.assumed)
         if solution.undetermined:  # from elsewhere it would only come out otherwise
-            both = (*self.solutions, solution)
-            self.solutions = [min(both, key=lambda impact: round(impact.squares, 9))]
-        elif not any(np.abs(x - other.x).max(initial=0.0) < 1e-6 for other in self.solutions):
+            both = (*self.open, solution)
+            self.open = [min(both, key=lambda impact: round(impact.squares, 9))]
+        elif not any(np.abs(x - other.x).max(initial=0.0) < _SAME for other in self.solutions):
             self.solutions.append(solution)
 
 
