@@ -121,6 +121,8 @@ CHAPTER = _table(
     ("DT", "ΔT", "fraction of the kinetic energy lost", "1"),
     ("ELA", "", "energy lost in A, such as in crush: EL = ELA + ELB", _ENERGY),
     ("ELB", "", "energy lost in B, such as in crush: EL = ELA + ELB", _ENERGY),
+    ("EBSA", "", "equivalent barrier speed of A's crush: ELA = MA EBSA^2 / 2", _VELOCITY),
+    ("EBSB", "", "equivalent barrier speed of B's crush: ELB = MB EBSB^2 / 2", _VELOCITY),
     ("EL", "T - T'", "kinetic energy lost, such as in crush", _ENERGY),
     ("SA", "|v_a|", "initial speed of A", _VELOCITY),
     ("SB", "|v_b|", "initial speed of B", _VELOCITY),

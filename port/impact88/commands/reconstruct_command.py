@@ -117,11 +117,12 @@ def _reconstructed(
             raise UserError(f"{name} is not determined by what is known", options.source_of(args))
     if args.write_scene:
         _write_scene(solutions, args, case)
-    found = []
+    found: list[Measured] = []
     for solution in solutions:
         with progress(None, "reconstruct", "impacts") as meter:
             given = (args.samples, args.seed, wanted, args.contact_time)
-            found.append(Measured(solution, *given, meter.update))
+            like = found[0] if found else None
+            found.append(Measured(solution, *given, meter.update, like))
     return found
 
 

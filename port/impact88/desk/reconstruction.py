@@ -63,7 +63,9 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
             raise UserError(f"To be corrected: {' '.join(problems)}.")
         found: Sequence[Impact]
         if adjustment.needs_adjustment(known):
-            found = [Measured(solution, DRAWS) for solution in adjustment.reconstruct(known)]
+            first, *more = adjustment.reconstruct(known)
+            best = Measured(first, DRAWS)
+            found = [best, *(Measured(solution, DRAWS, like=best) for solution in more)]
         else:
             found = Exact.all_of({name: item.nominal for name, item in known.items()})
         solutions = [(impact.as_json(system), impact.as_text(system)) for impact in found]

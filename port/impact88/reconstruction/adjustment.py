@@ -7,8 +7,9 @@ last by Newton's method, which shows that nothing beside it is less. First-order
 correlations come from the same equations.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -23,8 +24,8 @@ from ..status import Status
 from ..uncertainty.uncertain import Uncertain, fixed
 from .evidence import Evidence, weigh
 from .geometry import GEOMETRY, with_point_masses, within_doubles
-from .outcome import outcome
-from .state import COURSES, DIRECTIONS, FORCES, KNOWABLE, OTHERS, QUANTITIES, SPEEDS, State
+from .outcome import IMPOSSIBLE, outcome
+from .state import COURSES, CRUSH, DIRECTIONS, FORCES, KNOWABLE, OTHERS, QUANTITIES, SPEEDS, State
 from .system import PARAMETERS, SPINS, System
 from .unknowns import UnsolvableError, check_physical, solve_for, typed
 
@@ -38,6 +39,7 @@ problems are found from one start in 200."""
 _MAX_BATCHES = 16  # of a search that keeps finding impacts
 _FITTED_STARTS = 120  # starts in a batch where nothing agrees exactly and a fit is sought
 _NEARBY = 0.3  # spread of starts around impacts that were found before
+_ASIDE = 1e-2  # scaled distance at which a fold is told from a continuum
 _SAME = 1e-6  # scaled variables that differ by no more are of the same impact
 _TIGHTENED_FIRST, _TIGHTENED = 4, 12
 """Of the starts so many with tolerances tightened little by little, the second number where nothing
@@ -66,16 +68,6 @@ _LIKELY = 4.0
 _FRICTIONS, _SETTLED = 40, 1e-12
 """Frictions tried, of which secants need six to ten, and the change of P_t/P_n at which it has
 settled. Half or twice as much finds the same in 60 problems."""
-_IMPOSSIBLE = (
-    Status.SEPARATING
-    | Status.PULLING
-    | Status.ENERGY_GAINED
-    | Status.E_OUT_OF_RANGE
-    | Status.EM_OUT_OF_RANGE
-    | Status.FRICTION_ABOVE_CRITICAL
-    | Status.FRICTION_WRONG_DIRECTION
-)
-"""What breaks physics."""
 _HELPFUL_FIRST = ("WAF", "WBF", "WA", "WB", "E", "MUP", "EM")
 """Of what is not known, what can be found out best."""
 
@@ -318,18 +310,23 @@ class Adjusted(NamedTuple):
 class Searched(NamedTuple):
     """How impacts were searched for: ``batches`` of random starts, ``starts`` in all, the last
     ``idle`` batches without a further impact; ``single``: the equations are linear, or leave
-    something open, and no search is needed or possible."""
+    something open, and no search is needed or possible; ``impacts`` that agree with what is known,
+    ``possible`` of them."""
 
     batches: int = 0
     starts: int = 0
     idle: int = 0
     single: bool = False
+    impacts: int = 1
+    possible: int = 1
 
-    def text(self, count: int) -> str:
-        """Return the statement of the search that found ``count`` impacts."""
-        impacts = "1 impact" if count == 1 else f"{count} impacts"
+    def text(self) -> str:
+        """Return the statement of the search."""
+        impacts = "1 impact" if self.impacts == 1 else f"{self.impacts} impacts"
+        if self.possible < self.impacts:
+            impacts += f", {self.possible or 'none'} of which physics allows"
         if self.single:
-            return f"{impacts}; the equations are linear, there is no other"
+            return impacts
         idle = f"the last {self.idle} found no other" if self.idle else "the last found a new one"
         if self.batches <= 1:
             return f"{impacts}, from {self.starts} starts"
@@ -348,7 +345,8 @@ class Reconstruction:
     ``redundancy``: known values more than needed; ``squares``: of the adjustments in standard
     deviations, about the redundancy when tolerances are right; ``assumed``: the tolerances were
     taken equal for all known velocities; ``against_sign``: friction drives the sliding that MU's
-    sign was chosen to oppose.
+    sign was chosen to oppose; ``search``: how impacts were searched for; ``typed_mu``: MU where it
+    is known in size only; ``beside``: every impact found, this one too, possible or not.
 
     >>> known = {name: text for name, text in impact88.sample(1).items() if name != "MU"}
     >>> best, *others = impact88.reconstruct({**known, "VAX": "-13.3 +- 0.5"})
@@ -366,6 +364,8 @@ class Reconstruction:
     assumed: bool = False
     against_sign: bool = False
     search: Searched = NOT_SEARCHED
+    typed_mu: float | None = None
+    beside: tuple[tuple[System, Floats], ...] = field(default=(), repr=False, compare=False)
 
     @property
     def collides(self) -> bool:
@@ -376,7 +376,7 @@ class Reconstruction:
     @cached_property
     def impossible(self) -> Status:
         """The bits of STATUS that no real impact has, none (0) where it may have been so."""
-        bits = Status(int(outcome(self.values)["STATUS"])) & _IMPOSSIBLE
+        bits = Status(int(outcome(self.values)["STATUS"])) & IMPOSSIBLE
         if not self.collides:
             bits |= Status.PULLING if self.values.get("PN", 1.0) <= 0 else Status.SEPARATING
         return bits
@@ -534,20 +534,23 @@ def reconstruct(
                 failure = error
         agreeing = [s for s in found if mu is None or _agrees(s, mu.nominal)]
         if agreeing:
-            return _ordered(agreeing, searches)
+            return _ordered(agreeing, searches, mu)
     fitted = [replace(s, against_sign=True) for s in found if s.redundancy]
     if fitted:
-        return _ordered(fitted, searches)
+        return _ordered(fitted, searches, None)
     raise failure or UnsolvableError(
         "neither sign of MU agrees with the sliding it leads to (line 400): no friction that "
         "opposes the sliding joins what is known"
     )
 
 
-def _ordered(found: list[Reconstruction], searches: "Sequence[_Search]") -> list[Reconstruction]:
+def _ordered(
+    found: list[Reconstruction], searches: "Sequence[_Search]", mu: Uncertain | None
+) -> list[Reconstruction]:
     """Return the likely solutions in the order of physics: possible impacts before those that break
-    it or drive backwards along a known course, then by the sum of squared adjustments, then by the
-    kinetic energy before the impact, the slower first, which no axes or units change. A course is a
+    it or drive backwards along a known course, then by the sum of squared adjustments. Ties by what
+    no axes, names or units change: the fraction of the kinetic energy before that is in spins, e,
+    that energy, the smaller first. A course is a
     direction: what drives backwards along one is kept only where nothing else is."""
     ahead = [s for s in found if not s.backwards] or found
     possible = [s for s in ahead if not s.impossible]
@@ -556,18 +559,33 @@ def _ordered(found: list[Reconstruction], searches: "Sequence[_Search]") -> list
         least = min((s.squares for s in (group if group is possible else ahead)), default=0.0)
         kept += [s for s in group if s.squares <= max(_LIKELY * least, 1e-9)]
 
-    def order(solution: Reconstruction) -> tuple[bool, float, int, float]:
-        broken = solution.impossible
-        energy = solution.values.get("KI", 0.0)
-        return bool(broken), float(f"{max(solution.squares, 1e-9):.6e}"), broken.bit_count(), energy
+    def order(solution: Reconstruction) -> tuple[float, ...]:
+        values, broken = solution.values, solution.impossible
+        squares = float(f"{max(solution.squares, 1e-9):.6e}")
+        energy = values.get("KI", 0.0)
+        inertias = (("WA", "IA"), ("WB", "IB"))
+        rotation = sum(
+            values.get(spin, 0.0) ** 2 * values[inertia] / 2
+            for spin, inertia in inertias
+            if math.isfinite(values[inertia])
+        )
+        share = round(rotation / energy, 6) if energy else 0.0
+        e = round(abs(values.get("E", 0.0)), 6)
+        return bool(broken), squares, broken.bit_count(), share, e, energy
 
     search = Searched(
         sum(each.batches for each in searches),
         sum(each.starts for each in searches),
         min((each.idle for each in searches), default=0),
         all(each.single for each in searches),
+        len(kept),
+        sum(not solution.impossible for solution in kept),
     )
-    return [replace(s, search=search) for s in sorted(kept, key=order)]
+    beside = tuple((s.system, s.x) for s in ahead)
+    shared: dict[str, Any] = {"search": search, "beside": beside}
+    if mu is not None and (mu.varies or mu.nominal not in (0, PIVOT)):
+        shared["typed_mu"] = mu.nominal
+    return [replace(s, **shared) for s in sorted(kept, key=order)]
 
 
 def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertain]:
@@ -582,12 +600,28 @@ def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertai
     )
     if given["M"].varies:
         raise UserError("M must be 6, or 4 for point masses")
-    if ("ELA" in given) != ("ELB" in given):
-        raise UserError("ELA and ELB sum to EL; expected both, or EL")
+    _check_crush(given)
     for name, item in given.items():
         if name in SPEEDS and item.nominal < 0:
             raise UserError(f"{name} is negative; expected a speed, its course beside it")
     return given
+
+
+def _check_crush(given: dict[str, Uncertain]) -> None:
+    """Raise UserError unless the crush of both vehicles is known, or of none; a rigid barrier's is
+    filled in: it loses no energy."""
+    for vehicle in "AB":
+        names = [n for n in CRUSH if n in given and n.endswith(vehicle)]
+        if len(names) == 2:
+            raise UserError(f"{' and '.join(names)} are both given; expected one of them")
+        own = "AB".replace(vehicle, "")
+        if any(n in given for n in CRUSH if n.endswith(own)) and not names:
+            if not math.isinf(given["M" + vehicle].nominal):
+                raise UserError("ELA and ELB (or EBSA and EBSB) sum to EL; expected both, or EL")
+            given["EL" + vehicle] = fixed(0.0)
+        for name in names:
+            if given[name].nominal < 0:
+                raise UserError(f"{name} is negative; expected what was lost in {vehicle}")
 
 
 def _agrees(solution: Reconstruction, mu: float) -> bool:
@@ -690,7 +724,9 @@ class _Search:
                 "no impact agrees with all that is known exactly; expected tolerances ('+- D') for "
                 "what is measured"
             )
-        return self.solutions or self.open
+        # what leaves something open counts where all else contradicts the measurements
+        least = min((each.squares for each in self.solutions), default=math.inf)
+        return [s for s in self.open if _LIKELY * s.squares + 1e-9 < least] + self.solutions
 
     def fit(self, begin: Floats, thorough: bool) -> tuple[bool, bool]:
         """Keep the solutions that the starts ``begin`` lead to: whether conditions were nearly met
@@ -741,6 +777,15 @@ class _Search:
             self.solutions.append(solution)
 
 
+def _is_fold(system: System, x: Floats, null: Floats) -> bool:
+    """Return whether the impact stands alone though to first order something is open: where two
+    branches meet. From aside the steps come back to it; along a continuum they stay aside."""
+    aside = np.concatenate([x + _ASIDE * null, x - _ASIDE * null], axis=1)
+    ends, over = straight(system, aside)
+    met = over <= _HOLDS
+    return bool((np.abs(ends - x).max(axis=0)[met] < 0.1 * _ASIDE).all())
+
+
 def _described(system: System, x: Floats, assumed: bool) -> Reconstruction:
     state, rows = system.state(x), system.slopes(x)
     rest = system.left(state)[len(system.conditions) :, 0]
@@ -750,14 +795,20 @@ def _described(system: System, x: Floats, assumed: bool) -> Reconstruction:
         return float(np.ravel(of)[0])
 
     values = {n: value(state.values[n]) for n in ("M", *GEOMETRY)}
-    undetermined = []
+    undetermined: list[str] = []
+    fold = bool(null.shape[1]) and _is_fold(system, x, null)
     for name, gradient in zip(QUANTITIES, system.gradients(x, QUANTITIES), strict=True):
         if system.point and name in (*SPINS, "PM", "EM"):
             continue
         known = name in COEFFICIENTS and name in system.known
         size = value(state.values[name] if known else state[name])
         largest = np.abs(gradient).max(initial=0.0)
-        is_open = np.abs(gradient @ null).max(initial=0.0) > _OPEN * largest
+        is_open = not fold and np.abs(gradient @ null).max(initial=0.0) > _OPEN * largest
+        if name in COURSES and name not in system.known:
+            # along an axis a course does not change with the speed, until it turns round
+            is_open |= bool({*undetermined} & {*SPEEDS[COURSES[name]]})
+        if name in FORCES and name not in system.known:
+            is_open |= "PN" not in values
         if known or (np.isfinite(size) and np.isfinite(largest) and not is_open):
             values[name] = size
         elif name in (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS):

@@ -28,10 +28,23 @@ from ..closedform.solve import quantities, solve
 from ..closedform.statusbits import bits, findings
 from ..errors import UserError
 from ..names import FINAL_STATE, PIVOT, SCENE, VELOCITIES
+from ..status import Status
 from .geometry import Geometry, with_point_masses
 from .state import CHANGES, CONTACT, COURSES, FORCES, SPEEDS, State
 
 Array = NDArray[Any]
+
+IMPOSSIBLE = (
+    Status.SEPARATING
+    | Status.PULLING
+    | Status.ENERGY_GAINED
+    | Status.E_OUT_OF_RANGE
+    | Status.EM_OUT_OF_RANGE
+    | Status.FRICTION_ABOVE_CRITICAL
+    | Status.FRICTION_WRONG_DIRECTION
+)
+"""What breaks physics."""
+
 Divided = tuple[dict[str, Array], list[Array]]
 """Arrays by name, and what divides them: where one of these is zero, some of them are infinite."""
 

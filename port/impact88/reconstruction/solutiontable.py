@@ -14,7 +14,7 @@ from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
 from ..status import sentences
 from ..units import RULES, VELOCITY, System, written
 from .geometry import clock, within_doubles
-from .outcome import forces, moment_ratio, outcome
+from .outcome import IMPOSSIBLE, forces, moment_ratio, outcome
 from .state import CHANGES, COURSES, FORCES
 from .unknowns import BADLY_CONDITIONED, Solution, solve_for
 
@@ -36,6 +36,7 @@ _LEFT, _WIDTH = 16, 104
 _NOISE = 1e-9
 """Of the largest quantity of the same unit: less is rounding, and printed as 0; twice as much
 prints the same of 100 solutions."""
+_COEFFICIENT_NOISE = 1e-12  # a coefficient below this is rounding
 _ROWS = (
     ("x", "length/time", ("UX", "VAX", "VX", "VBX")),
     ("y", "length/time", ("UY", "VAY", "VY", "VBY")),
@@ -76,6 +77,7 @@ class Impact:
     undetermined: Sequence[str] = ()
     helpful: Sequence[str] = ()
     note = ""
+    subject = "this impact"
 
     def __init__(self, known: Mapping[str, Any], values: dict[str, float]) -> None:
         self.known, self.values = known, values
@@ -85,7 +87,9 @@ class Impact:
 
     def headline(self, units: System) -> Sequence[tuple[str, str]]:
         """Return what is said before the answer: label and text."""
-        return ()
+        broken = int(self.values.get("STATUS", 0)) & IMPOSSIBLE
+        said = "; ".join(sentences(broken))
+        return [("IMPOSSIBLE", f"{self.subject} breaks physics: {said}")] if broken else []
 
     def warnings(self, units: System = RULES) -> list[str]:
         """What a reader must know, in sentences."""
@@ -243,7 +247,7 @@ def _without_noise(values: Mapping[str, float]) -> dict[str, float]:
         if math.isfinite(value):
             unit = quantity(name).unit
             largest[unit] = max(abs(value), largest.get(unit, 0.0))
-    largest["1"] = 0.0  # numbers have no common size
+    largest["1"] = _COEFFICIENT_NOISE / _NOISE  # numbers have no common size
     clean = {}
     for name, value in values.items():
         small = abs(value) < _NOISE * largest.get(quantity(name).unit, 0.0)
@@ -290,9 +294,10 @@ class Exact(Impact):
         """Every solution of a single scene. Raises UserError; ``source`` names where the known
         values come from."""
         try:
-            return [cls(known, solution, contact_time) for solution in solve_for(known, wanted)]
+            found = [cls(known, solution, contact_time) for solution in solve_for(known, wanted)]
         except UserError as error:
             raise UserError(str(error), source) from None
+        return sorted(found, key=lambda impact: bool(int(impact.values["STATUS"]) & IMPOSSIBLE))
 
     def warnings(self, units: System = RULES) -> list[str]:
         lines = []

@@ -24,8 +24,10 @@ COURSES = {"HA": "SA", "HB": "SB", "HAF": "SAF", "HBF": "SBF"}
 FORCES = {"PDOFA": "A", "PDOFB": "B"}
 """Where the force on a vehicle comes from, clockwise from its front."""
 DIRECTIONS = (*COURSES, *FORCES)
-CRUSH = ("ELA", "ELB")
-"""Energies that sum to EL: known both or not at all."""
+BARRIER_SPEEDS = {"EBSA": "ELA", "EBSB": "ELB"}
+"""Equivalent barrier speeds, each with the energy it stands for."""
+CRUSH = ("ELA", "ELB", *BARRIER_SPEEDS)
+"""What was lost in each vehicle, energies that sum to EL: known of both or not at all."""
 CONTACT = ("VC", "VS")
 CHANGES = ("DVA", "DVB", "DVAF", "DVAR", "DVBF", "DVBR")
 ENERGIES = ("KI", "KF", "EL", "LOSS", "DT")
@@ -176,6 +178,13 @@ class State:
             return pt, pn
         spin = self.relative_after[2]
         return spin, spin + moment * self.here.inverse_spin_inertia
+
+    def crush_energy(self, vehicle: str) -> Any:
+        """The energy lost in a vehicle as ELA or ELB, or EBSA or EBSB, is known."""
+        speed = self.values.get("EBS" + vehicle)
+        if speed is None:
+            return self.values["EL" + vehicle]
+        return 0.5 * self.values["M" + vehicle] * speed * speed
 
     def contact_velocities(self) -> dict[str, Any]:
         """XA YA XB YB of the contact points, and XAF ... YBF (listing lines 340, 700 and 710)."""

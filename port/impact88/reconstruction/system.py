@@ -99,7 +99,7 @@ class System:
             n
             for n in known
             if (n in MEASURABLE and n not in (*loose, *VELOCITIES, *settled))
-            or n in (*SPEEDS, *DIRECTIONS, "ELA")
+            or n in (*SPEEDS, *DIRECTIONS, "ELA", "EBSA")
         ]
         self.conditions = (*self.laws, *self.exact)
         self.observations = tuple(n for n in known if n in loose and n not in still)
@@ -161,8 +161,9 @@ class System:
             return state.along_and_across(name)[1] / (
                 self.speed * (self.mass if name in FORCES else 1.0)
             )
-        if name == "ELA":
-            return (state["EL"] - state.values["ELA"] - state.values["ELB"]) / self.scale("EL")
+        if name in CRUSH:
+            parts = state.crush_energy("A") + state.crush_energy("B")
+            return (state["EL"] - parts) / self.scale("EL")
         if name in SPEEDS:
             course = _COURSE_OF[name]
             size = state.along_and_across(course)[0] if course in self.known else state[name]

@@ -26,6 +26,7 @@ from ..reconstruction.state import CRUSH, DIRECTIONS, State
 from ..reconstruction.system import PARAMETERS, TINY, System
 from .ascent import OUTSIDE, climb, extremes_of, spread_out
 from .boundstable import Spread
+from .posterior import Ground, Posterior
 from .uncertain import Uncertain, columns_of, fixed
 
 Floats = NDArray[np.float64]
@@ -70,6 +71,7 @@ class Draws:
     values: dict[str, Floats]
     failed: float
     points: Floats = field(default_factory=lambda: np.empty((0, 0)), repr=False)
+    signs: Floats | None = field(default=None, repr=False)
 
     def spread(self, name: str, quantiles: Sequence[float]) -> Spread:
         """Mean, standard deviation and quantiles of those that have a solution."""
@@ -102,6 +104,12 @@ def draws(
     no impact lies within all limits the known values are drawn as normal ones, each with its
     standard deviation."""
     rng = np.random.default_rng([seed, 1])
+    posterior = Posterior(solution, progress)
+    if posterior.closed:
+        drawn, signs = posterior.sample(count, rng)
+        if len(signs):
+            rows = posterior.values(drawn, signs, names)
+            return Draws(dict(zip(names, rows, strict=True)), 0.0, drawn.T, signs)
     box = _Box(solution, names, progress)
     if box.rest and box.kept:  # else nothing varies
         points, functions = _walked(box, count, rng)
@@ -126,6 +134,9 @@ def ranges(
 ) -> dict[str, Range]:
     """The lowest and highest value of each quantity over the limits of what is known. The search
     begins from ``drawn``, too."""
+    posterior = Posterior(solution, progress)
+    if posterior.closed:
+        return _extremes(posterior, solution, names, seed, drawn, progress)
     box = _Box(solution, names, progress)
     points = box.inside(np.random.default_rng([seed, 0]))
     if drawn is not None and drawn.points.shape[1] == points.shape[1]:
@@ -146,6 +157,49 @@ def ranges(
     for i, name in enumerate(names):
         low, high = ({n: float(v[0]) for n, v in box.data(at[i, None]).items()} for at in ends)
         found[name] = Range(float(lower[i]), float(upper[i]), low, high, bool(done[:, i].all()))
+    return found | {name: Range(-np.inf, np.inf, {}, {}) for name in endless if name in found}
+
+
+def _extremes(
+    posterior: Posterior,
+    solution: Reconstruction,
+    names: Sequence[str],
+    seed: int,
+    drawn: Draws | None,
+    progress: Progress,
+) -> dict[str, Range]:
+    """`ranges` over all branches: climbed from draws of the distribution."""
+    if drawn is None or drawn.signs is None:
+        points, signs = posterior.sample(FREE, np.random.default_rng([seed, 0]))
+    else:
+        points, signs = drawn.points.T, drawn.signs
+    if not len(signs):
+        return {name: Range(np.nan, np.nan, {}, {}) for name in names}
+    ground = Ground(posterior, names, points)
+    u = ground.shares(points)
+    functions = np.concatenate(
+        [
+            ground.at(u[first : first + CHUNK], signs[None, first : first + CHUNK])[1]
+            for first in range(0, len(u), CHUNK)
+        ]
+    )
+    parts = [np.arange(i, len(u), STARTS) for i in range(min(STARTS, len(u)))]
+    # the state of a point is its friction's sign, looked up by the point itself
+    order = {row.tobytes(): sign for row, sign in zip(u, signs, strict=True)}
+    (lower, upper), ends, done = extremes_of(
+        *(ground, u, functions, parts, 1, LEAST_GAIN),
+        lambda start: np.array([[order[row.tobytes()] for row in start]]),
+    )
+    box = _Box(solution, names, progress)
+    endless = _endless(box, solution.system.known, names)
+    endless |= {n for i, n in enumerate(ground.ratios, len(names)) if lower[i] < 0 < upper[i]}
+    free = slice(0, len(posterior.basis))
+    found = {}
+    for i, name in enumerate(names):
+        low, high = (ground.values(at[i], signs[0]) for at in ends)
+        inside = all((np.abs(at[i][free] - 0.5) < 0.5).all() for at in ends)
+        searched = bool(done[:, i].all()) and inside
+        found[name] = Range(float(lower[i]), float(upper[i]), low, high, searched)
     return found | {name: Range(-np.inf, np.inf, {}, {}) for name in endless if name in found}
 
 

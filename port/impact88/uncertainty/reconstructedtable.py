@@ -29,6 +29,9 @@ QUANTILES = (0.05, 0.5, 0.95)
 """The median and the middle 90 % of the draws."""
 MOST_CORRELATED = 7
 """Columns of correlations: what 96 characters hold."""
+MOST_APART = 1 / 3
+"""First-order deviations that differ from the draws' by more, as a fraction, are not shown."""
+MOST_SEPARATING = 0.005  # draws that do not approach, as a fraction, that nothing is said of
 ILL_POSED = 0.25
 """From this share of the largest speed, a velocity's standard deviation is called ill-posed."""
 
@@ -55,12 +58,15 @@ class Measured(Impact):
         wanted: Sequence[str] | None = None,
         contact_time: float | None = None,
         progress: Callable[[int], object] = lambda draws: None,
+        like: "Measured | None" = None,
     ) -> None:
         known, values = solution.system.known, dict(solution.values)
         if "MUP" in values and "UX" in values:
             values["MU"] = typed_friction(solution.system.state(solution.x), values["MUP"])
         super().__init__(known, completed(values, contact_time))
         self.solution, self.undetermined = solution, solution.undetermined
+        if solution.search.impacts > 1 and not solution.search.possible:
+            self.subject = "every impact that agrees with what is known"
         self.helpful = solution.helpful if solution.undetermined else ()
         results = wanted or [
             n
@@ -75,13 +81,29 @@ class Measured(Impact):
         self.names, self.correlations = names, solution.correlations(names)
         self.draws: Draws | None = None
         self.ranges: dict[str, Range] = {}
-        if samples and names and not solution.assumed:
+        self.evidence = solution.evidence
+        infeasible = False
+        if like is not None and like.draws and {*names} <= {*like.draws.values}:
+            # the distribution is one, whichever impact it is begun about
+            self.draws, self.ranges = like.draws, {n: like.ranges[n] for n in names}
+        elif samples and names and not self.evidence.contradictory:
             self.draws = draws(solution, names, samples, seed, progress)
             self.ranges = ranges(solution, names, seed, self.draws, progress)
-        infeasible = any(math.isnan(bound.lower) for bound in self.ranges.values())
-        self.evidence = solution.weighed(False if infeasible else None)
+            infeasible = any(math.isnan(bound.lower) for bound in self.ranges.values())
+        elif samples and names and not solution.assumed:
+            bound = ranges(solution, names[:1], seed, None, progress)[names[0]]
+            infeasible = math.isnan(bound.lower)
+        if infeasible:
+            self.evidence = solution.weighed(inside=False)
+            self.draws, self.ranges = None, {}
         if not solution.assumed:
-            self.deviations = {n: x * self.evidence.widening for n, x in self.deviations.items()}
+            widening = max(self.evidence.widening, 1.0)
+            self.deviations = {n: x * widening for n, x in self.deviations.items()}
+        self.first_order: dict[str, float | None] = {**self.deviations}
+        for name in names if self.draws else ():
+            drawn = float(np.nanstd(self.draws.values[name], ddof=1)) if self.draws else math.nan
+            if not abs(self.deviations[name] - drawn) <= MOST_APART * drawn:
+                self.first_order[name], self.deviations[name] = None, drawn
         self.drivers: dict[str, list[tuple[str, float]]] = {}
         for name, responses in zip(names, solution.responses(names), strict=True):
             shares = responses**2 / (np.square(responses).sum() or 1.0)
@@ -89,7 +111,12 @@ class Measured(Impact):
             self.drivers[name] = [(solution.system.observations[i], shares[i]) for i in ranked]
 
     def headline(self, units: System) -> list[tuple[str, str]]:
-        return [("EVIDENCE", self.evidence.text(units))]
+        broken = [*super().headline(units)]
+        search, evidence = self.solution.search, ("EVIDENCE", self.evidence.text(units))
+        rows = [evidence, *broken] if self.evidence.contradictory else [*broken, evidence]
+        if not search.single:
+            rows.append(("SEARCH", search.text()))
+        return rows
 
     @within_doubles
     def warnings(self, units: System = RULES) -> list[str]:
@@ -100,8 +127,9 @@ class Measured(Impact):
             what = "is pushed away from" if name in FORCES else "drives backwards along"
             lines.append(
                 f"{name[-1]} {what} its known {'PDOF' if name in FORCES else 'course'}: {name} = "
-                f"{number(solution.system.nominal[name], 4)} was given, the only impact found has "
-                f"{number(solution.values[name], 4)}"
+                f"{number(solution.system.nominal[name], 4)} was given, this impact has "
+                f"{number(solution.values[name], 4)}; none was found that does not "
+                f"({solution.search.text()})"
             )
         if solution.against_sign:
             lines.append(
@@ -122,10 +150,15 @@ class Measured(Impact):
                 f"{number(self.evidence.widening, 3)} times"
             )
         lines += self._ill_posed(units)
-        if any(math.isnan(bound.lower) for bound in self.ranges.values()):
+        if self.evidence.inside is False:
             lines.append(
-                "no impact was found that lies within the limits of all known values at once: the "
-                "draws are those of normal values with the same standard deviations"
+                "no impact was found that lies within the limits of all known values at once: "
+                "there are neither draws nor bounds"
+            )
+        if apart := self.separating:
+            lines.append(
+                f"{100 * apart:.2g} % of the draws separate already before the impact, which meets "
+                "all known values and is no impact; a course or a closing speed would exclude them"
             )
         if unsearched := self.not_searched:
             lines.append(
@@ -140,6 +173,14 @@ class Measured(Impact):
     def not_searched(self) -> list[str]:
         """The results whose bounds may be wider: the search took all it may."""
         return [name for name, bound in self.ranges.items() if not bound.searched]
+
+    @property
+    def separating(self) -> float:
+        """The fraction of draws whose contact points do not approach, if it is more than a few."""
+        if self.draws is None or "VC" not in self.draws.values:
+            return 0.0
+        share = float((self.draws.values["VC"] < 0).mean())
+        return share if share > MOST_SEPARATING else 0.0
 
     def _ill_posed(self, units: System) -> list[str]:
         """Velocities that the known values hardly determine, with the number and what drives it."""
@@ -204,7 +245,8 @@ class Measured(Impact):
         rows = []
         for name in self.names:
             factor = units.factor(name)
-            cells = [name, number(factor * self.deviations[name], 3)]
+            plain = self.first_order[name]
+            cells = [name, "" if plain is None else number(factor * plain, 3)]
             if self.draws:
                 drawn, bound = self.draws.spread(name, QUANTILES), self.ranges[name]
                 cells.append(number(factor * drawn.deviation, 3))
@@ -213,7 +255,18 @@ class Measured(Impact):
                 limits = (*quantiles, *units.ends(name, bound.lower, bound.upper))
                 cells += [number(value, 5) for value in limits]
             rows.append([*cells, units.label(quantity(name).unit)])
-        return table(rows, [*heading, "unit"], left=(0, len(heading))) if rows else []
+        lines = table(rows, [*heading, "unit"], left=(0, len(heading))) if rows else []
+        if self.draws and self.draws.signs is not None and rows:
+            lines += paragraph(
+                "Draws and bounds: over every impact that meets all known values, of all branches; "
+                "flat, where nothing is known, over velocities before, e, e_m and P_t/P_n"
+            )
+            if any(self.first_order[n] is None for n in self.names):
+                lines += paragraph(
+                    "The first order is left out where it differs from the draws by more than a "
+                    "third."
+                )
+        return lines
 
     def _connections(self, units: System) -> list[list[str]]:
         names = self.names
@@ -244,6 +297,7 @@ class Measured(Impact):
             "redundancy": solution.redundancy,
             "sum_of_squares": solution.squares,
             "evidence": self.evidence.as_json(units),
+            "search": {**solution.search._asdict(), "text": solution.search.text()},
             "equal_tolerances_assumed": solution.assumed,
             "uncertainty": {name: self._uncertain(name, units) for name in self.names},
             "correlations": {"names": self.names, "matrix": self._correlations(units)},
@@ -252,9 +306,9 @@ class Measured(Impact):
         }
 
     def _uncertain(self, name: str, units: System) -> dict[str, Any]:
-        factor = units.factor(name)
+        factor, plain = units.factor(name), self.first_order[name]
         record: dict[str, Any] = {
-            "first_order": self.deviations[name] * factor,
+            "first_order": None if plain is None else plain * factor,
             "drivers": dict(self.drivers[name]),
         }
         if self.draws:

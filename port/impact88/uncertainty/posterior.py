@@ -1,0 +1,560 @@
+"""Draws from the distribution that all known values define together, over every branch.
+
+An impact has six velocities before, e, e_m and P_t/P_n, and vehicles. Before anything is known of
+them velocities and coefficients are equally likely everywhere (flat); every known value multiplies
+that by its own density (uniform, triangular, normal), and an exact one is the limit of ever
+narrower limits. A normal value ends at `SIGMAS` standard deviations where nothing else limits it.
+
+Coordinates: what of the velocities before and of the impulse the exact values and the known
+coefficients leave open. For given vehicles and coefficients Equations 15, 16 and 18 and exact
+velocities, courses and changes are linear in these, so that every point is one impact and no branch
+is special. The change of variables from impulses to coefficients is its Jacobian determinant.
+
+The sampler is sequential Monte Carlo (Del Moral, Doucet and Jasra, *Sequential Monte Carlo
+Samplers*, 2006): from wide distributions about every impact found, through ever harder limits, to
+the distribution itself, by steps of differential evolution (ter Braak, 2006) in two halves.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..names import COEFFICIENTS, IMPULSES, PIVOT, VELOCITIES
+from ..reconstruction.adjustment import Reconstruction
+from ..reconstruction.geometry import GEOMETRY, Geometry
+from ..reconstruction.state import (
+    BARRIER_SPEEDS,
+    COURSES,
+    CRUSH,
+    DIRECTIONS,
+    SPEEDS,
+    State,
+)
+from ..reconstruction.system import TINY, System
+from ..reconstruction.unknowns import TIE
+from .uncertain import Uncertain
+
+Floats = NDArray[np.float64]
+Array = NDArray[Any]
+Flags = NDArray[np.bool_]
+Progress = Callable[[int], object]
+
+SIGMAS = 3.0  # where a normal without limits ends, for draws and bounds alike
+PARTICLES = 4000
+MOVES = 8  # steps of each particle at each hardness of the limits
+LAST_MOVES = 40  # steps before the first draws are taken
+BEYOND_DRAWS = 2.0  # bounds are sought so many times what draws span beyond them
+_CHUNK = 1 << 13  # impacts at a time: bounds the memory
+_JUMPS = 0.1  # steps the length of a difference of two particles, which join branches
+_TOUCH = 1e-9  # beyond limits by no more, in half-widths, is at them
+_HARDEST = 40.0  # limits softer by e to the power of this are hard
+THINNING = 6  # steps between one set of draws and the next
+MAX_STAGES = 80  # of ever harder limits; then no impact lies within them
+EFFECTIVE = 0.5  # particles that stay effective from stage to stage, as a fraction
+WIDENING = 3.0  # of the first distributions over first-order ones
+FREEDOM = 4.0  # degrees of freedom of the first distributions, Student's t
+BROAD = 1.5  # spread of others, of the largest speed known, which find what else there is
+BROAD_FRACTION = 0.4  # of the first particles
+FARTHEST = 20.0  # velocities before are at most so many times the largest speed known
+LARGEST_COEFFICIENT = 20.0  # and so are coefficients that nothing is known of, either way
+LINEAR = (*SPEEDS, *DIRECTIONS, "VC", "VS", "DVAF", "DVAR", "DVBF", "DVBR")
+"""Exact quantities that are linear conditions; speeds with their courses exact."""
+
+
+class Posterior:
+    """The distribution of the impacts that agree with what is known, begun about a solution and
+    those found beside it.
+
+    ``supported``: whether the exact values are all linear conditions; ``closed``: whether they and
+    the values within limits determine the impact."""
+
+    def __init__(self, solution: Reconstruction, progress: Progress = lambda impacts: None) -> None:
+        self.progress = progress
+        self.system = system = solution.system
+        self.known = system.known
+        self.unsigned = solution.typed_mu is not None
+        self.first_sign = 1.0 if solution.typed_mu == self._mup() else -1.0
+        self.nominal = solution.values
+        loose = [n for n in self.known if self.known[n].varies]
+        self.unknown = [n for n in system.variables if n in (*VELOCITIES, *IMPULSES)]
+        scales = dict(zip(system.variables, system.scales, strict=True))
+        self.scales = np.array([scales[n] for n in self.unknown])
+        laws = [n for n in COEFFICIENTS if not (system.point and n == "EM")]
+        self.laws, self.open = laws, [n for n in laws if n not in self.known]
+        after = [n for n in system.exact if n not in (*LINEAR, *CRUSH)]
+        self.exact = [n for n in system.exact if n not in loose and n not in CRUSH]
+        curved = ("DVA", "DVB", "KI", "KF", "EL", "LOSS", "DT")
+        self.supported = not any(n in curved for n in after)
+        for course, speed in COURSES.items():
+            if speed in self.exact and course not in self.exact:
+                self.supported = False
+        crush = [n for n in CRUSH if n in self.known]
+        self.crush: list[str] = sorted(crush, key=lambda n: self.known[n].varies, reverse=True)
+        self.supported &= not crush or (bool(self.crush) and self.known[self.crush[0]].varies)
+        inputs = (*GEOMETRY, *COEFFICIENTS, *self.crush[1:])
+        self.inputs = [n for n in loose if n in inputs]
+        self.measured = [
+            n for n in system.observations if n not in (*inputs, *CRUSH) and n in loose
+        ]
+        self.items = {n: self._cut(n) for n in (*self.inputs, *self.measured, *self.crush[:1])}
+        self.varied = bool(set(self.inputs) & {*GEOMETRY})
+        self.geometry = None if self.varied else Geometry(system.constants)
+        if self.supported:
+            self._span(solution)
+
+    def _cut(self, name: str) -> Uncertain:
+        item = self.known[name]
+        low, high = item.limits(SIGMAS)
+        return Uncertain(item.kind, item.nominal, low, high, item.deviation)
+
+    def _span(self, solution: Reconstruction) -> None:
+        """Choose the coordinates: an orthonormal basis of what is left open at the solutions."""
+        self.centers: list[Floats] = []
+        self.signs: list[float] = []
+        starts: Sequence[tuple[System, Floats]] = solution.beside or ((self.system, solution.x),)
+        ys, parameters = [], []
+        for system, x in starts:
+            state = system.state(x)
+            ys.append([float(np.ravel(np.real(state.values[n]))[0]) for n in self.unknown])
+            sign = 1.0 if system.nominal.get("MUP", 1.0) == self._mup() else -1.0
+            here = {n: float(np.ravel(np.real(state.values[n]))[0]) for n in self.inputs}
+            parameters.append([sign * v if n == "MUP" else v for n, v in here.items()])
+            self.signs.append(sign)
+        first = np.array(parameters[0])[:, None]
+        rows, _, _, _ = self._conditions(first, np.array([self.signs[0]]))
+        matrix = rows[:, :, 0]
+        norm = np.linalg.norm(matrix, axis=1, keepdims=True)
+        matrix = matrix / np.where(norm > 0, norm, 1.0)
+        _, s, vt = np.linalg.svd(matrix)
+        rank = int((s > 1e-10 * s.max(initial=0.0)).sum())
+        self.basis = vt[rank:]
+        self.supported &= rank == len(matrix)
+        self.size = len(self.basis) + len(self.inputs)
+        for y, own in zip(ys, parameters, strict=True):
+            z = self.basis @ (np.array(y) / self.scales)
+            self.centers.append(np.concatenate([z, own]))
+        self.closed = self.supported and not solution.undetermined and self.size > 0
+
+    def _mup(self) -> float:
+        return float(self.known["MUP"].nominal) if "MUP" in self.known else 1.0
+
+    # -- impacts
+
+    def _values(self, inputs: Array) -> dict[str, Any]:
+        return {**self.system.constants, **dict(zip(self.inputs, inputs, strict=True))}
+
+    def _coefficient(self, name: str, values: Mapping[str, Any], signs: Array) -> Any:
+        return values[name] * signs if name == "MUP" and self.unsigned else values[name]
+
+    def _conditions(self, inputs: Array, signs: Array) -> tuple[Array, Array, Array, Array]:
+        """Return the linear conditions of n points: their coefficients over the scaled unknowns
+        (rows, unknowns, n), what they must be (rows, n), and above and below the line of each
+        coefficient's quotient (laws, unknowns and a constant, n)."""
+        size, count = len(self.unknown), inputs.shape[1] if len(inputs) else len(signs)
+        values = self._values(inputs)
+        here = Geometry(values) if self.varied else self.geometry
+        unit = np.eye(size + 1, size)[:, :, None] * self.scales[None, :, None]
+        state = State({**values, **dict(zip(self.unknown, unit.swapaxes(0, 1), strict=True))}, here)
+
+        def spread(row: Any) -> Array:
+            wide = np.broadcast_to(row, (size + 1, count))
+            return np.concatenate([wide[:size] - wide[size:], wide[size:]])
+
+        above, below = [], []
+        for name in self.laws:
+            if name == "MUP" and self._mup() == PIVOT and name in self.known:
+                parts = state.relative_after[1], 0.0 * state.relative_after[1]
+            else:
+                parts = state.quotient(name)
+            above.append(spread(parts[0]))
+            below.append(spread(parts[1]))
+        rows = []
+        for name, top, bottom in zip(self.laws, above, below, strict=True):
+            if name in self.known:
+                rows.append(top - self._coefficient(name, values, signs) * bottom)
+        for name in self.exact:
+            target = self.known[name].nominal
+            if name in DIRECTIONS:
+                rows.append(spread(state.along_and_across(name)[1]))
+            elif name in SPEEDS:
+                course = next(c for c, speed in COURSES.items() if speed == name)
+                rows.append(spread(state.along_and_across(course)[0] - target))
+            else:
+                rows.append(spread(state[name] - target))
+        empty = np.empty((0, size, count)), np.empty((0, count))
+        matrix, right = (
+            (np.stack([r[:size] for r in rows]), -np.stack([r[size] for r in rows]))
+            if rows
+            else empty
+        )
+        return (
+            matrix,
+            right,
+            np.stack(above),
+            np.stack(below),
+        )
+
+    def impacts(
+        self, points: Array, signs: Array, weighed: bool = True
+    ) -> tuple[State, Array, Array]:
+        """Return the impacts at points (coordinates, n), the logarithm of the Jacobian determinant
+        there if ``weighed``, and where exact courses are driven along, not against."""
+        split = len(self.basis)
+        z, inputs = points[:split], points[split:]
+        rows, right, above, below = self._conditions(inputs, signs)
+        count = points.shape[1]
+        self.progress(count)
+        basis = np.broadcast_to(self.basis[:, :, None], (*self.basis.shape, count))
+        matrix = np.concatenate([rows, basis]).transpose(2, 0, 1)
+        y = np.linalg.solve(matrix, np.concatenate([right, z]).T[:, :, None])[:, :, 0].T
+        values = self._values(inputs)
+        here = Geometry(values) if self.varied else self.geometry
+        scaled = dict(zip(self.unknown, y * self.scales[:, None], strict=True))
+        state = State({**values, **scaled}, here)
+        volume = self._volume(matrix, y, above, below, values, signs) if weighed else np.zeros(1)
+        along = np.ones(count, bool)
+        for name in self.exact:
+            if name in DIRECTIONS:
+                size = np.real(state.along_and_across(name)[0])
+                along &= size > 0
+                if weighed:
+                    volume = volume + np.log(np.abs(size))
+        if self.unsigned:
+            speeds = np.max([np.abs(np.real(v)) * np.ones(count) for v in state.before], axis=0)
+            turned = np.real(state.relative_before[1]) > TIE * speeds  # line 400
+            along &= np.where(turned, -self.first_sign, self.first_sign) == signs
+        return state, volume, along
+
+    def _volume(
+        self,
+        matrix: Array,
+        y: Array,
+        above: Array,
+        below: Array,
+        values: Mapping[str, Any],
+        signs: Array,
+    ) -> Array:
+        """Return the logarithm of how much of velocities before and coefficients a piece of the
+        coordinates takes up: with the laws L, the impulse P, the conditions R and the denominators
+        of coefficients c that are open, |dL/dP| over |dR/dy| and each |dL/dc|."""
+        pushed = [i for i, name in enumerate(self.unknown) if name in IMPULSES]
+        whole = np.concatenate([y, np.ones((1, y.shape[1]))])
+        top, bottom = (np.einsum("run,un->rn", part, whole) for part in (above, below))
+        volume, rows = -np.linalg.slogdet(matrix)[1], []
+        for i, name in enumerate(self.laws):
+            if name in self.open:
+                coefficient = top[i] / bottom[i]
+                volume = volume - np.log(np.abs(bottom[i]))
+            else:
+                coefficient = self._coefficient(name, values, signs)
+            rows.append(above[i][pushed] - coefficient * below[i][pushed])
+        return np.asarray(volume + np.linalg.slogdet(np.array(rows).transpose(2, 0, 1))[1])
+
+    def _value(self, state: State, name: str) -> Any:
+        own = name in self.known and name in (*GEOMETRY, *COEFFICIENTS, *CRUSH)
+        return _near(name, state.values[name] if own else state[name], self.nominal.get(name))
+
+    def values(self, points: Floats, signs: Floats, names: Sequence[str]) -> Floats:
+        """Return quantities (rows) of the impacts at points."""
+        rows = []
+        for first in range(0, points.shape[1], _CHUNK):
+            part = slice(first, first + _CHUNK)
+            state, _, _ = self.impacts(points[:, part], signs[part])
+            count = points[:, part].shape[1]
+            rows.append([np.broadcast_to(self._value(state, n), count) for n in names])
+        return np.concatenate([np.array(part).reshape(len(names), -1) for part in rows], axis=1)
+
+    def logarithms(self, points: Floats, signs: Floats) -> tuple[Floats, Floats]:
+        """Return the logarithm of the density at points, limits aside, and how far they lie outside
+        all limits: the sum of squares of what is beyond, in half-widths."""
+        state, plain, along = self.impacts(points, signs)
+        plain = np.where(along, plain, -np.inf)
+        excess = np.zeros(points.shape[1])
+        for name, item in self.items.items():
+            value, more = self._observed(state, name)
+            plain = plain + more
+            middle, half = (item.low + item.high) / 2, (item.high - item.low) / 2
+            beyond = np.maximum(np.abs(value - middle) / half - 1, 0.0)
+            beyond = np.where(beyond > _TOUCH, beyond, 0.0)
+            excess += beyond * beyond
+            if item.kind != "uniform":
+                inside = np.clip(value, item.low + _TOUCH * half, item.high - _TOUCH * half)
+                plain = plain + item.log_density(inside)
+        for name in self.open:
+            above, below = state.quotient(name)
+            beyond = np.abs(above / below) / LARGEST_COEFFICIENT - 1
+            excess = excess + np.square(np.maximum(beyond, 0.0))
+        for name, value in zip(VELOCITIES, state.before, strict=True):
+            beyond = np.abs(value) / (FARTHEST * self.system.scale(name)) - 1
+            excess = excess + np.square(np.maximum(beyond, 0.0))
+        sound = np.isfinite(plain) & np.isfinite(excess)
+        return np.where(sound, plain, -np.inf), np.where(sound, excess, np.inf)
+
+    def _observed(self, state: State, name: str) -> tuple[Any, Any]:
+        """Return a value that is known within limits, and the logarithm of what its own scale adds
+        to the density."""
+        if name in self.inputs:
+            return state.values[name], 0.0
+        if name not in self.crush:
+            return _near(name, state[name], self.known[name].nominal), 0.0
+        rest = [state.crush_energy(n[-1]) for n in self.crush[1:]]
+        energy = state["EL"] - sum(rest)
+        if name not in BARRIER_SPEEDS:
+            return energy, 0.0
+        mass = state.values["M" + name[-1]]
+        side = np.where(np.real(energy) < 0, -1.0, 1.0)
+        speed = side * np.sqrt(2 * side * energy / mass)
+        return speed, -np.log(np.abs(mass * speed))
+
+    # -- sampling
+
+    def sample(self, count: int, rng: np.random.Generator) -> tuple[Floats, Floats]:
+        """Return ``count`` points of the distribution (coordinates, n) and their friction signs;
+        none where no impact was found within all limits."""
+        nothing = np.empty((self.size, 0)), np.empty(0)
+        particles = min(PARTICLES, max(count, 4 * self.size, 200)) // 2 * 2
+        try:
+            with np.errstate(all="ignore"):
+                return self._sampled(particles, count, rng)
+        except np.linalg.LinAlgError:
+            return nothing
+
+    def _sampled(
+        self, particles: int, count: int, rng: np.random.Generator
+    ) -> tuple[Floats, Floats]:
+        nothing = np.empty((self.size, 0)), np.empty(0)
+        points, signs, first = self._begin(particles, rng)
+        logs = (*self.logarithms(points, signs), first(points, signs))
+        hardness = 0.0
+        for _ in range(MAX_STAGES):
+            now = _tempered(logs, hardness)
+            hard = _tempered(logs, np.inf) - now
+            last = _effective(hard) >= EFFECTIVE
+            harder = np.inf
+            if not last:
+                low, high = hardness, hardness + 4.0
+                for _ in range(30):
+                    middle = (low + high) / 2
+                    enough = _effective(_tempered(logs, middle) - now) >= EFFECTIVE
+                    low, high = (middle, high) if enough else (low, middle)
+                harder = low
+                if harder > _HARDEST or not harder > hardness:
+                    return nothing
+            weights = np.exp(_lifted(_tempered(logs, harder) - now))
+            chosen = _resampled(weights, rng)
+            points, signs = points[:, chosen], signs[chosen]
+            logs = (logs[0][chosen], logs[1][chosen], logs[2][chosen])
+            hardness = harder
+            for _ in range(MOVES):
+                points, signs, logs = self._moved(points, signs, logs, hardness, first, rng)
+            if last:
+                break
+        else:
+            return nothing
+        for _ in range(LAST_MOVES):
+            points, signs, logs = self._moved(points, signs, logs, np.inf, first, rng)
+        parts = [(points, signs)]
+        while sum(part.shape[1] for part, _ in parts) < count:
+            for _ in range(THINNING):
+                points, signs, logs = self._moved(points, signs, logs, np.inf, first, rng)
+            parts.append((points, signs))
+        drawn = np.concatenate([part for part, _ in parts], axis=1)[:, :count]
+        return drawn, np.concatenate([own for _, own in parts])[:count]
+
+    def _begin(self, count: int, rng: np.random.Generator) -> tuple[Floats, Floats, Any]:
+        """Return the first particles, their signs and the function that gives the logarithm of
+        their density: Student's t about every impact found."""
+        roots = []
+        for center, sign in zip(self.centers, self.signs, strict=True):
+            slopes = self._slopes(center, sign)
+            _, s, vt = np.linalg.svd(slopes, full_matrices=False)
+            s = np.maximum(s, s.max(initial=0.0) * 1e-9)
+            roots.append(WIDENING * (vt.T / s))
+        # far from all that was found, too: what first order knows nothing of
+        deviations = [self.known[n].standard_deviation for n in self.inputs]
+        wide = np.diag(np.concatenate([np.full(len(self.basis), BROAD), deviations]))
+        roots += [wide] * len(roots)
+        centers, own_signs = self.centers * 2, self.signs * 2
+        shares = np.repeat([1 - BROAD_FRACTION, BROAD_FRACTION], len(self.centers))
+        shares = shares / shares.sum()
+        which = rng.choice(len(roots), size=count, p=shares)
+        normal = rng.standard_normal((count, self.size))
+        chi = np.sqrt(rng.chisquare(FREEDOM, count) / FREEDOM)
+        steps = np.stack(roots)[which] @ (normal / chi[:, None])[:, :, None]
+        points = (np.stack(centers)[which] + steps[:, :, 0]).T
+        signs = np.array(own_signs)[which]
+        inverses = [np.linalg.inv(root) for root in roots]
+        heights = [
+            np.linalg.slogdet(inverse)[1] + np.log(share)
+            for inverse, share in zip(inverses, shares, strict=True)
+        ]
+
+        def first(points: Floats, signs: Floats) -> Floats:
+            total = np.full(points.shape[1], -np.inf)
+            for center, own, inverse, height in zip(
+                centers, own_signs, inverses, heights, strict=True
+            ):
+                square = np.square(inverse @ (points - center[:, None])).sum(axis=0)
+                power = -(FREEDOM + self.size) / 2 * np.log1p(square / FREEDOM)
+                total = np.logaddexp(total, np.where(signs == own, power + height, -np.inf))
+            return total
+
+        return points, signs, first
+
+    def _slopes(self, center: Floats, sign: float) -> Floats:
+        """Return the derivatives of all values known within limits, in standard deviations, over
+        the coordinates."""
+        steps = 1e-6 * np.concatenate(
+            [np.ones(len(self.basis)), [self.known[n].standard_deviation for n in self.inputs]]
+        )
+        both = np.concatenate(
+            [center[:, None] + np.diag(steps), center[:, None] - np.diag(steps)], 1
+        )
+        state, _, _ = self.impacts(both, np.full(both.shape[1], sign))
+        rows = []
+        for name in self.items:
+            value = np.broadcast_to(self._observed(state, name)[0], both.shape[1])
+            ahead, behind = np.split(value, 2)
+            deviation = self.known[name].standard_deviation
+            rows.append((ahead - behind) / (2 * steps * deviation))
+        return np.asarray(np.nan_to_num(np.array(rows), posinf=0.0, neginf=0.0))
+
+    def _moved(
+        self,
+        points: Floats,
+        signs: Floats,
+        logs: tuple[Floats, Floats, Floats],
+        hardness: float,
+        first: Any,
+        rng: np.random.Generator,
+    ) -> tuple[Floats, Floats, tuple[Floats, Floats, Floats]]:
+        """Return all particles after a step of differential evolution of each half by the other."""
+        points, signs = points.copy(), signs.copy()
+        parts = [part.copy() for part in logs]
+        half = points.shape[1] // 2
+        order = rng.permutation(points.shape[1])
+        for own, other in ((order[:half], order[half:]), (order[half:], order[:half])):
+            one, two = (rng.choice(other, len(own)) for _ in range(2))
+            length = 2.38 / np.sqrt(2 * self.size) * np.exp(0.5 * rng.standard_normal(len(own)))
+            length = np.where(rng.random(len(own)) < _JUMPS, 1.0, length)
+            spread = points[:, other].std(axis=1, keepdims=True)
+            noise = 1e-3 * spread * rng.standard_normal((self.size, len(own)))
+            tried = points[:, own] + length * (points[:, one] - points[:, two]) + noise
+            turned = signs[own]
+            if self.unsigned:
+                turned = np.where(rng.random(len(own)) < _JUMPS, -turned, turned)
+            after = (*self.logarithms(tried, turned), first(tried, turned))
+            before = tuple(part[own] for part in parts)
+            gain = _tempered(after, hardness) - _tempered(
+                (before[0], before[1], before[2]), hardness
+            )
+            better = -rng.standard_exponential(len(own)) < gain
+            at = own[better]
+            points[:, at], signs[at] = tried[:, better], turned[better]
+            for part, new in zip(parts, after, strict=True):
+                part[at] = new[better]
+        return points, signs, (parts[0], parts[1], parts[2])
+
+
+class Ground:
+    """The impacts within all limits as `ascent.Landscape`: coordinates, 0 to 1 from limit to limit
+    or over what draws reach and ``BEYOND_DRAWS`` times as much on either side; the state of a point
+    is its friction's sign. Functions: quantities ``names``, then what divides open coefficients
+    among them; walls: the values within limits that are no coordinates."""
+
+    def __init__(self, posterior: Posterior, names: Sequence[str], drawn: Floats) -> None:
+        self.posterior, self.names = posterior, names
+        self.ratios = [n for n in names if n in posterior.open]
+        split = len(posterior.basis)
+        low, high = drawn[:split].min(axis=1), drawn[:split].max(axis=1)
+        reach = BEYOND_DRAWS * (high - low)
+        limits = [posterior.items[n] for n in posterior.inputs]
+        self.low = np.concatenate([low - reach, [item.low for item in limits]])
+        self.high = np.concatenate([high + reach, [item.high for item in limits]])
+        self.walls = [n for n in posterior.items if n not in posterior.inputs]
+
+    def shares(self, points: Floats) -> Floats:
+        """Return points (coordinates, n) as coordinates from 0 to 1 (n, coordinates)."""
+        return np.asarray(((points - self.low[:, None]) / (self.high - self.low)[:, None]).T)
+
+    def points(self, u: Floats) -> Floats:
+        wide = self.low + u * (self.high - self.low)
+        return np.asarray(np.where(u < 1, wide, self.high).T)
+
+    def _rows(self, state: State, count: int) -> Array:
+        posterior = self.posterior
+        rows = [posterior._value(state, n) for n in self.names]
+        rows += [state.quotient(n)[1] for n in self.ratios]
+        for name in self.walls:
+            item = posterior.items[name]
+            rows.append((posterior._observed(state, name)[0] - item.low) / (item.high - item.low))
+        return np.array([np.broadcast_to(row, count) for row in rows])
+
+    def at(self, u: Floats, guess: Floats) -> tuple[Floats, Floats, Floats, Flags]:
+        """`ascent.Landscape`."""
+        state, _, along = self.posterior.impacts(self.points(u), guess[0], weighed=False)
+        rows = self._rows(state, len(u)).T
+        count = len(self.names) + len(self.ratios)
+        functions, walls = rows[:, :count], rows[:, count:]
+        usable = along & np.isfinite(walls).all(axis=1)
+        return guess, functions, np.where(np.isfinite(walls), walls, -1e9), usable
+
+    def slopes(self, u: Floats, x: Floats) -> tuple[Floats, Floats, Floats]:
+        """`ascent.Landscape`."""
+        count, size = u.shape
+        width = (self.high - self.low)[:, None, None]
+        aside = 1j * TINY * width * np.eye(size)[:, :, None]
+        points = (self.points(u)[:, None] + aside).reshape(size, size * count)
+        signs = np.tile(x[0], size)
+        state, _, _ = self.posterior.impacts(points, signs, weighed=False)
+        rows = np.imag(self._rows(state, size * count)) / TINY
+        rows = np.nan_to_num(rows).reshape(len(rows), size, count).transpose(2, 0, 1)
+        split = len(self.names) + len(self.ratios)
+        return rows[:, :split], rows[:, split:], np.zeros((count, 1, size))
+
+    def values(self, u: Floats, sign: float) -> dict[str, float]:
+        """Return the values known within limits at one point."""
+        posterior = self.posterior
+        state, _, _ = posterior.impacts(self.points(u[None]), np.array([sign]), weighed=False)
+        return {n: float(np.ravel(posterior._observed(state, n)[0])[0]) for n in posterior.items}
+
+
+def _tempered(logs: tuple[Floats, Floats, Floats], hardness: float) -> Floats:
+    """Return the logarithm of the density with softened limits: 0, the first distribution;
+    infinite, the distribution itself. ``logs``: the density, what is beyond limits, the first
+    density."""
+    plain, excess, first = logs
+    if hardness == np.inf:
+        return np.where(excess > 0, -np.inf, plain)
+    if hardness == 0:
+        return first
+    part = -np.expm1(-hardness)
+    return np.asarray(part * plain + (1 - part) * first - np.expm1(hardness) * excess)
+
+
+def _lifted(logarithms: Floats) -> Floats:
+    clean = np.where(np.isnan(logarithms), -np.inf, logarithms)
+    return np.asarray(clean - clean.max(initial=-1e300))
+
+
+def _effective(logarithms: Floats) -> float:
+    """Return the effective fraction of particles with these logarithms of weights."""
+    weights = np.exp(_lifted(logarithms))
+    total = weights.sum()
+    return float(total * total / np.square(weights).sum() / len(weights)) if total > 0 else 0.0
+
+
+def _resampled(weights: Floats, rng: np.random.Generator) -> NDArray[np.intp]:
+    """Return which particles go on, by systematic resampling."""
+    places = (rng.random() + np.arange(len(weights))) / len(weights)
+    sums = np.cumsum(weights / weights.sum())
+    return np.minimum(np.searchsorted(sums, places), len(weights) - 1)
+
+
+def _near(name: str, value: Any, nominal: float | None) -> Any:
+    """Return a course or PDOF by full turns near the nominal one; else the value as it is."""
+    if name not in DIRECTIONS or nominal is None:
+        return value
+    return value - 360 * np.round((np.real(value) - nominal) / 360)

@@ -1,0 +1,176 @@
+"""Every impact, in the order of physics: problems of exact values, seen from elsewhere, and what
+more than one impact agrees with; the posterior against rejection by its own mechanics."""
+
+import math
+
+import numpy as np
+import pytest
+
+from impact88.closedform.solve import solve
+from impact88.reconstruction.adjustment import reconstruct
+from impact88.reconstruction.geometry import GEOMETRY
+from impact88.reconstruction.state import State
+from impact88.scene import sample
+from impact88.uncertainty.reconstructed import draws, ranges
+from impact88.uncertainty.reconstructedtable import Measured
+from impact88.uncertainty.uncertain import read
+
+SCENE = {name: float(text) for name, text in sample(1).items()}
+FINAL = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
+VEHICLES = {n: SCENE[n] for n in (*GEOMETRY, "M")}
+PROBLEMS = (
+    ("SA", "SB", "HB", "DVA", "WA", "WB", "E", "EM", "MUP"),
+    ("DVA", "SBF", "EL", "SA", "EM", "WA", "WB", "UY", "HB"),
+    ("SAF", "SBF", "SA", "SB", "WA", "WB", "E", "EM", "MUP"),
+)
+
+
+def everything(scene):
+    after = {n: float(v) for n, v in solve(scene).items()}
+    state = State({**scene, **after})
+    names = {name for problem in PROBLEMS for name in problem}
+    own = {**scene, **after}
+    return {n: own[n] if n in ("E", "EM", "MUP") else float(np.ravel(state[n])[0]) for n in names}
+
+
+def mirrored(scene):
+    turned = {n: -scene[n] for n in ("GA", "PA", "PB", "TA", "TB", "UY", "VY", "WA", "WB")}
+    return {**scene, **turned, "MU": -scene["MU"]}
+
+
+def rotated(scene, angle=37.0):
+    c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    turned = {n: scene[n] + angle for n in ("GA", "TA", "TB")}
+    for x, y in (("UX", "UY"), ("VX", "VY")):
+        turned |= {x: c * scene[x] - s * scene[y], y: s * scene[x] + c * scene[y]}
+    return {**scene, **turned}
+
+
+def exchanged(scene):
+    pairs = [("UX", "VX"), ("UY", "VY"), ("WA", "WB"), ("DA", "DB"), ("PA", "PB"), ("TA", "TB")]
+    pairs += [("MA", "MB"), ("IA", "IB")]
+    new = dict(scene)
+    for a, b in pairs:
+        new |= {a: scene[b], b: scene[a]}
+    return {**new, "GA": scene["GA"] + 180}
+
+
+def in_meters(scene):
+    new = {
+        n: v * 0.3048 if n in ("DA", "DB", "UX", "UY", "VX", "VY") else v for n, v in scene.items()
+    }
+    return {**new, "IA": scene["IA"] * 0.3048**2, "IB": scene["IB"] * 0.3048**2}
+
+
+EXCHANGED = {"SA": "SB", "SB": "SA", "HB": "HA", "DVA": "DVB", "WA": "WB", "WB": "WA"}
+EXCHANGED |= {"SAF": "SBF", "SBF": "SAF", "UY": "VY"}
+
+
+@pytest.mark.parametrize("names", PROBLEMS)
+def test_the_truth_is_among_them_and_no_impossible_impact_stands_before_it(names):
+    values = everything(SCENE)
+    found = reconstruct({**VEHICLES, **{n: values[n] for n in names}})
+    assert any(abs(s.values["UX"] - SCENE["UX"]) < 1e-5 for s in found)
+    broken = [bool(s.impossible) for s in found]
+    assert broken == sorted(broken)
+    assert not broken[0]
+    search = found[0].search
+    assert search.impacts == len(found)
+    assert search.idle >= 4
+    assert "found no other" in search.text()
+
+
+@pytest.mark.parametrize("names", PROBLEMS[:2])
+def test_the_first_impact_is_the_same_from_elsewhere(names):
+    first = reconstruct({**VEHICLES, **{n: everything(SCENE)[n] for n in names}})[0]
+    speeds = [first.values["SA"], first.values["SB"]]
+    for change in (mirrored, rotated, in_meters, exchanged):
+        scene = change(SCENE)
+        own = names
+        if change is rotated and "UY" in names:
+            continue  # a component is another quantity there
+        if change is exchanged:
+            own = tuple(EXCHANGED.get(n, n) for n in names)
+            after = {n: float(v) for n, v in solve(scene).items()}
+            state = State({**scene, **after})
+            kept = {**scene, **after}
+            values = {
+                n: kept[n] if n in ("E", "EM", "MUP") else float(np.ravel(state[n])[0]) for n in own
+            }
+        else:
+            values = everything(scene)
+        vehicles = {n: scene[n] for n in VEHICLES}
+        seen = reconstruct({**vehicles, **{n: values[n] for n in own}})[0]
+        factor = 0.3048 if change is in_meters else 1.0
+        turned = [seen.values["SA"] / factor, seen.values["SB"] / factor]
+        assert turned[:: -1 if change is exchanged else 1] == pytest.approx(speeds, rel=1e-6), (
+            change
+        )
+
+
+def test_equivalent_barrier_speeds_are_the_energies_they_stand_for():
+    after = {n: float(v) for n, v in solve(SCENE).items()}
+    state = State({**SCENE, **after})
+    lost = float(state["EL"])
+    speeds = {v: math.sqrt(2 * p * lost / SCENE["M" + v]) for v, p in (("A", 0.4), ("B", 0.6))}
+    known = {n: v for n, v in SCENE.items() if n not in ("UX", "E", "MU")}
+    known |= {"MUP": after["MUP"], "SA": 29.04, "HA": 180.0}
+    found = reconstruct({**known, "EBSA": speeds["A"], "EBSB": speeds["B"]})
+    assert min(abs(s.values["E"] - SCENE["E"]) for s in found) < 1e-6
+
+
+def test_a_car_of_unknown_speed_along_an_axis_has_no_course():
+    """B's velocities give the whole impulse; A's speed along x stays open."""
+    after = {n: float(v) for n, v in solve(SCENE, FINAL).items()}
+    known = {**VEHICLES, **{n: SCENE[n] for n in ("UY", "WA", "VX", "VY", "WB")}}
+    known |= {n: after[n] for n in ("VBX", "VBY", "WBF")}
+    (found,) = reconstruct(known)
+    assert "UX" in found.undetermined
+    assert "HA" not in found.values
+
+
+def direct_impact(n, rng):
+    """A rear end of point masses along x with exact masses: u, v flat, e uniform; the exit speed of
+    B normal, the energy lost normal. All in closed form, one dimension."""
+    u, v = rng.uniform(-20, 90, n), rng.uniform(-60, 60, n)
+    e = rng.uniform(0.0, 0.4, n)
+    ma, mb = 100.0, 80.0
+    impulse = (1 + e) * (u - v) / (1 / ma + 1 / mb)
+    after_b = v + impulse / mb
+    lost = 0.5 * ma * mb / (ma + mb) * (1 - e * e) * (u - v) ** 2
+    log = -0.5 * ((after_b - 30) / 2) ** 2 - 0.5 * ((lost - 9000) / 2500) ** 2
+    inside = (np.abs(after_b - 30) <= 6) & (np.abs(lost - 9000) <= 7500)
+    kept = inside & (rng.random(n) < np.exp(log))
+    return u[kept], v[kept]
+
+
+def test_draws_are_those_of_rejection_over_both_branches():
+    """B is struck, or runs away backwards: the crush alone tells nothing of which."""
+    known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "GA": 180.0, "UY": 0.0, "VY": 0.0, "MUP": 0.0}
+    known |= {"E": read("0 .. .4", "E"), "VBX": read("normal 30 2", "VBX")}
+    known |= {"EL": read("normal 9000 2500", "EL")}
+    u, v = direct_impact(2_000_000, np.random.default_rng(1988))
+    (first, *_) = reconstruct(known)
+    for seed in (0, 1):
+        drawn = draws(first, ["UX", "VX"], 8000, seed)
+        for name, other in (("UX", u), ("VX", v)):
+            own = drawn.values[name]
+            assert own.std() / other.std() == pytest.approx(1, abs=0.06)
+            assert abs(own.mean() - other.mean()) < 0.12 * other.std()
+    bounds = ranges(first, ["UX", "VX"], 0, drawn)
+    for name, other in (("UX", u), ("VX", v)):
+        assert bounds[name].lower <= min(other.min(), drawn.values[name].min())
+        assert bounds[name].upper >= max(other.max(), drawn.values[name].max())
+
+
+def test_the_first_order_is_not_shown_where_it_contradicts_the_draws():
+    known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "GA": 180.0, "UY": 0.0, "VY": 0.0, "MUP": 0.0}
+    known |= {"E": read("0 .. .4", "E"), "VBX": read("normal 30 2", "VBX")}
+    known |= {"EL": read("normal 9000 2500", "EL")}
+    shown = Measured(reconstruct(known)[0], 4000)
+    assert shown.first_order["UX"] is None
+    assert shown.deviations["UX"] == pytest.approx(shown.draws.values["UX"].std(ddof=1))
+    for name in shown.names:
+        plain = shown.first_order[name]
+        if plain is not None:
+            assert plain == pytest.approx(shown.draws.values[name].std(), rel=0.34)
