@@ -36,7 +36,7 @@ _LEFT, _WIDTH = 16, 104
 _NOISE = 1e-9
 """Of the largest quantity of the same unit: less is rounding, and printed as 0; twice as much
 prints the same of 100 solutions."""
-_COEFFICIENT_NOISE = 1e-12  # a coefficient below this is rounding
+_COEFFICIENT_NOISE = 1e-13  # a coefficient below this is rounding
 _ROWS = (
     ("x", "length/time", ("UX", "VAX", "VX", "VBX")),
     ("y", "length/time", ("UY", "VAY", "VY", "VBY")),
