@@ -375,3 +375,31 @@ class TestWhatTheListingDoes:
         assert stale.elimination > 0.5
         assert stale.arithmetic == 0
         assert math.isnan(split(self.BALLS, exact(self.BALLS)).elimination)
+
+
+def single_spin_errors(g):
+    """The largest error of either spin alone, in roundings of the scene's numbers: no spin lends
+    the other its size."""
+    names = ("WAF", "WBF")
+    found, moved = solve(g, names), movements(g, names)
+    worst = 0.0
+    for i in range(len(g["MA"])):
+        true = fifty_digits(scene_at(g, i))
+        for name in names:
+            error = abs(float(found[name][i] - true[name]))
+            worst = max(worst, error / (moved[name][i] + abs(found[name][i])) / ROUNDOFF)
+    return worst
+
+
+@pytest.mark.parametrize("pivot", [False, True])
+@pytest.mark.parametrize("scales", [("DA", "DB"), ("DA", "DB", "MA", "MB", "IA", "IB")])
+def test_each_spin_keeps_its_own_digits(pivot, scales):
+    """Mean and difference, each right to the last digit, left 2e3 to 2e4 roundings in a spin."""
+    rng = np.random.default_rng(38)
+    g = scenes("casework", 120, 38) | {"M": np.full(120, 6.0)}
+    for name in scales:
+        g[name] = g[name] * 10.0 ** rng.uniform(-6, 6, 120)
+    g["WA"], g["WB"] = rng.uniform(-2, 2, (2, 120))
+    if pivot:
+        g["MU"] = np.full(120, -10.0)
+    assert single_spin_errors(g) <= BACKWARD_STABLE

@@ -20,9 +20,19 @@ Cramer's rule with the factor z cancelled: no term becomes infinite at em = 1/2,
 0 the pivot's determinant is a sum of terms of one sign. None is found from another, nor from both
 spins apart: such differences would lose their digits where an arm is far longer than a radius of
 gyration, or one body far lighter than the other. What of the spins is left are the products Ired X
-= Ired (b omega_a/Ib - a omega_b/Ia), and a x b = an bt - at bn, which is Ired sigma x kappa. H has
-the factor em, so that at em = 0 the final spins are the same bits, and the moment impulse is (1 -
-em) H/em by Equation 18.
+= Ired (b omega_a/Ib - a omega_b/Ia), and a x b = an bt - at bn, which is Ired sigma x kappa. The
+moment impulse is (1 - em) H/em by Equation 18.
+
+Single spins are no sums of mean and H either, which may cancel: in Cramer's numerators of both, the
+terms of R, of w and of X are added by themselves, with p = Ired (z/Ib - em/Ia), q = 1 - em, and,
+for friction, a = an + mu at and b = bn + mu bt along the impulse::
+
+    Omega_a D = R [p omega_a + q omega_b Ired/Ia] - w [a p + b q Ired/Ib]/Ia
+                + em bn [a omega_b/Ia - b omega_a/Ib]
+
+and with a and b (p with its inertias) exchanged for B. At em = 0 both are the same sums, and so the
+same bits. The pivot's, divided by R, has w as a vector, and as its last line
+em [a.b omega_b/Ia - b.b omega_a/Ib - (a x b)(b x w)/(Ia Ib R)].
 
 Axes: n = (cos GA, sin GA), t = (-sin GA, cos GA), A on the +n side; P acts on A, -P on B. Every
 quantity is an `Expression`: what nobody asks for is noted and never computed.
@@ -117,6 +127,15 @@ def impact(
     sn_, st_ = an_ + bn_, at_ + bt_
     kn_, kt_ = an_ * ia + bn_ * ib, at_ * ia + bt_ * ib
 
+    # of a final spin times the determinant: what of both spins R multiplies, and what w multiplies
+    # along the own arm and along the other's
+    other = 1.0 - EM
+    weight_b = ia * Ired
+    kept_a = (z * weight_a - EM * weight_b) * WA + (other * weight_b) * WB
+    kept_b = (z * weight_b - EM * weight_a) * WB + (other * weight_a) * WA
+    own_a, own_b = z * J - EM * (ia * weight_b), z * J - EM * (ib * weight_a)
+    shared = other * J
+
     # -- friction: everything along the direction (1, mu) of the impulse
 
     def friction() -> list[Expression]:
@@ -132,6 +151,9 @@ def impact(
         # the radii of gyration, these nearly cancel
         spin = (z * (R * mean - J_sigma * w) + em_kappa * X) / determinant
         moment = unless_point((twist * w - turn * R - sn * X) / determinant)
+        cross_a, cross_b = a * (ia * WB) - b * (ib * WA), b * (ib * WA) - a * (ia * WB)
+        spin_a = (R * kept_a - w * (a * own_a + b * shared) + (EM * bn) * cross_a) / determinant
+        spin_b = (R * kept_b - w * (b * own_b + a * shared) + (EM * an) * cross_b) / determinant
         slip = ct + R * Pt + (st * spin + kt * (EM * moment))
         velocities = [UX + ma * Px, UY + ma * Py, VX - mb * Px, VY - mb * Py]
         size = absolute(mu)
@@ -139,7 +161,8 @@ def impact(
         twisting = absolute(EM) * (Ired * (kn_ * (kn_ + size * kt_)))
         condition = (absolute(z) * straight + twisting) / absolute(determinant)
         impulse = [determinant, Pn, Pt, Px, Py]
-        return [*impulse, spin, moment, *velocities, slip, mu, mu, condition]
+        spins_after = [moment, spin_a, spin_b]
+        return [*impulse, *spins_after, *velocities, slip, mu, mu, condition]
 
     # -- pivot, everything divided by R, along x and y: GA only enters by the restitution, and what
     # is rounded in turning to n and t would be lost where the sliding is all but undone
@@ -177,9 +200,15 @@ def impact(
 
     def no_slip() -> list[Expression]:
         """In `friction`'s order."""
-        undone = masses * mean - zJ * (sx * wx + sy * wy)
-        spin = kx * Xx + ky * Xy - lever_J * k_across
         moment = tx * wx + ty * wy - turn_R - (sx * Xx + sy * Xy + lever_J * s_across)
+        a_b, aa, bb = ax * bx + ay * by, ax * ax + ay * ay, bx * bx + by * by
+        crossing = lever * (J * R_inverse)
+        turned_a = a_b * (ia * WB) - bb * (ib * WA) - crossing * (bx * wy - by * wx)
+        turned_b = a_b * (ib * WA) - aa * (ia * WB) + crossing * (ax * wy - ay * wx)
+        push_a = (ax * own_a + bx * shared) * wx + (ay * own_a + by * shared) * wy
+        push_b = (bx * own_b + ax * shared) * wx + (by * own_b + ay * shared) * wy
+        spin_a = R * kept_a - push_a + EM * turned_a
+        spin_b = R * kept_b - push_b + EM * turned_b
         # Of a light body that keeps little of its velocity the change has rounding errors of the
         # size of what it lost; the common velocity and a share of the final relative one have not,
         # but spoil a small change by long arms.
@@ -198,7 +227,8 @@ def impact(
         condition = absolute(z) * straight + absolute(EM) * twisting
         return [
             *(pivot_determinant, pivot_n, pivot_t, pivot_x, pivot_y),
-            *((undone + EM * spin) / pivot_determinant, unless_point(moment / pivot_determinant)),
+            unless_point(moment / pivot_determinant),
+            *(spin_a / pivot_determinant, spin_b / pivot_determinant),
             *(*velocities[::2], *velocities[1::2], zero, table.constant(PIVOT), zero),
             condition / absolute(pivot_determinant),
         ]
@@ -209,12 +239,12 @@ def impact(
         pairs = zip(no_slip(), friction(), strict=True)
         found = [table.choose(pivot, fixed, sliding) for fixed, sliding in pairs]
     # the moment is H/em = PM/(1 - em); the slip the tangential relative velocity at separation
-    determinant, PN, PT, Px, Py, spin, moment, VAX, VAY, VBX, VBY, slip, MUP, sliding, cond = found
+    determinant, PN, PT, Px, Py, moment, spin_a, spin_b, *found = found
+    VAX, VAY, VBX, VBY, slip, MUP, sliding, cond = found
 
     # -- after impact
 
     H, PM = EM * moment, (1.0 - EM) * moment
-    spin_a, spin_b = spin + ia * H, spin - ib * H
     WAF, WBF = unless_point(spin_a, scene["WA"]), unless_point(spin_b, scene["WB"])
 
     def finite(inertia: Expression) -> Expression:
