@@ -234,6 +234,14 @@ def test_flash_sets_a_bit_in_what_is_sent():
     assert machine.screen_text().startswith("A1\n")
 
 
+@pytest.mark.parametrize(("top", "row"), [(0, 0), (2, 2), (1, 1)])
+def test_the_cursor_does_not_go_up_beyond_the_window(top, row):
+    machine, _ = session(f'10 POKE 34,{top}:HOME:CALL -998:PRINT "A";PEEK(37)')
+    assert machine.screen_text().split("\n")[row] == f"A{row}"
+    machine, _ = session(f'10 POKE 34,{top}:HOME:VTAB {top + 2}:CALL -998:PRINT "A";PEEK(37)')
+    assert machine.screen_text().split("\n")[row] == f"A{row}"
+
+
 def test_the_text_window():
     machine, _ = session('10 HOME:POKE 32,10:POKE 33,5:HOME:PRINT "ABCDEFG"')
     assert machine.screen_text().startswith(" " * 10 + "ABCDE\n" + " " * 10 + "FG\n")

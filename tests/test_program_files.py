@@ -196,6 +196,18 @@ def test_two_readings_are_refused() -> None:
         read_program(text)
 
 
+def test_two_ways_to_cut_quotes_are_refused() -> None:
+    """Of three lines with a quote each, which two are one?"""
+    rows = ['10  PRINT "' + "A" * 29, '20  PRINT "' + "B" * 29, '30  PRINT "C']
+    rows += ["40 A = " + "1" * 33, " + 1"]
+    with pytest.raises(UserError, match=r"row [23] may begin a line or continue line 10"):
+        read_program("\n".join(rows))
+    closed = [row + '"' if row.startswith("30") else row for row in rows]
+    closed[0] = closed[0][:-1] + '"'
+    closed[1] = closed[1][:-1] + '"'
+    assert [number for number, _ in read_program("\n".join(closed)).lines] == [10, 20, 30, 40]
+
+
 def test_apples_text_files_have_high_bits() -> None:
     text = "10 PRINT 1\r20 END\r"
     assert read_program(bytes(ord(c) | 0x80 for c in text) + bytes(9)) == read_program(text)
