@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 import re
+import shutil
+import subprocess
 import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from impact88 import solve
 from impact88.cli import main
 from impact88.scene import sample
 
@@ -127,7 +132,7 @@ def test_a_workbook(tmp_path: Path, capsys: Any) -> None:
     openpyxl = pytest.importorskip("openpyxl")
     written(tmp_path, KNOWN, "--xlsx", str(tmp_path / "t.xlsx"))
     book = openpyxl.load_workbook(tmp_path / "t.xlsx")
-    assert book.sheetnames[:2] == ["Answer", "Inputs as given"]
+    assert book.sheetnames[:3] == ["Answer", "Measured and adjusted", "Inputs as given"]
     assert book["Answer"]["C2"].value == pytest.approx(27.4, abs=0.05)
 
 
@@ -165,3 +170,85 @@ def test_what_does_not_print_is_shown_with_escapes(tmp_path: Path) -> None:
     assert r"Main \x1b[31m and \u202e4th" in text
     assert r"Case 7\x07" in text
     assert r"a\u202eb" in text
+
+
+def first_page(page: str) -> str:
+    """The words of the first page."""
+    return plain(
+        "</style>" + page.partition('<section class="page1">')[2].partition("</section>")[0]
+    )
+
+
+MEASURED = {"SAF": 2.0, "SBF": 2.0, "WAF": 0.3, "WBF": 0.3, "HAF": 5.0, "HBF": 5.0}
+"""Standard deviations of what is measured after the impact, in the sample's units."""
+
+
+def evidence_file(folder: Path, seed: int, off: float) -> tuple[Path, Path]:
+    """A file of what would be measured after sample 1, its geometry, e, friction and e_m known;
+    one measurement is off by so many deviations."""
+    rng = np.random.default_rng(seed)
+    scene = sample(1).numbers()
+    after = {name: float(value) for name, value in solve(scene).items()}
+    true = {f"S{v}F": np.hypot(after[f"V{v}X"], after[f"V{v}Y"]) for v in "AB"}
+    true |= {f"H{v}F": np.degrees(np.arctan2(after[f"V{v}Y"], after[f"V{v}X"])) for v in "AB"}
+    true |= {"WAF": after["WAF"], "WBF": after["WBF"]}
+    wrong = list(MEASURED)[seed % len(MEASURED)]
+    lines = ['units = "chapter"']
+    kept = [n for n in scene if n not in ("UX", "UY", "WA", "VX", "VY", "WB")]
+    lines += [f"{name} = {float(scene[name])!r}" for name in kept]
+    lines += ["WA = 0", "WB = 0", "HA = 180", "HB = 60"]
+    for name, sd in MEASURED.items():
+        value = true[name] + sd * np.clip(rng.normal(), -1, 1) * 0.7 + off * sd * (name == wrong)
+        lines.append(f'{name} = "normal {value:.4f} {sd}"')
+    source = folder / f"{seed}-{off:g}.toml"
+    source.write_text("\n".join(lines), encoding="utf-8")
+    return source, source.with_suffix(".html")
+
+
+FILES = 50 if os.environ.get("IMPACT88_SWEEP") else 4
+
+
+@pytest.mark.parametrize("seed", range(FILES))
+def test_the_first_page_says_that_the_evidence_contradicts_itself_or_does_not(
+    tmp_path: Path, capsys: Any, seed: int
+) -> None:
+    """The first page has the verdict of the command, the word only where it holds."""
+    for off in (0.0, 40.0):
+        source, page = evidence_file(tmp_path, seed, off)
+        assert main(["report", str(source), "-o", str(page), "--samples", "0"]) == 0
+        words = first_page(page.read_text("utf-8"))
+        assert ("contradict" in words) == bool(off), words
+        capsys.readouterr()
+        assert main(["reconstruct", str(source), "--json", "--samples", "0"]) in (0, 1)
+        told = json.loads(capsys.readouterr().out)
+        verdicts = {row["evidence"]["text"] for row in told["solutions"][:1]}
+        assert all(text in words for text in verdicts)
+
+
+def test_the_first_page_is_one_page_and_well_filled(tmp_path: Path) -> None:
+    """As a browser prints it: of the height between the margins four fifths are used."""
+    browser = shutil.which("chromium") or shutil.which("google-chrome")
+    pypdfium2 = pytest.importorskip("pypdfium2")
+    if not browser:
+        pytest.skip("no Chromium")
+    source, page = evidence_file(tmp_path, 1, 40.0)
+    assert main(["report", str(source), "-o", str(page), "--samples", "200"]) == 0
+    printed = tmp_path / "x.pdf"
+    subprocess.run(
+        [
+            *(browser, "--headless", "--no-sandbox", "--disable-gpu", "--no-pdf-header-footer"),
+            *(f"--print-to-pdf={printed}", str(page)),
+        ],
+        check=True,
+        capture_output=True,
+        timeout=120,
+    )
+    paper = pypdfium2.PdfDocument(printed)
+    first = paper[0].get_textpage().get_text_range()
+    assert "contradict one another" in " ".join(first.split())
+    assert "Answer" in paper[1].get_textpage().get_text_range()
+    dark = np.asarray(paper[0].render(scale=0.5).to_pil().convert("L")) < 160
+    rows = np.flatnonzero(dark.any(1)) * 2 / 72 * 25.4  # mm
+    rows = rows[rows < 279.4 - 20]  # above the page's number
+    assert rows[0] < 30
+    assert rows[-1] - 18 >= 0.8 * (279.4 - 38)

@@ -1,9 +1,10 @@
 """FILE.toml is a scene or a file for reconstruct (impact88 scene --help, impact88 reconstruct
 --help). A whole scene gives the velocities after the impact; any other file is reconstructed.
 
-The page stands in one file and is made to be printed: answer, drawing to scale, inputs as given
-with tolerances and sources, what drives the result, remarks, method, versions and hashes, a line to
-sign.
+The page stands in one file and is made to be printed. The first sheet is for a judge: what was
+asked, what was found and how sure it is, the verdict on the evidence, three numbers, the drawing to
+scale, remarks. Then each measured value beside its adjusted one, inputs as given with tolerances
+and sources, what drives the result, method, validation, versions and hashes, a line to sign.
 In the file, case = "24-117" is the case's number, and UX_source = "event data recorder" (or UX =
 {value = "-25 mph", source = "event data recorder"}) says where a value comes from.
 

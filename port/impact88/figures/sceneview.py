@@ -376,7 +376,7 @@ def _notes(shapes: Plan, units: System) -> list[str]:
         first.append(f"{whose} from I/m, L/W = 2.6: not measured.")
     barrier = len(shapes.bodies) < 2
     if not barrier:
-        first.append(f"Closing speed {with_unit(shapes.closing, _SPEED, units)}.")
+        first.append(f"Relative speed of the centers {with_unit(shapes.closing, _SPEED, units)}.")
     if not units.is_bare:
         first.append(f"Speeds in {units.label(_SPEED)}, spins in {units.label(_SPIN)}.")
     notes = [" ".join(first)]

@@ -1,9 +1,11 @@
 """The report of a collision: forward from a scene, inverse from a reconstruction file; and its
 tables as a workbook."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -19,6 +21,9 @@ from ..reconstruction.state import KNOWABLE
 from ..status import sentences
 from ..units import System, base_of
 from .frame import render
+
+if TYPE_CHECKING:
+    from ..reconstruction.adjustment import Adjusted
 
 DRIVERS = 3
 """Inputs named for each result: they fill a line."""
@@ -65,7 +70,8 @@ class Spread(NamedTuple):
 class Findings(NamedTuple):
     """An impact's ``values`` with all that follows, the ``spreads`` of its ``main`` results,
     ``remarks`` in sentences, and the ``scene`` that is drawn; ``inverse``: whether it was
-    reconstructed."""
+    reconstructed; the verdict on the ``evidence``, whether it is that the values are
+    ``contradictory``, and each measured value beside its adjusted one."""
 
     inverse: bool
     values: Mapping[str, float]
@@ -73,6 +79,9 @@ class Findings(NamedTuple):
     spreads: Mapping[str, Spread]
     remarks: Sequence[str]
     scene: Mapping[str, float]
+    evidence: str = ""
+    contradictory: bool = False
+    adjusted: Sequence[Adjusted] = ()
 
 
 def report(
@@ -101,11 +110,12 @@ def report(
         look = (150.0, "Scene from above", units, case.outlines)
         drawing = scene_drawing(found.scene, found.values, *look)
     tables = [_answer(found, units), *_details(found, case, units)]
+    paper = paper or ("letter" if units.name in ("us", "chapter", "") else "a4")
     page = render(
         "collision.html",
         title=title or case.title or "Planar impact of two vehicles",
         case=number or case.case or "",
-        paper=paper or ("letter" if units.name in ("us", "chapter", "") else "a4"),
+        paper=paper,
         files=[(source, data)],
         found=found,
         draws=f"{samples:,} random draws, seed {seed}."
@@ -113,10 +123,13 @@ def report(
         else "",
         base=base_of(units),
         units="any consistent set" if units.is_bare else f"those of the file ({units.name})",
+        summary=_summary(found, case, units),
+        figures=_figures(found, units),
         answer=_sentences(found, units),
+        validated=_validated(),
         tables=tables,
         drawing=svg(drawing) if drawing else "",
-        figure_caption=drawing.description if drawing else "",
+        room=FIRST_PAGE[paper],
         remarks=[*case.remarks.values(), *found.remarks],
     )
     return page, tables
@@ -216,7 +229,16 @@ def _inverse(case: Case, source: str, samples: int, seed: int, units: System) ->
     scene.setdefault("M", float(DEFAULT_M))
     if scene["M"] == 4 or "EM" not in scene:
         scene["EM"] = 0.0  # which nothing drawn depends on
-    return Findings(True, values, sought, spreads, remarks, scene)
+    evidence = spread.evidence
+    if evidence.contradictory:  # what the verdict says is not said twice
+        told = evidence.text(units)
+        remarks = [line for line in remarks if not line.startswith(told)]
+        if not found[0].assumed:
+            widened = f"standard deviations are widened {number(evidence.widening, 3)} times"
+            remarks.insert(0, widened)
+    whole = values, sought, spreads, remarks, scene
+    told = evidence.text(units)
+    return Findings(True, *whole, told, evidence.contradictory, found[0].adjusted)
 
 
 def _amount(name: str, value: float, units: System, like: float = math.nan) -> str:
@@ -256,6 +278,92 @@ def _sentences(found: Findings, units: System) -> list[str]:
     return lines
 
 
+FIRST_PAGE = {"letter": 208, "a4": 226}
+"""Height in mm of what stands on the first page below its title: the drawing takes what is left."""
+MAIN_FORWARD = ("DVA", "DVB", "LOSS")
+"""The three numbers of the first page, of a scene."""
+MAIN_INVERSE = ("SA", "SB", "DVA", "DVB", "LOSS")
+"""The same of a reconstruction: the first three that were not given."""
+
+
+def _spoken(found: Findings, name: str, units: System) -> str:
+    """Return a result as a sentence has it, with its standard deviation where it has one."""
+    like = found.spreads.get(name, Spread()).deviation
+    text = _amount(name, found.values[name], units, like)
+    if math.isfinite(like):
+        text += f" ± {_amount(name, like, units, like)}"
+    return f"{text} {_unit(name, units)}".strip()
+
+
+def _chosen(found: Findings) -> list[str]:
+    main = MAIN_INVERSE if found.inverse else MAIN_FORWARD
+    names = [n for n in main if math.isfinite(found.values.get(n, math.nan))]
+    if found.inverse:
+        names = [n for n in names if n in found.main]
+    return names[:3]
+
+
+def _figures(found: Findings, units: System) -> list[tuple[str, str, str]]:
+    """Return the three numbers of the first page: meaning, amount, limits of the draws."""
+    figures = []
+    for name in _chosen(found):
+        spread = found.spreads.get(name, Spread())
+        ends = [_amount(name, x, units, spread.deviation) for x in (spread.low, spread.high)]
+        told = all(ends) and not found.contradictory
+        limits = f"90 % of the draws from {ends[0]} to {ends[1]}" if told else ""
+        figures.append((quantity(name).meaning, _spoken(found, name, units), limits))
+    return figures
+
+
+def _summary(found: Findings, case: Case, units: System) -> list[str]:
+    """Return the two paragraphs of the first page: what was asked, what was found and how sure."""
+    given = [n for n, text in case.given.items() if text.strip() and n not in ABOUT]
+    uncertain = [a.name for a in found.adjusted]
+    if found.inverse:
+        asked = (
+            "Asked: how two vehicles moved before and after they struck one another, as far as it "
+            f"follows from {len(given)} known values"
+        )
+        asked += f", {len(uncertain)} of them known within limits" if uncertain else ""
+    else:
+        asked = (
+            "Asked: how two vehicles moved after they struck one another, and what their "
+            f"velocities changed by, from {len(given)} given values"
+        )
+    parts = [f"{quantity(n).meaning} {_spoken(found, n, units)}" for n in _chosen(found)]
+    answer = "Found: " + "; ".join(parts) if parts else "Found: none of the results asked for"
+    if found.contradictory:
+        sure = (
+            "The values given contradict one another, so these numbers are a compromise between "
+            "them and settle nothing until the contradiction is resolved"
+        )
+    elif any(math.isfinite(spread.deviation) for spread in found.spreads.values()):
+        sure = (
+            "What follows each ± is one standard deviation: it covers the limits given with the "
+            "inputs and nothing else"
+        )
+    else:
+        sure = "No limits were given with the inputs, so how sure this is was not computed"
+    return [asked + ".", f"{answer}. {sure}."]
+
+
+def _validated() -> str:
+    """Return what the equations were held against, and how near they came."""
+    from ..chapter.validation import IIHS, NHTSA, checks, medians
+
+    rows = {(row[0], row[1]): row for row in medians(checks())}
+    along, spin = rows[IIHS, "ΔV along the course"], rows[IIHS, "change of spin"]
+    change = max(rows[NHTSA, f"ΔV, {vehicle}"][6] for vehicle in "AB")
+    return (
+        "Validated against four NHTSA oblique offset tests as a published planar impact model has "
+        f"them (SAE 2006-01-0908; ΔV within {change:.2f} mph) and {along[4]} small overlap tests "
+        f"as measured (joe-cormier/pycrash; median difference of ΔV along the course "
+        f"{along[5]:.2f} ft/s, of the change of spin {spin[5]:.1f}°/s, largest {along[6]:.1f} ft/s "
+        f"and {spin[6]:.0f}°/s): impact88 chapter staged --validation shows every number. How near "
+        "this impact comes is not known from that."
+    )
+
+
 def _unit(name: str, units: System) -> str:
     label = units.label(quantity(name).unit)
     return {"percent": "%", "1": ""}.get(label, label)
@@ -293,7 +401,23 @@ def _details(found: Findings, case: Case, units: System) -> list[Table]:
         source += ["estimate: " + case.estimated[name]] if name in case.estimated else []
         rows.append([name, quantity(name).meaning, text, unit, "; ".join(filter(None, source))])
     headings = ["", "input", "given", "unit", "source"]
-    tables = [Table("Inputs as given", headings, rows, (0, 1, 3, 4))]
+    tables = []
+    if found.adjusted:
+        measured = [
+            [
+                item.name,
+                quantity(item.name).meaning,
+                _amount(item.name, item.measured, units, item.tolerance),
+                _amount(item.name, item.adjusted, units, item.tolerance),
+                fixed(item.moved, 2),
+                _unit(item.name, units),
+            ]
+            for item in found.adjusted
+        ]
+        heads = ["", "value", "measured", "adjusted", "moved, sd", "unit"]
+        caption = "moved: adjusted less measured, in standard deviations of what was measured"
+        tables.append(Table("Measured and adjusted", heads, measured, (0, 1, 5), caption))
+    tables.append(Table("Inputs as given", headings, rows, (0, 1, 3, 4)))
     rows = [
         [name, quantity(name).meaning, ", ".join(spread.drivers)]
         for name, spread in found.spreads.items()
