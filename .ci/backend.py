@@ -13,6 +13,7 @@ from pathlib import Path
 
 from setuptools import build_meta
 from setuptools.build_meta import *  # noqa: F403
+from setuptools.command.bdist_wheel import bdist_wheel
 from setuptools.command.egg_info import manifest_maker
 from setuptools.dist import Distribution
 
@@ -57,13 +58,23 @@ if os.environ.get("IMPACT88_PURE") == "1":  # a wheel for every machine, without
     Distribution.has_ext_modules = lambda self: False
 
 
+_own_tag = bdist_wheel.get_tag
+
+
+def _tag(command):
+    """The compiled part is plain C and calls nothing of Python's: it serves every Python of a
+    platform, free-threaded ones, too."""
+    return "py3", "none", _own_tag(command)[2]
+
+
+bdist_wheel.get_tag = _tag
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    """A wheel whose entries have the time of the commit and usual modes. The compiled part calls
-    nothing of Python's, so that it serves any version from the lowest on."""
+    """A wheel whose entries have the time of the commit and usual modes."""
     os.environ["SOURCE_DATE_EPOCH"] = str(epoch())
-    settings = {"--build-option": ["--py-limited-api=cp311"], **(config_settings or {})}
     with commit_recorded():
-        return build_meta.build_wheel(wheel_directory, settings, metadata_directory)
+        return build_meta.build_wheel(wheel_directory, config_settings, metadata_directory)
 
 
 def build_sdist(sdist_directory, config_settings=None):

@@ -19,7 +19,7 @@ VARIABLE = "IMPACT88_ACCELERATED"
 def _load() -> ctypes.CDLL | None:
     if os.environ.get(VARIABLE, "1") == "0":
         return None
-    for suffix in (*EXTENSION_SUFFIXES, ".so"):
+    for suffix in (*EXTENSION_SUFFIXES, ".abi3.so", ".so"):  # free-threaded has no abi3
         path = Path(__file__).with_name(f"_machine{suffix}")
         if path.exists():
             try:
