@@ -380,6 +380,31 @@ def test_a_stroke_bears_on_the_page_in_or_beside_a_line(beside: bool) -> None:
     assert (mark["kind"], mark["bears"]) == ("stroke", beside)
 
 
+def test_a_negative_two_pages_and_a_page_on_a_dark_desk_are_turned_into_paper() -> None:
+    """Each is settled as the page itself is, and what was done to it is said."""
+    page, _ = genuine()
+    negative = Pillow.eval(page, lambda value: 255 - value)
+    desk = Pillow.new("L", (page.width + 240, page.height + 240), 40)
+    desk.paste(page, (120, 120))
+    desk = desk.rotate(2, Pillow.Resampling.BICUBIC, fillcolor=40)
+    both = Pillow.new("L", (2 * page.width + 40, page.height), 30)
+    both.paste(page, (0, 0))
+    both.paste(page, (page.width + 40, 0))
+    for picture, count, said in (
+        (negative, 1, "negative"),
+        (desk, 1, "dark around the page"),
+        (both, 2, "2 pages side by side"),
+    ):
+        found = examine("page.png", data=saved(picture, "PNG")).results
+        assert [one.verdict for one in found] == [Verdict.IDENTICAL] * count, said
+        assert said in "\n".join(found[0].remarks)
+        width, height = picture.size
+        for cell in found[-1].cells:
+            left, top, right, bottom = cell["box"]
+            assert -2 < left < right < width + 2
+            assert -2 < top < bottom < height + 2
+
+
 @pytest.mark.skipif(not SWEEP, reason="a sweep: IMPACT88_SWEEP=1")
 @pytest.mark.parametrize("kind", scanpages.ADDED)
 def test_no_page_with_something_added_is_bare_identical(kind: str) -> None:

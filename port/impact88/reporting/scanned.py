@@ -31,19 +31,26 @@ def verified(path: str, data: bytes, seed: str | Sequence[str] = "") -> Iterator
     """Each printout in a picture or PDF. ``seed``: what other readers made of it; their scenes
     are tried, and they decide nothing. Raises UserError when no printout is found."""
     results: list[Verification] = []
-    without = []
+    without, causes = list[int](), ""
     texts = [seed] if isinstance(seed, str) else seed
     seeds = [scene for text in texts for scene in scenes_in(text)]
     with progress(None, "pages read", "page") as meter:
         for page in pages_of(data, path):
             found: list[Verification] = []
+            unread = 0
             for paper in papers_of(page.picture):
                 seen = looked(paper.grey, [*seeds, *scenes_in(page.text)], paper.coloured)
+                unread += not seen.leaves
+                causes = causes or ("" if seen.leaves else "; ".join(paper.remarks))
                 for leaf in seen.leaves:
                     number = len(results) + len(found) + 1
                     result = _verification(path, number, page, paper, leaf)
                     result.exhibit = partial(exhibit, paper.grey, seen.leaves, leaf)
+                    result.remarks += [f"page {page.number}: {said}" for said in paper.remarks]
                     found.append(result)
+            if found and unread:
+                said = f"no printout was found on {unread} of the sheets it shows"
+                found[0].remarks.append(f"page {page.number}: {said}")
             if page.text.strip():
                 _layered(found, page.text)
             if not found:
@@ -53,7 +60,7 @@ def verified(path: str, data: bytes, seed: str | Sequence[str] = "") -> Iterator
     if not results:
         raise UserError(
             f"{called(path)}: no printout was found in the picture; expected lines of fixed pitch, "
-            "10 pixels or more a character"
+            "10 pixels or more a character" + (f" ({causes})" if causes else "")
         )
     if without:
         pages = ", ".join(map(str, without))

@@ -256,6 +256,7 @@ def _runs(cells: Mapping[Place, Cell]) -> Iterator[tuple[Place, list[Cell]]]:
 
 INKED = 0.35  # margin of a blank cell from which it holds a character
 INKED_SMALL = 0.5  # the same of a point, a comma, a dash, which are as light as specks
+ERASED = 2.0  # margin from which a sign is not faint but gone; of genuine pages none exceeds 1
 SPECK = 0.25  # margin of a blank from which a speck is seen in it
 MOST_SPECKS = 2  # of a page on which a mark as small as a point is taken for one
 FIT = 0.6  # the least part of the ink in a blank that the character explains
@@ -361,6 +362,8 @@ def _slight(cell: Cell) -> bool:
     """Whether a doubt leaves every digit beyond doubt: it is about a mark, a speck or a label. A
     digit that is like nothing on the page is in doubt, whatever it is least unlike."""
     mark = cell.predicted in _MARKS
+    if cell.name and cell.predicted == "-" and cell.margin > ERASED:
+        return False
     if cell.lost and (not cell.name or mark):
         return True
     if not cell.name or cell.predicted == BLANK or (mark and cell.other in _MARKS):
