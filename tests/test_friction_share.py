@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
 
+import impact88
 from impact88 import solve
 from impact88.cli import main
 from impact88.errors import UserError
 from impact88.scene import Scene, sample
 from impact88.uncertainty.bounds import bounds
 from impact88.uncertainty.ranges import read_inputs
+from impact88.uncertainty.reconstructedtable import Measured
 
 CF11002 = {
     **{"DA": "4.14", "PA": "29", "TA": "0", "GA": "74.6", "MA": "3574.2", "IA": "2336.3"},
@@ -127,3 +129,22 @@ def test_no_friction_to_have_a_share_of() -> None:
                 scene.replaced({"MU": "85 %"})
             return
     pytest.fail("no such scene")
+
+
+class TestInAReconstruction:
+    """A share is a condition of each impact, with that impact's own critical friction."""
+
+    RANGES: ClassVar[dict[str, str]] = {"GA": "-30 +- 5", "DA": "7.59 +- .5", "E": "0.005 .. .2"}
+
+    def test_bounds_of_a_whole_scene_are_those_of_the_forward_problem(self):
+        values = {**sample(1), **self.RANGES, "MU": "85 %"}
+        forward = bounds(values, ["VAX", "WAF", "DVA"], samples=4000)
+        (inverse,) = impact88.reconstruct(values)
+        drawn = Measured(inverse, 4000, 0, ["VAX", "WAF", "DVA"])
+        for name, bound in forward.bounds.items():
+            width = bound.upper - bound.lower
+            assert drawn.ranges[name].lower == pytest.approx(bound.lower, abs=1e-3 * width)
+            assert drawn.ranges[name].upper == pytest.approx(bound.upper, abs=1e-3 * width)
+            deviation = forward.spreads[name].deviation
+            assert drawn.draws.spread(name, ()).deviation == pytest.approx(deviation, rel=0.1)
+            assert drawn.deviations[name] == pytest.approx(deviation, rel=0.1)

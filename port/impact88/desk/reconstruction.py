@@ -61,6 +61,9 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     try:
         if problems or case is None:
             raise UserError(f"To be corrected: {' '.join(problems)}.")
+        known, friction = adjustment.share_resolved(known)
+        if friction:
+            answered["remarks"].append(friction)
         found: Sequence[Impact]
         if adjustment.needs_adjustment(known):
             first, *more = adjustment.reconstruct(known)

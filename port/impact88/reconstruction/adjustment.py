@@ -512,7 +512,7 @@ def reconstruct(
     Raises UserError for names and numbers that cannot be used and for exact values that contradict
     one another beside others with a tolerance, UnsolvableError where nothing unknown is determined.
     """
-    given = _checked(known)
+    given, _ = share_resolved(_checked(known))
     mu = given.pop("MU", None)
     readings = [given]
     if mu is not None:
@@ -801,6 +801,8 @@ def _described(system: System, x: Floats, assumed: bool) -> Reconstruction:
         if system.point and name in (*SPINS, "PM", "EM"):
             continue
         known = name in COEFFICIENTS and name in system.known
+        if name == "MUP" and "MUC" in system.constants:
+            known = False  # a share of this impact's own critical friction
         size = value(state.values[name] if known else state[name])
         largest = np.abs(gradient).max(initial=0.0)
         is_open = not fold and np.abs(gradient @ null).max(initial=0.0) > _OPEN * largest
@@ -847,15 +849,19 @@ def share_resolved(known: Mapping[str, Uncertain]) -> tuple[dict[str, Uncertain]
         name, value = "MUP", _signed(others, item.nominal)
     if value != value:
         raise UserError("no friction ends the sliding here; expected a number", "MU")
+    text = f"MU is {100 * item.nominal:g} % of the critical friction: {name} = {value:.9g}"
+    varying = item.varies or any(x.varies for x in others.values())
+    if name == "MU" and varying:
+        signed = item.nominal * float(solve({**scene, "MU": 0.0}, ("MUC",))["MUC"])
+        name, value = "MUP", signed
     scale = value / item.nominal if item.nominal else 0.0
     low, high = sorted((item.low * scale, item.high * scale))
     found = fixed(value)
     if item.varies:
         spread = abs(item.deviation * scale)
         found = replace(item, nominal=value, low=low, high=high, deviation=spread, share=False)
-    text = f"MU is {100 * item.nominal:g} % of the critical friction: {name} = {value:.9g}"
-    if any(x.varies for x in others.values()):
-        text += ", held at that number while the other values vary: bounds may be too narrow"
+    if varying and scale:  # a condition of each impact: Equation 16 with its own critical friction
+        found = replace(found, critical=scale)
     return {**others, name: found}, text
 
 

@@ -107,7 +107,32 @@ class State:
         if coefficient == "MUP" and np.all(value == PIVOT):
             return self.relative_after[1]
         above, below = self.quotient(coefficient)
+        if coefficient == "MUP" and (critical := self.values.get("MUC")):
+            value = value * self.critical_friction / critical
         return above - value * below
+
+    @cached_property
+    def critical_friction(self) -> Any:
+        """P_t/P_n of the impact whose contact points end their sliding at separation, by Equations
+        15 and 18 with the pivot's condition."""
+        here = self.here
+        e, em = (self.values.get(name) for name in ("E", "EM"))
+        e = self["E"] if e is None else e
+        em = self["EM"] if em is None else em
+        normal, tangential, spin = self.relative_before
+        # what a unit of P_n, P_t and M changes of the relative velocities
+        units = [here.relative(here.changes(*row)) for row in np.eye(3)]
+        moment = [(1 - em) * unit[2] for unit in units]
+        moment[2] = moment[2] - em * here.inverse_spin_inertia
+        last = np.where(here.point, 0.0, -(1 - em) * spin)
+        moment = [np.where(here.point, float(i == 2), row) for i, row in enumerate(moment)]
+        rows = [[unit[0] for unit in units], [unit[1] for unit in units], moment]
+        right = [-(1 + e) * normal, -tangential, last]
+        every = np.broadcast_arrays(*(x for row in rows for x in row), *right)
+        shape = every[0].shape
+        matrix = np.stack(every[:9], axis=-1).reshape(*shape, 3, 3)
+        solution = np.linalg.solve(matrix, np.stack(every[9:], axis=-1)[..., None])[..., 0]
+        return solution[..., 1] / solution[..., 0]
 
     def __getitem__(self, name: str) -> Any:
         """A quantity by name; coefficients are what velocities and impulse make them."""

@@ -93,6 +93,8 @@ class System:
         self.variables = (*unknown, *impulses, *parameters)
         self.scales = np.array([*np.broadcast_arrays(*map(self.scale, self.variables))])
         self.constants = {**dict.fromkeys(still, 0.0), **self.nominal}
+        if (friction := known.get("MUP")) is not None and friction.critical:
+            self.constants["MUC"] = friction.critical  # a share of each impact's own
         self.laws = [n for n in COEFFICIENTS if n in known and not (self.point and n == "EM")]
         settled = {after[n] for n in (*still, *self.from_after) if n in after}
         self.exact = [
@@ -104,8 +106,10 @@ class System:
         self.conditions = (*self.laws, *self.exact)
         self.observations = tuple(n for n in known if n in loose and n not in still)
         self.geometry = None if set(parameters) & set(GEOMETRY) else geometry
-        self.linear = not adjusted and not any(
-            n in _CURVED and _COURSE_OF.get(n) not in known for n in known
+        self.linear = (
+            not adjusted
+            and "MUC" not in self.constants
+            and not any(n in _CURVED and _COURSE_OF.get(n) not in known for n in known)
         )
 
     def _typical_speed(self) -> Any:

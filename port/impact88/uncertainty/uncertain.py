@@ -50,6 +50,9 @@ class Uncertain:
         The standard deviation of a normal.
     share : bool, default False
         True where all of them are shares of the critical friction (MU = "85 %").
+    critical : float, default 0
+        The critical friction at the nominal values, where such shares were made numbers with it:
+        the friction stays that share of each impact's own.
 
     Examples
     --------
@@ -63,6 +66,7 @@ class Uncertain:
     high: float
     deviation: float = 0.0
     share: bool = False
+    critical: float = 0.0
 
     def over(self, factor: float) -> Uncertain:
         """The same in other units, all values divided."""
