@@ -117,10 +117,9 @@ def note_start(region: Region) -> int:
     A note follows a gap and opens with a bracket or a word: ``-13.263 (WRONG: 31.2)``. A figure
     right after a blank may be the number's own.
     """
-    for at in range(1, len(region)):
-        if region[at].gap and clean(region[:at]) and _is_note(region[at:]):
-            return at
-    return len(region)
+    at = next((at for at, glyph in enumerate(region[:LONGEST]) if at and glyph.gap), 0)
+    noted = at and clean(region[:at]) and _is_note(region[at:])
+    return at if noted else len(region)
 
 
 def _is_note(rest: Region) -> bool:

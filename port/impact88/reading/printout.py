@@ -163,12 +163,14 @@ class Printout:
                 continue
             start, stop = self._slots[name]
             for at in range(start + 1, stop - 1):
-                if glyphs[at].char == state.name and numerals.clean(glyphs[start:at]):
+                if glyphs[at].char != state.name:
+                    continue
+                if numerals.clean(glyphs[start:at]):
                     self._slots[name] = (start, at)
                     later = [index for index, own in self._states.items() if own == place]
                     after = dict.fromkeys([*range(at + 1, stop), *later], 0)
                     self._states = {**self._states, **after, at: place}
-                    break
+                break
 
     def _part_row(self) -> None:
         """A line of five clean numbers is the row of angles; what stands below it is none of it."""
