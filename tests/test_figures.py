@@ -431,15 +431,16 @@ def found():
 
 
 class TestCanvas:
-    def test_ink_of_texts_does_not_overlap(self):
+    def test_ink_of_texts_does_not_overlap(self, monkeypatch):
         """What matplotlib paints keeps to the boxes that the layout reckons with."""
         drawing = scene_drawing(sample(1), solved(sample(1)))
         import matplotlib
 
-        with matplotlib.rc_context({"text.hinting": "no_hinting"}):  # as files are written
-            figure = canvas.painted(drawing)
-            assert figure.get_size_inches() * 25.4 == pytest.approx([85, drawing.height])
-            figure.canvas.draw()
+        # as files are written
+        monkeypatch.setitem(matplotlib.rcParams, "text.hinting", "no_hinting")
+        figure = canvas.painted(drawing)
+        assert figure.get_size_inches() * 25.4 == pytest.approx([85, drawing.height])
+        figure.canvas.draw()
         boxes = [text_box(text) for text in drawing.texts()]
         for shown in figure.axes[0].texts:
             ink = shown.get_window_extent().transformed(figure.axes[0].transData.inverted())
