@@ -86,7 +86,8 @@ class Posterior:
         after = [n for n in system.exact if n not in (*LINEAR, *CRUSH)]
         self.exact = [n for n in system.exact if n not in loose and n not in CRUSH]
         curved = ("DVA", "DVB", "KI", "KF", "EL", "LOSS", "DT")
-        self.supported = not any(n in curved for n in after)
+        # friction that is a share of each impact's own critical one is no linear condition
+        self.supported = not any(n in curved for n in after) and "MUC" not in system.constants
         for course, speed in COURSES.items():
             if speed in self.exact and course not in self.exact:
                 self.supported = False
@@ -101,6 +102,7 @@ class Posterior:
         self.items = {n: self._cut(n) for n in (*self.inputs, *self.measured, *self.crush[:1])}
         self.varied = bool(set(self.inputs) & {*GEOMETRY})
         self.geometry = None if self.varied else Geometry(system.constants)
+        self.closed = False
         if self.supported:
             self._span(solution)
 
