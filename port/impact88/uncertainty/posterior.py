@@ -48,6 +48,8 @@ LAST_MOVES = 40  # steps before the first draws are taken
 BEYOND_DRAWS = 2.0  # bounds are sought so many times what draws span beyond them
 _CHUNK = 1 << 13  # impacts at a time: bounds the memory
 _JUMPS = 0.1  # steps the length of a difference of two particles, which join branches
+_RIDGE = 1e-12  # keeps what first order hardly tells from being infinitely wide
+_GRID = 1e-7  # of the first distribution's spread
 _TOUCH = 1e-9  # beyond limits by no more, in half-widths, is at them
 _HARDEST = 40.0  # limits softer by e to the power of this are hard
 THINNING = 6  # steps between one set of draws and the next
@@ -131,7 +133,7 @@ class Posterior:
         matrix = matrix / np.where(norm > 0, norm, 1.0)
         _, s, vt = np.linalg.svd(matrix)
         rank = int((s > 1e-10 * s.max(initial=0.0)).sum())
-        self.basis = vt[rank:]
+        self.basis = _unique_basis(vt[rank:])
         self.supported &= rank == len(matrix)
         self.size = len(self.basis) + len(self.inputs)
         for y, own in zip(ys, parameters, strict=True):
@@ -371,9 +373,11 @@ class Posterior:
         roots = []
         for center, sign in zip(self.centers, self.signs, strict=True):
             slopes = self._slopes(center, sign)
-            _, s, vt = np.linalg.svd(slopes, full_matrices=False)
-            s = np.maximum(s, s.max(initial=0.0) * 1e-9)
-            roots.append(WIDENING * (vt.T / s))
+            sizes = np.linalg.norm(slopes, axis=0)
+            sizes = np.where(sizes > 0, sizes, 1.0)
+            square = (slopes / sizes).T @ (slopes / sizes) + _RIDGE * np.eye(self.size)
+            # Cholesky's root is the same in any units, up to their factors
+            roots.append(WIDENING * np.linalg.cholesky(np.linalg.inv(square)) / sizes[:, None])
         # far from all that was found, too: what first order knows nothing of
         deviations = [self.known[n].standard_deviation for n in self.inputs]
         wide = np.diag(np.concatenate([np.full(len(self.basis), BROAD), deviations]))
@@ -386,6 +390,8 @@ class Posterior:
         chi = np.sqrt(rng.chisquare(FREEDOM, count) / FREEDOM)
         steps = np.stack(roots)[which] @ (normal / chi[:, None])[:, :, None]
         points = (np.stack(centers)[which] + steps[:, :, 0]).T
+        self.grid = _GRID * np.linalg.norm(roots[0], axis=1)[:, None]
+        points = self._on_grid(points)
         signs = np.array(own_signs)[which]
         inverses = [np.linalg.inv(root) for root in roots]
         heights = [
@@ -408,20 +414,19 @@ class Posterior:
     def _slopes(self, center: Floats, sign: float) -> Floats:
         """Return the derivatives of all values known within limits, in standard deviations, over
         the coordinates."""
-        steps = 1e-6 * np.concatenate(
-            [np.ones(len(self.basis)), [self.known[n].standard_deviation for n in self.inputs]]
-        )
-        both = np.concatenate(
-            [center[:, None] + np.diag(steps), center[:, None] - np.diag(steps)], 1
-        )
-        state, _, _ = self.impacts(both, np.full(both.shape[1], sign))
+        aside = center[:, None] + 1j * TINY * np.eye(self.size)
+        state, _, _ = self.impacts(aside, np.full(self.size, sign), weighed=False)
         rows = []
         for name in self.items:
-            value = np.broadcast_to(self._observed(state, name)[0], both.shape[1])
-            ahead, behind = np.split(value, 2)
-            deviation = self.known[name].standard_deviation
-            rows.append((ahead - behind) / (2 * steps * deviation))
+            value = np.broadcast_to(self._observed(state, name)[0], self.size)
+            rows.append(np.imag(value) / TINY / self.known[name].standard_deviation)
         return np.asarray(np.nan_to_num(np.array(rows), posinf=0.0, neginf=0.0))
+
+    def _on_grid(self, points: Floats) -> Floats:
+        """Return points on a fine grid. Steps of differential evolution multiply rounding errors:
+        without a grid draws differ from one system of units to another."""
+        center = self.centers[0][:, None]
+        return np.asarray(center + np.round((points - center) / self.grid) * self.grid)
 
     def _moved(
         self,
@@ -444,6 +449,7 @@ class Posterior:
             spread = points[:, other].std(axis=1, keepdims=True)
             noise = 1e-3 * spread * rng.standard_normal((self.size, len(own)))
             tried = points[:, own] + length * (points[:, one] - points[:, two]) + noise
+            tried = self._on_grid(tried)
             turned = signs[own]
             if self.unsigned:
                 turned = np.where(rng.random(len(own)) < _JUMPS, -turned, turned)
@@ -521,6 +527,18 @@ class Ground:
         posterior = self.posterior
         state, _, _ = posterior.impacts(self.points(u[None]), np.array([sign]), weighed=False)
         return {n: float(np.ravel(posterior._observed(state, n)[0])[0]) for n in posterior.items}
+
+
+def _unique_basis(rows: Floats) -> Floats:
+    """Return the orthonormal basis of a space that rounding does not turn, as it turns the rows of
+    a singular value decomposition: its projector's columns made orthogonal, the longest first."""
+    left, basis = rows.T @ rows, []
+    for _ in rows:
+        lengths = np.linalg.norm(left, axis=0).round(6)
+        vector = left[:, int(lengths.argmax())]
+        basis.append(vector / np.linalg.norm(vector))
+        left = left - np.outer(basis[-1], basis[-1] @ left)
+    return np.array(basis).reshape(len(rows), rows.shape[1])
 
 
 def _tempered(logs: tuple[Floats, Floats, Floats], hardness: float) -> Floats:
