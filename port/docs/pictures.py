@@ -1,0 +1,70 @@
+"""Make README's pictures again: python port/docs/pictures.py
+
+Needs ``pip install -e '.[bench,desk,report,scan]'`` and Chromium. Each picture is what a command of
+README makes; pages are photographed by a browser without a window. The benchmark takes some
+minutes, and wants a machine that does nothing else; ``--no-bench`` leaves it out.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+ROOT = Path(__file__).resolve().parents[2]
+PICTURES = Path(__file__).resolve().parent / "pictures"
+COMMAND = str(Path(sys.executable).with_name("impact88"))
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+BROWSER_OPTIONS = ("--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars")
+PAGE_SIZE = (1000, 1300)
+SCAN = "clean-001.png"
+
+
+def run(*arguments: str, folder: Path) -> None:
+    """Run a command of impact88. Status 1 is an adverse result, not a failure."""
+    done = subprocess.run([COMMAND, *arguments], cwd=folder, check=False)
+    if done.returncode > 1:
+        sys.exit(f"impact88 {' '.join(arguments)} ended with status {done.returncode}")
+
+
+def photograph(address: str, picture: Path, size: tuple[int, int] = PAGE_SIZE) -> None:
+    """Save what a browser shows of a page as a PNG."""
+    browser = next(filter(shutil.which, BROWSERS), None)
+    if browser is None:
+        sys.exit("there is no Chromium; expected one of " + ", ".join(BROWSERS))
+    window = f"--window-size={size[0]},{size[1]}"
+    shot = [f"--screenshot={picture}", "--virtual-time-budget=8000", address]
+    subprocess.run([browser, *BROWSER_OPTIONS, window, *shot], check=True, capture_output=True)
+
+
+def scene_file(folder: Path) -> str:
+    """Write README's ``crash.toml``."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    block = re.search(r"^```toml\n(.*?)^```$", text, re.M | re.S)
+    assert block is not None
+    (folder / "crash.toml").write_text(block[1], encoding="utf-8")
+    return "crash.toml"
+
+
+def main() -> None:
+    """Make all pictures."""
+    PICTURES.mkdir(exist_ok=True)
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        scene = scene_file(folder)
+        run("figure", "scene", scene, "-o", str(PICTURES / "scene.svg"), folder=folder)
+        run("report", scene, "-o", "case.html", folder=folder)
+        photograph((folder / "case.html").as_uri(), PICTURES / "report.png")
+        shutil.copy(ROOT / "golden" / "scans" / SCAN, folder)
+        run("verify", "--brief", "--report", "page.html", SCAN, folder=folder)
+        photograph((folder / "page.html").as_uri(), PICTURES / "verify.png")
+        if "--no-bench" not in sys.argv:
+            figure = str(PICTURES / "work-precision.svg")
+            run("bench", "--figure", figure, folder=folder)
+
+
+if __name__ == "__main__":
+    main()
