@@ -923,3 +923,18 @@ def test_without_the_extra_one_line_says_what_to_install(monkeypatch: pytest.Mon
 def test_a_scene_of_the_form_is_the_scene_of_its_texts() -> None:
     told = collision.answer(dict(sample(1)))
     assert Scene(told["oracle"]["scene"]) == sample(1)
+
+
+def test_a_reconstruction_begins_with_the_evidence_and_velocity_changes(client: Client) -> None:
+    """What is asked first stands first: can it all be true, then ΔV and the force's direction."""
+    values = {**reconstruction.known_of_sample(1)["values"], "UX": "-29 +- 1", "VAX": "-13 +- 1"}
+    answer = client.post("reconstruct", {"values": values, "units": ""}).get_json()
+    best = answer["solutions"][0]
+    assert [row["name"] for row in best["first"]][:4] == ["DVA", "DVB", "PDOFA", "PDOFB"]
+    assert best["evidence"] == answer["object"]["solutions"][0]["evidence"]["text"]
+    table = answer["tables"]
+    assert 0 < table.index("The measurements agree") < table.index("What follows")
+    values |= {"VAX": "-13 +- 0.01", "UX": "-10 +- 0.01"}
+    worse = client.post("reconstruct", {"values": values, "units": ""}).get_json()
+    assert worse["solutions"][0]["contradictory"]
+    assert "evidence problem box" in worse["tables"]

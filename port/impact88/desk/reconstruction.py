@@ -29,8 +29,8 @@ _COLUMNS = {
 _ROUNDING = 1e-9
 """Share of the largest value of its kind below which a value is shown as 0: values go on with
 twelve digits, and the published runs amplify errors up to 300 times."""
-_ASKED = ("DVA", "DVB", "LOSS")
-"""Shown with what was solved for."""
+_ASKED = ("DVA", "DVB", "PDOFA", "PDOFB", "LOSS")
+"""Shown first, and then what was solved for."""
 _SOUGHT = (*VELOCITIES, *FINAL_STATE, "E", "MUP", "EM")
 
 
@@ -41,8 +41,9 @@ def warm() -> None:
 def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     """The solutions for what is known: ``problems`` by name; ``waiting``, why there is none;
     ``units`` as `units_shown`; ``object``, what `impact88 reconstruct --json` prints;
-    ``solutions``, each with the command's text (``printed``), ``rows`` and ``columns`` of a table,
-    ``adjusted`` values, ``warnings`` and the ``scene`` (texts by name, or None)."""
+    ``solutions``, each with the command's text (``printed``), the verdict on the ``evidence``,
+    ``rows`` and ``columns`` of a table, ``adjusted`` values, ``warnings`` and the ``scene`` (texts
+    by name, or None)."""
     from ..reconstruction import adjustment
     from ..reconstruction.solutiontable import Exact, Impact
     from ..uncertainty.reconstructedtable import Measured
@@ -118,10 +119,14 @@ def _solution(
         for row in values.get("adjusted", ())
         if values["redundancy"]
     ]
+    asked = [row for name in _ASKED for row in rows if row["name"] == name]
+    evidence = values.get("evidence") or {}
     return {
         "printed": printed,
         "rows": rows,
-        "first": [row for row in rows if row["solved"] or row["name"] in _ASKED],
+        "evidence": evidence.get("text", ""),
+        "contradictory": evidence.get("verdict") == "contradict",
+        "first": asked + [row for row in rows if row["solved"] and row["name"] not in _ASKED],
         "columns": [head for head in _COLUMNS if any(row["columns"][head] for row in rows)],
         "adjusted": adjusted,
         "warnings": values["warnings"],

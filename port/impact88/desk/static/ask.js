@@ -168,6 +168,12 @@ export function tell(place, error) {
   place.hidden = !error;
 }
 
+/** Show texts as the items of a list, which is hidden where there is none. */
+export function showList(list, texts) {
+  list.replaceChildren(...texts.map((text) => element("li", {}, text)));
+  list.hidden = !texts.length;
+}
+
 /** Do some work; what goes wrong with it is told, and what went wrong before no longer. */
 export async function attempt(work, trouble) {
   try {

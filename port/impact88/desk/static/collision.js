@@ -1,5 +1,5 @@
 // The Collision view: 21 values, answered while one types.
-import { ask, asked, attempt, drawInto, element, newest, page, save, settled, showUnits, shown, stop, tabs, tell, watched } from "./ask.js";
+import { ask, asked, attempt, drawInto, element, newest, page, save, settled, showList, showUnits, shown, stop, tabs, tell, watched } from "./ask.js";
 
 const form = () => page("collision-form");
 const inputs = () => [...form().querySelectorAll("fieldset input")];
@@ -110,7 +110,7 @@ const answer = newest(async () => {
   }
   trouble(null);
   showProblems(told.problems, told.ranges);
-  tell(page("collision-remarks"), told.remarks.length && { message: told.remarks.join(" ") });
+  showList(page("collision-remarks"), told.remarks);
   showUnits(form(), told.units);
   page("collision-base").textContent = told.units.base;
   const ranged = told.ranges.length > 0 && Boolean(told.oracle);

@@ -1,5 +1,5 @@
 // The Reconstruction view: what is known is ticked, the rest is solved for while one types.
-import { ask, asked, attempt, drawInto, page, save, settled, showUnits, tell, watched } from "./ask.js";
+import { ask, asked, attempt, drawInto, page, save, settled, showList, showUnits, tell, watched } from "./ask.js";
 
 const form = () => page("reconstruction-form");
 const inputs = () => [...form().querySelectorAll("input[name]")];
@@ -92,7 +92,7 @@ const solve = settled(async () => {
   }
   trouble(null);
   showProblems(told.problems);
-  tell(page("reconstruction-remarks"), told.remarks.length && { message: told.remarks.join(" ") });
+  showList(page("reconstruction-remarks"), told.remarks);
   showUnits(form(), told.units);
   latest = told.solutions;
   const whole = told.solutions.length > 0;
