@@ -42,6 +42,7 @@ TEXTS: dict[str, float | None] = {
 DOORS: dict[str, Callable[[Any], Any]] = {
     "solve": lambda x: impact88.solve({**SAMPLE, "MU": x}, ["LOSS"]),
     "solve arrays": lambda x: impact88.solve({**NUMBERS, "MU": np.array([x])}, ["LOSS"]),
+    "prepared": lambda x: impact88.prepared("E", "LOSS", {**SAMPLE, "MU": x})([0.1]),
     "solve_for": lambda x: impact88.solve_for({**KNOWN, "MU": x}),
     "bounds": lambda x: impact88.bounds({**SAMPLE, "E": "0 .. .1", "MU": x}, samples=10),
     "reconstruct": lambda x: impact88.reconstruct({**KNOWN, "MU": x}),
@@ -151,7 +152,7 @@ THINGS: list[Any] = [None, 7, b"\xff", [], [1], {}, {1: 2}, {"MA": []}, object()
 FUNCTIONS = (
     "solve run bounds reconstruct oracle replay compare verify sample solve_frame solve_for "
 )
-FUNCTIONS += "read_printouts scene_svg barrier colinear colinear_inverse delta_v Scene"
+FUNCTIONS += "read_printouts scene_svg barrier colinear colinear_inverse delta_v Scene prepared"
 
 
 @pytest.mark.parametrize("call", UNUSABLE, ids=range(len(UNUSABLE)))

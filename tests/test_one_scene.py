@@ -136,6 +136,7 @@ class TestOut:
             ({"STATUS": np.empty(4)}, "out, STATUS: is float64"),
             ({"VAX": [0.0] * 4}, "out, VAX: is <class 'list'>"),
             ({"VAX": np.empty(8)[::2]}, "not contiguous"),
+            ({"VAX": np.empty(33, np.uint8)[1:].view(np.float64)}, "not aligned"),
             ({"VBX": np.empty(4)}, "is not a result asked for"),
         ],
     )

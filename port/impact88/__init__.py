@@ -17,6 +17,7 @@ Old printouts and other programs
 
 Today's work, in double precision
     solve               final velocities and the rest, over arrays
+    prepared            the same for many short calls: root finders, samplers
     solve_frame         the same for pandas, polars, pyarrow, xarray, records, lists of dicts
     bounds, Uncertain   what follows from values known within limits
     solve_for           Equations 13-18 for any unknowns, over arrays
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from .chapter.deltav import delta_v as delta_v
     from .checking.compare import compare as compare
     from .checking.oracle import oracle as oracle
+    from .closedform.prepared import prepared as prepared
     from .closedform.solve import solve as solve
     from .emulator.emulator import Applesoft as Applesoft
     from .errors import UserError as UserError
@@ -79,6 +81,7 @@ _LAZY = {
         "chapter.deltav": "delta_v",
         "checking.compare": "compare",
         "checking.oracle": "oracle",
+        "closedform.prepared": "prepared",
         "closedform.solve": "solve",
         "emulator.emulator": "Applesoft",
         "errors": "UserError",

@@ -58,13 +58,13 @@ class Call:
 
     def __init__(self, wanted: tuple[str, ...]) -> None:
         self._wanted = wanted
-        self._block = np.zeros(_KERNELS + len(_KINDS) + 2, np.int64)
-        self._at = self._block.ctypes.data
-        self.columns = self._block[: len(COLUMNS)]
-        self.steps = self._block[len(COLUMNS) : 2 * len(COLUMNS)]
-        self._results = self._block[2 * len(COLUMNS) : _KERNELS]
+        self.block = np.zeros(_KERNELS + len(_KINDS) + 2, np.int64)
+        self._at = self.block.ctypes.data
+        self.columns = self.block[: len(COLUMNS)]
+        self.steps = self.block[len(COLUMNS) : 2 * len(COLUMNS)]
+        self._results = self.block[2 * len(COLUMNS) : _KERNELS]
         self._places = np.array([ALL.index(name) for name in wanted], np.int64)
-        self._block[-2:] = _LIMITS.ctypes.data, CIRCLE
+        self.block[-2:] = _LIMITS.ctypes.data, CIRCLE
         self.choose_kernels({})
 
     def choose_kernels(self, numbers: dict[int, float]) -> None:
@@ -73,7 +73,7 @@ class Call:
         zeros = {place for place, number in numbers.items() if number == 0.0}
         fit = (name for name, places in _WITHOUT.items() if zeros.issuperset(places))
         kernels = _kernels(self._wanted, next(fit, None) if zeros else None)
-        self._block[_KERNELS : _KERNELS + len(_KINDS)] = kernels
+        self.block[_KERNELS : _KERNELS + len(_KINDS)] = kernels
 
     def run(self, results: Addresses | Sequence[int], count: int, threads: int | None = 1) -> None:
         """Write the results wanted of ``count`` scenes to ``results``, addresses in their order."""
@@ -84,6 +84,39 @@ class Call:
             work(self._at, 0, count)
         else:
             shared_out(lambda start, stop: work(self._at, start, stop), count, many)
+
+
+class PreparedCall:
+    """A call whose varying columns, by their ``places``, and results other than STATUS are rows of
+    two arrays. ``values`` holds a number for each column, to be kept as long as this. Any number of
+    threads may use it at a time."""
+
+    def __init__(
+        self, wanted: tuple[str, ...], places: Sequence[int], values: NDArray[np.float64]
+    ) -> None:
+        call = Call(wanted)
+        call.columns[:] = values.ctypes.data + 8 * np.arange(len(COLUMNS))
+        call.steps[list(places)] = 1
+        call.choose_kernels({k: float(x) for k, x in enumerate(values) if k not in places})
+        rows = [ALL.index(name) for name in wanted if name != "STATUS"]
+        lists = (
+            np.array([*some, *[0] * (room - len(some))], np.int64)
+            for some, room in ((places, len(COLUMNS)), (rows, len(ALL)))
+        )
+        self._block = np.concatenate([call.block, [len(places), len(rows)], *lists])
+        self._at = self._block.ctypes.data
+
+    def run(self, values: int, results: int, status: int, count: int) -> None:
+        """Write the results of ``count`` scenes; all addresses, 0 for STATUS where not wanted."""
+        work = native.library.solve_prepared
+        if count < 2 * WORTH_A_THREAD:
+            work(self._at, values, results, status, count, 0, count)
+            return
+
+        def some(start: int, stop: int) -> None:
+            work(self._at, values, results, status, count, start, stop)
+
+        shared_out(some, count, workers(count, None, WORTH_A_THREAD))
 
 
 @lru_cache(maxsize=256)

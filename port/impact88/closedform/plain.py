@@ -116,7 +116,7 @@ def _taken(blocks: list[Array]) -> tuple[Array, int]:
 _NOBODY_ELSE = _taken([np.empty(0)])[1]
 
 
-def _memory(count: int) -> Array:
+def memory(count: int) -> Array:
     """So many float64, those of an earlier call where no array refers to them any more."""
     block, references = _taken(_kept) if _kept else (None, 0)
     if block is None or block.size != count or references > _NOBODY_ELSE:
@@ -134,7 +134,7 @@ def rooms(names: Sequence[str], shape: tuple[int, ...]) -> tuple[dict[str, Array
     where = np.empty(len(names), np.int64)
     for at in range(0, len(names), many):
         some = names[at : at + many]
-        together = _memory(len(some) * count).reshape(len(some), *shape)
+        together = memory(len(some) * count).reshape(len(some), *shape)
         rows = together if shape else [together[i, ...] for i in range(len(some))]
         made.update(zip(some, rows, strict=True))
         where[at : at + many] = together.ctypes.data + 8 * count * np.arange(len(some))

@@ -219,3 +219,22 @@ EXPORT CLONES void solve_impacts(const impacts *its, int64_t start, int64_t stop
                 }
     }
 }
+
+/* A call that is made again and again: of some columns and all results wanted only the places are known,
+   their rows lie one after another in memory, but STATUS. */
+typedef struct {
+    impacts rest;
+    int64_t columns, results, given[COLUMNS], wanted[RESULTS];
+} prepared;
+
+/* Scenes ``start`` to ``stop`` of ``count``. */
+EXPORT void solve_prepared(
+    const prepared *its, const double *values, double *results, uint16_t *status, int64_t count,
+    int64_t start, int64_t stop)
+{
+    impacts c = its->rest;
+    for (int64_t k = 0; k < its->columns; k++) c.column[its->given[k]] = values + k * count;
+    for (int64_t r = 0; r < its->results; r++) c.result[its->wanted[r]] = results + r * count;
+    c.result[STATUS_AT] = status;
+    solve_impacts(&c, start, stop);
+}
