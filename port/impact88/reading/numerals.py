@@ -127,9 +127,7 @@ def _is_note(rest: Region) -> bool:
     word = [char for char in letters(rest[:end]) if char.isalpha()]
     if not rest[0].char.isalpha():
         return rest[0].char in _OPENING and len(rest) >= 3
-    strange = sum(char not in _CLASSIC for char in word)
-    alone = len(word) == end >= 2  # nothing but letters between two gaps
-    return len(word) >= 3 or strange >= 2 or (alone and strange > 0)
+    return len(word) >= 3 or sum(char not in _CLASSIC for char in word) >= 2
 
 
 def compare(region: Region, printed: str, cut: bool = False, sign_free: bool = False) -> Match:

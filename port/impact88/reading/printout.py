@@ -597,8 +597,8 @@ def _markup(text: str, unwrapped: str) -> list[str]:
     """Return a note on the markup that was passed over in lines that were read."""
     runs: Counter[str] = Counter()
     for line, other in zip(text.split("\n"), unwrapped.split("\n"), strict=False):
-        if not other.strip():
-            continue
+        if not other.strip() and any(map(str.isalpha, line)):
+            continue  # told whole
         blanked = "".join(
             char if after.isspace() else " " for char, after in zip(line, other, strict=False)
         )
