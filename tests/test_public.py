@@ -118,3 +118,19 @@ def test_type_checkers_see_the_signatures(checker: list[str], tmp_path: Path) ->
     assert "consumer.py:" not in said, said
     for line in range(2, 7):
         assert f"wrong.py:{line}" in said, said
+
+
+def test_what_is_returned_is_told_in_a_line() -> None:
+    """A session shows what a call returns: one line, not every number in it."""
+    scene = impact88.sample(1)
+    page = impact88.run(scene).page
+    returned = [
+        *impact88.verify(page),
+        *impact88.reconstruct({**scene, "VAX": "-13 +- 1"}),
+        impact88.bounds({**scene, "MU": ".7 .. .9"}, samples=10),
+        impact88.bounds({**scene, "MU": ".7 .. .9"}, ["DVA"], samples=10),
+    ]
+    for value in returned:
+        assert len(repr(value)) < 200
+        assert repr(value).startswith("<")
+        assert "\n" not in repr(value)

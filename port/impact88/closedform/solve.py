@@ -54,22 +54,39 @@ def solve(
 ) -> dict[str, Array]:
     """Solve the impact of every scene.
 
-    Args:
-        columns: scene name -> number or array (see ``impact88.names.SCENE``); all broadcast
-            together. Angles in degrees, spins in radians per unit of time. ``MU`` = -10 is the
-            pivot; any other MU takes the sign line 400 gives it (changed where gt > 0, kept on a
-            tie), or, as a text such as "85 %", that share of the critical friction.
-            ``M`` is 6 (the default) or 4. Infinite MA, IA, MB or IB make a rigid barrier.
-        outputs: the result names wanted (``impact88.names.RESULTS``), all of them by default. Only
-            what they need is computed.
-        threads: how many to use; by default as many as there are processors and work.
-        out: result name -> array to write it into, of the broadcast shape, contiguous, float64
-            (STATUS: uint16), apart from all columns; given again and again it spares the paging in
-            of fresh memory. Where ``outputs`` is left out, its names are the results wanted.
+    Parameters
+    ----------
+    columns : mapping of str to float or array_like
+        Scene name -> number or array (see `impact88.names.SCENE`); all broadcast together. Angles
+        in degrees, spins in radians per unit of time. ``MU`` = -10 is the pivot; any other MU takes
+        the sign line 400 gives it (changed where gt > 0, kept on a tie), or, as a text such as "85
+        %", that share of the critical friction. ``M`` is 6 (the default) or 4. Infinite MA, IA, MB
+        or IB make a rigid barrier.
+    outputs : sequence of str, or str, optional
+        The result names wanted (`impact88.names.RESULTS`), all of them by default. Only what they
+        need is computed.
+    threads : int, optional
+        How many to use; by default as many as there are processors and work.
+    out : mapping of str to ndarray, optional
+        Result name -> array to write it into, of the broadcast shape, contiguous, aligned, float64
+        (STATUS: uint16), apart from all columns; given again and again it spares the paging in of
+        fresh memory. Where ``outputs`` is left out, its names are the results wanted.
 
-    Returns:
-        name -> array of the broadcast shape, float64 (STATUS: uint16), in the order asked; of one
-        scene, given as plain numbers, numbers (numpy's float64, which is a float), the same bits.
+    Returns
+    -------
+    dict of str to ndarray
+        Arrays of the broadcast shape, float64 (STATUS: uint16), in the order asked; of one scene,
+        given as plain numbers, numbers (numpy's float64, which is a float), the same bits.
+
+    Raises
+    ------
+    UserError
+        For unknown or missing names, columns that hold no numbers or do not broadcast, and arrays
+        in ``out`` that cannot take the results.
+
+    Notes
+    -----
+    Equations 13 to 18, each final velocity in closed form.
 
     M = 4 is the point-mass impact: DA and DB count as 0; EM, angles other than GA and inertias are
     not looked at, spins pass through and stay out of the energies. An infinite body must be at
@@ -88,12 +105,11 @@ def solve(
     friction coefficient it is, with MU_OUT_OF_RANGE in STATUS.
 
     SINGULAR in STATUS means COND >= 2**26 (half of a double's digits may be lost), ENERGY_GAINED
-    more than 1e-12 of KI, the FRICTION bits that P_t/P_n does not lie between 0 and MUC
+    more than 1e-12 of KI, the FRICTION bits that P_t/P_n is not one that friction can make
     (`closedform.statusbits.friction_faults`); `impact88.status` says all in words.
 
-    Raises UserError for unknown or missing names, columns that hold no numbers or do not broadcast,
-    and arrays in ``out`` that cannot take the results.
-
+    Examples
+    --------
     >>> scene = impact88.sample(1).numbers()
     >>> impact88.solve({**scene, "MU": [0.5, 0.911, -10]}, ["LOSS"])["LOSS"].round(2)
     array([44.43, 57.47, 57.56])

@@ -336,18 +336,44 @@ class Searched(NamedTuple):
 NOT_SEARCHED = Searched()
 
 
+SHOWN = ("SA", "SB", "DVA", "DVB", "LOSS")
+"""Results that a reconstruction is told by in a session."""
+
+
 @dataclass(frozen=True)
 class Reconstruction:
     """One impact that agrees with what is known.
 
-    ``values``: every quantity determined (`state.QUANTITIES`), and the scene's values, adjusted;
-    ``undetermined``: velocities and coefficients; ``adjusted``: what was known within a tolerance;
-    ``redundancy``: known values more than needed; ``squares``: of the adjustments in standard
-    deviations, about the redundancy when tolerances are right; ``assumed``: the tolerances were
-    taken equal for all known velocities; ``against_sign``: friction drives the sliding that MU's
-    sign was chosen to oppose; ``search``: how impacts were searched for; ``typed_mu``: MU where it
-    is known in size only; ``beside``: every impact found, this one too, possible or not.
+    Parameters
+    ----------
+    system : System
+        The equations, with what is known of the impact.
+    x : ndarray
+        The adjusted state.
+    values : dict of str to float
+        Every quantity determined (`state.QUANTITIES`), and the scene's values, adjusted.
+    undetermined : tuple of str
+        Velocities and coefficients that nothing known determines.
+    adjusted : tuple of Adjusted
+        What was known within a tolerance: measured and adjusted value.
+    redundancy : int
+        Known values more than needed.
+    squares : float
+        Sum of squared adjustments in standard deviations, about the redundancy when tolerances are
+        right.
+    assumed : bool
+        True where the tolerances were taken equal for all known velocities.
+    against_sign : bool
+        True where friction drives the sliding that MU's sign was chosen to oppose.
+    search : Searched
+        How impacts were searched for.
+    typed_mu : float, optional
+        MU, where it is known in size only.
+    beside : tuple
+        Every impact found, this one too, possible or not.
 
+    Examples
+    --------
     >>> known = {name: text for name, text in impact88.sample(1).items() if name != "MU"}
     >>> best, *others = impact88.reconstruct({**known, "VAX": "-13.3 +- 0.5"})
     >>> round(best.values["MUP"], 2)
@@ -366,6 +392,13 @@ class Reconstruction:
     search: Searched = NOT_SEARCHED
     typed_mu: float | None = None
     beside: tuple[tuple[System, Floats], ...] = field(default=(), repr=False, compare=False)
+
+    def __repr__(self) -> str:
+        shown = ", ".join(
+            f"{name} {self.values[name]:.4g}" for name in SHOWN if name in self.values
+        )
+        adjusted = f", {len(self.adjusted)} values adjusted" if self.redundancy else ""
+        return f"<Reconstruction: {shown or 'nothing determined'}{adjusted}>"
 
     @property
     def collides(self) -> bool:

@@ -53,12 +53,56 @@ EXPLAINED = "possible explanations, best first"
 class Verification:
     """The result for one printout; `as_json` gives the documented object.
 
-    ``guessed``: inputs whose printed number was not read exactly, or not at all; ``unseen``: what
-    the page cannot show; ``marks``: of a picture, all ink in and near the printout that the program
-    does not print; ``left_over``: text that belongs to no field and no label; ``copy``: the
-    listing it is held against where that is not the restored one; ``page``: of a picture, its
-    page, ``basis``: how sure its margins are, and ``exhibit``: what shows its cells in the report.
+    Parameters
+    ----------
+    file : str
+        The file.
+    number : int
+        Which printout of the file it is, from 1.
+    line : int
+        The line the printout begins in.
+    verdict : Verdict
+        IDENTICAL, AS_FAR_AS_READ, INCOMPLETE or DIFFERS.
+    scene : dict of str to str or None
+        The inputs recovered.
+    fields : list of FieldCheck
+        Each printed number beside the recomputed one.
+    replies : list of FieldCheck
+        What was typed for the velocities.
+    ending : FieldCheck, optional
+        How the printout ends.
+    missing, guessed : list of str
+        Inputs without a printed number, and those whose printed number was not read exactly.
+    unseen : list of str
+        Errors that this page could not reveal.
+    explanations : list of Cause
+        What would make a differing page agree.
+    findings, warnings, remarks : list of str
+        Other findings, warnings of the mechanics, and notes on how the page was read.
+    left_over : list of Piece
+        Text that belongs to no field and no label.
+    labels : list of LabelCheck
+        Labels that are not the program's.
+    cells, marks : list of dict
+        Of a picture, the cells of the printed characters, and all ink in and near the printout that
+        the program does not print.
+    basis : str
+        Of a picture, how sure its margins are.
+    exhibit : callable, optional
+        Returns the pictures of the cells for the report.
+    page : int, optional
+        Of a picture, its page.
+    start, stop : int
+        Where the printout stands in the text.
+    sha256 : str, optional
+        Hash of the file.
+    copy : dict, optional
+        The listing it is held against, where that is not the restored one.
+    text : str
+        The text it was read from.
 
+    Examples
+    --------
     >>> page = impact88.run(impact88.sample(1)).page.replace("-13.263", "-13.268")
     >>> (found,) = impact88.verify(page)
     >>> found.verdict.name

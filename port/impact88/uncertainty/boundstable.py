@@ -141,6 +141,12 @@ class Bounds:
     draws: dict[str, NDArray[np.float64]] = field(default_factory=dict, repr=False)
     units: str | None = None
 
+    def __repr__(self) -> str:
+        varying = " ".join(name for name, value in self.inputs.items() if value.varies)
+        count = len(self.bounds)
+        results = " ".join(self.bounds) if count <= 6 else f"{count} results"
+        return f"<Bounds of {results} over {varying}; {self.samples:,} draws>"
+
     def _repr_html_(self) -> str:
         """What the command prints, as a notebook shows it."""
         return notebook.preformatted(table(self))
