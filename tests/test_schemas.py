@@ -150,7 +150,10 @@ def test_selfcheck(tmp_path, monkeypatch, capsys) -> None:
     monkeypatch.setattr("impact88.commands.selfcheck_command.checks", lambda: checks(tmp_path))
     assert main(["selfcheck", "--json"]) == 1
     found = check("selfcheck", capsys.readouterr().out)
-    assert [one["name"] for one in found["checks"] if one["passed"]] == ["published"]
+    assert [one["name"] for one in found["checks"] if one["passed"]] == [
+        "published",
+        "published 1980",
+    ]
 
 
 def test_witness(tmp_path) -> None:
