@@ -182,9 +182,14 @@ def _ranks(values: Array) -> Array:
     return np.asarray(ranks - ranks.mean())
 
 
+def _product(first: Array, second: Array) -> float:
+    """The inner product. BLAS would wake its threads for so many numbers, which then spin."""
+    return float(np.einsum("i,i", first, second))
+
+
 def _drive(sweep: Array, first: Array, second: Array) -> Drive:
-    size = np.sqrt((first @ first) * (second @ second))
-    correlation = float(first @ second / size) if size > 0 else float("nan")
+    size = np.sqrt(_product(first, first) * _product(second, second))
+    correlation = _product(first, second) / float(size) if size > 0 else float("nan")
     finite = sweep[np.isfinite(sweep)] if np.isfinite(sweep).any() else np.array([np.nan])
     ends = (sweep[0], sweep[-1], finite.min(), finite.max())
     return Drive(correlation, *(float(end) for end in ends))
@@ -383,7 +388,9 @@ def _monte_carlo(
             name: item.draws(rng, count) for name, item in box.inputs.items() if name not in names
         }
         if names:
-            variates = rng.standard_normal((count, len(names))) @ root
+            variates = np.einsum(  # BLAS would wake its threads
+                "ij,jk->ik", rng.standard_normal((count, len(names))), root
+            )
             for place, name in enumerate(names):
                 columns[name] = box.inputs[name].from_normal(variates[:, place])
         solved = box.solved(columns, (*box.outputs, "STATUS"))
