@@ -9,6 +9,8 @@ import json
 import math
 import re
 import struct
+import subprocess
+import sys
 import time
 
 import numpy as np
@@ -185,6 +187,30 @@ class TestNpz:
             read(path)
 
 
+@pytest.mark.parametrize("rows", [1, 9000])
+def test_pyarrow_is_imported_for_large_tables_alone(tmp_path, rows):
+    """It imports pandas, which takes longer than a small table; and the bytes are the same."""
+    pytest.importorskip("pyarrow")
+    path = tmp_path / "a.csv"
+    path.write_text(csv_text([{**TEXTS, "note": f"{i:0120}"} for i in range(rows)]))
+    script = (
+        "import sys\n"
+        "from impact88.cli import main\n"
+        "from impact88.tables import csvtable\n"
+        "if sys.argv[1] == 'never': csvtable.arrow_available = lambda: False\n"
+        "main(['solve', sys.argv[2], '--outputs', 'LOSS,STATUS'])\n"
+        "print('pyarrow' in sys.modules, file=sys.stderr)\n"
+    )
+    usual, never = (
+        subprocess.run([sys.executable, "-c", script, when, path], capture_output=True, text=True)
+        for when in ("usual", "never")
+    )
+    assert usual.stderr.split()[-1] == str(rows > 5000)
+    assert never.stderr.split()[-1] == "False"
+    assert usual.stdout == never.stdout
+    assert usual.stdout.count("\n") == rows + 1
+
+
 @pytest.mark.parametrize("form", ["csv", "jsonl", "npz"])
 @pytest.mark.parametrize("to", ["csv", "jsonl", "npz"])
 def test_any_format_to_any_other(tmp_path, form, to):
@@ -264,6 +290,8 @@ def test_with_and_without_pyarrow_the_same_bytes(tmp_path, monkeypatch, capsys, 
     for there in (True, False):
         monkeypatch.setattr(csvtable, "arrow_available", lambda there=there: there)
         monkeypatch.setattr(csvtable, "BLOCK_BYTES", block)
+        monkeypatch.setattr(csvtable, "WORTH_ARROW", 0)
+        monkeypatch.setattr(csvtable, "WORTH_ARROW_CELLS", 0)
         status = main(["solve", str(path)])
         said.append((status, *capsys.readouterr()))
     assert said[0] == said[1]

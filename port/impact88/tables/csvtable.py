@@ -3,11 +3,12 @@
 Fields are separated by commas, semicolons or tabs (detected in the header), quoted as usual, and
 passed through as they stand. With pyarrow the file is read in blocks while these are plain: what is
 quoted is quoted from a field's begin to its end (RFC 4180), and every record has as many fields as
-the header. From the first block that is not, it is read line by line.
+the header. From the first block that is not, it is read line by line, and so is a small file.
 """
 
 import csv
 import re
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
@@ -39,6 +40,12 @@ _POINT_FROM, _POINT_TO = 1e-3, 1e10
 """Between these every version of it writes a number without an exponent, as Python does."""
 BLOCK_BYTES = 1 << 22
 """A pass over a block of 4 MB takes some milliseconds; blocks of 1 and of 16 MB take as long."""
+
+WORTH_ARROW = 1 << 20
+"""Bytes from which pyarrow pays: importing it, and pandas where it is installed, takes as long as a
+megabyte takes without it."""
+WORTH_ARROW_CELLS = WORTH_ARROW >> 4
+"""The same for writing: numbers of sixteen digits or so."""
 
 
 def arrow_available() -> bool:
@@ -161,9 +168,12 @@ def _blocks(
 ) -> Iterator[_Block]:
     """The fields of some rows by column, the line in which each row ends, and what is bad."""
     number = lines.number
+    first = True
     while in_blocks:
         data = _whole_records(lines.binary, BLOCK_BYTES)
-        if (found := _parsed(data, delimiter, width)) is None:
+        small = first and len(data) < WORTH_ARROW and "pyarrow" not in sys.modules
+        first = False
+        if small or (found := _parsed(data, delimiter, width)) is None:
             lines.encoding = "utf-8"
             lines.go_on(data, number)
             records, in_blocks = _records(lines, lines, delimiter), False
@@ -288,7 +298,9 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
         return ['"{}"'.format(t.replace('"', '""')) if re.search(ends, t) else t for t in texts]
 
     def put(columns: Named) -> None:
-        found = (_in_arrow(column) for _, column in columns if through_arrow)
+        many = sum(len(column) for _, column in columns)
+        worth = through_arrow and (many >= WORTH_ARROW_CELLS or "pyarrow" in sys.modules)
+        found = (_in_arrow(column) for _, column in columns if worth)
         arrays = list(takewhile(lambda array: array is not None, found))
         if len(arrays) == len(columns):
             file.flush()
