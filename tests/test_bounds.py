@@ -20,6 +20,7 @@ from impact88.status import Status
 from impact88.uncertainty import uncertain
 from impact88.uncertainty.bounds import (
     RECONSTRUCTED,
+    _ranks,
     bounds,
 )
 from impact88.uncertainty.boundstable import as_json, table
@@ -616,3 +617,12 @@ class TestInputs:
     @pytest.mark.parametrize("name", [*SCENE, *FINAL_VELOCITIES, "SA", "SB", "MUP"])
     def test_everything_has_a_unit(self, name):
         assert quantity(name).unit
+
+
+@pytest.mark.parametrize("levels", [1, 3, 40, 10**9])
+def test_ranks_count_what_is_smaller_and_half_of_what_is_equal(levels: int) -> None:
+    values = np.random.default_rng(levels).integers(0, levels, 200) * 0.7
+    smaller = (values < values[:, None]).sum(axis=1)
+    equal = (values == values[:, None]).sum(axis=1) - 1
+    expected = smaller + equal / 2
+    np.testing.assert_array_equal(_ranks(values), expected - expected.mean())

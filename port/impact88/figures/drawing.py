@@ -319,6 +319,7 @@ def place(drawing: Drawing, frame: Box) -> None:
     along = np.exp(1j * turn)
     lines = [_samples(path) for path in drawing.paths()]
     points, weights = (np.concatenate(parts) for parts in zip(*lines, strict=True))
+    x, y = points.real.copy(), points.imag.copy()  # side by side in memory
     taken = [text_box(text) for text in drawing.texts()]
     for label in drawing.labels:
         text = Text(0j, label.text, label.size, "start", *label[4:])
@@ -336,15 +337,22 @@ def place(drawing: Drawing, frame: Box) -> None:
         near &= (low.imag < top + GAP) & (high.imag > bottom - GAP)
         inside = (low.real >= frame.left) & (high.real <= frame.right)
         inside &= (low.imag >= frame.bottom) & (high.imag <= frame.top)
-        covered = (low.real < points.real) & (points.real < high.real)
-        covered &= (low.imag < points.imag) & (points.imag < high.imag)
-        cost += 1e4 * near.sum(1) + 1e3 * ~inside[:, 0] + 1.5 * (covered @ weights)
+        within = (low.real.min() < x) & (x < high.real.max())
+        within &= (low.imag.min() < y) & (y < high.imag.max())
+        across, up = x[within], y[within]
+        covered = (low.real.copy() < across) & (across < high.real.copy())
+        covered &= (low.imag.copy() < up) & (up < high.imag.copy())
+        # einsum: a product by BLAS would wake its threads, which then spin
+        covering = np.einsum("ij,j->i", covered, weights[within])
+        cost += 1e4 * near.sum(1) + 1e3 * ~inside[:, 0] + 1.5 * covering
         best = int(np.argmin(cost))
         text = text._replace(at=complex(low[best, 0]) - complex(box.left, box.bottom))
         box = text_box(text)
         if reach[best] > LEADER_FROM:
-            x, y = label.at.real, label.at.imag
-            end = complex(min(max(x, box.left), box.right), min(max(y, box.bottom), box.top))
+            end = complex(
+                min(max(label.at.real, box.left), box.right),
+                min(max(label.at.imag, box.bottom), box.top),
+            )
             start = label.at + min(0.8 / abs(end - label.at), 1.0) * (end - label.at)
             drawing.add(Path((start, end), label.colour, 0.12, role="leader"))
         drawing.add(text)

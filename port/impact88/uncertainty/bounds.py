@@ -176,10 +176,13 @@ def bounds(
 
 def _ranks(values: Array) -> Array:
     """Ranks from 0, equal values sharing the mean of theirs, less the mean of all."""
-    ordered = np.sort(values)
-    below = np.searchsorted(ordered, values, side="left")
-    ranks = (below + np.searchsorted(ordered, values, side="right") - 1) / 2
-    return np.asarray(ranks - ranks.mean())
+    order = np.argsort(values)
+    ordered = values[order]
+    first = np.concatenate([[True], ordered[1:] != ordered[:-1]]).nonzero()[0]
+    many = np.diff(first, append=len(values))
+    ranks = np.empty(len(values))
+    ranks[order] = np.repeat(first + (many - 1) / 2, many)
+    return ranks - ranks.mean()
 
 
 def _product(first: Array, second: Array) -> float:
