@@ -19,11 +19,12 @@ from .. import native
 from ..accuracy.errorbound import APPLESOFT, DOUBLE, movements, scales, sensitivity
 from ..closedform.plan import Plan
 from ..closedform.solve import TILE, solve
-from ..names import FINAL_VELOCITIES, SCENE
+from ..names import FINAL_VELOCITIES, PIVOT, SCENE
 from ..native.formulas import ExpressionTable
 from ..native.program import Program, addresses
 from ..processors import processors
 from ..version import __version__
+from . import plain
 from .methods import METHODS, Method, reference, relative_errors
 from .populations import BENCHMARK, POPULATIONS, enlarged, scenes
 
@@ -53,13 +54,18 @@ def machine() -> Row:
         "numpy": np.__version__,
         "impact88": __version__,
         "load": round(os.getloadavg()[0], 1) if hasattr(os, "getloadavg") else None,
+        "plain_c": plain.version() if plain.available() else None,
+        "plain_c_flags": list(plain.FLAGS) if plain.available() else None,
         "memory_roof": memory_roof(),
     }
 
 
 def mover(columns: Mapping[str, Any], results: Mapping[str, Any]) -> Callable[[], object]:
-    """Work that reads ``columns`` and writes ``results`` strip by strip as the compiled machine
-    or numpy does, their sum in place of the mechanics."""
+    """Work that reads ``columns`` and writes ``results``, their sum in place of the mechanics: a
+    loop in plain C, or, where no compiler is, strip by strip as the compiled machine or numpy
+    does."""
+    if plain.available():
+        return partial(plain.move, plain.prepare(columns), results)
     count = len(next(iter(results.values())))
     table = ExpressionTable()
     first, *others = (table.column(name, varies=True) for name in columns)
@@ -90,6 +96,13 @@ def medians(works: Sequence[Callable[[], object]], repeats: int, calls: int = 1)
     return [statistics.median(taken) for taken in times]
 
 
+def applies(method: Method, population: str, columns: Mapping[str, Any]) -> bool:
+    """Return whether a method can be given these scenes, and is there."""
+    if method.roundoff == APPLESOFT and not POPULATIONS[population].listing:
+        return False
+    return not method.plain or (plain.available() and not (columns["MU"] == PIVOT).any())
+
+
 def steps(populations: Sequence[str], repeats: int) -> int:
     """How often `measure` reports progress."""
     return len(populations) * (1 + len(METHODS) * (1 + repeats))
@@ -111,7 +124,7 @@ def measure(
     ``over_sensitivity``: the largest divided by the method's unit roundoff and the scene's data
     sensitivity. ``errors`` and ``conditions`` (COND): of each scene with an answer, by its
     `errorbound.scales`; ``over_condition``: their largest quotient by the roundoff. ``seconds`` per
-    scene.
+    scene; ``memory``, of the closed form: what `mover` takes of as many scenes, in the same rounds.
     """
     rows: list[Row] = []
     for name in populations:
@@ -126,7 +139,7 @@ def measure(
         works: list[tuple[Method, Any, list[float]]] = []
         mine: list[Row] = []
         for method in METHODS:
-            if method.roundoff == APPLESOFT and not POPULATIONS[name].listing:
+            if not applies(method, name, columns):
                 continue
             found = method.velocities(columns)
             error = relative_errors(found, hi, lo)
@@ -148,7 +161,12 @@ def measure(
                 }
             )
             progress(1)
+        given = next(prepared for method, prepared, _ in works if method.key == "closed-form")
+        room = {result: np.zeros(len(given["MA"])) for result in ORDER}
+        move = mover({key: given[key] for key in plain.COLUMNS}, room)
+        memory: list[float] = []
         for _ in range(repeats):
+            memory += medians([move], 1)
             for method, prepared, times in works:
                 now = time.process_time if method.threads == 1 else time.perf_counter
                 start = now()
@@ -157,6 +175,8 @@ def measure(
                 progress(1)
         for row, (_, _, times) in zip(mine, works, strict=True):
             row["seconds"] = statistics.median(times) / row["timed"]
+            if row["method"] == "closed-form":
+                row["memory"] = statistics.median(memory) / row["timed"]
         slow = {"population": name, "method": "mpmath", "name": "mpmath, 50 digits"}
         rows += [*mine, {**slow, "scenes": count, "timed": count, "seconds": reference_seconds}]
     return rows

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from contextlib import nullcontext
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from ..figures.drawing import BLACK, BLUE, GREY, ORANGE, VERMILION
 from ..program.run import run
 from ..replay import replay
 from ..scene import Scene
+from . import plain
 from .populations import Columns, texts
 
 Floats = NDArray[np.float64]
@@ -25,7 +27,8 @@ class Method(NamedTuple):
     """``solve``: from what ``prepare`` makes of the scenes, untimed, to an (n, 6) array or six
     columns by name, NaN where there is no answer. ``mark`` (open with a blank) and ``colour``: in
     figures; ``timed``: how many scenes to time; ``roundoff``: the unit roundoff of its numbers;
-    ``compiled``: whether by the compiled machine where it was built."""
+    ``compiled``: whether by the compiled machine where it was built; ``plain``: whether in C that
+    is compiled for the benchmark, and knows no pivot."""
 
     key: str
     name: str
@@ -37,6 +40,7 @@ class Method(NamedTuple):
     roundoff: float = DOUBLE
     threads: int = 1
     compiled: bool = True
+    plain: bool = False
 
     def run(self, prepared: Any) -> Floats | dict[str, Floats]:
         with nullcontext() if self.compiled else native.switched_off():
@@ -123,6 +127,19 @@ METHODS: Sequence[Method] = (
     Method(
         *("closed-form-numpy", "closed form, numpy alone", "D ", ORANGE, 200_000, _closed),
         compiled=False,
+    ),
+    *(
+        Method(
+            *(key, name, mark, BLACK, 200_000, partial(plain.solve, flags=flags), plain.prepare),
+            plain=True,
+        )
+        for key, name, mark, flags in zip(
+            ("plain", "plain-fast"),
+            ("plain C, -O3", "plain C, -ffast-math"),
+            ("^", "^ "),
+            plain.FLAGS,
+            strict=True,
+        )
     ),
     Method(
         *("replay-numpy", "replay, numpy alone", "P ", VERMILION, 20_000, _replay),

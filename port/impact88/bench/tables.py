@@ -77,6 +77,25 @@ def results(rows: Sequence[Row]) -> str:
     return "\n".join(parts)
 
 
+def summary(rows: Sequence[Row]) -> str:
+    """One line for each method: its time on the first population, its errors on each."""
+    names = list(dict.fromkeys(row["population"] for row in rows))
+    by = {(row["population"], row["method"]): row for row in rows}
+    lines = []
+    for row in (row for row in rows if row["population"] == names[0]):
+        line = [row["name"], f"{1e9 * row['seconds']:,.3g}", _rate(1 / row["seconds"])]
+        for name in names:
+            errors = by.get((name, row["method"]), {})
+            line += [_error(errors[key]) if key in errors else "" for key in ("median", "largest")]
+        lines.append(line)
+    heading = ["", "ns/scene", "scenes/s"]
+    for name in names:
+        heading += [f"{name}: median", "largest"]
+    sizes = f"{rows[0]['scenes']:,} scenes of each population"
+    what = f"relative error of the final velocities; {sizes}; times: {names[0]}"
+    return "\n".join([what, *table(lines, heading)])
+
+
 def components(rows: Sequence[Row]) -> str:
     """The closed form's errors, result by result."""
     heading = "closed form, each result's error relative to itself; /rounding: the largest, by what"
@@ -90,6 +109,8 @@ _RATIOS = (
     ("casework", "seconds", "applesoft", "closed-form", "the Applesoft port"),
     ("casework", "seconds", "closed-form-numpy", "closed-form", "by numpy alone"),
     ("casework", "seconds", "closed-form", "closed-form-2", "one core"),
+    ("casework", "seconds", "plain", "closed-form", "plain C, -O3"),
+    ("casework", "seconds", "plain-fast", "closed-form", "plain C, -ffast-math"),
     ("casework", "seconds", "applesoft", "replay", "the Applesoft port, bit for bit the same"),
     ("casework", "largest", "lapack-fill", "closed-form", "LAPACK (it depends on the seed)"),
     ("heavy", "largest", "elimination", "closed-form", "the listing's elimination in double"),
@@ -98,19 +119,20 @@ _RATIOS = (
 """Population, what is compared, of which method, with which, and the words for it."""
 
 
-def ratios(rows: Sequence[Row], roof: float) -> str:
+def ratios(rows: Sequence[Row]) -> str:
     """What the aims are measured by: times, and largest errors on a population."""
     by = {(row["population"], row["method"]): row for row in rows}
     lines = []
     for population, key, other, mine, words in _RATIOS:
-        if (population, mine) in by:
+        if (population, mine) in by and (population, other) in by:
             ratio = by[population, other][key] / by[population, mine][key]
             how = "times as fast as" if key == "seconds" else "times more accurate than"
             name = by[population, mine]["name"]
             lines.append(f"{name}, {population}: {_times(ratio)} {how} {words}")
     if ("casework", "closed-form") in by:
-        taken = by["casework", "closed-form"]["seconds"]
-        lines.append(f"closed form, one core: {taken / roof:.1f} times what memory alone takes")
+        row = by["casework", "closed-form"]
+        ratio = row["seconds"] / row["memory"]
+        lines.append(f"closed form, one core: {ratio:.1f} times what memory alone takes")
     return "\n".join(lines)
 
 
@@ -119,6 +141,11 @@ def machine(row: Mapping[str, Any]) -> str:
         f"{row['processor']}, {row['cores']} cores; Python {row['python']}, numpy "
         f"{row['numpy']}, impact88 {row['impact88']} ({row['instructions'] or 'numpy alone'})"
     )
+    if row["plain_c"]:
+        text += f"\nplain C: {row['plain_c']}, " + " and ".join(row["plain_c_flags"])
+        text += "\nmemory alone: a loop in plain C that reads 20 columns and writes six"
+    else:
+        text += "\nplain C is left out: there is no C compiler (cc, gcc, clang)"
     if row["load"] is not None and row["load"] > BUSY:
         text += f"\nthe machine was busy (load {row['load']}): times are longer than they could be"
     return text

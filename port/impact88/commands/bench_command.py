@@ -1,14 +1,15 @@
 """Run time against error, measured in one run on this machine: the Applesoft port, the replay over
-arrays, the port in double precision, LAPACK on the 6x6 matrices, the closed form, and 50-digit
-arithmetic, which is also the reference. Needs pip install 'impact88[bench]', and for --figure
-impact88[plot].
+arrays, the port in double precision, LAPACK on the 6x6 matrices, the closed form, the same in plain
+C where a compiler is, and 50-digit arithmetic, which is also the reference. Needs pip install
+'impact88[bench]', and for --figure impact88[plot].
 
 populations:
 {populations}
 
 examples:
-  impact88 bench                             the table, about two minutes
-  impact88 bench --scenes 300 --quick        a quick look
+  impact88 bench                             the tables, about two minutes
+  impact88 bench --quick                     one screen, some 15 seconds
+  impact88 bench --components                and the errors of each result by itself
   impact88 bench --figure work-precision.pdf --json -o bench.json
   impact88 bench --sizes                     to ten million scenes (takes 2 GB)
 
@@ -31,8 +32,12 @@ __doc__ = (__doc__ or "").format(
 )
 
 QUICK = 0.05
-"""The share of the scenes that --quick times, all of which errors are of; twice as many take twice
-as long."""
+"""The share of the scenes that --quick times; twice as many take twice as long."""
+QUICK_POPULATIONS = ("casework", "heavy")
+"""One that is easy, and one on which elimination loses its digits."""
+ERROR_SCENES, QUICK_ERROR_SCENES = 2000, 300
+"""Scenes of a population whose errors are taken: 5 ms each for 50 digits."""
+REPEATS, QUICK_REPEATS = 5, 3
 COMPONENT_SCENES = 300
 """Scenes of which every result is compared with 50 digits, 5 ms each; with twice as many the worst
 of casework and heavy is worth 2.7 roundings and not 3.2: the seed's scenes, not the count."""
@@ -40,11 +45,25 @@ SIZES = (1, 60, 1_000, 10_000, 100_000, 1_000_000, 10_000_000)
 
 
 ARGUMENTS = (
-    options.names_option("--populations", f"default: {','.join(BENCHMARK)}"),
-    options.count("--scenes", 1, 10**7, "of each population (%(default)s)", default=2000),
+    options.names_option(
+        "--populations",
+        f"default: {','.join(BENCHMARK)}; with --quick {','.join(QUICK_POPULATIONS)}",
+    ),
+    options.count(
+        "--scenes",
+        1,
+        10**7,
+        f"of each population ({ERROR_SCENES}; with --quick {QUICK_ERROR_SCENES})",
+    ),
     options.seed("of the populations", 1988),
-    options.count("--repeats", 1, 1000, "times are medians of so many (%(default)s)", default=5),
-    options.flag("--quick", "time a twentieth of the scenes: rougher, sooner"),
+    options.count(
+        "--repeats",
+        1,
+        1000,
+        f"times are medians of so many ({REPEATS}; with --quick {QUICK_REPEATS})",
+    ),
+    options.flag("--quick", "one screen: fewer scenes, a twentieth of them timed"),
+    options.flag("--components", "the errors of each result by itself, too"),
     options.flag("--sizes", "growth with the scenes, instead"),
     options.flag("--json", "print JSON instead of tables"),
     options.OUTPUT,
@@ -61,6 +80,8 @@ def main(args: options.Args) -> None:
     for picture in filter(None, (args.figure, args.errors_figure)):
         check_ending(picture)
     machine = measure.machine()
+    args.repeats = args.repeats or (QUICK_REPEATS if args.quick else REPEATS)
+    args.scenes = args.scenes or (QUICK_ERROR_SCENES if args.quick else ERROR_SCENES)
     if args.sizes:
         sizes = measure.sizes(SIZES, args.repeats)
         record, texts = {"machine": machine, "sizes": sizes}, [tables.listing(sizes)]
@@ -76,18 +97,19 @@ def _measured(args: options.Args, machine: dict[str, Any]) -> tuple[dict[str, An
     library("mpmath", "bench", "the reference")
     finite = [name for name in POPULATIONS if name != "barriers"]
     populations = options.names_given(args.populations, finite, "--populations", "population")
-    populations = populations or list(BENCHMARK)
+    populations = populations or list(QUICK_POPULATIONS if args.quick else BENCHMARK)
     with progress(measure.steps(populations, args.repeats), "bench") as meter:
         share = QUICK if args.quick else 1.0
         sizes = (args.scenes, args.seed, args.repeats)
         rows = measure.measure(populations, *sizes, meter.update, share)
-    few = min(args.scenes, COMPONENT_SCENES)
-    by_result = measure.components(populations, few, args.seed)
     if args.figure:
         save(figure.work_precision(rows, machine["memory_roof"]), args.figure)
     if args.errors_figure:
         save(figure.error_distribution(rows), args.errors_figure)
     record = {"machine": machine, "seed": args.seed, "results": measure.as_json(rows)}
-    texts = [tables.results(rows), tables.components(by_result)]
-    texts.append(tables.ratios(rows, machine["memory_roof"]))
-    return {**record, "components": by_result}, texts
+    texts = [tables.summary(rows) if args.quick else tables.results(rows)]
+    if args.components:
+        few = min(args.scenes, COMPONENT_SCENES)
+        record["components"] = measure.components(populations, few, args.seed)
+        texts.append(tables.components(record["components"]))
+    return record, [*texts, tables.ratios(rows)]

@@ -1,0 +1,96 @@
+"""The benchmark's rival in plain C, `plain.c`: compiled when it is asked for, where a compiler is.
+
+There are as many rivals as sets of flags. The loop that moves memory and computes nothing is
+compiled with the last of them.
+"""
+
+import ctypes
+import shutil
+import subprocess
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..accuracy.elimination import ORDER
+from ..names import SCENE
+from ..native.program import addresses
+
+Floats = NDArray[np.float64]
+COMPILERS = ("cc", "gcc", "clang")
+FLAGS = ("-O3", "-O3 -march=native -ffast-math -fopenmp-simd")
+"""What a programmer gives who wants the code fast, and who wants it fastest and does not ask for
+each rounding; by the second, glibc's sine takes several angles at a time."""
+COLUMNS = tuple(name for name in SCENE if name != "M")
+SECONDS = 60
+"""The longest that a compiler may take."""
+
+
+@cache
+def compiler() -> str | None:
+    """The C compiler of this machine, or None."""
+    return next(filter(None, map(shutil.which, COMPILERS)), None)
+
+
+@cache
+def version() -> str | None:
+    """What the compiler says that it is, or None where there is none."""
+    path = compiler()
+    if path is None:
+        return None
+    asked = subprocess.run([path, "--version"], capture_output=True, text=True, check=False)
+    return next(iter(asked.stdout.splitlines()), Path(path).name)
+
+
+@cache
+def library(flags: str) -> Any:
+    """The compiled functions, or None where they cannot be had."""
+    path = compiler()
+    if path is None:
+        return None
+    # Windows keeps the file of a library that is in use
+    with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        source, built = Path(folder, "plain.c"), Path(folder, "plain.so")
+        source.write_bytes(resources.files(__package__).joinpath("plain.c").read_bytes())
+        command = [path, *flags.split(), "-shared", "-fPIC", "-o", str(built), str(source), "-lm"]
+        try:
+            subprocess.run(command, capture_output=True, check=True, timeout=SECONDS)
+            loaded = ctypes.CDLL(str(built))
+        except (OSError, subprocess.SubprocessError):
+            return None
+    for function in (loaded.solve_plainly, loaded.move_plainly):
+        function.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64]
+        function.restype = None
+    return loaded
+
+
+def available() -> bool:
+    """Return whether all rivals in plain C can be measured here."""
+    return all(library(flags) is not None for flags in FLAGS)
+
+
+def _call(function: Any, read: Sequence[Floats], results: Iterable[Floats]) -> None:
+    into, out = addresses(read), addresses(results)
+    function(into.ctypes.data, out.ctypes.data, len(read[0]))
+
+
+def prepare(columns: Mapping[str, Floats]) -> list[Floats]:
+    """The columns as C wants them: doubles without gaps, in the scene's order."""
+    return [np.ascontiguousarray(columns[name], np.float64) for name in COLUMNS]
+
+
+def solve(read: Sequence[Floats], flags: str) -> dict[str, Floats]:
+    """The six final velocities of what `prepare` gives."""
+    results = {name: np.empty(len(read[0])) for name in ORDER}
+    _call(library(flags).solve_plainly, read, results.values())
+    return results
+
+
+def move(read: Sequence[Floats], results: Mapping[str, Floats]) -> None:
+    """Read all columns and write six results, their sum in place of the mechanics."""
+    _call(library(FLAGS[-1]).move_plainly, read, results.values())
