@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fiftydigits import exact, relative_error
-from impact88.bench import figure, measure, plain, tables
+from impact88.bench import figure, measure, plainc, tables
 from impact88.bench.measure import COMPONENTS
 from impact88.bench.methods import METHODS, reference, relative_errors
 from impact88.bench.populations import BENCHMARK, POPULATIONS, enlarged, scenes, texts
@@ -34,7 +34,7 @@ def rows():
 
 def test_every_method_on_every_population(rows):
     got = [(row["population"], row["method"]) for row in rows]
-    there = [method for method in METHODS if plain.available() or not method.plain]
+    there = [method for method in METHODS if plainc.available() or not method.plain]
     methods = [*(method.key for method in there), "mpmath"]
     assert got == [(name, method) for name in ("casework", "heavy") for method in methods]
     for row in rows:
@@ -75,7 +75,7 @@ def test_errors_by_two_doubles_are_the_reference_s():
 def test_tables_and_ratios(rows):
     text = tables.results(rows)
     assert "casework (easy)" in text
-    names = [method.name for method in METHODS if plain.available() or not method.plain]
+    names = [method.name for method in METHODS if plainc.available() or not method.plain]
     assert all(name in text for name in names)
     assert max(map(len, text.splitlines())) <= 100
     assert "times as fast as LAPACK on ready-made matrices" in tables.ratios(rows)
@@ -141,30 +141,31 @@ def test_quick_is_one_screen(capsys):
 
 
 def test_plain_c_is_left_out_with_a_word_where_no_compiler_is(monkeypatch):
-    monkeypatch.setattr(plain, "available", lambda: False)
+    monkeypatch.setattr(plainc, "available", lambda: False)
     columns = scenes("casework", 10, 3)
     methods = {method.key for method in METHODS if measure.applies(method, "casework", columns)}
     assert methods == {method.key for method in METHODS if not method.plain}
     assert "no C compiler" in tables.machine(measure.machine())
 
 
-@pytest.mark.skipif(not plain.available(), reason="there is no C compiler")
-@pytest.mark.parametrize("flags", plain.FLAGS)
+@pytest.mark.skipif(not plainc.available(), reason="there is no C compiler")
+@pytest.mark.parametrize("flags", plainc.FLAGS)
 @pytest.mark.parametrize("name", ["casework", "heavy", "units"])
 def test_plain_c_solves_the_same_equations(name, flags):
     columns = scenes(name, 500, 7)
-    results, expected = plain.solve(plain.prepare(columns), flags), solve(columns, FINAL_VELOCITIES)
+    results = plainc.solve(plainc.prepare(columns), flags)
+    expected = solve(columns, FINAL_VELOCITIES)
     size = max(np.abs(expected[velocity]).max() for velocity in ("VAX", "VAY", "VBX", "VBY"))
     for velocity, values in results.items():
         scale = size if velocity.startswith("V") else np.abs(expected[velocity]).max()
         assert np.abs(values - expected[velocity]).max() < 1e-11 * scale
     room = {velocity: np.zeros(500) for velocity in FINAL_VELOCITIES}
-    plain.move(plain.prepare(columns), room)
-    total = sum(columns[key] for key in plain.COLUMNS)
+    plainc.move(plainc.prepare(columns), room)
+    total = sum(columns[key] for key in plainc.COLUMNS)
     assert all(values == pytest.approx(total) for values in room.values())
 
 
-@pytest.mark.skipif(not plain.available(), reason="there is no C compiler")
+@pytest.mark.skipif(not plainc.available(), reason="there is no C compiler")
 def test_plain_c_knows_no_pivot():
     rival = next(method for method in METHODS if method.plain)
     assert not measure.applies(rival, "pivots", scenes("pivots", 10, 3))

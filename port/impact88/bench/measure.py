@@ -24,7 +24,7 @@ from ..native.formulas import ExpressionTable
 from ..native.program import Program, addresses
 from ..processors import processors
 from ..version import __version__
-from . import plain
+from . import plainc
 from .methods import METHODS, Method, reference, relative_errors
 from .populations import BENCHMARK, POPULATIONS, enlarged, scenes
 
@@ -54,8 +54,8 @@ def machine() -> Row:
         "numpy": np.__version__,
         "impact88": __version__,
         "load": round(os.getloadavg()[0], 1) if hasattr(os, "getloadavg") else None,
-        "plain_c": plain.version() if plain.available() else None,
-        "plain_c_flags": list(plain.FLAGS) if plain.available() else None,
+        "plain_c": plainc.version() if plainc.available() else None,
+        "plain_c_flags": list(plainc.FLAGS) if plainc.available() else None,
         "memory_roof": memory_roof(),
     }
 
@@ -64,8 +64,8 @@ def mover(columns: Mapping[str, Any], results: Mapping[str, Any]) -> Callable[[]
     """Work that reads ``columns`` and writes ``results``, their sum in place of the mechanics: a
     loop in plain C, or, where no compiler is, strip by strip as the compiled machine or numpy
     does."""
-    if plain.available():
-        return partial(plain.move, plain.prepare(columns), results)
+    if plainc.available():
+        return partial(plainc.move, plainc.prepare(columns), results)
     count = len(next(iter(results.values())))
     table = ExpressionTable()
     first, *others = (table.column(name, varies=True) for name in columns)
@@ -100,7 +100,7 @@ def applies(method: Method, population: str, columns: Mapping[str, Any]) -> bool
     """Return whether a method can be given these scenes, and is there."""
     if method.roundoff == APPLESOFT and not POPULATIONS[population].listing:
         return False
-    return not method.plain or (plain.available() and not (columns["MU"] == PIVOT).any())
+    return not method.plain or (plainc.available() and not (columns["MU"] == PIVOT).any())
 
 
 def steps(populations: Sequence[str], repeats: int) -> int:
@@ -163,7 +163,7 @@ def measure(
             progress(1)
         given = next(prepared for method, prepared, _ in works if method.key == "closed-form")
         room = {result: np.zeros(len(given["MA"])) for result in ORDER}
-        move = mover({key: given[key] for key in plain.COLUMNS}, room)
+        move = mover({key: given[key] for key in plainc.COLUMNS}, room)
         memory: list[float] = []
         for _ in range(repeats):
             memory += medians([move], 1)

@@ -17,7 +17,7 @@ from ..figures.drawing import BLACK, BLUE, GREY, ORANGE, VERMILION
 from ..program.run import run
 from ..replay import replay
 from ..scene import Scene
-from . import plain
+from . import plainc
 from .populations import Columns, texts
 
 Floats = NDArray[np.float64]
@@ -130,14 +130,14 @@ METHODS: Sequence[Method] = (
     ),
     *(
         Method(
-            *(key, name, mark, BLACK, 200_000, partial(plain.solve, flags=flags), plain.prepare),
+            *(key, name, mark, BLACK, 200_000, partial(plainc.solve, flags=flags), plainc.prepare),
             plain=True,
         )
         for key, name, mark, flags in zip(
             ("plain", "plain-fast"),
             ("plain C, -O3", "plain C, -ffast-math"),
             ("^", "^ "),
-            plain.FLAGS,
+            plainc.FLAGS,
             strict=True,
         )
     ),
