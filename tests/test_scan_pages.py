@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import scanpages
+import scanrates
 from captures import ROOT
 from impact88.judging.judgement import Verdict
 from impact88.recovery.replays import run_all
@@ -22,6 +23,7 @@ from impact88.reporting.verification import EXPLAINED, lines
 from impact88.scan import sheets
 from impact88.scan.holding import FOREIGN, KIND, MOST_MISREAD, Cell, Judged, judged, state
 from impact88.scan.layout import Place, Sheet
+from impact88.scan.rates import COUNTS, NONE, sentences, table
 from impact88.scan.scenes import WORST, Candidate, Read, borne_out
 from impact88.scan.typeface import READABLE
 from worked_cases import RUN_1
@@ -294,7 +296,7 @@ def test_a_digit_pasted_from_elsewhere_on_the_page_differs_and_is_shown() -> Non
     assert f"shows {source['predicted']}" in result.findings[0]
     shown = report([altered])
     assert "looks like" in shown
-    assert "Basis of the thresholds" in shown
+    assert "no probability that the page at hand is genuine" in shown
 
 
 # --- what the program does not print -------------------------------------------------------------
@@ -482,3 +484,50 @@ def test_a_page_read_otherwise_in_more_places_than_differ_accuses_nobody(
 def test_another_letter_is_near_to_that_letters_mean() -> None:
     assert state(cell("", distance=100.0, other_distance=KIND - 1)) == "differs"
     assert state(cell("", distance=100.0, other_distance=KIND + 1)) == "doubtful"
+
+
+def test_the_rates_count_every_page_that_was_offered() -> None:
+    """The two sentences against sums of the table made here, and no count twice."""
+    assert len({count[:2] for count in COUNTS}) == len(COUNTS)
+    genuine = np.array([count[2:] for count in COUNTS if count.alteration == NONE]).sum(axis=0)
+    altered = np.array([count[2:] for count in COUNTS if count.alteration != NONE]).sum(axis=0)
+    said = sentences()
+    assert f"Of {genuine.sum()} genuine pages offered" in said
+    assert f"{genuine[3]} were wrongly said to differ" in said
+    assert f"of {altered.sum()} altered pages, {altered[3]} were found to differ" in said
+    assert f"{altered[0]} passed as IDENTICAL" in said
+    assert f"up to 1 in {genuine.sum() // 3} such genuine pages" in said
+    assert "no probability" in said
+    assert "drawn by a computer" in said
+    assert sum(row[2] for row in table()) == genuine.sum() + altered.sum()
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "printouts", "counted"),
+    [
+        (["IDENTICAL", "IDENTICAL"], 2, "IDENTICAL"),
+        (["IDENTICAL"], 2, "INCOMPLETE"),
+        (["IDENTICAL", "DIFFERS"], 2, "DIFFERS"),
+        (["IDENTICAL_AS_READ", "IDENTICAL"], 2, "IDENTICAL_AS_READ"),
+        ([], 1, "INCOMPLETE"),
+    ],
+)
+def test_the_worst_printout_of_a_page_counts(verdicts, printouts, counted) -> None:
+    row = {"verdicts": verdicts, "printouts": printouts}
+    assert scanrates.verdict_of(row) == counted
+
+
+def test_the_table_of_rates_stands_in_the_report_and_a_copy_is_refused_in_words(tmp_path) -> None:
+    from impact88.files import packaged_text
+    from impact88.program.emulated import LISTING, ListingCopy
+    from impact88.report.casefile import report
+
+    path = str(ROOT / "golden" / "scans" / FEW[0])
+    page = report([examine(path)])
+    assert "Appendix: pages with known truth" in page
+    assert sentences() in page
+    listing = tmp_path / "office.bas"
+    listing.write_text(packaged_text("impact88.legacy", LISTING))
+    refused = examine(path, copy=ListingCopy(str(listing)))
+    assert "restored listing alone" in (refused.error or "")
+    assert not refused.results

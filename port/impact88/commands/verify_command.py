@@ -43,7 +43,9 @@ ARGUMENTS = (
     options.OUTPUT,
     options.flag("--brief", "only verdicts and what differs"),
     options.reads("--scene", "FILE.toml", "the inputs, for a page that has only results"),
-    options.reads("--listing", "THEIRS.bas", "compare the pages with another copy of the listing"),
+    options.reads(
+        "--listing", "THEIRS.bas", "compare pages as text with another copy of the listing"
+    ),
     options.reads(
         "--text-from",
         "WORDS",

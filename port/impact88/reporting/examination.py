@@ -63,8 +63,13 @@ def examine(
         examined.sha256 = sha256(data).hexdigest()
         picture = data.startswith(PICTURE_STARTS)
         if picture and (given or copy):
-            other = "a scene apart" if given else "a copy of the listing"
-            raise UserError(f"{other} goes with text, not with a picture", files.called(path))
+            if copy:
+                said = (
+                    "is a picture, which is held against the restored listing alone, not against a "
+                    "copy of the listing; expected the page's text, typed in or from a scanner"
+                )
+                raise UserError(said, files.called(path))
+            raise UserError("a scene apart goes with text, not with a picture", files.called(path))
         seeds = [text for text in ([seed] if isinstance(seed, str) else seed) if text]
         if seeds and copy:
             raise UserError("other readings go without a copy of the listing", files.called(path))

@@ -17,9 +17,10 @@ from ..reading.printout import read_printouts
 from ..scan.cleaning import Paper, papers_of
 from ..scan.exhibit import exhibit, shown
 from ..scan.grid import Grid
-from ..scan.holding import RATES, Cell, state
+from ..scan.holding import Cell, state
 from ..scan.ink import Floats
 from ..scan.picture import Page, pages_of
+from ..scan.rates import sentences
 from ..scan.residue import Mark
 from ..scan.scenes import scenes_in
 from ..scan.sheets import Leaf, looked
@@ -110,7 +111,7 @@ def _verification(path: str, number: int, page: Page, paper: Paper, leaf: Leaf) 
     line = min((row.start for row in leaf.read.sheet.rows.values()), default=0) + 1
     result = Verification(path, number, line, leaf.judged.verdict, scene, fields)
     result.replies, result.page = [*_replies(leaf)], page.number
-    result.text, result.stop, result.basis = text, len(text), RATES
+    result.text, result.stop, result.basis = text, len(text), sentences()
     for check in result.fields:
         if check.printed and check.name in starts:
             check.start = starts[check.name]

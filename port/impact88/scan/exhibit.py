@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from PIL import Image as Pillow
 
-from .holding import DIFFERS, HOLDS, RATES, Cell, state
+from .holding import DIFFERS, HOLDS, Cell, state
 from .ink import Floats, Image
+from .rates import HEADINGS, sentences, table
 from .sheets import Leaf
 from .typeface import BLANK, sample_of, typeface_of
 
@@ -25,7 +26,7 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
     """One of a page's printouts: ``page``, ``width`` and ``height`` of its picture; ``cells``, each
     with its corners on it; ``marks``, what the program does not print, in the same way;
     ``strips``, the cells in doubt, and how many ``more`` there are; ``bars``, margins in 60 steps
-    from -1.5 to 1.5."""
+    from -1.5 to 1.5; ``basis`` and ``rates``, how pages with known truth fared."""
     upright = np.rot90(grey, leaf.grid.turns)
     height, width = upright.shape
     scale = min(1.0, _WIDEST / width)
@@ -63,7 +64,8 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
         "bars": (counts / max(counts.max(initial=1), 1)).tolist(),
         "margins": len(margins),
         "limits": (HOLDS, DIFFERS),
-        "basis": RATES,
+        "basis": sentences(),
+        "rates": {"headings": HEADINGS, "rows": [*table()]},
     }
 
 

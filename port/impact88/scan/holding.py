@@ -3,7 +3,7 @@
 The mean glyphs are made under the *predicted* names, each cell left out of its own mean. A cell's
 margin is how far it is from its predicted mean beyond its distance from the nearest other,
 relative to how far those two means are apart: -1 is the predicted glyph itself, +1 the other.
-What margins allow to be said stands before `RATES`.
+What verdicts come of margins is counted in `rates`.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -265,18 +265,10 @@ HOLDS, DIFFERS, LABEL, FOREIGN, KIND = -0.12, 0.3, 0.1, 20.0, 15.0
 """A cell with a smaller margin is the character predicted; one with a larger is another; a label
 with a smaller margin holds; a cell this many times as
 far from a mean as is usual was not made by that type; a label that is nearer than this to another
-letter's mean is that letter."""
-RATES = (
-    "Basis of the thresholds: 314 pages with known truth whose scene was found and that were "
-    "settled. On 160 scans and photographs (74 clean, 62 hard, 24 photographed) none of 21,707 "
-    "digits has a margin above -0.32, and of 215,685 trials of a digit as another that occurs on "
-    "its page none has one below +0.43; on 154 pages drawn afterwards, half of them in type on "
-    "which nothing was chosen, none of 20,865 digits is above -0.23, and of 211,797 trials two, of "
-    "one photograph, are below +0.30 (+0.27). Cells of a page are not independent: no page of 314 "
-    "is at most 1 in 105, at 95 % confidence. A point taken for a comma is in doubt from -0.05 on "
-    "badly faded pages."
-)
-"""Said of the margins wherever they are shown; measured anew when `held` changes."""
+letter's mean is that letter. Chosen on 314 pages that were settled (160 scans and photographs, 154
+drawn afterwards): of 42,572 digits none exceeds -0.23, of 427,482 trials of a digit as another of
+its page two, of one photograph, are below +0.30 (+0.27). How pages fare that are offered, settled
+or not, is counted in `rates`."""
 MOST_DOUBTFUL, MOST_DIFFERING = 4, 4
 """Cells that may be doubtful on a page that is settled, or differ on one that is accused: with more
 it was the reading that went wrong."""
