@@ -108,6 +108,20 @@ def test_the_first_impact_is_the_same_from_elsewhere(names):
         )
 
 
+def test_more_than_needed_that_agrees_exactly_hides_no_branch():
+    """Ten values with tolerances, true to the last digit: both speeds and spins before make the
+    kinetic energy of every impact of the other nine, so that it excludes none of them."""
+    truth, names = everything(SCENE), PROBLEMS[0]
+    exact = reconstruct({**VEHICLES, **{n: truth[n] for n in names}})
+    truth["KI"] = exact[0].values["KI"]
+    known = {n: f"{truth[n]!r} +- {0.03 * max(abs(truth[n]), 0.05)!r}" for n in (*names, "KI")}
+    loose = reconstruct({**VEHICLES, **known})
+    assert len(exact) > 1
+    for impact in exact:
+        x = impact.values["VAX"]
+        assert any(s.values["VAX"] == pytest.approx(x, abs=1e-5) for s in loose)
+
+
 def test_equivalent_barrier_speeds_are_the_energies_they_stand_for():
     after = {n: float(v) for n, v in solve(SCENE).items()}
     state = State({**SCENE, **after})

@@ -24,6 +24,7 @@ from ..status import Status
 from ..uncertainty.uncertain import Uncertain, fixed
 from .evidence import Evidence, weigh
 from .geometry import GEOMETRY, with_point_masses, within_doubles
+from .laws import missed_laws, told
 from .outcome import IMPOSSIBLE, outcome
 from .state import COURSES, CRUSH, DIRECTIONS, FORCES, KNOWABLE, OTHERS, QUANTITIES, SPEEDS, State
 from .system import PARAMETERS, SPINS, System
@@ -477,7 +478,8 @@ class Reconstruction:
             )
             for a in self.adjusted
         }
-        return weigh(self.squares, self.redundancy, values, inside, self.assumed)
+        laws = missed_laws(self.system.nominal) if self.assumed else ()
+        return weigh(self.squares, self.redundancy, values, inside, self.assumed, laws)
 
     @within_doubles
     def responses(self, names: Sequence[str]) -> Floats:
@@ -525,6 +527,9 @@ def needs_adjustment(known: Mapping[str, Uncertain], wanted: Sequence[str] | Non
         return True
     try:
         solutions = solve_for({name: item.nominal for name, item in known.items()}, wanted)
+    except UnsolvableError:
+        # what leaves something open may contradict itself all the same
+        return bool(missed_laws({name: item.nominal for name, item in known.items()}))
     except UserError:
         return False  # told by the one who shows it
     return any(bool(solution.contradictory) for solution in solutions)
@@ -717,6 +722,9 @@ class _Search:
                 _face(plain, starts[:, near : 2 * near])
             x, left_over = straight(plain, starts)
             before, met = met.shape[1], _distinct(met, x[:, left_over <= _HOLDS])
+            if tried < count and met.shape[1]:
+                tried = count  # more conditions than needed, and they agree: others may, too
+                continue
             if tried == 1 or (not met.shape[1] and len(plain.conditions) > size):
                 return met
             self.batches, self.starts = self.batches + 1, self.starts + tried
@@ -753,9 +761,12 @@ class _Search:
                 "tolerances, or fewer values"
             )
         if not (self.solutions or self.open):
+            known = self.system.known
+            exact = {name: item.nominal for name, item in known.items() if not item.varies}
+            laws = told(missed_laws(exact))
             raise UnsolvableError(
-                "no impact agrees with all that is known exactly; expected tolerances ('+- D') for "
-                "what is measured"
+                f"no impact agrees with all that is known exactly{': ' * bool(laws)}{laws}; "
+                "expected tolerances ('+- D') for what is measured"
             )
         # what leaves something open counts where all else contradicts the measurements
         least = min((each.squares for each in self.solutions), default=math.inf)

@@ -15,6 +15,7 @@ from typing import Any
 from ..names import quantity
 from ..plaintable import number
 from ..units import RULES, System
+from .laws import Missed, told
 
 CONTRADICTION = 1e-3
 """Values whose sum of squares is reached with less probability contradict one another: one set of
@@ -47,7 +48,8 @@ class Evidence:
     `UNCHECKED`; ``squares`` of ``redundancy`` values more than needed; ``probability`` of as many
     or more, nan where not checked; ``at_odds``: the values most at odds with the others, the worst
     first; ``inside``: whether an impact lies within all limits at once, None where that was not
-    asked; ``exact``: the values are exact, and deviations those of the misfit."""
+    asked; ``exact``: the values are exact, and deviations those of the misfit; ``laws``: those that
+    exact values miss."""
 
     verdict: str
     squares: float
@@ -56,6 +58,7 @@ class Evidence:
     at_odds: Sequence[AtOdds]
     inside: bool | None = None
     exact: bool = False
+    laws: tuple[Missed, ...] = ()
 
     @property
     def contradictory(self) -> bool:
@@ -72,7 +75,8 @@ class Evidence:
         if self.verdict == UNCHECKED:
             return "not checked: no more is known than needed, so no measurement tests another"
         if self.exact:
-            return f"these exact values contradict one another; {self.named(units)}"
+            laws = f": {told(self.laws, units)}" if self.laws else ""
+            return f"these exact values contradict one another{laws}; {self.named(units)}"
         sums = (
             f"sum of squared adjustments {number(self.squares, 3)} (sd) where about "
             f"{self.redundancy} is expected; probability {number(self.probability, 2)}"
@@ -118,6 +122,7 @@ class Evidence:
             "probability": self.probability,
             "within_all_limits": self.inside,
             "most_at_odds": rows,
+            "laws_missed": [law.text(units) for law in self.laws],
         }
 
 
@@ -127,6 +132,7 @@ def weigh(
     values: Mapping[str, tuple[float, float, float, float]],
     inside: bool | None = None,
     exact: bool = False,
+    laws: tuple[Missed, ...] = (),
 ) -> Evidence:
     """Return the verdict on adjusted values.
 
@@ -149,7 +155,7 @@ def weigh(
     if exact or probability < CONTRADICTION or inside is False:
         verdict = CONTRADICT
     probability = math.nan if exact else probability
-    return Evidence(verdict, squares, redundancy, probability, tuple(worst), inside, exact)
+    return Evidence(verdict, squares, redundancy, probability, tuple(worst), inside, exact, laws)
 
 
 def chi_square_tail(squares: float, freedom: int) -> float:

@@ -36,6 +36,7 @@ _LEFT, _WIDTH = 16, 104
 _NOISE = 1e-9
 """Of the largest quantity of the same unit: less is rounding, and printed as 0; twice as much
 prints the same of 100 solutions."""
+ROUNDING = 1e-13  # of the same: what a program reads is 0 below this
 _COEFFICIENT_NOISE = 1e-13  # a coefficient below this is rounding
 _ROWS = (
     ("x", "length/time", ("UX", "VAX", "VX", "VBX")),
@@ -127,7 +128,10 @@ class Impact:
     @within_doubles
     def as_json(self, units: System = RULES) -> dict[str, Any]:
         """The same for a program; numbers that do not exist are null."""
-        values = {n: v for n, v in written(self.values, units).items() if n != "STATUS"}
+        # what was given stands as it was given
+        given = {n: v for n, v in self.values.items() if self.known.get(n) == v}
+        clean = {**_without_noise(self.values, ROUNDING), **given}
+        values = {n: v for n, v in written(clean, units).items() if n != "STATUS"}
         record: dict[str, Any] = plain(
             {
                 "known": [*self.known],
@@ -240,17 +244,27 @@ def in_turn(found: Sequence[Impact], units: System = RULES) -> str:
     return "\n\n".join(f"SOLUTION {i} {of}\n\n{text}" for i, text in enumerate(texts, 1))
 
 
-def _without_noise(values: Mapping[str, float]) -> dict[str, float]:
-    """Values below `_NOISE` of the largest of their unit are 0, directions above -180."""
+def _without_noise(values: Mapping[str, float], noise: float = _NOISE) -> dict[str, float]:
+    """Return ``values``, those below ``noise`` of the largest of their unit 0, and directions above
+    -180. A spin's unit is that of velocities, too: over the smaller radius of gyration."""
     largest: dict[str, float] = {}
     for name, value in values.items():
         if math.isfinite(value):
             unit = quantity(name).unit
             largest[unit] = max(abs(value), largest.get(unit, 0.0))
-    largest["1"] = _COEFFICIENT_NOISE / _NOISE  # numbers have no common size
+    largest["1"] = _COEFFICIENT_NOISE / noise  # numbers have no common size
+    radii = [
+        math.sqrt(values[inertia] / values[mass])
+        for inertia, mass in (("IA", "MA"), ("IB", "MB"))
+        if math.isfinite(values.get(inertia, math.inf) / values.get(mass, 1.0))
+    ]
+    if radii and min(radii) > 0:
+        # spins that are all rounding have no size of their own
+        turning = largest.get(VELOCITY, 0.0) / min(radii) * ROUNDING / noise
+        largest["rad/time"] = max(largest.get("rad/time", 0.0), turning)
     clean = {}
     for name, value in values.items():
-        small = abs(value) < _NOISE * largest.get(quantity(name).unit, 0.0)
+        small = abs(value) < noise * largest.get(quantity(name).unit, 0.0)
         opposite = name in (*COURSES, *FORCES) and value < -179.9995  # to three decimals
         clean[name] = 180.0 if opposite else 0.0 if small else value
     return clean

@@ -14,7 +14,7 @@ from ..plaintable import fixed, number, paragraph, table
 from ..reconstruction import adjustment
 from ..reconstruction.adjustment import Reconstruction, typed_friction
 from ..reconstruction.geometry import within_doubles
-from ..reconstruction.solutiontable import DRIVERS, Impact, completed, in_turn
+from ..reconstruction.solutiontable import DRIVERS, ROUNDING, Impact, completed, in_turn
 from ..reconstruction.state import COURSES, FORCES, SPEEDS
 from ..units import RULES, System, written
 from .boundstable import unbounded
@@ -285,10 +285,11 @@ class Measured(Impact):
     def more(self, units: System) -> dict[str, Any]:
         solution, adjusted = self.solution, []
         for a in solution.adjusted:
+            small = abs(a.adjusted) < ROUNDING * solution.system.scale(a.name)
             sizes = {
                 "measured": units.placed(a.name, float(a.measured)),
                 "tolerance": units.factor(a.name) * a.tolerance,
-                "adjusted": units.placed(a.name, float(a.adjusted)),
+                "adjusted": units.placed(a.name, 0.0 if small else float(a.adjusted)),
             }
             adjusted.append({"name": a.name, **sizes, "moved": a.moved})
         return {
