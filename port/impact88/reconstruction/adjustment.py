@@ -585,16 +585,19 @@ def reconstruct(
 def _ordered(
     found: list[Reconstruction], searches: "Sequence[_Search]", mu: Uncertain | None
 ) -> list[Reconstruction]:
-    """Return the likely solutions in the order of physics: possible impacts before those that break
+    """Return the likely solutions, those that contradict the measurements only where all do, in
+    the order of physics: possible impacts before those that break
     it or drive backwards along a known course, then by the sum of squared adjustments. Ties by what
     no axes, names or units change: the fraction of the kinetic energy before that is in spins, e,
     that energy, the smaller first. A course is a
     direction: what drives backwards along one is kept only where nothing else is."""
     ahead = [s for s in found if not s.backwards] or found
-    possible = [s for s in ahead if not s.impossible]
+    # what contradicts the measurements, as standstill does, is no answer beside what agrees
+    agreeing = [s for s in ahead if not s.evidence.contradictory] or ahead
+    possible = [s for s in agreeing if not s.impossible]
     kept = []
-    for group in (possible, [s for s in ahead if s.impossible]):
-        least = min((s.squares for s in (group if group is possible else ahead)), default=0.0)
+    for group in (possible, [s for s in agreeing if s.impossible]):
+        least = min((s.squares for s in (group if group is possible else agreeing)), default=0.0)
         kept += [s for s in group if s.squares <= max(_LIKELY * least, 1e-9)]
 
     def order(solution: Reconstruction) -> tuple[float, ...]:
