@@ -84,7 +84,7 @@ def prepared(
     _check_names(wanted, RESULTS, "result")
     if len(set(chosen)) < len(chosen):
         raise UserError(f"a name stands twice in {' '.join(chosen)}; expected each once")
-    return Prepared(chosen, tuple(dict.fromkeys(wanted)), rest)
+    return Prepared(tuple(chosen), tuple(dict.fromkeys(wanted)), rest)
 
 
 def _check_names(names: Sequence[str], table: Iterable[str], what: str) -> None:
@@ -195,6 +195,6 @@ def _address(array: Array) -> int:
     """Where an array begins in memory. For one that can be written to by the buffer it is: that
     takes a fourth of the time."""
     if array.size and array.flags.writeable:
-        return ctypes.addressof(ctypes.c_char.from_buffer(array))
+        return ctypes.addressof(ctypes.c_char.from_buffer(array.data))
     start: int = array.__array_interface__["data"][0]
     return start

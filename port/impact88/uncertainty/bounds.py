@@ -182,7 +182,7 @@ def _ranks(values: Array) -> Array:
     many = np.diff(first, append=len(values))
     ranks = np.empty(len(values))
     ranks[order] = np.repeat(first + (many - 1) / 2, many)
-    return ranks - ranks.mean()
+    return np.asarray(ranks - ranks.mean())
 
 
 def _product(first: Array, second: Array) -> float:
