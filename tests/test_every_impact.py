@@ -188,3 +188,18 @@ def test_the_first_order_is_not_shown_where_it_contradicts_the_draws():
         plain = shown.first_order[name]
         if plain is not None:
             assert plain == pytest.approx(shown.draws.values[name].std(), rel=0.34)
+
+
+def test_draws_about_one_impact_of_several_say_so():
+    """An exact change of velocity is no linear condition; a course that is exact makes it one."""
+    truth, names = everything(SCENE), PROBLEMS[0]
+    known = {**VEHICLES, **{n: truth[n] for n in names}}
+    loose = {**known, "SB": f"{truth['SB']!r} +- 0.1"}
+    several = Measured(reconstruct(loose)[0], 50)
+    assert len(several.solution.beside) > 1
+    assert any("about this impact only" in line for line in several.warnings())
+    after = solve(SCENE, FINAL)
+    exact = {**SCENE, **{n: float(after[n]) for n in ("VAX",)}}
+    exact = {n: v for n, v in exact.items() if n not in ("MU", "UX")}
+    one = Measured(reconstruct({**exact, "VX": f"{SCENE['VX']!r} +- 0.1"})[0], 50)
+    assert not any("about this impact only" in line for line in one.warnings())

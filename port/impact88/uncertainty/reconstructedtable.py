@@ -160,6 +160,11 @@ class Measured(Impact):
                 f"{100 * apart:.2g} % of the draws separate already before the impact, which meets "
                 "all known values and is no impact; a course or a closing speed would exclude them"
             )
+        if self.draws and self.draws.signs is None and len(solution.beside) > 1:
+            lines.append(
+                f"draws and bounds are about this impact only, one of {len(solution.beside)} that "
+                "were found; they may be too narrow"
+            )
         if unsearched := self.not_searched:
             lines.append(
                 "the search for bounds ended before its time; not searched to the end, and perhaps "
