@@ -1,4 +1,4 @@
-"""Make README's pictures again: python port/docs/pictures.py
+"""Make README's pictures again: python .ci/pictures.py
 
 Needs ``pip install -e '.[bench,desk,report,scan]'`` and Chromium. Each picture is what a command of
 README makes; pages are photographed by a browser without a window. The benchmark takes some
@@ -14,8 +14,8 @@ import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-ROOT = Path(__file__).resolve().parents[2]
-PICTURES = Path(__file__).resolve().parent / "pictures"
+ROOT = Path(__file__).resolve().parents[1]
+PICTURES = ROOT / "port" / "docs" / "pictures"
 COMMAND = str(Path(sys.executable).with_name("impact88"))
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 BROWSER_OPTIONS = ("--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars")
@@ -51,7 +51,7 @@ def scene_file(folder: Path) -> str:
 
 def main() -> None:
     """Make all pictures."""
-    PICTURES.mkdir(exist_ok=True)
+    PICTURES.mkdir(parents=True, exist_ok=True)
     with TemporaryDirectory() as name:
         folder = Path(name)
         scene = scene_file(folder)
