@@ -495,6 +495,9 @@ class _Value:
     def __init__(self, name: str, text: str, rule: str, source: str, advise: bool = True) -> None:
         self.text, self.advise = text, advise
         self.entry, self.rule, self.source = f"{name} = {text}", rule, source
+        if rule == NUMBER and is_number(text):  # as INPUT takes it: "1 0" is ten
+            self.notation = Notation("fixed", (Amount("", ((text.strip(), ""),)),))
+            return
         try:
             self.notation = parse(text)
         except ValueError:

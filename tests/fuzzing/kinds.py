@@ -18,9 +18,12 @@ import numpy as np
 import captures
 import emulator_fuzz
 from impact88.applesoft.decimaltext import is_number
+from impact88.case import VALUE_LIMIT
+from impact88.case import Case as SceneCase
 from impact88.cli import COMMANDS
 from impact88.names import CHAPTER, FINAL_STATE, RESULTS, SCENE
-from impact88.scene import VALUE_LIMIT, sample, template
+from impact88.scene import sample
+from impact88.scenefile import template
 
 from .case import Case
 
@@ -127,9 +130,8 @@ def toml(rng: Random) -> bytes:
     """A scene file."""
     texts = scene(rng)
     whole = {**sample(1), **texts}
-    text = (
-        template(whole, rng.choice((None, "A title", "\x1b", "[["))) if rng.random() < 0.5 else ""
-    )
+    title = rng.choice(("", "A title", "\x1b", "[["))
+    text = template(SceneCase({**whole, "title": title})) if rng.random() < 0.5 else ""
     if not text:
         text = "".join(f'{name} = "{value}"\n' for name, value in texts.items())
     return spoilt(rng, text.encode(), rng.choice((0, 1, 6)))

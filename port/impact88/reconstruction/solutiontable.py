@@ -31,7 +31,7 @@ _ROAD = {"ft/s": ("mph", 3600 / 5280), "m/s": ("km/h", 3.6)}
 _SPINS = ("WA", "WB", "WAF", "WBF")
 DRIVERS, _SHARE = 3, 0.05
 """Values named as making a result uncertain, at most, and a share of its variance too small to."""
-_LEFT, _WIDTH = 16, 104
+_LEFT, _WIDTH = 16, 100
 """Characters of the answer's labels and lines."""
 _NOISE = 1e-9
 """Of the largest quantity of the same unit: less is rounding, and printed as 0; twice as much
