@@ -606,7 +606,8 @@ def _ordered(
         energy = values.get("KI", 0.0)
         inertias = (("WA", "IA"), ("WB", "IB"))
         rotation = sum(
-            values.get(spin, 0.0) ** 2 * values[inertia] / 2
+            # a product of huge spins is infinite, a power of them an error
+            values.get(spin, 0.0) * values.get(spin, 0.0) * values[inertia] / 2
             for spin, inertia in inertias
             if math.isfinite(values[inertia])
         )
