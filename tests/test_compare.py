@@ -516,3 +516,19 @@ def test_formulas_never_computed_are_named(tmp_path) -> None:
     done = impact88("compare", str(tmp_path / "theirs.xlsx"))
     assert done.returncode == 2
     assert "V2 has a formula that was never computed" in done.stderr
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"form": 5}, {"form": "pdf"}, {"values": 3}, {"rtol": "x"}, {"rtol": 2}, {"encoding": 7},
+     {"units": 5}],
+    ids=str,
+)  # fmt: skip
+def test_arguments_of_the_wrong_kind_are_said(tmp_path, wrong: dict) -> None:
+    path = tmp_path / "theirs.csv"
+    path.write_text(table(exactly(OURS)), encoding="utf-8")
+    with pytest.raises(UserError):
+        compare(path, **wrong)
+    for nothing in (None, 5, b"x"):
+        with pytest.raises(UserError):
+            compare(nothing)  # type: ignore[arg-type]

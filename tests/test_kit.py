@@ -180,10 +180,12 @@ def test_pycrash_is_another_model_and_told_so(kit: Path) -> None:
         out = subprocess.run(
             [sys.executable, "pycrash_adapter.py"], cwd=kit, stdin=file, capture_output=True
         )
-    (evidence,) = compared(kit.parent, out.stdout.decode(), causes=True).evidence
+    evidence = compared(kit.parent, out.stdout.decode(), causes=True).evidence
     for what in ("friction that sticks", "e_m absent", "point masses not known"):
-        assert sum(what in says for says in evidence.parts) == 1, evidence
-    assert evidence.explains >= 0.9 * evidence.disagreeing
+        assert sum(what in says for says in evidence[0].parts) <= 1, evidence
+        assert any(what in says for cause in evidence for says in cause.parts), evidence
+    for cause in evidence:
+        assert cause.explains >= 0.9 * cause.disagreeing
 
 
 def test_the_scenes_alone_for_a_pipe(tmp_path: Path) -> None:

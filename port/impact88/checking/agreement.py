@@ -124,7 +124,9 @@ def case_of(
         few = {name: column[undecided] for name, column in scene.items()}
         some = {name: (a[undecided], b[undecided]) for name, (a, b) in theirs.items()}
         other, _ = _case({**few, "MU": -few["MU"]}, some, rtol)
-        better = case.part(undecided).wrong & ~other.wrong
+        both = (case.part(undecided).judged()[0], other.judged()[0])
+        mine, turned = ((grades == DIFFER).sum(0) for grades in both)
+        better = turned < mine
         for column, instead in zip(case[4:], other[4:], strict=True):
             column[..., undecided[better]] = instead[..., better]
     return case

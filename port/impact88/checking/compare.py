@@ -23,7 +23,7 @@ from ..plaintable import plain
 from ..progress import progress
 from ..tables.cells import TableUnits, check_scene_columns, numbers
 from ..tables.rows import BadCell, Rows
-from ..tables.table import format_of, open_reader
+from ..tables.table import FORMATS, format_of, open_reader
 from . import agreement
 from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, Case
 from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, Diagnosis
@@ -210,9 +210,19 @@ def compare(
     >>> impact88.compare(table).summary.partition(";")[0]
     '1 row: 1 agree, 0 disagree'
     """
+    if values is not None and not isinstance(values, Mapping):
+        raise UserError(f"values is {quoted(values)}; expected a mapping of names to values")
     values = texts(values or {})
     if not isinstance(path, str | os.PathLike):
         raise UserError(f"{quoted(path)}: expected the name of a table's file")
+    if form is not None and form not in FORMATS.values():
+        formats = " ".join(dict.fromkeys(FORMATS.values()))
+        raise UserError(f"form is {quoted(form)}; expected one of {formats}")
+    if rtol is not None and not (isinstance(rtol, int | float) and 0 <= rtol < 1):
+        raise UserError(f"rtol is {quoted(rtol)}; expected a share such as 1e-9")
+    for name, text in (("encoding", encoding), ("units", units)):
+        if text is not None and not isinstance(text, str):
+            raise UserError(f"{name} is {quoted(text)}; expected a text")
     path = os.fspath(path)
     where = called(path)
     comparison = Comparison()

@@ -1,8 +1,10 @@
 """Why another program's results differ: one cause for a table where one explains it.
 
 Looked for in turn: right numbers written otherwise; one mistake, then two (`trials`), and what they
-leave; rows of several programs; coarser arithmetic. Rows that agree must bear a cause out, and the
-bits that it gets right must be many more than choosing among so many programs yields by chance.
+leave; rows of several programs; coarser arithmetic. Scenes as casework and its limits have them
+come first, then what those beyond (no mass, MU of another pivot, overflow) show besides. Rows that
+agree must bear a cause out, and the bits that it gets right must be many more than choosing among
+so many programs yields by chance.
 """
 
 import math
@@ -22,6 +24,7 @@ from ..names import FINAL_VELOCITIES, SCENE
 from ..progress import progress
 from ..replay import replay
 from .agreement import HALF, Bools, Case, Floats, violated
+from .constants import fitted
 from .trials import BORNE_OUT, Found, Judge, Program, pairs, ranked, run, singles, spread
 
 PRINTED = "digits of the 1988 printout, which floors"
@@ -29,6 +32,7 @@ FLOORED = "floored to the digits given, not rounded"
 TRUNCATED = "cut off at the digits given, not rounded"
 APPLESOFT = "rounding in 32 bits, as Applesoft's"
 SINGLE = "rounding in single precision"
+OTHER_ROWS = "results of other rows: the order of the rows, or of the results, is another"
 UNKNOWN = "unexplained"
 IN_THESE_ROWS = ", in these rows only"
 """Behind a cause that rows that agree refute."""
@@ -42,6 +46,9 @@ _DEEPER, _MOST = 2, 0.5
 that one explains; one row is enough for a known convention."""
 _SEVERAL, _EQUIVALENTS = 3, 4
 """Causes that a table of several programs' rows may have; other ways to say one that are listed."""
+_NEEDED_ROWS, _TIES = 3, 4
+"""Rows that must have others' results, so that none does by chance; rows alike in one result that
+are tried."""
 _LARGE = 1e-5
 """Differences below this share of their size are no pair of mistakes, but coarse arithmetic."""
 _NEED, _NEED_NAMED, _NEED_PAIR = 22.0, 10.0, 32.0
@@ -106,9 +113,14 @@ class Diagnosis:
         loose = np.where(sizes > 0, case.loose / sizes, 0.0)
         self._room = np.fmax(digits[worst], loose[worst])
         near = np.fmin(np.fmax(4 * loose, _CLOSE), _EXPLAINED * self._off)
-        self._limits = np.where(wrong, near, np.fmax(loose, _CLOSE)) * sizes + written
+        # another program rounds what it has, which may be larger than anything in the scene
+        theirs = np.where(wrong & np.isfinite(case.values), np.abs(case.values), 0.0)
+        measure = np.fmax(sizes, theirs)
+        self._limits = np.where(wrong, near, np.fmax(loose, _CLOSE)) * measure + written
         if not self._by_digits():
             self._by_search()
+            if self._open.sum() > (1 - BORNE_OUT) * wrong.sum():
+                self._by_order()
             if self._open.sum() > (1 - BORNE_OUT) * wrong.sum():
                 self._by_precision()
         self._by_residuals(violations)
@@ -133,11 +145,27 @@ class Diagnosis:
         clear = whole._replace(theirs=ours).near(Program().results(case.columns))
         # rows that are wrong in what no spelling computes
         clear &= ~(whole.wrong & run(Program(), whole).rows)
-        rows = _sample(whole, clear)
+        strata = _strata(case.columns)
+        usual = ~np.any([*strata.values()], axis=0)
+        bits, choices = self._bits(whole)
+        # casework and its limits first; then what only scenes beyond them show
+        if (whole.wrong & clear & usual).any():
+            self._by_sample(whole, clear & usual, clear, bits, choices)
+        else:
+            self._by_sample(whole, clear, clear, bits, choices)
+        for name, rows in strata.items():
+            self._by_stratum(name, whole, clear & rows, bits, choices)
+        if not self.programs:
+            self._by_constant(whole, clear & usual, bits)
+
+    def _by_sample(
+        self, whole: Judge, searched: Bools, clear: Bools, bits: Floats, choices: Bools
+    ) -> None:
+        """Name what explains a table, looked for in a sample of the rows ``searched``."""
+        rows = _sample(whole, searched)
         sample = whole.part(rows)
         if not sample.wrong.any():
             return
-        bits, choices = self._bits(whole)
         whole = whole.of(_telling(sample))
         right = clear & ~whole.wrong
         coarse = bool(np.median(self._off[rows][sample.wrong]) > _LARGE)
@@ -160,6 +188,79 @@ class Diagnosis:
                 self.programs.append(program)
             if self.evidence:
                 return
+
+    def _by_constant(self, judge: Judge, clear: Bools, bits: Floats) -> None:
+        """Name a constant that is wrong: any number that explains nearly all rows."""
+        rows = _sample(judge, clear)
+        sample = judge.part(rows)
+        if not sample.wrong.any():
+            return
+        judge = judge.of(_telling(sample))
+        for program in fitted(judge.part(rows)):
+            fits = run(program, judge).rows
+            explained = fits & judge.wrong & self._open
+            # a number has been chosen, too
+            if bits[explained & clear].sum() < _NEED_NAMED + _BITS_A_ROW:
+                continue
+            right = clear & ~judge.wrong
+            if (fits & right).sum() < BORNE_OUT * right.sum():
+                continue
+            self._causes[explained] = program.says
+            a, b, c, d = (int(x.sum()) for x in (explained, judge.wrong, fits & right, right))
+            self.evidence.append(Cause(program.says, a, b, c, d, [], {}))
+            self.programs.append(program)
+            return
+
+    def _by_order(self) -> bool:
+        """Name results that are ours of other rows; whether that is all."""
+        case, wrong = self._case, self._wrong
+        usable = np.isfinite(case.ours).any(1)
+        if wrong.sum() < _NEEDED_ROWS or not usable.any():
+            return False
+        first = int(np.argmax(usable))
+        order = np.argsort(case.ours[first])
+        limits = case.units * HALF + np.fmax(case.loose, _CLOSE * case.sizes)
+        lowest = np.searchsorted(case.ours[first, order], case.values[first] - limits[first])
+        matched = np.zeros(wrong.size, bool)
+        for step in range(_TIES):
+            place = order[np.minimum(lowest + step, wrong.size - 1)]
+            near = np.abs(case.values - case.ours[:, place]) <= limits
+            near |= ~(np.isfinite(case.values) & np.isfinite(case.ours[:, place]))
+            matched |= near.all(0)
+        if (matched & wrong).sum() < BORNE_OUT * wrong.sum():
+            return False
+        self._causes[matched & wrong] = OTHER_ROWS
+        return True
+
+    def _by_stratum(
+        self, name: str, judge: Judge, rows: Bools, bits: Floats, choices: Bools
+    ) -> None:
+        """Name what the rows of one kind that are still open show, alone or on top of what explains
+        the rest."""
+        left = judge.wrong & self._open & rows
+        if not left.any():
+            return
+        places = np.concatenate([spread(np.flatnonzero(x), _WRONG_SAMPLE) for x in (left, rows)])
+        few = judge.part(np.unique(places))
+        few = few._replace(wrong=left[np.unique(places)])
+        for base in (*self.programs[:1], Program()):
+            trial = next(iter(singles(few, few.wrong, base)), None)
+            if trial is None or not trial.explains >= _MOST * few.wrong.sum():
+                continue
+            new = Program(trial.program.edits[len(base.edits) :])
+            fits = run(trial.program, judge).rows
+            explained = fits & left
+            if not _earned(new, explained, bits, choices & rows):
+                continue
+            right = rows & ~judge.wrong
+            stands = (fits & right).sum() >= BORNE_OUT * right.sum()
+            says = f"{name}: {trial.program.says}" + ("" if stands else IN_THESE_ROWS)
+            self._causes[explained] = says
+            a, b, c, d = (int(x.sum()) for x in (explained, left, fits & right, right))
+            parts = _parts(trial.program, judge, explained)
+            self.evidence.append(Cause(says, a, b, c, d, [], parts))
+            self.programs.append(trial.program)
+            return
 
     def _bits(self, judge: Judge) -> tuple[Floats, Bools]:
         """What a cause that explains a row has got right by it; and the rows that show nothing but
@@ -211,6 +312,20 @@ class Diagnosis:
                 self._causes[row] = f"{UNKNOWN}, but agrees to about {digits} digits"
             elif violations and not broken:
                 self._causes[row] = f"{UNKNOWN}; no equation is violated by the final velocities"
+
+
+def _strata(g: Mapping[str, Floats]) -> dict[str, Bools]:
+    """Return the rows beyond casework and its limits, by what is unusual about them."""
+    bodies = np.fmin(g["MA"], g["MB"]) <= 0
+    bodies |= (g["M"] != 4) & (np.fmin(g["IA"], g["IB"]) <= 0)
+    speeds = np.max([np.abs(g[name]) for name in ("UX", "UY", "VX", "VY")], 0)
+    turned = np.any([g[name] != 0 for name in ("DA", "DB", "WA", "WB")], axis=0)
+    return {
+        "masses or inertias of 0 or less": bodies,
+        "point masses with arms or spins left": (g["M"] == 4) & turned,
+        "MU of 10 and more, or below -10": (g["MU"] >= 10) | (g["MU"] < -10),
+        "velocities beyond 1E12": speeds > 1e12,
+    }
 
 
 def _are_cut(case: Case, cut: Callable[[Floats], Floats]) -> Bools:
@@ -300,7 +415,9 @@ def _explanations(judge: Judge, coarse: bool) -> Iterator[list[_Chosen]]:
             meter.update(1)
             found = [trial for trial in ranked(programs, first) if trial.whole]
         if found:
-            yield [_completed(_deepened(found, first), groups, judge)]
+            wrong = {name for group in groups[1:] for name in group}
+            rest = judge.narrowed([name for name in judge.theirs if name not in wrong])
+            yield [_completed(_deepened(found, rest), groups, judge)]
         yield _several(alone, first, judge)
 
 

@@ -34,6 +34,8 @@ MODEL, CONVENTION, RARE_CONVENTION, LIKELY, LESS, RARE = range(6)
 """How likely an edit is: of those that compute the same, the likeliest is named."""
 CONDITIONS = ("point", "pivot", "stick")
 """Names that are true or false."""
+TRUTHS = (*COMPARISONS, "either")
+"""Operations that are: they have no sign and no size."""
 _SECTIONS = {"[likely]": LIKELY, "[less likely]": LESS, "[rare]": RARE}
 
 
@@ -97,7 +99,7 @@ def _variations(node: Expression, kin: Kin, whole: bool = True) -> Iterator[tupl
         yield LESS, 0
     for pattern in ("any", "whole") if whole or is_name else ("any",):
         for rank, _, alternatives in rules[pattern]:
-            if kind not in COMPARISONS and (rank == LIKELY or isinstance(node, str | tuple)):
+            if kind not in TRUTHS and (rank == LIKELY or isinstance(node, str | tuple)):
                 yield from ((rank, _filled(made, {pattern: node})) for made in alternatives)
     for place, part in enumerate(operands(node), 1):
         for rank, other in _variations(part, kin, False):
