@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 import tracemalloc
 
 import numpy as np
@@ -163,6 +165,17 @@ def test_plain_c_solves_the_same_equations(name, flags):
     plainc.move(plainc.prepare(columns), room)
     total = sum(columns[key] for key in plainc.COLUMNS)
     assert all(values == pytest.approx(total) for values in room.values())
+
+
+@pytest.mark.skipif(not plainc.available(), reason="there is no C compiler")
+def test_plain_c_leaves_the_process_its_arithmetic():
+    """gcc's -ffast-math would have subnormal numbers taken for 0, by everything else, too."""
+    code = (
+        "import numpy as np; from impact88.bench import plainc; assert plainc.available(); "
+        "print((np.array([2.0**-1000]) * 2.0**-70).tobytes().hex())"  # not ==: 0 would be equal
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == np.array([2.0**-1070]).tobytes().hex()
 
 
 @pytest.mark.skipif(not plainc.available(), reason="there is no C compiler")

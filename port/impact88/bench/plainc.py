@@ -55,11 +55,15 @@ def library(flags: str) -> Any:
         return None
     # Windows keeps the file of a library that is in use
     with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        source, built = Path(folder, "plain.c"), Path(folder, "plain.so")
+        source, object_file, built = (Path(folder, f"plain.{end}") for end in ("c", "o", "so"))
         source.write_bytes(resources.files(__package__).joinpath("plain.c").read_bytes())
-        command = [path, *flags.split(), "-shared", "-fPIC", "-o", str(built), str(source), "-lm"]
+        compilation = [path, *flags.split(), "-fPIC", "-c", "-o", str(object_file), str(source)]
+        # linked apart: told of -ffast-math, gcc links what makes the whole process take subnormal
+        # numbers for 0 as soon as the library is loaded
+        linking = [path, "-shared", "-o", str(built), str(object_file), "-lm"]
         try:
-            subprocess.run(command, capture_output=True, check=True, timeout=SECONDS)
+            for command in (compilation, linking):
+                subprocess.run(command, capture_output=True, check=True, timeout=SECONDS)
             loaded = ctypes.CDLL(str(built))
         except (OSError, subprocess.SubprocessError):
             return None
