@@ -72,10 +72,9 @@ def write_table(record: dict[str, Any]) -> None:
     ]
     for method, words in METHODS.items():
         casework, heavy = rows[method, "casework"], rows[method, "heavy"]
-        lines.append(
-            f"| {words} | {float(f'{casework['seconds'] * 1e9:.2g}'):,.0f} | {casework['largest']:.0e} "
-            f"| {heavy['largest']:.0e} |"
-        )
+        nanoseconds = float(f"{casework['seconds'] * 1e9:.2g}")
+        errors = f"{casework['largest']:.0e} | {heavy['largest']:.0e}"
+        lines.append(f"| {words} | {nanoseconds:,.0f} | {errors} |")
     where = (
         f"Relative errors of the final velocities against 50 digits; {machine['processor']}, "
         f"{machine['instructions']}, Python {machine['python']}, numpy {machine['numpy']}, load "
