@@ -244,6 +244,8 @@ def _listed_lines(rows: Sequence[Row]) -> list[Line] | None:
     for layout in usual:
         if lines := _lines_by(layout, rows):
             return lines
+    if longest < WRAP_COLUMN:  # no screen or printer has rows so short: these are typed lines
+        return None
     others = [Layout(longest + blanks, breaks=False) for blanks in range(LOST_BLANKS + 1)]
     programs = [lines for layout in others if (lines := _lines_by(layout, rows))]
     if programs and (every or any(program != programs[0] for program in programs)):
