@@ -694,15 +694,26 @@ def asking() -> Iterator[workers.Bench]:
 
 
 RANGED = {"values": {**sample(1), "MU": "0.7 .. 0.9"}}
-SLOW = {
-    "values": {**sample(1), **{n: f"{sample(1)[n]} +- 0.1" for n in "MU E UX VY GA PA".split()}}
-}
-"""A question that is still being answered when it is stopped."""
+ENDLESS = {"object_list": [], "timeout": 600.0}
+"""What `multiprocessing.connection.wait` is asked: a question still being answered when it is
+stopped, however quick the machine."""
 
 
-def test_a_newer_question_ends_the_older_and_another_page_waits(asking: workers.Bench) -> None:
-    first, first_outcome = in_thread(lambda: asking.ask("page", "bounds_answer", **RANGED))
-    process = worker(asking)
+def ask_endlessly(
+    bench: workers.Bench, monkeypatch: pytest.MonkeyPatch
+) -> tuple[threading.Thread, list[Any], Any]:
+    """The thread that asks, what it is told in the end, and the process that is kept busy."""
+    monkeypatch.setattr(bench, "_module", "multiprocessing.connection")
+    thread, outcome = in_thread(lambda: bench.ask("page", "wait", **ENDLESS))
+    process = worker(bench)
+    monkeypatch.undo()
+    return thread, outcome, process
+
+
+def test_a_newer_question_ends_the_older_and_another_page_waits(
+    asking: workers.Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first, first_outcome, process = ask_endlessly(asking, monkeypatch)
     other, other_outcome = in_thread(lambda: asking.ask("other", "bounds_answer", **RANGED))
     newer, newer_outcome = in_thread(lambda: asking.ask("page", "bounds_answer", **RANGED))
     for thread in (first, other, newer):
@@ -717,9 +728,10 @@ def test_a_newer_question_ends_the_older_and_another_page_waits(asking: workers.
         asking.ask("page", "nothing_of_the_sort")
 
 
-def test_stopping_ends_what_a_page_waits_for_and_no_other_pages(asking: workers.Bench) -> None:
-    thread, outcome = in_thread(lambda: asking.ask("page", "bounds_answer", **SLOW))
-    process = worker(asking)
+def test_stopping_ends_what_a_page_waits_for_and_no_other_pages(
+    asking: workers.Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    thread, outcome, process = ask_endlessly(asking, monkeypatch)
     asking.stop("other")
     assert process.is_alive()
     asking.stop("page")
@@ -750,8 +762,9 @@ def test_what_takes_too_long_is_ended_and_told(
     asking: workers.Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(workers, "ANSWERED_WITHIN", 0.01)
+    monkeypatch.setattr(asking, "_module", "multiprocessing.connection")
     with pytest.raises(UserError, match="not answered within"):
-        asking.ask("page", "bounds_answer", **RANGED)
+        asking.ask("page", "wait", **ENDLESS)
     monkeypatch.undo()
     answered = asking.ask("page", "bounds_answer", **RANGED)
     assert answered["inputs"]["MU"]["limits"] == [0.7, 0.9]

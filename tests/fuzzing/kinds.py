@@ -11,6 +11,7 @@ import random
 import struct
 import zipfile
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 
 import numpy as np
@@ -21,6 +22,7 @@ from impact88.applesoft.decimaltext import is_number
 from impact88.case import VALUE_LIMIT
 from impact88.case import Case as SceneCase
 from impact88.cli import COMMANDS
+from impact88.errors import UserError
 from impact88.names import CHAPTER, FINAL_STATE, RESULTS, SCENE
 from impact88.scene import sample
 from impact88.scenefile import template
@@ -131,7 +133,10 @@ def toml(rng: Random) -> bytes:
     texts = scene(rng)
     whole = {**sample(1), **texts}
     title = rng.choice(("", "A title", "\x1b", "[["))
-    text = template(SceneCase({**whole, "title": title})) if rng.random() < 0.5 else ""
+    text = ""
+    if rng.random() < 0.5:
+        with suppress(UserError):  # a text that is no amount has no case to be written from
+            text = template(SceneCase({**whole, "title": title}))
     if not text:
         text = "".join(f'{name} = "{value}"\n' for name, value in texts.items())
     return spoilt(rng, text.encode(), rng.choice((0, 1, 6)))
