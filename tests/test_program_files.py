@@ -198,6 +198,23 @@ def test_what_is_no_program_is_refused_by_its_place(program: Any, words: str) ->
     assert machine.source() == "10 PRINT 1\n"
 
 
+ROWS = st.lists(
+    st.tuples(st.sampled_from(["", "7", "20 ", " 30", "63999 ", "64000 "]), STATEMENTS), max_size=12
+)
+
+
+@example([("", "10 STOP:POP"), ("20 ", ""), ("", "40 ASC%B.N%(I)")])
+@given(ROWS)
+def test_any_rows_are_a_program_or_refused_by_a_row(rows: list[tuple[str, str]]) -> None:
+    text = "\n".join(map("".join, rows))
+    try:
+        program = read_program(text)
+    except UserError as error:
+        assert re.search("row [0-9]+|rows end at", str(error)), error
+    else:
+        assert all(0 <= number <= 63999 and tokens for number, tokens in program.lines)
+
+
 def test_two_readings_are_refused() -> None:
     """At a width of its own, with a blank at the row's end that may be one or none."""
     text = '10  PRINT "' + "A" * 40 + '\nB"'

@@ -264,6 +264,8 @@ def _beginning_line(text: str) -> int | None:
 
 def _begins_line(tokens: bytes) -> bool:
     """Return whether a statement may begin with these tokens."""
+    if not tokens:
+        return False
     first = tokens[0]
     return FIRST <= first <= LAST_STATEMENT or (chr(first).isascii() and chr(first).isalpha())
 
