@@ -14,6 +14,7 @@ import impact88
 from impact88 import native
 from impact88.errors import UserError
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
+from impact88.status import Status
 from test_solve import mixed_scenes, same
 
 SCENE_NAMES = tuple(SCENE)
@@ -75,6 +76,50 @@ def test_results_of_earlier_calls_stay_what_they_are() -> None:
             kept.append(call(np.full((1, count), mu)))
         for mu, found in zip(values, kept, strict=True):
             agree(found, impact88.solve({**NUMBERS, "MU": np.full(count, mu)}, "LOSS,STATUS"))
+
+
+@pytest.mark.parametrize("outputs", ["LOSS,STATUS,DVA", "VAX", "STATUS"])
+@pytest.mark.parametrize("units", ["", "us"])
+def test_bound_arrays_are_read_anew_and_written_over_by_each_call(outputs: str, units: str) -> None:
+    scene = {**impact88.sample(1), **({"units": units} if units else {})}
+    call = impact88.prepared(["MU", "UX"], outputs, scene)
+    rng = np.random.default_rng(1)
+    for shape in ((1500,), (3, 5), (), (0,), (70_000,)):
+        values = np.empty((2, *shape))
+        bound = call.bind(values)
+        results = dict(bound.results)
+        for _ in range(2):
+            values[0], values[1] = rng.choice([0.3, -10.0, np.nan], shape), 19.8
+            assert bound() is bound.results
+            agree(bound.results, {name: np.asarray(x) for name, x in call(values).items()})
+            assert all(bound.results[name] is array for name, array in results.items())
+
+
+@pytest.mark.parametrize("name", ["LOSS", "STATUS"])
+def test_bound_results_before_the_first_call_are_none(name: str) -> None:
+    found = impact88.prepared("MU", name, NUMBERS).bind(np.zeros((1, 2))).results[name]
+    assert np.all(np.isnan(found) if name == "LOSS" else found == int(Status.NOT_FINITE))
+
+
+@pytest.mark.parametrize(
+    "values",
+    [[[0.1, 0.2]], np.zeros((1, 4))[:, ::2], np.zeros((1, 2), np.float32), np.zeros((2, 2)), 0.1],
+)
+def test_what_cannot_be_bound_is_refused(values: Any) -> None:
+    call = impact88.prepared("MU", "LOSS", NUMBERS)
+    with pytest.raises(UserError, match="expected"):
+        call.bind(values)
+
+
+def test_the_machine_may_be_switched_off_between_calls() -> None:
+    values = np.full((1, 9), 0.4)
+    bound = impact88.prepared("MU", "LOSS", NUMBERS).bind(values)
+    first = bound()["LOSS"].copy()
+    with native.switched_off():
+        values[:] = 0.5
+        second = bound()["LOSS"].copy()
+    agree({"LOSS": bound()["LOSS"]}, {"LOSS": second})
+    assert not np.any(first == second)
 
 
 def test_threads_may_share_it() -> None:

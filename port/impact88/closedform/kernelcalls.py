@@ -108,15 +108,20 @@ class PreparedCall:
 
     def run(self, values: int, results: int, status: int, count: int) -> None:
         """Write the results of ``count`` scenes; all addresses, 0 for STATUS where not wanted."""
-        work = native.library.solve_prepared
         if count < 2 * WORTH_A_THREAD:
-            work(self._at, values, results, status, count, 0, count)
+            native.library.solve_prepared(self._at, values, results, status, count)
             return
+        work = native.library.solve_prepared_part
 
         def some(start: int, stop: int) -> None:
             work(self._at, values, results, status, count, start, stop)
 
         shared_out(some, count, workers(count, None, WORTH_A_THREAD))
+
+    def bound(self, values: int, results: int, status: int, count: int) -> NDArray[np.int64]:
+        """The argument block of `run` for one call of ``solve_bound`` on this thread, to be kept
+        no longer than this and the memory."""
+        return np.array([self._at, values, results, status, count], np.int64)
 
 
 @lru_cache(maxsize=256)

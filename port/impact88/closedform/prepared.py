@@ -1,17 +1,20 @@
 """`impact88.prepared`: everything that calls of `solve` have in common, done once."""
 
 import ctypes
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .. import native
 from ..arguments import explains_arguments
 from ..case import check_mapping
 from ..errors import UserError
 from ..mappings import in_base, in_doubles
 from ..names import RESULTS, SCENE, listed
+from ..status import Status
 from ..units import system_of
 from . import kernelcalls
 from .columns import sources
@@ -122,6 +125,7 @@ class Prepared:
         self._values = np.array([float(given[name][0]) for name in COLUMNS])
         self._call: PreparedCall | None = None
         self._rows = tuple(name for name in outputs if name != "STATUS")
+        self._has_status = len(self._rows) < len(outputs)
         self._expected = (len(names),)
         self._factors = None
         if "units" in self._scene:
@@ -134,32 +138,87 @@ class Prepared:
     @explains_arguments
     def __call__(self, values: ArrayLike) -> dict[str, Array]:
         """Return the results by name of values, a row for each of ``names``. Raises UserError."""
-        rows: Any = values
-        if (
-            type(rows) is not np.ndarray
-            or rows.dtype != _FLOATS
-            or not (rows.flags.c_contiguous and rows.flags.aligned)
-            or rows.shape[:1] != self._expected
-        ):
-            rows = self._read(rows)
+        rows = self._rows_of(values)
         if self._factors is not None:
             rows = rows / self._factors.reshape(-1, *[1] * (rows.ndim - 1))
-        if not kernelcalls.usable():
-            based = dict(zip(COLUMNS, self._values.tolist(), strict=True))
-            return solve({**based, **dict(zip(self.names, rows, strict=True))}, self.outputs)
-        if self._call is None:
-            places = [COLUMNS.index(name) for name in self.names]
-            self._call = PreparedCall(self.outputs, places, self._values)
+        if native.library is None or not kernelcalls.usable():
+            return self._solved(rows)
+        call = self._call or self._made()
         shape = rows.shape[1:]
-        count = rows.size // len(rows)
-        size = len(self._rows) * count
-        results = np.empty(size) if size < WORTH_KEEPING // 8 else memory(size)
-        bits = np.empty(shape, np.uint16) if len(self._rows) < len(self.outputs) else None
-        self._call.run(
-            _address(rows), _address(results), 0 if bits is None else _address(bits), count
+        results, bits = self._room(shape)
+        call.run(
+            _address(rows),
+            _address(results),
+            0 if bits is None else _address(bits),
+            math.prod(shape),
         )
-        results = results.reshape(len(self._rows), *shape)
-        by_name = dict(zip(self._rows, results, strict=True))
+        return self._by_name(results, bits)
+
+    @explains_arguments
+    def bind(self, values: Array) -> "Bound":
+        """Return a function without arguments: the results of what an array holds when it is
+        called.
+
+        Parameters
+        ----------
+        values : ndarray
+            float64 in C order, a row for each of ``names``: its numbers are changed in place
+            between the calls.
+
+        Returns
+        -------
+        Bound
+            Its calls write over one set of arrays, ``results``, and return it: nothing is
+            left to a call but the computation. For one thread at a time.
+
+        Raises
+        ------
+        UserError
+            For another kind of array.
+
+        Examples
+        --------
+        >>> values = np.full((1, 3), 0.5)
+        >>> loss = impact88.prepared(["MU"], ["LOSS"], impact88.sample(1)).bind(values)
+        >>> values[:] = 0.5, 0.911, -10
+        >>> loss()["LOSS"].round(2)
+        array([44.43, 57.47, 57.56])
+        """
+        if self._rows_of(values) is not values:
+            raise UserError(
+                f"values are not an array of float64 in C order, one row for each of "
+                f"{' '.join(self.names)}; expected one, to be changed in place"
+            )
+        return Bound(self, values)
+
+    def _rows_of(self, values: Any) -> Array:
+        """The values where they are, if they lie side by side, else a copy. Raises UserError."""
+        if type(values) is np.ndarray and values.dtype == _FLOATS:
+            flags = values.flags
+            if flags.c_contiguous and flags.aligned and values.shape[:1] == self._expected:
+                return values
+        return self._read(values)
+
+    def _solved(self, rows: Array) -> dict[str, Array]:
+        """The results without the compiled machine."""
+        based = dict(zip(COLUMNS, self._values.tolist(), strict=True))
+        return solve({**based, **dict(zip(self.names, rows, strict=True))}, self.outputs)
+
+    def _made(self) -> PreparedCall:
+        places = [COLUMNS.index(name) for name in self.names]
+        self._call = PreparedCall(self.outputs, places, self._values)
+        return self._call
+
+    def _room(self, shape: tuple[int, ...]) -> tuple[Array, Array | None]:
+        """Memory for the results that are float64, and for STATUS."""
+        size = len(self._rows) * math.prod(shape)
+        small = size < WORTH_KEEPING // 8
+        room = (len(self._rows), *shape)
+        results = np.empty(room) if small else memory(size).reshape(room)
+        return results, np.empty(shape, np.uint16) if self._has_status else None
+
+    def _by_name(self, results: Array, bits: Array | None) -> dict[str, Array]:
+        by_name = dict(zip(self._rows, results))  # noqa: B905 - strict takes as long as the rest
         if bits is None:
             return by_name
         by_name["STATUS"] = bits[()]
@@ -191,10 +250,50 @@ class Prepared:
         return every
 
 
-def _address(array: Array) -> int:
+class Bound:
+    """Results of one array's numbers, as they are when it is called: see `Prepared.bind`.
+
+    ``values``: the array; ``results``: by name what the last call found, NaN before the first.
+    """
+
+    def __init__(self, prepared_call: Prepared, values: Array) -> None:
+        self.values = values
+        self._prepared = prepared_call
+        self._kept = results, bits = prepared_call._room(values.shape[1:])
+        results.fill(np.nan)
+        if bits is not None:
+            bits.fill(Status.NOT_FINITE)
+        names = prepared_call._rows
+        rows = {name: results[place, ...] for place, name in enumerate(names)}
+        if bits is not None:
+            rows["STATUS"] = bits
+        self.results: dict[str, Array] = {name: rows[name] for name in prepared_call.outputs}
+        self._at: int | None = None
+        self._machine = native.library if kernelcalls.usable() else None
+        count = math.prod(values.shape[1:])
+        in_one_call = count < 2 * kernelcalls.WORTH_A_THREAD and prepared_call._factors is None
+        if self._machine is not None and in_one_call:
+            call = prepared_call._call or prepared_call._made()
+            status = 0 if bits is None else _address(bits)
+            self._block = call.bound(_address(values), _address(results), status, count)
+            self._call = call
+            self._at = self._block.ctypes.data
+            self._run = self._machine.solve_bound
+
+    def __call__(self) -> dict[str, Array]:
+        """Return the results of what ``values`` hold, in the arrays of the call before."""
+        if self._at is not None and native.library is self._machine:
+            self._run(self._at)
+        else:
+            for name, found in self._prepared(self.values).items():
+                self.results[name][...] = found
+        return self.results
+
+
+def _address(array: Any) -> int:
     """Where an array begins in memory. For one that can be written to by the buffer it is: that
     takes a fourth of the time."""
     if array.size and array.flags.writeable:
-        return ctypes.addressof(ctypes.c_char.from_buffer(array.data))
+        return ctypes.addressof(ctypes.c_char.from_buffer(array))
     start: int = array.__array_interface__["data"][0]
     return start

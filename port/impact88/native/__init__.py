@@ -36,8 +36,11 @@ def _declared(found: ctypes.CDLL) -> ctypes.CDLL:
     found.find_extremes.argtypes = [address, number, number, number, address]
     found.run_program.argtypes, found.run_program.restype = [address], None
     found.solve_impacts.argtypes, found.solve_impacts.restype = [address, number, number], None
-    found.solve_prepared.argtypes = [*[address] * 4, *[number] * 3]
-    found.solve_prepared.restype = None
+    found.solve_prepared.argtypes = [*[address] * 4, number]
+    found.solve_prepared_part.argtypes = [*[address] * 4, *[number] * 3]
+    found.solve_bound.argtypes = [address]
+    for function in (found.solve_prepared, found.solve_prepared_part, found.solve_bound):
+        function.restype = None
     found.kernel_of.argtypes, found.kernel_of.restype = [number, ctypes.c_uint64], address
     found.formulas.restype = ctypes.c_char_p
     found.read_numbers.argtypes = [ctypes.c_char_p, number, address, address]

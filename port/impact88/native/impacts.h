@@ -227,14 +227,45 @@ typedef struct {
     int64_t columns, results, given[COLUMNS], wanted[RESULTS];
 } prepared;
 
-/* Scenes ``start`` to ``stop`` of ``count``. */
+static void find_rows(
+    impacts *c, const prepared *its, const double *values, double *results, uint16_t *status,
+    int64_t count)
+{
+    *c = its->rest;
+    for (int64_t k = 0; k < its->columns; k++) c->column[its->given[k]] = values + k * count;
+    for (int64_t r = 0; r < its->results; r++) c->result[its->wanted[r]] = results + r * count;
+    c->result[STATUS_AT] = status;
+}
+
+/* All of ``count`` scenes. */
 EXPORT void solve_prepared(
+    const prepared *its, const double *values, double *results, uint16_t *status, int64_t count)
+{
+    impacts c;
+    find_rows(&c, its, values, results, status, count);
+    solve_impacts(&c, 0, count);
+}
+
+/* Scenes ``start`` to ``stop`` of them. */
+EXPORT void solve_prepared_part(
     const prepared *its, const double *values, double *results, uint16_t *status, int64_t count,
     int64_t start, int64_t stop)
 {
-    impacts c = its->rest;
-    for (int64_t k = 0; k < its->columns; k++) c.column[its->given[k]] = values + k * count;
-    for (int64_t r = 0; r < its->results; r++) c.result[its->wanted[r]] = results + r * count;
-    c.result[STATUS_AT] = status;
+    impacts c;
+    find_rows(&c, its, values, results, status, count);
     solve_impacts(&c, start, stop);
+}
+
+/* The same arrays at each call. */
+typedef struct {
+    const prepared *call;
+    const double *values;
+    double *results;
+    uint16_t *status;
+    int64_t count;
+} bound;
+
+EXPORT void solve_bound(const bound *its)
+{
+    solve_prepared(its->call, its->values, its->results, its->status, its->count);
 }
