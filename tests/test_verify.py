@@ -353,3 +353,14 @@ def test_what_is_shown_of_a_verdict_is_short() -> None:
     found = verify(run(sample(1)).page)
     assert len(repr(found)) < 200
     assert found._repr_html_().count("IDENTICAL") == 1
+
+
+def test_no_character_of_a_page_reaches_a_terminal_as_a_command() -> None:
+    rng = random.Random(4)
+    for _ in range(30):
+        places = sorted(rng.sample(range(len(SAMPLE)), 3), reverse=True)
+        text = SAMPLE
+        for place in places:
+            text = f"{text[:place]}Ä\x19\x1b[2J\u202e{text[place:]}"
+        for page in read_printouts(text):
+            assert all(line.isprintable() for line in lines(verify(page)))

@@ -567,7 +567,12 @@ def given_apart(given: Mapping[str, str], result: Verification) -> Iterator[str]
 
 
 def lines(result: Verification, brief: bool = False) -> Iterator[str]:
-    """What `impact88 verify` prints of one printout; ``brief``: only verdict and what differs."""
+    """Return the lines that `impact88 verify` prints of one printout, without any character of the
+    page that a terminal would obey; ``brief``: only verdict and what differs."""
+    return map(printable, _lines(result, brief))
+
+
+def _lines(result: Verification, brief: bool) -> Iterator[str]:
     where = f"{shown(called(result.file))}, printout {result.number} ({result.where})"
     yield f"{where}: {TITLES[result.verdict]}"
     parts = sections(result)
