@@ -269,11 +269,14 @@ _LINES = (
 
 
 def _number_places(lines: list[str]) -> list[tuple[int, int, int]]:
-    """Row, and first and last column, of the numbers from the first printed input on."""
+    """Row, and first and last column, of the numbers from the first printed input to the last
+    printed result: a foot of the page has numbers, too."""
     first = next(k for k, line in enumerate(lines) if "MA=" in line and "IB" in line)
+    last = max(k for k, line in enumerate(lines) if "VBX=" in line)
+    last += "WA=" in "".join(lines[last + 1 : last + 2])
     return [
         (row, match.start(), match.end())
-        for row in range(first, len(lines))
+        for row in range(first, last + 1)
         for match in re.finditer(r"-?[0-9.]+(?:E-[0-9]+)?", lines[row])
         if re.search("[A-Z]= ?$", lines[row][: match.start()]) or "=" not in lines[row]
     ]

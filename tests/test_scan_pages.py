@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import os
+import re
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -17,15 +18,18 @@ import scanpages
 import scanrates
 from captures import ROOT
 from impact88.judging.judgement import Verdict
+from impact88.program.run import run
 from impact88.recovery.replays import run_all
 from impact88.reporting.examination import Examined, Verification, examine
 from impact88.reporting.verification import EXPLAINED, lines
 from impact88.scan import sheets
+from impact88.scan.claims import claims, is_of_a_printout
 from impact88.scan.holding import FOREIGN, KIND, MOST_MISREAD, Cell, Judged, judged, state
 from impact88.scan.layout import Place, Sheet
 from impact88.scan.rates import COUNTS, NONE, sentences, table
 from impact88.scan.scenes import WORST, Candidate, Read, borne_out
 from impact88.scan.typeface import READABLE
+from impact88.scene import sample
 from worked_cases import RUN_1
 
 pytest.importorskip("scipy", reason="the extra scan is not installed")
@@ -358,6 +362,128 @@ def test_a_line_of_type_below_the_page_is_read_and_bars_a_bare_identical() -> No
     number = next(check.printed for check in result.fields if check.name == "VAX")
     assert f"VAX= {number}" in mark["reads"]
     assert "typed text that the program does not print" in "\n".join(lines(result))
+
+
+def test_a_typed_line_that_gives_a_number_of_the_page_another_value_differs() -> None:
+    """A label of the page and another number below the page, made of the page's own glyphs; with
+    the page's number it contradicts nothing."""
+    page, cells = genuine()
+    number = [cell for cell in cells if cell["field"] == "LOSS"]
+    left, top, _, bottom = number[0]["box"]
+    right = number[-1]["box"][2]
+    width = (right - left) / len(number)
+    label = page.crop((round(left - 9 * width), round(top), round(right), round(bottom)))
+    foot = max(cell["box"][3] for cell in cells)
+    for digit, expected in (("", Verdict.IDENTICAL_AS_READ), ("9", Verdict.DIFFERS)):
+        longer = Pillow.new("L", (page.width, page.height + 300), 255)
+        longer.paste(page, (0, 0))
+        x, y = round(left - 9 * width), round(foot + 4 * (bottom - top))
+        longer.paste(label, (x, y))
+        if digit:
+            assert not number[0]["predicted"].startswith(digit)
+            source = next(cell for cell in cells if cell["predicted"] == digit)
+            longer.paste(page.crop(box_of(source)), (round(left), y))
+        result = read_again(longer)
+        assert result.verdict is expected
+        (mark,) = [mark for mark in result.marks if mark["kind"] == "type"]
+        assert mark["contradicts"] == (["KE LOSS"] if digit else [])
+        if digit:
+            assert f"gives KE LOSS {digit}" in result.findings[0]
+            assert f"line {mark['line']}, cell {mark['cell']}" in result.findings[0]
+            assert abs(mark["box"][1] - y) < 0.5 * (bottom - top)
+
+
+ON_THE_PAGE: dict[str, str | None] = {
+    **{"VAX": "-13.263", "VAY": "3.449", "LOSS": "57.47", "IA": "3728", "MA": "143.5"},
+    **{"XA": "1", "XAF": "2", "WA": "0", "WAF": None, "E": "5E-03"},
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "labels"),
+    [
+        ("VAX SHOULD READ 31.2, KE LOSS 75 %", ["VAX", "KE LOSS"]),
+        ("VAX= 31.2 VAY= 3.449", ["VAX"]),
+        ("CORRECTED: IA= 4000", ["IA"]),
+        ("XA= 3", ["XA"]),
+        ("XA= 2", []),  # the page has it after the impact
+        ("WA= 4", []),  # one of its numbers was not read with certainty
+        ("KE LOSS= 57.470", []),
+        ("E= .005", []),
+        ("BOSTON MA 02139", []),  # no label without its equals sign
+        ("RUN 12 SUPERSEDES RUN 3", []),
+        ("VA?= 31.2", []),
+        ("VAX= 3?.2", []),
+        ("VBX= 3.2", []),  # the page prints none
+    ],
+)
+def test_what_typed_text_says_of_the_pages_numbers(text: str, labels: list[str]) -> None:
+    assert [claim.label for claim in claims(text, [ON_THE_PAGE])] == labels
+    everywhere = dict.fromkeys(ON_THE_PAGE)
+    assert not [*claims(text, [ON_THE_PAGE, everywhere])]
+
+
+@pytest.mark.parametrize(
+    ("text", "whole"),
+    [
+        ("VAX= 31.2 VAY= 3 (XA=3 YA= 5)", True),
+        ("INITIAL KE= 12? KE LOSS= 5 %", True),
+        ("VAX= 31.2 VAY= 3", False),
+        ("KE LOSS= 75 %", False),
+    ],
+)
+def test_a_whole_line_of_the_program_is_another_printouts(text: str, whole: bool) -> None:
+    assert is_of_a_printout(text) is whole
+
+
+def test_text_beside_a_line_leaves_its_numbers_where_they_are() -> None:
+    """And no line is taken for five asterisks with something beside them."""
+    from impact88.scan.layout import sheets_of
+
+    page = run(sample(1)).printout
+    rows = [line for line in page.split("\n") if line.strip()]
+    for beside in ("", "    VAX= 37.64"):
+        shown = [row + beside * (" MU=" in row or "KE LOSS" in row) for row in rows]
+        width = max(map(len, shown)) + 3
+        odds = [
+            np.array([-6.0] + [6.0 if char.strip() else -5.0 for char in row.ljust(width)])
+            for row in shown
+        ]
+        (sheet,) = sheets_of(odds, 1.5 * np.arange(len(odds)))
+        texts = {
+            piece.name: "".join(shown[place.line][place.cell - 1] for place in piece.places)
+            for row in sheet.rows.values()
+            for piece in row.pieces
+            if piece.name and not piece.name.startswith("REPLY")
+        }
+        assert not any(" " in text for text in texts.values()), texts
+        assert f"EM= {texts['EM']}" in page
+        assert f"KE LOSS= {texts['LOSS']} %" in page
+        assert len(sheet.rows) == len(rows)
+
+
+def test_a_page_askew_is_set_straight_and_one_nearly_straight_is_left_alone() -> None:
+    from impact88.scan.cleaning import papers_of
+
+    page, _ = genuine()
+    for degrees in (0, 3, 8, -11, 97):
+        turned = page.rotate(degrees, Pillow.Resampling.BILINEAR, expand=True, fillcolor=250)
+        (paper,) = papers_of(np.asarray(turned))
+        said = [remark for remark in paper.remarks if "askew" in remark]
+        if degrees in (0, 3):
+            assert not said
+            assert paper.grey.shape == turned.size[::-1]
+            continue
+        told = float(re.search(r"by ([0-9.]+) degrees", said[0])[1])  # type: ignore[index]
+        rest = degrees - 90 * round(degrees / 90)
+        assert told == pytest.approx(abs(rest), abs=0.3)
+        # the sheet's middle is the picture's, and its axis the page's
+        height, width = paper.grey.shape
+        ends = np.array([[width / 2, height / 2], [width / 2 + 100, height / 2]])
+        one, two = paper.place(ends)
+        assert np.allclose(one, np.array(turned.size) / 2, atol=1)
+        angle = np.degrees(np.arctan2(*(two - one)[::-1]))
+        assert angle == pytest.approx(-rest, abs=0.3)
 
 
 @pytest.mark.parametrize("beside", [True, False])

@@ -131,7 +131,18 @@ def _verification(path: str, number: int, page: Page, paper: Paper, leaf: Leaf) 
         "cells of each on the page)"
         for cell in leaf.judged.differing
     ]
+    result.findings += [
+        f"page {page.number}, {_where(mark)}: the typed text {mark.reads!r} gives {claim.label} "
+        f"{claim.typed}, where the program prints {claim.printed}"
+        for mark in leaf.marks
+        for claim in mark.claims
+    ]
     return result
+
+
+def _where(mark: Mark) -> str:
+    assert mark.place is not None
+    return f"line {mark.place.line + 1}, cell {mark.place.cell + 1}"
 
 
 def _check(leaf: Leaf, name: str, recomputed: str | None, cells: Sequence[Cell]) -> FieldCheck:
@@ -192,6 +203,7 @@ def _marked(mark: Mark, page: Page, paper: Paper, grid: Grid) -> dict[str, Any]:
         "touches": mark.touches,
         "beside": mark.beside,
         "bears": mark.bears,
+        "contradicts": [claim.label for claim in mark.claims],
     }
 
 

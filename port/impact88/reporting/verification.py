@@ -247,6 +247,9 @@ def summary(result: Verification) -> list[str]:
             said.append(f"{replies} {noun} from the velocities printed")
         if wrong := sum(label.state is LabelState.CONTRADICTORY for label in result.labels):
             said.append("1 label contradicts" if wrong == 1 else f"{wrong} labels contradict")
+        if lines := sum(bool(mark["contradicts"]) for mark in result.marks):
+            verb = "1 typed line gives" if lines == 1 else f"{lines} typed lines give"
+            said.append(f"{verb} numbers that are not the page's")
     elif verdict is Verdict.IDENTICAL_AS_READ:
         said.append(MEANINGS[verdict])
     if result.page is None and verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ):

@@ -5,6 +5,7 @@ negative is turned into a positive, coloured ink is set apart from black, and tw
 picture become two sheets. Each step says what it did.
 """
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -14,7 +15,8 @@ import PIL.Image
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from .ink import Floats, Image, resized
+from .grid import FEWEST_POINTS
+from .ink import Floats, Image, ink_of, points_of, resized
 from .picture import Picture
 
 Mask = NDArray[np.bool_]
@@ -31,6 +33,10 @@ _GUTTER_WIDTH = 0.12  # of the width, at most
 _CHROMA = 0.2  # difference of a coloured ink's darkest and lightest channel at least
 _COLOURED_TYPE = 0.5  # of the ink that is coloured: more, and the type itself is
 _SMOOTH = 24  # pixels a side of the blocks whose brightness is the paper's
+_SKEW = 0.08  # slope from which a page is set straight: the grid's own search ends at 0.1
+_STEEPEST = 0.25  # the greatest slope that is looked for
+_SHARPER = 1.3  # how much more sharply lines and gaps are parted along a steep slope at least
+_FINE = 1200  # pixels of the longer side at which slopes are tried
 _CURL = 0.06  # of a side, by which an edge of a page may bend
 
 
@@ -67,10 +73,10 @@ def papers_of(picture: Picture) -> Iterator[Paper]:
     for flat, remark in pages:
         said = [*remarks, *([remark] if remark else [])]
         if flat is None:
-            yield Paper(grey, coloured, said)
+            yield _levelled(Paper(grey, coloured, said))
             continue
         own = None if coloured is None else flat.sampled(coloured, 0.0)
-        yield Paper(flat.sampled(grey, 255.0), own, said, flat.back)
+        yield _levelled(Paper(flat.sampled(grey, 255.0), own, said, flat.back))
 
 
 def _luminance(picture: Picture) -> Image:
@@ -134,6 +140,66 @@ def _negative(grey: Image) -> bool:
     lighter = float(((small - near > 40) & (near < 110)).sum())
     darker = float(((near - small > 40) & (near >= 110)).sum())
     return lighter > 2 * darker and float(np.median(small)) < 110
+
+
+# --- skew -----------------------------------------------------------------------------------------
+
+
+def _levelled(paper: Paper) -> Paper:
+    """Return a sheet turned so that its lines run level, where they rise or fall more than the
+    grid's own search reaches."""
+    slope = _skew(paper.grey)
+    if abs(slope) < _SKEW:
+        return paper
+    height, width = paper.grey.shape
+    along = 1 / math.hypot(1, slope)
+    turn = along * np.array([[1, -slope], [slope, 1]])
+    size = np.ceil(np.abs(turn) @ [width, height]).astype(int)
+    before = paper.back
+
+    def back(points: Floats) -> Floats:
+        place = (points - size / 2) @ turn.T + [width / 2, height / 2]
+        return before(place) if before else place
+
+    first = np.array([width, height]) / 2 - turn @ (size / 2)
+    table = (*turn[0], first[0], *turn[1], first[1])
+
+    def turned(picture: Image, beyond: float) -> Image:
+        whole = PIL.Image.fromarray(picture).transform(
+            (int(size[0]), int(size[1])),
+            PIL.Image.Transform.AFFINE,
+            tuple(map(float, table)),
+            PIL.Image.Resampling.BICUBIC,
+            fillcolor=beyond,
+        )
+        return np.asarray(whole, np.float32)
+
+    grey = np.clip(turned(paper.grey, float(np.median(paper.grey))), 0, 255)
+    coloured = None if paper.coloured is None else turned(paper.coloured, 0.0)
+    degrees = math.degrees(math.atan(abs(slope)))
+    said = f"the page is askew by {degrees:.1f} degrees: it was set straight"
+    return Paper(grey, coloured, [*paper.remarks, said], back)
+
+
+def _skew(grey: Image) -> float:
+    """Return the slope of a page's lines, which run across or, of a page on its side, down; 0 where
+    no steep slope parts lines and gaps more sharply than those that the grid tries."""
+    small = resized(grey, min(1.0, _FINE / max(grey.shape)))
+    points = points_of(ink_of(small))
+    if len(points.x) < FEWEST_POINTS:
+        return 0.0
+    few = slice(None, None, max(1, len(points.x) // 15_000))
+    x, y = points.x[few], points.y[few]
+    slopes = np.arange(-_STEEPEST, _STEEPEST + 1e-9, 0.004)
+    sharpness = np.zeros((2, len(slopes)))
+    for which, (across, down) in enumerate(((x, y), (-y, x))):
+        for at, slope in enumerate(slopes):
+            level = (down - slope * across) / 2
+            counts = np.bincount((level - level.min()).astype(int)).astype(float)
+            sharpness[which, at] = np.sum(np.diff(counts) ** 2)
+    best = sharpness[int(sharpness.max(axis=1).argmax())]
+    level_most = best[np.abs(slopes) < _SKEW].max()
+    return float(slopes[best.argmax()]) if best.max() > _SHARPER * level_most else 0.0
 
 
 # --- pages and what surrounds them ----------------------------------------------------------------

@@ -26,9 +26,19 @@ WRAP = 40
 _ABSENT, _STRANGE, _WRAPPED = 30.0, 4.0, 2.0
 """What it costs, in units of log odds, to miss a line, to pass over a line of the paper, and to
 take two lines of it for one that was broken. A line that is there gains about 3 an inked cell."""
+_LAST = 7
+"""Columns before the break of which one is inked: the program prints no longer gap."""
+_APART, _BESIDE = 3, 12.0
+"""Blanks after a line behind which other text may stand, and what that costs, whatever its length;
+it is explained as far as half of what the line itself is: no line is taken for an annex of five
+asterisks."""
+_HOLE = -10.0
+"""Log odds of a clearly blank cell within a number, in which the program prints none; a faint
+character costs as much as three letters that are missing."""
 _FEWEST = 20
 """Numbers of a printout; with fewer lines it is not verified from the picture."""
 _GAPS = (1, 14)  # blanks between angles; doubled, the verdicts of 5 pages stay
+_CLEARLY = -2.0  # log odds, halved, of a cell without any ink
 _BLANK_IN_REPLY = -0.3  # log odds at least of a typed cell; doubled, 5 verdicts of 5 stay
 
 
@@ -115,9 +125,10 @@ def _divided(line: str, inked: Floats, blank: Floats) -> tuple[list[Floats], lis
     up to each cell. Each of shape (rows, cells + 1)."""
     rows, cells = inked.shape
     edge = np.zeros((rows, 1))
+    whole = np.where(inked < _CLEARLY, _HOLE, inked)
     filled, emptied, typed = (
         np.hstack([edge, np.cumsum(values, axis=1)])
-        for values in (inked, blank, np.maximum(inked, _BLANK_IN_REPLY))
+        for values in (whole, blank, np.maximum(inked, _BLANK_IN_REPLY))
     )
     best = np.full((rows, cells + 1), -np.inf)
     best[:, 0] = 0.0
@@ -140,7 +151,14 @@ def _divided(line: str, inked: Floats, blank: Floats) -> tuple[list[Floats], lis
         best = new
         after.append(best)
         runs.append(run)
-    after[-1] = best + np.hstack([np.cumsum(blank[:, ::-1], axis=1)[:, ::-1], edge])
+    rest = np.hstack([np.cumsum(blank[:, ::-1], axis=1)[:, ::-1], edge])
+    if cells > _APART:
+        other = np.maximum(inked, blank)[:, ::-1].cumsum(axis=1)[:, ::-1]
+        gap = emptied[:, _APART:] - emptied[:, :-_APART]
+        most = np.maximum(best[:, : -_APART - 1], 0) / 2
+        gap[:, :-1] += np.minimum(other[:, _APART:], most)
+        np.maximum(rest[:, :-_APART], gap - _BESIDE, out=rest[:, :-_APART])
+    after[-1] = best + rest
     return after, runs
 
 
@@ -170,7 +188,8 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
         cells = whole.cells(odds)
         tried.append((whole, cells))
         followed = start + 1 < len(odds) and tops[start + 1] - tops[start] <= 3.2
-        if followed and len(cells) >= WRAP and not np.any(cells[WRAP:] > 2):
+        filled = len(cells) >= WRAP and np.any(cells[WRAP - _LAST : WRAP] > 0)
+        if followed and filled and not np.any(cells[WRAP:] > 2):
             tried.append((broken, broken.cells(odds)))
     width = max(len(cells) for _, cells in tried)
     padded = np.stack([np.pad(cells, (0, width - len(cells))) for _, cells in tried])

@@ -7,6 +7,7 @@ lines of type that belong to no printout, then whatever ink is left, in connecte
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import NamedTuple
 
 import numpy as np
 import PIL.Image
@@ -14,8 +15,9 @@ import PIL.ImageDraw
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from .claims import Claim
 from .grid import CELL_WIDTH, Grid
-from .holding import FIT, INKED, Added, Cell
+from .holding import DIFFERS, FIT, INKED, Added, Cell
 from .ink import Floats, Image, resized
 from .layout import Place
 from .typeface import BLANK, Typeface, distances, sample_of, typeface_of
@@ -60,7 +62,8 @@ _PEN = frozenset({Kind.MARK, Kind.STROKE, Kind.COLOURED})
 class Mark:
     """A mark: its kind, its corners in the upright sheet, clockwise, shape (4, 2); what it reads,
     or is most like; its line on the grid and the cell it begins in; the fields whose cells it
-    touches; and whether it stands in or beside a line of a printout."""
+    touches; whether it stands in or beside a line of a printout; of type, what it reads with
+    certainty, ``?`` for other characters, and what it says of the page's numbers."""
 
     kind: Kind
     corners: Floats
@@ -68,6 +71,8 @@ class Mark:
     place: Place | None = None
     touches: list[str] = field(default_factory=list)
     beside: bool = False
+    sure: str = ""
+    claims: list[Claim] = field(default_factory=list)
 
     @property
     def bears(self) -> bool:
@@ -145,7 +150,7 @@ def _added(explained: Sequence[Explained]) -> Iterator[Mark]:
         run: list[Cell] = []
         for cell in [*part.cells, None]:
             if run and (cell is None or _apart(run[-1], cell)):
-                yield _run_mark(part.grid, run)
+                yield _run_mark(part, run)
                 run = []
             if cell and cell.added in _TYPED_CELLS:
                 run.append(cell)
@@ -173,16 +178,55 @@ def _apart(before: Cell, cell: Cell) -> bool:
     return cell.added is not before.added or not near
 
 
-def _run_mark(grid: Grid, run: Sequence[Cell]) -> Mark:
+def _run_mark(part: Explained, run: Sequence[Cell]) -> Mark:
     first, last = run[0], run[-1]
-    start, stop = grid.around(*first.place), grid.around(*last.place)
+    start, stop = part.grid.around(*first.place), part.grid.around(*last.place)
     corners = np.stack([start[0], stop[1], stop[2], start[3]])
     text = ""
     for cell in run:
         text = text.ljust(cell.place.cell - first.place.cell) + cell.other
     kind = Kind.CHARACTER if first.added is Added.CHARACTER else Kind.TYPE
     names = [first.name] if first.name else []
-    return Mark(kind, corners, text, first.place, names, True)
+    mark = Mark(kind, corners, text, first.place, names, True)
+    if kind is Kind.TYPE:
+        read = _type_at(part, part.typeface(), first.place.line, [cell.place.cell for cell in run])
+        mark.sure = read.sure
+    return mark
+
+
+class _Type(NamedTuple):
+    """What stands in some cells of a line by the page's own type: ``?`` in ``text`` for a character
+    that it lacks, in ``sure`` for one that is not certain, too; ``alike``: which are of the type.
+    """
+
+    text: str
+    sure: str
+    alike: Mask
+
+
+def _type_at(part: Explained, typeface: Typeface, line: int, cells: Sequence[int]) -> _Type:
+    """Read cells of a line by the means of the page's own characters."""
+    energy = np.maximum(np.einsum("mp,mp->m", typeface.means, typeface.means), 1e-6)
+    sample = sample_of(part.grid, [Place(line, cell) for cell in cells])
+    apart, _ = distances(sample, typeface.means)
+    every = np.arange(len(cells))
+    nearest = apart.argmin(axis=1)
+    least = apart[every, nearest]
+    norms = sample.norms.min(axis=1)
+    gain = norms - least
+    alike = (gain > INKED * energy[nearest]) & (gain > FIT * norms)
+    # as certain as of a cell that differs: no other character is nearly as near
+    apart[every, nearest] = np.inf
+    second = apart.argmin(axis=1)
+    step = np.maximum(typeface.between()[nearest, second], 1e-6)
+    certain = alike & (apart[every, second] - least > DIFFERS * step)
+    certain &= typeface.counts[nearest] > 1
+    text = sure = ""
+    names = [typeface.characters[at] for at in nearest.tolist()]
+    for cell, name, like, clear in zip(cells, names, alike.tolist(), certain.tolist(), strict=True):
+        text = text.ljust(cell - cells[0]) + (name if like else "?")
+        sure = sure.ljust(cell - cells[0]) + (name if clear else "?")
+    return _Type(text, sure, alike)
 
 
 def _typed(part: Explained) -> Iterator[Mark]:
@@ -194,23 +238,14 @@ def _typed(part: Explained) -> Iterator[Mark]:
     if not lines or not part.cells:
         return
     typeface = part.typeface()
-    energy = np.maximum(np.einsum("mp,mp->m", typeface.means, typeface.means), 1e-6)
     for line, inked in lines.items():
-        sample = sample_of(grid, [Place(line, int(cell)) for cell in inked])
-        apart, _ = distances(sample, typeface.means)
-        nearest = apart.argmin(axis=1)
-        least = np.take_along_axis(apart, nearest[:, None], axis=1)[:, 0]
-        norms = sample.norms.min(axis=1)
-        gain = norms - least
-        alike = (gain > INKED * energy[nearest]) & (gain > FIT * norms)
-        if alike.mean() < _TYPED or alike.sum() < _FEWEST_TYPED:
+        read = _type_at(part, typeface, line, inked.tolist())
+        if read.alike.mean() < _TYPED or read.alike.sum() < _FEWEST_TYPED:
             continue
-        text = ""
-        for cell, name, like in zip(inked.tolist(), nearest.tolist(), alike.tolist(), strict=True):
-            text = text.ljust(cell - int(inked[0])) + (typeface.characters[name] if like else "?")
         start, stop = (grid.around(line, int(cell)) for cell in inked[[0, -1]])
         corners = np.stack([start[0], stop[1], stop[2], start[3]])
-        yield Mark(Kind.TYPE, corners, text, Place(line, int(inked[0])))
+        place = Place(line, int(inked[0]))
+        yield Mark(Kind.TYPE, corners, read.text, place, sure=read.sure)
 
 
 def _filled(outlines: Sequence[Floats], scale: float, shape: tuple[int, ...]) -> Mask:

@@ -7,14 +7,15 @@ from itertools import product
 
 import numpy as np
 
-from ..fields import INPUTS
+from ..fields import FIELDS, INPUTS
 from ..judging.judgement import Verdict
 from ..reading.alignment import MAY_BE_MISSING
+from .claims import claims, is_of_a_printout
 from .grid import FEWEST_POINTS, Grid, grids_of
 from .holding import Added, Cell, Judged, held, judged, state
 from .ink import Floats, Image, ink_of, points_of
 from .layout import Sheet, sheets_of
-from .residue import Explained, Mark, Residue, residue_of
+from .residue import Explained, Kind, Mark, Residue, residue_of
 from .scenes import Candidate, Read, borne_out, scene_of
 from .typeface import BLANK, read_numbers
 
@@ -27,6 +28,9 @@ _REGULAR = 0.7
 """Clarity of the columns from which printouts are told apart and scenes searched for: of 1,302
 printouts that got a verdict the least had .85."""
 
+MOST_CLAIMING = 2
+"""Typed lines that give numbers of the page other values, at most: more are another printout's."""
+_SETTLED = (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
 _LEAST_SIDE = 100
 """Pixels of the shorter side of a picture that is looked at; 13 lines of 5 pixels have as many."""
 
@@ -52,6 +56,17 @@ class Leaf:
             if cell.name:
                 by_name.setdefault(cell.name, []).append(cell)
         return by_name
+
+    @property
+    def certain(self) -> dict[str, str | None]:
+        """The numbers, None of one with a cell that is not certainly what the program prints."""
+        return {
+            name: "".join(cell.predicted for cell in cells if cell.predicted != BLANK)
+            if all(state(cell) == "holds" for cell in cells)
+            else None
+            for name, cells in self.by_name.items()
+            if name in FIELDS
+        }
 
     @cached_property
     def lines(self) -> set[int]:
@@ -121,7 +136,27 @@ def _rest(ink: Image, coloured: Image | None, leaves: Sequence[Leaf]) -> Residue
         leaf.marks.append(mark)
         if mark.bears and leaf.judged.verdict is Verdict.IDENTICAL:
             leaf.judged.verdict = Verdict.IDENTICAL_AS_READ
+    _contradict(leaves)
     return residue
+
+
+def _contradict(leaves: Sequence[Leaf]) -> None:
+    """Say which typed lines give a number of the page another value; a printout whose page was
+    settled but for such a line differs. Where the sheet has lines of another printout, of which the
+    rest is not there or was not read, none of its text is about the page's own."""
+    if any(leaf.judged.verdict not in _SETTLED for leaf in leaves):
+        return
+    typed = [(leaf, mark) for leaf in leaves for mark in leaf.marks if mark.kind is Kind.TYPE]
+    if any(is_of_a_printout(mark.reads) for _, mark in typed):
+        return
+    shown = [leaf.certain for leaf in leaves]
+    said = [(leaf, mark, [*claims(mark.reads, shown, mark.sure)]) for leaf, mark in typed]
+    said = [each for each in said if each[2]]
+    if len(said) > MOST_CLAIMING:
+        return
+    for leaf, mark, found in said:
+        mark.claims = found
+        leaf.judged.verdict = Verdict.DIFFERS
 
 
 def _turns(ink: Image) -> list[int]:
