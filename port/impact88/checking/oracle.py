@@ -14,6 +14,7 @@ from .. import doubles, status
 from ..accuracy import errorbound
 from ..applesoft.operators import Real
 from ..arguments import explains_arguments
+from ..chapter import validation
 from ..closedform.solve import solve
 from ..errors import UserError
 from ..mappings import typed
@@ -55,6 +56,25 @@ def answer(
             if remarks := [*scene.remarks.values()]:
                 whole["remarks"] = remarks
         yield stamped("oracle", whole)
+
+
+def published_tests(reference: bool = True) -> Iterator[dict[str, Any]]:
+    """Yield the answer to each published crash test: with its ``source``, and each number that was
+    ``reported`` there beside the one computed here."""
+    checks: dict[str, list[dict[str, Any]]] = {}
+    for check in validation.checks():
+        own = check._asdict()
+        name = f"{own.pop('source')} {own.pop('test')}"
+        checks.setdefault(name, []).append(own)
+    tests = validation.program_scenes()
+    answers = oracle(
+        [typed({"M": float(DEFAULT_M), **scene}) for scene in tests.values()], reference
+    )
+    for (name, scene), whole in zip(tests.items(), answers, strict=True):
+        given = typed({"M": float(DEFAULT_M), **scene})
+        source = next(text for kind, text in validation.SOURCES.items() if name.startswith(kind))
+        head = {"id": name, "source": source, "reported": checks[name]}
+        yield stamped("oracle", {**head, "scene": {n: given[n] for n in SCENE}, **whole})
 
 
 def _asked(text: str, head: dict[str, Any], units: str | None) -> Scene:

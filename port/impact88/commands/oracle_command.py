@@ -7,9 +7,12 @@ have "units" and amounts with units ("30 mph"); the program is given base units,
 
 With --vectors it writes labelled test vectors instead, the same on any machine for the same seed:
 casework, edge and failure in turn, or one class. --published writes the vectors that golden/README
-gives the hash of, so that two firms can name the same test. Form: impact88 schema oracle, impact88
-schema vectors. Conventions (axes, signs, units, byte order, bounds, what each class means, and that
-a program that refuses a failure is right): impact88 schema conventions.
+gives the hash of, so that two firms can name the same test. --validation answers the crash tests of
+impact88 chapter staged --validation, with what was published of them.
+
+Form: impact88 schema oracle, impact88 schema vectors. Conventions (axes, signs, units, byte order,
+bounds, what each class means, and that a program that refuses a failure is right): impact88 schema
+conventions.
 
 examples:
   impact88 oracle scenes.jsonl -o answers.jsonl
@@ -30,7 +33,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from ..checking import kit, vectors
-from ..checking.oracle import BATCH, answer
+from ..checking.oracle import BATCH, answer, published_tests
 from ..errors import UserError
 from ..files import LONGEST_LINE, called, encoding_of, open_bytes
 from . import options
@@ -59,13 +62,19 @@ ARGUMENTS = (
         "--vectors or --seed say otherwise",
     ),
     options.flag("--published", "write the published vectors"),
+    options.flag(
+        "--validation",
+        "answer the 25 published crash tests, each with its source and the numbers reported there",
+    ),
     options.UNITS,
 )
 
 
 def main(args: options.Args) -> int:
     wanted = args.vectors is not None
-    if (wanted or args.published) and args.scenes != "-":
+    if args.validation and (wanted or args.published or args.only or args.seed or args.kit):
+        raise UserError("--validation are published tests; expected no vectors beside it")
+    if (wanted or args.published or args.validation) and args.scenes != "-":
         raise UserError("vectors have their own scenes; expected no file beside them")
     if args.published and (wanted or args.only or args.seed):
         raise UserError("--published are vectors already made; expected nothing beside it")
@@ -88,7 +97,9 @@ def main(args: options.Args) -> int:
         sys.stdout.writelines(kit.flat(made))
         return 0
     batches: Iterable[Iterator[dict[str, Any]]]
-    if wanted:
+    if args.validation:
+        batches = [published_tests(reference)]
+    elif wanted:
         batches = [vectors.vectors(args.vectors, args.seed, reference, args.only)]
     else:
         batches = (answer(batch, reference, args.units) for batch in _batches(args.scenes))

@@ -48,7 +48,6 @@ LAST_MOVES = 40  # steps before the first draws are taken
 BEYOND_DRAWS = 2.0  # bounds are sought so many times what draws span beyond them
 _CHUNK = 1 << 13  # impacts at a time: bounds the memory
 _JUMPS = 0.1  # steps the length of a difference of two particles, which join branches
-_RIDGE = 1e-12  # keeps what first order hardly tells from being infinitely wide
 _GRID = 1e-7  # of the first distribution's spread
 _TOUCH = 1e-9  # beyond limits by no more, in half-widths, is at them
 _HARDEST = 40.0  # limits softer by e to the power of this are hard
@@ -69,8 +68,8 @@ class Posterior:
     """The distribution of the impacts that agree with what is known, begun about a solution and
     those found beside it.
 
-    ``supported``: whether the exact values are all linear conditions; ``closed``: whether they and
-    the values within limits determine the impact."""
+    ``supported``: whether the exact values are all linear conditions; ``closed``: whether something
+    is left to be drawn, too."""
 
     def __init__(self, solution: Reconstruction, progress: Progress = lambda impacts: None) -> None:
         self.progress = progress
@@ -139,7 +138,7 @@ class Posterior:
         for y, own in zip(ys, parameters, strict=True):
             z = self.basis @ (np.array(y) / self.scales)
             self.centers.append(np.concatenate([z, own]))
-        self.closed = self.supported and not solution.undetermined and self.size > 0
+        self.closed = self.supported and self.size > 0
 
     def _mup(self) -> float:
         return float(self.known["MUP"].nominal) if "MUP" in self.known else 1.0
@@ -371,15 +370,17 @@ class Posterior:
         """Return the first particles, their signs and the function that gives the logarithm of
         their density: Student's t about every impact found."""
         roots = []
+        deviations = np.array([self.known[n].standard_deviation for n in self.inputs])
+        # what first order hardly tells is as wide as velocities may be
+        weak = np.concatenate([np.full(len(self.basis), WIDENING / FARTHEST), 0 * deviations])
         for center, sign in zip(self.centers, self.signs, strict=True):
             slopes = self._slopes(center, sign)
             sizes = np.linalg.norm(slopes, axis=0)
             sizes = np.where(sizes > 0, sizes, 1.0)
-            square = (slopes / sizes).T @ (slopes / sizes) + _RIDGE * np.eye(self.size)
+            square = (slopes / sizes).T @ (slopes / sizes) + np.diag(np.square(weak / sizes))
             # Cholesky's root is the same in any units, up to their factors
             roots.append(WIDENING * np.linalg.cholesky(np.linalg.inv(square)) / sizes[:, None])
         # far from all that was found, too: what first order knows nothing of
-        deviations = [self.known[n].standard_deviation for n in self.inputs]
         wide = np.diag(np.concatenate([np.full(len(self.basis), BROAD), deviations]))
         roots += [wide] * len(roots)
         centers, own_signs = self.centers * 2, self.signs * 2
