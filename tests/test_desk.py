@@ -22,10 +22,11 @@ from typing import Any
 from urllib.parse import urlsplit
 from urllib.request import url2pathname
 
+import numpy as np
 import pytest
 
 from captures import ROOT
-from impact88 import schemas
+from impact88 import schemas, units
 from impact88.cli import main
 from impact88.errors import UserError
 from impact88.names import SCENE, VELOCITIES
@@ -38,7 +39,17 @@ from installed import impact88 as command
 pytest.importorskip("flask", reason="the desk's extra is not installed")
 pytest.importorskip("waitress", reason="the desk's extra is not installed")
 
-from impact88.desk import app, collision, guard, halfopen, paper, reconstruction, serving, workers
+from impact88.desk import (
+    app,
+    collision,
+    forms,
+    guard,
+    halfopen,
+    paper,
+    reconstruction,
+    serving,
+    workers,
+)
 
 PORT, TOKEN = 8088, "a-token"
 OWN = f"http://127.0.0.1:{PORT}"
@@ -936,6 +947,31 @@ def test_without_the_extra_one_line_says_what_to_install(monkeypatch: pytest.Mon
 def test_a_scene_of_the_form_is_the_scene_of_its_texts() -> None:
     told = collision.answer(dict(sample(1)))
     assert Scene(told["oracle"]["scene"]) == sample(1)
+
+
+def test_directions_are_said_as_people_say_them() -> None:
+    """Against turning a vector of that course into the words by its components."""
+    system = units.system_of("chapter")
+    sae = system._replace(convention=units.Convention("sae", ""))
+    compass = system._replace(convention=units.Convention("", "compass"))
+    for course in range(-180, 181, 7):
+        x, y = np.cos(np.radians(course)), np.sin(np.radians(course))
+        words = forms.spoken_direction("HAF", float(course), system)
+        assert ("left" in words) == (y > 0.01 and "of x" in words)
+        if "of x" in words:
+            angle = float(words.partition("°")[0])
+            assert np.cos(np.radians(angle)) == pytest.approx(x, abs=0.01)
+            mirror = forms.spoken_direction("HAF", float(course), sae)
+            assert mirror == words.replace("left", "?").replace("right", "left").replace(
+                "?", "right"
+            )
+        heading = (90 - course) % 360
+        point = forms.spoken_direction("HA", float(heading), compass)
+        assert ("north" in point) == (y > np.sin(np.radians(22.5)))
+        assert ("west" in point) == (x < -np.sin(np.radians(22.5)))
+    assert forms.spoken_direction("HB", 180.0, system) == "against x"
+    assert forms.spoken_direction("PDOFA", -30.0, system) == "11 o'clock"
+    assert forms.spoken_direction("SA", -30.0, system) == ""
 
 
 def test_a_reconstruction_begins_with_the_evidence_and_velocity_changes(client: Client) -> None:

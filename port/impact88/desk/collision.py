@@ -21,7 +21,7 @@ from ..scenefile import template, toml_texts
 from ..schemas import stamped
 from ..uncertainty import uncertain
 from ..units import RULES, System
-from .forms import entries, units_shown, without_rounding
+from .forms import entries, spoken_direction, units_shown, without_rounding
 
 DRAWS = 20_000
 """Random draws for the bounds' quantiles: half a second at most with every value a range."""
@@ -142,7 +142,8 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
 
 
 def _answer(scene: Scene, exact: Mapping[str, float], system: System) -> list[dict[str, Any]]:
-    """Rows of ``words``, a ``unit``, and ``values``: name and text, one or one for each vehicle."""
+    """Rows of ``words``, a ``unit``, and ``values``: name, text, and a direction as it is ``said``,
+    one or one for each vehicle."""
     from ..reconstruction.solutiontable import completed
 
     given = {name: double(text) for name, text in scene.items()}
@@ -154,7 +155,12 @@ def _answer(scene: Scene, exact: Mapping[str, float], system: System) -> list[di
         rule = quantity(names[0]).unit
         amounts = {name: system.displayed(name, values[name]) for name in names}
         texts = [
-            {"name": name, "text": number(value, _ANSWER_DIGITS), "value": value}
+            {
+                "name": name,
+                "text": number(value, _ANSWER_DIGITS),
+                "value": value,
+                "said": spoken_direction(name, value, system),
+            }
             for name, value in amounts.items()
         ]
         rows.append({"words": words, "unit": system.label(rule), "values": texts})

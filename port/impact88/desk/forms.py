@@ -10,6 +10,8 @@ from ..estimates import SIZES
 from ..files import decode
 from ..names import CHAPTER, DEFAULT_M, RESULTS, SCENE, check_names, quantity
 from ..plaintable import number
+from ..reconstruction.geometry import clock
+from ..reconstruction.state import COURSES, FORCES
 from ..scenefile import toml_texts
 from ..units import System, base_of
 
@@ -103,6 +105,30 @@ def filled_in(data: bytes, name: str, allowed: Collection[str]) -> dict[str, Any
     if extra:
         read["extra"] = extra
     return {**read, "values": values}
+
+
+POINTS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
+"""The points of the compass in turn."""
+
+
+def spoken_direction(name: str, shown: float | None, system: System) -> str:
+    """Return a course, or where a force comes from, as it is said beside the number ``shown``;
+    nothing of other values."""
+    if shown is None or not math.isfinite(shown) or name not in (*COURSES, *FORCES):
+        return ""
+    if name in FORCES:
+        return clock(shown)
+    convention = system.convention
+    if convention and convention.headings:
+        return POINTS[round(shown / 45) % len(POINTS)]
+    left = (shown + 180) % 360 - 180  # of x, turning from x to y
+    if abs(left) < 0.5:
+        return "along x"
+    if abs(left) > 179.5:
+        return "against x"
+    other_axes = convention is not None and bool(convention.axes)
+    side = "left" if (left > 0) != other_axes else "right"
+    return f"{number(round(abs(left)), 3)}° to the {side} of x"
 
 
 def digits(value: float | None, count: int) -> str:

@@ -16,7 +16,7 @@ from ..schemas import stamped
 from ..uncertainty import uncertain
 from ..uncertainty.uncertain import Uncertain
 from ..units import RULES
-from .forms import digits, entries, units_shown, without_rounding
+from .forms import digits, entries, spoken_direction, units_shown, without_rounding
 
 DRAWS, _DIGITS, _DIGITS_TO_GO_ON = 20_000, 6, 12
 """Random draws for the quantiles, as many as for a collision's bounds; digits of a value shown, as
@@ -105,6 +105,7 @@ def _solution(
         parts = {**spread, **spread.get("quantiles", {}), "amplified": amplified}
         numbers = {head: parts.get(part) for head, (_, part) in _COLUMNS.items()}
         row = {**what(name), "value": value, "known": name in values["known"], "numbers": numbers}
+        row["said"] = spoken_direction(name, value, system)
         row["text"] = digits(rounded.get(name), _DIGITS)
         row["solved"] = name in values.get("solved_for", _SOUGHT) and not row["known"]
         row["columns"] = {head: digits(x, _COLUMNS[head][0]) for head, x in numbers.items()}

@@ -48,6 +48,7 @@ LAST_MOVES = 40  # steps before the first draws are taken
 BEYOND_DRAWS = 2.0  # bounds are sought so many times what draws span beyond them
 _CHUNK = 1 << 13  # impacts at a time: bounds the memory
 _JUMPS = 0.1  # steps the length of a difference of two particles, which join branches
+_INDEPENDENT = 1e-9  # smallest over largest singular value of what is determined
 _GRID = 1e-7  # of the first distribution's spread
 _TOUCH = 1e-9  # beyond limits by no more, in half-widths, is at them
 _HARDEST = 40.0  # limits softer by e to the power of this are hard
@@ -68,8 +69,9 @@ class Posterior:
     """The distribution of the impacts that agree with what is known, begun about a solution and
     those found beside it.
 
-    ``supported``: whether the exact values are all linear conditions; ``closed``: whether something
-    is left to be drawn, too."""
+    ``supported``: whether the exact values are all linear conditions; ``closed``: whether they and
+    the values within limits determine impacts in general, though perhaps not the solution: where
+    there is no impulse, say, coefficients are open."""
 
     def __init__(self, solution: Reconstruction, progress: Progress = lambda impacts: None) -> None:
         self.progress = progress
@@ -138,7 +140,21 @@ class Posterior:
         for y, own in zip(ys, parameters, strict=True):
             z = self.basis @ (np.array(y) / self.scales)
             self.centers.append(np.concatenate([z, own]))
-        self.closed = self.supported and self.size > 0
+        self.closed = self.supported and self.size > 0 and self._determines()
+
+    def _determines(self) -> bool:
+        """Return whether values within limits tell apart any two neighbours of an ordinary impact:
+        one at a random distance from the solution."""
+        rng = np.random.default_rng(0)
+        spread = [self.known[n].standard_deviation for n in self.inputs]
+        aside = np.concatenate([np.full(len(self.basis), BROAD), spread])
+        point = self.centers[0] + aside * rng.standard_normal(self.size)
+        slopes = self._slopes(point, self.signs[0])
+        sizes = np.linalg.norm(slopes, axis=0)
+        if not (sizes > 0).all():
+            return False
+        values = np.linalg.svd(slopes / sizes, compute_uv=False)
+        return len(values) == self.size and bool(values[-1] > _INDEPENDENT * values[0])
 
     def _mup(self) -> float:
         return float(self.known["MUP"].nominal) if "MUP" in self.known else 1.0
