@@ -26,6 +26,7 @@ from .evidence import Evidence, weigh
 from .geometry import GEOMETRY, with_point_masses, within_doubles
 from .laws import missed_laws, told
 from .outcome import IMPOSSIBLE, outcome
+from .quadrics import MAX_EQUATIONS, Paths, follow_paths, quadratic_equations
 from .state import COURSES, CRUSH, DIRECTIONS, FORCES, KNOWABLE, OTHERS, QUANTITIES, SPEEDS, State
 from .system import PARAMETERS, SPINS, System
 from .unknowns import UnsolvableError, check_physical, solve_for, typed
@@ -312,7 +313,8 @@ class Searched(NamedTuple):
     """How impacts were searched for: ``batches`` of random starts, ``starts`` in all, the last
     ``idle`` batches without a further impact; ``single``: the equations are linear, or leave
     something open, and no search is needed or possible; ``impacts`` that agree with what is known,
-    ``possible`` of them."""
+    ``possible`` of them; ``solutions`` of the quadratic equations of exact values, ``nonreal`` of
+    them complex or at infinity: where all are found no starts are needed (0: not so)."""
 
     batches: int = 0
     starts: int = 0
@@ -320,6 +322,8 @@ class Searched(NamedTuple):
     single: bool = False
     impacts: int = 1
     possible: int = 1
+    solutions: int = 0
+    nonreal: int = 0
 
     def text(self) -> str:
         """Return the statement of the search."""
@@ -328,6 +332,9 @@ class Searched(NamedTuple):
             impacts += f", {self.possible or 'none'} of which physics allows"
         if self.single:
             return impacts
+        if self.solutions:
+            nonreal = f"{self.nonreal or 'none'} of them complex or at infinity"
+            return f"{impacts}; the equations' {self.solutions} solutions were all found, {nonreal}"
         idle = f"the last {self.idle} found no other" if self.idle else "the last found a new one"
         if self.batches <= 1:
             return f"{impacts}, from {self.starts} starts"
@@ -623,6 +630,11 @@ def _ordered(
         len(kept),
         sum(not solution.impossible for solution in kept),
     )
+    paths = [each.paths for each in searches if each.paths]
+    if len(paths) == len(searches):
+        solutions = sum(each.total for each in paths)
+        nonreal = sum(each.complex_ends + each.infinite_ends for each in paths)
+        search = search._replace(solutions=solutions, nonreal=nonreal)
     beside = tuple((s.system, s.x) for s in ahead)
     shared: dict[str, Any] = {"search": search, "beside": beside}
     if mu is not None and (mu.varies or mu.nominal not in (0, PIVOT)):
@@ -685,6 +697,7 @@ class _Search:
         self.followed: list[Floats] = []
         self.rng = np.random.default_rng(1988)
         self.batches = self.starts = self.idle = 0
+        self.paths: Paths | None = None
         plain = System(known, adjusted=False, progress=progress)
         loose = any(known[name].varies for name in PARAMETERS if name in known)
         self.linear = plain.linear and not loose  # one valley, without bends
@@ -708,15 +721,25 @@ class _Search:
     @property
     def single(self) -> bool:
         """Whether there is one impact, or nothing that tells impacts apart."""
-        return self.linear or not self.batches
+        return self.linear or not (self.batches or self.paths)
 
     def exact_impacts(self, plain: System, count: int) -> Floats:
-        """Return the impacts with every known value as it stands, a column each, sought in batches
-        of ``count`` starts until several batches find no further one."""
+        """Return the impacts with every known value as it stands, a column each: the real solutions
+        of their quadratic equations, else sought in batches of ``count`` starts until several
+        batches find no further one."""
         size = len(plain.variables)
+        met = np.empty((size, 0))
+        equations = None if self.linear else quadratic_equations(plain)
+        if equations is not None and equations.size <= MAX_EQUATIONS:
+            paths = follow_paths(equations, self.rng)
+            if paths.real.shape[1]:
+                x, left_over = straight(plain, paths.real)
+                met = _distinct(met, x[:, left_over <= _HOLDS])
+            if not paths.lost:
+                self.paths = paths
+                return met
         # more conditions than variables: no start meets them, unless all do
         tried = 1 if len(plain.conditions) > size else count
-        met = np.empty((size, 0))
         for _ in range(_MAX_BATCHES):
             starts = _start(plain, self.rng, tried)
             if met.shape[1] and tried > 1:
@@ -746,6 +769,8 @@ class _Search:
     def found(self) -> list[Reconstruction]:
         """The solutions. Raises UnsolvableError where there are none."""
         met = finite = False
+        if not self.at_hand:
+            self.paths = None  # a fit is no solution of the equations
         for batch in range(_MAX_BATCHES):
             before = len(self.solutions)
             closely, sound = self.fit(self.begin, thorough=not batch)

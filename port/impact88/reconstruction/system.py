@@ -143,8 +143,8 @@ class System:
     def left(self, state: State, targets: Mapping[str, Any] | None = None) -> Array:
         """What conditions, then observations leave over, scaled: rows, one column an impact."""
         targets = {**self.nominal, **(targets or {})}
-        rows = [state.law(n) / self._law_scale(n) for n in self.laws]
-        rows += [self._exact(state, n, targets) for n in self.exact]
+        rows = [state.law(n) / self.law_scale(n) for n in self.laws]
+        rows += [self.exact_residual(state, n, targets) for n in self.exact]
         for name in self.observations:
             off = self.measured(state, name) - targets[name]
             rows.append(off / self.known[name].standard_deviation)
@@ -155,12 +155,12 @@ class System:
         """What an observation is of: an adjusted value that conditions hold, or a quantity."""
         return state.values[name] if name in self.variables else state[name]
 
-    def _law_scale(self, coefficient: str) -> Any:
+    def law_scale(self, coefficient: str) -> Any:
         if coefficient == "MUP" and not np.all(self.nominal["MUP"] == PIVOT):
             return self.mass * self.speed
         return self.speed / (self.gyration if coefficient == "EM" else 1.0)
 
-    def _exact(self, state: State, name: str, targets: Mapping[str, Any]) -> Any:
+    def exact_residual(self, state: State, name: str, targets: Mapping[str, Any]) -> Any:
         if name in DIRECTIONS:
             return state.along_and_across(name)[1] / (
                 self.speed * (self.mass if name in FORCES else 1.0)
