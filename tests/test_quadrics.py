@@ -46,7 +46,8 @@ def test_complex_solutions_and_those_at_infinity_are_counted():
     # x² + 1 = 0; (x - y)(x - y - 1) = 0 and x - y + x² - y² - 3 = 0: two meet at infinity only
     square = np.array([[[1.0, 0.0], [0.0, 1.0]]])
     paths = follow_paths(Quadrics(square, np.zeros(1), np.eye(1)), np.random.default_rng(3))
-    assert (paths.real.shape[1], paths.complex_ends, paths.infinite_ends, paths.lost) == (0, 2, 0, 0)
+    assert paths.real.shape[1] == 0
+    assert (paths.complex_ends, paths.infinite_ends, paths.lost) == (2, 0, 0)
     first = np.array([[0.0, -0.5, 0.5], [-0.5, 1.0, -1.0], [0.5, -1.0, 1.0]])
     second = np.array([[-3.0, 0.5, -0.5], [0.5, 1.0, 0.0], [-0.5, 0.0, -1.0]])
     both = Quadrics(np.array([first, second]), np.zeros(2), np.eye(2))
