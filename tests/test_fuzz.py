@@ -30,6 +30,9 @@ LONG = (
     "printout-70",
     "printout-decimals",
     "figure-friction",
+    "csv-row-of-quotes",
+    "extremes-a.1066",
+    "extremes-e.5751",
 )
 """Beginnings of the names of cases that take seconds, and have quicker ones of their kind beside
 them: run where the seconds are more than the default's."""
