@@ -462,8 +462,8 @@ def test_command_and_junit(tmp_path) -> None:
 def test_a_table_without_results_is_refused(tmp_path) -> None:
     with pytest.raises(UserError, match="no column of results"):
         compared(tmp_path, {})
-    with pytest.raises(UserError, match="vax for VAX"):
-        compared(tmp_path, {"vax": ["1"] * len(ROWS)})
+    with pytest.raises(UserError, match="VAX_mph for VAX"):
+        compared(tmp_path, {"VAX_mph": ["1"] * len(ROWS)})
     done = impact88("compare", "x.csv", "--rtol", "2")
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
 

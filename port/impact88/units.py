@@ -10,7 +10,8 @@ ranges and tolerances.
 
 A unit that one number has and others lack belongs to all of them. Numbers that stand side by side
 without a unit between them, or with a sign, are refused, and so is a comma that may be a decimal
-one. A bare number without any system of units stays the text it is, digit for digit.
+one (1,234.5 can only be thousands). A bare number without any system of units stays the text it is,
+digit for digit.
 
 An amount is converted once, by exact fractions, to its system's base: ft, slug and s, or m, kg and
 s; angles are in degrees, spins in radians a second. A unit is an expression of symbols ("slug ft2",
@@ -364,6 +365,9 @@ _MEANT = str.maketrans(
 )
 _DECIMAL = r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NUMBER = rf"\d{{1,3}}(?:,\d{{3}})+(?:\.\d*)?(?![\d,])|(?:\d+ )?\d+ ?/ ?\d+|{_DECIMAL}"
+_DECIMAL_COMMA = re.compile(r"\d{1,3},\d{3}|0,.*")
+"""What may be a number with a decimal comma, where the unit does not show how its writer counts; a
+second comma, or a point behind it, shows that a comma divides thousands."""
 _AFTER = r"[a-zA-Z°%²³^]"
 _PART = re.compile(rf"({_NUMBER})(?![\d,/]) ?(?:({UNIT})(?!{_AFTER})|(?!{_AFTER})) ?")
 _FORMS = (
@@ -542,7 +546,9 @@ class _Value:
         sizes = [size[0] if size else Fraction(1) for size in known]
         scale = system.scale(self.rule) if usual or amount.units else Fraction(1)
         for (number, _), size in zip(amount.parts, known, strict=True):
-            if "," in number and (not size or size[1] != "us"):
+            if _DECIMAL_COMMA.fullmatch(number) and (
+                number[0] == "0" or not size or size[1] != "us"
+            ):
                 self._refuse(f"{self.entry}: the comma of {number} may be a decimal one")
         number = amount.parts[0][0]
         if sizes == [scale] and "/" not in number:

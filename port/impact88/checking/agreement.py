@@ -19,8 +19,9 @@ from ..closedform.solve import solve
 from ..doubles import double
 from ..equations.evaluation import BESIDE, Run
 from ..equations.spelling import A_IMPULSE, spellings
-from ..errors import quoted
+from ..errors import UserError, quoted
 from ..names import FINAL_VELOCITIES, SCENE
+from ..tables.cells import TableUnits, last_digit
 from ..tables.rows import Rows
 from . import tolerance
 
@@ -44,7 +45,6 @@ _NOTHING = re.compile(
     re.IGNORECASE,
 )
 """What programs write where they have no result: spreadsheets' errors, C's -nan(ind), infinity."""
-_WRITTEN = re.compile(r"[+-]?[0-9]*(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?")
 HALF = 0.5 + 1e-9
 """Of the last digit written."""
 
@@ -167,28 +167,32 @@ def _case(
     return case, np.flatnonzero(undecided)
 
 
-def read_theirs(rows: Rows, name: str, factor: float = 1.0) -> tuple[Floats, Floats]:
-    """A column of results, times ``factor`` in base units, and the unit of the last digit written
-    (0 where it is written in binary). An empty cell is NaN and counts as not given; what is no
-    number is added to ``rows.bad``. Raises UserError for an array that has not a number for each
-    row."""
-    column = rows.one_per_row(name)
+def read_theirs(rows: Rows, name: str, units: TableUnits) -> tuple[Floats, Floats]:
+    """A column of results in base units, and the unit of the last digit written (0 where it is
+    written in binary). An empty cell is NaN and counts as not given; what is no number is added to
+    ``rows.bad``. Raises UserError for an array that has not a number for each row."""
+    column, factor = rows.one_per_row(name), units.factor(name)
     if isinstance(column, np.ndarray) and column.dtype.kind in "fiu":
         return column.astype(float) * factor, np.zeros(rows.count)
-    values, units = np.full(rows.count, np.nan), np.zeros(rows.count)
+    values, last = np.full(rows.count, np.nan), np.zeros(rows.count)
     for index, cell in enumerate(column):
+        if isinstance(cell, float):  # of a frame
+            values[index] = cell * factor
+            continue
         text = "" if cell is None else str(cell).strip()
         if _NOTHING.fullmatch(text):
             continue
         try:
-            values[index] = double(text)
+            values[index] = double(text) * factor
+            last[index] = last_digit(text) * factor
         except ValueError:
-            rows.bad.append((index, name, f"{quoted(text)} is not a number"))
-        if written := _WRITTEN.fullmatch(text):
-            decimals, exponent = written.groups(default="")
-            power = float(exponent or 0) - len(decimals)
-            units[index] = 10.0 ** min(300.0, max(power, -400.0))
-    return values * factor, units * factor
+            try:
+                if not any(map(str.isdigit, text)):
+                    raise UserError(f"{quoted(text)} is not a number") from None
+                values[index], last[index] = units.result(name, text)
+            except UserError as error:
+                rows.bad.append((index, name, str(error).removeprefix(": ")))
+    return values, last
 
 
 @np.errstate(all="ignore")

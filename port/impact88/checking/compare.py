@@ -7,6 +7,7 @@ import os
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -22,7 +23,7 @@ from ..names import DEFAULT_M, RESULTS, SCENE
 from ..plaintable import plain
 from ..progress import progress
 from ..tables.cells import TableUnits, check_scene_columns, numbers
-from ..tables.rows import BadCell, Rows
+from ..tables.rows import BadCell, Reader, Rows
 from ..tables.table import FORMATS, format_of, open_reader
 from . import agreement
 from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, Case
@@ -112,7 +113,8 @@ class Comparison:
     ``causes``: likely cause -> rows it explains; ``evidence`` and ``programs``: what bears out each
     cause that is a program, and the program; ``differences``: every row that disagrees;
     ``not_compared``: by reason; ``unknown``: columns that were not recognised -> the name that was
-    meant, or "".
+    meant, or ""; ``place``: where in a workbook the table stands (sheet and row of its headings);
+    ``remarks``: how its headings were understood.
     """
 
     rows: int = 0
@@ -128,6 +130,8 @@ class Comparison:
     equations: dict[str, tuple[int, int]] = field(default_factory=dict)
     bad: list[BadCell] = field(default_factory=list)
     unknown: dict[str, str] = field(default_factory=dict)
+    place: dict[str, Any] = field(default_factory=dict)
+    remarks: list[str] = field(default_factory=list)
 
     @property
     def worst(self) -> list[Row]:
@@ -179,13 +183,15 @@ class Comparison:
             "not_compared": {name: vars(skipped) for name, skipped in self.not_compared.items()},
             "unknown_columns": self.unknown,
             "bad_rows": list(map(str, self.bad)),
+            "table": self.place,
+            "remarks": self.remarks,
         }
         return {name: plain(value) for name, value in whole.items()}
 
 
 @explains_arguments
 def compare(
-    path: str | os.PathLike[str],
+    table: Any,
     form: str | None = None,
     values: Mapping[str, str] | None = None,
     rtol: float | None = None,
@@ -193,28 +199,46 @@ def compare(
     units: str | None = None,
     causes: bool = True,
 ) -> Comparison:
-    """Compare a table of scenes and results, block by block; ``units``: of columns whose heading
-    names none.
+    """Compare a table of scenes and results, block by block.
 
-    ``form``: csv, jsonl, npz, parquet, feather or xlsx where the name does not say; ``values``: for
-    all rows of columns the table lacks; ``rtol``: the difference, as a share of the
-    scene's largest velocity, spin or energy, that agrees, in place of what rounding allows;
-    ``causes``: look for causes where rows disagree. Raises UserError when the table has no result
-    column or does not give a whole scene.
+    Parameters
+    ----------
+    table : str, path or frame
+        The table's file, or a DataFrame of pandas or polars, a pyarrow Table, a structured array, a
+        list of dicts or a dict of columns.
+    form : {"csv", "jsonl", "npz", "parquet", "feather", "xlsx"}, optional
+        The file's format, where its name does not say.
+    values : mapping of str to str, optional
+        Values, for all rows, of columns that the table lacks.
+    rtol : float, optional
+        The difference that agrees, as a share of the scene's largest velocity, spin or energy, in
+        place of what rounding allows.
+    encoding : str, optional
+        Of a CSV or of JSON Lines that are not UTF-8.
+    units : {"us", "chapter", "metric", "si"}, optional
+        The system of columns whose heading names no unit.
+    causes : bool
+        Look for causes where rows disagree.
 
-    >>> import json, pathlib, tempfile
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    UserError
+        When the table has no result column or does not give a whole scene.
+
+    Examples
+    --------
     >>> scene = impact88.sample(1).numbers()
     >>> row = {**scene, "LOSS": float(impact88.solve(scene, ["LOSS"])["LOSS"])}
-    >>> table = pathlib.Path(tempfile.mkdtemp(), "theirs.jsonl")
-    >>> _ = table.write_text(json.dumps(row))
-    >>> impact88.compare(table).summary.partition(";")[0]
+    >>> impact88.compare([row]).summary
     '1 row: 1 agree, 0 disagree'
     """
     if values is not None and not isinstance(values, Mapping):
         raise UserError(f"values is {quoted(values)}; expected a mapping of names to values")
     values = texts(values or {})
-    if not isinstance(path, str | os.PathLike):
-        raise UserError(f"{quoted(path)}: expected the name of a table's file")
     if form is not None and form not in FORMATS.values():
         formats = " ".join(dict.fromkeys(FORMATS.values()))
         raise UserError(f"form is {quoted(form)}; expected one of {formats}")
@@ -223,11 +247,10 @@ def compare(
     for name, text in (("encoding", encoding), ("units", units)):
         if text is not None and not isinstance(text, str):
             raise UserError(f"{name} is {quoted(text)}; expected a text")
-    path = os.fspath(path)
-    where = called(path)
     comparison = Comparison()
     kept: list[Case] = []
-    with open_reader(path, format_of(path, form), encoding) as reader:
+    with _opened(table, form, encoding) as (reader, where):
+        comparison.place, comparison.remarks = reader.place, reader.remarks
         wanted = [name for name in reader.names if name in RESULTS and name not in NOT_COMPARED]
         known = {*SCENE, *RESULTS, *CARRIED}
         comparison.unknown = {name: _meant(name) for name in reader.names if name not in known}
@@ -240,10 +263,11 @@ def compare(
         comparison.tallies = {name: Tally() for name in wanted}
         with progress(reader.total, "compare", "B") as meter:
             before = 0
-            table: TableUnits | None = None
+            measured: TableUnits | None = None
             for rows in reader:
-                table = table or TableUnits(reader.names, units, rows, wanted, where)
-                kept.append(_compare_block(rows, values, comparison, rtol, table))
+                measured = measured or TableUnits(reader.names, units, rows, wanted, where)
+                enough = max(0, LOOKED_INTO - comparison.agreeing)
+                kept.append(_compare_block(rows, values, comparison, rtol, measured, enough))
                 meter.update(rows.place - before)
                 before = rows.place
     if not any(tally.compared for tally in comparison.tallies.values()):
@@ -264,6 +288,22 @@ def compare(
     return comparison
 
 
+@contextmanager
+def _opened(table: Any, form: str | None, encoding: str | None) -> Iterator[tuple[Reader, str]]:
+    """Open a table's file or a frame, with what messages call it. Raises UserError."""
+    if isinstance(table, str | os.PathLike):
+        path = os.fspath(table)
+        with open_reader(path, format_of(path, form), encoding, True) as reader:
+            yield reader, called(path)
+        return
+    from ..tables.frames import read_frame
+
+    if form is not None or encoding is not None:
+        raise UserError("form and encoding are a file's; a frame has its own")
+    with read_frame(table) as reader:
+        yield reader, ""
+
+
 def _meant(name: str) -> str:
     """The result or scene column that a name stands for: in other letters, with something behind
     it, or nearly."""
@@ -282,14 +322,14 @@ def _compare_block(
     comparison: Comparison,
     rtol: float | None,
     units: TableUnits,
+    enough: int,
 ) -> Case:
-    """Count a block; the rows that may be looked into are returned."""
+    """Count a block; the rows that may be looked into are returned, of those that agree no more
+    than are ``enough``."""
     whole = {"M": DEFAULT_M, **values}
     scene = {name: np.full(rows.count, double(whole[name])) for name in whole if name in SCENE}
     scene |= numbers(rows, units)
-    theirs = {
-        name: agreement.read_theirs(rows, name, units.factor(name)) for name in comparison.tallies
-    }
+    theirs = {name: agreement.read_theirs(rows, name, units) for name in comparison.tallies}
     readable = np.ones(rows.count, bool)
     readable[[index for index, *_ in rows.bad]] = False
     for given, _ in theirs.values():
@@ -326,7 +366,7 @@ def _compare_block(
         loose.worst_condition = float(case.condition[worst])
     off = np.where(grades == DIFFER, relative, -1.0).argmax(0)
     comparison.differences += _differing(rows, np.flatnonzero(wrong), off, relative, case)
-    right = np.flatnonzero(compared & ~wrong)[:LOOKED_INTO]
+    right = np.flatnonzero(compared & ~wrong)[:enough]
     return case.part(np.concatenate([np.flatnonzero(wrong), right]))
 
 

@@ -106,6 +106,12 @@ class Conformance:
         Rows that are no vector's: unknown ids, and none.
     unknown : list of str
         Columns that were not recognised.
+    refused : int
+        How many vectors that pass have no answer, as they may.
+    place : dict
+        Where in a workbook the table stands: its sheet, and the row of its headings.
+    remarks : list of str
+        How the table was read.
     """
 
     kit: Kit
@@ -116,6 +122,8 @@ class Conformance:
     strays: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
     refused: int = 0
+    place: dict[str, Any] = field(default_factory=dict)
+    remarks: list[str] = field(default_factory=list)
 
     @property
     def failures(self) -> list[Verdict]:
@@ -159,7 +167,12 @@ class Conformance:
                 "count": len(self.verdicts),
                 "sha256": self.kit.sha256,
             },
-            "table": {"name": self.table, "sha256": self.sha256, "results": self.results},
+            "table": {
+                "name": self.table,
+                "sha256": self.sha256,
+                "results": self.results,
+                **self.place,
+            },
             "passed": self.passed,
             "failed": len(self.failures),
             "refused": self.refused,
@@ -180,6 +193,7 @@ class Conformance:
             ],
             "strays": self.strays,
             "unknown_columns": self.unknown,
+            "remarks": self.remarks,
         }
         return {name: plain(value) for name, value in whole.items()}
 
@@ -299,7 +313,7 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
         Where kit or table cannot be read, or the table lacks ids or a final velocity.
     """
     whole = read_kit(kit)
-    with _on_disk(theirs) as path, open_reader(path, form, encoding) as reader:
+    with _on_disk(theirs) as path, open_reader(path, form, encoding, True) as reader:
         results = [n for n in reader.names if n in RESULTS and n not in NOT_COMPARED]
         where = called(theirs)
         if "id" not in reader.names:
@@ -312,6 +326,7 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
         done = Conformance(whole, where, _digest(path), [str(name) for name in results])
         known = {*SCENE, *RESULTS, "id", "class", "label", "expect", "flags", "comment"}
         done.unknown = [str(name) for name in reader.names if name not in known]
+        done.place, done.remarks = reader.place, reader.remarks
         table = _Table()
         places = {vector.id: place for place, vector in enumerate(whole.vectors)}
         units: TableUnits | None = None
@@ -355,7 +370,7 @@ def _take(
     ids = [str(cell) for cell in rows.one_per_row("id")]
     written = {name: list(rows.one_per_row(name)) for name in results}
     scene = numbers(rows, units)
-    theirs = {name: agreement.read_theirs(rows, name, units.factor(name)) for name in results}
+    theirs = {name: agreement.read_theirs(rows, name, units) for name in results}
     wrong: dict[int, str] = {}
     for index, name, reason in rows.bad:
         wrong.setdefault(index, f"{name}: {reason}" if name else reason)

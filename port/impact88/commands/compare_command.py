@@ -1,11 +1,14 @@
-"""THEIRS is a CSV or JSON Lines table of another program's results: a row a scene, with columns
-named as the scene's (impact88 scene lists them; M may be missing) and any of the results: VAX VAY
-VBX VBY WAF WBF, contact velocities XA YA XB YB before and XAF YAF XBF YBF after, VC VS KI KF LOSS
-DVA DVB PN PT PM MUP MUC. Each result agrees to the double, to the digits it is written with, as
-closely as plain elimination in double precision can in that scene, or not. Rows that disagree are
-explained: every small mistake in the equations, some 38,000 in nine spellings of them, and other
-conventions are made here too, alone and two together, and the one that gives their numbers is
-named, with the rows that bear it out. What could not be compared is listed on standard error.
+"""THEIRS is a table of another program's results, in any form that solve reads (CSV, JSON Lines, a
+JSON array, .npz, Parquet, Excel): a row a scene, with columns named as the scene's (impact88 scene
+lists them; M may be missing) and any of the results: VAX VAY VBX VBY WAF WBF, contact velocities XA
+YA XB YB before and XAF YAF XBF YBF after, VC VS KI KF LOSS DVA DVB PN PT PM MUP MUC. Names may be
+in small letters and have units (VAX [mph]); JSON may hold inputs and outputs in objects of their
+own. How a table was read is told on standard error. Each result agrees to the double, to the digits
+it is written with, as closely as plain elimination in double precision can in that scene, or not.
+Rows that disagree are explained: every small mistake in the equations, some 38,000 in nine
+spellings of them, and other conventions are made here too, alone and two together, and the one that
+gives their numbers is named, with the rows that bear it out. What could not be compared is listed
+on standard error.
 
 With --kit DIR the table is judged as answers to the vectors of that kit (impact88 oracle --kit):
 every id once, its inputs bit for bit, all final velocities, an answer where one is due and no
@@ -99,6 +102,8 @@ def _conformance(args: options.Args) -> int:
     if args.junit:
         conformance.write_junit(args.junit, done)
     options.show(args, "conformance", done.as_json, lambda: _conformance_lines(done))
+    for remark in done.remarks:
+        note("compare", remark)
     for name in done.unknown[:SHOWN]:
         note("compare", f"column {name} is not recognised")
     return int(not done.conforms)
@@ -130,7 +135,8 @@ def _conformance_lines(done: Conformance) -> Iterator[str]:
 
 
 def _notes(comparison: Comparison) -> Iterator[str]:
-    """What is said on stderr: what could not be read or was not compared."""
+    """What is said on stderr: how the table was read, what could not be or was not compared."""
+    yield from comparison.remarks
     yield from map(str, comparison.bad[:SHOWN])
     if len(comparison.bad) > SHOWN:
         yield f"and {len(comparison.bad) - SHOWN} more"

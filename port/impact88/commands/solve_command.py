@@ -1,12 +1,14 @@
 """CASES is a table with a column for each of the scene's names (impact88 scene lists them; M may be
-missing and is 6 then): CSV (.csv .tsv .txt, also .csv.gz), JSON Lines (.jsonl .ndjson), .npz; with
-impact88[arrow] .parquet and .feather; with impact88[excel] .xlsx. Names in small letters,
-semicolons and decimal commas are understood. A unit behind a name (UX [mph], MA (lb)) or in a cell
+missing and is 6 then): CSV (.csv .tsv .txt, also .csv.gz), JSON Lines (.jsonl .ndjson) or an array
+of objects (.json), in which the scene may be an object inside (inputs), .npz; with impact88[arrow]
+.parquet and .feather; with impact88[excel] .xlsx, the row with most of the names being the
+headings. Names in small letters, semicolons and decimal commas are understood, 1,234.5 too; a comma
+that may be either (1,234) is asked about. A unit behind a name (UX [mph], MA (lb)) or in a cell
 ("-25 mph") is converted, and results come in the same system with headings that say so (DVA [mph]);
 --units is for columns without any. All its columns are passed through, and the results follow. Rows
-are read and written in blocks: memory does not grow with the file (.npz and .xlsx excepted). A
-scene file (.toml) is a table of one row, or with --sweep of as many as the ranges LOW:HIGH:COUNT
-have combinations.
+are read and written in blocks: memory does not grow with the file (but with .npz and .xlsx that are
+written). A scene file (.toml) is a table of one row, or with --sweep of as many as the ranges
+LOW:HIGH:COUNT have combinations.
 
 Results, all by default:
 {results}

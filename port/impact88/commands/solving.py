@@ -62,6 +62,8 @@ def solve_table(args: options.Args) -> int:
             source = stack.enter_context(read_sweep(case, swept))
         else:
             source = stack.enter_context(open_reader(path, source_format, args.encoding))
+        for remark in source.remarks:
+            note("solve", remark)
         blocks = iter(source)
         first = next(blocks, None)
         blocks = chain([] if first is None else [first], blocks)
@@ -261,8 +263,10 @@ def _texts(name: str, column: Any, units: TableUnits) -> list[Any]:
     if isinstance(column, np.ndarray):
         column = [repr(x).removesuffix(".0").upper() for x in column.tolist()]
     texts = [text.strip().upper() if isinstance(text, str) else text for text in column]
-    for index, text in enumerate(column) if units.converts(name) else ():
-        if isinstance(text, str) and any(map(str.isdigit, text)):
+    converts = units.converts(name)
+    for index, text in enumerate(column):
+        # 1,234.5 is a number to those who write tables, not to INPUT
+        if isinstance(text, str) and (converts or "," in text) and any(map(str.isdigit, text)):
             with suppress(UserError):
                 texts[index] = units.cell(name, text)
     return texts

@@ -59,7 +59,7 @@ def _scene_column(pa: Any, rows: Rows, name: str, array: Any, where: str) -> Col
 
 
 @contextmanager
-def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
+def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[Reader]:
     """Open a Parquet or Arrow file. Raises UserError if it is not one."""
     pa = library("pyarrow", "arrow", "this format")
     with ExitStack() as stack:
@@ -74,7 +74,7 @@ def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
                 file = pa.ipc.open_file(stack.enter_context(pa.memory_map(path)))
                 headings, count = file.schema.names, None
                 batches = _slices(file)
-        names = scene_names(headings, path)
+        names = scene_names(headings, path, results)
         yield Reader(names, _blocks(pa, names, _validated(batches, path), path), count)
 
 

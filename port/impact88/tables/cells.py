@@ -3,6 +3,7 @@
 
 import json
 import math
+import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
@@ -32,6 +33,8 @@ from .rows import ArrowTexts, Column, Heading, Rows, heading
 
 _MEASURING = ("length", "length/time", "mass", "mass·length²", "mass·length²/time²")
 """What a bare column beside others with units leaves open."""
+_NUMBERS = re.compile(r"(?<![a-zA-Z^])(?:[0-9][0-9,]*\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_WRITTEN = re.compile(r"[+-]?[0-9]*(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?")
 _RATIOS = ("1", "-", "–", "—", "")
 
 
@@ -68,11 +71,15 @@ class TableUnits:
             if not self.system.is_bare:
                 # beside ft, slug and ft/s, or m, kg and m/s, bare numbers are such too
                 self.system = SYSTEMS["si" if self.system.base == SYSTEMS["si"].base else "chapter"]
-            if any(self.factor(name) != 1 for name in self.units):
+            foreign = [name for name in self.units if self.factor(name) != 1]
+            if foreign:
                 usual = self.system.label(quantity(bare[0]).unit)
+                names = [n for n, s in SYSTEMS.items() if s.base == self.system.base]
+                meant = " or ".join(f"{n} ({_measures(n)})" for n in names)
                 raise UserError(
-                    f"column {bare[0]} has no unit, and others have; expected {bare[0]} [{usual}], "
-                    f"or --units {self.system.name}",
+                    f"column {bare[0]} has no unit, and others have, such as "
+                    f"{heading(foreign[0])}; expected {bare[0]} [{usual}], or --units {meant} for "
+                    "what has none",
                     where,
                 )
 
@@ -105,6 +112,17 @@ class TableUnits:
         turn = self.convention.turned(name) if self.convention else None
         return turned(name, based, *turn) if turn and is_number(based) else based
 
+    def result(self, name: str, text: str) -> tuple[float, float]:
+        """A cell of a result in base units, and the size of the last digit it is written with (0
+        where that is not plain to see). Raises UserError for what is not an amount."""
+        based = doubles.double(self.cell(name, text))
+        amounts = _NUMBERS.findall(text)
+        if len(amounts) != 1:
+            return based, 0.0
+        number = amounts[0].replace(",", "")
+        size, written = last_digit(number), abs(doubles.double(number))
+        return based, size * abs(based) / written if written else size * self.factor(name)
+
     def turned(self, name: str, values: Any) -> Any:
         """Return numbers in base units in the listing's axes."""
         turn = self.convention.turned(name) if self.convention else None
@@ -121,12 +139,27 @@ class TableUnits:
         return {n: system.displayed(n, v) if n in RESULTS else v for n, v in results.items()}
 
 
+def _measures(system: str) -> str:
+    """The units of a system that tell it from others."""
+    usual = SYSTEMS[system].usual
+    return ", ".join(usual[rule] for rule in ("length", "length/time", "mass"))
+
+
+def last_digit(text: str) -> float:
+    """The size of the last digit that a number is written with; 0 for what is no number."""
+    if not (match := _WRITTEN.fullmatch(text)):
+        return 0.0
+    decimals, exponent = match.groups(default="")
+    power = float(exponent or 0) - len(decimals)
+    return float(10.0 ** min(300.0, max(power, -400.0)))
+
+
 def _units_in_cells(rows: Rows) -> list[tuple[str, str]]:
     found: set[tuple[str, str]] = set()
     for name, column in rows.scene().items():
         if not isinstance(column, np.ndarray):
-            # "lb" and "45 deg", but not 1E5 or inf
-            worth = (c for c in column if isinstance(c, str) and c.strip("0123456789+-.eE \t"))
+            # "lb" and "45 deg", but not 1E5, 1,234.5 or inf
+            worth = (c for c in column if isinstance(c, str) and c.strip("0123456789+-.,eE \t"))
             for text in worth:
                 found.update(units_in(name, text))
     return list(found)

@@ -118,7 +118,7 @@ def _records(lines: Lines, texts: Iterator[str], delimiter: str) -> Iterator[lis
 
 
 @contextmanager
-def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
+def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[Reader]:
     """Open a CSV table. Raises UserError if it cannot be read as one."""
     with open_text(path, encoding) as lines:
         head = b""
@@ -149,7 +149,7 @@ def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
             del names[-1]
         if not names:
             raise UserError("has no names in its first line; expected a header", lines.where)
-        names = scene_names(names, lines.where)
+        names = scene_names(names, lines.where, results)
         # a header that was taken off whole, with line ends that bytes show
         plain_ends = head.count(b"\r") == head.count(b"\r\n")
         in_blocks = lines.number == head.count(b"\n") > 0 and plain_ends

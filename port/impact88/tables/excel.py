@@ -1,6 +1,8 @@
-"""Excel workbooks (.xlsx, extra ``excel``): the first sheet, its first row that holds anything the
-header. A number is taken by the digits that read back to the double stored; openpyxl writes 16
-digits of one, so that the last bit may differ."""
+"""Excel workbooks (.xlsx, extra ``excel``). The header is the row with most names of a scene among
+the first rows of all sheets, the first of several; where no row has any, the first row that holds
+anything. What stands above it, and other sheets, are told. A number is taken by the digits that
+read back to the double stored; openpyxl writes 16 digits of one, so that the last bit may differ.
+"""
 
 import datetime
 import io
@@ -11,17 +13,21 @@ import zipfile
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
 from itertools import chain, islice
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..errors import UserError, library
+from ..errors import UserError, library, quoted
 from ..files import decoding, replacing
 from ..names import SCENE
 from .cells import plain, typed
 from .npztable import check_unpacked
-from .rows import BLOCK_ROWS, Column, Named, Put, Reader, Rows, scene_names
+from .rows import BLOCK_ROWS, Column, Named, Put, Reader, Rows, names_among, scene_names
 
+MOST_ABOVE, MOST_SHEETS = 50, 100
+"""Rows among which the header is sought, and sheets: titles and remarks are some lines."""
+SHOWN = 5
+"""Sheets that are told, of those that are not read."""
 LONGEST_CELL = 32_767
 """Characters that Excel has in a cell."""
 WRITTEN = datetime.datetime(1988, 1, 1)
@@ -30,8 +36,20 @@ WRITTEN = datetime.datetime(1988, 1, 1)
 _Lines = Generator[tuple[int, tuple[Any, ...]], None, None]
 
 
-def _lines(path: str) -> _Lines:
-    """Yield the rows that hold anything, with their numbers. Raises UserError."""
+class _Header(NamedTuple):
+    """Where a table begins: the sheet's place and title, the header's row and its texts;
+    ``others``: titles of further sheets that hold anything."""
+
+    place: int
+    title: str
+    row: int
+    names: list[str]
+    others: list[str]
+
+
+@contextmanager
+def _opened(path: str) -> Iterator[Any]:
+    """The workbook, its formulas by their values. Raises UserError."""
     openpyxl = library("openpyxl", "excel", "an .xlsx")
     with ExitStack() as stack:
         with decoding(path, "is not an .xlsx workbook"):
@@ -39,24 +57,50 @@ def _lines(path: str) -> _Lines:
                 check_unpacked(archive.infolist(), os.path.getsize(path), path)
             book = openpyxl.load_workbook(path, read_only=True, data_only=True)
             stack.enter_context(closing(book))
-            rows = enumerate(book.worksheets[0].iter_rows(values_only=True), 1)
-        while True:
-            with decoding(path, "is not an .xlsx workbook"):
-                number, row = next(rows, (0, ()))
-            if not number:
-                return
-            if any(cell is not None for cell in row):
-                yield number, row
+        yield book
 
 
-def _blocks(names: list[str], lines: _Lines, where: str) -> Iterator[Rows]:
+def _lines(sheet: Any, path: str, first: int = 1) -> _Lines:
+    """Yield a sheet's rows that hold anything, with their numbers. Raises UserError."""
+    with decoding(path, "is not an .xlsx workbook"):
+        rows = enumerate(sheet.iter_rows(min_row=first, values_only=True), first)
+    while True:
+        with decoding(path, "is not an .xlsx workbook"):
+            number, row = next(rows, (0, ()))
+        if not number:
+            return
+        if any(cell is not None for cell in row):
+            yield number, row
+
+
+def _header(book: Any, path: str, results: bool) -> _Header:
+    """Find the header. Raises UserError for a book that holds nothing."""
+    best: _Header | None = None
+    most, others = -1, []
+    for place, sheet in enumerate(book.worksheets[:MOST_SHEETS]):
+        with closing(_lines(sheet, path)) as lines:
+            rows = list(islice(lines, MOST_ABOVE))
+        others += [sheet.title] if rows else []
+        for number, row in rows:
+            texts = [_text(cell).strip() for cell in row]
+            while texts and not texts[-1]:
+                texts.pop()
+            count = names_among(texts, results)
+            if count > most:
+                most, best = count, _Header(place, sheet.title, number, texts, [])
+    if best is None:
+        raise UserError("holds nothing; expected a header of names", path)
+    return best._replace(others=[title for title in others if title != best.title])
+
+
+def _blocks(names: list[str], lines: _Lines, where: str, header: _Header) -> Iterator[Rows]:
     width, trusted = len(names), False
     while block := list(islice(lines, BLOCK_ROWS)):
         for number, row in block:
             if any(cell is not None for cell in row[width:]):
                 raise UserError(f"row {number} has a cell in a column that has no name", where)
         if not trusted and any(None in row for _, row in block):
-            _check_computed(where, width)
+            _check_computed(where, header)
             trusted = True
         full = ((*row[:width], *[None] * (width - len(row))) for _, row in block)
         columns: dict[str, Column] = {}
@@ -66,7 +110,7 @@ def _blocks(names: list[str], lines: _Lines, where: str) -> Iterator[Rows]:
         yield Rows(len(block), columns, [number for number, _ in block])
 
 
-def _check_computed(path: str, width: int) -> None:
+def _check_computed(path: str, header: _Header) -> None:
     """Raise UserError where a formula has no value: libraries write formulas, spreadsheet programs
     compute them when they save."""
     load = library("openpyxl", "excel", "an .xlsx").load_workbook
@@ -74,7 +118,10 @@ def _check_computed(path: str, width: int) -> None:
         closing(load(path, read_only=True, data_only=True)) as computed,
         closing(load(path, read_only=True)) as written,
     ):
-        sheets = (book.worksheets[0].iter_rows(max_col=width) for book in (computed, written))
+        sheets = (
+            book.worksheets[header.place].iter_rows(min_row=header.row, max_col=len(header.names))
+            for book in (computed, written)
+        )
         for value, formula in chain.from_iterable(map(zip, *sheets)):
             if value.value is None and formula.data_type == "f":
                 raise UserError(
@@ -89,17 +136,21 @@ def _text(cell: Any) -> str:
 
 
 @contextmanager
-def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
+def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[Reader]:
     """Open a workbook. Raises UserError if it is not one, or unpacks to more than it may."""
-    lines = _lines(path)
-    with closing(lines):
-        header = [_text(cell).strip() for _, row in islice(lines, 1) for cell in row]
-        while header and not header[-1]:
-            header.pop()
-        if not header:
-            raise UserError("its first sheet is empty; expected a header of names", path)
-        names = scene_names(header, path)
-        yield Reader(names, _blocks(names, lines, path))
+    with _opened(path) as book:
+        header = _header(book, path, results)
+        names = scene_names(header.names, path, results)
+        sheet = book.worksheets[header.place]
+        with closing(_lines(sheet, path, header.row + 1)) as lines:
+            reader = Reader(names, _blocks(names, lines, path, header))
+            reader.place = {"sheet": header.title, "row": header.row}
+            if header.place or header.row > 1 or header.others:
+                read = f"sheet {quoted(header.title)} is read, its headings in row {header.row}"
+                others = ", ".join(map(quoted, header.others[:SHOWN]))
+                more = ", ..." if len(header.others) > SHOWN else ""
+                reader.remarks.append(read + (f"; not read: {others}{more}" if others else ""))
+            yield reader
 
 
 class _Archive(zipfile.ZipFile):

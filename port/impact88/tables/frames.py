@@ -4,7 +4,8 @@
 None of these libraries is imported here unless the frame handed over is its own.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from functools import partial
 from typing import Any, TypeVar, cast
 
@@ -14,10 +15,10 @@ from numpy.typing import NDArray
 from ..arguments import explains_arguments
 from ..closedform.solve import solve
 from ..doubles import is_number
-from ..errors import UserError, library
+from ..errors import UserError, library, quoted
 from ..names import DEFAULT_M, SCENE
 from .cells import TableUnits, check_scene_columns, numbers
-from .rows import Column, Rows, heading, scene_names
+from .rows import BLOCK_ROWS, Column, Reader, Rows, heading, heading_remarks, scene_names
 
 Frame = TypeVar("Frame")
 Array = NDArray[Any]
@@ -150,12 +151,7 @@ def _numbers(name: str, values: Any, units: TableUnits) -> Array:
 
 
 def _structured(frame: Array, solved: Solver) -> Array:
-    names = frame.dtype.names
-    if names is None:
-        raise UserError(
-            f"an array of {frame.dtype} has no columns; expected a structured array, or "
-            "impact88.solve with an array for each name"
-        )
+    names = _names_of(frame)
     columns = {n: frame[n] for n in names}
     extended = columns | solved(names, lambda name: columns[name])
     result = np.empty(frame.shape, [(name, column.dtype) for name, column in extended.items()])
@@ -164,10 +160,25 @@ def _structured(frame: Array, solved: Solver) -> Array:
     return result
 
 
-def _dicts(rows: Sequence[Any], solved: Solver) -> list[dict[str, Any]]:
+def _names_of(frame: Array) -> tuple[str, ...]:
+    names = frame.dtype.names
+    if names is None:
+        raise UserError(
+            f"an array of {frame.dtype} has no columns; expected a structured array, or "
+            "impact88.solve with an array for each name"
+        )
+    return names
+
+
+def _checked(rows: Sequence[Any]) -> Sequence[Any]:
+    """Return rows that are dicts. Raises UserError for others."""
     if not all(isinstance(row, Mapping) for row in rows):
         raise UserError("expected a list of dicts, one for each scene")
-    if not rows:
+    return rows
+
+
+def _dicts(rows: Sequence[Any], solved: Solver) -> list[dict[str, Any]]:
+    if not _checked(rows):
         return []
     names = list(dict.fromkeys(name for row in rows for name in row))
     found = solved(names, lambda name: [row.get(name) for row in rows])
@@ -194,9 +205,18 @@ def _dataset(frame: Any, solved: Solver) -> Any:
 
 
 def _narwhals(frame: Any, solved: Solver) -> Any:
+    nw, table = _table(frame)
+    make = partial(nw.new_series, native_namespace=nw.get_native_namespace(table))
+    results = solved(table.columns, partial(_cells, table)).items()
+    spread = ((name, np.broadcast_to(array, (len(table),)).copy()) for name, array in results)
+    return table.with_columns(*(make(*column) for column in spread)).to_native()
+
+
+def _table(frame: Any) -> tuple[Any, Any]:
+    """Return narwhals, and its view of a frame. Raises UserError for what is none."""
     nw = library("narwhals.stable.v1", "frames", f"a frame of type {type(frame).__name__}")
     try:
-        table = nw.from_native(frame, eager_only=True)
+        return nw, nw.from_native(frame, eager_only=True)
     except TypeError:
         raise UserError(
             f"{type(frame).__module__}.{type(frame).__name__} is not a frame of values "
@@ -204,13 +224,78 @@ def _narwhals(frame: Any, solved: Solver) -> Any:
             "xarray Dataset, a structured array or a list of dicts"
         ) from None
 
-    def cells(name: str) -> Any:
-        series = table[name]
-        if series.dtype.is_numeric() and not series.is_null().any():
-            return np.asarray(series.to_numpy())
-        return np.array(series.to_list(), dtype=object)
 
-    make = partial(nw.new_series, native_namespace=nw.get_native_namespace(table))
-    results = solved(table.columns, cells).items()
-    spread = ((name, np.broadcast_to(array, (len(table),)).copy()) for name, array in results)
-    return table.with_columns(*(make(*column) for column in spread)).to_native()
+def _cells(table: Any, name: str) -> Any:
+    series = table[name]
+    if series.dtype.is_numeric() and not series.is_null().any():
+        return np.asarray(series.to_numpy())
+    return np.array(series.to_list(), dtype=object)
+
+
+@contextmanager
+def read_frame(frame: Any) -> Iterator[Reader]:
+    """Open a frame that holds results as a table is opened that does: a DataFrame of pandas or
+    polars, a pyarrow Table, a structured array, a list of dicts or a dict of columns. Numbers are
+    taken as they are held, texts as they are written. Raises UserError for a frame of another
+    kind."""
+    found: dict[Any, Any]
+    if isinstance(frame, np.ndarray):
+        found = {n: frame[n].reshape(-1) for n in _names_of(frame)}
+    elif isinstance(frame, Mapping) and not hasattr(frame, "data_vars"):
+        found = {n: _column(n, cells) for n, cells in frame.items()}
+    elif isinstance(frame, list | tuple):
+        rows = _checked(frame)
+        keys = dict.fromkeys(name for row in rows for name in row)
+        found = {n: _column(n, [row.get(n) for row in rows]) for n in keys}
+    elif hasattr(frame, "data_vars"):
+        raise UserError("is an xarray Dataset; expected frame.to_dataframe().reset_index()")
+    else:
+        _, table = _table(frame)
+        found = {name: _cells(table, name) for name in table.columns}
+    headings = list(map(str, found))
+    names = scene_names(headings, "the frame", True)
+    sizes = {name: len(column) for name, column in zip(names, found.values(), strict=True)}
+    count = max(sizes.values(), default=0)
+    for name, size in sizes.items():
+        if size not in (1, count):
+            raise UserError(f"column {quoted(heading(name))} has {size} cells, others have {count}")
+    spread = [np.broadcast_to(column, (count,)) for column in found.values()]
+    reader = Reader(names, _frame_blocks(names, spread, count), count)
+    reader.remarks += heading_remarks(names, True)
+    yield reader
+
+
+def _frame_blocks(names: Sequence[str], columns: Sequence[Array], count: int) -> Iterator[Rows]:
+    for first in range(0, count, BLOCK_ROWS):
+        parts = (column[first : first + BLOCK_ROWS] for column in columns)
+        rows = Rows(min(BLOCK_ROWS, count - first), {})
+        for name, part in zip(names, parts, strict=True):
+            empty = (
+                [at for at, cell in enumerate(part) if cell is None or cell != cell]
+                if name in SCENE and part.dtype.kind in "fO"
+                else []
+            )
+            if empty and name == "M":
+                part = part.copy()
+                part[empty] = float(DEFAULT_M)
+            elif empty:
+                rows.bad += [(at, name, "is empty; expected a number") for at in empty]
+            rows.columns[name] = part if part.dtype.kind in "fiub" else part.tolist()
+        yield rows
+
+
+def _column(name: Any, cells: Any) -> Array:
+    """Return a frame's column as an array of one dimension: of numbers, or of objects."""
+    if isinstance(cells, np.ma.MaskedArray):
+        cells = np.ma.filled(cells.astype(np.float64), np.nan)
+    array = np.asarray(cells) if isinstance(cells, np.ndarray | int | float) else None
+    if array is None or array.dtype.kind not in "fiub":
+        listed = [cells] if isinstance(cells, str) or not hasattr(cells, "__len__") else list(cells)
+        array = np.empty(len(listed), object)
+        array[:] = listed
+    if array.ndim > 1:
+        shape = " by ".join(map(str, array.shape))
+        raise UserError(
+            f"column {quoted(str(name))} is an array of {shape}; expected one dimension"
+        )
+    return array.reshape(-1)

@@ -1,4 +1,6 @@
-"""JSON Lines: a scene is an object on a line of its own; a number is its text as written.
+"""JSON Lines: a scene is an object on a line of its own, or in an array of objects; a number is its
+text as written. What an object holds in objects of its own (``{"inputs": {"UX": 1}}``) is the
+row's, where names of the scene are among it, or of results where these are read.
 
 A column that is written has one type from the first line to the last: a scene's values are doubles
 with their own digits (``1`` is written 1.0), results doubles with the fewest digits that read back
@@ -11,13 +13,15 @@ import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from itertools import chain, islice
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
 from .. import doubles
 from ..applesoft.decimaltext import scan
-from ..names import SCENE
+from ..errors import UserError, quoted
+from ..files import LONGEST_LINE
+from ..names import RESULTS, SCENE
 from .cells import Numeral, is_infinite, json_number, json_text
 from .lines import Lines, open_text, writing
 from .rows import (
@@ -36,23 +40,21 @@ from .rows import (
 
 DEEPEST = 100
 """Lists and objects inside one another that are read: a bound; Python itself reads a thousand."""
-_decode = json.JSONDecoder(
+_decoder = json.JSONDecoder(
     parse_float=Numeral, parse_int=Numeral, parse_constant=lambda name: Numeral(float(name))
-).decode
+)
 
 
-def _read(text: str) -> Any:
-    """The value of a JSON text. Raises ValueError if it is not one, or nested too deeply."""
+def _read(text: str) -> tuple[Any, str]:
+    """The value of a JSON text, and why it is none."""
     try:
-        value = _decode(text)
+        value = _decoder.decode(text)
         deep = text.count("[") + text.count("{") > DEEPEST and _depth(value) > DEEPEST
     except RecursionError:
         deep = True
     except ValueError as error:
-        raise ValueError(f"is not JSON: {error}") from None
-    if deep:
-        raise ValueError(f"is nested deeper than {DEEPEST} levels")
-    return value
+        return None, f"is not JSON: {error}"
+    return (None, f"is nested deeper than {DEEPEST} levels") if deep else (value, "")
 
 
 def _depth(value: Any) -> int:
@@ -61,7 +63,107 @@ def _depth(value: Any) -> int:
     return 1 + max(map(_depth, value.values() if isinstance(value, dict) else value), default=0)
 
 
-def _blocks(lines: Lines) -> Iterator[Rows]:
+_SPACE = " \t\r\n\ufeff"
+_AFTER = [",", "]", *_SPACE]
+_PIECE = 1 << 16
+"""Characters of an array that are read at once; objects have hundreds."""
+
+
+def _values(lines: Lines) -> Iterator[tuple[int, Any, str]]:
+    """Yield the values on the lines, each with its line and why it is none, "" if it is one."""
+    for text in lines:
+        if text.strip():
+            yield (lines.number, *_read(text))
+
+
+def _elements(lines: Lines) -> Iterator[tuple[int, Any, str]]:
+    """Yield the elements of an array, each with the line in which it begins. Raises UserError for
+    what is no array."""
+    text, at, line = "", 0, 1
+    wanted = "["
+
+    def fill() -> bool:
+        nonlocal text, at
+        piece = lines.read(max(_PIECE, len(text) - at))
+        text, at = text[at:] + piece, 0
+        return bool(piece)
+
+    def following() -> str:
+        """The next character that is no space; nothing at the end."""
+        nonlocal at, line
+        while True:
+            rest = text[at:].lstrip(_SPACE) if at < len(text) and text[at] in _SPACE else text[at:]
+            place = len(text) - len(rest)
+            line += text.count("\n", at, place)
+            at = place
+            if rest or not fill():
+                return rest[:1]
+
+    def refuse(says: str) -> NoReturn:
+        raise UserError(f"line {line} {says}", lines.where)
+
+    while True:
+        mark = following()
+        if not mark or mark not in wanted:
+            expected = " or ".join(map(quoted, wanted))
+            refuse(
+                f"has {quoted(mark)} where {expected} is expected"
+                if mark
+                else "ends within an array; expected ']'"
+            )
+        at += 1
+        if mark == "]" or (mark == "[" and following() == "]"):
+            at += mark == "["
+            break
+        if not following():
+            refuse("ends within an array; expected ']'")
+        while True:
+            try:
+                value, end = _decoder.raw_decode(text, at)
+                # a number may go on in the next piece
+                if text[end : end + 1] in _AFTER or not fill():
+                    break
+            except ValueError as error:
+                if len(text) - at >= LONGEST_LINE:
+                    refuse(f"begins a value longer than {LONGEST_LINE:,} characters")
+                if not fill():
+                    refuse(f"is not JSON: {error}")
+            except RecursionError:
+                refuse(f"is nested deeper than {DEEPEST} levels")
+        written = text[at:end]
+        deep = written.count("[") + written.count("{") > DEEPEST and _depth(value) > DEEPEST
+        lines.taken += len(written)
+        yield line, value, f"is nested deeper than {DEEPEST} levels" if deep else ""
+        line += written.count("\n")
+        at, wanted = end, ",]"
+    if following():
+        refuse("has text after the array's end; expected one array, or an object a line")
+
+
+def _lifted(row: dict[str, Any], results: bool) -> dict[str, Any]:
+    """The row with what its objects hold that is its own. Raises ValueError for a name with two
+    values."""
+    lifted = dict(row)
+    holders: dict[str, str] = {}
+    for key, inner in row.items():
+        if not isinstance(inner, dict):
+            continue
+        names = scene_names(list(inner), None, results)
+        if not any(name in SCENE or (results and name in RESULTS) for name in names):
+            continue
+        del lifted[key]
+        for name, cell in inner.items():
+            # the kit's vectors have each result in several forms
+            value = cell.get("double", cell) if isinstance(cell, dict) else cell
+            if name not in lifted:
+                lifted[name], holders[name] = value, f"in {quoted(key)}"
+            elif lifted[name] != value:
+                first = holders.get(name, "beside it")
+                raise ValueError(f"has two values of {quoted(name)}, in {quoted(key)} and {first}")
+    return lifted
+
+
+def _blocks(lines: Lines, values: Iterator[tuple[int, Any, str]], results: bool) -> Iterator[Rows]:
     matched: dict[str, str] = {}  # key -> the column's name
     known: set[str] | None = None  # the first block's columns
     while True:
@@ -74,25 +176,28 @@ def _blocks(lines: Lines) -> Iterator[Rows]:
             len(objects) < BLOCK_ROWS
             and len(objects) * len(keys) < BLOCK_CELLS
             and lines.taken < BLOCK_CHARACTERS
-            and (text := next(lines, None)) is not None
+            and (following := next(values, None)) is not None
         ):
-            if not text.strip():
-                continue
-            try:
-                value, reason = _read(text), "is not a JSON object"
-            except ValueError as error:
-                value, reason = None, str(error)
-            if not isinstance(value, dict):
+            number, value, reason = following
+            if not reason and not isinstance(value, dict):
+                reason = "is not a JSON object"
+            elif not reason and dict in map(type, value.values()):
+                try:
+                    value = _lifted(value, results)
+                except ValueError as error:
+                    reason = str(error)
+            if reason:
                 bad.append((len(objects), "", reason))
                 value = {}
             for key in value:
-                keys.setdefault(key, lines.number)
-            numbers.append(lines.number)
+                keys.setdefault(key, number)
+            numbers.append(number)
             objects.append(value)
         if not objects:
             return
         new = [key for key in keys if key not in matched]
-        matched |= zip(new, scene_names([*matched.values(), *new])[len(matched) :], strict=True)
+        every = scene_names([*matched.values(), *new], None, results)
+        matched |= zip(new, every[len(matched) :], strict=True)
         columns: dict[str, Column] = {}
         for key in keys:
             cells = [value.get(key, ABSENT) for value in objects]
@@ -108,10 +213,11 @@ def _text(cell: Any) -> Any:
 
 
 @contextmanager
-def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
+def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[Reader]:
     """Open a JSON Lines table. Raises UserError if it cannot be read."""
     with open_text(path, encoding) as lines:
-        blocks = _blocks(lines)
+        values = (_elements if lines.begins_with("[") else _values)(lines)
+        blocks = _blocks(lines, values, results)
         first = list(islice(blocks, 1))
         names = [name for rows in first for name in rows.columns]
         yield Reader(names, chain(first, blocks), *lines.source.extent)
@@ -146,14 +252,27 @@ def _cells(name: str, column: Column) -> list[str]:
 
 @contextmanager
 def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
-    """Write a JSON Lines table, of blocks that need not all have the same columns."""
+    """Write a JSON Lines table, of blocks that need not all have the same columns; under a name
+    that ends in .json an array of the same objects."""
+    is_array = path.lower().removesuffix(".gz").endswith(".json")
     with writing(path) as file:
+        mark = "[\n" if is_array else ""
 
         def put(columns: Named) -> None:
+            nonlocal mark
             keys = [json.dumps(heading(name), ensure_ascii=False) for name, _ in columns]
-            file.writelines(
-                "{" + ", ".join(f"{k}: {v}" for k, v in zip(keys, row, strict=True) if v) + "}\n"
-                for row in zip(*(_cells(*column) for column in columns), strict=True)
+            cells = zip(*(_cells(*column) for column in columns), strict=True)
+            lines = (
+                "{" + ", ".join(f"{k}: {v}" for k, v in zip(keys, row, strict=True) if v) + "}"
+                for row in cells
             )
+            if not is_array:
+                file.writelines(f"{line}\n" for line in lines)
+                return
+            for line in lines:
+                file.write(mark + line)
+                mark = ",\n"
 
         yield put
+        if is_array:
+            file.write(("[" if mark == "[\n" else "\n") + "]\n")

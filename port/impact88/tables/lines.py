@@ -4,12 +4,15 @@ import codecs
 import io
 import sys
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import IO, Any, cast
 
 from ..errors import UserError, printable, quoted
 from ..files import ESCAPED, LONGEST_LINE, Source, encoding_of, replacing
+
+_START = 4096
+"""Bytes of a file's begin that are looked at."""
 
 
 class Lines:
@@ -35,12 +38,24 @@ class Lines:
     def __iter__(self) -> Iterator[str]:
         return self
 
-    def __next__(self) -> str:
+    def begins_with(self, mark: str) -> bool:
+        """Return whether the text's first character that is no space is ``mark``; nothing is taken
+        of it."""
+        start = self.binary.peek(_START)[:_START].decode(self.encoding, "ignore")
+        return bool(start.lstrip("\ufeff \t\r\n")[:1] == mark)
+
+    def read(self, size: int) -> str:
+        """The next ``size`` characters, fewer at the end only."""
+        return self._taken(lambda text: text.read(size))
+
+    def _taken(self, take: Callable[[io.TextIOWrapper], str]) -> str:
+        """What ``take`` takes of the text. Raises UserError where it cannot be read."""
         try:
-            line = self._text.readline(LONGEST_LINE)
+            line = take(self._text)
             if not line and self._left:
                 self._text = self._opened(self._left.pop())
-                line = self._text.readline(LONGEST_LINE)
+                line = take(self._text)
+            return line
         except UnicodeError:
             what = f"contains bytes that are not {self.encoding.removesuffix('-sig').upper()} text"
             raise UserError(
@@ -50,6 +65,9 @@ class Lines:
             ) from None
         except (EOFError, zlib.error, OSError) as error:
             raise self._error(f"cannot be unpacked: {error}") from None
+
+    def __next__(self) -> str:
+        line = self._taken(lambda text: text.readline(LONGEST_LINE))
         if not line:
             raise StopIteration
         if len(line) >= LONGEST_LINE:

@@ -1,7 +1,8 @@
 """.npz: one array a column; arrays of length 1 or without dimension hold for all rows.
 
-Read and written as a whole: memory grows with the file. Anybody may have made it: what a member
-says of its size is held against its array's type and shape before any memory is taken.
+Columns are read a block of rows at a time; what is written is held until the end, since each array
+stands in the file as a whole. Anybody may have made the file: what a member says of its size is
+held against its array's type and shape before any memory is taken.
 """
 
 import io
@@ -10,7 +11,7 @@ import sys
 import zipfile
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import ExitStack, contextmanager, nullcontext
 from math import prod
 from typing import Any
 
@@ -21,20 +22,32 @@ from ..errors import UserError, quoted
 from ..files import ESCAPED, replacing
 from ..names import SCENE
 from .cells import typed
-from .rows import Column, Put, Reader, Rows, scene_names
+from .rows import (
+    BLOCK_CHARACTERS,
+    BLOCK_ROWS,
+    Column,
+    Put,
+    Reader,
+    Rows,
+    scene_names,
+)
 
 MOST_ARRAYS = 10_000
 """A table has some fifty columns."""
+_HEADER = 1 << 17
+"""Bytes in which an array's header ends: numpy reads one of 10,000 characters, and its length."""
 UNPACKED, RATIO = 256_000_000, 20
 """Bytes that a small file may unpack to; a larger one so many times its own. Doubles pack to a
 third; with twice as much a file of 100 MB may take 4 GB of memory."""
 
 
-def _arrays(path: str) -> dict[str, NDArray[Any]]:
-    """Every array of an .npz file by name. Raises UserError if it is not one, holds anything else,
-    or unpacks to more than it may."""
-    try:
-        with zipfile.ZipFile(path) as archive:
+@contextmanager
+def _members(path: str) -> Iterator[dict[str, "_Member"]]:
+    """Every array of an .npz file by name, unread. Raises UserError if the file is not one, holds
+    anything else, or unpacks to more than it may."""
+    with ExitStack() as stack:
+        with _telling(path):
+            archive = stack.enter_context(zipfile.ZipFile(path))
             members = archive.infolist()
             if len(members) > MOST_ARRAYS:
                 raise UserError(
@@ -46,7 +59,15 @@ def _arrays(path: str) -> dict[str, NDArray[Any]]:
                 if count > 1:
                     raise UserError(f"holds {quoted(name)} twice", path)
             check_unpacked(members, os.path.getsize(path), path)
-            return {m.filename[:-4]: _member(archive, m, path) for m in members}
+            arrays = {m.filename[:-4]: _Member(archive, m, path, stack) for m in members}
+        yield arrays
+
+
+@contextmanager
+def _telling(path: str) -> Iterator[None]:
+    """Errors of an archive within are UserErrors that name it."""
+    try:
+        yield
     except OSError as error:
         raise UserError(f"cannot be read: {error.strerror or error}", path) from None
     except UserError:
@@ -67,27 +88,60 @@ def check_unpacked(members: list[zipfile.ZipInfo], size: int, path: str) -> None
         )
 
 
-def _member(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: str) -> NDArray[Any]:
-    where = f"{path}, {quoted(member.filename)}"
-    headers = np.lib.format.read_array_header_1_0, np.lib.format.read_array_header_2_0
-    problem = "cannot be unpacked"
-    try:
-        with archive.open(member) as file:
-            data = io.BytesIO(file.read(member.file_size + 1))
-        problem = "is not an array of numbers or text"
-        shape, _, dtype = headers[np.lib.format.read_magic(data)[0] - 1](data)
-    except (OSError, MemoryError):
-        raise
-    except Exception as error:  # zlib, struct, lzma, a literal's parser ... each have their own
-        reason = str(error).partition("\n")[0]
-        raise UserError(f"{problem}: {reason}", where) from None
-    if dtype.kind not in "biufcSU":
-        raise UserError(f"holds {dtype}; expected an array of numbers or of text", where)
-    size, expected = data.getbuffer().nbytes, data.tell() + prod(shape) * dtype.itemsize
-    if size != expected or size != member.file_size:
-        raise UserError(f"has {size:,} bytes where its header says {expected:,}", where)
-    data.seek(0)
-    return np.lib.format.read_array(data, allow_pickle=False)
+class _Member:
+    """An array of an archive, read from its begin to its end. Raises UserError for what is not an
+    array of numbers or text, or has another size than its header says."""
+
+    def __init__(
+        self, archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: str, stack: ExitStack
+    ) -> None:
+        self.path, self.where = path, f"{path}, {quoted(member.filename)}"
+        headers = np.lib.format.read_array_header_1_0, np.lib.format.read_array_header_2_0
+        self.problem = "cannot be unpacked"
+        with self._telling():
+            self.file: Any = stack.enter_context(archive.open(member))
+            start = io.BytesIO(self.file.read(min(member.file_size, _HEADER)))
+            self.problem = "is not an array of numbers or text"
+            version = np.lib.format.read_magic(start)[0]
+            self.shape, fortran, self.dtype = headers[version - 1](start)
+        self.problem = "cannot be unpacked"
+        if self.dtype.kind not in "biufcSU":
+            raise UserError(
+                f"holds {self.dtype}; expected an array of numbers or of text", self.where
+            )
+        self.size, self.fortran = prod(self.shape), fortran
+        expected = start.tell() + self.size * self.dtype.itemsize
+        if member.file_size != expected:
+            raise UserError(
+                f"has {member.file_size:,} bytes where its header says {expected:,}", self.where
+            )
+        self.start = start.read()
+
+    @contextmanager
+    def _telling(self) -> Iterator[None]:
+        try:
+            yield
+        except (OSError, MemoryError):
+            raise
+        except Exception as error:  # zlib, struct, lzma, a literal's parser ... have their own
+            reason = str(error).partition("\n")[0]
+            raise UserError(f"{self.problem}: {reason}", self.where) from None
+
+    def take(self, count: int) -> NDArray[Any]:
+        """The next so many of the array's elements."""
+        size = count * self.dtype.itemsize
+        with _telling(self.path), self._telling():
+            data = self.start[:size]
+            self.start = self.start[size:]
+            data += self.file.read(size - len(data))
+            if len(data) < size:
+                raise EOFError("it ends before its size")
+            return np.frombuffer(data, self.dtype, count)
+
+    def whole(self) -> NDArray[Any]:
+        """The array, of which nothing was taken yet."""
+        array = self.take(self.size)
+        return array.reshape(self.shape[::-1]).T if self.fortran else array.reshape(self.shape)
 
 
 LARGEST_TEXTS = 256_000_000
@@ -95,27 +149,43 @@ LARGEST_TEXTS = 256_000_000
 
 
 @contextmanager
-def read(path: str, form: str, encoding: str | None) -> Iterator[Reader]:
+def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[Reader]:
     """Open an .npz table. Raises UserError if it is not one, or holds Python objects."""
-    arrays = _arrays(path)
-    names = scene_names(list(arrays))
-    columns: dict[str, Any] = dict(zip(names, arrays.values(), strict=True))
-    scene = {name: array for name, array in columns.items() if name in SCENE}
-    for name, array in scene.items():
-        if array.dtype.kind not in "fiuU":
-            raise UserError(f"{name} holds {array.dtype}; expected numbers", path)
-        if array.size != 1 and array.ndim != 1:
-            shape = " by ".join(map(str, array.shape))
-            raise UserError(f"{name} is an array of {shape}; expected one dimension", path)
-    lengths = {name: array.size for name, array in scene.items() if array.size != 1}
-    if len(set(lengths.values())) > 1:
-        sizes = ", ".join(f"{name} {length}" for name, length in lengths.items())
-        raise UserError(f"its columns differ in length: {sizes}", path)
-    count = next(iter(lengths.values()), 1)
-    for name, array in scene.items():
-        spread = np.broadcast_to(array.reshape(-1), (count,))
-        columns[name] = spread.tolist() if spread.dtype.kind == "U" else spread
-    yield Reader(names, [Rows(count, columns)], count)
+    with _members(path) as members:
+        names = scene_names(list(members), None, results)
+        columns = dict(zip(names, members.values(), strict=True))
+        scene = {name: column for name, column in columns.items() if name in SCENE}
+        for name, column in scene.items():
+            if column.dtype.kind not in "fiuU":
+                raise UserError(f"{name} holds {column.dtype}; expected numbers", path)
+            if column.size != 1 and len(column.shape) != 1:
+                shape = " by ".join(map(str, column.shape))
+                raise UserError(f"{name} is an array of {shape}; expected one dimension", path)
+        lengths = {name: column.size for name, column in scene.items() if column.size != 1}
+        if len(set(lengths.values())) > 1:
+            sizes = ", ".join(f"{name} {length}" for name, length in lengths.items())
+            raise UserError(f"its columns differ in length: {sizes}", path)
+        count = next(iter(lengths.values()), 1)
+        yield Reader(names, _blocks(columns, count), count)
+
+
+def _blocks(columns: dict[str, _Member], count: int) -> Iterator[Rows]:
+    """Yield the rows; arrays that have no element for each as they are, the same every time."""
+    running = {n: column for n, column in columns.items() if column.shape == (count,) != (1,)}
+    whole = {n: column.whole() for n, column in columns.items() if n not in running}
+    characters = sum(c.dtype.itemsize // 4 for c in running.values() if c.dtype.kind in "US")
+    most = max(1, min(BLOCK_ROWS, BLOCK_CHARACTERS // max(characters, 1)))
+    held = {name for name, array in whole.items() if array.size != 1}
+    for first in range(0, count, most) if count else (0,):
+        size = min(most, count - first)
+        rows = Rows(size, {}, whole=held)
+        for name in columns:
+            array = running[name].take(size) if name in running else whole[name]
+            if name in SCENE:
+                array = np.broadcast_to(array.reshape(-1), (size,))
+            is_text = name in SCENE and array.dtype.kind == "U"
+            rows.columns[name] = array.tolist() if is_text else array
+        yield rows
 
 
 def _array(name: str, column: Column) -> NDArray[Any]:
@@ -144,5 +214,6 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
             # a fixed date: the same arrays give the same bytes
             escaped = f"{name}.npy".encode("utf-8", ESCAPED).decode()
             with archive.open(zipfile.ZipInfo(escaped), "w", force_zip64=True) as out:
-                array = column[0] if len(column) == 1 else np.concatenate(column)
+                same = all(part is column[0] for part in column)
+                array = column[0] if same else np.concatenate(column)
                 np.lib.format.write_array(out, np.asanyarray(array), allow_pickle=False)

@@ -5,7 +5,7 @@ Numbers stay the decimal text they are written as until an arithmetic reads them
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -111,14 +111,16 @@ class Rows:
     """Some rows of a table. ``columns``: by name, texts (None where the row has none, `ABSENT`
     where it lacks the key) or an array; ``lines``: the file's line of each row, if it has lines;
     ``bad``: rows that cannot be used, each as its index, the column at fault and the reason;
-    ``late``: columns that the table's first rows did not have, and the line of each; ``first``: the
-    number of the first row, from 1; ``place``: how far the table is read after them."""
+    ``late``: columns that the table's first rows did not have, and the line of each; ``whole``:
+    names of arrays that have no cell for each row; ``first``: the number of the first row, from 1;
+    ``place``: how far the table is read after them."""
 
     count: int
     columns: dict[str, Column]
     lines: Sequence[int] | None = None
     bad: list[tuple[int, str, str]] = field(default_factory=list)
     late: dict[str, int] = field(default_factory=dict)
+    whole: Collection[str] = ()
     first: int = 1
     place: int = 0
 
@@ -135,10 +137,10 @@ class Rows:
             return column
         if column.size == 1:
             return np.broadcast_to(column.reshape(-1), (self.count,))
-        if column.shape != (self.count,):
+        if name in self.whole or column.shape != (self.count,):
             shape = " by ".join(map(str, column.shape))
             raise UserError(
-                f"{quoted(name)} is an array of {shape}, not a column of {self.count} rows; "
+                f"{quoted(name)} is an array of {shape}, not a column; "
                 "expected a cell for each row (only .npz results hold it as it is)"
             )
         return column
@@ -153,13 +155,17 @@ class Rows:
 class Reader:
     """An open table; iterating it yields `Rows`. ``names``: its columns (of JSON Lines, those of
     the first row); ``total``: its size in the units of ``position``, which are rows unless a format
-    has its own (None: unknown); ``delimiter``: between a CSV's fields."""
+    has its own (None: unknown); ``delimiter``: between a CSV's fields; ``place``: where in its file
+    the table stands, where a file may hold several (``{"sheet": "Rows", "row": 3}``); ``remarks``:
+    what a user should know of how the table was read."""
 
     names: list[str]
     blocks: Iterable[Rows]
     total: int | None = None
     position: Callable[[], int] | None = None
     delimiter: str = ","
+    place: dict[str, Any] = field(default_factory=dict)
+    remarks: list[str] = field(default_factory=list)
 
     def __iter__(self) -> Iterator[Rows]:
         read = 0
@@ -190,23 +196,58 @@ def heading(name: str) -> str:
 _UNIT = re.compile(r"(.*?)\s*(?:\[([^]]*)\]|\(([^)]*)\))\s*")
 
 
-def scene_names(names: Sequence[str], where: str | None = None) -> list[str]:
+def _taken_apart(text: str) -> tuple[str, str]:
+    """A heading's name and its unit."""
+    match = _UNIT.fullmatch(text)
+    return (match[1].strip(), (match[2] or match[3] or "").strip()) if match else (text.strip(), "")
+
+
+def scene_names(names: Sequence[str], where: str | None = None, results: bool = False) -> list[str]:
     """The names of a table's columns: those in small letters, or with a unit behind them (``Mu
-    [1]``), are the scene's or a result's names where the table has no such column otherwise. Raises
-    UserError for two columns of one name, where the table has a name (``where``)."""
-    known = set(names)
+    [1]``), are the scene's or a result's names where the table has no such column otherwise; a
+    result's without a unit only where ``results`` are read, since elsewhere it may be anything
+    (``pm``). Raises UserError for two columns that would be one, and, where the table has a name
+    (``where``), for two of the same heading."""
+    present = set(names)
     matched: list[str] = []
     for name in names:
-        match = _UNIT.fullmatch(name)
-        bare = (match[1] if match else name).strip().upper()
-        unit = (match[2] or match[3] or "").strip() if match else ""
-        taken = bare in known or not (bare in SCENE or (unit and bare in RESULTS))
+        text, unit = _taken_apart(name)
+        bare = text.upper()
+        taken = bare in present or not (
+            bare in SCENE or (bare in RESULTS and (results or bool(unit)))
+        )
+        if bare in matched and bare not in present and (bare in SCENE or results):
+            first = heading(matched[matched.index(bare)])
+            says = f"columns {quoted(first)} and {quoted(name)} are both {bare}; expected one"
+            raise UserError(says, where or "")
+        taken = taken or bare in matched
         matched.append(name if taken else Heading(bare, name, unit))
-        known.add(matched[-1])
     twice = next((name for name, count in Counter(matched).items() if count > 1), None)
     if where is not None and twice is not None:
         raise UserError(f"has two columns named {quoted(twice)}", where)
     return matched
+
+
+def names_among(texts: Sequence[str], results: bool = False) -> int:
+    """How many of some texts are headings of a scene's columns, or of results', where these are
+    read."""
+    known = {_taken_apart(text)[0].upper() for text in texts}
+    return len(known & ({*SCENE, *RESULTS} if results else {*SCENE}))
+
+
+def heading_remarks(names: Sequence[str], results: bool = False) -> list[str]:
+    """What a reader should know of how headings were understood: which are names in other letters,
+    and which stand beside the column that is read."""
+    said: list[str] = []
+    other = [name for name in names if _taken_apart(heading(name))[0] != name.strip()]
+    other = [name for name in other if isinstance(name, Heading)]
+    if other:
+        said.append(f"columns {' '.join(map(heading, other))} are read as {' '.join(other)}")
+    for name in names:
+        bare = _taken_apart(name)[0].upper()
+        if bare != name and bare in names and (bare in SCENE or (results and bare in RESULTS)):
+            said.append(f"column {quoted(name)} is not read: there is {bare}, too")
+    return said
 
 
 def shortest(values: NDArray[Any]) -> list[str]:

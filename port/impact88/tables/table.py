@@ -2,14 +2,14 @@
 the next block read and the last one written while a block is solved.
 
 A reader yields `tables.rows.Rows`; a writer takes them back with their results. Memory does not
-grow with the file (but for .npz and .xlsx).
+grow with the file (what is written of .npz and .xlsx is held).
 """
 
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import contextmanager
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 
 from ..errors import UserError, quoted
 from ..names import SCENE
-from .rows import Reader, Rows, heading
+from .rows import Reader, Rows, heading, heading_remarks
 
 FORMATS = {
     **dict.fromkeys((".csv", ".tsv", ".txt"), "csv"),
-    **dict.fromkeys((".jsonl", ".ndjson"), "jsonl"),
+    **dict.fromkeys((".jsonl", ".ndjson", ".json"), "jsonl"),
     **{".npz": "npz", ".parquet": "parquet", ".feather": "feather", ".arrow": "feather"},
     ".xlsx": "xlsx",
 }
@@ -35,8 +35,8 @@ _MODULES = {
     **dict.fromkeys(("parquet", "feather"), ("arrowtable", "a table of typed columns")),
 }
 """Format -> its module, and what it is called where its columns are those of the first block. A
-module has ``read(path, form, encoding)`` and ``write(path, form, delimiter, headings)``, which
-gives a function that takes a block's columns by name; each imports what it needs."""
+module has ``read(path, form, encoding, results)`` and ``write(path, form, delimiter, headings)``,
+which gives a function that takes a block's columns by name; each imports what it needs."""
 _TEXTS = ("csv", "jsonl")
 
 
@@ -56,17 +56,20 @@ def _module(form: str) -> ModuleType:
     return import_module(f"{__package__}.{_MODULES[form][0]}")
 
 
+@contextmanager
 def open_reader(
-    path: str, form: str, encoding: str | None = None
-) -> AbstractContextManager[Reader]:
+    path: str, form: str, encoding: str | None = None, results: bool = False
+) -> Iterator[Reader]:
     """Open a table for reading (``-``: standard input). Raises UserError if it is not one.
-    ``encoding``: of a CSV or of JSON Lines that are not UTF-8."""
+    ``encoding``: of a CSV or of JSON Lines that are not UTF-8; ``results``: results are read, too,
+    by whatever letters their headings have."""
     if encoding is not None and form not in _TEXTS:
         raise UserError(f"--encoding is for text; {form} has its own")
     if path == "-" and form not in _TEXTS:
         raise UserError(f"{form} cannot be read from standard input; expected a file")
-    opened: AbstractContextManager[Reader] = _module(form).read(path, form, encoding)
-    return opened
+    with _module(form).read(path, form, encoding, results) as reader:
+        reader.remarks += heading_remarks(reader.names, results)
+        yield reader
 
 
 @contextmanager
