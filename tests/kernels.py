@@ -10,7 +10,6 @@ from __future__ import annotations
 import hashlib
 import math
 import textwrap
-from collections.abc import Iterator
 
 from impact88.closedform.impactprograms import ALL, BODIES, COLUMNS, KERNELS, program_for
 from impact88.native.program import Program
@@ -61,6 +60,7 @@ def _table() -> str:
 
 
 def _body(name: str, program: Program) -> str:
+    sines, angles, lines = _lines(program)
     return "\n".join(
         [
             f"static inline ALWAYS_INLINE void {name}(",
@@ -68,12 +68,16 @@ def _body(name: str, program: Program) -> str:
             "    int64_t eights, const uint64_t wanted)",
             "{",
             *(f"    {line}" for line in _pointers(program)),
-            "    EACH_OF_EIGHTS {",
-            *(f"        {line}" for line in _lines(program)),
-            "    }",
+            f"    double {', '.join(f'{x}[STRIP]' for x in sines)};",
+            *_loop(angles),
+            *_loop(lines),
             "}\n",
         ]
     )
+
+
+def _loop(lines: list[str]) -> list[str]:
+    return ["    EACH_OF_EIGHTS {", *(f"        {line}" for line in lines), "    }"]
 
 
 def _pointers(program: Program) -> list[str]:
@@ -85,19 +89,37 @@ def _pointers(program: Program) -> list[str]:
     ]
 
 
-def _lines(program: Program) -> Iterator[str]:
+def _lines(program: Program) -> tuple[list[str], list[str], list[str]]:
+    """The arrays of sines and cosines, the lines that fill them, and all others. In a loop of their
+    own they take a tenth less of the six velocities' time: a processor has several scenes of a
+    short loop in work at once, of one as long as a body hardly two."""
     values = {place: f"{column}[i]" for place, column in enumerate(program.columns)}
     first, conditions = len(values), set[str]()
     for place, scalar in enumerate(program.scalars, program.moving):
         assert isinstance(scalar, float)
         values[place] = "INFINITY" if math.isinf(scalar) else scalar.hex()
+    sines: list[str] = []
+    angles: dict[str, None] = {}
+    lines: dict[str, None] = {}
+    line_of: dict[str, str] = {}
+    operands_of: dict[str, list[str]] = {}
+
+    def move(value: str) -> None:
+        """Compute a value among the angles."""
+        for operand in operands_of.get(value, ()):
+            move(operand)
+        if value in line_of:
+            lines.pop(line_of[value], None)
+            angles[line_of[value]] = None
+
     for number, (operation, places) in enumerate(program.steps):
         if operation == "SINE_AND_COSINE":
             angle, sine, cosine = places
             source = values[angle]
-            values[sine], values[cosine] = f"s{number}", f"c{number}"
-            yield f"double s{number}, c{number};"
-            yield f"SINE_AND_COSINE({source}, s{number}, c{number});"
+            move(source)
+            sines += [f"s{number}", f"c{number}"]
+            values[sine], values[cosine] = f"s{number}[i]", f"c{number}[i]"
+            angles[f"SINE_AND_COSINE({source}, {values[sine]}, {values[cosine]});"] = None
             continue
         *operands, to = places
         texts = [values[place] for place in operands]
@@ -107,13 +129,15 @@ def _lines(program: Program) -> Iterator[str]:
         if operation in ("RESULT", "RESULT_OR_INFINITE", "BITS"):
             result = to - first
             keeps = formula if operation != "BITS" else texts[0]
-            yield f"if (wanted >> {result} & 1) to_{ALL[result]}[i] = {keeps};"
+            lines[f"if (wanted >> {result} & 1) to_{ALL[result]}[i] = {keeps};"] = None
         else:
             kind = "int64_t" if operation in CONDITIONS else "double"
-            values[to] = f"v{number}"
+            values[to] = name = f"v{number}"
             if operation in CONDITIONS:
-                conditions.add(f"v{number}")
-            yield f"{kind} v{number} = {formula};"
+                conditions.add(name)
+            line_of[name], operands_of[name] = f"{kind} {name} = {formula};", texts
+            lines[line_of[name]] = None
+    return sines, list(angles), list(lines)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from impact88 import solve
+from impact88 import native, solve
 from impact88.bench.populations import POPULATIONS, scenes
 from impact88.closedform.columns import UNUSED_BY_POINTS, examine, part, sources
 from impact88.closedform.impactprograms import program_for
@@ -130,6 +130,53 @@ def test_a_selection_gets_the_same_bits_as_all():
     everything = solve(g)
     for name in RESULTS:
         assert np.all(same(solve(g, [name])[name] * 1.0, everything[name] * 1.0)), name
+
+
+@pytest.mark.parametrize("count", [7, 128, 2048, 2049, 6001])
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+def test_scenes_collected_from_afar_get_the_bits_of_numpy(count, share):
+    """What is of another kind waits until a strip of such scenes is full."""
+    g = {**scenes("casework", count, 3), "M": 6.0}
+    rng = np.random.default_rng(count)
+    g["MU"] = np.where(rng.random(count) < share, -10.0, g["MU"])
+    g["TB"] = np.where(rng.random(count) < 0.02, 1e9, g["TB"])
+    found = solve(g)
+    with native.switched_off():
+        expected = solve(g)
+    for name in RESULTS:
+        assert np.all(same(found[name] * 1.0, expected[name] * 1.0)), name
+
+
+WALL = {"MB": np.inf, "IB": np.inf, "VX": 0.0, "VY": 0.0, "WB": 0.0}
+
+
+@pytest.mark.parametrize(
+    ("change", "usable"),
+    [
+        ({}, True),
+        ({"VX": -0.0}, True),
+        ({"VX": 1.0}, False),
+        ({"WB": 1.0}, False),
+        ({"MA": np.inf, "UX": 0.0, "UY": 0.0}, False),
+        ({"IB": 2000.0, "WB": 1.0}, True),
+        ({"MB": 100.0, "VX": 1.0}, True),
+        ({"M": 4.0, "IA": np.inf, "IB": np.nan, "WB": 1.0}, True),
+        ({"VX": np.zeros(300)}, True),
+        ({"M": np.where(np.arange(300) % 2, 4.0, 6.0)}, True),
+    ],
+)
+def test_a_barrier_of_constants_is_one_of_columns(change, usable):
+    """Constants that need no look at each scene are told from those that do."""
+    g = {**scenes("casework", 300, 3), **WALL, **change}
+    found = solve(g)
+    spread = solve({name: np.broadcast_to(x, 300).copy() for name, x in g.items()})
+    with native.switched_off():
+        expected = solve(g)
+    assert np.isfinite(found["VAX"]).all() == usable
+    assert np.isnan(found["VAX"]).all() != usable
+    for name in RESULTS:
+        assert np.all(same(found[name] * 1.0, expected[name] * 1.0)), name
+        assert np.all(same(found[name] * 1.0, spread[name] * 1.0)), name
 
 
 def test_threads_and_blocks_change_nothing():

@@ -3,8 +3,8 @@
 
    Scenes are taken a strip at a time. The kernel of the kind that most scenes of a strip are of runs
    over all of it, on the columns themselves; scenes of another kind, or with angles of many turns,
-   are then collected, computed by their own kernel, and put in place. A scene whose numbers cannot
-   be used is NaN. Constants are strips filled once. */
+   are collected until they fill a strip, then computed by their own kernel, and put in place. A scene
+   whose numbers cannot be used is NaN. Constants are strips filled once. */
 
 #define EACH_OF_EIGHTS INDEPENDENT for (int64_t i = 0; i < 8 * eights; i++)
 typedef void (*kernel)(
@@ -38,10 +38,12 @@ EXPORT kernel kernel_of(int64_t body, uint64_t wanted)
 
 EXPORT const char *formulas(void) { return FORMULAS; }
 
-/* Strips whose columns are looked at before any is computed: long runs through memory are what the
-   processor fetches ahead by itself, and so many scenes' columns stay in the second-level cache. */
+/* Strips whose columns are copied side by side and looked at before any is computed, where there are
+   more: long runs through memory are what the processor fetches ahead by itself, and columns whose
+   places differ by a power of two, as those of 16,384 scenes do, do not drive each other out of the
+   caches. So many scenes' columns stay in the second-level cache. */
 #ifndef AT_ONCE
-#define AT_ONCE 32
+#define AT_ONCE 16
 #endif
 
 #define UNUSED_BY_POINTS \
@@ -102,14 +104,105 @@ static inline ALWAYS_INLINE int64_t find_odd(const impacts *c, int64_t points, i
     return odd;
 }
 
+/* Copy ``length`` scenes from ``at`` side by side; whether a number is out of the ordinary. */
+static inline ALWAYS_INLINE int64_t bring_near(
+    const impacts *c, int64_t points, int64_t at, int64_t length,
+    double (*near)[AT_ONCE * STRIP + 8])
+{
+    int64_t odd = 0;
+    for (int k = 0; k < COLUMNS; k++) {
+        if (!c->step[k]) continue;
+        const double *restrict x = c->column[k] + at;
+        const double least = c->limits[2 * k], most = c->limits[2 * k + 1];
+        double *restrict y = near[k];
+        int64_t outside = 0;
+        for (int64_t i = 0; i < length; i++) {
+            y[i] = x[i];
+            outside |= !((x[i] >= least) & (x[i] <= most));
+        }
+        if (k != AT_M && !(points && UNUSED_BY_POINTS >> k & 1)) odd |= outside;
+    }
+    return odd;
+}
+
+/* Whether constants call for a look at each scene. Those of a rigid barrier do not: an infinite mass
+   or inertia beside speeds of that body that are constants, too, and 0. ``fixed``: with angles
+   within a turn. */
+static int64_t find_odd_constants(const impacts *c, int64_t points, double (*fixed)[STRIP])
+{
+    static const int speeds[][3] = {
+        {AT_MA, AT_UX, AT_UY}, {AT_IA, AT_WA, AT_WA}, {AT_MB, AT_VX, AT_VY}, {AT_IB, AT_WB, AT_WB}};
+    int64_t infinite = 0, bodies = 0;
+    for (int k = 0; k < COLUMNS; k++) {
+        if (c->step[k] || (points && UNUSED_BY_POINTS >> k & 1)) continue;
+        double y = fixed[k][0];
+        if (k == AT_M ? y == 4 || y == 6 : y >= c->limits[2 * k] && y <= c->limits[2 * k + 1]) continue;
+        if (!(INERTIAS >> k & 1) || y != INFINITY) return 1;
+        infinite |= (int64_t)1 << k;
+    }
+    if (!infinite) return 0;
+    if (c->step[AT_M]) return 1;
+    for (int n = 0; n < 4; n++) {
+        if (!(infinite >> speeds[n][0] & 1)) continue;
+        bodies |= n < 2 ? 1 : 2;
+        for (int m = 1; m < 3; m++)
+            if (c->step[speeds[n][m]] || fixed[speeds[n][m]][0] != 0) return 1;
+    }
+    return bodies == 3;
+}
+
+/* Scenes of one kind from anywhere, computed once there are enough of them. */
+typedef struct {
+    int64_t many, place[2 * STRIP];
+} collection;
+
+/* The first ``n`` of a collection: copied side by side, computed, and put in place. */
+static inline ALWAYS_INLINE void solve_collected(
+    const impacts *c, int k, collection *of, int64_t n, double (*copy)[STRIP], const double **copies,
+    double (*found)[STRIP])
+{
+    double *finds[RESULTS];
+    int64_t padded = (n + 7) / 8 * 8, *place = of->place;
+    for (int col = 0; col < COLUMNS; col++) {
+        if (!c->step[col]) continue;
+        const double *x = c->column[col];
+        double *y = copy[col];
+        copies[col] = y;
+        for (int64_t i = 0; i < n; i++) y[i] = x[place[i]];
+        if (ANGLES >> col & 1) {
+            int64_t large = 0;
+            for (int64_t i = 0; i < n; i++) large |= !(fabs(y[i]) <= LARGE_ANGLE);
+            for (int64_t i = 0; i < n && large; i++)
+                if (!(fabs(y[i]) <= LARGE_ANGLE)) y[i] = fmod(y[i], 360.0);
+        }
+        for (int64_t i = n; i < padded; i++) y[i] = y[0];
+    }
+    for (int r = 0; r < RESULTS; r++) finds[r] = found[r];
+    c->kernels[k](copies, finds, c->circle, padded / 8);
+    for (int r = 0; r < RESULTS; r++) {
+        if (!c->result[r]) continue;
+        if (r == STATUS_AT) {
+            uint16_t *status = c->result[r];
+            for (int64_t i = 0; i < n; i++) status[place[i]] = BITS(found[r][i]);
+        } else {
+            double *result = c->result[r];
+            for (int64_t i = 0; i < n; i++) result[place[i]] = found[r][i];
+        }
+    }
+    of->many -= n;
+    for (int64_t i = 0; i < of->many; i++) place[i] = place[n + i];
+}
+
 /* Scenes ``start`` to ``stop``. */
 EXPORT CLONES void solve_impacts(const impacts *its, int64_t start, int64_t stop)
 {
     const impacts c = *its;
     double fixed[COLUMNS][STRIP], copy[COLUMNS][STRIP], found[RESULTS][STRIP];
     const double *in[COLUMNS], *copies[COLUMNS];
-    double *out[RESULTS], *finds[RESULTS];
-    int64_t odd_always = 0, odd_somewhere = 0, odd = 0, looked = start, only_points;
+    double near[COLUMNS][AT_ONCE * STRIP + 8], *out[RESULTS];
+    int64_t together = stop - start <= AT_ONCE * STRIP, first = start;
+    collection collected[REFUSED];
+    int64_t odd_always, odd_somewhere = 0, odd = 0, looked = start, only_points;
     int64_t lanes = stop - start < STRIP ? (stop - start + 7) / 8 * 8 : STRIP;
 
     only_points = !c.step[AT_M] && *c.column[AT_M] == 4;
@@ -118,59 +211,60 @@ EXPORT CLONES void solve_impacts(const impacts *its, int64_t start, int64_t stop
         if (c.step[k]) continue;
         double y = *c.column[k];
         if (ANGLES >> k & 1 && !(fabs(y) <= LARGE_ANGLE)) y = fmod(y, 360.0);
-        int64_t ordinary = k == AT_M ? y == 4 || y == 6
-                                     : y >= c.limits[2 * k] && y <= c.limits[2 * k + 1];
-        odd_always |= !ordinary && !(only_points && UNUSED_BY_POINTS >> k & 1);
         for (int64_t i = 0; i < lanes; i++) fixed[k][i] = y;
         in[k] = copies[k] = fixed[k];
     }
-    for (int r = 0; r < RESULTS; r++) finds[r] = found[r];
+    odd_always = find_odd_constants(&c, only_points, fixed);
+    for (int k = 0; k < REFUSED; k++) collected[k].many = 0;
 
     for (int64_t at = start; at < stop; at += STRIP) {
         int64_t many = stop - at < STRIP ? stop - at : STRIP, whole = many / 8;
         if (at >= looked) {
-            looked = stop - at < AT_ONCE * STRIP ? stop : at + AT_ONCE * STRIP;
-            odd_somewhere = odd_always || find_odd(&c, only_points, at, looked);
+            int64_t length = stop - at < AT_ONCE * STRIP ? stop - at : AT_ONCE * STRIP;
+            odd_somewhere = odd_always;
+            if (together) odd_somewhere |= find_odd(&c, only_points, at, at + length);
+            else odd_somewhere |= bring_near(&c, only_points, at, length, near);
+            first = at, looked = at + length;
         }
         odd = odd_always || (odd_somewhere && find_odd(&c, only_points, at, at + many));
         for (int k = 0; k < COLUMNS; k++)
-            if (c.step[k]) in[k] = c.column[k] + at;
+            if (c.step[k]) in[k] = together ? c.column[k] + at : near[k] + (at - first);
         /* what is not wanted goes where nobody looks */
         for (int r = 0; r < RESULTS; r++)
             out[r] = c.result[r] && r != STATUS_AT ? (double *)c.result[r] + at : found[r];
         uint16_t *status = c.result[STATUS_AT] ? (uint16_t *)c.result[STATUS_AT] + at : 0;
 
-        int64_t kind[STRIP], turned[STRIP], numbers[KINDS] = {0}, others = 0, most = FRICTION;
+        int64_t kind[STRIP], turned[STRIP], numbers[KINDS] = {0}, pivots = 0, most = FRICTION;
+        if (c.step[AT_MU])
+            for (int64_t i = 0; i < many; i++) pivots += in[AT_MU][i] == -10;
+        else
+            pivots = *in[AT_MU] == -10 ? many : 0;
+        int64_t apart = odd || c.step[AT_M]; /* scenes are looked at one by one */
         if (odd) {
             find_kinds(in, many, kind, turned);
             for (int64_t i = 0; i < many; i++) numbers[kind[i]] += !turned[i];
-        } else {
-            int64_t pivots = 0, points = 0, six = 0;
-            if (c.step[AT_MU])
-                for (int64_t i = 0; i < many; i++) pivots += in[AT_MU][i] == -10;
-            else
-                pivots = *in[AT_MU] == -10 ? many : 0;
-            if (c.step[AT_M])
-                for (int64_t i = 0; i < many; i++) {
-                    points += in[AT_M][i] == 4;
-                    six += in[AT_M][i] == 6;
-                }
-            else
-                points = *in[AT_M] == 4 ? many : 0, six = many - points;
-            int64_t alike = (pivots == 0 || pivots == many) && (points == many || six == many);
-            if (alike)
+        } else if (apart) {
+            int64_t points = 0, six = 0;
+            for (int64_t i = 0; i < many; i++) {
+                points += in[AT_M][i] == 4;
+                six += in[AT_M][i] == 6;
+            }
+            if ((pivots == 0 || pivots == many) && (points == many || six == many)) {
+                apart = 0;
                 numbers[2 * (points == many) + (pivots == many)] = many;
-            else
+            } else
                 for (int64_t i = 0; i < many; i++) {
                     int64_t m = in[AT_M][i] == 4;
                     kind[i] = m | (in[AT_M][i] == 6) ? 2 * m + (in[AT_MU][i] == -10) : REFUSED;
                     turned[i] = 0;
                     numbers[kind[i]]++;
                 }
+        } else {
+            numbers[2 * only_points] = many - pivots;
+            numbers[2 * only_points + 1] = pivots;
         }
         for (int k = 0; k < REFUSED; k++)
             if (numbers[k] > numbers[most]) most = k;
-        others = many - numbers[most];
 
         if (numbers[most] && whole) {
             c.kernels[most](in, out, c.circle, whole);
@@ -178,46 +272,39 @@ EXPORT CLONES void solve_impacts(const impacts *its, int64_t start, int64_t stop
         }
         int64_t done = numbers[most] ? 8 * whole : 0;
         /* the rest of the strip, and what is of another kind */
-        for (int k = 0; k < REFUSED && (others || done < many); k++) {
-            int64_t place[STRIP], n = 0;
-            if (!others) { /* all are of one kind */
-                if (k == most)
-                    for (int64_t i = done; i < many; i++) place[n++] = i;
-            } else
+        if (apart) {
+            for (int k = 0; k < REFUSED; k++) {
+                collection *of = collected + k;
                 for (int64_t i = 0; i < many; i++) {
-                    place[n] = i;
-                    n += kind[i] == k && (k != most || turned[i] || i >= done);
+                    of->place[of->many] = at + i;
+                    of->many += kind[i] == k && (k != most || turned[i] || i >= done);
                 }
-            if (!n) continue;
-            int64_t padded = (n + 7) / 8 * 8;
-            for (int col = 0; col < COLUMNS; col++) {
-                int64_t angle = odd && ANGLES >> col & 1;
-                if (!c.step[col]) continue;
-                const double *x = in[col];
-                double *y = copy[col];
-                copies[col] = y;
-                for (int64_t i = 0; i < n; i++) y[i] = x[place[i]];
-                for (int64_t i = 0; i < n && angle; i++)
-                    if (!(fabs(y[i]) <= LARGE_ANGLE)) y[i] = fmod(y[i], 360.0);
-                for (int64_t i = n; i < padded; i++) y[i] = y[0];
             }
-            c.kernels[k](copies, finds, c.circle, padded / 8);
-            for (int r = 0; r < RESULTS; r++) {
-                if (!c.result[r]) continue;
-                if (r == STATUS_AT)
-                    for (int64_t i = 0; i < n; i++) status[place[i]] = BITS(found[r][i]);
-                else
-                    for (int64_t i = 0; i < n; i++) out[r][place[i]] = found[r][i];
-            }
-        }
-        if (others && numbers[REFUSED])
-            for (int64_t i = 0; i < many; i++)
+            for (int64_t i = 0; i < many && numbers[REFUSED]; i++)
                 for (int r = 0; r < RESULTS && kind[i] == REFUSED; r++) {
                     if (!c.result[r]) continue;
                     if (r == STATUS_AT) status[i] = NOT_FINITE;
                     else out[r][i] = NAN;
                 }
+        } else {
+            collection *of = collected + most, *others = collected + (most ^ 1);
+            for (int64_t i = 0; i < done && numbers[most] < many; i++) {
+                others->place[others->many] = at + i;
+                others->many += (in[AT_MU][i] == -10) != (most & 1);
+            }
+            for (int64_t i = done; i < many; i++) {
+                int64_t here = !c.step[AT_MU] || (in[AT_MU][i] == -10) == (most & 1);
+                if (here) of->place[of->many++] = at + i;
+                else others->place[others->many++] = at + i;
+            }
+        }
+        for (int k = 0; k < REFUSED; k++)
+            if (collected[k].many >= STRIP)
+                solve_collected(&c, k, collected + k, STRIP, copy, copies, found);
     }
+    for (int k = 0; k < REFUSED; k++)
+        if (collected[k].many)
+            solve_collected(&c, k, collected + k, collected[k].many, copy, copies, found);
 }
 
 /* A call that is made again and again: of some columns and all results wanted only the places are known,

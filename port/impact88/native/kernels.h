@@ -23,21 +23,23 @@ static inline ALWAYS_INLINE void friction(
     RESULT_AT(ELM, 21) RESULT_AT(EESA, 22) RESULT_AT(EESB, 23) RESULT_AT(DVA, 24)
     RESULT_AT(DVB, 25) RESULT_AT(PN, 26) RESULT_AT(PT, 27) RESULT_AT(PM, 28) RESULT_AT(MUP, 29)
     RESULT_AT(MUC, 30) RESULT_AT(COND, 31) RESULT_AT(STATUS, 32)
+    double s1[STRIP], c1[STRIP], s4[STRIP], c4[STRIP], s9[STRIP], c9[STRIP], s93[STRIP], c93[STRIP], s100[STRIP], c100[STRIP];
     EACH_OF_EIGHTS {
-        double v0 = DIVIDE(0x1.0000000000000p+0, MA[i]);
-        double s1, c1;
-        SINE_AND_COSINE(GA[i], s1, c1);
+        SINE_AND_COSINE(GA[i], s1[i], c1[i]);
         double v2 = ADD(TA[i], PA[i]);
         double v3 = SUBTRACT(v2, GA[i]);
-        double s4, c4;
-        SINE_AND_COSINE(v3, s4, c4);
-        double v5 = MULTIPLY(DA[i], s4);
-        double v6 = DIVIDE(0x1.0000000000000p+0, IA[i]);
+        SINE_AND_COSINE(v3, s4[i], c4[i]);
         double v7 = ADD(TB[i], PB[i]);
         double v8 = SUBTRACT(v7, GA[i]);
-        double s9, c9;
-        SINE_AND_COSINE(v8, s9, c9);
-        double v10 = MULTIPLY(DB[i], s9);
+        SINE_AND_COSINE(v8, s9[i], c9[i]);
+        SINE_AND_COSINE(v2, s93[i], c93[i]);
+        SINE_AND_COSINE(v7, s100[i], c100[i]);
+    }
+    EACH_OF_EIGHTS {
+        double v0 = DIVIDE(0x1.0000000000000p+0, MA[i]);
+        double v5 = MULTIPLY(DA[i], s4[i]);
+        double v6 = DIVIDE(0x1.0000000000000p+0, IA[i]);
+        double v10 = MULTIPLY(DB[i], s9[i]);
         double v11 = DIVIDE(0x1.0000000000000p+0, IB[i]);
         double v12 = PRODUCTS_MINUS(v5, v6, v10, v11);
         double v13 = MULTIPLY(EM[i], v12);
@@ -49,7 +51,7 @@ static inline ALWAYS_INLINE void friction(
         double v19 = SUBTRACT(0x1.0000000000000p+0, v18);
         double v20 = SUBTRACT(UX[i], VX[i]);
         double v21 = SUBTRACT(UY[i], VY[i]);
-        double v22 = PRODUCTS_PLUS(c1, v20, s1, v21);
+        double v22 = PRODUCTS_PLUS(c1[i], v20, s1[i], v21);
         double v23 = PRODUCT_PLUS(v5, WA[i], v22);
         double v24 = PRODUCT_PLUS(v10, WB[i], v23);
         double v25 = MULTIPLY(E[i], v24);
@@ -65,10 +67,10 @@ static inline ALWAYS_INLINE void friction(
         double v35 = DIVIDE(0x1.0000000000000p+0, MB[i]);
         double v36 = ADD(v0, v35);
         double v37 = MULTIPLY(v6, v28);
-        double v38 = PRODUCTS_MINUS(c1, v21, s1, v20);
-        double v39 = MULTIPLY(DA[i], c4);
+        double v38 = PRODUCTS_MINUS(c1[i], v21, s1[i], v20);
+        double v39 = MULTIPLY(DA[i], c4[i]);
         double v40 = MINUS_PRODUCT(v39, WA[i], v38);
-        double v41 = MULTIPLY(DB[i], c9);
+        double v41 = MULTIPLY(DB[i], c9[i]);
         double v42 = MINUS_PRODUCT(v41, WB[i], v40);
         double v43 = AGAINST(MU[i], v42);
         double v44 = MINUS_PRODUCT(v43, v39, v5);
@@ -81,10 +83,10 @@ static inline ALWAYS_INLINE void friction(
         double v51 = PRODUCTS_MINUS(v19, v48, v50, v13);
         double v52 = DIVIDE(v34, v51);
         double v53 = MULTIPLY(v43, v52);
-        double v54 = PRODUCTS_MINUS(c1, v52, s1, v53);
+        double v54 = PRODUCTS_MINUS(c1[i], v52, s1[i], v53);
         double v55 = MULTIPLY(v0, v54);
         double v56 = ADD(UX[i], v55);
-        double v57 = PRODUCTS_PLUS(s1, v52, c1, v53);
+        double v57 = PRODUCTS_PLUS(s1[i], v52, c1[i], v53);
         double v58 = MULTIPLY(v0, v57);
         double v59 = ADD(UY[i], v58);
         double v60 = MULTIPLY(v35, v54);
@@ -120,20 +122,16 @@ static inline ALWAYS_INLINE void friction(
         double v90 = SUBTRACT(v78, v76);
         double v91 = PRODUCT_PLUS(v89, v90, v88);
         double v92 = DIVIDE(v91, v51);
-        double s93, c93;
-        SINE_AND_COSINE(v2, s93, c93);
-        double v94 = MULTIPLY(DA[i], s93);
+        double v94 = MULTIPLY(DA[i], s93[i]);
         double v95 = MULTIPLY(v94, WA[i]);
         double v96 = ADD(UX[i], v95);
-        double v97 = MULTIPLY(DA[i], c93);
+        double v97 = MULTIPLY(DA[i], c93[i]);
         double v98 = MULTIPLY(v97, WA[i]);
         double v99 = SUBTRACT(UY[i], v98);
-        double s100, c100;
-        SINE_AND_COSINE(v7, s100, c100);
-        double v101 = MULTIPLY(DB[i], s100);
+        double v101 = MULTIPLY(DB[i], s100[i]);
         double v102 = MULTIPLY(v101, WB[i]);
         double v103 = SUBTRACT(VX[i], v102);
-        double v104 = MULTIPLY(DB[i], c100);
+        double v104 = MULTIPLY(DB[i], c100[i]);
         double v105 = MULTIPLY(v104, WB[i]);
         double v106 = ADD(VY[i], v105);
         double v107 = PRODUCT_PLUS(v94, v81, v56);
@@ -222,11 +220,11 @@ static inline ALWAYS_INLINE void friction(
         double v190 = ADD(v189, v102);
         double v191 = SUBTRACT(v21, v98);
         double v192 = SUBTRACT(v191, v105);
-        double v193 = PRODUCTS_PLUS(c1, v190, s1, v192);
+        double v193 = PRODUCTS_PLUS(c1[i], v190, s1[i], v192);
         double v194 = MULTIPLY(E[i], v193);
-        double v195 = MULTIPLY(c1, v194);
+        double v195 = MULTIPLY(c1[i], v194);
         double v196 = ADD(v20, v195);
-        double v197 = MULTIPLY(s1, v194);
+        double v197 = MULTIPLY(s1[i], v194);
         double v198 = ADD(v21, v197);
         double v199 = PRODUCTS_MINUS(v182, v196, v187, v198);
         double v200 = MINUS_PRODUCT(v188, v199, v186);
@@ -248,8 +246,8 @@ static inline ALWAYS_INLINE void friction(
         double v216 = PRODUCTS_MINUS(EM[i], v214, v201, v215);
         double v217 = PRODUCT_PLUS(v203, v208, v216);
         double v218 = MINUS_PRODUCT(v201, v20, v217);
-        double v219 = PRODUCTS_MINUS(c1, v210, s1, v218);
-        double v220 = PRODUCTS_PLUS(c1, v218, s1, v210);
+        double v219 = PRODUCTS_MINUS(c1[i], v210, s1[i], v218);
+        double v220 = PRODUCTS_PLUS(c1[i], v218, s1[i], v210);
         double v221 = DIVIDE(v219, v220);
         double v222 = ABSOLUTE(v19);
         double v223 = ABSOLUTE(v43);
@@ -338,10 +336,10 @@ static inline ALWAYS_INLINE void friction(
         double v306 = MULTIPLY(v36, v305);
         double v307 = DIVIDE(v218, v306);
         double v308 = DIVIDE(v210, v306);
-        double v309 = PRODUCTS_PLUS(c1, v307, s1, v308);
+        double v309 = PRODUCTS_PLUS(c1[i], v307, s1[i], v308);
         int64_t v310 = LESS(0x0.0p+0, v309);
         int64_t v311 = BOTH(v297, v310);
-        double v312 = PRODUCTS_MINUS(c1, v308, s1, v307);
+        double v312 = PRODUCTS_MINUS(c1[i], v308, s1[i], v307);
         int64_t v313 = LESS(v312, 0x0.0p+0);
         double v314 = ABSOLUTE(v312);
         double v315 = NEGATIVE(v43);
@@ -462,6 +460,18 @@ static inline ALWAYS_INLINE void pivot(
     RESULT_AT(EESA, 22) RESULT_AT(EESB, 23) RESULT_AT(DVA, 24) RESULT_AT(DVB, 25)
     RESULT_AT(PN, 26) RESULT_AT(PT, 27) RESULT_AT(PM, 28) RESULT_AT(MUP, 29) RESULT_AT(MUC, 30)
     RESULT_AT(COND, 31) RESULT_AT(STATUS, 32)
+    double s15[STRIP], c15[STRIP], s18[STRIP], c18[STRIP], s56[STRIP], c56[STRIP], s151[STRIP], c151[STRIP], s155[STRIP], c155[STRIP];
+    EACH_OF_EIGHTS {
+        double v14 = ADD(TA[i], PA[i]);
+        SINE_AND_COSINE(v14, s15[i], c15[i]);
+        double v17 = ADD(TB[i], PB[i]);
+        SINE_AND_COSINE(v17, s18[i], c18[i]);
+        SINE_AND_COSINE(GA[i], s56[i], c56[i]);
+        double v150 = SUBTRACT(v14, GA[i]);
+        SINE_AND_COSINE(v150, s151[i], c151[i]);
+        double v154 = SUBTRACT(v17, GA[i]);
+        SINE_AND_COSINE(v154, s155[i], c155[i]);
+    }
     EACH_OF_EIGHTS {
         int64_t v0 = LESS_OR_EQUAL(0x0.0p+0, -0x1.4000000000000p+3);
         double v1 = MULTIPLY((v0 ? 1.0 : 0.0), 0x1.0000000000000p+11);
@@ -477,18 +487,12 @@ static inline ALWAYS_INLINE void pivot(
         double v11 = MULTIPLY(v8, v10);
         double v12 = MULTIPLY(v7, v11);
         double v13 = MULTIPLY(v6, v12);
-        double v14 = ADD(TA[i], PA[i]);
-        double s15, c15;
-        SINE_AND_COSINE(v14, s15, c15);
-        double v16 = MULTIPLY(DA[i], s15);
-        double v17 = ADD(TB[i], PB[i]);
-        double s18, c18;
-        SINE_AND_COSINE(v17, s18, c18);
-        double v19 = MULTIPLY(DB[i], s18);
+        double v16 = MULTIPLY(DA[i], s15[i]);
+        double v19 = MULTIPLY(DB[i], s18[i]);
         double v20 = ADD(v16, v19);
-        double v21 = MULTIPLY(DA[i], c15);
+        double v21 = MULTIPLY(DA[i], c15[i]);
         double v22 = NEGATIVE(v21);
-        double v23 = MULTIPLY(DB[i], c18);
+        double v23 = MULTIPLY(DB[i], c18[i]);
         double v24 = SUBTRACT(v22, v23);
         double v25 = PRODUCTS_PLUS(v20, v20, v24, v24);
         double v26 = PRODUCTS_MINUS(v16, v7, v19, v8);
@@ -521,8 +525,6 @@ static inline ALWAYS_INLINE void pivot(
         double v53 = PRODUCTS_MINUS(v21, v51, v23, v52);
         double v54 = PRODUCTS_PLUS(v49, v26, v32, v53);
         double v55 = SUBTRACT(UX[i], VX[i]);
-        double s56, c56;
-        SINE_AND_COSINE(GA[i], s56, c56);
         double v57 = MULTIPLY(v16, WA[i]);
         double v58 = ADD(v55, v57);
         double v59 = MULTIPLY(v19, WB[i]);
@@ -532,11 +534,11 @@ static inline ALWAYS_INLINE void pivot(
         double v63 = SUBTRACT(v61, v62);
         double v64 = MULTIPLY(v23, WB[i]);
         double v65 = SUBTRACT(v63, v64);
-        double v66 = PRODUCTS_PLUS(c56, v60, s56, v65);
+        double v66 = PRODUCTS_PLUS(c56[i], v60, s56[i], v65);
         double v67 = MULTIPLY(E[i], v66);
-        double v68 = MULTIPLY(c56, v67);
+        double v68 = MULTIPLY(c56[i], v67);
         double v69 = ADD(v55, v68);
-        double v70 = MULTIPLY(s56, v67);
+        double v70 = MULTIPLY(s56[i], v67);
         double v71 = ADD(v61, v70);
         double v72 = PRODUCTS_MINUS(v28, v69, v26, v71);
         double v73 = PRODUCT_PLUS(v29, v72, v54);
@@ -615,16 +617,10 @@ static inline ALWAYS_INLINE void pivot(
         double v146 = MINUS_PRODUCT(v21, v123, v96);
         double v147 = MINUS_PRODUCT(v19, v140, v98);
         double v148 = PRODUCT_PLUS(v23, v140, v100);
-        double v149 = PRODUCTS_PLUS(c56, v55, s56, v61);
-        double v150 = SUBTRACT(v14, GA[i]);
-        double s151, c151;
-        SINE_AND_COSINE(v150, s151, c151);
-        double v152 = MULTIPLY(DA[i], s151);
+        double v149 = PRODUCTS_PLUS(c56[i], v55, s56[i], v61);
+        double v152 = MULTIPLY(DA[i], s151[i]);
         double v153 = PRODUCT_PLUS(v152, WA[i], v149);
-        double v154 = SUBTRACT(v17, GA[i]);
-        double s155, c155;
-        SINE_AND_COSINE(v154, s155, c155);
-        double v156 = MULTIPLY(DB[i], s155);
+        double v156 = MULTIPLY(DB[i], s155[i]);
         double v157 = PRODUCT_PLUS(v156, WB[i], v153);
         double v158 = NEGATIVE(v157);
         double v159 = MULTIPLY(E[i], v157);
@@ -656,13 +652,13 @@ static inline ALWAYS_INLINE void pivot(
         double v185 = DIVIDE(v183, v184);
         double v186 = MINUS_PRODUCT(v41, v61, v93);
         double v187 = DIVIDE(v186, v184);
-        double v188 = PRODUCTS_PLUS(c56, v185, s56, v187);
+        double v188 = PRODUCTS_PLUS(c56[i], v185, s56[i], v187);
         double v189 = MULTIPLY(v182, v188);
-        double v190 = PRODUCTS_MINUS(c56, v187, s56, v185);
-        double v191 = PRODUCTS_MINUS(c56, v61, s56, v55);
-        double v192 = MULTIPLY(DA[i], c151);
+        double v190 = PRODUCTS_MINUS(c56[i], v187, s56[i], v185);
+        double v191 = PRODUCTS_MINUS(c56[i], v61, s56[i], v55);
+        double v192 = MULTIPLY(DA[i], c151[i]);
         double v193 = MINUS_PRODUCT(v192, WA[i], v191);
-        double v194 = MULTIPLY(DB[i], c155);
+        double v194 = MULTIPLY(DB[i], c155[i]);
         double v195 = MINUS_PRODUCT(v194, WB[i], v193);
         double v196 = MULTIPLY(v190, v195);
         double v197 = ADD(v189, v196);
@@ -705,8 +701,8 @@ static inline ALWAYS_INLINE void pivot(
         double v234 = MULTIPLY(v34, v187);
         double v235 = PRODUCTS_PLUS(v233, v233, v234, v234);
         double v236 = SQRT(v235);
-        double v237 = PRODUCTS_MINUS(c56, v186, s56, v183);
-        double v238 = PRODUCTS_PLUS(c56, v183, s56, v186);
+        double v237 = PRODUCTS_MINUS(c56[i], v186, s56[i], v183);
+        double v238 = PRODUCTS_PLUS(c56[i], v183, s56[i], v186);
         double v239 = DIVIDE(v237, v238);
         double v240 = ABSOLUTE(v6);
         double v241 = PRODUCT_PLUS(v12, v25, v35);
@@ -891,6 +887,10 @@ static inline ALWAYS_INLINE void point(
     RESULT_AT(EESA, 22) RESULT_AT(EESB, 23) RESULT_AT(DVA, 24) RESULT_AT(DVB, 25)
     RESULT_AT(PN, 26) RESULT_AT(PT, 27) RESULT_AT(PM, 28) RESULT_AT(MUP, 29) RESULT_AT(MUC, 30)
     RESULT_AT(COND, 31) RESULT_AT(STATUS, 32)
+    double s13[STRIP], c13[STRIP];
+    EACH_OF_EIGHTS {
+        SINE_AND_COSINE(GA[i], s13[i], c13[i]);
+    }
     EACH_OF_EIGHTS {
         double v0 = ABSOLUTE(0x1.0000000000000p+0);
         int64_t v1 = LESS(0x0.0p+0, 0x0.0p+0);
@@ -905,24 +905,22 @@ static inline ALWAYS_INLINE void point(
         double v10 = MULTIPLY((v9 ? 1.0 : 0.0), 0x1.0000000000000p+10);
         int64_t v11 = LESS_OR_EQUAL(0x0.0p+0, 0x0.0p+0);
         double v12 = DIVIDE(0x1.0000000000000p+0, MA[i]);
-        double s13, c13;
-        SINE_AND_COSINE(GA[i], s13, c13);
         double v14 = SUBTRACT(UX[i], VX[i]);
         double v15 = SUBTRACT(UY[i], VY[i]);
-        double v16 = PRODUCTS_PLUS(c13, v14, s13, v15);
+        double v16 = PRODUCTS_PLUS(c13[i], v14, s13[i], v15);
         double v17 = MULTIPLY(E[i], v16);
         double v18 = ADD(v17, v16);
         double v19 = NEGATIVE(v18);
         double v20 = DIVIDE(0x1.0000000000000p+0, MB[i]);
         double v21 = ADD(v12, v20);
         double v22 = DIVIDE(v19, v21);
-        double v23 = PRODUCTS_MINUS(c13, v15, s13, v14);
+        double v23 = PRODUCTS_MINUS(c13[i], v15, s13[i], v14);
         double v24 = AGAINST(MU[i], v23);
         double v25 = MULTIPLY(v24, v22);
-        double v26 = PRODUCTS_MINUS(c13, v22, s13, v25);
+        double v26 = PRODUCTS_MINUS(c13[i], v22, s13[i], v25);
         double v27 = MULTIPLY(v12, v26);
         double v28 = ADD(UX[i], v27);
-        double v29 = PRODUCTS_PLUS(s13, v22, c13, v25);
+        double v29 = PRODUCTS_PLUS(s13[i], v22, c13[i], v25);
         double v30 = MULTIPLY(v12, v29);
         double v31 = ADD(UY[i], v30);
         double v32 = MULTIPLY(v20, v26);
@@ -971,16 +969,16 @@ static inline ALWAYS_INLINE void point(
         double v75 = SQRT(v74);
         double v76 = PRODUCTS_PLUS(v32, v32, v34, v34);
         double v77 = SQRT(v76);
-        double v78 = MULTIPLY(s13, v17);
+        double v78 = MULTIPLY(s13[i], v17);
         double v79 = MULTIPLY(v21, v78);
         double v80 = NEGATIVE(v79);
         double v81 = MINUS_PRODUCT(v21, v15, v80);
-        double v82 = MULTIPLY(c13, v17);
+        double v82 = MULTIPLY(c13[i], v17);
         double v83 = MULTIPLY(v21, v82);
         double v84 = NEGATIVE(v83);
         double v85 = MINUS_PRODUCT(v21, v14, v84);
-        double v86 = PRODUCTS_MINUS(c13, v81, s13, v85);
-        double v87 = PRODUCTS_PLUS(c13, v85, s13, v81);
+        double v86 = PRODUCTS_MINUS(c13[i], v81, s13[i], v85);
+        double v87 = PRODUCTS_PLUS(c13[i], v85, s13[i], v81);
         double v88 = DIVIDE(v86, v87);
         double v89 = ABSOLUTE(v24);
         double v90 = ADD(0x1.0000000000000p+0, v89);
@@ -1032,10 +1030,10 @@ static inline ALWAYS_INLINE void point(
         double v136 = MULTIPLY(v21, v21);
         double v137 = DIVIDE(v85, v136);
         double v138 = DIVIDE(v81, v136);
-        double v139 = PRODUCTS_PLUS(c13, v137, s13, v138);
+        double v139 = PRODUCTS_PLUS(c13[i], v137, s13[i], v138);
         int64_t v140 = LESS(0x0.0p+0, v139);
         int64_t v141 = BOTH(v135, v140);
-        double v142 = PRODUCTS_MINUS(c13, v138, s13, v137);
+        double v142 = PRODUCTS_MINUS(c13[i], v138, s13[i], v137);
         int64_t v143 = LESS(v142, 0x0.0p+0);
         double v144 = ABSOLUTE(v142);
         double v145 = NEGATIVE(v24);
@@ -1137,6 +1135,10 @@ static inline ALWAYS_INLINE void point_pivot(
     RESULT_AT(EESA, 22) RESULT_AT(EESB, 23) RESULT_AT(DVA, 24) RESULT_AT(DVB, 25)
     RESULT_AT(PN, 26) RESULT_AT(PT, 27) RESULT_AT(PM, 28) RESULT_AT(MUP, 29) RESULT_AT(MUC, 30)
     RESULT_AT(COND, 31) RESULT_AT(STATUS, 32)
+    double s29[STRIP], c29[STRIP];
+    EACH_OF_EIGHTS {
+        SINE_AND_COSINE(GA[i], s29[i], c29[i]);
+    }
     EACH_OF_EIGHTS {
         double v0 = ABSOLUTE(0x1.0000000000000p+0);
         int64_t v1 = LESS(0x0.0p+0, 0x0.0p+0);
@@ -1167,19 +1169,17 @@ static inline ALWAYS_INLINE void point_pivot(
         double v26 = NEGATIVE(v19);
         double v27 = CHOOSE(v20, 0x0.0p+0, v26);
         double v28 = SUBTRACT(UX[i], VX[i]);
-        double s29, c29;
-        SINE_AND_COSINE(GA[i], s29, c29);
         double v30 = SUBTRACT(UY[i], VY[i]);
-        double v31 = PRODUCTS_PLUS(c29, v28, s29, v30);
+        double v31 = PRODUCTS_PLUS(c29[i], v28, s29[i], v30);
         double v32 = MULTIPLY(E[i], v31);
-        double v33 = MULTIPLY(c29, v32);
+        double v33 = MULTIPLY(c29[i], v32);
         double v34 = MULTIPLY(v19, v33);
         double v35 = PRODUCT_MINUS(v27, v28, v34);
         double v36 = DIVIDE(v35, v19);
         double v37 = PRODUCT_PLUS(v23, v36, v25);
         double v38 = PRODUCTS_PLUS(v22, UY[i], v23, VY[i]);
         double v39 = CHOOSE(v20, v38, UY[i]);
-        double v40 = MULTIPLY(s29, v32);
+        double v40 = MULTIPLY(s29[i], v32);
         double v41 = MULTIPLY(v19, v40);
         double v42 = PRODUCT_MINUS(v27, v30, v41);
         double v43 = DIVIDE(v42, v19);
@@ -1209,10 +1209,10 @@ static inline ALWAYS_INLINE void point_pivot(
         double v67 = NEGATIVE(v41);
         double v68 = MINUS_PRODUCT(v19, v30, v67);
         double v69 = DIVIDE(v68, v65);
-        double v70 = PRODUCTS_PLUS(c29, v66, s29, v69);
+        double v70 = PRODUCTS_PLUS(c29[i], v66, s29[i], v69);
         double v71 = MULTIPLY(v62, v70);
-        double v72 = PRODUCTS_MINUS(c29, v69, s29, v66);
-        double v73 = PRODUCTS_MINUS(c29, v30, s29, v28);
+        double v72 = PRODUCTS_MINUS(c29[i], v69, s29[i], v66);
+        double v73 = PRODUCTS_MINUS(c29[i], v30, s29[i], v28);
         double v74 = MULTIPLY(v72, v73);
         double v75 = ADD(v71, v74);
         double v76 = MULTIPLY(0x1.9000000000000p+5, v75);
@@ -1242,8 +1242,8 @@ static inline ALWAYS_INLINE void point_pivot(
         double v100 = MULTIPLY(v18, v69);
         double v101 = PRODUCTS_PLUS(v99, v99, v100, v100);
         double v102 = SQRT(v101);
-        double v103 = PRODUCTS_MINUS(c29, v68, s29, v64);
-        double v104 = PRODUCTS_PLUS(c29, v64, s29, v68);
+        double v103 = PRODUCTS_MINUS(c29[i], v68, s29[i], v64);
+        double v104 = PRODUCTS_PLUS(c29[i], v64, s29[i], v68);
         double v105 = DIVIDE(v103, v104);
         double v106 = MULTIPLY(v0, v19);
         double v107 = ABSOLUTE(v19);
@@ -1380,6 +1380,18 @@ static inline ALWAYS_INLINE void friction_without_moment(
     RESULT_AT(EESA, 22) RESULT_AT(EESB, 23) RESULT_AT(DVA, 24) RESULT_AT(DVB, 25)
     RESULT_AT(PN, 26) RESULT_AT(PT, 27) RESULT_AT(PM, 28) RESULT_AT(MUP, 29) RESULT_AT(MUC, 30)
     RESULT_AT(COND, 31) RESULT_AT(STATUS, 32)
+    double s10[STRIP], c10[STRIP], s16[STRIP], c16[STRIP], s21[STRIP], c21[STRIP], s74[STRIP], c74[STRIP], s81[STRIP], c81[STRIP];
+    EACH_OF_EIGHTS {
+        SINE_AND_COSINE(GA[i], s10[i], c10[i]);
+        double v14 = ADD(TA[i], PA[i]);
+        double v15 = SUBTRACT(v14, GA[i]);
+        SINE_AND_COSINE(v15, s16[i], c16[i]);
+        double v19 = ADD(TB[i], PB[i]);
+        double v20 = SUBTRACT(v19, GA[i]);
+        SINE_AND_COSINE(v20, s21[i], c21[i]);
+        SINE_AND_COSINE(v14, s74[i], c74[i]);
+        SINE_AND_COSINE(v19, s81[i], c81[i]);
+    }
     EACH_OF_EIGHTS {
         double v0 = ABSOLUTE(0x1.0000000000000p+0);
         int64_t v1 = LESS(0x0.0p+0, -0x1.0000000000000p+0);
@@ -1391,22 +1403,12 @@ static inline ALWAYS_INLINE void friction_without_moment(
         int64_t v7 = EITHER(v1, v6);
         double v8 = MULTIPLY((v7 ? 1.0 : 0.0), 0x1.0000000000000p+10);
         double v9 = DIVIDE(0x1.0000000000000p+0, MA[i]);
-        double s10, c10;
-        SINE_AND_COSINE(GA[i], s10, c10);
         double v11 = SUBTRACT(UX[i], VX[i]);
         double v12 = SUBTRACT(UY[i], VY[i]);
-        double v13 = PRODUCTS_PLUS(c10, v11, s10, v12);
-        double v14 = ADD(TA[i], PA[i]);
-        double v15 = SUBTRACT(v14, GA[i]);
-        double s16, c16;
-        SINE_AND_COSINE(v15, s16, c16);
-        double v17 = MULTIPLY(DA[i], s16);
+        double v13 = PRODUCTS_PLUS(c10[i], v11, s10[i], v12);
+        double v17 = MULTIPLY(DA[i], s16[i]);
         double v18 = PRODUCT_PLUS(v17, WA[i], v13);
-        double v19 = ADD(TB[i], PB[i]);
-        double v20 = SUBTRACT(v19, GA[i]);
-        double s21, c21;
-        SINE_AND_COSINE(v20, s21, c21);
-        double v22 = MULTIPLY(DB[i], s21);
+        double v22 = MULTIPLY(DB[i], s21[i]);
         double v23 = PRODUCT_PLUS(v22, WB[i], v18);
         double v24 = MULTIPLY(E[i], v23);
         double v25 = ADD(v24, v13);
@@ -1425,10 +1427,10 @@ static inline ALWAYS_INLINE void friction_without_moment(
         double v38 = DIVIDE(0x1.0000000000000p+0, MB[i]);
         double v39 = ADD(v9, v38);
         double v40 = MULTIPLY(v28, v31);
-        double v41 = PRODUCTS_MINUS(c10, v12, s10, v11);
-        double v42 = MULTIPLY(DA[i], c16);
+        double v41 = PRODUCTS_MINUS(c10[i], v12, s10[i], v11);
+        double v42 = MULTIPLY(DA[i], c16[i]);
         double v43 = MINUS_PRODUCT(v42, WA[i], v41);
-        double v44 = MULTIPLY(DB[i], c21);
+        double v44 = MULTIPLY(DB[i], c21[i]);
         double v45 = MINUS_PRODUCT(v44, WB[i], v43);
         double v46 = AGAINST(MU[i], v45);
         double v47 = MINUS_PRODUCT(v46, v42, v17);
@@ -1438,10 +1440,10 @@ static inline ALWAYS_INLINE void friction_without_moment(
         double v51 = PRODUCT_PLUS(v50, v26, v39);
         double v52 = DIVIDE(v37, v51);
         double v53 = MULTIPLY(v46, v52);
-        double v54 = PRODUCTS_MINUS(c10, v52, s10, v53);
+        double v54 = PRODUCTS_MINUS(c10[i], v52, s10[i], v53);
         double v55 = MULTIPLY(v9, v54);
         double v56 = ADD(UX[i], v55);
-        double v57 = PRODUCTS_PLUS(s10, v52, c10, v53);
+        double v57 = PRODUCTS_PLUS(s10[i], v52, c10[i], v53);
         double v58 = MULTIPLY(v9, v57);
         double v59 = ADD(UY[i], v58);
         double v60 = MULTIPLY(v38, v54);
@@ -1458,20 +1460,16 @@ static inline ALWAYS_INLINE void friction_without_moment(
         double v71 = ADD(v66, v65);
         double v72 = PRODUCTS_MINUS(v39, v70, v25, v71);
         double v73 = DIVIDE(v72, v51);
-        double s74, c74;
-        SINE_AND_COSINE(v14, s74, c74);
-        double v75 = MULTIPLY(DA[i], s74);
+        double v75 = MULTIPLY(DA[i], s74[i]);
         double v76 = MULTIPLY(v75, WA[i]);
         double v77 = ADD(UX[i], v76);
-        double v78 = MULTIPLY(DA[i], c74);
+        double v78 = MULTIPLY(DA[i], c74[i]);
         double v79 = MULTIPLY(v78, WA[i]);
         double v80 = SUBTRACT(UY[i], v79);
-        double s81, c81;
-        SINE_AND_COSINE(v19, s81, c81);
-        double v82 = MULTIPLY(DB[i], s81);
+        double v82 = MULTIPLY(DB[i], s81[i]);
         double v83 = MULTIPLY(v82, WB[i]);
         double v84 = SUBTRACT(VX[i], v83);
-        double v85 = MULTIPLY(DB[i], c81);
+        double v85 = MULTIPLY(DB[i], c81[i]);
         double v86 = MULTIPLY(v85, WB[i]);
         double v87 = ADD(VY[i], v86);
         double v88 = PRODUCT_PLUS(v75, v69, v56);
@@ -1550,9 +1548,9 @@ static inline ALWAYS_INLINE void friction_without_moment(
         double v161 = ADD(v160, v83);
         double v162 = SUBTRACT(v12, v79);
         double v163 = SUBTRACT(v162, v86);
-        double v164 = PRODUCTS_PLUS(c10, v161, s10, v163);
+        double v164 = PRODUCTS_PLUS(c10[i], v161, s10[i], v163);
         double v165 = MULTIPLY(E[i], v164);
-        double v166 = MULTIPLY(s10, v165);
+        double v166 = MULTIPLY(s10[i], v165);
         double v167 = NEGATIVE(v78);
         double v168 = SUBTRACT(v167, v85);
         double v169 = PRODUCT_PLUS(v168, v35, v166);
@@ -1560,7 +1558,7 @@ static inline ALWAYS_INLINE void friction_without_moment(
         double v171 = NEGATIVE(v170);
         double v172 = ADD(v75, v82);
         double v173 = ADD(v12, v166);
-        double v174 = MULTIPLY(c10, v165);
+        double v174 = MULTIPLY(c10[i], v165);
         double v175 = ADD(v11, v174);
         double v176 = PRODUCTS_MINUS(v172, v173, v168, v175);
         double v177 = MULTIPLY(v40, v176);
@@ -1569,8 +1567,8 @@ static inline ALWAYS_INLINE void friction_without_moment(
         double v180 = PRODUCT_PLUS(v172, v35, v174);
         double v181 = PRODUCTS_MINUS(v168, v177, v39, v180);
         double v182 = MINUS_PRODUCT(v39, v11, v181);
-        double v183 = PRODUCTS_MINUS(c10, v179, s10, v182);
-        double v184 = PRODUCTS_PLUS(c10, v182, s10, v179);
+        double v183 = PRODUCTS_MINUS(c10[i], v179, s10[i], v182);
+        double v184 = PRODUCTS_PLUS(c10[i], v182, s10[i], v179);
         double v185 = DIVIDE(v183, v184);
         double v186 = ABSOLUTE(v46);
         double v187 = ADD(0x1.0000000000000p+0, v186);
@@ -1639,10 +1637,10 @@ static inline ALWAYS_INLINE void friction_without_moment(
         double v250 = MULTIPLY(v39, v249);
         double v251 = DIVIDE(v182, v250);
         double v252 = DIVIDE(v179, v250);
-        double v253 = PRODUCTS_PLUS(c10, v251, s10, v252);
+        double v253 = PRODUCTS_PLUS(c10[i], v251, s10[i], v252);
         int64_t v254 = LESS(0x0.0p+0, v253);
         int64_t v255 = BOTH(v247, v254);
-        double v256 = PRODUCTS_MINUS(c10, v252, s10, v251);
+        double v256 = PRODUCTS_MINUS(c10[i], v252, s10[i], v251);
         int64_t v257 = LESS(v256, 0x0.0p+0);
         double v258 = ABSOLUTE(v256);
         double v259 = NEGATIVE(v46);
@@ -1764,6 +1762,18 @@ static inline ALWAYS_INLINE void smooth(
     RESULT_AT(EESA, 22) RESULT_AT(EESB, 23) RESULT_AT(DVA, 24) RESULT_AT(DVB, 25)
     RESULT_AT(PN, 26) RESULT_AT(PT, 27) RESULT_AT(PM, 28) RESULT_AT(MUP, 29) RESULT_AT(MUC, 30)
     RESULT_AT(COND, 31) RESULT_AT(STATUS, 32)
+    double s6[STRIP], c6[STRIP], s9[STRIP], c9[STRIP], s14[STRIP], c14[STRIP], s87[STRIP], c87[STRIP], s94[STRIP], c94[STRIP];
+    EACH_OF_EIGHTS {
+        SINE_AND_COSINE(GA[i], s6[i], c6[i]);
+        double v7 = ADD(TA[i], PA[i]);
+        double v8 = SUBTRACT(v7, GA[i]);
+        SINE_AND_COSINE(v8, s9[i], c9[i]);
+        double v12 = ADD(TB[i], PB[i]);
+        double v13 = SUBTRACT(v12, GA[i]);
+        SINE_AND_COSINE(v13, s14[i], c14[i]);
+        SINE_AND_COSINE(v7, s87[i], c87[i]);
+        SINE_AND_COSINE(v12, s94[i], c94[i]);
+    }
     EACH_OF_EIGHTS {
         int64_t v0 = LESS_OR_EQUAL(0x0.0p+0, -0x1.4000000000000p+3);
         double v1 = MULTIPLY((v0 ? 1.0 : 0.0), 0x1.0000000000000p+11);
@@ -1771,19 +1781,9 @@ static inline ALWAYS_INLINE void smooth(
         int64_t v3 = LESS(0x0.0p+0, -0x1.12e0be826d695p-30);
         int64_t v4 = LESS_OR_EQUAL(0x0.0p+0, 0x0.0p+0);
         double v5 = DIVIDE(0x1.0000000000000p+0, MA[i]);
-        double s6, c6;
-        SINE_AND_COSINE(GA[i], s6, c6);
-        double v7 = ADD(TA[i], PA[i]);
-        double v8 = SUBTRACT(v7, GA[i]);
-        double s9, c9;
-        SINE_AND_COSINE(v8, s9, c9);
-        double v10 = MULTIPLY(DA[i], s9);
+        double v10 = MULTIPLY(DA[i], s9[i]);
         double v11 = DIVIDE(0x1.0000000000000p+0, IA[i]);
-        double v12 = ADD(TB[i], PB[i]);
-        double v13 = SUBTRACT(v12, GA[i]);
-        double s14, c14;
-        SINE_AND_COSINE(v13, s14, c14);
-        double v15 = MULTIPLY(DB[i], s14);
+        double v15 = MULTIPLY(DB[i], s14[i]);
         double v16 = DIVIDE(0x1.0000000000000p+0, IB[i]);
         double v17 = PRODUCTS_MINUS(v10, v11, v15, v16);
         double v18 = MULTIPLY(EM[i], v17);
@@ -1795,7 +1795,7 @@ static inline ALWAYS_INLINE void smooth(
         double v24 = SUBTRACT(0x1.0000000000000p+0, v23);
         double v25 = SUBTRACT(UX[i], VX[i]);
         double v26 = SUBTRACT(UY[i], VY[i]);
-        double v27 = PRODUCTS_PLUS(c6, v25, s6, v26);
+        double v27 = PRODUCTS_PLUS(c6[i], v25, s6[i], v26);
         double v28 = PRODUCT_PLUS(v10, WA[i], v27);
         double v29 = PRODUCT_PLUS(v15, WB[i], v28);
         double v30 = MULTIPLY(E[i], v29);
@@ -1816,10 +1816,10 @@ static inline ALWAYS_INLINE void smooth(
         double v45 = MULTIPLY(v20, v17);
         double v46 = PRODUCTS_MINUS(v24, v44, v45, v18);
         double v47 = DIVIDE(v39, v46);
-        double v48 = MULTIPLY(c6, v47);
+        double v48 = MULTIPLY(c6[i], v47);
         double v49 = MULTIPLY(v5, v48);
         double v50 = ADD(UX[i], v49);
-        double v51 = MULTIPLY(s6, v47);
+        double v51 = MULTIPLY(s6[i], v47);
         double v52 = MULTIPLY(v5, v51);
         double v53 = ADD(UY[i], v52);
         double v54 = MULTIPLY(v40, v48);
@@ -1855,20 +1855,16 @@ static inline ALWAYS_INLINE void smooth(
         double v84 = SUBTRACT(v72, v70);
         double v85 = PRODUCT_PLUS(v83, v84, v82);
         double v86 = DIVIDE(v85, v46);
-        double s87, c87;
-        SINE_AND_COSINE(v7, s87, c87);
-        double v88 = MULTIPLY(DA[i], s87);
+        double v88 = MULTIPLY(DA[i], s87[i]);
         double v89 = MULTIPLY(v88, WA[i]);
         double v90 = ADD(UX[i], v89);
-        double v91 = MULTIPLY(DA[i], c87);
+        double v91 = MULTIPLY(DA[i], c87[i]);
         double v92 = MULTIPLY(v91, WA[i]);
         double v93 = SUBTRACT(UY[i], v92);
-        double s94, c94;
-        SINE_AND_COSINE(v12, s94, c94);
-        double v95 = MULTIPLY(DB[i], s94);
+        double v95 = MULTIPLY(DB[i], s94[i]);
         double v96 = MULTIPLY(v95, WB[i]);
         double v97 = SUBTRACT(VX[i], v96);
-        double v98 = MULTIPLY(DB[i], c94);
+        double v98 = MULTIPLY(DB[i], c94[i]);
         double v99 = MULTIPLY(v98, WB[i]);
         double v100 = ADD(VY[i], v99);
         double v101 = PRODUCT_PLUS(v88, v75, v50);
@@ -1944,11 +1940,11 @@ static inline ALWAYS_INLINE void smooth(
         double v171 = ADD(v170, v96);
         double v172 = SUBTRACT(v26, v92);
         double v173 = SUBTRACT(v172, v99);
-        double v174 = PRODUCTS_PLUS(c6, v171, s6, v173);
+        double v174 = PRODUCTS_PLUS(c6[i], v171, s6[i], v173);
         double v175 = MULTIPLY(E[i], v174);
-        double v176 = MULTIPLY(c6, v175);
+        double v176 = MULTIPLY(c6[i], v175);
         double v177 = ADD(v25, v176);
-        double v178 = MULTIPLY(s6, v175);
+        double v178 = MULTIPLY(s6[i], v175);
         double v179 = ADD(v26, v178);
         double v180 = PRODUCTS_MINUS(v163, v177, v168, v179);
         double v181 = MINUS_PRODUCT(v169, v180, v167);
@@ -1970,8 +1966,8 @@ static inline ALWAYS_INLINE void smooth(
         double v197 = PRODUCTS_MINUS(EM[i], v195, v182, v196);
         double v198 = PRODUCT_PLUS(v184, v189, v197);
         double v199 = MINUS_PRODUCT(v182, v25, v198);
-        double v200 = PRODUCTS_MINUS(c6, v191, s6, v199);
-        double v201 = PRODUCTS_PLUS(c6, v199, s6, v191);
+        double v200 = PRODUCTS_MINUS(c6[i], v191, s6[i], v199);
+        double v201 = PRODUCTS_PLUS(c6[i], v199, s6[i], v191);
         double v202 = DIVIDE(v200, v201);
         double v203 = ABSOLUTE(v24);
         double v204 = ABSOLUTE(v10);
@@ -2021,13 +2017,13 @@ static inline ALWAYS_INLINE void smooth(
         double v248 = PRODUCT_PLUS((v247 ? 1.0 : 0.0), 0x1.0000000000000p+6, v229);
         double v249 = ABSOLUTE(DA[i]);
         double v250 = MULTIPLY(0x1.12e0be826d695p-30, v249);
-        double v251 = MULTIPLY(DA[i], c9);
+        double v251 = MULTIPLY(DA[i], c9[i]);
         double v252 = NEGATIVE(v251);
         int64_t v253 = LESS(v250, v252);
         double v254 = PRODUCT_PLUS((v253 ? 1.0 : 0.0), 0x1.0000000000000p+8, v248);
         double v255 = ABSOLUTE(DB[i]);
         double v256 = MULTIPLY(0x1.12e0be826d695p-30, v255);
-        double v257 = MULTIPLY(DB[i], c14);
+        double v257 = MULTIPLY(DB[i], c14[i]);
         double v258 = NEGATIVE(v257);
         int64_t v259 = LESS(v256, v258);
         double v260 = PRODUCT_PLUS((v259 ? 1.0 : 0.0), 0x1.0000000000000p+9, v254);
@@ -2054,10 +2050,10 @@ static inline ALWAYS_INLINE void smooth(
         double v281 = MULTIPLY(v41, v280);
         double v282 = DIVIDE(v199, v281);
         double v283 = DIVIDE(v191, v281);
-        double v284 = PRODUCTS_PLUS(c6, v282, s6, v283);
+        double v284 = PRODUCTS_PLUS(c6[i], v282, s6[i], v283);
         int64_t v285 = LESS(0x0.0p+0, v284);
         int64_t v286 = BOTH(v272, v285);
-        double v287 = PRODUCTS_MINUS(c6, v283, s6, v282);
+        double v287 = PRODUCTS_MINUS(c6[i], v283, s6[i], v282);
         int64_t v288 = LESS(v287, 0x0.0p+0);
         double v289 = ABSOLUTE(v287);
         double v290 = MULTIPLY(-0x1.12e0be826d695p-30, v284);
@@ -2076,7 +2072,7 @@ static inline ALWAYS_INLINE void smooth(
         int64_t v303 = BOTH(v285, v302);
         int64_t v304 = BOTH(v300, v303);
         int64_t v305 = EITHER(v296, v304);
-        double v306 = PRODUCTS_MINUS(c6, v26, s6, v25);
+        double v306 = PRODUCTS_MINUS(c6[i], v26, s6[i], v25);
         double v307 = MINUS_PRODUCT(v251, WA[i], v306);
         double v308 = MINUS_PRODUCT(v257, WB[i], v307);
         double v309 = MULTIPLY(v10, v251);
@@ -2171,19 +2167,21 @@ static inline ALWAYS_INLINE void friction_without_arms(
     RESULT_AT(ELT, 20) RESULT_AT(ELM, 21) RESULT_AT(EESA, 22) RESULT_AT(EESB, 23)
     RESULT_AT(DVA, 24) RESULT_AT(DVB, 25) RESULT_AT(PN, 26) RESULT_AT(PT, 27) RESULT_AT(PM, 28)
     RESULT_AT(MUP, 29) RESULT_AT(MUC, 30) RESULT_AT(COND, 31) RESULT_AT(STATUS, 32)
+    double s5[STRIP], c5[STRIP];
+    EACH_OF_EIGHTS {
+        SINE_AND_COSINE(GA[i], s5[i], c5[i]);
+    }
     EACH_OF_EIGHTS {
         int64_t v0 = LESS(0x0.0p+0, 0x0.0p+0);
         double v1 = MULTIPLY((v0 ? 1.0 : 0.0), 0x1.0000000000000p+8);
         double v2 = MULTIPLY((v0 ? 1.0 : 0.0), 0x1.0000000000000p+9);
         int64_t v3 = LESS_OR_EQUAL(0x0.0p+0, 0x0.0p+0);
         double v4 = DIVIDE(0x1.0000000000000p+0, MA[i]);
-        double s5, c5;
-        SINE_AND_COSINE(GA[i], s5, c5);
         double v6 = ADD(EM[i], EM[i]);
         double v7 = SUBTRACT(0x1.0000000000000p+0, v6);
         double v8 = SUBTRACT(UX[i], VX[i]);
         double v9 = SUBTRACT(UY[i], VY[i]);
-        double v10 = PRODUCTS_PLUS(c5, v8, s5, v9);
+        double v10 = PRODUCTS_PLUS(c5[i], v8, s5[i], v9);
         double v11 = MULTIPLY(E[i], v10);
         double v12 = ADD(v11, v10);
         double v13 = MULTIPLY(v7, v12);
@@ -2192,13 +2190,13 @@ static inline ALWAYS_INLINE void friction_without_arms(
         double v16 = ADD(v4, v15);
         double v17 = MULTIPLY(v7, v16);
         double v18 = DIVIDE(v14, v17);
-        double v19 = PRODUCTS_MINUS(c5, v9, s5, v8);
+        double v19 = PRODUCTS_MINUS(c5[i], v9, s5[i], v8);
         double v20 = AGAINST(MU[i], v19);
         double v21 = MULTIPLY(v20, v18);
-        double v22 = PRODUCTS_MINUS(c5, v18, s5, v21);
+        double v22 = PRODUCTS_MINUS(c5[i], v18, s5[i], v21);
         double v23 = MULTIPLY(v4, v22);
         double v24 = ADD(UX[i], v23);
-        double v25 = PRODUCTS_PLUS(s5, v18, c5, v21);
+        double v25 = PRODUCTS_PLUS(s5[i], v18, c5[i], v21);
         double v26 = MULTIPLY(v4, v25);
         double v27 = ADD(UY[i], v26);
         double v28 = MULTIPLY(v15, v22);
@@ -2285,16 +2283,16 @@ static inline ALWAYS_INLINE void friction_without_arms(
         double v109 = SQRT(v108);
         double v110 = PRODUCTS_PLUS(v28, v28, v30, v30);
         double v111 = SQRT(v110);
-        double v112 = MULTIPLY(s5, v11);
+        double v112 = MULTIPLY(s5[i], v11);
         double v113 = MULTIPLY(v17, v112);
         double v114 = NEGATIVE(v113);
         double v115 = MINUS_PRODUCT(v17, v9, v114);
-        double v116 = MULTIPLY(c5, v11);
+        double v116 = MULTIPLY(c5[i], v11);
         double v117 = MULTIPLY(v17, v116);
         double v118 = NEGATIVE(v117);
         double v119 = MINUS_PRODUCT(v17, v8, v118);
-        double v120 = PRODUCTS_MINUS(c5, v115, s5, v119);
-        double v121 = PRODUCTS_PLUS(c5, v119, s5, v115);
+        double v120 = PRODUCTS_MINUS(c5[i], v115, s5[i], v119);
+        double v121 = PRODUCTS_PLUS(c5[i], v119, s5[i], v115);
         double v122 = DIVIDE(v120, v121);
         double v123 = ABSOLUTE(v7);
         double v124 = ABSOLUTE(v20);
@@ -2354,10 +2352,10 @@ static inline ALWAYS_INLINE void friction_without_arms(
         double v178 = MULTIPLY(v16, v17);
         double v179 = DIVIDE(v119, v178);
         double v180 = DIVIDE(v115, v178);
-        double v181 = PRODUCTS_PLUS(c5, v179, s5, v180);
+        double v181 = PRODUCTS_PLUS(c5[i], v179, s5[i], v180);
         int64_t v182 = LESS(0x0.0p+0, v181);
         int64_t v183 = BOTH(v177, v182);
-        double v184 = PRODUCTS_MINUS(c5, v180, s5, v179);
+        double v184 = PRODUCTS_MINUS(c5[i], v180, s5[i], v179);
         int64_t v185 = LESS(v184, 0x0.0p+0);
         double v186 = ABSOLUTE(v184);
         double v187 = NEGATIVE(v20);
