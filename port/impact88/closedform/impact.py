@@ -151,9 +151,9 @@ def impact(
         # the radii of gyration, these nearly cancel
         spin = (z * (R * mean - J_sigma * w) + em_kappa * X) / determinant
         moment = unless_point((twist * w - turn * R - sn * X) / determinant)
-        cross_a, cross_b = a * (ia * WB) - b * (ib * WA), b * (ib * WA) - a * (ia * WB)
-        spin_a = (R * kept_a - w * (a * own_a + b * shared) + (EM * bn) * cross_a) / determinant
-        spin_b = (R * kept_b - w * (b * own_b + a * shared) + (EM * an) * cross_b) / determinant
+        cross = a * (ia * WB) - b * (ib * WA)
+        spin_a = (R * kept_a - w * (a * own_a + b * shared) + (EM * bn) * cross) / determinant
+        spin_b = (R * kept_b - w * (b * own_b + a * shared) - (EM * an) * cross) / determinant
         slip = ct + R * Pt + (st * spin + kt * (EM * moment))
         velocities = [UX + ma * Px, UY + ma * Py, VX - mb * Px, VY - mb * Py]
         size = absolute(mu)
