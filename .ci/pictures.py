@@ -1,8 +1,9 @@
 """Make README's pictures and its table of run times again: python .ci/pictures.py
 
-Needs ``pip install -e '.[bench,desk,plot,report,scan]'`` and Chromium. Each picture is what a
-command of README makes; pages are photographed by a browser without a window. The benchmark takes
-some ten seconds, and wants a machine that does nothing else; ``--no-bench`` leaves it out.
+Needs ``pip install -e '.[bench,desk,plot,report,scan,test]'``, Chromium and chromedriver. Each
+picture is what a command of README makes; pages are photographed by a browser without a window.
+The benchmark takes some ten seconds, and wants a machine that does nothing else; ``--no-bench``
+leaves it out.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ COMMAND = str(Path(sys.executable).with_name("impact88"))
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 BROWSER_OPTIONS = ("--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars")
 PAGE_SIZE = (1000, 1300)
+DESK_SIZE = (1280, 1000)
 SCAN = "clean-001.png"
 README = ROOT / "README.md"
 TABLE_START = "<!-- run times: .ci/pictures.py -->"
@@ -62,6 +64,21 @@ def scene_file(folder: Path) -> str:
     return "crash.toml"
 
 
+def photograph_desk(picture: Path) -> None:
+    """Save what the desk shows of a published run as a PNG."""
+    sys.path.insert(0, str(ROOT / "tests"))
+    from desk_browser import browser, desk, until
+
+    with desk() as address, browser() as page:
+        page.driver.set_window_size(*DESK_SIZE)
+        page.open(address)
+        page.choose("collision-sample", "1")
+        page.run("location.hash = '#collision'")
+        until(lambda: page.count("#collision-first td"), "the answer", 60)
+        until(lambda: page.run("return document.getElementById('collision-figure').naturalWidth"))
+        page.driver.save_screenshot(str(picture))
+
+
 def write_table(record: dict[str, Any]) -> None:
     """Put what a benchmark measured into README's table, with where it was measured."""
     rows = {(row["method"], row["population"]): row for row in record["results"]}
@@ -99,6 +116,7 @@ def main() -> None:
         shutil.copy(ROOT / "golden" / "scans" / SCAN, folder)
         run("verify", "--brief", "--report", "page.html", SCAN, folder=folder)
         photograph((folder / "page.html").as_uri(), PICTURES / "verify.png")
+        photograph_desk(PICTURES / "desk.png")
         if "--no-bench" not in sys.argv:
             figure = str(PICTURES / "work-precision.svg")
             record = folder / "bench.json"

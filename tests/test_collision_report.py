@@ -17,6 +17,8 @@ import pytest
 
 from impact88 import solve
 from impact88.cli import main
+from impact88.commands import reconstruct_command
+from impact88.reconstruction import adjustment
 from impact88.scene import sample
 
 pytest.importorskip("jinja2")
@@ -208,6 +210,23 @@ def evidence_file(folder: Path, seed: int, off: float) -> tuple[Path, Path]:
 FILES = 50 if os.environ.get("IMPACT88_SWEEP") else 4
 
 
+@pytest.fixture
+def searched_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two commands that are asked the same have one search."""
+    results: dict[str, Any] = {}
+
+    def reconstruct(known: Any, *progress: Any) -> Any:
+        key = repr(sorted(known.items()))
+        if key not in results:
+            results[key] = adjustment_reconstruct(known, *progress)
+        return results[key]
+
+    adjustment_reconstruct = adjustment.reconstruct
+    monkeypatch.setattr(adjustment, "reconstruct", reconstruct)
+    monkeypatch.setattr(reconstruct_command, "reconstruct", reconstruct)
+
+
+@pytest.mark.usefixtures("searched_once")
 @pytest.mark.parametrize("seed", range(FILES))
 def test_the_first_page_says_that_the_evidence_contradicts_itself_or_does_not(
     tmp_path: Path, capsys: Any, seed: int

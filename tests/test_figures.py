@@ -910,6 +910,13 @@ class TestRendered:
             for edge in edges:
                 assert edge.mean() > (0.6 if dash else 0.99)
 
+    def test_underscores_of_a_title_are_underscores(self):
+        drawing = scene_drawing(sample(1), title=r"photo_12 \_ a_{b}")
+        (line,) = [text for text in drawing.texts() if text.role == "title"]
+        cut = pieces(line.text)
+        assert not any(below for _, below in cut)
+        assert "".join(piece for piece, _ in cut) == r"photo_12 \_ a_{b}"
+
     def test_a_title_that_does_not_print_is_shown_with_escapes(self, tmp_path):
         title = "Main \x1b[31m and \u202e4th\x00 \ud800"
         drawing = scene_drawing(sample(1), title=title)

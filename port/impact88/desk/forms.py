@@ -128,7 +128,7 @@ def spoken_direction(name: str, shown: float | None, system: System) -> str:
         return "against x"
     other_axes = convention is not None and bool(convention.axes)
     side = "left" if (left > 0) != other_axes else "right"
-    return f"{number(round(abs(left)), 3)}° to the {side} of x"
+    return f"to the {side} of x"
 
 
 def digits(value: float | None, count: int) -> str:

@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -173,16 +173,25 @@ class Drawing:
 
     def heading(self) -> float:
         """Write the title in bold at the top; returns where what follows goes on."""
-        lines = wrapped(self.title, (self.width - 4) / BOLD, 7)
+        # a user's words: no symbols with subscripts
+        lines = wrapped(self.title.replace("_", r"\_"), (self.width - 4) / BOLD, 7)
         for count, line in enumerate(lines, 1):
             self.add(Text(complex(2, -ROW * count), line, 7, bold=True, role="title"))
         return -ROW * len(lines)
 
 
 def pieces(text: str) -> list[tuple[str, bool]]:
-    """``text`` cut at its subscripts: (piece, whether it is one)."""
-    found = re.finditer(r"_\{([^}]*)\}|_([^\W_]+)|_|[^_]+", text)
-    return [(m[1] or m[2] or "", True) if m[0][0] == "_" else (m[0], False) for m in found]
+    r"""``text`` cut at its subscripts: (piece, whether it is one); ``\_`` is an underscore."""
+    found = re.finditer(r"_\{([^}]*)\}|_([^\W_]+)|_|\\_|[^_\\]+|\\", text)
+    cut = [
+        (m[1] or m[2] or "", True) if m[0][0] == "_" else (m[0].replace(r"\_", "_"), False)
+        for m in found
+    ]
+    joined = []
+    for below, alike in groupby(cut, lambda piece: piece[1]):
+        texts = [piece for piece, _ in alike]
+        joined += [(piece, True) for piece in texts] if below else [("".join(texts), False)]
+    return joined
 
 
 def text_width(text: str, size: float, bold: bool = False) -> float:
@@ -218,13 +227,14 @@ def text_runs(text: Text) -> list[tuple[complex, str, float]]:
         size = text.size * (SUBSCRIPT_SIZE if below else 1.0)
         drop = SUBSCRIPT_DROP * text.size * MM_PER_POINT if below else 0.0
         runs.append((at - 1j * drop, piece, size))
-        at += text_width(piece, size, text.bold)
+        at += text_width(piece.replace("_", r"\_"), size, text.bold)
     return runs
 
 
 def text_box(text: Text) -> Box:
     start, height = _start(text), text.size * MM_PER_POINT
-    below = DESCENT + (SUBSCRIPT_DROP if "_" in text.text else 0.0) / 2
+    drop = SUBSCRIPT_DROP if any(low for _, low in pieces(text.text)) else 0.0
+    below = DESCENT + drop / 2
     width = text_width(text.text, text.size, text.bold)
     bottom, top = start.imag - below * height, start.imag + ASCENT * height
     return Box(start.real, bottom, start.real + width, top)

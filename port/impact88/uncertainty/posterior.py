@@ -42,9 +42,10 @@ Flags = NDArray[np.bool_]
 Progress = Callable[[int], object]
 
 SIGMAS = 3.0  # where a normal without limits ends, for draws and bounds alike
-PARTICLES = 4000
+PARTICLES = 8000
+FIRST_PARTICLES = 12  # times as many to begin with: thin arms of the distribution are met
 MOVES = 8  # steps of each particle at each hardness of the limits
-LAST_MOVES = 40  # steps before the first draws are taken
+LAST_MOVES = 24  # steps before the first draws are taken
 BEYOND_DRAWS = 2.0  # bounds are sought so many times what draws span beyond them
 _CHUNK = 1 << 13  # impacts at a time: bounds the memory
 _JUMPS = 0.1  # steps the length of a difference of two particles, which join branches
@@ -61,6 +62,7 @@ BROAD = 1.5  # spread of others, of the largest speed known, which find what els
 BROAD_FRACTION = 0.4  # of the first particles
 FARTHEST = 20.0  # velocities before are at most so many times the largest speed known
 LARGEST_COEFFICIENT = 20.0  # and so are coefficients that nothing is known of, either way
+SIZES = (*SPEEDS, "DVA", "DVB")
 LINEAR = (*SPEEDS, *DIRECTIONS, "VC", "VS", "DVAF", "DVAR", "DVBF", "DVBR")
 """Exact quantities that are linear conditions; speeds with their courses exact."""
 
@@ -311,6 +313,11 @@ class Posterior:
         sound = np.isfinite(plain) & np.isfinite(excess)
         return np.where(sound, plain, -np.inf), np.where(sound, excess, np.inf)
 
+    def _logarithms_by_parts(self, points: Floats, signs: Floats) -> tuple[Floats, Floats]:
+        parts = [slice(i, i + _CHUNK) for i in range(0, points.shape[1], _CHUNK)]
+        rows = [self.logarithms(points[:, part], signs[part]) for part in parts]
+        return np.concatenate([row[0] for row in rows]), np.concatenate([row[1] for row in rows])
+
     def _observed(self, state: State, name: str) -> tuple[Any, Any]:
         """Return a value that is known within limits, and the logarithm of what its own scale adds
         to the density."""
@@ -344,25 +351,25 @@ class Posterior:
         self, particles: int, count: int, rng: np.random.Generator
     ) -> tuple[Floats, Floats]:
         nothing = np.empty((self.size, 0)), np.empty(0)
-        points, signs, first = self._begin(particles, rng)
-        logs = (*self.logarithms(points, signs), first(points, signs))
-        hardness = 0.0
+        points, signs, first = self._begin(FIRST_PARTICLES * particles, rng)
+        logs = (*self._logarithms_by_parts(points, signs), first(points, signs))
+        hardness, needed = 0.0, EFFECTIVE * particles
         for _ in range(MAX_STAGES):
             now = _tempered(logs, hardness)
             hard = _tempered(logs, np.inf) - now
-            last = _effective(hard) >= EFFECTIVE
+            last = _effective(hard) >= needed
             harder = np.inf
             if not last:
                 low, high = hardness, hardness + 4.0
                 for _ in range(30):
                     middle = (low + high) / 2
-                    enough = _effective(_tempered(logs, middle) - now) >= EFFECTIVE
+                    enough = _effective(_tempered(logs, middle) - now) >= needed
                     low, high = (middle, high) if enough else (low, middle)
                 harder = low
                 if harder > _HARDEST or not harder > hardness:
                     return nothing
             weights = np.exp(_lifted(_tempered(logs, harder) - now))
-            chosen = _resampled(weights, rng)
+            chosen = _resampled(weights, particles, rng)
             points, signs = points[:, chosen], signs[chosen]
             logs = (logs[0][chosen], logs[1][chosen], logs[2][chosen])
             hardness = harder
@@ -511,6 +518,8 @@ class Ground:
     def _rows(self, state: State, count: int) -> Array:
         posterior = self.posterior
         rows = [posterior._value(state, n) for n in self.names]
+        # the square of a size has no kink at 0
+        rows = [r * r if n in SIZES else r for n, r in zip(self.names, rows, strict=True)]
         rows += [state.quotient(n)[1] for n in self.ratios]
         for name in self.walls:
             item = posterior.items[name]
@@ -577,15 +586,15 @@ def _lifted(logarithms: Floats) -> Floats:
 
 
 def _effective(logarithms: Floats) -> float:
-    """Return the effective fraction of particles with these logarithms of weights."""
+    """Return the effective number of particles with these logarithms of weights."""
     weights = np.exp(_lifted(logarithms))
     total = weights.sum()
-    return float(total * total / np.square(weights).sum() / len(weights)) if total > 0 else 0.0
+    return float(total * total / np.square(weights).sum()) if total > 0 else 0.0
 
 
-def _resampled(weights: Floats, rng: np.random.Generator) -> NDArray[np.intp]:
-    """Return which particles go on, by systematic resampling."""
-    places = (rng.random() + np.arange(len(weights))) / len(weights)
+def _resampled(weights: Floats, count: int, rng: np.random.Generator) -> NDArray[np.intp]:
+    """Return which particles go on, ``count`` of them, by systematic resampling."""
+    places = (rng.random() + np.arange(count)) / count
     sums = np.cumsum(weights / weights.sum())
     return np.minimum(np.searchsorted(sums, places), len(weights) - 1)
 

@@ -11,6 +11,7 @@ that are quadratic functions, set back a little; its end is accepted by the dens
 (Metropolis, Hastings). Bounds climb from the draws and from points spread over the box (`ascent`).
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -26,7 +27,7 @@ from ..reconstruction.state import CRUSH, DIRECTIONS, State
 from ..reconstruction.system import PARAMETERS, TINY, System
 from .ascent import OUTSIDE, climb, extremes_of, spread_out
 from .boundstable import Spread
-from .posterior import Ground, Posterior
+from .posterior import SIZES, Ground, Posterior
 from .uncertain import Uncertain, columns_of, fixed
 
 Floats = NDArray[np.float64]
@@ -53,6 +54,7 @@ LEAST_GAIN = 1e-7
 LEARNT, UNSEEN, WALKS, PACES = 6, 9, 20, 40
 """Times each chain's place is met while the walls are learnt, until it has forgotten its start, and
 as a draw; each so many paces apart."""
+FEELERS = 1000  # particles that seek the way inside all limits where nothing was drawn
 FREE = 4096
 """Draws as without walls that chains may start from."""
 NEAR, RIDGE = 1.5, 1e-9
@@ -170,7 +172,7 @@ def _extremes(
 ) -> dict[str, Range]:
     """`ranges` over all branches: climbed from draws of the distribution."""
     if drawn is None or drawn.signs is None:
-        points, signs = posterior.sample(FREE, np.random.default_rng([seed, 0]))
+        points, signs = posterior.sample(FEELERS, np.random.default_rng([seed, 0]))
     else:
         points, signs = drawn.points.T, drawn.signs
     if not len(signs):
@@ -199,7 +201,12 @@ def _extremes(
         low, high = (ground.values(at[i], signs[0]) for at in ends)
         inside = all((np.abs(at[i][free] - 0.5) < 0.5).all() for at in ends)
         searched = bool(done[:, i].all()) and inside
-        found[name] = Range(float(lower[i]), float(upper[i]), low, high, searched)
+        limits = float(lower[i]), float(upper[i])
+        if name in SIZES:  # whose squares are searched
+            low_root, high_root = (math.sqrt(max(limit, 0.0)) for limit in limits)
+            # no draw is beyond by rounding
+            limits = max(math.nextafter(low_root, -1), 0.0), math.nextafter(high_root, math.inf)
+        found[name] = Range(*limits, low, high, searched)
     return found | {name: Range(-np.inf, np.inf, {}, {}) for name in endless if name in found}
 
 
