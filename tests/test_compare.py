@@ -24,6 +24,7 @@ import bugs
 import heldout
 import strangers
 from impact88.accuracy import errorbound
+from impact88.checking import diagnosis
 from impact88.checking.compare import (
     NO_RESULT,
     NOTHING_HERE,
@@ -146,7 +147,7 @@ def test_a_tolerance_of_ones_own(tmp_path) -> None:
 # --- what is wrong ---------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("what", MISTAKES if SWEEP else list(MISTAKES)[4::19])
+@pytest.mark.parametrize("what", MISTAKES if SWEEP else list(MISTAKES)[4:5])
 def test_a_mistake_is_named(tmp_path, what: str) -> None:
     program, says = MISTAKES[what]
     assert main_cause(compared(tmp_path, answered(program, MIXED), MIXED)) == says
@@ -225,10 +226,11 @@ def test_a_mistake_in_one_equation_is_named(tmp_path, program: Program, says: st
     (evidence,) = done.evidence
     assert evidence.explains == evidence.disagreeing == done.differing
     assert evidence.fits == evidence.agreeing == done.agreeing
+    assert done.unexplained == {}
 
 
 BUGS = [*heldout.SINGLES, *heldout.PAIRS, *strangers.SINGLES, *strangers.PAIRS]
-FEW = [BUGS[66], strangers.PAIRS[-1]]
+FEW = strangers.PAIRS[-1:]
 
 
 @pytest.mark.parametrize("which", BUGS if SWEEP else FEW, ids=str)
@@ -329,6 +331,9 @@ def test_an_unknown_mistake_gets_the_equations_it_violates(tmp_path) -> None:
     broken = {number for number, (_, violated) in done.equations.items() if violated}
     assert broken == {"15"}
     assert done.equations["15"] == (len(ROWS), len(ROWS))
+    kinds = done.unexplained.values()
+    assert sum(kind.rows for kind in kinds) == len(ROWS)
+    assert all(kind.violated == {"15": kind.rows} for kind in kinds)
 
 
 def test_noise_is_given_no_cause(tmp_path) -> None:
@@ -342,8 +347,9 @@ def test_noise_is_given_no_cause(tmp_path) -> None:
     assert all(cause.startswith(UNKNOWN) for cause in done.causes), done.causes
 
 
-def test_point_masses_need_no_inertias_to_be_explained(tmp_path) -> None:
+def test_point_masses_need_no_inertias_to_be_explained(tmp_path, monkeypatch) -> None:
     """The 1988 program cannot be run on such rows, to see whether the numbers are its own."""
+    monkeypatch.setattr(diagnosis, "singles", lambda *_: [])
     light = {"M": "4", "DA": "0", "DB": "0", "IA": "", "IB": ""}
     done = compared(tmp_path, {"VAX": ["1", "2"]}, [{**scene, **light} for scene in ROWS[:2]])
     assert (done.differing, done.bad) == (2, [])

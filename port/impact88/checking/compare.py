@@ -27,7 +27,7 @@ from ..tables.rows import BadCell, Reader, Rows
 from ..tables.table import FORMATS, format_of, open_reader
 from . import agreement
 from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, Case
-from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, Diagnosis
+from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, Diagnosis, Unexplained
 from .junit import Suite
 from .trials import Program
 from .vectors import FAILURE
@@ -111,7 +111,8 @@ class Comparison:
     """The result of `compare`.
 
     ``causes``: likely cause -> rows it explains; ``evidence`` and ``programs``: what bears out each
-    cause that is a program, and the program; ``differences``: every row that disagrees;
+    cause that is a program, and the program; ``unexplained``: by kind of scene, of the rows that
+    were looked into; ``differences``: every row that disagrees;
     ``not_compared``: by reason; ``unknown``: columns that were not recognised -> the name that was
     meant, or ""; ``place``: where in a workbook the table stands (sheet and row of its headings);
     ``remarks``: how its headings were understood.
@@ -128,6 +129,7 @@ class Comparison:
     evidence: list[Cause] = field(default_factory=list)
     programs: list[Program] = field(default_factory=list)
     equations: dict[str, tuple[int, int]] = field(default_factory=dict)
+    unexplained: dict[str, Unexplained] = field(default_factory=dict)
     bad: list[BadCell] = field(default_factory=list)
     unknown: dict[str, str] = field(default_factory=dict)
     place: dict[str, Any] = field(default_factory=dict)
@@ -177,6 +179,7 @@ class Comparison:
             "causes": dict(self.causes.most_common()),
             "evidence": [cause._asdict() for cause in self.evidence],
             "equations": equations,
+            "unexplained": {name: kind._asdict() for name, kind in self.unexplained.items()},
             "worst": [row._asdict() for row in self.worst],
             "differences": found,
             "elimination": vars(self.elimination),
@@ -278,6 +281,7 @@ def compare(
         found = Diagnosis(case.part(np.concatenate([np.flatnonzero(case.wrong), right])))
         rows_wrong = comparison.differences
         comparison.equations, comparison.programs = found.equations, found.programs
+        comparison.unexplained = found.unexplained
         comparison.evidence = [
             cause._replace(parts={says: rows_wrong[at].row for says, at in cause.parts.items()})
             for cause in found.evidence

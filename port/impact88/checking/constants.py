@@ -18,6 +18,8 @@ Floats = NDArray[np.float64]
 
 FACTOR, OFFSET = "*", "+"
 _ITERATIONS = 12
+_NEARLY = 10.0
+"""Times what is allowed: a fit that is farther off is none; what is allowed is asked after it."""
 _STEP = 1e-6
 """Relative step of the differences by which a constant is improved."""
 _GROUPS = (
@@ -164,8 +166,13 @@ def fitted(judge: Judge) -> list[Program]:
         constants = np.array([1.0 if target.how == FACTOR else 0.0 for target in targets])
         for _ in range(_ITERATIONS):
             constants = _improved(whole, targets, constants, judge)
-        for target, constant in zip(targets, constants.tolist(), strict=True):
-            if np.isfinite(constant) and constant != (1.0 if target.how == FACTOR else 0.0):
+        # a program with each is run only where the fit comes near in as many rows
+        off = _off(whole, targets, constants, judge).reshape(len(targets), -1, judge.wrong.size)
+        near = (~(np.abs(off) > _NEARLY)).all(1) & judge.wrong
+        fits = near.sum(1) >= BORNE_OUT * judge.wrong.sum()
+        for target, constant, fit in zip(targets, constants.tolist(), fits, strict=True):
+            moved = constant != (1.0 if target.how == FACTOR else 0.0)
+            if fit and moved and np.isfinite(constant):
                 program = Program((_edit(target, constant),))
                 trial = run(program, judge)
                 if trial.stands and trial.explains >= BORNE_OUT * judge.wrong.sum():

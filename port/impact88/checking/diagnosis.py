@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from ..accuracy import errorbound
 from ..equations.edits import RARE_CONVENTION, variants
 from ..equations.evaluation import Run
-from ..equations.spelling import LISTING, spellings
+from ..equations.spelling import IMPULSES, LISTING, spellings
 from ..errors import UserError
 from ..fields import FIELDS
-from ..names import FINAL_VELOCITIES, SCENE
+from ..names import FINAL_VELOCITIES, PIVOT, SCENE
 from ..progress import progress
 from ..replay import replay
 from .agreement import HALF, Bools, Case, Floats, violated
@@ -65,7 +65,11 @@ the bound."""
 _WIDTHS = {SINGLE: (24, 27.0, 33.5), APPLESOFT: (32, 34.0, 40.0)}
 """Cause -> bits of the arithmetic, and the range in which the bits measured against the bound lie:
 rounding spoils a few bits less than the bound allows."""
-_BRANCHES = ("MU's sign rule inverted", "the critical ratio used in place of MU")
+_TURNED = "Γ half a turn on: the normal the other way round"
+_INVERTED = "MU's sign rule inverted"
+_ALONG_NORMAL = ("PN", "PT", "VC", "VS")
+"""Two ways to say the same, and the results that tell them apart."""
+_BRANCHES = (_INVERTED, "the critical ratio used in place of MU")
 """Models that take the other branch, of friction's sign or of the pivot, in every row."""
 LOOKED_INTO = 4000
 """Rows that agree, and must bear a cause out, and rows that the 1988 program is run on: they bound
@@ -86,10 +90,19 @@ class Cause(NamedTuple):
     parts: dict[str, int]
 
 
+class Unexplained(NamedTuple):
+    """Rows of one kind of scene: how many there are, how many of them disagree without a cause, and
+    in how many of these each equation is violated."""
+
+    rows: int
+    unexplained: int
+    violated: dict[str, int]
+
+
 class Diagnosis:
     """Why rows of a case disagree: ``causes`` of each that does, in order; the ``evidence`` for
     each, and the ``programs``; ``equations``: in how many of the rows each could be checked, and is
-    violated."""
+    violated; ``unexplained``: by kind of scene, where rows are left without a cause."""
 
     @np.errstate(all="ignore")
     def __init__(self, case: Case) -> None:
@@ -123,7 +136,31 @@ class Diagnosis:
                 self._by_order()
             if self._open.sum() > (1 - BORNE_OUT) * wrong.sum():
                 self._by_precision()
+        self.unexplained = self._by_kind(violations) if self._open.any() else {}
         self._by_residuals(violations)
+
+    def _by_kind(self, violations: Mapping[str, Bools]) -> dict[str, Unexplained]:
+        """Return what is left without a cause, by kind of scene; each row is of the first kind that
+        it fits."""
+        g = self._case.columns
+        kinds = {
+            **_strata(g),
+            "point masses": g["M"] == 4,
+            "the pivot (MU = -10)": g["MU"] == PIVOT,
+            "no friction (MU = 0)": g["MU"] == 0,
+            "no moment (EM = 1)": g["EM"] == 1,
+            "all other scenes": np.ones(self._wrong.size, bool),
+        }
+        left = np.ones(self._wrong.size, bool)
+        counted: dict[str, Unexplained] = {}
+        for name, rows in kinds.items():
+            rows, left = rows & left, left & ~rows
+            open_rows = rows & self._open
+            if rows.any():
+                violated = {n: int((off & open_rows).sum()) for n, off in violations.items()}
+                violated = {number: count for number, count in violated.items() if count}
+                counted[name] = Unexplained(int(rows.sum()), int(open_rows.sum()), violated)
+        return counted
 
     @property
     def causes(self) -> list[str]:
@@ -177,7 +214,7 @@ class Diagnosis:
                 if not _earned(program, explained & clear, bits, choices & clear):
                     continue
                 stands = (fits & right).sum() >= BORNE_OUT * right.sum()
-                says = program.says + ("" if stands else IN_THESE_ROWS)
+                says = self._in_both_words(program.says) + ("" if stands else IN_THESE_ROWS)
                 if unexplained := [name for name in whole.theirs if name not in names]:
                     says += f"; {', '.join(unexplained)} {UNKNOWN}"
                 self._causes[explained] = says
@@ -188,6 +225,20 @@ class Diagnosis:
                 self.programs.append(program)
             if self.evidence:
                 return
+
+    def _in_both_words(self, says: str) -> str:
+        """What is said of a program; of one that no row tells from another, both. The normal's
+        direction matters to the rule of MU's sign alone, but for results along it; and where the
+        contact does not slide, the rule is not symmetrical."""
+        if set(_ALONG_NORMAL) & set(self._case.names):
+            return says
+        g = self._case.columns
+        sliding = Run(spellings()[IMPULSES], g).names["gt"]
+        if ((sliding == 0) & (g["MU"] != 0) & (g["MU"] != PIVOT)).any():
+            return says
+        parts = says.split("; and ")
+        both = f"{_INVERTED}, or {_TURNED}"
+        return "; and ".join(both if part in (_INVERTED, _TURNED) else part for part in parts)
 
     def _by_constant(self, judge: Judge, clear: Bools, bits: Floats) -> None:
         """Name a constant that is wrong: any number that explains nearly all rows."""

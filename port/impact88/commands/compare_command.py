@@ -188,6 +188,12 @@ def _lines(comparison: Comparison) -> Iterator[str]:
                 yield f"  row {row} shows: {says}"
             for other in named.equivalents:
                 yield f"  or, the same in this table: {other}"
+        if comparison.unexplained:
+            yield "\nrows without a cause, by kind of scene:"
+            for name, kind in comparison.unexplained.items():
+                which = ", ".join(kind.violated)
+                says = f"; Equations {which} violated" if which else ""
+                yield f"  {name}: {kind.unexplained} of {kind.rows}{says}"
         broken = {number: tally for number, tally in comparison.equations.items() if tally[1]}
         if broken:
             yield "\nequations that their final velocities violate:"
