@@ -14,6 +14,8 @@ from captures import ROOT
 from impact88.cli import main
 from impact88.emulator.emulator import Applesoft
 from impact88.errors import UserError
+from impact88.explaining import explanations
+from impact88.judging import beside
 from impact88.program.emulated import ListingCopy
 from impact88.program.run import run
 from impact88.reporting.examination import Verdict, examine
@@ -72,10 +74,19 @@ def copy_of(text: str, folder: Path) -> ListingCopy:
     return ListingCopy(str(path))
 
 
+@pytest.fixture
+def verdicts_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What stands beside a verdict is left out: it takes a hundred runs of the copy, and has tests
+    of its own below."""
+    monkeypatch.setattr(beside, "unseen", lambda *given: [])
+    monkeypatch.setattr(explanations, "explain_copy", lambda *given: [])
+
+
 def verdicts(text: str, copy: ListingCopy | None) -> set[Verdict]:
     return {result.verdict for result in examine("-", None, copy, data=text.encode()).results}
 
 
+@pytest.mark.usefixtures("verdicts_alone")
 @pytest.mark.captures
 @pytest.mark.parametrize("name", COPIES if printouts.SWEEP else SHORT)
 def test_the_pages_of_a_copy_are_settled_and_others_are_not(name: str, tmp_path: Path) -> None:
@@ -122,6 +133,7 @@ def test_rounding_on_one_line_comes_before_a_misread_digit(tmp_path: Path) -> No
     assert set(named) == {("rounded, not floored", "on line 760")}
 
 
+@pytest.mark.usefixtures("verdicts_alone")
 @pytest.mark.captures
 def test_what_only_the_copy_prints_is_part_of_its_page(tmp_path: Path) -> None:
     """Its prompts, and the replies to them, to the digit."""
@@ -224,6 +236,7 @@ def run_as_a_person(text: str, replies: list[str]) -> str:
     return machine.take_output()
 
 
+@pytest.mark.usefixtures("verdicts_alone")
 @pytest.mark.parametrize("name", OFFICES)
 def test_pages_of_an_office_are_settled_by_its_copy(name: str, tmp_path: Path) -> None:
     text, replies = OFFICES[name]
@@ -261,6 +274,7 @@ def test_a_copy_whose_variables_are_not_plain_is_refused_by_name(
     assert re.search(says, found.error or "")
 
 
+@pytest.mark.usefixtures("verdicts_alone")
 @pytest.mark.parametrize("width", [33, 40])
 def test_a_copy_as_list_printed_it_is_held_against(width: int, tmp_path: Path) -> None:
     machine = Applesoft()

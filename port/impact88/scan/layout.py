@@ -155,8 +155,8 @@ def _divided(line: str, inked: Floats, blank: Floats) -> tuple[list[Floats], lis
     if cells > _APART:
         other = np.maximum(inked, blank)[:, ::-1].cumsum(axis=1)[:, ::-1]
         gap = emptied[:, _APART:] - emptied[:, :-_APART]
-        most = np.maximum(best[:, : -_APART - 1], 0) / 2
-        gap[:, :-1] += np.minimum(other[:, _APART:], most)
+        half = np.maximum(best[:, : -_APART - 1], 0) / 2
+        gap[:, :-1] += np.minimum(other[:, _APART:], half)
         np.maximum(rest[:, :-_APART], gap - _BESIDE, out=rest[:, :-_APART])
     after[-1] = best + rest
     return after, runs
