@@ -27,11 +27,14 @@ KINDS = (
     *("altered", "font", "pasted", "line", "erased", "labels"),
     *("pins", "carbon", "columns", "half", "turned"),
     *("sign", "point", "digit", "appended", "typedline", "beside", "word"),
+    *("desk", "spread", "skew", "pen", "stamp", "holes"),
 )
-"""The first three genuine, the next six not; five genuine, in ways of their own; on the last seven
-something was added in the page's own type."""
+"""The first three genuine, the next six not; five genuine, in ways of their own; on the next seven
+something was added in the page's own type; the last six are genuine, and other things than paper
+and type are on the picture."""
 FORGED = KINDS[3:9]
-ADDED = KINDS[14:]
+ADDED = KINDS[14:21]
+SURROUNDED = KINDS[21:]
 FONTS = {
     "liberation": "truetype/liberation/LiberationMono-Regular.ttf",
     "courierprime": "opentype/courier-prime/Courier Prime.otf",
@@ -319,7 +322,7 @@ def _added(lines: list[str], kind: str, choose: random.Random) -> tuple[list[str
 
 def page(kind: str, choose: random.Random, of: list[str]) -> tuple[Image.Image, dict[str, Any]]:
     """One page of a kind, and its truth; ``of``: the fonts that may be used."""
-    plain = kind in ("clean", "photo", *FORGED, *ADDED)
+    plain = kind in ("clean", "photo", *FORGED, *ADDED, *SURROUNDED)
     font = choose.choice([one for one in of if not plain or one not in DOTS])
     sizes = (36, 42, 48) if plain and kind not in FORGED else (30, 36, 42)
     pixels = choose.choice((22, 28, 34, 40) if kind == "hard" else sizes)
@@ -328,7 +331,8 @@ def page(kind: str, choose: random.Random, of: list[str]) -> tuple[Image.Image, 
     styles = ("plain", "headfoot", "noprompt")
     style = choose.choice((*styles, "two", "wrap40") if kind == "hard" else styles)
     style = {"columns": "columns"}.get(kind, style)
-    prints = [printed(choose) for _ in range(2 if style in ("two", "columns") else 1)]
+    several = style in ("two", "columns") or kind == "spread"
+    prints = [printed(choose) for _ in range(2 if several else 1)]
     shown, altered = list(prints), None
     if kind in FORGED:
         shown[0], altered = (_mislabelled if kind == "labels" else _altered)(prints[0], choose)
@@ -342,6 +346,14 @@ def page(kind: str, choose: random.Random, of: list[str]) -> tuple[Image.Image, 
     paper = drawn(lines, font, pixels, leading)
     if altered and by_hand:
         _forge(paper, kind, lines, _styled(shown, style), font, pixels, leading, choose, of)
+    if kind in SURROUNDED:
+        if kind == "spread":
+            papers = [drawn(_styled([text], style), font, pixels) for text in prints]
+        else:
+            papers = [paper]
+        picture = surrounded([worn(one, choose, "clean") for one in papers], kind, choose)
+        truth = {"kind": kind, "style": style, "font": font, "pixels": pixels, "condition": ""}
+        return picture, {**truth, "prints": prints, "altered": None}
     paper = _aged(paper, kind, pixels, choose)
     if altered and kind in FORGED:
         altered = (kind, *altered)
@@ -353,6 +365,89 @@ def page(kind: str, choose: random.Random, of: list[str]) -> tuple[Image.Image, 
         grey = Image.open(file)
     truth = {"kind": kind, "style": style, "font": font, "pixels": pixels, "condition": ""}
     return grey, {**truth, "prints": prints, "altered": altered}
+
+
+def surrounded(papers: list[Grey], kind: str, choose: random.Random) -> Image.Image:
+    """Paper as it comes to be pictured: on a desk, two sheets with a gutter, askew, written on away
+    from its lines, stamped in colour, with the strips of continuous forms."""
+    noise = np.random.default_rng(choose.getrandbits(32))
+    sheets = [Image.fromarray(np.clip(paper, 0, 255).astype(np.uint8)) for paper in papers]
+    sheet = sheets[0]
+    width, height = sheet.size
+    if kind == "skew":
+        turn = choose.choice((-1, 1)) * choose.uniform(3, 8)
+        return sheet.rotate(turn, Image.Resampling.BICUBIC, expand=True, fillcolor=255)
+    if kind == "spread":
+        gutter = choose.randint(20, 70)
+        size = sum(one.width for one in sheets) + gutter, max(one.height for one in sheets)
+        both = Image.new("L", size, choose.randint(20, 90))
+        for one, left in zip(sheets, (0, sheets[0].width + gutter), strict=True):
+            both.paste(255, (left, 0, left + one.width, size[1]))
+            both.paste(one, (left, 0))
+        return both
+    if kind == "desk":
+        margin = round(choose.uniform(0.08, 0.2) * width)
+        size = width + 2 * margin, height + 2 * margin
+        shift = 0.35 * margin
+        corners = [
+            (choose.uniform(-shift, shift) + x, choose.uniform(-shift, shift) + y)
+            for x, y in ((margin, margin), (margin + width, margin),
+                         (margin + width, margin + height), (margin, margin + height))
+        ]  # fmt: skip
+        rows, right = [], []
+        for (u, v), (x, y) in zip(corners, ((0, 0), (width, 0), (width, height), (0, height)),
+                                  strict=True):  # fmt: skip
+            rows += [[u, v, 1, 0, 0, 0, -u * x, -v * x], [0, 0, 0, u, v, 1, -u * y, -v * y]]
+            right += [x, y]
+        table = tuple(np.linalg.solve(np.array(rows, float), np.array(right, float)))
+        laid = sheet.transform(size, Image.Transform.PERSPECTIVE, table, Image.Resampling.BICUBIC)
+        there = Image.new("L", sheet.size, 255).transform(
+            size, Image.Transform.PERSPECTIVE, table, Image.Resampling.BILINEAR
+        )
+        desk = choose.randint(30, 90) + 12 * np.sin(np.arange(size[0]) / choose.uniform(9, 60))
+        part = np.asarray(there, float) / 255
+        light = 0.75 + 0.2 * np.linspace(*choose.choice(((0, 1), (1, 0))), size[0])
+        grey = (part * np.asarray(laid, float) + (1 - part) * desk) * light
+        grey = grey + noise.normal(0, 3, grey.shape)
+        return Image.fromarray(np.clip(grey, 0, 255).astype(np.uint8))
+    strip = round(0.18 * width)
+    if kind == "holes":
+        wide = Image.new("L", (width + 2 * strip, height), 255)
+        wide.paste(sheet, (strip, 0))
+        pen, radius = ImageDraw.Draw(wide), round(0.022 * width)
+        for middle in (strip // 2, wide.width - strip // 2):
+            for y in range(2 * radius, height - radius, 7 * radius):
+                pen.ellipse((middle - radius, y - radius, middle + radius, y + radius), 40)
+        for x in (strip - 2 * radius, wide.width - strip + 2 * radius):
+            for y in range(0, height, 14):
+                pen.line((x, y, x, y + 5), 150, 2)
+        return wide
+    wide = Image.new("L", (width + strip, height + strip), 255)
+    wide.paste(sheet, (0, strip))
+    ink = choose.randint(20, 90)
+    if kind == "stamp":  # over the type, too, in a colour
+        colour = choose.choice(((190, 30, 40), (40, 60, 190), (120, 30, 140)))
+        shown = wide.convert("RGB")
+        stamp = Image.new("L", shown.size, 255)
+        pen, x, y = ImageDraw.Draw(stamp), choose.randint(0, width // 2), choose.randint(0, height)
+        pen.ellipse((x, y, x + 0.3 * width, y + 0.3 * width), outline=0, width=max(4, width // 150))
+        pen.text((x + 0.05 * width, y + 0.13 * width), "RECEIVED", 0,
+                 ImageFont.truetype(str(_path(FONTS["liberation"])), width // 26))  # fmt: skip
+        over = (255 - np.asarray(stamp, float))[:, :, None] / 255
+        tint = np.asarray(shown, float) * (1 - over * (1 - np.array(colour) / 255))
+        return Image.fromarray(np.clip(tint, 0, 255).astype(np.uint8))
+    pen = ImageDraw.Draw(wide)
+    for _ in range(choose.randint(1, 3)):  # words by hand, in the margins
+        across = choose.random() < 0.6
+        x, y = (choose.uniform(0.05, 0.5) * width, 0.45 * strip) if across else (
+            width + 0.25 * strip, choose.uniform(0.2, 0.8) * height)  # fmt: skip
+        points = []
+        for step in range(choose.randint(25, 60)):
+            length = 0.006 * width * step * (1.0 if across else 0.25)
+            wave = 0.1 * strip * math.sin(1.9 * step) * choose.uniform(0.4, 1.0)
+            points.append((x + length, y + wave))
+        pen.line(points, ink, choose.randint(3, 6))
+    return wide
 
 
 def _aged(paper: Grey, kind: str, pixels: int, choose: random.Random) -> Grey:

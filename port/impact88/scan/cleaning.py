@@ -33,6 +33,12 @@ _GUTTER_WIDTH = 0.12  # of the width, at most
 _CHROMA = 0.2  # difference of a coloured ink's darkest and lightest channel at least
 _COLOURED_TYPE = 0.5  # of the ink that is coloured: more, and the type itself is
 _SMOOTH = 24  # pixels a side of the blocks whose brightness is the paper's
+_HOLE_DARK = 0.7  # brightness of a hole, of the paper's, at most
+_LEAST_HOLE, _LARGEST_HOLE = 0.008, 0.06  # of the width: half an inch apart, a fifth wide or less
+_SOLID = 0.65  # of the square around a hole that is dark; a disc has .79, a ring of ink less
+_FEWEST_HOLES = 4  # of a strip
+_STRIP = 0.15  # of the width, from a side, where strips run
+_ALONE = 1.5  # what is dark in a strip, of its holes, at most
 _SKEW = 0.08  # slope from which a page is set straight: the grid's own search ends at 0.1
 _STEEPEST = 0.25  # the greatest slope that is looked for
 _SHARPER = 1.3  # how much more sharply lines and gaps are parted along a steep slope at least
@@ -67,6 +73,9 @@ def papers_of(picture: Picture) -> Iterator[Paper]:
     if _negative(grey):
         grey = 255 - grey
         remarks.append("the picture is a negative: it was read as a positive")
+    if (strips := _without_strips(grey)) is not None:
+        grey = strips
+        remarks.append("the strips with the holes of continuous paper were left out")
     pages = _pages(grey)
     if len(pages) > 1:
         remarks.append(f"the picture shows {len(pages)} pages side by side")
@@ -142,6 +151,49 @@ def _negative(grey: Image) -> bool:
     return lighter > 2 * darker and float(np.median(small)) < 110
 
 
+# --- continuous paper -----------------------------------------------------------------------------
+
+
+def _without_strips(grey: Image) -> Image | None:
+    """Return a picture without the strips of holes at its sides, None where it has none.
+
+    Holes are solid, round, of one size, one below the other near a side, and nothing else is
+    between them.
+    """
+    scale = min(1.0, _FINE / max(grey.shape))
+    small = resized(grey, scale)
+    paper = float(np.percentile(small, 75))
+    dark = small < _HOLE_DARK * paper
+    width = dark.shape[1]
+    labels, _ = ndimage.label(dark)
+    rounds = []
+    for which, box in enumerate(ndimage.find_objects(labels), 1):
+        down, across = (part.stop - part.start for part in box)
+        round_ = 0.7 < across / down < 1.4 and _LEAST_HOLE < across / width < _LARGEST_HOLE
+        if round_ and (labels[box] == which).mean() > _SOLID:
+            rounds.append((box[1].start + across / 2, box[0].start + down / 2, across))
+    result = None
+    for left in (True, False):
+        near = [hole for hole in rounds if (hole[0] < width / 2) is left]
+        size = float(np.median([hole[2] for hole in near])) if near else 0.0
+        middle = float(np.median([hole[0] for hole in near])) if near else 0.0
+        alike = [h for h in near if abs(h[2] - size) < 0.3 * size and abs(h[0] - middle) < size]
+        inset = middle if left else width - middle
+        if len(alike) < _FEWEST_HOLES or inset > _STRIP * width:
+            continue
+        start, stop = (max(round(middle + side * 0.7 * size), 0) for side in (-1, 1))
+        gaps = np.diff(sorted(hole[1] for hole in alike))
+        holes = len(alike) * np.pi / 4 * size**2
+        even = bool(gaps.max() < 1.3 * float(np.median(gaps)))
+        if even and dark[:, start:stop].sum() < _ALONE * holes:
+            result = grey.copy() if result is None else result
+            if left:
+                result[:, : round(stop / scale)] = paper
+            else:
+                result[:, round(start / scale) :] = paper
+    return result
+
+
 # --- skew -----------------------------------------------------------------------------------------
 
 
@@ -188,7 +240,7 @@ def _skew(grey: Image) -> float:
     points = points_of(ink_of(small))
     if len(points.x) < FEWEST_POINTS:
         return 0.0
-    few = slice(None, None, max(1, len(points.x) // 15_000))
+    few = slice(None, None, max(1, len(points.x) // 5000))
     x, y = points.x[few], points.y[few]
     slopes = np.arange(-_STEEPEST, _STEEPEST + 1e-9, 0.004)
     sharpness = np.zeros((2, len(slopes)))

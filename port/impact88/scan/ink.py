@@ -18,6 +18,9 @@ Slope = tuple[float, float]
 
 _BLOCK = 24
 """Pixels a side of the blocks whose brightness is the paper's; larger than any stroke."""
+_TALL, _WIDE = 2.2, 15.0
+"""Pitches down and across that no connected ink of type takes: its height is 1.7 at most, and bad
+copies join the letters of a word."""
 _MOST_POINTS = 150_000
 """Chosen at random of more, for time: a page at 300 dots an inch has some 400,000."""
 
@@ -85,6 +88,20 @@ def points_of(ink: Image, fold: int = 1) -> Points:
     across, down = np.array([x, y]) + random.random((2, len(x)), np.float32)
     height, width = ink.shape
     return Points(fold * across - width / 2, fold * down - height / 2, float(max(ink.shape)))
+
+
+def without_pen(ink: Image, pitch: float, turns: int) -> Image:
+    """Return ink without what is connected over more than the height of a line or the width of a
+    word: strokes, rings and ruled lines. ``turns``: quarters by which the lines are turned."""
+    labels, _ = ndimage.label(ink > 0.4, np.ones((3, 3)))
+    plain = ink.copy()
+    for which, box in enumerate(ndimage.find_objects(labels), 1):
+        tall, wide = (part.stop - part.start for part in (box if turns % 2 == 0 else box[::-1]))
+        if tall > _TALL * pitch or wide > _WIDE * pitch:
+            around = tuple(slice(max(part.start - 2, 0), part.stop + 2) for part in box)
+            near = ndimage.binary_dilation(labels[around] == which, iterations=2)
+            plain[around][near] = 0
+    return plain
 
 
 def slopes(points: Points) -> Slope:

@@ -1,9 +1,10 @@
 """A page's picture from ink to verdict."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from ..reading.alignment import MAY_BE_MISSING
 from .claims import claims, is_of_a_printout
 from .grid import FEWEST_POINTS, Grid, grids_of
 from .holding import Added, Cell, Judged, held, judged, state
-from .ink import Floats, Image, ink_of, points_of
+from .ink import Floats, Image, Points, ink_of, points_of, without_pen
 from .layout import Sheet, sheets_of
 from .residue import Explained, Kind, Mark, Residue, residue_of
 from .scenes import Candidate, Read, borne_out, scene_of
@@ -99,23 +100,54 @@ def looked(
     if min(grey.shape) < _LEAST_SIDE:
         return Looked()
     ink = ink_of(grey)
-    most, found = 0.0, list[tuple[Grid, list[Sheet]]]()
+    best = _Laid([])
+    for laid in _tried(ink):
+        if laid.gain > best.gain:
+            best = laid
+        if laid.upright:
+            break
+    found = best.grids
+    leaves = [leaf for pair in found for leaf in _leaves(*pair, seeds)]
+    return Looked(leaves, _rest(ink, coloured, leaves))
+
+
+class _Laid(NamedTuple):
+    """Grids of a page, and the printouts on each."""
+
+    grids: list[tuple[Grid, list[Sheet]]]
+
+    @property
+    def gain(self) -> float:
+        return sum(sheet.gain for _, sheets in self.grids for sheet in sheets)
+
+    @property
+    def upright(self) -> bool:
+        """Whether a whole printout is there, the right way up."""
+        sheets = [sheet for _, some in self.grids for sheet in some]
+        return any(sheet.whole and sheet.gain > _UPRIGHT for sheet in sheets)
+
+
+def _tried(ink: Image) -> Iterator[_Laid]:
+    """Yield what is on a page as it is looked at in one way after the other: as it lies, without
+    what pen joins, turned, and with the grain of bad paper taken together."""
     order = _turns(ink)
     for fold, turns in product((1, 2), order):
         if turns == order[0]:
             points = points_of(ink, fold)
             if len(points.x) < FEWEST_POINTS:
-                break
-        grids = grids_of(ink, points, turns)
-        laid = [(grid, sheets_of(grid.odds(), grid.tops)) for grid in grids]
-        sheets = [sheet for _, some in laid for sheet in some]
-        gain = sum(sheet.gain for sheet in sheets)
-        if gain > most:
-            most, found = gain, laid
-        if any(sheet.whole and sheet.gain > _UPRIGHT for sheet in sheets):
-            break
-    leaves = [leaf for pair in found for leaf in _leaves(*pair, seeds)]
-    return Looked(leaves, _rest(ink, coloured, leaves))
+                return
+        laid = _laid(ink, points, turns)
+        yield laid
+        if (fold, turns) == (1, order[0]) and laid.grids:
+            plain = points_of(without_pen(ink, laid.grids[0][0].pitch, turns))
+            if len(plain.x) >= FEWEST_POINTS:
+                yield _laid(ink, plain, turns)
+
+
+def _laid(ink: Image, points: Points, turns: int) -> _Laid:
+    """Return the printouts of a page turned by quarters to the left."""
+    grids = grids_of(ink, points, turns)
+    return _Laid([(grid, sheets_of(grid.odds(), grid.tops)) for grid in grids])
 
 
 def _rest(ink: Image, coloured: Image | None, leaves: Sequence[Leaf]) -> Residue:
