@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,6 +41,7 @@ _IDLE_BATCHES = 4
 problems are found from one start in 200."""
 _MAX_BATCHES = 16  # of a search that keeps finding impacts
 _FITTED_STARTS = 120  # starts in a batch where nothing agrees exactly and a fit is sought
+_LEFT_OUT = 8  # sets of superfluous values left out, each for exact impacts as starts of a fit
 _NEARBY = 0.3  # spread of starts around impacts that were found before
 _ASIDE = 1e-2  # scaled distance at which a fold is told from a continuum
 _SAME = 1e-6  # scaled variables that differ by no more are of the same impact
@@ -78,6 +80,12 @@ def straight(system: System, starts: Floats) -> tuple[Floats, Floats]:
     """Gauss and Newton from several starts, a column each: where their steps end, and the
     largest of what conditions leave over there. Steps may climb, as long as the conditions hold
     no worse."""
+    x, left_over, _ = _stepped(system, starts)
+    return x, left_over
+
+
+def _stepped(system: System, starts: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    """Return the same as `straight`, and whose steps came to an end."""
     count, x = len(system.conditions), starts.copy()
     going = np.arange(x.shape[1])
     for _ in range(_STEPS):
@@ -100,7 +108,9 @@ def straight(system: System, starts: Floats) -> tuple[Floats, Floats]:
         if not len(going):
             break
     left_over = np.abs(system.left(system.state(x))[:count]).max(axis=0, initial=0.0)
-    return x, left_over
+    settled = np.ones(x.shape[1], bool)
+    settled[going] = False
+    return x, left_over, settled
 
 
 def tightened(system: System, x: Floats) -> tuple[Floats, float]:
@@ -589,15 +599,37 @@ def reconstruct(
     )
 
 
+def _invariants(values: Mapping[str, float]) -> list[float]:
+    """Return what axes, names and units do not change, as far as it is known, in six digits: the
+    fraction of the kinetic energy before that is in spins, e, that energy; then what else impacts
+    differ in."""
+    pairs = [("A", "B"), ("AF", "BF")]
+    rotation = [
+        sum(
+            # a product of huge spins is infinite, a power of them an error
+            values.get(spin, 0.0) * values.get(spin, 0.0) * values[inertia] / 2
+            for spin, inertia in (("WA" + after, "IA"), ("WB" + after, "IB"))
+            if math.isfinite(values[inertia])
+        )
+        for after in ("", "F")
+    ]
+    energy = values.get("KI", 0.0)
+    shares = [x / energy if energy else 0.0 for x in rotation]
+    speeds = [sum(values.get("S" + x, 0.0) for x in pair) for pair in pairs]
+    sizes = [abs(values.get(name, 0.0)) for name in ("E", "VC", "PN", "PT", "PM", "MUP", "EM")]
+    sums = [values.get("DVA", 0.0) + values.get("DVB", 0.0), values.get("EL", 0.0)]
+    ranks = [shares[0], sizes[0], energy, shares[1], *speeds, *sums, *sizes[1:]]
+    return [float(f"{x:.5e}") if abs(x) > 1e-9 else 0.0 for x in ranks]
+
+
 def _ordered(
     found: list[Reconstruction], searches: "Sequence[_Search]", mu: Uncertain | None
 ) -> list[Reconstruction]:
     """Return the likely solutions, those that contradict the measurements only where all do, in
     the order of physics: possible impacts before those that break
     it or drive backwards along a known course, then by the sum of squared adjustments. Ties by what
-    no axes, names or units change: the fraction of the kinetic energy before that is in spins, e,
-    that energy, the smaller first. A course is a
-    direction: what drives backwards along one is kept only where nothing else is."""
+    no axes, names or units change, the smaller first (`_invariants`). A course is a direction: what
+    drives backwards along one is kept only where nothing else is."""
     ahead = [s for s in found if not s.backwards] or found
     # what contradicts the measurements, as standstill does, is no answer beside what agrees
     agreeing = [s for s in ahead if not s.evidence.contradictory] or ahead
@@ -608,19 +640,9 @@ def _ordered(
         kept += [s for s in group if s.squares <= max(_LIKELY * least, 1e-9)]
 
     def order(solution: Reconstruction) -> tuple[float, ...]:
-        values, broken = solution.values, solution.impossible
         squares = float(f"{max(solution.squares, 1e-9):.6e}")
-        energy = values.get("KI", 0.0)
-        inertias = (("WA", "IA"), ("WB", "IB"))
-        rotation = sum(
-            # a product of huge spins is infinite, a power of them an error
-            values.get(spin, 0.0) * values.get(spin, 0.0) * values[inertia] / 2
-            for spin, inertia in inertias
-            if math.isfinite(values[inertia])
-        )
-        share = round(rotation / energy, 6) if energy else 0.0
-        e = round(abs(values.get("E", 0.0)), 6)
-        return bool(broken), squares, broken.bit_count(), share, e, energy
+        broken = solution.impossible
+        return bool(broken), squares, broken.bit_count(), *_invariants(solution.values)
 
     search = Searched(
         sum(each.batches for each in searches),
@@ -696,7 +718,7 @@ class _Search:
         self.open: list[Reconstruction] = []
         self.followed: list[Floats] = []
         self.rng = np.random.default_rng(1988)
-        self.batches = self.starts = self.idle = 0
+        self.batches = self.starts = self.idle = self.times_open = 0
         self.paths: Paths | None = None
         plain = System(known, adjusted=False, progress=progress)
         loose = any(known[name].varies for name in PARAMETERS if name in known)
@@ -713,10 +735,37 @@ class _Search:
         count = x.shape[1] or (1 if self.linear else _FITTED_STARTS)
         self.begin = _start(self.system, self.rng, count)
         if self.at_hand:
-            state = plain.state(x)
-            for row, name in enumerate(self.system.variables):
-                if name in VELOCITIES or name in IMPULSES:
-                    self.begin[row] = state[name] / self.system.scales[row]
+            self.begin = self.beginnings(plain, x)
+        elif not (self.linear or self.assumed):
+            self.begin = np.concatenate([self.exact_without(known), self.begin], axis=1)
+
+    def beginnings(self, plain: System, x: Floats) -> Floats:
+        """Return the starts that have the velocities and impulses of exact impacts ``x``."""
+        begin, state = _start(self.system, self.rng, x.shape[1]), plain.state(x)
+        for row, name in enumerate(self.system.variables):
+            if name in VELOCITIES or name in IMPULSES:
+                begin[row] = state[name] / self.system.scales[row]
+        return begin
+
+    def exact_without(self, known: Mapping[str, Uncertain]) -> Floats:
+        """Return starts at the impacts that agree exactly with all but the measured values more
+        than needed, whichever these are."""
+        loose = [n for n, item in known.items() if item.varies and n not in GEOMETRY]
+        plain = System(known, adjusted=False)
+        more = len(plain.conditions) - len(plain.variables)
+        begin = self.begin[:, :0]
+        if not 0 <= more <= len(loose):
+            return begin
+        left_out = [*combinations(loose, more)]
+        for names in left_out[:: -(-len(left_out) // _LEFT_OUT)]:
+            some = {name: item for name, item in known.items() if name not in names}
+            reading = System(some, adjusted=False)
+            equations = quadratic_equations(reading)
+            if equations is not None and equations.size <= MAX_EQUATIONS:
+                paths = follow_paths(equations, self.rng)
+                several = np.concatenate([paths.real, paths.near], axis=1)
+                begin = np.concatenate([begin, self.beginnings(reading, several)], axis=1)
+        return begin
 
     @property
     def single(self) -> bool:
@@ -806,12 +855,14 @@ class _Search:
         anywhere, and whether numbers stayed finite. ``thorough``: with tolerances tightened little
         by little, too."""
         system = self.system
-        ends, over = straight(system, begin)
+        ends, over, settled_ends = _stepped(system, begin)
         squares = np.square(system.left(system.state(ends))[len(system.conditions) :]).sum(axis=0)
+        wandering = 0
         for i in np.argsort(np.broadcast_to(squares, over.shape), kind="stable").tolist():
             if self.is_open and len(self.followed) >= _FEW:
                 break
-            if over[i] <= _NEARLY:
+            if over[i] <= _NEARLY and (settled_ends[i] or wandering < _FEW):
+                wandering += not settled_ends[i]
                 self.follow(ends[:, i : i + 1])
         met = bool((over <= _NEARLY).any())
         few, more = begin[:, :_TIGHTENED_FIRST], begin[:, _TIGHTENED_FIRST:_TIGHTENED]
@@ -840,13 +891,25 @@ class _Search:
             x, left_over = polished(self.system, nearby)
         except np.linalg.LinAlgError:
             return  # something is not finite there
-        if not left_over <= _HOLDS:
+        if not left_over <= _HOLDS or any(
+            np.abs(x - other.x).max(initial=0.0) < _SAME for other in self.solutions
+        ):
             return
+        if pseudo_inverse(self.system.slopes(x))[1].shape[1]:
+            rest = self.system.left(self.system.state(x))[len(self.system.conditions) :]
+            squares = float(np.square(rest).sum())
+            least = min((other.squares for other in self.solutions), default=math.inf)
+            # a fold that is not likely, or the continuum that was met before
+            if squares > _LIKELY * least + 1e-9:
+                return
+            if self.times_open >= _FEW and squares > self.open[0].squares - 1e-9:
+                return
         solution = _described(self.system, x, self.assumed)
         if solution.undetermined:  # from elsewhere it would only come out otherwise
+            self.times_open += 1
             both = (*self.open, solution)
             self.open = [min(both, key=lambda impact: round(impact.squares, 9))]
-        elif not any(np.abs(x - other.x).max(initial=0.0) < _SAME for other in self.solutions):
+        else:
             self.solutions.append(solution)
 
 

@@ -32,6 +32,7 @@ FIRST_STEP = 0.02
 CORRECTION_TOL = 1e-4  # largest first correction, of a vector of length 1
 CONVERGED = 1e-10  # last correction
 REAL_TOL = 1e-6  # imaginary parts up to that, of the largest part, are rounding
+NEARLY_REAL = 0.3  # imaginary parts up to that leave a start for a fit
 INFINITY_TOL = 1e-7  # homogenizing coordinate of a vector of length 1 below which it is at infinity
 MIN_EXPONENT = 0.1
 """The homogenizing coordinate of a path to a w-fold point at infinity falls as the 1/w-th power of
@@ -59,12 +60,14 @@ class Quadrics(NamedTuple):
 
 class Paths(NamedTuple):
     """The ends of all paths: ``real`` ones (scaled variables, a column each), how many are complex
-    or at infinity, and how many came to no end or met another (``lost``)."""
+    or at infinity, and how many came to no end or met another (``lost``); ``near``: the real parts
+    of complex ones that are nearly real."""
 
     real: Floats
     complex_ends: int
     infinite_ends: int
     lost: int
+    near: Floats
 
     @property
     def total(self) -> int:
@@ -162,7 +165,8 @@ def _without_linear(forms: Floats) -> Quadrics | None:
 
 def follow_paths(equations: Quadrics, rng: np.random.Generator) -> Paths:
     """Return where the paths to all solutions of ``equations`` end."""
-    met, ends = np.empty((equations.size, 0)), Paths(equations.origin[:, None], 0, 0, 0)
+    origin, met = equations.origin[:, None], np.empty((equations.size, 0))
+    ends = Paths(origin, 0, 0, 0, origin[:, :0])
     for _ in range(ROUNDS if equations.size else 0):
         z, done, infinite = _tracked(equations.forms, rng)
         lost = int((~done & ~infinite).sum()) + _meetings(z[:, done & ~infinite])
@@ -171,8 +175,10 @@ def follow_paths(equations: Quadrics, rng: np.random.Generator) -> Paths:
         # where branches meet a path comes close only
         is_real |= ~done[~infinite]
         met = np.column_stack([met, y[:, is_real].real])
-        several = equations.origin[:, None] + equations.basis @ met
-        ends = Paths(several, int((~is_real).sum()), int(infinite.sum()), lost)
+        aside = np.abs(y.imag).max(axis=0) <= NEARLY_REAL * (1 + np.abs(y).max(axis=0))
+        near = origin + equations.basis @ y[:, aside & ~is_real].real
+        several = origin + equations.basis @ met
+        ends = Paths(several, int((~is_real).sum()), int(infinite.sum()), lost, near)
         if not lost:
             break
     return ends
