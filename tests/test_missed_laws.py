@@ -116,3 +116,54 @@ def test_a_program_reads_no_rounding(capsys):
     assert [n for n, v in numbers.items() if abs(v) < 1e-13] == []
     assert {row["name"]: row["adjusted"] for row in solution["adjusted"]}["UY"] == 0
     assert solution["evidence"]["laws_missed"][0].startswith("momentum along n is missed by")
+
+
+def kinetic_energy(v, late):
+    names = FINAL if late else ("UX", "UY", "WA", "VX", "VY", "WB")
+    ax, ay, wa, bx, by, wb = (v[n] for n in names)
+    a = v["MA"] * (ax * ax + ay * ay) + v["IA"] * wa * wa
+    return (a + v["MB"] * (bx * bx + by * by) + v["IB"] * wb * wb) / 2
+
+
+MADE_OF_VELOCITIES = {
+    "SA": lambda v: math.hypot(v["UX"], v["UY"]),
+    "SBF": lambda v: math.hypot(v["VBX"], v["VBY"]),
+    "DVA": lambda v: math.hypot(v["VAX"] - v["UX"], v["VAY"] - v["UY"]),
+    "DVBF": lambda v: (
+        (v["VBX"] - v["VX"]) * math.cos(math.radians(v["TB"]))
+        + (v["VBY"] - v["VY"]) * math.sin(math.radians(v["TB"]))
+    ),
+    "KI": lambda v: kinetic_energy(v, late=False),
+    "EL": lambda v: kinetic_energy(v, late=False) - kinetic_energy(v, late=True),
+}
+
+
+@pytest.mark.parametrize("name", MADE_OF_VELOCITIES)
+def test_a_value_that_velocities_make_is_missed_by_its_own_error(name):
+    for values in random_scenes(20):
+        amount = MADE_OF_VELOCITIES[name](values)
+        assert missed_laws({**values, name: amount}) == ()
+        (law,) = missed_laws({**values, name: amount + 1.0})
+        assert (law.law, law.amount) == (name, pytest.approx(1.0, rel=1e-6))
+        assert law.present == pytest.approx(amount, rel=1e-9)
+        assert name in law.text(SYSTEMS["us"])
+        # of an unknown velocity nothing follows
+        if "A" in name:
+            assert missed_laws({**without(("UX", "VAX"), values), name: amount + 1.0}) == ()
+
+
+def test_point_masses_are_tested_along_one_line():
+    """B at rest is struck along x: its velocity and e are those of the chapter's Equation 4."""
+    u, e, ma, mb = 30.0, 0.1, 100.0, 80.0
+    impulse = (1 + e) * u / (1 / ma + 1 / mb)
+    known = {"M": 4.0, "MA": ma, "MB": mb, "GA": 180.0, "UX": u, "UY": 0.0, "VX": 0.0, "VY": 0.0}
+    known |= dict.fromkeys(("DA", "DB", "PA", "PB", "TA", "TB"), 0.0) | {"IA": 1.0, "IB": 1.0}
+    known |= {"VAX": u - impulse / ma, "VAY": 0.0, "VBX": impulse / mb, "VBY": 0.0, "E": e}
+    assert missed_laws({**known, "MUP": 0.0}) == ()
+    (law,) = missed_laws({**known, "E": 0.2})
+    assert (law.law, law.present) == ("E", pytest.approx(e))
+    laws = {law.law: law for law in missed_laws({**known, "VBX": known["VBX"] + 1})}
+    assert laws["n"].amount == pytest.approx(mb)
+    assert laws["E"].present == pytest.approx(e + 1 / u)
+    (law,) = missed_laws({**known, "EL": 0.5 * (1 - e * e) * u * u / (1 / ma + 1 / mb) + 100})
+    assert (law.law, law.amount) == ("EL", pytest.approx(100))

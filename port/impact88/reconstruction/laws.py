@@ -1,9 +1,10 @@
 """Which law exact values break, and by how much.
 
 With exact geometry and coefficients Equations 13 to 18 are linear in the twelve velocities:
-momentum along n and t, angular momentum about the contact point, restitution, friction and moment.
-A law of which nothing is unknown is tested by itself, whatever else is not determined; else the
-fewest laws that cannot hold together are told.
+momentum along n and t, angular momentum about the contact point, restitution, friction and moment
+(point masses have neither spins nor moment). A law of which nothing is unknown is tested by itself,
+whatever else is not determined; so is a speed, a change of velocity or an energy whose velocities
+are all known; else the fewest laws that cannot hold together are told.
 """
 
 import math
@@ -15,11 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..names import FINAL_STATE, PIVOT, VELOCITIES
+from ..names import FINAL_STATE, PIVOT, VELOCITIES, quantity
 from ..plaintable import number
 from ..units import RULES, System
 from .geometry import GEOMETRY, Geometry, within_doubles
-from .state import COURSES, SPEEDS
+from .state import CHANGES, CONTACT, COURSES, ENERGIES, SPEEDS, State
 
 Floats = NDArray[np.float64]
 
@@ -34,6 +35,9 @@ NAMES = {
     "EM": "the moment coefficient's law",
 }
 """The laws, by what they are kept under."""
+QUANTITIES = (*SPEEDS, *CHANGES, *CONTACT, *ENERGIES)
+"""Known values that velocities alone make."""
+_SPINS = ("WA", "WB", "WAF", "WBF")
 _MEASURED_AS = {"n": "PN", "t": "PT", "angular": "PM", "E": "VC", "MUP": "PT", "EM": "WA"}
 """For each law a quantity of its unit."""
 
@@ -53,11 +57,23 @@ class Missed:
     present: float = math.nan
     alone: bool = True
 
+    @property
+    def name(self) -> str:
+        """The law, or the quantity, in words."""
+        if self.law in NAMES:
+            return NAMES[self.law]
+        return f"{self.law} ({quantity(self.law).meaning})"
+
     def text(self, units: System = RULES) -> str:
         """Return the law and by how much it is missed."""
         unit = units.unit(self.like)
         amount = f"{number(self.amount * abs(units.factor(self.like)), 4)} {unit}".rstrip()
-        text = f"{NAMES[self.law]} is missed by {amount}"
+        text = f"{self.name} is missed by {amount}"
+        if self.law not in NAMES:
+            present, given = (
+                number(units.placed(self.law, x), 6) for x in (self.present, self.given)
+            )
+            return f"{text} ({present} by the velocities, {given} is given)"
         if not math.isnan(self.present):
             text += f" ({self.law} {number(self.present, 4)} where {number(self.given, 4)} is given"
             return text + ")"
@@ -66,7 +82,7 @@ class Missed:
     def share(self) -> str:
         """Return the same without a unit."""
         share = number(100 * self.fraction, 2)
-        return f"{NAMES[self.law]} is missed by {share} % of its largest term"
+        return f"{self.name} is missed by {share} % of its largest term"
 
 
 def told(missed: tuple[Missed, ...], units: System | None = None) -> str:
@@ -84,33 +100,59 @@ def missed_laws(known: Mapping[str, float]) -> tuple[Missed, ...]:
 
     ``known``: vehicles, geometry and exact values, friction as MUP.
     """
-    if not {*GEOMETRY} <= {*known} or known.get("M", 6.0) == 4:
+    if not {*GEOMETRY} <= {*known}:
         return ()
-    values = _with_components(known)
-    here = Geometry({n: np.float64(values[n]) for n in GEOMETRY} | {"M": np.float64(6.0)})
+    values, model = _with_components(known), np.float64(known.get("M", 6.0))
+    here = Geometry({n: np.float64(values[n]) for n in GEOMETRY} | {"M": model})
+    if model == 4:
+        values |= dict.fromkeys(_SPINS, 0.0)
     names = (*VELOCITIES, *FINAL_STATE)
     rows = _rows(values, here)
+    if model == 4:
+        rows = {law: row for law, row in rows.items() if law not in ("angular", "EM")}
     laws = [law for law, row in rows.items() if np.isfinite(row).all()]
+    missed = _missed_quantities(known, values, here)
     if not laws:
-        return ()
+        return missed
     matrix = np.array([rows[law] for law in laws])
     at = np.array([values.get(n, 0.0) for n in names], float)
     open_ones = np.array([n not in values for n in names])
     # a spin is as large as what it makes at the radius of gyration
     gyration = math.sqrt(float(here.inverse_mass / here.inverse_spin_inertia))
-    unit = np.array([1 / gyration if n in ("WA", "WB", "WAF", "WBF") else 1.0 for n in names])
+    unit = np.array([1 / gyration if n in _SPINS else 1.0 for n in names])
     speed = float(np.abs(at / unit).max(initial=0.0))
     sizes = np.abs(matrix * unit).max(axis=1) * speed
     left, loose = matrix @ at, matrix[:, open_ones] * unit[open_ones]
-    found = []
+    alone = [*missed]
     for i, law in enumerate(laws):
         off = float(abs(left[i]))
         if sizes[i] and off > ROUNDING * sizes[i]:
             largest = float(np.abs(matrix[i] * at).max(initial=0.0))
             if np.abs(loose[i]).max(initial=0.0) <= 1e-12 * sizes[i] / speed:
                 given, present = _coefficient(law, values, here, at)
-                found.append(Missed(law, _MEASURED_AS[law], off, off / largest, given, present))
-    return tuple(found) or _missed_together(laws, left, loose, sizes, speed)
+                alone.append(Missed(law, _MEASURED_AS[law], off, off / largest, given, present))
+    return tuple(alone) or _missed_together(laws, left, loose, sizes, speed)
+
+
+def _missed_quantities(
+    known: Mapping[str, float], values: Mapping[str, float], here: Any
+) -> tuple[Missed, ...]:
+    """Return the known values that are not what the velocities make them, where these are all
+    known."""
+    state = State.of_known({name: np.float64(x) for name, x in values.items()})
+    state.here = here
+    missed = []
+    for name in QUANTITIES:
+        if name not in known or {*SPEEDS.get(name, ())} & {*values} - {*known}:
+            continue  # the components were made of it
+        given, present = known[name], float(np.real(state[name]))
+        # what is lost is the difference of two energies
+        largest = float(np.real(state.initial_energy)) if name == "EL" else abs(present)
+        largest = max(largest, abs(given), 1.0 if name == "LOSS" else 0.0)
+        off = abs(present - given)
+        if math.isfinite(off) and off > ROUNDING * largest:
+            missed.append(Missed(name, name, off, off / largest, given, present))
+    return tuple(missed)
 
 
 def _missed_together(
