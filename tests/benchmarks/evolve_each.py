@@ -3,7 +3,8 @@
     python tests/benchmarks/evolve_each.py barrier --seconds 60 --seed 7 [--save worst.csv]
 
 Errors against 50 digits are counted in units of what the result's own value and its `movements`
-(rounding every number of the scene) are worth: 2**-53 times their sum. Lineages are shared out
+(rounding every number of the scene) are worth: 2**-53 times their sum; with ``--bound`` as parts of
+`errorbound.result_bounds`. Lineages are shared out
 among the results; children are made as `evolve` makes them. Prints the worst of each result.
 """
 
@@ -17,7 +18,7 @@ import time
 import numpy as np
 from evolve import child
 
-from impact88.accuracy.errorbound import DOUBLE, movements
+from impact88.accuracy.errorbound import DOUBLE, movements, result_bounds
 from impact88.bench.methods import reference
 from impact88.bench.populations import POPULATIONS, scenes
 from impact88.closedform.solve import quantities, solve
@@ -60,11 +61,12 @@ def start(family, size, seed, wide):
     return g
 
 
-def units(g):
-    """(scene, result) -> error in units; 0 where it says nothing."""
+def units(g, of_bound):
+    """(scene, result) -> error in units, or as part of its bound; 0 where it says nothing."""
     with np.errstate(all="ignore"):
         hi, lo = reference(g, NAMES)
-        found, moved = solve(g, NAMES), movements(g, NAMES)
+        found = solve(g, NAMES)
+        moved, bounds = ({}, result_bounds(g)) if of_bound else (movements(g, NAMES), {})
         slides = np.abs(quantities(g, ("gt",))["gt"])
     speeds = sum(np.abs(g[name]) for name in ("UX", "UY", "VX", "VY"))
     speeds = speeds + g["DA"] * np.abs(g["WA"]) + g["DB"] * np.abs(g["WB"])
@@ -73,7 +75,7 @@ def units(g):
     for j, name in enumerate(NAMES):
         with np.errstate(all="ignore"):
             error = np.abs((found[name] - hi[:, j]) - lo[:, j])
-            size = DOUBLE * (moved[name] + np.abs(hi[:, j]))
+            size = bounds[name] if of_bound else DOUBLE * (moved[name] + np.abs(hi[:, j]))
             unit = np.where(error == 0, 0.0, error / size)
         each[:, j] = np.where(np.isfinite(unit) & decided, unit, 0.0)
     return each
@@ -99,17 +101,18 @@ def main():
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--wide", action="store_true", help="arms and inertias of all sizes, too")
+    parser.add_argument("--bound", action="store_true", help="as parts of `result_bounds`")
     parser.add_argument("--save", help="a CSV file for the worst scene of each result")
     options = parser.parse_args()
     size = LINEAGES * len(NAMES)
     rng = np.random.default_rng(options.seed)
     own = np.arange(size), np.repeat(np.arange(len(NAMES)), LINEAGES)
     best = start(options.family, size, options.seed, options.wide)
-    fit = units(best)[own]
+    fit = units(best, options.bound)[own]
     began, generations = time.process_time(), 0
     while time.process_time() - began < options.seconds:
         tried = bred(best, rng, size)
-        new = units(tried)[own]
+        new = units(tried, options.bound)[own]
         better = new > fit
         fit = np.where(better, new, fit)
         best = {name: np.where(better, tried[name], best[name]) for name in SCENE}
@@ -117,7 +120,7 @@ def main():
     worst = fit.reshape(len(NAMES), LINEAGES)
     print(f"{options.family}: {generations} generations of {size}, seed {options.seed}")
     for name, row in sorted(zip(NAMES, worst, strict=True), key=lambda pair: -pair[1].max()):
-        print(f"  {name:5} {row.max():10.2f}  median of lineages {np.median(row):8.2f}")
+        print(f"  {name:5} {row.max():10.3f}  median of lineages {np.median(row):8.3f}")
     if options.save:
         with open(options.save, "w", newline="") as file:
             rows = csv.writer(file, lineterminator="\n")

@@ -101,7 +101,7 @@ def work_precision(rows: Sequence[Row], roof: float) -> Drawing:
 
 def error_distribution(rows: Sequence[Row]) -> Drawing:
     """Two panels for each population: every scene's error, by its `errorbound.scales`, against its
-    COND, the bound `relative_bounds` of each precision as a line; and the share of scenes with a
+    COND, the estimate `relative_bounds` of each precision as a line; and the share of scenes with a
     larger error."""
     rows = [row for row in rows if row["method"] in SCATTERED]
     title = "Error against condition, and the distribution of errors"
