@@ -488,6 +488,18 @@ def test_a_reconstruction_is_the_commands_own(
     assert bool(told["solutions"][0]["adjusted"]) == bool(changes)
 
 
+def test_rounding_is_nowhere_shown_as_a_number(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Spins that were 0, a sum of squares of values that agree, in tables, text and scene."""
+    monkeypatch.setattr(reconstruction, "DRAWS", 0)
+    known = reconstruction.known_of_sample(1)["values"]
+    answer = reconstruction.answer({**known, "VAX": f"{known['VAX']} +- 1", "UY": "0"})
+    (solution,) = answer["solutions"]
+    assert {solution["scene"][name] for name in ("UY", "WA", "WB")} == {"0"}
+    assert "sum of squared adjustments 0 (sd)" in solution["evidence"]
+    assert [row["moved"] for row in solution["adjusted"]] == ["0.00"]
+    assert not re.search(r"\de-1\d", solution["printed"])
+
+
 def test_what_a_collision_gave_is_reconstructed_to_the_collision() -> None:
     known = reconstruction.known_of_sample(3)["values"]
     (solution,) = reconstruction.answer(known)["solutions"]

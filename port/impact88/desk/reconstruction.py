@@ -115,7 +115,7 @@ def _solution(
         {
             **what(row["name"]),
             **{part: digits(row[part], count) for part, count in shown_digits.items()},
-            "moved": f"{row['moved'] + 0.0:.2f}",
+            "moved": f"{round(row['moved'], 2) + 0.0:.2f}",
         }
         for row in values.get("adjusted", ())
         if values["redundancy"]
@@ -131,7 +131,7 @@ def _solution(
         "columns": [head for head in _COLUMNS if any(row["columns"][head] for row in rows)],
         "adjusted": adjusted,
         "warnings": values["warnings"],
-        "scene": _scene(case, known, found),
+        "scene": _scene(case, known, {**found, **rounded}),
     }
 
 

@@ -24,6 +24,7 @@ STRAIN = 0.05
 """With less probability they agree poorly."""
 EQUALLY = 0.9
 """Values that add at least this share of what the largest adds are named with it."""
+NOISE = 1e-9  # sums of squares of measurements that agree to the last digit
 MOST_NAMED = 3  # values at odds that are named
 AGREE, STRAINED, CONTRADICT = "agree", "agree poorly", "contradict"
 UNCHECKED = "not checked"
@@ -70,6 +71,11 @@ class Evidence:
         root of the sum of squares over the redundancy; else 1."""
         return math.sqrt(self.squares / self.redundancy) if self.contradictory else 1.0
 
+    @property
+    def sum_text(self) -> str:
+        """The sum of squares as it is printed: what is rounding is 0."""
+        return number(self.squares if self.squares > NOISE else 0.0, 3)
+
     def text(self, units: System = RULES) -> str:
         """Return the verdict in a sentence or two."""
         if self.verdict == UNCHECKED:
@@ -78,7 +84,7 @@ class Evidence:
             laws = f": {told(self.laws, units)}" if self.laws else ""
             return f"these exact values contradict one another{laws}; {self.named(units)}"
         sums = (
-            f"sum of squared adjustments {number(self.squares, 3)} (sd) where about "
+            f"sum of squared adjustments {self.sum_text} (sd) where about "
             f"{self.redundancy} is expected; probability {number(self.probability, 2)}"
         )
         if not self.contradictory:

@@ -237,7 +237,7 @@ class Measured(Impact):
             *paragraph(
                 "Adjusted by least squares so that Equations 13 to 18 hold exactly (adjustment of "
                 f"observations with conditions): {count} value{'s' if count > 1 else ''} more than "
-                f"needed, sum of squared adjustments {number(self.solution.squares, 3)} (in "
+                f"needed, sum of squared adjustments {self.evidence.sum_text} (in "
                 f"standard deviations; about {count} where the tolerances are right)"
             ),
         ]
