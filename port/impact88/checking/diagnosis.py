@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..accuracy import errorbound
-from ..equations.edits import RARE_CONVENTION, variants
+from ..equations.edits import RARE_CONVENTION, readings, variants
 from ..equations.evaluation import Run
-from ..equations.spelling import IMPULSES, LISTING, spellings
+from ..equations.spelling import LISTING, spellings
 from ..errors import UserError
 from ..fields import FIELDS
 from ..names import FINAL_VELOCITIES, PIVOT, SCENE
@@ -65,10 +65,9 @@ the bound."""
 _WIDTHS = {SINGLE: (24, 27.0, 33.5), APPLESOFT: (32, 34.0, 40.0)}
 """Cause -> bits of the arithmetic, and the range in which the bits measured against the bound lie:
 rounding spoils a few bits less than the bound allows."""
-_TURNED = "Γ half a turn on: the normal the other way round"
 _INVERTED = "MU's sign rule inverted"
-_ALONG_NORMAL = ("PN", "PT", "VC", "VS")
-"""Two ways to say the same, and the results that tell them apart."""
+_ALIKE = (_INVERTED, "Γ half a turn on: the normal the other way round")
+"""Two mistakes that give the same final velocities."""
 _BRANCHES = (_INVERTED, "the critical ratio used in place of MU")
 """Models that take the other branch, of friction's sign or of the pivot, in every row."""
 LOOKED_INTO = 4000
@@ -205,6 +204,8 @@ class Diagnosis:
             return
         whole = whole.of(_telling(sample))
         right = clear & ~whole.wrong
+        ours = Program().results(whole.scene)
+        amiss = [n for n in whole.theirs if (whole.wrong & ~whole.of([n]).near(ours)).any()]
         coarse = bool(np.median(self._off[rows][sample.wrong]) > _LARGE)
         for several in _explanations(sample, coarse):
             for program, others, names in several:
@@ -214,8 +215,9 @@ class Diagnosis:
                 if not _earned(program, explained & clear, bits, choices & clear):
                     continue
                 stands = (fits & right).sum() >= BORNE_OUT * right.sum()
-                says = self._in_both_words(program.says) + ("" if stands else IN_THESE_ROWS)
-                if unexplained := [name for name in whole.theirs if name not in names]:
+                says = self._in_both_words(program.says, whole) + ("" if stands else IN_THESE_ROWS)
+                # a result that is right needs no cause, whatever the program makes of it
+                if unexplained := [name for name in amiss if name not in names]:
                     says += f"; {', '.join(unexplained)} {UNKNOWN}"
                 self._causes[explained] = says
                 same = [other.program.says for other in others[:_EQUIVALENTS]]
@@ -226,19 +228,18 @@ class Diagnosis:
             if self.evidence:
                 return
 
-    def _in_both_words(self, says: str) -> str:
-        """What is said of a program; of one that no row tells from another, both. The normal's
-        direction matters to the rule of MU's sign alone, but for results along it; and where the
-        contact does not slide, the rule is not symmetrical."""
-        if set(_ALONG_NORMAL) & set(self._case.names):
-            return says
-        g = self._case.columns
-        sliding = Run(spellings()[IMPULSES], g).names["gt"]
-        if ((sliding == 0) & (g["MU"] != 0) & (g["MU"] != PIVOT)).any():
-            return says
+    def _in_both_words(self, says: str, judge: Judge) -> str:
+        """What is said of a program; where it is one of two that hardly a row tells apart, both.
+        The normal's direction matters to the rule of MU's sign alone, but for results along it."""
         parts = says.split("; and ")
-        both = f"{_INVERTED}, or {_TURNED}"
-        return "; and ".join(both if part in (_INVERTED, _TURNED) else part for part in parts)
+        if not set(parts) & set(_ALIKE):
+            return says
+        edits = {edit.says: edit for edit in (*variants(), *readings()) if edit.says in _ALIKE}
+        inverted, turned = (Program((edits[name],)).results(judge.scene) for name in _ALIKE)
+        alike = judge._replace(theirs={n: inverted[n] for n in judge.theirs if n in inverted})
+        if (~alike.near(turned) & judge.wrong).sum() > (1 - BORNE_OUT) * judge.wrong.sum():
+            return says
+        return "; and ".join(", or ".join(_ALIKE) if part in _ALIKE else part for part in parts)
 
     def _by_constant(self, judge: Judge, clear: Bools, bits: Floats) -> None:
         """Name a constant that is wrong: any number that explains nearly all rows."""
