@@ -186,6 +186,9 @@ class TestJson:
             ('[{"E": }]', "not JSON"),
             ("[" + '{"a":' * 200 + "1" + "}" * 200 + "]", "no column"),
             ("[" * 9000, "line 1"),
+            ("[" + "1" * 1_100_000, "longer than"),
+            ('["' + "a" * 1_100_000, "longer than"),
+            ("[" + " \n" * 100_000, "line 100001 ends within"),
             ("[]", "no column"),
         ],
     )

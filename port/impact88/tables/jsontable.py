@@ -121,15 +121,19 @@ def _elements(lines: Lines) -> Iterator[tuple[int, Any, str]]:
             try:
                 value, end = _decoder.raw_decode(text, at)
                 # a number may go on in the next piece
-                if text[end : end + 1] in _AFTER or not fill():
+                if text[end : end + 1] in _AFTER:
                     break
+                reason = ""
             except ValueError as error:
-                if len(text) - at >= LONGEST_LINE:
-                    refuse(f"begins a value longer than {LONGEST_LINE:,} characters")
-                if not fill():
-                    refuse(f"is not JSON: {error}")
+                reason = f"is not JSON: {error}"
             except RecursionError:
                 refuse(f"is nested deeper than {DEEPEST} levels")
+            if len(text) - at >= LONGEST_LINE:
+                refuse(f"begins a value longer than {LONGEST_LINE:,} characters")
+            if not fill():
+                if reason:
+                    refuse(reason)
+                break
         written = text[at:end]
         deep = written.count("[") + written.count("{") > DEEPEST and _depth(value) > DEEPEST
         lines.taken += len(written)
