@@ -171,14 +171,14 @@ def test_a_mistake_is_named_in_other_tables(tmp_path, what: str) -> None:
             assert main_cause(done) == says
 
 
-def test_two_mistakes_in_one_table_are_both_named(tmp_path) -> None:
+def test_two_mistakes_in_one_table_are_both_named(tmp_path, monkeypatch) -> None:
     """Rows from one program, then rows from another."""
+    if not SWEEP:  # no pair explains them, and to find that out takes long
+        monkeypatch.setattr(diagnosis, "pairs", lambda *_: iter(()))
     one, other = MISTAKES["e squared"], MISTAKES["MA and MB"]
     half = len(ROWS) // 2
     first, second = answered(one[0]), answered(other[0])
-    # without all final velocities no pair is looked for equation by equation
-    names = RESULTS if SWEEP else [name for name in RESULTS if name != "VBX"]
-    made = {name: first[name][:half] + second[name][half:] for name in names}
+    made = {name: first[name][:half] + second[name][half:] for name in RESULTS}
     done = compared(tmp_path, made)
     assert set(done.causes) == {one[1], other[1] + IN_THESE_ROWS}
     assert done.causes[other[1] + IN_THESE_ROWS] == len(ROWS) - half
