@@ -349,7 +349,7 @@ def test_noise_is_given_no_cause(tmp_path) -> None:
 
 def test_point_masses_need_no_inertias_to_be_explained(tmp_path, monkeypatch) -> None:
     """The 1988 program cannot be run on such rows, to see whether the numbers are its own."""
-    monkeypatch.setattr(diagnosis, "singles", lambda *_: [])
+    monkeypatch.setattr(diagnosis.Diagnosis, "_by_search", lambda _: None)
     light = {"M": "4", "DA": "0", "DB": "0", "IA": "", "IB": ""}
     done = compared(tmp_path, {"VAX": ["1", "2"]}, [{**scene, **light} for scene in ROWS[:2]])
     assert (done.differing, done.bad) == (2, [])
