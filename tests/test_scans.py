@@ -5,8 +5,9 @@ from __future__ import annotations
 import gzip
 import json
 import re
+from collections.abc import Iterator
 from contextlib import suppress
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import pytest
@@ -15,8 +16,10 @@ import printouts
 from captures import ROOT
 from impact88.errors import UserError
 from impact88.fields import INPUTS, outcome_fields
+from impact88.judging import beside
 from impact88.judging.judgement import Status, settled
 from impact88.program.run import run
+from impact88.reading import alignment, printout
 from impact88.reading.numerals import printable
 from impact88.reading.printout import Printout, read_printouts
 from impact88.reporting.examination import Verdict, Verification, verify
@@ -34,6 +37,22 @@ def scans() -> list[dict[str, Any]]:
     """Pages read by an optical reader, with the text that was on the paper."""
     with gzip.open(ROOT / "golden" / "scans.jsonl.gz", "rt", encoding="utf-8") as file:
         return [json.loads(line) for line in file]
+
+
+@pytest.fixture(autouse=True)
+def verdicts_alone(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a page cannot show takes a good part of the time: only tests that ask for it have it."""
+    if "whole" in request.fixturenames:
+        return
+    monkeypatch.setattr(beside, "unseen", lambda *given: [])
+
+
+@pytest.fixture
+def whole() -> Iterator[None]:
+    """Verifications with what the page cannot show."""
+    judged.cache_clear()
+    yield
+    judged.cache_clear()
 
 
 @cache
@@ -369,6 +388,7 @@ def test_an_altered_digit_is_not_solved_away(old: str, new: str) -> None:
 # --- what cannot be shown ------------------------------------------------------------------------
 
 
+@pytest.mark.usefixtures("whole")
 def test_what_a_page_cannot_show() -> None:
     result = one(run(sample(2)).printout)
     assert result.verdict is Verdict.IDENTICAL
@@ -381,6 +401,7 @@ def test_what_a_page_cannot_show() -> None:
     assert any("PA and TA" in line for line in sums)
 
 
+@pytest.mark.usefixtures("whole")
 def test_digits_too_small_to_show_are_told_and_no_others() -> None:
     """Against runs of the program one by one: a mass of 1.6 against one of 260542."""
     (page,) = (page for page in scans() if page["name"] == "1-018")
@@ -557,12 +578,16 @@ def test_places_that_no_page_has_are_refused_or_laid_out(number: str, place: str
             read_printouts(words)
 
 
-def test_reading_ends_where_there_is_too_much_text() -> None:
+def test_reading_ends_where_there_is_too_much_text(monkeypatch: pytest.MonkeyPatch) -> None:
     """Told with the place, and never settled; without a page before it, the file is refused."""
-    junk = "VAX VBX MA= " * 3100
+    least = 6000
+    monkeypatch.setattr(printout, "Budget", partial(alignment.Budget, left=least))
+    monkeypatch.setattr(alignment.Budget, "left", least)
+    assert least < alignment.WINDOW  # one window is read, and the next is not
+    junk = "VAX VBX MA= " * 1500
     with pytest.raises(UserError, match="was not read"):
-        read_printouts("VAX= 1.2 " * 4100)
+        read_printouts("VAX= 1.2 " * 1700)
     result = verify(read_printouts(f"{SAMPLE}\n{junk}")[0])
     assert result.verdict is not Verdict.IDENTICAL
-    prose = "the quick brown fox jumps over the lazy dog\n" * 3000
+    prose = "the quick brown fox jumps over the lazy dog\n" * 900
     assert one(prose + SAMPLE).verdict is Verdict.IDENTICAL
