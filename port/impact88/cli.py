@@ -151,6 +151,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments = sys.argv[1:] if arguments is None else arguments
     called = next((word for word in arguments[:2] if word in COMMANDS), None)
     debug = os.environ.get("IMPACT88_DEBUG") == "1"
+    # numpy's BLAS starts a thread for every processor as it is loaded: 10 ms, and of no use to
+    # systems of 6 by 6
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     with _orderly(), warnings.catch_warnings():
         if not sys.warnoptions and not debug:
             # a library's warnings are not for the user's terminal

@@ -18,7 +18,7 @@ from ..accuracy import errorbound
 from ..closedform.solve import solve
 from ..doubles import double
 from ..equations.evaluation import BESIDE, Run
-from ..equations.spelling import A_IMPULSE, spellings
+from ..equations.spelling import A_IMPULSE, spelling_of
 from ..errors import UserError, quoted
 from ..names import FINAL_VELOCITIES, SCENE
 from ..tables.cells import TableUnits, last_digit
@@ -204,7 +204,7 @@ def violated(case: Case) -> dict[str, Bools]:
     for granted. One is violated when its sides differ by more than the digits written, and
     rounding, allow; a missing number violates nothing.
     """
-    spelling, scene = spellings()[A_IMPULSE], case.columns
+    spelling, scene = spelling_of(A_IMPULSE), case.columns
     point = scene["M"] == 4
     slack = case.units * 0.5 + case.loose
     given = dict(zip(case.names, zip(case.values, slack, strict=True), strict=True))

@@ -2,7 +2,6 @@
 (`agreement`), and saying why they differ (`diagnosis`). What could not be compared is counted, and
 why."""
 
-import difflib
 import os
 import re
 from collections import Counter
@@ -28,7 +27,6 @@ from ..tables.table import FORMATS, format_of, open_reader
 from . import agreement
 from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, Case
 from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, Diagnosis, Unexplained
-from .junit import Suite
 from .trials import Program
 from .vectors import FAILURE
 
@@ -316,7 +314,9 @@ def _meant(name: str) -> str:
     for text in (whole, re.split(r"[^A-Z]", whole)[0]):
         if text in known:
             return text
-    return next(iter(difflib.get_close_matches(whole, known, 1, 0.75)), "")
+    from difflib import get_close_matches  # rarely wanted
+
+    return next(iter(get_close_matches(whole, known, 1, 0.75)), "")
 
 
 @np.errstate(all="ignore")
@@ -397,6 +397,8 @@ def write_junit(path: str, name: str, comparison: Comparison, strict: bool) -> N
     """Write the JUnit report that systems for continuous integration read: a failing test for every
     row that disagrees, one test for those that agree, one for each reason why rows were not
     compared (failing with ``strict``). Raises UserError when the place cannot be written to."""
+    from .junit import Suite  # XML takes 4 ms to import
+
     suite = Suite(f"impact88 compare {name}")
     suite.test(f"{comparison.agreeing} of {comparison.rows} rows agree")
     for row in comparison.differences:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..accuracy import errorbound
 from ..equations.evaluation import value
 from ..equations.roundoff import Bounded, running_errors
-from ..equations.spelling import A_IMPULSE, IMPULSES, LISTING, expression, spellings
+from ..equations.spelling import A_IMPULSE, IMPULSES, LISTING, expression, spelling_of, spellings
 from ..names import FINAL_VELOCITIES, PIVOT, RESULTS
 
 Floats = NDArray[np.float64]
@@ -47,7 +47,7 @@ _RATIO_ROUNDINGS = 4.0
 def of_the_best(scene: Columns, ours: Columns, sizes: Columns) -> tuple[dict[str, Floats], Bools]:
     """Return how far results by contact impulses in closed form may be from ours, name by name;
     and the rows in which rounding decides which way the contact slides."""
-    errors = running_errors(spellings()[IMPULSES], scene)
+    errors = running_errors(spelling_of(IMPULSES), scene)
     least = _by_name(scene, errors)
     least = {name: 2 * bound + 2 * np.spacing(np.abs(ours[name])) for name, bound in least.items()}
     # where a mass is infinite, this form of the equations has no number
@@ -77,7 +77,7 @@ def of_any(
     most |= {name: np.fmax(most[name], bound) for name, bound in moved.items()}
     # the other results, by what the velocities may be off altogether
     given = {name: (ours[name], most[name] / errorbound.DOUBLE) for name in FINAL_VELOCITIES}
-    own = _by_name(scene, running_errors(spellings()[IMPULSES], scene, given))
+    own = _by_name(scene, running_errors(spelling_of(IMPULSES), scene, given))
     most = {name: np.fmax(bound, own[name]) for name, bound in most.items()}
     if unsaid := [name for name in wanted if np.isnan(own[name]).all()]:
         shares = [most[name] / sizes[name] for name in FINAL_VELOCITIES]
@@ -101,7 +101,7 @@ def _critical(scene: Columns) -> Floats:
     pivots = {**scene, "MU": np.full_like(scene["MU"], PIVOT)}
     bounds = []
     for title in (LISTING, A_IMPULSE):
-        errors = running_errors(spellings()[title], pivots)
+        errors = running_errors(spelling_of(title), pivots)
         (normal, off_normal), (across, off_across) = errors["PN"], errors["PT"]
         bounds.append((off_across + np.abs(across / normal) * off_normal) / np.abs(normal))
     return np.asarray(np.fmax(*bounds) * errorbound.DOUBLE)

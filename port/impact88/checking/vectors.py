@@ -4,7 +4,6 @@ Three classes in turn: ``casework`` (as reports hold them), ``edge`` (one limit 
 ``failure`` (the 1988 program stops, or goes wrong without a word). Seed and number give the same
 vector on any machine."""
 
-import gzip
 from collections.abc import Callable, Iterator, Mapping
 from itertools import count as count_from
 from itertools import islice
@@ -69,6 +68,8 @@ def _expected(kind: str, has_solution: bool) -> str:
 
 def published() -> str:
     """The packaged vectors, an object a line: the first `PUBLISHED` of seed `PUBLISHED_SEED`."""
+    import gzip
+
     return gzip.decompress(packaged_bytes("impact88.golden", "vectors.jsonl.gz")).decode("utf-8")
 
 

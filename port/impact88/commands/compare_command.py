@@ -27,18 +27,22 @@ exit status: 0 everything agrees; 1 something does not, or a row could not be re
 or was not compared; with --kit: a vector does not pass); 2 bad input
 """
 
+from __future__ import annotations
+
 import math
 from collections import Counter
 from collections.abc import Iterator
 
 from ..accuracy.errorbound import DOUBLE
-from ..checking import conformance
 from ..checking.agreement import EQUATIONS
 from ..checking.compare import HARMLESS, Comparison, compare, write_junit
-from ..checking.conformance import REASONS, Conformance, check_conformance
 from ..errors import UserError, note, shown
 from ..tables.table import format_of
 from . import options
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from ..checking.conformance import Conformance
 
 SHOWN = 20
 """Unreadable rows listed on stderr: a screen, and twice as many are two."""
@@ -94,11 +98,13 @@ def main(args: options.Args) -> int:
 
 def _conformance(args: options.Args) -> int:
     """Judge the table as answers to a kit's vectors."""
+    from ..checking import conformance  # its archives take 10 ms to import
+
     for option, value in (("--set", args.set), ("--units", args.units), ("--rtol", args.rtol)):
         if value:
             raise UserError(f"{option}: a kit's inputs and tolerances are its own; expected none")
     form = format_of(args.theirs, args.form)
-    done = check_conformance(args.kit, args.theirs, form, args.encoding)
+    done = conformance.check_conformance(args.kit, args.theirs, form, args.encoding)
     if args.junit:
         conformance.write_junit(args.junit, done)
     options.show(args, "conformance", done.as_json, lambda: _conformance_lines(done))
@@ -110,6 +116,8 @@ def _conformance(args: options.Args) -> int:
 
 
 def _conformance_lines(done: Conformance) -> Iterator[str]:
+    from ..checking.conformance import REASONS
+
     yield f"{'class':<30}  passed  failed"
     for name, count in done.counts("kind").items():
         yield f"{name:<30}  {count['passed']:>6}  {count['failed']:>6}"

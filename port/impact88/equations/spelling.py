@@ -185,13 +185,19 @@ def _statement(line: str, place: str) -> Statement:
 @cache
 def spellings() -> dict[str, Spelling]:
     """All spellings by title."""
+    return {title: spelling_of(title) for title in _sections() if title not in (FIRST, LAST)}
+
+
+@cache
+def _sections() -> dict[str, list[str]]:
+    """Return the lines of the mechanics by section."""
     sections: dict[str, list[str]] = {}
     for line in table("mechanics.txt"):
         if line.startswith("["):
             lines = sections.setdefault(line.strip("[]"), [])
         else:
             lines.append(line)
-    return {title: _spelling(title, sections) for title in sections if title not in (FIRST, LAST)}
+    return sections
 
 
 def table(name: str) -> list[str]:
@@ -200,7 +206,9 @@ def table(name: str) -> list[str]:
     return [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
 
 
-def _spelling(title: str, sections: Mapping[str, list[str]]) -> Spelling:
+@cache
+def spelling_of(title: str) -> Spelling:
+    """Return the spelling of that title; parsing one takes 5 ms."""
     unknown: tuple[str, ...] = ()
     kin: dict[str, set[str]] = {}
     statements = [_statement(f"| {n} = {TYPED}{n} | {n} as typed", "input") for n in SCENE]
@@ -208,7 +216,7 @@ def _spelling(title: str, sections: Mapping[str, list[str]]) -> Spelling:
     for section in (FIRST, title, LAST):
         begins.append(len(statements))
         known = {statement.target for statement in statements}.union(unknown)
-        for line in sections[section]:
+        for line in _sections()[section]:
             word, *names = line.split()
             if word == "kin":
                 for name in names:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import logging
 import os
 import sys
 from collections.abc import Sequence
@@ -134,6 +133,8 @@ def import_matplotlib() -> None:
 @contextlib.contextmanager
 def _quiet() -> Any:
     """Silence matplotlib's remarks on fonts, caches and settings."""
+    import logging  # 3 ms, and SVG needs none
+
     logger = logging.getLogger("matplotlib")
     level = logger.level
     logger.setLevel(logging.CRITICAL)

@@ -1,6 +1,5 @@
 """Programs for the compiled machine."""
 
-import hashlib
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 
@@ -33,8 +32,10 @@ class Program(Schedule):
     @property
     def digest(self) -> int:
         """Digest of everything a program says."""
+        from hashlib import blake2b  # OpenSSL takes 4 ms to load
+
         text = repr((self.columns, self.results, self.scalars, self.steps)).encode()
-        return int.from_bytes(hashlib.blake2b(text, digest_size=8).digest())
+        return int.from_bytes(blake2b(text, digest_size=8).digest())
 
     @cached_property
     def _rooms(self) -> list["Room"]:

@@ -96,8 +96,10 @@ def _jumps() -> tuple[Costs, Costs, Costs]:
     a state."""
 
     def then(first: NDArray[np.int32], second: NDArray[np.int32]) -> NDArray[np.int32]:
-        least = [(row[:, None] + second).min(axis=0) for row in first]
-        return np.array(np.minimum(least, _MOST))
+        least = np.full((len(first), second.shape[1]), _MOST, np.int32)
+        for before, after in zip(first.T, second, strict=True):
+            np.minimum(least, before[:, None] + after, out=least)
+        return least
 
     missed = np.cumsum([_missing(state) for state in STATES], dtype=np.int32)
     size = len(STATES)
@@ -155,26 +157,39 @@ def _closes(state: State) -> bool:
     return state.kind in ("number", "between") or state.name in (")", "%", "*")
 
 
+@lru_cache(maxsize=1)
+def _alike() -> list[tuple[State, bool, list[int]]]:
+    """The states in which every glyph costs the same: one of them, whether it is a number behind
+    its "=", and the places of all."""
+    groups: dict[tuple[str, str, bool, bool], list[int]] = {}
+    for place, state in enumerate(STATES):
+        number = state.kind == "number"
+        kind = "letter" if state.kind == "loose" else state.kind
+        labelled = number and STATES[place - 1].name == "="
+        key = kind, "" if number else state.name, number and state.line < PROMPTS, labelled
+        groups.setdefault(key, []).append(place)
+    return [(STATES[places[0]], key[-1], places) for key, places in groups.items()]
+
+
 @lru_cache(maxsize=2000)
 def _emitted(char: str, broken: bool = False) -> tuple[Costs, Costs]:
     """What a glyph costs by state: that opens it, and one more of it; "" is none of the page's.
     ``broken``: whether a line ends before it."""
     opened = COSTS["letter opens number on a new line"] * (broken and char.isalpha())
     more = COSTS["inserted figure" if char.isdigit() else "inserted"]
-    costs = []
-    for place, state in enumerate(STATES):
+    enter, stay = np.empty((2, len(STATES)), np.int16)
+    for state, labelled, places in _alike():
         if state.kind in ("outside", "between"):
             figure = COSTS["figure between"] * (char.isdigit() and state.kind == "between")
-            costs.append([(COSTS[state.kind] + figure) * bool(char)] * 2)
+            first = further = (COSTS[state.kind] + figure) * bool(char)
         elif not char:
-            costs.append([_MOST] * 2)
+            first = further = _MOST
         elif state.kind == "number":
-            cost = _in_number(char, state.line < PROMPTS)
-            labelled = STATES[place - 1].name == "="
-            costs.append([cost + opened * labelled, cost])
+            further = _in_number(char, state.line < PROMPTS)
+            first = further + opened * labelled
         else:
-            costs.append([label_cost(state.name, char), more])
-    enter, stay = np.array(costs, np.int16).T
+            first, further = label_cost(state.name, char), more
+        enter[places], stay[places] = first, further
     return enter, stay
 
 
@@ -248,9 +263,11 @@ def _states(chars: Sequence[str], gaps: Sequence[int]) -> list[int]:
     costs = np.empty((len(chars) + 1, len(STATES)), np.int16)
     costs[0] = np.where(np.arange(len(STATES)), _MOST, 0)
     stays = np.empty(costs.shape, bool)
+    moves = np.empty_like(jumps[0])
     for row, (char, gap) in enumerate(zip(chars, gaps, strict=True)):
         enter, more = _emitted(char, gap is Gap.LINE)
-        move = (costs[row][:, None] + jumps[gap]).min(axis=0) + enter
+        np.add(costs[row][:, None], jumps[gap], out=moves)
+        move = moves.min(axis=0) + enter
         stay = costs[row] + more + staying[gap]
         stays[row] = stay <= move
         best = np.minimum(stay, move)

@@ -12,10 +12,11 @@ from bisect import bisect_right
 from collections.abc import Iterable, Iterator
 from enum import IntEnum
 from functools import lru_cache
-from importlib import resources
 from itertools import pairwise, repeat
 from math import log10
 from typing import NamedTuple
+
+from ..files import packaged_text
 
 ILLEGIBLE = "?"
 """Stands for a character that cannot be read."""
@@ -126,7 +127,7 @@ def letters(region: Iterable[Glyph]) -> str:
 
 _CHANNEL: dict[str, list[list[str]]] = {}
 """The rows of `channel.txt`, by section."""
-for _line in resources.files(__package__).joinpath("channel.txt").read_text("utf-8").splitlines():
+for _line in packaged_text(__package__, "channel.txt").splitlines():
     if _line.startswith("["):
         _rows = _CHANNEL.setdefault(_line.strip("[]"), [])
     elif _line and not _line.startswith("# "):

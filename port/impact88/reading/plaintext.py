@@ -6,12 +6,9 @@ are level stand on one line, and a gap between two becomes as many blanks as it 
 of the page's own letters; line and column then count in that text.
 """
 
-import csv
-import html
 import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from statistics import median
 from typing import NamedTuple
 
 from ..errors import UserError
@@ -133,12 +130,20 @@ def unwrapped(text: str) -> str:
     return _POWER.sub(_exponent, _groups_joined(text))
 
 
+def _median(values: Sequence[float]) -> float:
+    """Return the median; that of `statistics` takes 5 ms to import."""
+    ordered, middle = sorted(values), len(values) // 2
+    return ordered[middle] if len(values) % 2 else (ordered[middle - 1] + ordered[middle]) / 2
+
+
 def _blank(match: re.Match[str]) -> str:
     return re.sub(r"[^\n]", " ", match.group())
 
 
 def _entity(match: re.Match[str]) -> str:
-    character = html.unescape(match.group())
+    from html import unescape
+
+    character = unescape(match.group())
     return character.rjust(len(match.group())) if len(character) == 1 else match.group()
 
 
@@ -195,7 +200,7 @@ def columns(text: str) -> list[str]:
         left += words[: len(words) - len(beyond)]
         right += beyond[:1]
         cuts.append(beyond[0].start() if beyond else None)
-    gutter = round(median([word.start() for word in right] or [0]))
+    gutter = round(_median([word.start() for word in right] or [0]))
     level = sum(abs(word.start() - gutter) <= _GUTTER for word in right)
     shared = {*map(_plain_word, left)} & {*map(_plain_word, right)}
     if len(shared) < _SHARED or 4 * level < 3 * len(right):
@@ -268,6 +273,8 @@ def _pixels(text: str) -> float:
 
 def _rows(text: str) -> Iterator[list[str]]:
     """The words of TSV: page, text, left, top, width, height."""
+    import csv  # with its dialects heavier than a page needs
+
     for row in csv.DictReader(text.splitlines(), delimiter="\t", quoting=csv.QUOTE_NONE):
         place = [row[name] for name in ("left", "top", "width", "height")]
         yield [row["page_num"], row["text"] or "", *place]
@@ -275,11 +282,12 @@ def _rows(text: str) -> Iterator[list[str]]:
 
 def _elements(text: str) -> Iterator[list[str]]:
     """The words of hOCR and ALTO, in the same way."""
+    from html import unescape
+
     page, box = 0, None
     for name, attributes, after in _TAG.findall(text):
         given = {
-            key.lower(): html.unescape("".join(value))
-            for key, *value in _ATTRIBUTE.findall(attributes)
+            key.lower(): unescape("".join(value)) for key, *value in _ATTRIBUTE.findall(attributes)
         }
         kind, element = given.get("class", ""), name.lower().rpartition(":")[2]
         if kind == "ocr_page" or element == "page":
@@ -292,7 +300,7 @@ def _elements(text: str) -> Iterator[list[str]]:
         if box and after.strip():
             left, top, right, bottom = map(int, box.groups())
             place = [*map(str, (left, top, right - left, bottom - top))]
-            yield [str(page), html.unescape(after), *place]
+            yield [str(page), unescape(after), *place]
             box = None
 
 
@@ -305,7 +313,7 @@ def _lines_of(words: Sequence[_Word]) -> str:
         if not lines or middle - before >= word.height / 2:
             lines.append([])
         lines[-1].append(word)
-    letter = median(word.width / len(word.text) for word in words)
+    letter = _median([word.width / len(word.text) for word in words])
     letter = letter if letter > _NARROWEST else 1.0
     text = ""
     for line in lines:

@@ -158,6 +158,7 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
     from ..closedform.solve import share_typed, solve
     from ..reconstruction.solutiontable import completed
     from ..uncertainty.bounds import bounds
+    from ..uncertainty.boundstable import quantiles_of
     from ..uncertainty.ranges import read_inputs
 
     inputs = read_inputs(case)
@@ -174,7 +175,7 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
         for vehicle in "AB":
             speeds = np.hypot(found.draws[f"V{vehicle}X"], found.draws[f"V{vehicle}Y"])
             speeds = speeds[np.isfinite(speeds)]
-            low, high = np.quantile(speeds, (0.05, 0.95)).tolist()
+            low, high = quantiles_of(speeds, (0.05, 0.95))
             spreads[f"S{vehicle}F"] = Spread(float(speeds.std(ddof=1)), low, high)
         for name, bound in found.bounds.items():
             spread = found.spreads[name]

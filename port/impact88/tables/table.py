@@ -8,7 +8,6 @@ grow with the file (what is written of .npz and .xlsx is held).
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from importlib import import_module
 from types import ModuleType
@@ -114,6 +113,8 @@ def may_wait(path: str) -> bool:
 def ahead(blocks: Iterable[Any]) -> Iterator[Iterator[Any]]:
     """The blocks, each read while the one before it is in use; what reading raises, they raise.
     pyarrow and numpy let go of the interpreter's lock: two processors are of use."""
+    from concurrent.futures import ThreadPoolExecutor  # 8 ms, which a short table is spared
+
     iterator = iter(blocks)
     with ThreadPoolExecutor(1, "read") as pool:
 
@@ -130,6 +131,8 @@ def ahead(blocks: Iterable[Any]) -> Iterator[Iterator[Any]]:
 def behind(write: Callable[..., object]) -> Iterator[Callable[..., None]]:
     """A function that has ``write`` done in order, later (more than one call that waits gains
     nothing); what it raises is raised by the next call, or at the end."""
+    from concurrent.futures import Future, ThreadPoolExecutor
+
     with ThreadPoolExecutor(1, "write") as pool:
         waiting: Future[object] = pool.submit(bool)
 
