@@ -36,8 +36,8 @@ GOOD: dict[str, Any] = {
     "colinear": COLINEAR,
     "delta_v": {"MA": 96, "MB": 145, "SA": 36.667, "SB": 58.667, "LOSS": 37.4},
 }
-THINGS = [None, 7, 2.5, b"\xff", "x", ["x"], [1], {1: 2}, object(), np.zeros((2, 2)), 1j]
-THINGS += [lambda *_: 0]
+THINGS = [None, 7, -1, 2.5, b"\xff", "x", ["x"], [1], {1: 2}, object(), np.zeros((2, 2)), 1j]
+THINGS += [lambda *_: 0, lambda: 0, lambda a, b: 0]
 
 
 def parameters(name: str) -> list[str]:
@@ -89,7 +89,13 @@ def test_an_error_that_no_argument_explains_stays_what_it_is() -> None:
             [{1: 1}, {"x": "1"}, [1]],
             "a mapping of text to a number",
         ),
-        (Callable[[int], object], [len, int], [None, 3], "a function"),
+        (Callable[..., object], [len, int, lambda: None], [None, 3], "a function"),
+        (
+            Callable[[int], object],
+            [len, int, print, lambda a, b=1: a],
+            [None, 3, lambda: None, lambda a, b: a],
+            "a function of 1 value",
+        ),
         (Literal["a", "b"], ["a"], ["c", None], "'a' or 'b'"),
         (Iterable[str], [["x"], "x", iter([])], [3, None], "an iterable of text"),
         (
@@ -105,3 +111,11 @@ def test_annotations(hint: Any, good: list[Any], bad: list[Any], words: str) -> 
     assert [value for value in good if not fits(value, hint)] == []
     assert [value for value in bad if fits(value, hint)] == []
     assert described(hint) == words
+
+
+def test_a_seed_below_zero_and_a_callback_of_other_values_are_user_errors() -> None:
+    known = GOOD["bounds"]
+    with pytest.raises(impact88.UserError, match="seed is -1; expected a whole number, 0 or more"):
+        impact88.bounds(known, samples=10, seed=-1)
+    with pytest.raises(impact88.UserError, match=r"progress is .*; expected a function of 1 value"):
+        impact88.bounds(known, samples=10, progress=lambda: None)  # type: ignore[misc, arg-type]

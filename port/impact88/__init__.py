@@ -28,6 +28,7 @@ Today's work, in double precision
     accelerated         the processor's instructions `solve` uses, None where it leaves all to numpy
     names, status       the tables of names and of STATUS's bits
     UserError           raised for input that cannot be used
+    PlausibilityWarning     given for values of a frame that are hardly meant
 
 Each is imported on first use: running the 1988 program does not pay for numpy.
 """
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
     from .closedform.prepared import prepared as prepared
     from .closedform.solve import solve as solve
     from .emulator.emulator import Applesoft as Applesoft
+    from .errors import PlausibilityWarning as PlausibilityWarning
     from .errors import UserError as UserError
     from .figures.sceneview import scene_svg as scene_svg
     from .native import accelerated as accelerated
@@ -84,7 +86,7 @@ _LAZY = {
         "closedform.prepared": "prepared",
         "closedform.solve": "solve",
         "emulator.emulator": "Applesoft",
-        "errors": "UserError",
+        "errors": "PlausibilityWarning UserError",
         "figures.sceneview": "scene_svg",
         "native": "accelerated",
         "program.run": "Run run",

@@ -78,13 +78,29 @@ def fits(value: object, hint: Any) -> bool:
         kind = numbers.Integral if hint is int else numbers.Real
         return isinstance(value, kind) and not isinstance(value, bool)
     if origin is abc.Callable or hint is abc.Callable:
-        return callable(value)
+        return callable(value) and _takes(value, args)
     kind = origin or hint
     if hint is Any or not isinstance(kind, type):
         return True  # a type variable, a numpy alias
     if not isinstance(value, kind):
         return False
     return not args or _items_fit(value, kind, args)
+
+
+def _takes(function: Callable[..., Any], args: tuple[Any, ...]) -> bool:
+    """Return whether a function takes as many values as ``Callable[args]`` says; those that do not
+    say what they take do."""
+    if not args or not isinstance(args[0], list):
+        return True
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):
+        return True
+    try:
+        signature.bind(*args[0])
+    except TypeError:
+        return False
+    return True
 
 
 def _items_fit(value: Any, kind: type, args: tuple[Any, ...]) -> bool:
@@ -124,7 +140,9 @@ def described(hint: Any) -> str:
     if origin is typing.Literal:
         return _either(map(repr, args))
     if origin is abc.Callable or hint is abc.Callable:
-        return "a function"
+        if not args or not isinstance(args[0], list):
+            return "a function"
+        return f"a function of {len(args[0])} value{'s' * (len(args[0]) != 1)}"
     kind = origin or hint
     name = getattr(kind, "__name__", "another value")
     if not isinstance(kind, type):

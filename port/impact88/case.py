@@ -17,7 +17,7 @@ from types import MappingProxyType
 
 from .doubles import BARE, double, is_number
 from .errors import BEYOND_DOUBLES, UserError, quoted
-from .names import DEFAULT_M, quantity
+from .names import DEFAULT_M, NO_AMOUNTS, quantity
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -39,7 +39,6 @@ TOLERANCES = ("+-", "±", "+/-")
 """What begins a tolerance around the value that stands there already."""
 ABOUT = ("title", "case", "correlations", "units", "axes", "headings")
 """Entries that say something of the whole file."""
-_NO_AMOUNTS = ("title", "case", "correlations", "M")
 _SIZES = frozenset(("LA", "BA", "LB", "BB"))
 _MOVES = ("CX", "CY")
 
@@ -359,7 +358,7 @@ def in_base_units(
 ) -> tuple[dict[str, str], str | None]:
     """The texts in base units (`impact88.units`), and the system's name; as they are where no
     value, nor the entry ``units``, nor ``units`` names any. Raises UserError."""
-    if units is None and all(BARE.issuperset(texts[n]) for n in texts if n not in _NO_AMOUNTS):
+    if units is None and all(BARE.issuperset(texts[n]) for n in texts if n not in NO_AMOUNTS):
         return dict(texts), None
     from .units import in_base
 

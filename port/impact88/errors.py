@@ -68,6 +68,28 @@ class UserError(ValueError):
         self.where = where
 
 
+class PlausibilityWarning(UserWarning):
+    """Values of a frame that are hardly meant: a mass, speed, arm or inertia that no vehicle has,
+    velocities and headings in two conventions, EM = 0.
+
+    Notes
+    -----
+    Nothing is refused. ``warnings.filterwarnings("ignore", category=impact88.PlausibilityWarning)``
+    silences it.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     warnings.simplefilter("always")
+    ...     frame = {"MA": [3091.0, 3.091]}
+    ...     scene = impact88.sample(1).numbers()
+    ...     results = impact88.solve_frame(frame, "LOSS", scene=scene, units="us")
+    >>> print(str(caught[0].message)[:32])
+    1 row, at position 1: MA = 3.091
+    """
+
+
 def note(command: str | None, text: str) -> None:
     """A line on stderr, where there is one that takes it: "impact88 COMMAND: text"."""
     name = f"impact88 {command}" if command else "impact88"

@@ -18,6 +18,7 @@ Beside a known inertia LA BA are the outline that is drawn. A weight needs no es
 
 from collections.abc import Mapping
 from math import inf
+from typing import Any
 
 from .doubles import digits, double
 from .errors import UserError
@@ -84,11 +85,16 @@ def rule_of(
         return mass * (length**2 + width**2) / 12
     if system.is_bare:
         return None
+    weight, inertia = weight_line(mass, system)
+    return float(inertia) if CARS[0] <= weight <= CARS[1] else None
+
+
+def weight_line(mass: Any, system: System) -> tuple[Any, Any]:
+    """Return the weight in lb, and the inertia that the line from it gives, in base units; of an
+    array as well as of a number. The line is for `CARS`."""
     weight = mass * float(system.scale(MASS) / SYMBOLS["lb"][1])
-    if not CARS[0] <= weight <= CARS[1]:
-        return None
     scale = float(SYSTEMS["us"].scale(INERTIA) / system.scale(INERTIA))
-    return (_SLOPE * weight - _OFFSET) * scale
+    return weight, (_SLOPE * weight - _OFFSET) * scale
 
 
 def _number(text: str, name: str, wanted: str, source: str) -> float:

@@ -169,6 +169,10 @@ def quantity(name: str) -> Quantity:
     return SCENE.get(name) or RESULTS.get(name) or CHAPTER[name]
 
 
+NO_AMOUNTS = ("title", "case", "correlations", "M")
+"""Entries of a scene file that are no amounts."""
+
+
 def listed(names: Sequence[str] | str) -> Sequence[str]:
     """Names given one by one, or in one text between commas or blanks."""
     return names.replace(",", " ").split() if isinstance(names, str) else names

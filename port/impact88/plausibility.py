@@ -26,8 +26,10 @@ INERTIA_RATIO = (0.3, 3.0)
 """A yaw inertia over that of the rule (`impact88.estimates`)."""
 SIDEWAYS = 45.0
 """Degrees between a moving vehicle's course and its heading."""
-_SPEEDS = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
-_MEASURES = {
+BEYOND_ARM = "the contact point is more than 15 m from the center of gravity; is its unit as meant?"
+ONE_SPIN = "the moment at the contact leaves both vehicles with one spin; no moment is EM = 1"
+SPEEDS = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
+MEASURES = {
     "mass": (LIGHTEST, HEAVIEST, "no vehicle has that mass (200 kg to 60 t)"),
     "length/time": (-FASTEST, FASTEST, "no vehicle is as fast (500 km/h)"),
 }
@@ -70,22 +72,19 @@ def _sizes(
 
     found: dict[str, str] = {}
     for name, value in numbers.items():
-        rule = _rule(name)
-        size = value * float(system.scale(rule)) if rule in _MEASURES else math.nan
-        low, high, words = _MEASURES.get(rule, (0.0, 0.0, ""))
+        rule = rule_of_name(name)
+        size = value * float(system.scale(rule)) if rule in MEASURES else math.nan
+        low, high, words = MEASURES.get(rule, (0.0, 0.0, ""))
         if rule == "mass" and not size > 0:
             continue  # which is refused, or ends the program
-        if rule in _MEASURES and math.isfinite(size) and not low <= size <= high:
+        if rule in MEASURES and math.isfinite(size) and not low <= size <= high:
             found[name] = f"{name} = {texts.get(name, '')}: {words}; is its unit as meant?"
     arm = {"DA": "DA", "DB": "DB", "CAF": "DA", "CAL": "DA", "CBF": "DB", "CBL": "DB"}
     longest = LONGEST_ARM / float(system.scale("length"))
     for name in ("DA", "DB"):
         if abs(numbers.get(name, 0.0)) > longest and numbers.get("M") != 4:
             written = [f"{n} = {texts[n]}" for n, own in arm.items() if own == name and n in texts]
-            found[name] = (
-                f"{', '.join(written)}: the contact point is more than 15 m from the center of "
-                "gravity; is its unit as meant?"
-            )
+            found[name] = f"{', '.join(written)}: {BEYOND_ARM}"
     for vehicle in "AB" if numbers.get("M") != 4 else "":
         name, mass = f"I{vehicle}", numbers.get(f"M{vehicle}", math.nan)
         inertia = numbers.get(name, math.nan)
@@ -94,14 +93,28 @@ def _sizes(
             continue
         ratio = inertia / usual
         if not INERTIA_RATIO[0] <= ratio <= INERTIA_RATIO[1]:
-            found[name] = (
-                f'{name} = {texts.get(name, "")} is {ratio:.2g} times what {name} = "estimate" '
-                "gives; are its unit and the mass as meant?"
-            )
+            found[name] = inertia_words(name, texts.get(name, ""), ratio)
     return found
 
 
-def _rule(name: str) -> str:
+def inertia_words(name: str, text: str, ratio: float) -> str:
+    """Return the remark on an inertia that is ``ratio`` times the rule's."""
+    return (
+        f'{name} = {text} is {ratio:.2g} times what {name} = "estimate" gives; are its unit and '
+        "the mass as meant?"
+    )
+
+
+def sideways_words(vehicle: str, apart: float) -> str:
+    """Return the remark on a vehicle that moves so many degrees off its heading."""
+    rule = "A faces TA + 180" if vehicle == "A" else "B faces TB"
+    return (
+        f"{vehicle} moves {apart:.0f}° off the way it faces ({rule} in the listing's axes); are "
+        "velocities and headings in one convention? (axes, headings)"
+    )
+
+
+def rule_of_name(name: str) -> str:
     """Return what a value measures; nothing for a name of no table."""
     try:
         rule: str = quantity(name).unit
@@ -113,7 +126,7 @@ def _rule(name: str) -> str:
 def _directions(numbers: Mapping[str, float], system: System) -> dict[str, str]:
     """Return remarks on vehicles that move sideways or backwards."""
     found: dict[str, str] = {}
-    for vehicle, (x, y, speed, course) in _SPEEDS.items():
+    for vehicle, (x, y, speed, course) in SPEEDS.items():
         name = f"T{vehicle}"
         if name not in numbers or numbers.get("M") == 4:
             continue
@@ -128,11 +141,7 @@ def _directions(numbers: Mapping[str, float], system: System) -> dict[str, str]:
             continue
         apart = abs(math.remainder(way - facing, 360.0))
         if apart > SIDEWAYS + 1e-9:
-            rule = "A faces TA + 180" if vehicle == "A" else "B faces TB"
-            found[name] = (
-                f"{vehicle} moves {apart:.0f}° off the way it faces ({rule} in the listing's "
-                "axes); are velocities and headings in one convention? (axes, headings)"
-            )
+            found[name] = sideways_words(vehicle, apart)
     return found
 
 
@@ -140,7 +149,4 @@ def _moment(numbers: Mapping[str, float], texts: Mapping[str, str]) -> dict[str,
     """Return a remark on EM = 0."""
     if numbers.get("EM") != 0 or numbers.get("M") == 4:
         return {}
-    return {
-        "EM": f"EM = {texts.get('EM', '0')}: the moment at the contact leaves both vehicles with "
-        "one spin; no moment is EM = 1"
-    }
+    return {"EM": f"EM = {texts.get('EM', '0')}: {ONE_SPIN}"}

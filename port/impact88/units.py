@@ -30,7 +30,7 @@ from typing import Any, NamedTuple, NoReturn
 
 from .doubles import BARE, digits, double, is_number
 from .errors import UserError, quoted
-from .names import PIVOT, quantity
+from .names import NO_AMOUNTS, PIVOT, quantity
 
 _FOOT = Fraction("0.3048")
 _POUND = Fraction("0.45359237")
@@ -352,8 +352,6 @@ ACCEPTED = (
     "'A .. B', 'N +- D', 'N +- P%', 'uniform A B', 'triangular A M B' or "
     "'normal MEAN SD [within A .. B]'"
 )
-WORDS = ("title", "case", "correlations", "M")
-"""Entries of a file that are not amounts."""
 ENTRY = "units"
 """The entry of a file that names its system."""
 SHARED = ("MU", "MUP")
@@ -606,7 +604,7 @@ def nominal(name: str, text: str, source: str) -> str:
 def _taken_apart(name: str, text: str, source: str) -> tuple[str, list[_Value]]:
     """The values an entry holds, and its text with ``{}`` in place of each; no values where it is
     read elsewhere, or refused there."""
-    if name in WORDS or not any(character.isdigit() for character in text):
+    if name in NO_AMOUNTS or not any(character.isdigit() for character in text):
         return text, []
     try:
         rule = quantity(name).unit

@@ -102,7 +102,7 @@ class Block(NamedTuple):
 def examine(values: Mapping[str, Floats]) -> Block:
     """Find out what kind of block this is. ``values``: columns of one length, or of length 1. Only
     where something may be unusable are the scenes looked at one by one."""
-    extremes = dict(zip(values, _extremes(list(values.values())), strict=True))
+    extremes = dict(zip(values, limits_of(list(values.values())), strict=True))
     only_points = extremes["M"] == (4.0, 4.0)
     fixed: dict[str, Floats] = {}
     varying: dict[str, Floats] = {}
@@ -145,7 +145,7 @@ def examine(values: Mapping[str, Floats]) -> Block:
     return Block(fixed, varying, ordered, refused if refused.any() else None)
 
 
-def _extremes(columns: Sequence[Floats]) -> list[Limits]:
+def limits_of(columns: Sequence[Floats]) -> list[Limits]:
     """The least and the largest number of each column; both NaN where one is."""
     if native.library is None:
         return [(float(column.min()), float(column.max())) for column in columns]

@@ -24,7 +24,8 @@ from ..progress import progress
 from ..scenefile import case_in
 from ..status import Status
 from ..tables.cells import Share, TableUnits, check_scene_columns, filled, numbers, point_masses
-from ..tables.rows import BadCell, Rows
+from ..tables.remarks import Remark, remarks
+from ..tables.rows import BadCell, Rows, shortest
 from ..tables.sweep import estimates, read_ranges, read_sweep
 from ..tables.table import ahead, behind, format_of, may_wait, open_reader, open_writer
 from ..units import Convention, convention_named
@@ -107,6 +108,11 @@ def solve_table(args: options.Args) -> int:
         if not may_wait(path or ""):
             blocks = stack.enter_context(ahead(blocks))
         units.based = given
+        told = [*case.single().remarks] if one_scene else []
+        if args.scene and beside is not None:
+            told = [name for name in beside.remarks if name not in source.names]
+        said = _Remarks(told, given, beside)
+        stack.callback(said.say)
         adverse = place = 0
         for rows in blocks:
             for name, text in given.items():
@@ -118,7 +124,7 @@ def solve_table(args: options.Args) -> int:
             nothing = [None] * rows.count
             rows.columns |= {name: nothing for name in SCENE if name not in rows.columns}
             rows.columns["M"] = filled(rows.columns["M"], DEFAULT_M)
-            results = arithmetic(rows, units, wanted)
+            results = arithmetic(rows, units, wanted, said)
             write(rows, units.shown(results))
             adverse += complain(rows.complaints())
             if "ERROR" in results:
@@ -127,6 +133,45 @@ def solve_table(args: options.Args) -> int:
             meter.update(rows.place - place)
             place = rows.place
     return int(adverse > 0)
+
+
+class _Remarks:
+    """Remarks on a table's rows, gathered block by block and said once at the end.
+
+    ``told``: names of which something has been said; ``given``: columns that are one scene's, as
+    ``beside`` has them.
+    """
+
+    def __init__(self, told: Collection[str], given: Collection[str], beside: Case | None) -> None:
+        self._told, self._beside = told, beside
+        self._given = given
+        self._found: dict[str, tuple[str, Remark]] = {}
+
+    def look(self, rows: Rows, units: TableUnits, columns: Results) -> None:
+        """Gather the remarks on some rows. ``columns``: of the scene, in base units."""
+
+        def cell(name: str, index: int) -> str:
+            if self._beside is not None and name in self._given:
+                return self._beside.given.get(name, "")
+            column = rows.columns[name]
+            if isinstance(column, np.ndarray):
+                number = column.reshape(-1)[index % column.size]
+                return shortest(np.array([number]))[0].removesuffix(".0")
+            return str(column[index])
+
+        for name, remark in remarks(columns, units.system, cell).items():
+            if name in self._told:
+                continue
+            if name in self._found:
+                self._found[name][1].rows += remark.rows
+            else:
+                line = f" (line {rows.lines[remark.first]})" if rows.lines else ""
+                self._found[name] = f"row {rows.first + remark.first}{line}", remark
+
+    def say(self) -> None:
+        """Say all of it on stderr."""
+        for place, remark in self._found.values():
+            note("solve", f"{place}{remark.more}: {remark.text}")
 
 
 def _filling(args: options.Args) -> Case:
@@ -183,10 +228,11 @@ def _estimated(
     return texts
 
 
-def _float64(rows: Rows, units: TableUnits, wanted: Sequence[str]) -> Results:
+def _float64(rows: Rows, units: TableUnits, wanted: Sequence[str], said: _Remarks) -> Results:
     """The closed form in double precision."""
     columns = numbers(rows, units)
     _read_shares(rows, columns)
+    said.look(rows, units, columns)
     unread = {index for index, *_ in rows.bad}
     refused = rows.count > 0 and examine(columns).refused is not None
     for refusal in refusals(columns) if refused else ():
@@ -224,9 +270,11 @@ def _read_shares(rows: Rows, columns: dict[str, NDArray[np.float64]]) -> None:
         rows.bad = [bad for bad in rows.bad if bad[1] != "MU" or bad[0] not in found]
 
 
-def _applesoft(rows: Rows, units: TableUnits, wanted: Sequence[str]) -> Results:
+def _applesoft(rows: Rows, units: TableUnits, wanted: Sequence[str], said: _Remarks) -> Results:
     """The listing's own arithmetic, `impact88.replay`."""
     from ..replay import replay
+
+    said.look(rows, units, numbers(Rows(rows.count, rows.columns), units))
 
     points = point_masses(rows)
     columns = {n: _texts(n, column, units) for n, column in rows.scene().items()}

@@ -4,6 +4,7 @@
 None of these libraries is imported here unless the frame handed over is its own.
 """
 
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
@@ -15,9 +16,10 @@ from numpy.typing import NDArray
 from ..arguments import explains_arguments
 from ..closedform.solve import solve
 from ..doubles import is_number
-from ..errors import UserError, library, quoted
+from ..errors import PlausibilityWarning, UserError, library, quoted
 from ..names import DEFAULT_M, SCENE
 from .cells import TableUnits, check_scene_columns, numbers
+from .remarks import Remark, remarks
 from .rows import BLOCK_ROWS, Column, Reader, Rows, heading, heading_remarks, scene_names
 
 Frame = TypeVar("Frame")
@@ -68,12 +70,20 @@ def solve_frame(
         For a frame of another kind, a missing scene column, and where narwhals is needed and not
         installed.
 
+    Warns
+    -----
+    PlausibilityWarning
+        For sizes that no vehicle has, where the columns have units, vehicles that move sideways (of
+        long frames a thousand rows are looked at, and all where one does) and EM = 0.
+
     Examples
     --------
     >>> rows = impact88.solve_frame([{"MU": 0.5}, {"MU": None}], "LOSS", scene=impact88.sample(1))
     >>> [round(row["LOSS"], 2) for row in rows]
     [44.43, nan]
     """
+
+    amiss: list[Remark] = []
 
     def solved(names: Sequence[str], column: Callable[[str], Any]) -> dict[str, Array]:
         """The results of a frame's columns, by heading."""
@@ -91,6 +101,7 @@ def solve_frame(
         for name, value in (scene or {}).items():
             if name in SCENE:
                 columns.setdefault(name, _numbers(name, [value], table)[0])
+        amiss.extend(remarks(columns, table.system, partial(_cell, given, scene), False).values())
         all_points = "M" in columns and bool(np.all(np.asarray(columns["M"]) == 4))
         check_scene_columns(columns, all_points, "scene=")
         results = table.shown(solve(columns, outputs, threads=threads))
@@ -106,7 +117,21 @@ def solve_frame(
         result = _dicts(frame, solved)
     else:
         result = (_dataset if hasattr(frame, "data_vars") else _narwhals)(frame, solved)
+    for remark in amiss:
+        place = "1 row, at" if remark.rows == 1 else f"{remark.rows:,} rows, the first at"
+        text = f"{place} position {remark.first}: {remark.text}"
+        warnings.warn(text, PlausibilityWarning, stacklevel=3)  # in who called, not in `arguments`
     return cast(Frame, result)
+
+
+def _cell(given: Mapping[str, Any], scene: Mapping[str, Any] | None, name: str, at: int) -> str:
+    """The text of a cell as it was handed over."""
+    column = given.get(name, (scene or {}).get(name))
+    if isinstance(column, str):
+        return column
+    cells = np.ravel(np.asarray(column))
+    cell = cells[at % cells.size]
+    return f"{float(cell)!r}".removesuffix(".0") if cells.dtype.kind in "fiu" else str(cell)
 
 
 def _check_units(

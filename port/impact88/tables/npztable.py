@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import UserError, quoted
-from ..files import ESCAPED, replacing
+from ..files import ESCAPED, decoding, replacing
 from ..names import SCENE
 from .cells import typed
 from .rows import (
@@ -39,6 +39,7 @@ _HEADER = 1 << 17
 UNPACKED, RATIO = 256_000_000, 20
 """Bytes that a small file may unpack to; a larger one so many times its own. Doubles pack to a
 third; with twice as much a file of 100 MB may take 4 GB of memory."""
+_PACKED = "cannot be unpacked"
 
 
 @contextmanager
@@ -46,7 +47,7 @@ def _members(path: str) -> Iterator[dict[str, "_Member"]]:
     """Every array of an .npz file by name, unread. Raises UserError if the file is not one, holds
     anything else, or unpacks to more than it may."""
     with ExitStack() as stack:
-        with _telling(path):
+        with decoding(path, "is not an .npz file of plain arrays"):
             archive = stack.enter_context(zipfile.ZipFile(path))
             members = archive.infolist()
             if len(members) > MOST_ARRAYS:
@@ -61,19 +62,6 @@ def _members(path: str) -> Iterator[dict[str, "_Member"]]:
             check_unpacked(members, os.path.getsize(path), path)
             arrays = {m.filename[:-4]: _Member(archive, m, path, stack) for m in members}
         yield arrays
-
-
-@contextmanager
-def _telling(path: str) -> Iterator[None]:
-    """Errors of an archive within are UserErrors that name it."""
-    try:
-        yield
-    except OSError as error:
-        raise UserError(f"cannot be read: {error.strerror or error}", path) from None
-    except UserError:
-        raise
-    except (zipfile.BadZipFile, ValueError, EOFError, NotImplementedError) as error:
-        raise UserError(f"is not an .npz file of plain arrays: {error}", path) from None
 
 
 def check_unpacked(members: list[zipfile.ZipInfo], size: int, path: str) -> None:
@@ -95,16 +83,14 @@ class _Member:
     def __init__(
         self, archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: str, stack: ExitStack
     ) -> None:
-        self.path, self.where = path, f"{path}, {quoted(member.filename)}"
+        self.where = f"{path}, {quoted(member.filename)}"
         headers = np.lib.format.read_array_header_1_0, np.lib.format.read_array_header_2_0
-        self.problem = "cannot be unpacked"
-        with self._telling():
+        with decoding(self.where, _PACKED):
             self.file: Any = stack.enter_context(archive.open(member))
             start = io.BytesIO(self.file.read(min(member.file_size, _HEADER)))
-            self.problem = "is not an array of numbers or text"
+        with decoding(self.where, "is not an array of numbers or text"):
             version = np.lib.format.read_magic(start)[0]
             self.shape, fortran, self.dtype = headers[version - 1](start)
-        self.problem = "cannot be unpacked"
         if self.dtype.kind not in "biufcSU":
             raise UserError(
                 f"holds {self.dtype}; expected an array of numbers or of text", self.where
@@ -117,20 +103,10 @@ class _Member:
             )
         self.start = start.read()
 
-    @contextmanager
-    def _telling(self) -> Iterator[None]:
-        try:
-            yield
-        except (OSError, MemoryError):
-            raise
-        except Exception as error:  # zlib, struct, lzma, a literal's parser ... have their own
-            reason = str(error).partition("\n")[0]
-            raise UserError(f"{self.problem}: {reason}", self.where) from None
-
     def take(self, count: int) -> NDArray[Any]:
         """The next so many of the array's elements."""
         size = count * self.dtype.itemsize
-        with _telling(self.path), self._telling():
+        with decoding(self.where, _PACKED):
             data = self.start[:size]
             self.start = self.start[size:]
             data += self.file.read(size - len(data))

@@ -30,7 +30,7 @@ from ..reconstruction.outcome import forward_model, reconstruction_model
 from .boundstable import Bound, Bounds, Drive, Spread
 from .extremes import CORNERS_IN_FULL, Extremes, Piece, merged
 from .ranges import complete, read_correlations
-from .uncertain import Uncertain, columns_of, correlation_root, fixed
+from .uncertain import Uncertain, columns_of, correlation_root, fixed, random_numbers
 
 Array = NDArray[np.float64]
 PROBLEMS = ("forward", "reconstruction")
@@ -126,8 +126,8 @@ def bounds(
     correlated = correlation_root(pairs, box.inputs)
     nominal = box.nominal()
     sweeps = box.sweeps()
-    searched = box.extremes(np.random.default_rng([seed, 0]))
-    rng = np.random.default_rng([seed, 1])
+    searched = box.extremes(random_numbers(seed, 0))
+    rng = random_numbers(seed, 1)
     draws, ranked, flags = _monte_carlo(box, rng, samples, correlated, progress)
     usable = np.all([np.isfinite(column) for column in draws.values()], axis=0)
     if not usable.any():

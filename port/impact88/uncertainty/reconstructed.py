@@ -28,7 +28,7 @@ from ..reconstruction.system import PARAMETERS, TINY, System
 from .ascent import OUTSIDE, climb, extremes_of, spread_out
 from .boundstable import Spread
 from .posterior import SIZES, Ground, Posterior
-from .uncertain import Uncertain, columns_of, fixed
+from .uncertain import Uncertain, columns_of, fixed, random_numbers
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -105,7 +105,7 @@ def draws(
     """``count`` random draws of what is known, each reconstructed: the quantities ``names``. Where
     no impact lies within all limits the known values are drawn as normal ones, each with its
     standard deviation."""
-    rng = np.random.default_rng([seed, 1])
+    rng = random_numbers(seed, 1)
     posterior = Posterior(solution, progress)
     if posterior.closed:
         drawn, signs = posterior.sample(count, rng)
@@ -140,7 +140,7 @@ def ranges(
     if posterior.closed:
         return _extremes(posterior, solution, names, seed, drawn, progress)
     box = _Box(solution, names, progress)
-    points = box.inside(np.random.default_rng([seed, 0]))
+    points = box.inside(random_numbers(seed, 0))
     if drawn is not None and drawn.points.shape[1] == points.shape[1]:
         points = np.concatenate([points, drawn.points])
     if not len(points):
@@ -172,7 +172,7 @@ def _extremes(
 ) -> dict[str, Range]:
     """`ranges` over all branches: climbed from draws of the distribution."""
     if drawn is None or drawn.signs is None:
-        points, signs = posterior.sample(FEELERS, np.random.default_rng([seed, 0]))
+        points, signs = posterior.sample(FEELERS, random_numbers(seed, 0))
     else:
         points, signs = drawn.points.T, drawn.signs
     if not len(signs):

@@ -1,0 +1,200 @@
+"""What is hardly meant in a table (`impact88.plausibility`), by columns: a remark a rule, with the
+number of rows it is about and the first of them."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..closedform.columns import limits_of
+from ..estimates import CARS, weight_line
+from ..plausibility import (
+    BEYOND_ARM,
+    INERTIA_RATIO,
+    LONGEST_ARM,
+    MEASURES,
+    ONE_SPIN,
+    SIDEWAYS,
+    SPEEDS,
+    inertia_words,
+    rule_of_name,
+    sideways_words,
+)
+from ..units import System
+
+Floats = NDArray[np.float64]
+Where = NDArray[np.bool_]
+Cells = Callable[[str, int], str]
+"""The text of a column's cell, as it stands in the table."""
+COURSES = 1000
+"""Rows of an array whose courses are looked at where not all are: as many spread evenly."""
+_SIZED = ("DA", "DB", "IA", "IB")
+"""Columns whose sizes are looked at, beside masses and speeds."""
+_STRIP = 16384
+"""Rows looked at together: they stay in cache."""
+
+
+@dataclass
+class Remark:
+    """A remark on ``rows`` rows of a table, the ``first`` of which ``text`` is about."""
+
+    rows: int
+    first: int
+    text: str
+
+    @property
+    def more(self) -> str:
+        """How many rows there are beside the first."""
+        others = self.rows - 1
+        return f" and {others:,} more row{'s' * (others > 1)}" if others else ""
+
+
+def remarks(
+    columns: Mapping[str, Floats], system: System, cells: Cells, every: bool = True
+) -> dict[str, Remark]:
+    """Return, by name, what of a table's rows is hardly meant.
+
+    Parameters
+    ----------
+    columns
+        The scene's columns in base units and the listing's axes, of one value or of one a row.
+    system
+        What the table is in; sizes are looked at where it has units.
+    cells
+        The text of a cell.
+    every
+        Look at every row's courses; else at `COURSES` of them, and at all where one is amiss.
+    """
+    flat = {name: np.ascontiguousarray(np.ravel(column)) for name, column in columns.items()}
+    if not all(column.size for column in flat.values()):
+        return {}
+    count = max(map(len, flat.values()))
+    flat = {name: column for name, column in flat.items() if len(column) in (1, count)}
+    names = [name for name in flat if name in ("M", "EM")]
+    if not system.is_bare:
+        names += [name for name in flat if rule_of_name(name) in MEASURES or name in _SIZED]
+    limits = dict(zip(names, limits_of([flat[name] for name in names]), strict=True))
+    table = _Table(flat, limits, system, cells, count)
+    found = {} if system.is_bare else dict(table.sizes())
+    return {**found, **dict(table.sideways(every)), **dict(table.one_spin())}
+
+
+@dataclass
+class _Table:
+    """Columns, the least and the largest number of each, and how they are shown."""
+
+    columns: Mapping[str, Floats]
+    limits: Mapping[str, tuple[float, float]]
+    system: System
+    cells: Cells
+    count: int
+
+    def _bodies(self) -> Where | bool:
+        """Where vehicles have a size: M is not 4."""
+        M = self.columns.get("M")
+        return True if M is None or self.limits["M"] == (6.0, 6.0) else M != 4
+
+    def _remark(self, name: str, where: Any, text: str) -> Iterator[tuple[str, Remark]]:
+        """A remark on a column, where there are such rows."""
+        spread = np.broadcast_to(where, (self.count,))
+        if rows := int(np.count_nonzero(spread)):
+            first = int(spread.argmax())
+            yield name, Remark(rows, first, f"{name} = {self.cells(name, first)}: {text}")
+
+    def sizes(self) -> Iterator[tuple[str, Remark]]:
+        """Remarks on masses, speeds, arms and inertias."""
+        for name, (least, most) in self.limits.items():
+            rule, values = rule_of_name(name), self.columns[name]
+            arm = name in ("DA", "DB")
+            if rule in MEASURES:
+                low, high, words = MEASURES[rule]
+                scale = float(self.system.scale(rule))
+                words += "; is its unit as meant?"
+            elif arm:
+                high = LONGEST_ARM
+                low, scale, words = -high, float(self.system.scale("length")), BEYOND_ARM
+            else:
+                continue
+            if low <= least * scale and most * scale <= high:
+                continue
+            sizes = values * scale
+            where = np.isfinite(sizes) & ~((low <= sizes) & (sizes <= high))
+            if rule == "mass":
+                where &= sizes > 0  # others are refused, or end the program
+            yield from self._remark(name, where & self._bodies() if arm else where, words)
+        for vehicle in "AB":
+            yield from self._inertias(vehicle)
+
+    def _inertias(self, vehicle: str) -> Iterator[tuple[str, Remark]]:
+        """A remark on inertias that are not the rule's, nearly, where the weight is a car's."""
+        name, mass = f"I{vehicle}", f"M{vehicle}"
+        if not {name, mass} <= self.limits.keys():
+            return
+        (least, most), (lightest, heaviest) = self.limits[name], self.limits[mass]
+        low, high = INERTIA_RATIO
+        smallest = weight_line(lightest, self.system)[1] if lightest > 0 else 0.0
+        largest = weight_line(heaviest, self.system)[1]
+        if low * largest <= least and most <= high * smallest:
+            return
+        masses, inertias = self.columns[mass], self.columns[name]
+        parts = [_ratios(some, self.system) for some in _strips(masses, inertias)]
+        ratios = np.concatenate(parts)
+        where = ~((low <= ratios) & (ratios <= high)) & ~np.isnan(ratios) & self._bodies()
+        for _, remark in self._remark(name, where, ""):
+            ratio = float(ratios[remark.first % len(ratios)])
+            remark.text = inertia_words(name, self.cells(name, remark.first), ratio)
+            yield name, remark
+
+    def sideways(self, every: bool) -> Iterator[tuple[str, Remark]]:
+        """Remarks on vehicles that move sideways or backwards."""
+        for vehicle, (x, y, *_) in SPEEDS.items():
+            name = f"T{vehicle}"
+            if not {x, y, name} <= self.columns.keys():
+                continue
+            columns = [self.columns[x], self.columns[y], self.columns[name]]
+            turn = 180.0 if vehicle == "A" else 0.0
+            rows = max(map(len, columns))
+            if not every and rows > COURSES:
+                evenly = np.linspace(0, rows - 1, COURSES).astype(np.int64)
+                some = [column if len(column) == 1 else column[evenly] for column in columns]
+                if not (_off_course(some, turn) > SIDEWAYS + 1e-9).any():
+                    continue
+            apart = np.concatenate([_off_course(some, turn) for some in _strips(*columns)])
+            where = (apart > SIDEWAYS + 1e-9) & self._bodies()
+            for _, remark in self._remark(name, where, ""):
+                remark.text = sideways_words(vehicle, float(apart[remark.first % len(apart)]))
+                yield name, remark
+
+    def one_spin(self) -> Iterator[tuple[str, Remark]]:
+        """A remark on EM = 0."""
+        least, most = self.limits.get("EM", (1.0, 1.0))
+        if not (least > 0 or most < 0):  # NaN where there is one
+            where = (self.columns["EM"] == 0) & self._bodies()
+            yield from self._remark("EM", where, ONE_SPIN)
+
+
+def _strips(*columns: Floats) -> Iterator[list[Floats]]:
+    """Columns strip by strip; those of one value whole."""
+    for start in range(0, max(map(len, columns)), _STRIP):
+        yield [c if len(c) == 1 else c[start : start + _STRIP] for c in columns]
+
+
+@np.errstate(all="ignore")
+def _ratios(columns: Sequence[Floats], system: System) -> Floats:
+    """How many times the rule's each inertia is; NaN where there is no rule or no inertia."""
+    masses, inertias = columns
+    weights, usual = weight_line(masses, system)
+    ruled = (CARS[0] <= weights) & (weights <= CARS[1]) & (inertias > 0) & (inertias < math.inf)
+    return np.where(ruled, inertias / usual, np.nan)
+
+
+@np.errstate(all="ignore")
+def _off_course(columns: Sequence[Floats], turn: float) -> Floats:
+    """Degrees between a velocity and a heading turned by so many; NaN where there is none."""
+    x, y, heading = columns
+    apart = np.degrees(np.arctan2(y, x)) - (heading + turn)
+    apart = np.abs(apart - 360.0 * np.rint(apart / 360.0))
+    return np.where((x == 0) & (y == 0), np.nan, apart)
