@@ -109,7 +109,8 @@ class TestBadRows:
         assert "row 8 (line 9), VX:" in told
         assert "a barrier is at rest" in told
         assert "row 10 (line 11), GA: 'nan' is not a number" in told
-        assert told.count("\n") == 5
+        complaints = [line for line in told.splitlines() if "in one convention?" not in line]
+        assert len(complaints) == 5
         rows = table(out)
         assert len(rows) == 12
         for i, row in enumerate(rows):

@@ -101,10 +101,10 @@ def solve_frame(
         for name, value in (scene or {}).items():
             if name in SCENE:
                 columns.setdefault(name, _numbers(name, [value], table)[0])
-        amiss.extend(remarks(columns, table.system, partial(_cell, given, scene), False).values())
         all_points = "M" in columns and bool(np.all(np.asarray(columns["M"]) == 4))
         check_scene_columns(columns, all_points, "scene=")
         results = table.shown(solve(columns, outputs, threads=threads))
+        amiss.extend(remarks(columns, table.system, partial(_cell, given, scene), False).values())
         return {heading(name): results[name] for name in table.headings(list(results))}
 
     is_dataset = type(frame).__module__.partition(".")[0] == "xarray"
