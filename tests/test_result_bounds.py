@@ -2,6 +2,7 @@
 
 `evolved_for_each_result.csv` holds the worst scenes that `benchmarks/evolve_each.py` made for one
 result in each family (seed 7, 30 s): there a result is off by up to 140,000 of its own roundings.
+The last two were evolved against the bound itself (``pivot --wide --bound``, seed 11).
 """
 
 from __future__ import annotations
