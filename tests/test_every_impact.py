@@ -205,6 +205,20 @@ def test_draws_are_those_of_rejection_over_both_branches():
         assert bounds[name].upper >= max(other.max(), drawn.values[name].max())
 
 
+def test_a_car_that_may_have_stood_still_has_a_least_speed_of_0():
+    """B's speed has a kink there; where it was hit on the move the least speed is that."""
+    known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "GA": 170.0, "MUP": 0.1, "UY": 0.0}
+    known |= {"E": read("0 .. .3", "E"), "SA": read("55 .. 65", "SA"), "HA": 0.0}
+    for across, least in (("-3 .. 3", 0.0), ("4 .. 6", 4.0)):
+        own = {**known, "VY": read(across, "VY"), "DVB": read("28 .. 40", "DVB")}
+        bound = ranges(reconstruct(own)[0], ["SB"])["SB"]
+        assert bound.lower == pytest.approx(least, abs=1e-6)
+        ma, mb, c = 100.0, 80.0, math.cos(math.radians(10))
+        # of a standing B: its change of velocity lies within the limits for some e and speed
+        change = (1 + 0.15) * 60 * c / (1 / ma + 1 / mb) / mb * math.hypot(1, 0.1)
+        assert 28 < change < 40
+
+
 def test_the_first_order_is_not_shown_where_it_contradicts_the_draws():
     known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "GA": 180.0, "UY": 0.0, "VY": 0.0, "MUP": 0.0}
     known |= {"E": read("0 .. .4", "E"), "VBX": read("normal 30 2", "VBX")}

@@ -187,7 +187,7 @@ def pieces(text: str) -> list[tuple[str, bool]]:
         (m[1] or m[2] or "", True) if m[0][0] == "_" else (m[0].replace(r"\_", "_"), False)
         for m in found
     ]
-    joined = []
+    joined: list[tuple[str, bool]] = []
     for below, alike in groupby(cut, lambda piece: piece[1]):
         texts = [piece for piece, _ in alike]
         joined += [(piece, True) for piece in texts] if below else [("".join(texts), False)]

@@ -50,6 +50,9 @@ BEYOND_DRAWS = 2.0  # bounds are sought so many times what draws span beyond the
 _CHUNK = 1 << 13  # impacts at a time: bounds the memory
 _JUMPS = 0.1  # steps the length of a difference of two particles, which join branches
 _INDEPENDENT = 1e-9  # smallest over largest singular value of what is determined
+STANDSTILL_STEPS = 25  # Newton's, to a speed of 0
+STILL = 1e-9  # of a typical speed: none
+_RANK = 1e-10  # singular values up to so much of the largest are none
 _GRID = 1e-7  # of the first distribution's spread
 _TOUCH = 1e-9  # beyond limits by no more, in half-widths, is at them
 _HARDEST = 40.0  # limits softer by e to the power of this are hard
@@ -62,7 +65,6 @@ BROAD = 1.5  # spread of others, of the largest speed known, which find what els
 BROAD_FRACTION = 0.4  # of the first particles
 FARTHEST = 20.0  # velocities before are at most so many times the largest speed known
 LARGEST_COEFFICIENT = 20.0  # and so are coefficients that nothing is known of, either way
-SIZES = (*SPEEDS, "DVA", "DVB")
 LINEAR = (*SPEEDS, *DIRECTIONS, "VC", "VS", "DVAF", "DVAR", "DVBF", "DVBR")
 """Exact quantities that are linear conditions; speeds with their courses exact."""
 
@@ -108,6 +110,7 @@ class Posterior:
         self.varied = bool(set(self.inputs) & {*GEOMETRY})
         self.geometry = None if self.varied else Geometry(system.constants)
         self.closed = False
+        self.implied: list[str] = []
         if self.supported:
             self._span(solution)
 
@@ -131,11 +134,20 @@ class Posterior:
             self.signs.append(sign)
         first = np.array(parameters[0])[:, None]
         rows, _, _, _ = self._conditions(first, np.array([self.signs[0]]))
-        matrix = rows[:, :, 0]
+        # a course along an axis says nothing where the other component is known
+        lengths = np.linalg.norm(rows[:, :, 0], axis=1)
+        saying = lengths > _RANK * lengths.max(initial=0.0)
+        self.implied = [
+            name
+            for name, says in zip(self.exact, saying[len(rows) - len(self.exact) :], strict=True)
+            if not says
+        ]
+        self.exact = [name for name in self.exact if name not in self.implied]
+        matrix = rows[saying, :, 0]
         norm = np.linalg.norm(matrix, axis=1, keepdims=True)
         matrix = matrix / np.where(norm > 0, norm, 1.0)
         _, s, vt = np.linalg.svd(matrix)
-        rank = int((s > 1e-10 * s.max(initial=0.0)).sum())
+        rank = int((s > _RANK * s.max(initial=0.0)).sum())
         self.basis = _unique_basis(vt[rank:])
         self.supported &= rank == len(matrix)
         self.size = len(self.basis) + len(self.inputs)
@@ -236,11 +248,11 @@ class Posterior:
         state = State({**values, **scaled}, here)
         volume = self._volume(matrix, y, above, below, values, signs) if weighed else np.zeros(1)
         along = np.ones(count, bool)
-        for name in self.exact:
+        for name in (*self.exact, *self.implied):
             if name in DIRECTIONS:
                 size = np.real(state.along_and_across(name)[0])
                 along &= size > 0
-                if weighed:
+                if weighed and name not in self.implied:
                     volume = volume + np.log(np.abs(size))
         if self.unsigned:
             speeds = np.max([np.abs(np.real(v)) * np.ones(count) for v in state.before], axis=0)
@@ -518,8 +530,6 @@ class Ground:
     def _rows(self, state: State, count: int) -> Array:
         posterior = self.posterior
         rows = [posterior._value(state, n) for n in self.names]
-        # the square of a size has no kink at 0
-        rows = [r * r if n in SIZES else r for n, r in zip(self.names, rows, strict=True)]
         rows += [state.quotient(n)[1] for n in self.ratios]
         for name in self.walls:
             item = posterior.items[name]
@@ -547,6 +557,37 @@ class Ground:
         rows = np.nan_to_num(rows).reshape(len(rows), size, count).transpose(2, 0, 1)
         split = len(self.names) + len(self.ratios)
         return rows[:, :split], rows[:, split:], np.zeros((count, 1, size))
+
+    def standstill(self, speed: str, u: Floats, signs: Floats) -> Floats:
+        """Return points within all limits where a speed is 0, sought from the points ``u``: there
+        it has a kink, which no climb comes to the end of."""
+        count, size = u.shape
+        width = (self.high - self.low)[:, None, None]
+        aside = 1j * TINY * width * np.eye(size)[:, :, None]
+        typical = self.posterior.system.scale(speed)
+        for _ in range(STANDSTILL_STEPS):
+            points = (self.points(u)[:, None] + aside).reshape(size, size * count)
+            state, _, _ = self.posterior.impacts(points, np.tile(signs, size), weighed=False)
+            rows = [np.broadcast_to(state[n] / typical, size * count) for n in SPEEDS[speed]]
+            for name in self.walls:
+                item = self.posterior.items[name]
+                share = (self.posterior._observed(state, name)[0] - item.low) / (
+                    item.high - item.low
+                )
+                inside = np.clip(np.real(share), 0.0, 1.0)
+                outside = np.real(share) != inside
+                rows.append(np.broadcast_to(np.where(outside, share - inside, 0.0), size * count))
+            whole = np.array(rows).reshape(len(rows), size, count)
+            if not np.isfinite(whole).all():
+                return u[:0]
+            slopes = (np.imag(whole) / TINY).transpose(2, 0, 1)
+            steps = np.linalg.pinv(slopes, rcond=1e-9) @ np.real(whole[:, 0]).T[:, :, None]
+            u = np.clip(u - steps[:, :, 0], 0.0, 1.0)
+        _, _, walls, usable = self.at(u, signs[None])
+        state, _, _ = self.posterior.impacts(self.points(u), signs, weighed=False)
+        still = np.hypot(*(np.real(state[n]) for n in SPEEDS[speed])) < STILL * typical
+        inside = (np.abs(walls - 0.5) <= 0.5 + _TOUCH).all(axis=1)
+        return np.asarray(u[still & usable & inside])
 
     def values(self, u: Floats, sign: float) -> dict[str, float]:
         """Return the values known within limits at one point."""

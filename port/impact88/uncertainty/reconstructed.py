@@ -11,7 +11,6 @@ that are quadratic functions, set back a little; its end is accepted by the dens
 (Metropolis, Hastings). Bounds climb from the draws and from points spread over the box (`ascent`).
 """
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -23,11 +22,11 @@ from numpy.typing import NDArray
 from ..names import COEFFICIENTS, IMPULSES, VELOCITIES
 from ..reconstruction.adjustment import Reconstruction, pseudo_inverse
 from ..reconstruction.geometry import GEOMETRY, Geometry, within_doubles
-from ..reconstruction.state import CRUSH, DIRECTIONS, State
+from ..reconstruction.state import CRUSH, DIRECTIONS, SPEEDS, State
 from ..reconstruction.system import PARAMETERS, TINY, System
 from .ascent import OUTSIDE, climb, extremes_of, spread_out
 from .boundstable import Spread
-from .posterior import SIZES, Ground, Posterior
+from .posterior import Ground, Posterior
 from .uncertain import Uncertain, columns_of, fixed, random_numbers
 
 Floats = NDArray[np.float64]
@@ -54,6 +53,7 @@ LEAST_GAIN = 1e-7
 LEARNT, UNSEEN, WALKS, PACES = 6, 9, 20, 40
 """Times each chain's place is met while the walls are learnt, until it has forgotten its start, and
 as a draw; each so many paces apart."""
+STANDSTILLS = 16  # of the slowest draws, from which a standstill is sought
 FEELERS = 1000  # particles that seek the way inside all limits where nothing was drawn
 FREE = 4096
 """Draws as without walls that chains may start from."""
@@ -201,12 +201,17 @@ def _extremes(
         low, high = (ground.values(at[i], signs[0]) for at in ends)
         inside = all((np.abs(at[i][free] - 0.5) < 0.5).all() for at in ends)
         searched = bool(done[:, i].all()) and inside
-        limits = float(lower[i]), float(upper[i])
-        if name in SIZES:  # whose squares are searched
-            low_root, high_root = (math.sqrt(max(limit, 0.0)) for limit in limits)
-            # no draw is beyond by rounding
-            limits = max(math.nextafter(low_root, -1), 0.0), math.nextafter(high_root, math.inf)
-        found[name] = Range(*limits, low, high, searched)
+        least = float(lower[i])
+        if name in SPEEDS and least > 0:
+            slowest = np.argsort(functions[:, i], kind="stable")[:STANDSTILLS]
+            still = ground.standstill(name, u[slowest], signs[slowest])
+            if len(still):
+                least, low, searched = (
+                    0.0,
+                    ground.values(still[0], signs[0]),
+                    bool(done[1, i].all()),
+                )
+        found[name] = Range(least, float(upper[i]), low, high, searched)
     return found | {name: Range(-np.inf, np.inf, {}, {}) for name in endless if name in found}
 
 
