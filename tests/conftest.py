@@ -22,9 +22,10 @@ from captures import ROOT
 from impact88 import native
 
 LONGEST = (
-    *("compare", "scans", "desk_browser", "desk", "scan_pages", "installed", "fuzz", "figures"),
-    *("verify", "listing_copies", "replay_scenes", "adjustment", "oracle", "files", "doors"),
-    *("public", "desk_numbers", "bounds", "schemas", "native", "witness", "unknowns", "readme"),
+    *("compare", "causes", "scans", "desk_browser", "desk", "scan_pages", "installed", "fuzz"),
+    *("figures", "verify", "listing_copies", "replay_scenes", "adjustment", "oracle", "files"),
+    *("doors", "public", "desk_numbers", "bounds", "schemas", "native", "witness", "unknowns"),
+    "readme",
 )
 """Files of tests that take more than some seconds (``--durations=0`` has the times)."""
 
