@@ -51,8 +51,8 @@ KINDS = {
     "DVB": ("impulse", [("DVB = hypot(VBX - vbx, VBY - vby)", "DVB = DVA*mb/ma")], "inverted"),
 }  # fmt: skip
 """What is wrong -> program, bugs, and what is said."""
-FITTED = ("1.467", "one component in mph", "57.3", "an angle's zero", "a statement")
-FEW = ("a hair", "DVB")  # so small a difference is no pair of mistakes: none is looked for
+FITTED = ("1.467", "an angle's zero", "a statement", "one component in mph", "57.3")
+FEW = ("a hair",)  # so small a difference is no pair of mistakes: none is looked for
 UNSOUGHT = () if SWEEP else ("VBX",)
 """Left out of a table, so that no pair is looked for equation by equation, which takes long."""
 assert set(heldout.PROGRAMS) <= set(bugs.PROGRAMS)
@@ -77,7 +77,7 @@ def test_a_kind_of_mistake_is_named(kind: str) -> None:
     assert count >= 0.9 * done.differing
 
 
-@pytest.mark.parametrize("kind", FITTED)
+@pytest.mark.parametrize("kind", FITTED if SWEEP else FITTED[:3])
 def test_a_constant_is_fitted(kind: str) -> None:
     """Alone, in rows of casework: what the search does where no edit of its own explains them."""
     program, changes, says = KINDS[kind]
