@@ -245,3 +245,28 @@ def test_draws_about_one_impact_of_several_say_so():
     exact = {n: v for n, v in exact.items() if n not in ("MU", "UX")}
     one = Measured(reconstruct({**exact, "VX": f"{SCENE['VX']!r} +- 0.1"})[0], 50)
     assert not any("about this impact only" in line for line in one.warnings())
+
+
+def test_where_two_branches_meet_no_first_order_deviation_is_shown():
+    """The speed of A is that of its x component: UY is 0, from both sides, and within .5 ft/s of
+    speed it is up to the leg of a right-angled triangle."""
+    known = {n: v for n, v in SCENE.items() if n not in ("MU", "UY")}
+    known |= {"GA": 0.0, "MUP": 0.3, "SA": read("29.04 +- .5", "SA")}
+    alone = Measured(reconstruct(known)[0], 0)
+    assert alone.first_order["UY"] is None
+    assert math.isnan(alone.deviations["UY"])
+    (line,) = (line for line in alone.warnings() if "two branches" in line)
+    assert "UY about 0" in line
+    drawn = Measured(reconstruct(known)[0], 200)
+    leg = math.sqrt(29.54**2 - 29.04**2)
+    assert drawn.ranges["UY"].upper == pytest.approx(leg, rel=1e-3)
+    assert drawn.ranges["UY"].lower == pytest.approx(-leg, rel=1e-3)
+    assert any("draws and bounds have both" in line for line in drawn.warnings())
+    # well beside the fold there are two impacts, each with its own deviation
+    known["SA"] = read("32 +- .01", "SA")
+    for impact in reconstruct(known):
+        assert impact.folded == ()
+        beside = Measured(impact, 0)
+        leg = math.sqrt(32**2 - 29.04**2)
+        half = 0.01 / math.sqrt(3) * 32 / leg
+        assert beside.first_order["UY"] == pytest.approx(half, rel=1e-6)

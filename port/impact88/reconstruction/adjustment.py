@@ -44,6 +44,8 @@ _FITTED_STARTS = 120  # starts in a batch where nothing agrees exactly and a fit
 _LEFT_OUT = 8  # sets of superfluous values left out, each for exact impacts as starts of a fit
 _NEARBY = 0.3  # spread of starts around impacts that were found before
 _ASIDE = 1e-2  # scaled distance at which a fold is told from a continuum
+_FOLDED = 1e-4  # singular value, of the largest, up to which branches nearly meet
+_FOLDED_PART = 1e-3  # part of a gradient along the fold up to which a quantity does not feel it
 _SAME = 1e-6  # scaled variables that differ by no more are of the same impact
 _TIGHTENED_FIRST, _TIGHTENED = 4, 12
 """Of the starts so many with tolerances tightened little by little, the second number where nothing
@@ -444,6 +446,36 @@ class Reconstruction:
             and (COURSES.get(name) or "PN") in self.values
             and state.along_and_across(name)[0]
             < -_HOLDS * system.scale("PN" if name in FORCES else "UX")
+        )
+
+    @cached_property
+    def folded(self) -> tuple[str, ...]:
+        """Quantities that nothing limits to first order though the impact stands alone: two
+        branches meet there, or nearly do."""
+        rows = self.system.slopes(self.x)
+        sizes = np.abs(rows).max(axis=1, initial=0.0)
+        rows = rows[sizes > 0] / sizes[sizes > 0, None]
+        if self.undetermined or not (len(rows) and np.isfinite(rows).all()):
+            return ()
+        _, singular, vt = np.linalg.svd(rows)
+        weak = vt[(singular > _FOLDED * singular[0]).sum() :].T
+        if not weak.shape[1]:
+            return ()
+        # a speed at its least changes alike to both sides; what is merely uncertain does not
+        ahead, here, behind = (
+            self.system.left(self.system.state(self.x + side * weak))
+            for side in (_ASIDE, 0, -_ASIDE)
+        )
+        even, odd = np.abs(ahead + behind - 2 * here), np.abs(ahead - behind)
+        weak = weak[:, even.max(axis=0) > odd.max(axis=0)]
+        gradients = self.system.gradients(self.x, QUANTITIES)
+        largest = np.abs(gradients).max(axis=1, initial=0.0)
+        along = np.abs(gradients @ weak).max(axis=1, initial=0.0)
+        return tuple(
+            name
+            for name, part, size in zip(QUANTITIES, along, largest, strict=True)
+            if name in self.values and name not in self.system.known
+            if part > _FOLDED_PART * size
         )
 
     @cached_property

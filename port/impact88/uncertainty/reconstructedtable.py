@@ -31,6 +31,7 @@ MOST_CORRELATED = 7
 """Columns of correlations: what 96 characters hold."""
 MOST_APART = 1 / 3
 """First-order deviations that differ from the draws' by more, as a fraction, are not shown."""
+MOST_FOLDED = 6  # results that are named where branches meet
 MOST_SEPARATING = 0.005  # draws that do not approach, as a fraction, that nothing is said of
 ILL_POSED = 0.25
 """From this share of the largest speed, a velocity's standard deviation is called ill-posed."""
@@ -104,6 +105,10 @@ class Measured(Impact):
             drawn = float(np.nanstd(self.draws.values[name], ddof=1)) if self.draws else math.nan
             if not abs(self.deviations[name] - drawn) <= MOST_APART * drawn:
                 self.first_order[name], self.deviations[name] = None, drawn
+        for name in {*names} & {*solution.folded}:
+            self.first_order[name] = None
+            if not self.draws:
+                self.deviations[name] = math.nan
         self.drivers: dict[str, list[tuple[str, float]]] = {}
         for name, responses in zip(names, solution.responses(names), strict=True):
             shares = responses**2 / (np.square(responses).sum() or 1.0)
@@ -148,6 +153,18 @@ class Measured(Impact):
             lines.append(
                 f"{self.evidence.text(units)}; standard deviations are widened "
                 f"{number(self.evidence.widening, 3)} times"
+            )
+        if folded := [name for name in self.names if name in solution.folded]:
+            texts = []
+            for name in folded[:MOST_FOLDED]:
+                value, scale = solution.values[name], solution.system.scale(name)
+                value = 0.0 if abs(value) < 1e-6 * scale else value
+                texts.append(f"{name} about {number(units.placed(name, value), 4)}")
+            amounts = ", ".join(texts)
+            both = ", and draws and bounds have both" if self.draws else ""
+            lines.append(
+                f"two branches of impacts meet here ({amounts}): to first order nothing limits "
+                f"these, so no first-order deviation is given{both}"
             )
         lines += self._ill_posed(units)
         if self.evidence.inside is False:
