@@ -210,18 +210,20 @@ def scene_names(names: Sequence[str], where: str | None = None, results: bool = 
     (``where``), for two of the same heading."""
     present = set(names)
     matched: list[str] = []
+    seen: dict[str, str] = {}
     for name in names:
         text, unit = _taken_apart(name)
         bare = text.upper()
         taken = bare in present or not (
             bare in SCENE or (bare in RESULTS and (results or bool(unit)))
         )
-        if bare in matched and bare not in present and (bare in SCENE or results):
-            first = heading(matched[matched.index(bare)])
+        if bare in seen and bare not in present and (bare in SCENE or results):
+            first = heading(seen[bare])
             says = f"columns {quoted(first)} and {quoted(name)} are both {bare}; expected one"
             raise UserError(says, where or "")
-        taken = taken or bare in matched
+        taken = taken or bare in seen
         matched.append(name if taken else Heading(bare, name, unit))
+        seen.setdefault(matched[-1], matched[-1])
     twice = next((name for name, count in Counter(matched).items() if count > 1), None)
     if where is not None and twice is not None:
         raise UserError(f"has two columns named {quoted(twice)}", where)
@@ -239,13 +241,14 @@ def heading_remarks(names: Sequence[str], results: bool = False) -> list[str]:
     """What a reader should know of how headings were understood: which are names in other letters,
     and which stand beside the column that is read."""
     said: list[str] = []
+    present = set(names)
     other = [name for name in names if _taken_apart(heading(name))[0] != name.strip()]
     other = [name for name in other if isinstance(name, Heading)]
     if other:
         said.append(f"columns {' '.join(map(heading, other))} are read as {' '.join(other)}")
     for name in names:
         bare = _taken_apart(name)[0].upper()
-        if bare != name and bare in names and (bare in SCENE or (results and bare in RESULTS)):
+        if bare != name and bare in present and (bare in SCENE or (results and bare in RESULTS)):
             said.append(f"column {quoted(name)} is not read: there is {bare}, too")
     return said
 
