@@ -400,6 +400,7 @@ class TestUncertainty:
             float(found.values["UX"].std()), rel=0.15
         )
 
+    @pytest.mark.long
     def test_draws_are_adjusted_where_more_is_known_than_needed(self):
         (solution,) = reconstruct(BOTH_SPINS)
         drawn = draws(solution, ["UX", "VY"], 2000)

@@ -68,6 +68,7 @@ def compared(rows: list[dict[str, str]], answers: list[dict]) -> Comparison:
 
 
 @pytest.mark.parametrize("kind", KINDS if SWEEP else FEW)
+@pytest.mark.long
 def test_a_kind_of_mistake_is_named(kind: str) -> None:
     program, changes, says = KINDS[kind]
     done = compared(ROWS, bugs.answers(ROWS, program, *changes))
@@ -94,6 +95,7 @@ def test_a_constant_is_fitted(kind: str) -> None:
 
 
 @pytest.mark.parametrize("results", [*(["along the normal"] if SWEEP else []), "velocities"])
+@pytest.mark.long
 def test_what_no_row_tells_apart_is_said_in_both_words(results: str) -> None:
     """The normal's direction matters to the rule of MU's sign alone, but for what is along it."""
     rows = [scene for kind, _, scene in scenes(60, seed=4) if kind == CASEWORK]
@@ -109,6 +111,7 @@ def test_what_no_row_tells_apart_is_said_in_both_words(results: str) -> None:
     assert ("MU's sign rule inverted" in cause) == (results == "velocities")
 
 
+@pytest.mark.long
 def test_results_in_another_order_are_told() -> None:
     rows = [scene for kind, _, scene in scenes(60, seed=4) if kind == CASEWORK]
     answers = sorted(bugs.answers(rows, "impulse"), key=lambda row: row["VAX"])
@@ -123,6 +126,7 @@ def test_constants_are_told_apart() -> None:
     assert ((apart > 2e-6) | (apart < 1e-15)).all()
 
 
+@pytest.mark.long
 def test_every_edit_of_every_model_can_be_computed() -> None:
     """A condition has no sign and no size: an edit of one that had ended in an error. Those of what
     a model changes; of all else they are the spelling's own, which every search computes."""

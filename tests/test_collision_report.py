@@ -207,7 +207,7 @@ def evidence_file(folder: Path, seed: int, off: float) -> tuple[Path, Path]:
     return source, source.with_suffix(".html")
 
 
-FILES = 50 if os.environ.get("IMPACT88_SWEEP") else 4
+FILES = 50 if os.environ.get("IMPACT88_SWEEP") else 2
 
 
 @pytest.fixture
@@ -244,6 +244,7 @@ def test_the_first_page_says_that_the_evidence_contradicts_itself_or_does_not(
         assert all(text in words for text in verdicts)
 
 
+@pytest.mark.long
 def test_the_first_page_is_one_page_and_well_filled(tmp_path: Path) -> None:
     """As a browser prints it: of the height between the margins four fifths are used."""
     browser = shutil.which("chromium") or shutil.which("google-chrome")

@@ -171,6 +171,7 @@ def test_a_mistake_is_named_in_other_tables(tmp_path, what: str) -> None:
             assert main_cause(done) == says
 
 
+@pytest.mark.long
 def test_two_mistakes_in_one_table_are_both_named(tmp_path, monkeypatch) -> None:
     """Rows from one program, then rows from another."""
     if not SWEEP:  # no pair explains them, and to find that out takes long
@@ -220,6 +221,7 @@ class HalfARightSide(Program):
         (HalfARightSide(), r"ib\*WBF = .*ia\*WA, should be .*ib\*WB; Equation 17"),
     ][: None if SWEEP else 1],
 )
+@pytest.mark.long
 def test_a_mistake_in_one_equation_is_named(tmp_path, program: Program, says: str) -> None:
     done = compared(tmp_path, answered(program, names=FINAL_VELOCITIES))
     assert re.search(says, main_cause(done))
@@ -234,6 +236,7 @@ FEW = strangers.PAIRS[-1:]
 
 
 @pytest.mark.parametrize("which", BUGS if SWEEP else FEW, ids=str)
+@pytest.mark.long
 def test_a_bug_written_before_the_search_is_named(tmp_path, which: tuple) -> None:
     """The program named gives the bug's final velocities in scenes that the table does not have.
     With IMPACT88_SWEEP, all are looked for: at most one in fifty may be named wrongly (`-s` shows
@@ -276,6 +279,7 @@ class SquaredWithoutSpins(Squared):
         ),
     ][: None if SWEEP else 1],
 )
+@pytest.mark.long
 def test_two_mistakes_in_one_program_are_both_named(tmp_path, program, says) -> None:
     done = compared(tmp_path, answered(program, names=FINAL_VELOCITIES))
     assert set(main_cause(done).split("; and ")) == says
@@ -321,6 +325,7 @@ def test_correct_programs_of_any_style_agree_in_hard_scenes(tmp_path, what: str)
         assert done.differing == 0, (name, done.worst[:3])
 
 
+@pytest.mark.long
 def test_an_unknown_mistake_gets_the_equations_it_violates(tmp_path) -> None:
     class Odd(Program):
         def restitution(self, g: Numbers) -> float:
@@ -336,6 +341,7 @@ def test_an_unknown_mistake_gets_the_equations_it_violates(tmp_path) -> None:
     assert all(kind.violated == {"15": kind.rows} for kind in kinds)
 
 
+@pytest.mark.long
 def test_noise_is_given_no_cause(tmp_path) -> None:
     rng = np.random.default_rng(1)
     if SWEEP:
@@ -385,6 +391,7 @@ def test_the_pi_of_the_listing_is_recognised(tmp_path) -> None:
     assert "3.14159265" in main_cause(compared(tmp_path, answered(Listing())))
 
 
+@pytest.mark.long
 def test_rounding_the_results_alone_is_no_single_precision_arithmetic_but_named_so(
     tmp_path,
 ) -> None:

@@ -679,6 +679,7 @@ def test_a_scan_is_read_itself() -> None:
         assert told["text"][check["start"] : check["stop"]] == check["printed"]
 
 
+@pytest.mark.long
 def test_half_a_megabyte_of_one_letter_is_no_printout() -> None:
     assert "no printout" in paper.judged("page.txt", b"x" * 500_000)["problem"]
 
@@ -994,6 +995,7 @@ def test_as_many_draws_as_the_command_takes() -> None:
     assert parser.get_default("samples") == reconstruction.DRAWS
 
 
+@pytest.mark.long
 def test_a_reconstruction_begins_with_the_evidence_and_velocity_changes(
     client: Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -23,6 +23,7 @@ from impact88.scene import sample
 from installed import impact88 as command
 
 pytestmark = [
+    pytest.mark.long,
     pytest.mark.browser,
     pytest.mark.skipif(bool(desk_browser.missing()), reason=desk_browser.missing()),
 ]

@@ -198,6 +198,7 @@ def test_what_the_page_shows_is_what_the_commands_print(
         agree(page, "#reconstruction-answer .solution", solution(capsys.readouterr().out), 9)
 
 
+@pytest.mark.long
 def test_nothing_bars_a_reader_who_cannot_see(address: str) -> None:
     """axe-core finds nothing on the three views, filled in."""
     if MISSING["chromium"] or not (axe := desk_browser.axe()):

@@ -186,6 +186,7 @@ def direct_impact(n, rng):
     return u[kept], v[kept]
 
 
+@pytest.mark.long
 def test_draws_are_those_of_rejection_over_both_branches():
     """B is struck, or runs away backwards: the crush alone tells nothing of which."""
     known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "GA": 180.0, "UY": 0.0, "VY": 0.0, "MUP": 0.0}

@@ -851,6 +851,7 @@ class TestRendered:
     """Every kind as SVG, PNG and PDF, each painted by another program: one picture."""
 
     @pytest.mark.parametrize("kind", RENDERED)
+    @pytest.mark.long
     def test_one_picture_in_every_format(self, capsys, tmp_path, monkeypatch, kind):
         resvg_py = pytest.importorskip("resvg_py")
         pypdfium2 = pytest.importorskip("pypdfium2")

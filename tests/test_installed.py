@@ -98,6 +98,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "site"
 
 
+@pytest.mark.long
 def test_every_packaged_file_is_used(installed: Path, tmp_path: Path) -> None:
     package = installed / "impact88"
     static = sorted(path.name for path in (package / "desk" / "static").iterdir())

@@ -163,6 +163,7 @@ def test_a_program_of_the_kit_answers_all(kit: Path, language: str) -> None:
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
+@pytest.mark.long
 def test_a_mistake_in_a_program_of_the_kit_is_named(kit: Path) -> None:
     script = (kit / "impact.js").read_text(encoding="utf-8").replace("-g.E", "g.E")
     (kit.parent / "wrong.js").write_text(script, encoding="utf-8")

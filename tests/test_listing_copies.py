@@ -101,6 +101,7 @@ def test_the_pages_of_a_copy_are_settled_and_others_are_not(name: str, tmp_path:
         assert not verdicts(page[:at] + digit + page[at + 1 :], copy) & set(SETTLED)
 
 
+@pytest.mark.long
 def test_a_copy_is_held_against_the_restored_listing(tmp_path: Path, capsys) -> None:  # type: ignore[no-untyped-def]
     """And a slip in an angle is ranked by the copy's own pi."""
     copy = copy_of(rounding(760).replace("3.14159265", "3.14"), tmp_path)

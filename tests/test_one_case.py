@@ -23,7 +23,7 @@ from impact88.desk.forms import filled_in
 from impact88.names import SCENE
 from impact88.scenefile import toml_texts
 
-FILES = int(os.environ.get("IMPACT88_CASES", "6"))
+FILES = int(os.environ.get("IMPACT88_CASES", "4"))
 """Generated files; 200 take some minutes."""
 RESULTS = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF", "DVA", "DVB", "LOSS")
 

@@ -132,6 +132,7 @@ def test_cells_of_an_altered_digit() -> None:
         assert page.convert("L").crop((left, top, right, bottom)).getextrema()[0] < 128
 
 
+@pytest.mark.long
 def test_pdf_tiff_and_a_turned_page() -> None:
     pytest.importorskip("pypdfium2", reason="the extra scan is not installed")
     with Pillow.open(PAGES / "clean-001.png") as page:
@@ -144,6 +145,7 @@ def test_pdf_tiff_and_a_turned_page() -> None:
         assert [str(one.verdict) for one in examined.results] == ["identical"], examined
 
 
+@pytest.mark.long
 def test_two_printouts_side_by_side() -> None:
     pages = [Pillow.open(PAGES / file).convert("L") for file in ("clean-001.png", "clean-002.png")]
     height = max(page.height for page in pages) + 40
@@ -340,6 +342,7 @@ def read_again(page: Any) -> Verification:
 
 
 @pytest.mark.parametrize(("added", "side"), [("7", 1), ("3", -1), ("-", -1), (".", 1)])
+@pytest.mark.long
 def test_a_glyph_of_the_page_in_a_blank_at_a_number_differs(added: str, side: int) -> None:
     """At three numbers at once: each is told by itself. So many points may be specks."""
     page, cells = genuine()
@@ -571,6 +574,7 @@ def test_a_page_askew_is_set_straight_and_one_nearly_straight_is_left_alone() ->
 
 
 @pytest.mark.parametrize("near", [True, False])
+@pytest.mark.long
 def test_a_stroke_bears_on_the_page_in_or_beside_a_line(near: bool) -> None:
     from PIL import ImageDraw
 
@@ -592,6 +596,7 @@ def test_a_stroke_bears_on_the_page_in_or_beside_a_line(near: bool) -> None:
     assert (mark["kind"], mark["bears"]) == ("stroke", near)
 
 
+@pytest.mark.long
 def test_a_negative_two_pages_and_a_page_on_a_dark_desk_are_turned_into_paper() -> None:
     """Each is settled as the page itself is, and what was done to it is said."""
     page, _ = genuine()

@@ -139,6 +139,7 @@ def test_most_scans_of_the_sample_are_settled() -> None:
         (".8202\n", ".8202}4\n"),
     ],
 )
+@pytest.mark.long
 def test_nothing_beside_a_number_is_lost(old: str, new: str) -> None:
     assert SAMPLE.count(old) >= 1
     results = judged(SAMPLE.replace(old, new))
@@ -499,6 +500,7 @@ def test_a_badly_read_page_is_neither_settled_nor_accused() -> None:
     assert one(worn.replace("XA=", "KA=").replace("XB=", "KB=")).verdict is Verdict.INCOMPLETE
 
 
+@pytest.mark.long
 def test_more_than_two_alterations_on_a_machine_read_page_are_its_readers() -> None:
     """They are told, and the page is not settled; what a person typed differs."""
     wrong = {
@@ -578,6 +580,7 @@ def test_places_that_no_page_has_are_refused_or_laid_out(number: str, place: str
             read_printouts(words)
 
 
+@pytest.mark.long
 def test_reading_ends_where_there_is_too_much_text(monkeypatch: pytest.MonkeyPatch) -> None:
     """Told with the place, and never settled; without a page before it, the file is refused."""
     least = 6000

@@ -115,6 +115,7 @@ def test_one_scene_in_seven_systems_has_one_tolerance() -> None:
 
 
 @pytest.mark.parametrize("system", SYSTEMS)
+@pytest.mark.long
 def test_a_small_error_is_found_in_any_units(system: str) -> None:
     rows = [scene for kind, _, scene in scenes(90, 8) if kind == CASEWORK]
     scene = converted(columns([dict(sample(1)), *rows]), system)
