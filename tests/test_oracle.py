@@ -309,6 +309,17 @@ def test_vectors_are_reproducible_labelled_and_complete() -> None:
     assert len({one["id"] for one in found}) == 9
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name", ["UX", "WA", "DA", "MA", "IB"])
+def test_no_bound_is_given_past_the_range_of_doubles(name: str) -> None:
+    cases = [
+        sample(1).replaced({name: f"{digit}e{power}"}) for digit in (1, 9) for power in (154, 307)
+    ]
+    for row in oracle(cases, reference=False):
+        bound = row["error_bound"]["double"]
+        assert bound is None or bound >= 0
+
+
 def test_every_label_occurs_and_failures_fail() -> None:
     labels = Counter(label for _, label, _ in scenes(3 * len(EDGES) * len(FAILURES), 1))
     assert set(EDGES) | set(FAILURES) <= set(labels)

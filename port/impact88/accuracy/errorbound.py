@@ -61,7 +61,8 @@ def oracle_bounds(
     """
     sizes = scales(columns, solved)
     moved = movements(columns)
-    double = {name: DOUBLE * (CLOSED_FORM * moved[name] + abs(solved[name])) for name in moved}
+    with np.errstate(over="ignore", invalid="ignore"):
+        double = {name: DOUBLE * (CLOSED_FORM * moved[name] + abs(solved[name])) for name in moved}
     listing = {name: np.full(len(scenes), np.inf) for name in FINAL_VELOCITIES}
     for i, scene in enumerate(scenes):
         errors = listing_errors(scene, {name: float(solved[name][i]) for name in FINAL_VELOCITIES})
@@ -124,7 +125,13 @@ def movements(
     columns: Mapping[str, Any], outputs: Sequence[str] = FINAL_VELOCITIES
 ) -> dict[str, Floats]:
     """For every scene and each output, what it changes per relative change of all numbers of the
-    scene at their worst: the sum over the numbers of the central differences' sizes."""
+    scene at their worst: the sum over the numbers of the central differences' sizes, infinite or
+    NaN past the range of doubles."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return _movements(columns, outputs)
+
+
+def _movements(columns: Mapping[str, Any], outputs: Sequence[str]) -> dict[str, Floats]:
     moved = {name: np.zeros(()) for name in outputs}
     for name, values in columns.items():
         values = np.asarray(values, np.float64)
