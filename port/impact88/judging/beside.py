@@ -32,6 +32,8 @@ _DIGITS = 12
 _SUMS = (("PA", "TA"), ("PB", "TB"))
 _LAST_PLACES = 2.0
 """Angles of the same sum may enter with other last bits: results agree within so many units."""
+_TURN = 360
+"""Degrees."""
 _DEPENDENT = tuple(name for name in FIELDS if name not in INPUTS or name == "MUP")
 """What is printed that other inputs than itself may change: MU's sign is chosen."""
 
@@ -73,7 +75,20 @@ def warnings(scene: Scene) -> list[str]:
         sentences.append("MU = 10 becomes -10 in line 400, which line 510 takes for a pivot")
     if mu < -10:
         sentences.append("MU below -10: line 510 zeroes a right-hand side that is not a pivot's")
-    return sentences
+    return [*sentences, *_whole_turns(scene)]
+
+
+def _whole_turns(scene: Scene) -> Iterator[str]:
+    """Yield a sentence for each angle of a turn or more: a digit added in front of an angle may
+    add turns, and nothing else on the page changes."""
+    for name in ANGLES:
+        text = scene[name].strip()
+        number = value_of(text)
+        if number is not None and abs(number) >= _TURN:
+            yield (
+                f"{name} = {text}, a whole turn or more: {number % _TURN:f} points the same way, "
+                "and prints the same but for rounding"
+            )
 
 
 # --- what the page cannot show ---
