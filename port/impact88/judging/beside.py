@@ -34,6 +34,8 @@ _LAST_PLACES = 2.0
 """Angles of the same sum may enter with other last bits: results agree within so many units."""
 _TURN = 360
 """Degrees."""
+_MANY_TURNS = 1_000_000
+"""Degrees from which 32 bits hold the angle in radians to 4e-6 or worse."""
 _DEPENDENT = tuple(name for name in FIELDS if name not in INPUTS or name == "MUP")
 """What is printed that other inputs than itself may change: MU's sign is chosen."""
 
@@ -84,11 +86,13 @@ def _whole_turns(scene: Scene) -> Iterator[str]:
     for name in ANGLES:
         text = scene[name].strip()
         number = value_of(text)
-        if number is not None and abs(number) >= _TURN:
-            yield (
-                f"{name} = {text}, a whole turn or more: {number % _TURN:f} points the same way, "
-                "and prints the same but for rounding"
-            )
+        if number is None or abs(number) < _TURN:
+            continue
+        if abs(number) < _MANY_TURNS:
+            same = f"{number % _TURN:f} points the same way, and prints the same but for rounding"
+        else:
+            same = "rounding has a part in where it points"
+        yield f"{name} = {text}, a whole turn or more: {same}"
 
 
 # --- what the page cannot show ---
