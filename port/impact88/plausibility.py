@@ -12,6 +12,8 @@ from .names import quantity
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from .units import System
 
 LIGHTEST = 200.0
@@ -26,12 +28,18 @@ INERTIA_RATIO = (0.3, 3.0)
 """A yaw inertia over that of the rule (`impact88.estimates`)."""
 SIDEWAYS = 45.0
 """Degrees between a moving vehicle's course and its heading."""
+_ROUNDING = 1e-9
+"""Degrees by which what is exactly `SIDEWAYS` may seem more."""
 BEYOND_ARM = "the contact point is more than 15 m from the center of gravity; is its unit as meant?"
 ONE_SPIN = "the moment at the contact leaves both vehicles with one spin; no moment is EM = 1"
 SPEEDS = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
 MEASURES = {
-    "mass": (LIGHTEST, HEAVIEST, "no vehicle has that mass (200 kg to 60 t)"),
-    "length/time": (-FASTEST, FASTEST, "no vehicle is as fast (500 km/h)"),
+    "mass": (
+        LIGHTEST,
+        HEAVIEST,
+        "no vehicle has that mass (200 kg to 60 t); is its unit as meant?",
+    ),
+    "length/time": (-FASTEST, FASTEST, "no vehicle is as fast (500 km/h); is its unit as meant?"),
 }
 
 
@@ -78,7 +86,7 @@ def _sizes(
         if rule == "mass" and not size > 0:
             continue  # which is refused, or ends the program
         if rule in MEASURES and math.isfinite(size) and not low <= size <= high:
-            found[name] = f"{name} = {texts.get(name, '')}: {words}; is its unit as meant?"
+            found[name] = f"{name} = {texts.get(name, '')}: {words}"
     arm = {"DA": "DA", "DB": "DB", "CAF": "DA", "CAL": "DA", "CBF": "DB", "CBL": "DB"}
     longest = LONGEST_ARM / float(system.scale("length"))
     for name in ("DA", "DB"):
@@ -103,6 +111,11 @@ def inertia_words(name: str, text: str, ratio: float) -> str:
         f'{name} = {text} is {ratio:.2g} times what {name} = "estimate" gives; are its unit and '
         "the mass as meant?"
     )
+
+
+def is_sideways(apart: Any) -> Any:
+    """Return whether so many degrees off its heading are sideways; of an array, of each."""
+    return apart > SIDEWAYS + _ROUNDING
 
 
 def sideways_words(vehicle: str, apart: float) -> str:
@@ -140,7 +153,7 @@ def _directions(numbers: Mapping[str, float], system: System) -> dict[str, str]:
         if not math.isfinite(way - facing):
             continue
         apart = abs(math.remainder(way - facing, 360.0))
-        if apart > SIDEWAYS + 1e-9:
+        if is_sideways(apart):
             found[name] = sideways_words(vehicle, apart)
     return found
 

@@ -17,9 +17,9 @@ from ..plausibility import (
     LONGEST_ARM,
     MEASURES,
     ONE_SPIN,
-    SIDEWAYS,
     SPEEDS,
     inertia_words,
+    is_sideways,
     rule_of_name,
     sideways_words,
 )
@@ -112,7 +112,6 @@ class _Table:
             if rule in MEASURES:
                 low, high, words = MEASURES[rule]
                 scale = float(self.system.scale(rule))
-                words += "; is its unit as meant?"
             elif arm:
                 high = LONGEST_ARM
                 low, scale, words = -high, float(self.system.scale("length")), BEYOND_ARM
@@ -160,10 +159,10 @@ class _Table:
             if not every and rows > COURSES:
                 evenly = np.linspace(0, rows - 1, COURSES).astype(np.int64)
                 some = [column if len(column) == 1 else column[evenly] for column in columns]
-                if not (_off_course(some, turn) > SIDEWAYS + 1e-9).any():
+                if not is_sideways(_off_course(some, turn)).any():
                     continue
             apart = np.concatenate([_off_course(some, turn) for some in _strips(*columns)])
-            where = (apart > SIDEWAYS + 1e-9) & self._bodies()
+            where = is_sideways(apart) & self._bodies()
             for _, remark in self._remark(name, where, ""):
                 remark.text = sideways_words(vehicle, float(apart[remark.first % len(apart)]))
                 yield name, remark
