@@ -7,7 +7,7 @@ import os
 import re
 import subprocess
 import sys
-from itertools import combinations, permutations
+from itertools import combinations, pairwise, permutations
 from xml.etree import ElementTree
 
 import numpy as np
@@ -926,3 +926,94 @@ class TestRendered:
         assert shown == r"Main \x1b[31m and \u202e4th\x00 \ud800"
         for ending in ("png", "pdf"):
             canvas.save(drawing, str(tmp_path / f"x.{ending}"))
+
+
+EXTREME = {
+    "tiny": {"MA": "4E-3", "IA": "4E-8", "DA": "5E-3", "DB": "0", "UX": "-1E-4", "VX": "6E-5"},
+    "huge": {"MA": "3E12", "IA": "1E18", "MB": "5E13", "IB": "2E19", "DA": "650", "DB": "800"},
+    "fast": {"UX": "-35000", "VX": "12500", "VY": "-1234.5"},
+}
+
+
+class TestExtremes:
+    """Numbers with exponents, narrow and turned ranges: every text on the page and apart."""
+
+    def drawings(self, scene):
+        inputs = read_inputs(dict(scene), {"UX": "+- 1%", "MA": "+- 3%", "GA": "+- 2"})
+        found = bounds(inputs.values, samples=300, keep_draws=True)
+        yield scene_drawing(scene, solved(scene))
+        yield views.strip_drawing(scene, solved(scene))
+        yield charts.histograms(found)
+        yield charts.tornado(found, ["DVA", "LOSS", "WAF"])
+        yield charts.friction_sweep(scene)
+        masses = float(scene["MB"]) * np.linspace(0.1, 9, 40)
+        yield charts.swept(scene, "MB", masses, ["PN", "KI", "DVA", "LOSS"])
+        speeds = float(scene["UX"]) * np.array([1.0001, 1.0, 0.9999])
+        yield charts.swept(scene, "UX", speeds, ["KI", "DVA"])
+
+    @pytest.mark.parametrize("name", EXTREME)
+    def test_every_text_is_apart_and_on_the_page(self, name):
+        for drawing in self.drawings(sample(1).replaced(EXTREME[name])):
+            assert overlaps(drawing) == [], drawing.title
+            assert off_page(drawing) == [], drawing.title
+            for axis in ("x tick", "y tick"):
+                count = sum(text.role == axis for text in drawing.texts())
+                panels = len(of_role(drawing, "axis")) / 2
+                assert count >= 2 * panels or axis == "y tick", drawing.title
+
+    def test_a_sweep_of_one_value_is_refused(self):
+        for values in ([-30.0], [-30.0, -30.0]):
+            with pytest.raises(UserError, match="GA: a sweep of one value is no curve"):
+                charts.swept(sample(1), "GA", values, ["DVA"])
+
+    def test_the_curve_of_a_sweep_passes_through_the_scene(self):
+        for ends in ([-50.0, -10.0], [-10.0, -50.0]):
+            drawing = charts.swept(sample(1), "GA", ends, ["DVA"])
+            marks = [np.mean(path.points) for path in of_role(drawing, "mark")]
+            assert min(abs(p - marks[0]) for p in one(drawing, "DVA").points) < 1e-6
+
+    def test_shade_ends_where_status_changes(self):
+        """Between values far apart, too; GA of sample 1 at which MU is the critical one."""
+        drawing = charts.swept(sample(1), "GA", np.array([-50.0, -10.0]), ["DVA"])
+        ((across, _),) = read_axes(drawing)
+        (shade,) = of_role(drawing, "shade")
+        edge = across(min(point.real for point in shade.points))
+        numbers = {name: float(text) for name, text in sample(1).items()}
+        for angle, broken in ((edge - 0.05, False), (edge + 0.05, True)):
+            assert bool(int(solve({**numbers, "GA": angle}, ["STATUS"])["STATUS"])) == broken
+
+    def test_what_is_unphysical_does_not_squeeze_the_rest(self):
+        scene = sample(1).replaced({"UX": "-35", "VX": "0", "VY": "12", "MU": ".5"})
+        axis = np.linspace(-1, 0.99, 101)
+        drawing = charts.swept(scene, "EM", axis, ["WAF"])
+        numbers = {name: float(text) for name, text in scene.items()}
+        found = solve({**numbers, "EM": axis}, ["WAF", "STATUS"])
+        clean = found["WAF"][found["STATUS"] == 0]
+        assert np.ptp(found["WAF"][np.isfinite(found["WAF"])]) > 9 * np.ptp(clean)
+        texts = [t.text.replace("−", "-") for t in drawing.texts() if t.role == "y tick"]
+        shown = [float(text) for text in texts]
+        assert np.ptp(shown) < 3 * np.ptp(clean)
+
+    def test_vehicles_after_the_impact_are_drawn_apart(self):
+        """At the time of one length these two still cover each other."""
+        scene = sample(1).replaced(
+            {"GA": "-30", "PA": "10", "PB": "-60", "TA": "0", "TB": "90", "DA": "6.5", "DB": "5"}
+            | {"UX": "-51", "UY": "0", "VX": "0", "VY": "37", "E": ".15", "MU": ".5", "EM": "-1"}
+        )
+        a, b = plan(scene, solved(scene)).vehicles
+        once = a.length / 51
+        assert not views._are_apart((a, b), once)
+        drawing = views.strip_drawing(scene, solved(scene))
+        ends = [
+            [p for p in drawing.paths() if p.role == f"{name} outline"][-1].points for name in "AB"
+        ]
+
+        def covers(corners, point):
+            turns = [
+                ((second - first).conjugate() * (point - first)).imag
+                for first, second in pairwise(corners)
+            ]
+            return min(turns) > 0 or max(turns) < 0
+
+        assert not any(covers(ends[0], point) for point in ends[1])
+        assert not any(covers(ends[1], point) for point in ends[0])

@@ -4,7 +4,8 @@ axes with round numbers, and key. Nothing is hatched, which some renderers of SV
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -27,8 +28,13 @@ sweep, ten a millimetre; the largest friction coefficient swept."""
 _LEFT, _TOP, _BELOW, _DASHED, _DOTTED = 13.0, 6.0, 3.3, (1.3, 0.8), (0.4, 0.6)
 """In mm: room for the numbers left of a panel and the name above it; from the axis down to the
 numbers' baseline; dashes told apart in print."""
-_CLEAR = 2.0
-"""In mm: from an axis's name to the page's edge, at least."""
+_CLEAR, _APART, _EDGE = 2.0, 1.2, 0.6
+"""In mm, at least: from an axis's name to the page's edge; between the numbers of an axis; from a
+number to the page's edge."""
+_FLAT = 1e-9  # values that differ by less, as a fraction of the largest, are drawn as one
+_SQUEEZED = 3.0
+"""Where the whole range of a result is so many times that of its physical part, the axis is that of
+the physical part."""
 _UNPHYSICAL, _PALE = "#f7dfae", "#c6dff0"
 
 MARKS = {"o": (24, 0), "s": (4, 45), "D": (4, 0), "^": (3, 90), "v": (3, -90), ">": (3, 0)}
@@ -57,7 +63,8 @@ def span(values: Any, margin: float = 0.05) -> tuple[float, float]:
     values = np.asarray(values, float).ravel()
     values = values[np.isfinite(values)]
     low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
-    more = margin * (high - low) or 0.05 * abs(low) or 1.0
+    flat = high - low <= _FLAT * max(abs(low), abs(high))
+    more = (0.05 * abs(low) or 1.0) if flat else margin * (high - low)
     return low - more, high + more
 
 
@@ -76,7 +83,8 @@ def ticks(low: float, high: float, most: int) -> list[tuple[float, str]]:
     else:
         digits = max(0, math.floor(math.log10(largest)) - power_)
         texts = [f"{number * size:.{digits}e}" for number in numbers]
-    return [(n * size, t.replace("-", "−")) for n, t in zip(numbers, texts, strict=True)]
+    named = zip(numbers, texts, strict=True)
+    return [(n * size, t.replace("-", "−") if n else "0") for n, t in named]
 
 
 def powers(low: float, high: float, step: int) -> list[tuple[float, str]]:
@@ -86,6 +94,27 @@ def powers(low: float, high: float, step: int) -> list[tuple[float, str]]:
         (10.0**n, "1" if n == 0 else f"1e{n}".replace("-", "−") if n % step == 0 else "")
         for n in range(first, last + 1)
     ]
+
+
+def fitting_ticks(axis: Axis, most: int, page: float) -> list[tuple[float, str]]:
+    """Round numbers along a horizontal axis, at most ``most``, with texts that stand apart and off
+    the edges of the ``page``, in mm; where there is no room for a text it has a mark only."""
+    marks: list[tuple[float, str]] = []
+    for count in range(most, 0, -1):
+        marks = ticks(axis.low, axis.high, count)
+        places = [(axis(value), d.text_width(text, TEXT) / 2) for value, text in marks]
+        inside = [
+            i for i, (x, half) in enumerate(places) if min(x - half, page - x - half) >= _EDGE
+        ]
+        for step in range(1, max(2, len(inside))):
+            shown = inside[::step]
+            gaps = (
+                places[b][0] - places[a][0] - places[a][1] - places[b][1]
+                for a, b in pairwise(shown)
+            )
+            if all(gap >= _APART for gap in gaps) and (len(shown) > 1 or count == 1):
+                return [(v, text if i in shown else "") for i, (v, text) in enumerate(marks)]
+    return marks
 
 
 def label_lines(drawing: Drawing, box: Box, label: str) -> list[str]:
@@ -124,6 +153,8 @@ class Panel:
             (self.x, x_ticks, up, -0.9j, -1j * _BELOW, ("middle", "x tick")),
             (self.y, y_ticks, box.width, -0.9, left, ("end", "y tick")),
         ):
+            if isinstance(given, int) and axis is self.x:
+                given = fitting_ticks(axis, given, drawing.width)
             marks = ticks(axis.low, axis.high, given) if isinstance(given, int) else given
             for value, text in marks:
                 place = axis(value)
@@ -131,7 +162,8 @@ class Panel:
                 if log:
                     drawing.add(Path((at, at + inward), "#dddddd", 0.14, role="grid"))
                 drawing.add(Path((at, at + outward), BLACK, 0.2, role="tick"))
-                drawing.add(Text(at + shift, text, anchor=look[0], role=look[1]))
+                if text:
+                    drawing.add(Text(at + shift, text, anchor=look[0], role=look[1]))
         at = complex((box.left + box.right) / 2, box.bottom - _BELOW - ROW + 0.2)
         for line in label_lines(drawing, box, x_label) if x_label else []:
             drawing.add(Text(at, line, anchor="middle", role="x label"))
@@ -356,7 +388,12 @@ def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]
     titles = (f"Results against {quantity(name).meaning.partition(';')[0]}", _label(name, units))
     own, words = numbers_of(scene)[name], ("this scene", "unphysical: see STATUS")
     groups = [[output] for output in outputs]
-    return _along(scene, name, np.asarray(values), groups, own, ~0, titles, words)
+    axis = np.unique(np.asarray(values, float))
+    if len(axis) < 2 or axis[-1] - axis[0] <= _FLAT * np.abs(axis).max():
+        raise UserError(f"{name}: a sweep of one value is no curve; expected two or more, apart")
+    if axis[0] < own < axis[-1] and own != PIVOT:
+        axis = np.union1d(axis, [own])  # the curve passes through what is marked
+    return _along(scene, name, axis, groups, own, ~0, titles, words)
 
 
 def _along(
@@ -377,40 +414,50 @@ def _along(
     numbers: dict[str, Any] = numbers_of(scene)
     units = _system(scene)
     case = getattr(scene, "case", None)
-    columns = swept_columns(case, name, axis) if case else {**numbers, name: axis}
+
+    def columns(axis: Any) -> dict[str, Any]:
+        return swept_columns(case, name, axis) if case else {**numbers, name: axis}
+
+    def is_faulty(axis: Any) -> Any:
+        found = solve(columns(axis), ["STATUS"])["STATUS"]
+        return (found & np.uint16(faults & 0xFFFF)) != 0
+
     outputs = [output for group in groups for output in group]
-    found = solve(columns, [*outputs, "STATUS"])
-    faulty = (found["STATUS"] & np.uint16(faults & 0xFFFF)) != 0
+    found = solve(columns(axis), outputs)
+    faulty, shaded = is_faulty(axis), faulty_stretches(axis, is_faulty)
     for output in outputs:
         d.check_drawable(found[output], output)
     d.check_drawable(axis, name)
-    axis, own = units.placed(name, axis), units.placed(name, own)
+    axis, own, shaded = (units.placed(name, x) for x in (axis, own, shaded))
     limit = units.placed(name, limit) if limit else limit
     here = {n: units.placed(n, float(value)) for n, value in solve(numbers, outputs).items()}
     summary = " ".join(f"{_label(output, units)}: {short(here[output])}." for output in outputs)
     drawing = Drawing(d.COLUMN, titles[0], f"In this scene: {summary}")
     top = drawing.heading() - _TOP
     entries: list[tuple[str, str, Any]] = []
-    for group in groups:
-        box = Box(_LEFT, top - 27, d.COLUMN - 3, top)
-        values = {output: units.placed(output, found[output]) for output in group}
-        y = span([x for output in group for x in (*values[output], here[output])])
+    values = {output: units.placed(output, found[output]) for output in outputs}
+    reaches = [_reach([(values[o], here[o]) for o in group], faulty) for group in groups]
+    numbers_y = (text for y in reaches for _, text in ticks(*y, 4))
+    left = max(_LEFT, max(d.text_width(text, TEXT) for text in numbers_y) + 3.2)
+    for group, y in zip(groups, reaches, strict=True):
+        box = Box(left, top - 27, d.COLUMN - 4, top)
         label = _label(group[0], units)
         if len(group) > 1:  # sizes
-            y, label = (0.0, y[1]), f"ΔV,{label.rpartition(',')[2]}"
+            label = f"ΔV,{label.rpartition(',')[2]}"
         below = titles[1] if group == groups[-1] else ""
         panel = Panel(drawing, box, (float(axis[0]), float(axis[-1])), y, below, label)
         if y[0] < 0 < y[1]:
             panel.line(axis[[0, -1]], [0, 0], GREY, 0.2)
         for output, colour, dash in zip(group, (d.BLUE, d.VERMILION), ((), _DASHED), strict=False):
-            panel.line(axis, values[output], colour, dash=dash, role=output)
+            drawn = values[output]
+            drawn = np.where((drawn < y[0]) | (drawn > y[1]), np.nan, drawn)
+            panel.line(axis, drawn, colour, dash=dash, role=output)
             if len(group) > 1:
                 entries.append((quantity(output).symbol, colour, dash))
             if axis.min() <= own <= axis.max():
                 panel.mark(own, here[output], colour=colour if len(group) > 1 else BLACK)
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], faulty.astype(int), [0]])))
-        for first, last in edges.reshape(-1, 2):
-            panel.shade(axis[first], axis[last - 1], _UNPHYSICAL)
+        for first, last in shaded:
+            panel.shade(first, last, _UNPHYSICAL)
         if limit:
             panel.rule(limit, dash=_DOTTED, role="critical")
         top = box.bottom - 11.5
@@ -421,6 +468,33 @@ def _along(
         entries.append((words[1], _UNPHYSICAL, None))
     drawing.height = 2 - key(drawing, top, *entries)
     return drawing
+
+
+def _reach(curves: Sequence[tuple[Any, float]], faulty: Any) -> tuple[float, float]:
+    """Return the ends of the axis of a panel's curves, each with its value in this scene: of the
+    physical part and half of that beyond it where all would squeeze it. Several curves are sizes,
+    from 0 on."""
+    whole = span([x for curve, here in curves for x in (*curve, here)])
+    if faulty.any() and not faulty.all():
+        low, high = span([x for curve, here in curves for x in (*curve[~faulty], here)])
+        if whole[1] - whole[0] > _SQUEEZED * (high - low):
+            more = 0.5 * (high - low)
+            whole = max(whole[0], low - more), min(whole[1], high + more)
+    return (0.0, whole[1]) if len(curves) > 1 else whole
+
+
+def faulty_stretches(axis: Any, is_faulty: Callable[[Any], Any]) -> Any:
+    """Return first and last value of each stretch of a rising axis that is faulty: ends between two
+    of its values are found by bisection."""
+    faulty = is_faulty(axis)
+    at = np.flatnonzero(faulty[1:] != faulty[:-1])
+    low, high = axis[at].astype(float), axis[at + 1].astype(float)
+    for _ in range(40 if len(at) else 0):
+        middle = (low + high) / 2
+        changed = is_faulty(middle) != faulty[at]
+        low, high = np.where(changed, low, middle), np.where(changed, middle, high)
+    ends = [*([axis[0]] if faulty[0] else []), *high, *([axis[-1]] if faulty[-1] else [])]
+    return np.reshape(ends, (-1, 2))
 
 
 def figure_5() -> Drawing:

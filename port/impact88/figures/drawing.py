@@ -312,11 +312,20 @@ def extent(points: Iterable[complex]) -> Box:
     return Box(min(xs), min(ys), max(xs), max(ys))
 
 
-def short(value: float) -> str:
-    """A number to four digits (three and an exponent where very large or small), with a true minus
-    sign."""
-    text = f"{value:.4g}"
-    return (f"{value:.3g}" if "e" in text else text).replace("-", "−")
+def short(value: float, digits: int = 4) -> str:
+    """A number to ``digits`` digits, without an exponent up to a million (with at most three where
+    larger or very small), with a true minus sign."""
+    text = f"{value:.{digits}g}"
+    if "e" in text:
+        plain = 1 < abs(float(text)) < 1e6
+        text = f"{float(text):.0f}" if plain else f"{value:.{min(digits, 3)}g}"
+    return text.replace("-", "−")
+
+
+def fitting(value: float, width: float) -> str:
+    """A number as `short` has it, with fewer digits where that is wider than ``width`` mm."""
+    texts = [short(value, digits) for digits in (4, 3, 2, 1)]
+    return next((text for text in texts if text_width(text, TEXT) <= width), texts[-1])
 
 
 def place(drawing: Drawing, frame: Box) -> None:

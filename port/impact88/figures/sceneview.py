@@ -10,7 +10,7 @@ from ..reconstruction.geometry import clock
 from ..units import RULES, System
 from . import drawing as d
 from .canvas import Svg, svg
-from .drawing import ROW, Box, Drawing, Label, Path, Text, View, place, short
+from .drawing import ROW, Box, Drawing, Label, Path, Text, View, fitting, place, short
 from .scenegeometry import Plan, Vehicle, plan
 
 COLOURS = {"A": d.BLUE, "B": d.VERMILION}
@@ -273,6 +273,9 @@ def draw_bodies(drawing: Drawing, vehicles: Sequence[Vehicle], at: View) -> None
             drawing.add(Path(at.all(points), COLOURS[name], width, dash, role=role))
 
 
+_SECOND = 44.0  # in mm: where the key's second column starts
+
+
 def with_unit(value: float, rule: str, units: System) -> str:
     """An amount in the units shown, named where they have names."""
     label = "" if units.is_bare else units.label(rule)
@@ -309,10 +312,12 @@ def _key(drawing: Drawing, field: _Field, y: float, units: System) -> float:
         left.append((velocity("change"), "velocity change ΔV"))
         force = d.arrow(0, sample, IMPULSE, 0.9, head=2.8)
         size = with_unit(abs(shapes.impulse), _IMPULSE, units)
-        left.append((force, f"impulse P on A, {size}"))
+        room = _SECOND - 1.2 - (2.0 + sample + 1.5)
+        texts = [f"impulse P on A, {size}", f"impulse P, {size}"]
+        left.append((force, texts[d.text_width(texts[0], d.TEXT) > room]))
     if any(v.kept != v.outline for v in shapes.bodies):
         middle.append(([Path((0, sample), d.GREY, 0.3, (0.7, 0.5))], "crushed"))
-    for x, column in ((2.0, left), (44.0, middle)):
+    for x, column in ((2.0, left), (_SECOND, middle)):
         for row, (paths, text) in enumerate(column):
             start = complex(x, y - ROW * row)
             moved = [p._replace(points=tuple(start + point for point in p.points)) for p in paths]
@@ -334,7 +339,8 @@ def table_and_notes(drawing: Drawing, shapes: Plan, y: float, units: System) -> 
     y -= ROW - 0.3
     columns = [end * drawing.width / d.COLUMN for end in _COLUMNS.values()]
     rows = {"": [head.replace("spin after", "after") for head in _COLUMNS]}
-    rows |= {vehicle.name: _cells(vehicle, shapes, units) for vehicle in shapes.vehicles}
+    widest = columns[1] - columns[0] - 1.2
+    rows |= {vehicle.name: _cells(vehicle, shapes, units, widest) for vehicle in shapes.vehicles}
     for name, cells in rows.items():
         if name:
             drawing.add(Text(complex(2, y), name, colour=COLOURS[name], bold=True, role="table"))
@@ -351,15 +357,19 @@ def table_and_notes(drawing: Drawing, shapes: Plan, y: float, units: System) -> 
     return y
 
 
-def _cells(vehicle: Vehicle, shapes: Plan, units: System) -> list[str]:
-    cells = [short(units.shown(_SPEED, vehicle.before.speed)), "–", "–", "–"]
+def _cells(vehicle: Vehicle, shapes: Plan, units: System, widest: float) -> list[str]:
+    def speed(value: float) -> str:
+        return fitting(units.shown(_SPEED, value), widest)
+
+    cells = [speed(vehicle.before.speed), "–", "–", "–"]
     turn = -1.0 if units.is_turned("WA") else 1.0
-    after, spins = None if vehicle.wall else vehicle.after, [short(turn * vehicle.before.spin), "–"]
+    after = None if vehicle.wall else vehicle.after
+    spins = [fitting(turn * vehicle.before.spin, widest), "–"]
     if after and vehicle.change is not None:
-        cells[1:3] = (short(units.shown(_SPEED, v)) for v in (after.speed, abs(vehicle.change)))
+        cells[1:3] = speed(after.speed), speed(abs(vehicle.change))
         if shapes.impulse:
             cells[3] = f"{vehicle.pdof(shapes.impulse):.0f}°".replace("-", "−")
-        spins[1] = short(turn * after.spin)
+        spins[1] = fitting(turn * after.spin, widest)
     return cells + (["–", "–"] if shapes.numbers["M"] == 4 else spins)
 
 

@@ -3,7 +3,8 @@ Figures 2 and 3, free bodies pulled apart along the normal: each shows the impul
 
 import cmath
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 from ..errors import UserError
@@ -24,15 +25,18 @@ def strip_drawing(
     scene: Any, result: Mapping[str, Any], title: str = "Before, impact and after"
 ) -> Drawing:
     """Before, impact and after side by side, two columns wide, in one scale; the vehicles move and
-    turn for the time in which the faster one goes its own length. Arguments as `scene_drawing`.
-    Raises UserError without final velocities."""
+    turn for the time in which the faster one goes its own length, or up to three times that until
+    they are drawn apart. Arguments as `scene_drawing`. Raises UserError without final
+    velocities."""
     shapes, units = view.planned(scene, result, None, None)
     if not all(vehicle.after for vehicle in shapes.vehicles):
         raise UserError("there are no velocities after the impact to draw")
     bodies = shapes.bodies
     size = max(vehicle.length for vehicle in bodies)
     speed = max(m.speed for v in bodies for m in (v.before, v.after) if m)
-    time = size / speed if speed else 0.0
+    once = size / speed if speed else 0.0
+    longer = (once * factor for factor in (1.0, 1.5, 2.0, 2.5, 3.0))
+    time = next((time for time in longer if _are_apart(bodies, time)), once)
     frames = {
         "before": [_carried(v, v.before, -time) for v in bodies],
         "impact": bodies,
@@ -77,6 +81,32 @@ def _carried(vehicle: Vehicle, motion: Motion, time: float) -> Vehicle:
     outline = tuple(center + turn * (point - vehicle.center) for point in vehicle.outline)
     front = turn * vehicle.front
     return vehicle._replace(center=center, front=front, outline=outline, kept=outline)
+
+
+def _are_apart(vehicles: Sequence[Vehicle], time: float) -> bool:
+    """Whether no outline covers another ``time`` after the impact, nor before it: some side has all
+    corners of the other beyond it."""
+    if len(vehicles) < 2:
+        return True
+
+    def beyond(one: Vehicle, other: Vehicle) -> bool:
+        for first, second in pairwise((*one.outline, one.outline[0])):
+            across = 1j * (second - first)
+            own, others = (
+                [(point / across).real for point in vehicle.outline] for vehicle in (one, other)
+            )
+            if min(own) >= max(others) or min(others) >= max(own):
+                return True
+        return False
+
+    for sign in (-1.0, 1.0):
+        a, b = (
+            _carried(v, v.after if sign > 0 and v.after else v.before, sign * time)
+            for v in vehicles
+        )
+        if not (beyond(a, b) or beyond(b, a)):
+            return False
+    return True
 
 
 def _tip(vehicle: Vehicle, kind: str, time: float) -> complex:
