@@ -495,7 +495,10 @@ def test_rounding_is_nowhere_shown_as_a_number(monkeypatch: pytest.MonkeyPatch) 
     answer = reconstruction.answer({**known, "VAX": f"{known['VAX']} +- 1", "UY": "0"})
     (solution,) = answer["solutions"]
     assert {solution["scene"][name] for name in ("UY", "WA", "WB")} == {"0"}
-    assert "sum of squared adjustments 0 (sd)" in solution["evidence"]
+    assert (
+        "sum of squared adjustments, in standard deviations, 0 where about 1"
+        in solution["evidence"]
+    )
     assert [row["moved"] for row in solution["adjusted"]] == ["0.00"]
     assert not re.search(r"\de-1\d", solution["printed"])
 

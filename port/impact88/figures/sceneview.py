@@ -37,11 +37,24 @@ def scene_drawing(
     title: str = "Scene from above",
     units: System | None = None,
     outlines: Mapping[str, float] | None = None,
+    tallest: float = 0.0,
 ) -> Drawing:
     """The scene from above, with key and table, ``width`` mm wide; arguments as `plan`. Velocities
-    before the impact end at the center of gravity, those after it start there, in one scale."""
+    before the impact end at the center of gravity, those after it start there, in one scale.
+    ``tallest``: height in mm of what is drawn, of a page that has the numbers and the remarks
+    beside it, which the drawing then leaves out."""
     shapes, units = planned(scene, result, units, outlines)
     drawing = Drawing(width, title, description(shapes, units))
+    if tallest:
+        field = _Field(shapes, width - _SECOND, 0.0, tallest)
+        field.draw(drawing, mirrored=units.is_turned("UY"))
+        low = _key(drawing, field, -2 * ROW, units, width - _SECOND + 2.0)
+        y = min(low, field.frame.bottom) - ROW
+        for text in d.wrapped(_notes(shapes, units)[0], width - 4):
+            drawing.add(Text(complex(2, y - 0.9), text, colour=d.GREY, role="note"))
+            y -= ROW
+        drawing.height = 0.9 - y
+        return drawing
     field = _Field(shapes, width, drawing.heading())
     field.draw(drawing, mirrored=units.is_turned("UY"))
     y = _key(drawing, field, field.frame.bottom - ROW, units) - 2.4
@@ -98,7 +111,7 @@ def scene_svg(scene: Any, result: Mapping[str, Any] | None = None) -> Svg:
 class _Field:
     """The drawing proper: vehicles and arrows, and where they are on paper below ``top``."""
 
-    def __init__(self, shapes: Plan, width: float, top: float) -> None:
+    def __init__(self, shapes: Plan, width: float, top: float, tallest: float = 0.0) -> None:
         self.shapes = shapes
         motions = [m for v in shapes.vehicles for m in (v.before, v.after) if m]
         self.speed = max(motion.speed for motion in motions)
@@ -117,8 +130,8 @@ class _Field:
                 points += vehicle.outline
                 points += [end for ends in self._arrows(vehicle).values() for end in ends]
         box = d.extent([*points, self.force, -self.force])
-        tallest = FIELD + 0.3 * (width - d.COLUMN) - 2 * _MARGIN
-        scale = min((width - 2 * _MARGIN) / box.width, tallest / box.height)
+        tallest = tallest or FIELD + 0.3 * (width - d.COLUMN)
+        scale = min((width - 2 * _MARGIN) / box.width, (tallest - 2 * _MARGIN) / box.height)
         bottom = top - scale * box.height - 2 * _MARGIN
         self.frame = Box(0.8, bottom, width - 0.8, top - 0.4)
         left = (width - scale * (box.left + box.right)) / 2
@@ -282,8 +295,9 @@ def with_unit(value: float, rule: str, units: System) -> str:
     return f"{short(units.shown(rule, value))} {label}".strip()
 
 
-def _key(drawing: Drawing, field: _Field, y: float, units: System) -> float:
-    """What the lines mean, and their scales; returns the last line's place."""
+def _key(drawing: Drawing, field: _Field, y: float, units: System, left_edge: float = 0.0) -> float:
+    """What the lines mean, and their scales, in two columns, or in one from ``left_edge`` on;
+    returns the last line's place."""
     shapes, sample = field.shapes, 8.0
 
     def velocity(kind: str) -> list[Path]:
@@ -317,14 +331,17 @@ def _key(drawing: Drawing, field: _Field, y: float, units: System) -> float:
         left.append((force, texts[d.text_width(texts[0], d.TEXT) > room]))
     if any(v.kept != v.outline for v in shapes.bodies):
         middle.append(([Path((0, sample), d.GREY, 0.3, (0.7, 0.5))], "crushed"))
-    for x, column in ((2.0, left), (_SECOND, middle)):
+    columns = [(2.0, left), (_SECOND, middle)]
+    if left_edge:
+        columns = [(left_edge, left + middle)]
+    for x, column in columns:
         for row, (paths, text) in enumerate(column):
             start = complex(x, y - ROW * row)
             moved = [p._replace(points=tuple(start + point for point in p.points)) for p in paths]
             drawing.items += moved
             end = max(sample, d.extent(paths[0].points).right) + 1.5 - 0.8j
             drawing.add(Text(start + end, text, role="legend"))
-    return y - ROW * (max(len(left), len(middle)) - 1)
+    return y - ROW * (max(len(column) for _, column in columns) - 1)
 
 
 _COLUMNS = {

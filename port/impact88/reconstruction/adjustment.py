@@ -658,8 +658,9 @@ def _ordered(
     found: list[Reconstruction], searches: "Sequence[_Search]", mu: Uncertain | None
 ) -> list[Reconstruction]:
     """Return the likely solutions, those that contradict the measurements only where all do, in
-    the order of physics: possible impacts before those that break
-    it or drive backwards along a known course, then by the sum of squared adjustments. Ties by what
+    the order of physics: possible impacts before those that break it or drive backwards along a
+    known course, those that separate or pull, which are none, last; then by the sum of squared
+    adjustments. Ties by what
     no axes, names or units change, the smaller first (`_invariants`). A course is a direction: what
     drives backwards along one is kept only where nothing else is."""
     ahead = [s for s in found if not s.backwards] or found
@@ -674,7 +675,9 @@ def _ordered(
     def order(solution: Reconstruction) -> tuple[float, ...]:
         squares = float(f"{max(solution.squares, 1e-9):.6e}")
         broken = solution.impossible
-        return bool(broken), squares, broken.bit_count(), *_invariants(solution.values)
+        no_impact = bool(broken & (Status.SEPARATING | Status.PULLING))
+        ranks = _invariants(solution.values)
+        return bool(broken), no_impact, squares, broken.bit_count(), *ranks
 
     search = Searched(
         sum(each.batches for each in searches),

@@ -8,6 +8,7 @@ Procedure for Use in Geodetic Networks*, 1968).
 """
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -84,7 +85,7 @@ class Evidence:
             laws = f": {told(self.laws, units)}" if self.laws else ""
             return f"these exact values contradict one another{laws}; {self.named(units)}"
         sums = (
-            f"sum of squared adjustments {self.sum_text} (sd) where about "
+            f"sum of squared adjustments, in standard deviations, {self.sum_text} where about "
             f"{self.redundancy} is expected; probability {number(self.probability, 2)}"
         )
         if not self.contradictory:
@@ -97,11 +98,15 @@ class Evidence:
         """Return the values most at odds, each as measured and as adjusted."""
         parts = []
         for item in self.at_odds:
-            unit, sizes = units.unit(item.name), (item.measured, item.adjusted)
-            amounts = (number(units.placed(item.name, float(x)), 4) for x in sizes)
-            text = " measured, ".join(amounts)
-            meaning = quantity(item.name).meaning
-            parts.append(f"{item.name} ({meaning}), {text} {unit}".rstrip() + " adjusted")
+            unit = units.unit(item.name)
+            unit = "°" if unit == "deg" else f" {unit}" if unit else ""
+            # what the table of names says besides is for the tables
+            meaning = re.split("[:;,]| as printed", quantity(item.name).meaning)[0]
+            measured, adjusted = (
+                number(units.placed(item.name, float(x)), 4) + unit
+                for x in (item.measured, item.adjusted)
+            )
+            parts.append(f"{meaning} {item.name} ({measured} measured, {adjusted} adjusted)")
         text = "most at odds: " + "; ".join(parts)
         if len(self.at_odds) > 1:
             text += ", each as much"

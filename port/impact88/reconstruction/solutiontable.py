@@ -107,7 +107,7 @@ class Impact:
         """The answer, tables and remarks."""
         remarks = self.warnings(units)
         undetermined = [paragraph(f"! {remarks.pop(0)}")] if self.undetermined else []
-        clean = _without_noise(self.values)
+        clean = without_noise(self.values)
         values = written(clean, units)
         named = (
             *(("E", "MUP", "EM", "RR0"), ("PN", "PT", "PM", "P", "PDOFA", "PDOFB")),
@@ -130,7 +130,7 @@ class Impact:
         """The same for a program; numbers that do not exist are null."""
         # what was given stands as it was given
         given = {n: v for n, v in self.values.items() if self.known.get(n) == v}
-        clean = {**_without_noise(self.values, ROUNDING), **given}
+        clean = {**without_noise(self.values, ROUNDING), **given}
         values = {n: v for n, v in written(clean, units).items() if n != "STATUS"}
         record: dict[str, Any] = plain(
             {
@@ -244,7 +244,7 @@ def in_turn(found: Sequence[Impact], units: System = RULES) -> str:
     return "\n\n".join(f"SOLUTION {i} {of}\n\n{text}" for i, text in enumerate(texts, 1))
 
 
-def _without_noise(values: Mapping[str, float], noise: float = _NOISE) -> dict[str, float]:
+def without_noise(values: Mapping[str, float], noise: float = _NOISE) -> dict[str, float]:
     """Return ``values``, those below ``noise`` of the largest of their unit 0, and directions above
     -180. A spin's unit is that of velocities, too: over the smaller radius of gyration."""
     largest: dict[str, float] = {}

@@ -17,7 +17,8 @@ from ..files import replacing
 from ..names import DEFAULT_M, SCENE, check_names, quantity
 from ..plaintable import fixed, number
 from ..reconstruction.geometry import MOVES, clock, moved, placed
-from ..reconstruction.state import KNOWABLE
+from ..reconstruction.solutiontable import without_noise
+from ..reconstruction.state import COURSES, KNOWABLE
 from ..status import sentences
 from ..units import System, base_of
 from .frame import render
@@ -34,6 +35,8 @@ INVERSE = (
     *("LOSS", "E", "MUP", "EM"),
 )
 """Results of a reconstruction that the answer shows, where they were not known."""
+ESTIMATED = ("SA", "SB", "SAF", "SBF", "DVA", "DVB")
+"""Of these those known within limits, too: what is measured is adjusted."""
 _SPREAD: tuple[str, ...] = ("value", "sd", "5 %", "95 %", "lower bound", "upper bound")
 _CAPTION = (
     "sd: standard deviation; 5 and 95 %: of the draws; bounds: attained within the limits of the "
@@ -71,7 +74,8 @@ class Findings(NamedTuple):
     """An impact's ``values`` with all that follows, the ``spreads`` of its ``main`` results,
     ``remarks`` in sentences, and the ``scene`` that is drawn; ``inverse``: whether it was
     reconstructed; the verdict on the ``evidence``, whether it is that the values are
-    ``contradictory``, and each measured value beside its adjusted one."""
+    ``contradictory``, and each measured value beside its adjusted one; what of physics the impact
+    breaks, if any (``impossible``)."""
 
     inverse: bool
     values: Mapping[str, float]
@@ -82,6 +86,7 @@ class Findings(NamedTuple):
     evidence: str = ""
     contradictory: bool = False
     adjusted: Sequence[Adjusted] = ()
+    impossible: str = ""
 
 
 def report(
@@ -105,12 +110,15 @@ def report(
     check_names(given, placed((*KNOWABLE, *MOVES), given), "name used here", source)
     found = (_forward if forward else _inverse)(case, source, samples, seed, units)
     drawing = None
-    if set(SCENE) <= set(found.scene):  # what is not determined cannot be drawn
-        # as wide, in mm, as both papers leave between their margins, less a little
-        look = (150.0, "Scene from above", units, case.outlines)
-        drawing = scene_drawing(found.scene, found.values, *look)
     tables = [_answer(found, units), *_details(found, case, units)]
     paper = paper or ("letter" if units.name in ("us", "chapter", "") else "a4")
+    summary, answer = _summary(found, case, units), _sentences(found, units)
+    remarks = [*case.remarks.values(), *found.remarks]
+    if set(SCENE) <= set(found.scene):  # what is not determined cannot be drawn
+        look = (DRAWN, "", units, case.outlines)
+        verdicts = [text for text in (found.impossible, found.evidence) if text]
+        room = _room(paper, [*summary, *answer], verdicts, remarks)
+        drawing = scene_drawing(found.scene, found.values, *look, tallest=room)
     page = render(
         "collision.html",
         title=title or case.title or "Planar impact of two vehicles",
@@ -122,15 +130,15 @@ def report(
         if any(spread.low == spread.low for spread in found.spreads.values())
         else "",
         base=base_of(units),
-        units="any consistent set" if units.is_bare else f"those of the file ({units.name})",
-        summary=_summary(found, case, units),
+        units=_used(units),
+        summary=summary,
         figures=_figures(found, units),
-        answer=_sentences(found, units),
+        answer=answer,
         validated=_validated(),
         tables=tables,
         drawing=svg(drawing) if drawing else "",
         room=FIRST_PAGE[paper],
-        remarks=[*case.remarks.values(), *found.remarks],
+        remarks=remarks,
     )
     return page, tables
 
@@ -207,9 +215,9 @@ def _inverse(case: Case, source: str, samples: int, seed: int, units: System) ->
         found = reconstruct(known)
     except UserError as error:
         raise UserError(str(error), source) from None
-    sought = [n for n in INVERSE if n not in found[0].system.known]
+    sought = [n for n in INVERSE if n not in known or (n in ESTIMATED and known[n].varies)]
     spread = Measured(found[0], samples, seed, sought)
-    values = spread.values
+    values = without_noise(spread.values)
     spreads = {}
     for name in spread.names:
         low = high = lower = upper = math.nan
@@ -235,11 +243,50 @@ def _inverse(case: Case, source: str, samples: int, seed: int, units: System) ->
         told = evidence.text(units)
         remarks = [line for line in remarks if not line.startswith(told)]
         if not found[0].assumed:
-            widened = f"standard deviations are widened {number(evidence.widening, 3)} times"
+            widened = (
+                f"standard deviations are widened {number(evidence.widening, 3)} times, by as much "
+                "as the values contradict one another"
+            )
             remarks.insert(0, widened)
     whole = values, sought, spreads, remarks, scene
     told = evidence.text(units)
-    return Findings(True, *whole, told, evidence.contradictory, found[0].adjusted)
+    broken = "; ".join(text for label, text in spread.headline(units) if label == "IMPOSSIBLE")
+    if broken:  # what the first line says is not said twice
+        remarks[:] = [line for line in remarks if line not in broken]
+    return Findings(True, *whole, told, evidence.contradictory, found[0].adjusted, broken)
+
+
+def _used(units: System) -> str:
+    """The units in words."""
+    if units.is_bare:
+        return "any consistent set"
+    rules = ("length", "mass", "length/time", "rad/time")
+    return ", ".join([*(units.label(rule) for rule in rules), "angles in degrees"])
+
+
+DRAWN = 150.0
+"""Width in mm of the drawing, which the page enlarges to its own."""
+_NOTE = 7.0  # in mm: height of the note below it
+_BETWEEN = {"letter": 182.0, "a4": 176.0}  # in mm: between the margins
+_LINE, _SMALL = 4.9, 3.9
+"""Height in mm of a line of a paragraph and of a remark."""
+_CHARACTERS = {"letter": (104, 118), "a4": (100, 114)}
+"""What such a line holds."""
+
+
+def _room(
+    paper: str, sentences: Sequence[str], verdicts: Sequence[str], remarks: Sequence[str]
+) -> float:
+    """Return about the height in mm that the texts of the first page leave for what is drawn."""
+    wide, small = _CHARACTERS[paper]
+
+    def lines(texts: Sequence[str], most: int) -> int:
+        return sum(-(-len(text) // most) for text in texts)
+
+    used = _LINE * lines(sentences, wide) + 1.05 * _LINE * lines(verdicts, int(0.82 * wide))
+    used += _SMALL * lines(remarks, small) + (8.0 if remarks else 0.0) + 30.0
+    left = (FIRST_PAGE[paper] - used) * DRAWN / _BETWEEN[paper]
+    return min(max(left - _NOTE, 42.0), 110.0)
 
 
 def _amount(name: str, value: float, units: System, like: float = math.nan) -> str:
@@ -267,10 +314,8 @@ def _sentences(found: Findings, units: System) -> list[str]:
         words = []
         for word, name in (("speed before", "S{}"), ("after", "S{}F"), ("ΔV", "DV{}")):
             name = name.format(vehicle)
-            like = found.spreads.get(name, Spread()).deviation
-            if said := _amount(name, found.values.get(name, math.nan), units, like):
-                more = f" ± {_deviation(name, like, units)}" if math.isfinite(like) else ""
-                words.append(f"{word} {said}{more} {units.unit(name)}".strip())
+            if math.isfinite(found.values.get(name, math.nan)):
+                words.append(f"{word} {_spoken(found, name, units)}")
         pdof = found.values.get(f"PDOF{vehicle}", math.nan)
         if math.isfinite(pdof):
             words.append(f"force from {pdof:.0f}°, {clock(pdof)}")
@@ -289,18 +334,33 @@ MAIN_INVERSE = ("SA", "SB", "DVA", "DVB", "LOSS")
 
 def _spoken(found: Findings, name: str, units: System) -> str:
     """Return a result as a sentence has it, with its standard deviation where it has one."""
-    like = found.spreads.get(name, Spread()).deviation
-    text = _amount(name, found.values[name], units, like)
-    if math.isfinite(like):
-        text += f" ± {_amount(name, like, units, like)}"
+    spread = found.spreads.get(name, Spread())
+    like, value = spread.deviation, found.values[name]
+    text = _amount(name, value, units, like)
+    if _is_aside(found, name):  # as of a speed that fits best at standstill
+        ends = [_amount(name, x, units, like) for x in (spread.low, spread.high)]
+        text = f"{ends[0]} to {ends[1]}"
+    elif math.isfinite(like):
+        text += f" ± {_deviation(name, like, units)}"
     return f"{text} {_unit(name, units)}".strip()
+
+
+def _is_aside(found: Findings, name: str) -> bool:
+    """Whether what fits best lies outside 90 % of the draws, so that ± would mislead."""
+    spread, value = found.spreads.get(name, Spread()), found.values[name]
+    drawn = math.isfinite(spread.low) and math.isfinite(spread.high)
+    return drawn and not spread.low <= value <= spread.high
 
 
 def _chosen(found: Findings) -> list[str]:
     main = MAIN_INVERSE if found.inverse else MAIN_FORWARD
     names = [n for n in main if math.isfinite(found.values.get(n, math.nan))]
     if found.inverse:
-        names = [n for n in names if n in found.main]
+        given = {item.name for item in found.adjusted}
+        names = [n for n in names if n in found.main and n not in given]
+        # what exact values settle by themselves is no finding beside what is uncertain
+        open_ones = [n for n in names if math.isfinite(found.spreads.get(n, Spread()).deviation)]
+        names = open_ones or names
     return names[:3]
 
 
@@ -311,7 +371,10 @@ def _figures(found: Findings, units: System) -> list[tuple[str, str, str]]:
         spread = found.spreads.get(name, Spread())
         ends = [_amount(name, x, units, spread.deviation) for x in (spread.low, spread.high)]
         told = all(ends) and not found.contradictory
-        limits = f"90 % of the draws from {ends[0]} to {ends[1]}" if told else ""
+        span = f"{ends[0]} to {ends[1]} {_unit(name, units)}".strip()
+        limits = f"90 % within {span}" if told else ""
+        if told and _is_aside(found, name):
+            limits = f"90 % of the draws; {_amount(name, found.values[name], units)} fits best"
         figures.append((quantity(name).meaning, _spoken(found, name, units), limits))
     return figures
 
@@ -333,15 +396,20 @@ def _summary(found: Findings, case: Case, units: System) -> list[str]:
         )
     parts = [f"{quantity(n).meaning} {_spoken(found, n, units)}" for n in _chosen(found)]
     answer = "Found: " + "; ".join(parts) if parts else "Found: none of the results asked for"
-    if found.contradictory:
+    if found.impossible and not found.contradictory:
+        sure = (
+            "This impact breaks physics, so these numbers settle nothing until what is known is "
+            "corrected"
+        )
+    elif found.contradictory:
         sure = (
             "The values given contradict one another, so these numbers are a compromise between "
             "them and settle nothing until the contradiction is resolved"
         )
     elif any(math.isfinite(spread.deviation) for spread in found.spreads.values()):
         sure = (
-            "What follows each ± is one standard deviation: it covers the limits given with the "
-            "inputs and nothing else"
+            "What follows each ± is one standard deviation, and what is called 90 % holds so many "
+            "of the draws: they cover the limits given with the inputs and nothing else"
         )
     else:
         sure = "No limits were given with the inputs, so how sure this is was not computed"
@@ -370,12 +438,22 @@ def _unit(name: str, units: System) -> str:
     return {"percent": "%", "1": ""}.get(label, label)
 
 
+def _exists(found: Findings, name: str) -> bool:
+    """Return False for the course of a vehicle that stands."""
+    return name not in COURSES or found.values.get(f"S{name[1:]}") != 0
+
+
 def _answer(found: Findings, units: System) -> Table:
-    heads = _SPREAD if found.spreads else _SPREAD[:1]
-    caption = _CAPTION + "; none are sought for speeds after" * (not found.inverse)
+    drawn = any(math.isfinite(spread.low) for spread in found.spreads.values())
+    heads = _SPREAD if drawn else _SPREAD[: 2 if found.spreads else 1]
+    caption = (
+        "sd: standard deviation"
+        if not drawn
+        else _CAPTION + "; none are sought for speeds after" * (not found.inverse)
+    )
     rows = []
     for name in found.main:
-        if name in found.values:
+        if name in found.values and _exists(found, name):
             spread = found.spreads.get(name, Spread())
             if units.is_turned(name):
                 spread = spread._replace(
@@ -432,7 +510,7 @@ def _details(found: Findings, case: Case, units: System) -> list[Table]:
     rows = [
         [n, quantity(n).meaning, _amount(n, found.values[n], units), _unit(n, units)]
         for n in _CONSEQUENCES
-        if math.isfinite(found.values.get(n, math.nan))
+        if math.isfinite(found.values.get(n, math.nan)) and _exists(found, n)
     ]
     tables.append(Table("The impact in full", ["", "quantity", "value", "unit"], rows, (0, 1, 3)))
     return tables

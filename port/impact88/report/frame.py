@@ -44,6 +44,7 @@ def render(
     )
     title, case = printable(title), printable(case)
     running = f"Case {case}" if case else title
+    running = running if len(running) <= MOST_RUNNING else running[: MOST_RUNNING - 1] + "…"
     page = environment.get_template(template).render(
         title=title,
         case=case,
@@ -55,6 +56,9 @@ def render(
         **content,
     )
     return f"{page}\n"
+
+
+MOST_RUNNING = 70  # characters at the foot of a page, beside the page's number
 
 
 def _printed(value: Any) -> Any:

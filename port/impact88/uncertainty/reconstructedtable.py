@@ -18,7 +18,7 @@ from ..reconstruction.solutiontable import DRIVERS, ROUNDING, Impact, completed,
 from ..reconstruction.state import COURSES, FORCES, SPEEDS
 from ..units import RULES, System, written
 from .boundstable import unbounded
-from .reconstructed import Draws, Range, draws, ranges
+from .reconstructed import SIGMAS, Draws, Range, draws, ranges
 from .uncertain import Uncertain
 
 _RESULTS = (*VELOCITIES, *FINAL_STATE, *SPEEDS, *COURSES, "DVA", "DVB")
@@ -44,6 +44,13 @@ def _along_an_axis(solution: Reconstruction, name: str) -> bool:
     return any(n in known and known[n].nominal == 0 and not known[n].varies for n in components)
 
 
+def _is_within_limits(solution: Reconstruction) -> bool:
+    """Return whether an impact meets all limits of what is known, normal values `SIGMAS` wide."""
+    known = solution.system.known
+    limits = [(item.adjusted, *known[item.name].limits(SIGMAS)) for item in solution.adjusted]
+    return all(low <= value <= high for value, low, high in limits)
+
+
 class Measured(Impact):
     """A reconstruction, everything that follows from it (`solutiontable.completed`), and how
     uncertain the results ``wanted`` are, or those that were not known: first-order ``deviations``
@@ -66,7 +73,13 @@ class Measured(Impact):
             values["MU"] = typed_friction(solution.system.state(solution.x), values["MUP"])
         super().__init__(known, completed(values, contact_time))
         self.solution, self.undetermined = solution, solution.undetermined
-        if solution.search.impacts > 1 and not solution.search.possible:
+        several = solution.search.impacts > 1 and not solution.search.possible
+        if any(item.varies for item in known.values()):
+            # within the limits there are others, of which physics may allow some
+            self.subject = "the impact that fits best"
+            if several:
+                self.subject = "each of the impacts that fit best"
+        elif several:
             self.subject = "every impact that agrees with what is known"
         self.helpful = solution.helpful if solution.undetermined else ()
         results = wanted or [
@@ -94,9 +107,11 @@ class Measured(Impact):
         elif samples and names and not solution.assumed:
             bound = ranges(solution, names[:1], seed, None, progress)[names[0]]
             infeasible = math.isnan(bound.lower)
+        self.not_drawn = infeasible and _is_within_limits(solution)
         if infeasible:
-            self.evidence = solution.weighed(inside=False)
             self.draws, self.ranges = None, {}
+            if not self.not_drawn:
+                self.evidence = solution.weighed(inside=False)
         if not solution.assumed:
             widening = max(self.evidence.widening, 1.0)
             self.deviations = {n: x * widening for n, x in self.deviations.items()}
@@ -167,6 +182,11 @@ class Measured(Impact):
                 f"these, so no first-order deviation is given{both}"
             )
         lines += self._ill_posed(units)
+        if self.not_drawn:
+            lines.append(
+                "this impact lies within the limits of all known values, but the search for draws "
+                "and bounds found none there: there are neither"
+            )
         if self.evidence.inside is False:
             lines.append(
                 "no impact was found that lies within the limits of all known values at once: "
@@ -204,6 +224,17 @@ class Measured(Impact):
         share = float((self.draws.values["VC"] < 0).mean())
         return share if share > MOST_SEPARATING else 0.0
 
+    def _apart(self, name: str, deviation: float) -> list[float]:
+        """Return the values of a result in the impacts found, the least first, where its draws are
+        of several, farther apart than their standard deviation; else none."""
+        if not (self.draws and self.draws.signs is not None):
+            return []
+        values = sorted(
+            float(np.ravel(system.state(x)[name])[0]) for system, x in self.solution.beside
+        )
+        gaps = np.diff(values)
+        return values if len(gaps) and gaps.max() > deviation else []
+
     def _ill_posed(self, units: System) -> list[str]:
         """Velocities that the known values hardly determine, with the number and what drives it."""
         system, lines = self.solution.system, []
@@ -211,6 +242,14 @@ class Measured(Impact):
             deviation = self.deviations[name]
             share = deviation / system.scale(name)
             if name in (*VELOCITIES, *FINAL_STATE) and share > ILL_POSED:
+                if apart := self._apart(name, deviation):
+                    amounts = [number(units.placed(name, value), 3) for value in apart]
+                    listed = " or ".join(dict.fromkeys(amounts))
+                    lines.append(
+                        f"{name} is about {listed} {units.unit(name)}".rstrip()
+                        + ", in another impact each; draws and bounds have all of them"
+                    )
+                    continue
                 driver, part = self.drivers[name][0]
                 size = f"{number(deviation * units.factor(name), 3)} {units.unit(name)}".rstrip()
                 lines.append(
@@ -218,9 +257,10 @@ class Measured(Impact):
                     f"the largest speed; {100 * part:.0f} % of its variance comes from {driver}"
                 )
         e = self.solution.values.get("E")
-        if lines and e and "E" in system.known and abs(e) < ILL_POSED:
+        ill_posed = any(line.startswith("ill-posed") for line in lines)
+        if ill_posed and e and "E" in system.known and abs(e) < ILL_POSED:
             lines.append(
-                f"E = {number(e, 3)} divides: errors after the impact grow 1/E = {1 / e:.3g}"
+                f"E = {number(e, 3)} divides: errors after the impact grow 1/E = {1 / e:.3g} times"
             )
         return lines
 
