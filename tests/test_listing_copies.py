@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+import io
 import json
 import random
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import printouts
+import scanpages
 from captures import ROOT
 from impact88.cli import main
 from impact88.emulator.emulator import Applesoft
 from impact88.errors import UserError
 from impact88.explaining import explanations
 from impact88.judging import beside
+from impact88.judging.copies import CopyPages
 from impact88.program.emulated import ListingCopy
+from impact88.program.run import page as on_paper
 from impact88.program.run import run
 from impact88.reporting.examination import Verdict, examine
 from impact88.reporting.verification import summary
@@ -229,8 +234,8 @@ OFFICES: dict[str, tuple[str, list[str]]] = {
 }  # fmt: skip
 
 
-def run_as_a_person(text: str, replies: list[str]) -> str:
-    machine = Applesoft()
+def run_as_a_person(text: str, replies: list[str], *, dos: bool = False) -> str:
+    machine = Applesoft(dos=dos)
     machine.load(text)
     machine.feed(*replies)
     machine.run()
@@ -273,6 +278,69 @@ def test_a_copy_whose_variables_are_not_plain_is_refused_by_name(
     page = run(sample(1)).page
     found = examine("-", None, copy_of(text, tmp_path), data=page.encode())
     assert re.search(says, found.error or "")
+
+
+def pictured(page: str, font: str) -> bytes:
+    """A page drawn as a scanner would have it."""
+    from PIL import Image
+
+    paper = scanpages.drawn(page.strip("\n").split("\n"), font, 36)
+    grey = np.clip(scanpages.worn(paper, random.Random(page), "clean"), 0, 255)
+    file = io.BytesIO()
+    Image.fromarray(grey.astype(np.uint8)).save(file, "PNG", compress_level=1)
+    return file.getvalue()
+
+
+@pytest.fixture
+def font() -> str:
+    pytest.importorskip("scipy", reason="the extra scan is not installed")
+    pytest.importorskip("PIL", reason="the extra scan is not installed")
+    if not scanpages.fonts():
+        pytest.skip("none of the drawer's fonts is installed")
+    return scanpages.fonts()[0]
+
+
+@pytest.mark.long
+@pytest.mark.usefixtures("verdicts_alone")
+@pytest.mark.parametrize("name", ["weights", "converted in place", "one line rounds"])
+def test_a_picture_is_settled_by_the_copy_that_printed_it(
+    name: str, font: str, tmp_path: Path
+) -> None:
+    """Not by another, nor with a digit altered; a line of the copy's own belongs to the page."""
+    text, replies = OFFICES[name] if name in OFFICES else (COPIES[name], REPLIES)
+    page, copy = on_paper(run_as_a_person(text, replies, dos=True)), copy_of(text, tmp_path)
+    (genuine,) = examine("-", None, copy, data=pictured(page, font)).results
+    assert genuine.verdict is Verdict.IDENTICAL
+    scene, listed = genuine.complete_scene, [one["line"] for one in genuine.copy["lines"]]  # type: ignore[index]
+    assert scene["UX"] == "-29.04" or "converted" in name
+    assert genuine.findings[0].startswith("this page is what the copy")
+    assert listed
+    results = page.index("VAX= ")
+    altered = page[:results] + page[results:].replace("7", "4", 1)
+    found = examine("-", None, copy, data=pictured(altered, font)).results
+    assert {one.verdict for one in found}.isdisjoint(SETTLED)
+    (other,) = examine("-", data=pictured(page, font)).results
+    assert other.verdict not in (SETTLED if name != "weights" else (Verdict.IDENTICAL,))
+
+
+def test_a_copy_with_another_layout_is_refused_for_pictures(font: str, tmp_path: Path) -> None:
+    page = pictured(run(sample(1)).page, font)
+    for text, says in (
+        (COPIES["other order"], "in another order than the listing: 'VBX= #"),
+        (LISTING.replace('"DA= "', '"ARM A= "'), "no line laid out like the listing's 'DA= # DB="),
+    ):
+        found = examine("-", None, copy_of(text, tmp_path), data=page)
+        assert says in (found.error or "")
+
+
+def test_lines_that_only_the_copy_prints_are_known_for_its_scene(tmp_path: Path) -> None:
+    pages = CopyPages(copy_of(OFFICES["weights"][0], tmp_path))
+    scene = {**sample(1), "MA": "4620", "MB": "3085"}
+    assert pages.prints("? 4620,3085", scene)
+    assert not pages.prints("?4620,30850", scene)
+    assert not pages.prints("?4621,3085", scene)
+    assert not pages.prints("?4?20,3085", scene)
+    assert not pages.prints("DA= 7.59 DB= 3.44", scene)
 
 
 @pytest.mark.usefixtures("verdicts_alone")

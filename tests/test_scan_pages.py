@@ -652,6 +652,19 @@ def test_a_text_layer_must_agree_and_another_readers_words_decide_nothing(monkey
     assert any("page 1" in remark for remark in result.remarks)
 
 
+def test_a_speck_before_an_angle_moves_none_of_its_cells() -> None:
+    """The angles' blanks are free: which cell a number begins in is seen by its characters."""
+
+    def costs(shown: str) -> np.ndarray:  # type: ignore[type-arg]
+        return np.where(np.array([list(READABLE)]) == np.array(list(shown))[:, None], 0.0, 5.0)
+
+    read = Read(Sheet(), {"PB": costs(".-87"), "TA": costs("-870"), "TB": costs("87")})
+    assert read.shift("PB", "-87") == 1
+    assert read.shift("TA", "-87") == 0
+    assert read.shift("TB", "87") == 0
+    assert read.shift("TB", "-87") == -1
+
+
 def cell(name: str, *, distance: float, other_distance: float, hand: str = "") -> Cell:
     """A cell that is clearly not what is predicted, and as far as given from that and another."""
     predicted, other = ("3", "8") if name else ("V", "U")

@@ -43,9 +43,7 @@ ARGUMENTS = (
     options.OUTPUT,
     options.flag("--brief", "only verdicts and what differs"),
     options.reads("--scene", "FILE.toml", "the inputs, for a page that has only results"),
-    options.reads(
-        "--listing", "THEIRS.bas", "compare pages as text with another copy of the listing"
-    ),
+    options.reads("--listing", "THEIRS.bas", "compare pages with another copy of the listing"),
     options.reads(
         "--text-from",
         "WORDS",

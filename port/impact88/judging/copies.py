@@ -35,6 +35,8 @@ _CONVERTED = 1e-3
 """Relative difference from which on a copy prints another number than was typed."""
 _TYPED_DIGITS = 9
 """Digits that are tried for what was typed."""
+_OPTIONAL = re.compile(r"ENTER THE INITIAL|\*+$")
+"""Lines that a page on a picture may lack: prompts, and rows of asterisks."""
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]+)?")
 
 
@@ -99,6 +101,45 @@ class CopyPages:
         ending = ZERO_DETERMINANT if ZERO_DETERMINANT in done.printout else done.error
         return Outcome(fields, ending), done.page.split("\n")
 
+    def outcomes(self, scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
+        """Return what the copy prints for each scene, by field."""
+        return [self._run(scene)[0] for scene in scenes]
+
+    def check_layout(self) -> None:
+        """Raise UserError where a line of the listing's page stands otherwise on the copy's, on
+        which no picture is divided into labels and numbers; its prompts, rows of asterisks and
+        lines of the copy's own may."""
+        for spins in ("6", "4"):
+            scene = {**sample(1), "M": spins}
+            own = iter([*_layout(self.copy.run(scene).page)])
+            for line in _layout(run(scene).page):
+                if _OPTIONAL.match(line) or line in own:
+                    continue
+                lines = [*_layout(self.copy.run(scene).page)]
+                said = (
+                    f"prints its lines in another order than the listing: {line!r}"
+                    if line in lines
+                    else f"prints no line laid out like the listing's {line!r}"
+                )
+                raise UserError(
+                    f"{said}; expected for a picture the listing's layout (pages as text may have "
+                    "another)",
+                    self.copy.file,
+                )
+
+    def prints(self, line: str, scene: Mapping[str, str]) -> bool:
+        """Return whether a line is one that only the copy prints, and for this scene. Blanks do not
+        count, and a question mark in the copy's may be unread (``?``)."""
+        read = "".join(line.split())
+        for own in self._run(scene)[1] if read else ():
+            if _plain(own, "#") in self._besides:
+                expected = "".join(own.split())
+                if len(expected) == len(read) and all(
+                    a == b or a == "?" for a, b in zip(expected, read, strict=True)
+                ):
+                    return True
+        return False
+
     def judged(self, paper: Printout, recovered: Recovered, besides: Mapping[int, str]) -> Judged:
         """The printout judged by the copy's page for the scene that comes nearest. ``besides``: its
         lines that only the copy prints."""
@@ -107,7 +148,9 @@ class CopyPages:
             return sum(check.status != Status.READ for check in [*found.fields, *found.replies])
 
         best = None
-        for scene in self._scenes(paper, recovered.scene):
+        printed = {name: text for name in INPUTS if (text := paper.text(name)) is not None}
+        replies = {name: reply.text for name, reply in paper.replies.items() if reply.clean}
+        for scene in self.typed_scenes(recovered.scene, printed, replies):
             found = self._judged(paper, recovered, scene, besides)
             if best is None or wrong(found) < wrong(best):
                 best = found
@@ -131,34 +174,38 @@ class CopyPages:
                 return other
         return None
 
-    def _scenes(self, paper: Printout, scene: dict[str, str]) -> Iterator[dict[str, str]]:
-        """The scene as recovered, with MU typed with either sign; then with angles as the page has
-        them, and as others that print so, where the copy prints those otherwise."""
+    def typed_scenes(
+        self, scene: Mapping[str, str], printed: Mapping[str, str], replies: Mapping[str, str]
+    ) -> Iterator[dict[str, str]]:
+        """Yield what may have been typed for a page: the scene as recovered, with MU typed with
+        either sign; what a copy that converts it was given; then angles as the page has them, and
+        others that print so, where the copy prints those otherwise. ``printed``: inputs on the
+        page, by field; ``replies``: those to its prompts, by scene name."""
+        scene = {**scene}
         either = [scene, *with_opposite_mu(scene)]
         yield from either
-        yield from self._converted(paper, scene)
+        yield from self._converted(scene, printed, replies)
         for typed in either:
             fields = self._run(typed)[0].fields
-            printed = {
-                name: text
+            angles = {
+                name: printed[name]
                 for name in ANGLES
-                if (text := paper.text(name)) is not None and fields.get(name) != text
+                if name in printed and fields.get(name) != printed[name]
             }
-            for rank in range(_TEXTS if printed else 0):
-                texts = {name: _typed_texts(name, text)[rank:] for name, text in printed.items()}
+            for rank in range(_TEXTS if angles else 0):
+                texts = {name: _typed_texts(name, text)[rank:] for name, text in angles.items()}
                 yield {**typed, **{name: some[0] for name, some in texts.items() if some}}
 
-    def _converted(self, paper: Printout, scene: dict[str, str]) -> Iterator[dict[str, str]]:
+    def _converted(
+        self, scene: dict[str, str], inputs: Mapping[str, str], replies: Mapping[str, str]
+    ) -> Iterator[dict[str, str]]:
         """The scene with what was typed where the copy converts it before it prints it: the replies
         on the page, and numbers of few digits that print as the page has them."""
-        replies = {name: reply.text for name, reply in paper.replies.items() if reply.clean}
         fields = self._run(scene)[0].fields
         printed = {
             scene_name(name): text
-            for name in INPUTS
-            if name != "MUP"
-            and (text := paper.text(name)) is not None
-            and _is_converted(scene[scene_name(name)], fields.get(name))
+            for name, text in inputs.items()
+            if name != "MUP" and _is_converted(scene[scene_name(name)], fields.get(name))
         }
         if not printed:
             return
@@ -207,14 +254,24 @@ class CopyPages:
             for number, line in besides.items()
             if _plain(line) not in own
         ]  # fmt: skip
-        typed = {
-            name: text
-            for name, text in scene.items()
-            if name != "MU" and _is_converted(text, outcome.fields.get(name))
-        }
-        scene = {**scene, **{name: outcome.fields[name] for name in typed}}
+        typed = converted_inputs(scene, outcome.fields)
+        scene = as_printed(scene, outcome.fields)
         judged = replace(recovered, scene=scene, outcome=outcome, typed=typed)
         return judge(paper, judged, wrong)
+
+
+def converted_inputs(typed: Mapping[str, str], printed: Mapping[str, str]) -> dict[str, str]:
+    """Return the values typed that a copy converts before it prints them, by scene name."""
+    return {
+        name: text
+        for name, text in typed.items()
+        if name != "MU" and _is_converted(text, printed.get(name))
+    }
+
+
+def as_printed(typed: Mapping[str, str], printed: Mapping[str, str]) -> dict[str, str]:
+    """Return a scene with the values that a copy converts as it prints them."""
+    return {**typed, **{name: printed[name] for name in converted_inputs(typed, printed)}}
 
 
 pages_of = lru_cache(maxsize=1)(CopyPages)
@@ -241,6 +298,13 @@ def _labelled(printed: str) -> list[str]:
     """The letters of each line that holds labels, in the order of the page."""
     body = printed[max(printed.find("MA="), 0) :]
     return [letters for line in body.split("\n") if (letters := _letters(line)) and "=" in line]
+
+
+def _layout(page: str) -> Iterator[str]:
+    """Yield the lines of a page that are not blank, with ``#`` for each number."""
+    for line in page.split("\n"):
+        if line.strip():
+            yield _NUMBER.sub("#", line).rstrip()
 
 
 def _plain(line: str, number: str = "") -> str:

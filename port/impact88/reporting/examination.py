@@ -62,19 +62,15 @@ def examine(
         data = files.read_bytes(path, LARGEST_PICTURE) if data is None else data
         examined.sha256 = sha256(data).hexdigest()
         picture = data.startswith(PICTURE_STARTS)
-        if picture and (given or copy):
-            if copy:
-                said = (
-                    "is a picture, which is held against the restored listing alone, not against a "
-                    "copy of the listing; expected the page's text, typed in or from a scanner"
-                )
-                raise UserError(said, files.called(path))
+        if picture and given:
             raise UserError("a scene apart goes with text, not with a picture", files.called(path))
         seeds = [text for text in ([seed] if isinstance(seed, str) else seed) if text]
         if seeds and copy:
             raise UserError("other readings go without a copy of the listing", files.called(path))
         found = (
-            _pictured(path, data, seeds) if picture else _printed(path, data, given, copy, seeds)
+            _pictured(path, data, copy, seeds)
+            if picture
+            else _printed(path, data, given, copy, seeds)
         )
         for result in found:
             result.sha256 = examined.sha256
@@ -84,13 +80,21 @@ def examine(
     return examined
 
 
-def _pictured(path: str, data: bytes, seeds: Sequence[str]) -> Iterator[Verification]:
+def _pictured(
+    path: str, data: bytes, copy: ListingCopy | None, seeds: Sequence[str]
+) -> Iterator[Verification]:
     try:
         from .scanned import verified
     except ImportError as error:
         said = f"pictures need {error.name}, which is not installed; pip install 'impact88[scan]'"
         raise UserError(said, files.called(path)) from None
-    return map(completed, verified(path, data, seeds))
+    if not copy:
+        return map(completed, verified(path, data, seeds))
+    from ..judging.copies import pages_of
+
+    pages = pages_of(copy)
+    pages.check_layout()
+    return (_of_copy(result, pages) for result in verified(path, data, seeds, pages))
 
 
 def _printed(
@@ -253,15 +257,22 @@ def _by_all(
 
 def _against(pages: CopyPages, found: Judged) -> Verification:
     """The verdict on a printout as a page of an office's copy of the listing."""
-    copy, result = pages.copy, _result(found)
+    result = _result(found)
     if result.verdict is Verdict.DIFFERS:
         from ..explaining.explanations import explain_copy
 
         result.explanations = explain_copy(found, pages.put_right)
-    result.findings = verification.of_copy(copy, found)
+    result.converted = bool(found.recovered.typed)
+    return _of_copy(result, pages)
+
+
+def _of_copy(result: Verification, pages: CopyPages) -> Verification:
+    """The same with what the copy is, and what stands beside the verdict."""
+    copy = pages.copy
+    result.findings += verification.of_copy(copy, result)
     changed = [line._asdict() for line in copy.changed_lines()]
     result.copy = {"file": copy.file, "sha256": copy.sha256, "lines": changed}
-    if found.recovered.typed:  # the scene is as printed, and the copy asks for it as typed
+    if result.converted:  # the scene is as printed, and the copy asks for it as typed
         return completed(result)
     return completed(result, pages.run_columns)
 

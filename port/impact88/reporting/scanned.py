@@ -10,6 +10,7 @@ import numpy as np
 from ..errors import UserError
 from ..fields import FIELDS, REPLIES
 from ..files import called
+from ..judging.copies import CopyPages, as_printed, converted_inputs
 from ..judging.judgement import Doubtful, FieldCheck, Status, Verdict
 from ..names import SCENE
 from ..progress import progress
@@ -28,9 +29,12 @@ from ..scan.typeface import BLANK
 from .verification import Verification
 
 
-def verified(path: str, data: bytes, seed: str | Sequence[str] = "") -> Iterator[Verification]:
+def verified(
+    path: str, data: bytes, seed: str | Sequence[str] = "", copy: CopyPages | None = None
+) -> Iterator[Verification]:
     """Each printout in a picture or PDF. ``seed``: what other readers made of it; their scenes
-    are tried, and they decide nothing. Raises UserError when no printout is found."""
+    are tried, and they decide nothing; ``copy``: the listing that prints it, in place of the
+    restored one. Raises UserError when no printout is found."""
     results: list[Verification] = []
     without, causes = list[int](), ""
     texts = [seed] if isinstance(seed, str) else seed
@@ -40,12 +44,13 @@ def verified(path: str, data: bytes, seed: str | Sequence[str] = "") -> Iterator
             found: list[Verification] = []
             unread = 0
             for paper in papers_of(page.picture):
-                seen = looked(paper.grey, [*seeds, *scenes_in(page.text)], paper.coloured)
+                tried = [*seeds, *scenes_in(page.text)]
+                seen = looked(paper.grey, tried, paper.coloured, copy)
                 unread += not seen.leaves
                 causes = causes or ("" if seen.leaves else "; ".join(paper.remarks))
                 for leaf in seen.leaves:
                     number = len(results) + len(found) + 1
-                    result = _verification(path, number, page, paper, leaf)
+                    result = _verification(path, number, page, paper, leaf, copy)
                     result.exhibit = partial(exhibit, paper.grey, seen.leaves, leaf)
                     result.remarks += [f"page {page.number}: {said}" for said in paper.remarks]
                     found.append(result)
@@ -95,14 +100,20 @@ def _layered(results: list[Verification], text: str) -> None:
                 result.verdict = Verdict.INCOMPLETE
 
 
-def _verification(path: str, number: int, page: Page, paper: Paper, leaf: Leaf) -> Verification:
+def _verification(
+    path: str, number: int, page: Page, paper: Paper, leaf: Leaf, copy: CopyPages | None
+) -> Verification:
     settled = leaf.judged.verdict is not Verdict.INCOMPLETE
     known = {name: _printed(cells) for name, cells in leaf.by_name.items()} if settled else {}
     text, starts = leaf.read.page(known)
     printed = leaf.found.outcome.fields if leaf.found else {}
     scene: dict[str, str | None] = dict.fromkeys(SCENE)
+    converted = False
     if leaf.found and settled:
         scene |= {name: leaf.found.scene[name] for name in SCENE}
+        if copy:
+            scene |= as_printed(leaf.found.scene, printed)
+            converted = bool(converted_inputs(leaf.found.scene, printed))
     fields = [
         _check(leaf, name, printed.get(name), leaf.by_name.get(name, []))
         for name in FIELDS
@@ -110,6 +121,7 @@ def _verification(path: str, number: int, page: Page, paper: Paper, leaf: Leaf) 
     ]
     line = min((row.start for row in leaf.read.sheet.rows.values()), default=0) + 1
     result = Verification(path, number, line, leaf.judged.verdict, scene, fields)
+    result.converted = converted
     result.replies, result.page = [*_replies(leaf)], page.number
     result.text, result.stop, result.basis = text, len(text), sentences()
     for check in result.fields:

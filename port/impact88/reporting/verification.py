@@ -98,6 +98,8 @@ class Verification:
         Hash of the file.
     copy : dict, optional
         The listing it is held against, where that is not the restored one.
+    converted : bool
+        Whether that listing converts inputs before it prints them: the scene is as printed.
     text : str
         The text it was read from.
 
@@ -135,6 +137,7 @@ class Verification:
     stop: int = 0
     sha256: str | None = None
     copy: dict[str, Any] | None = None
+    converted: bool = False
     text: str = field(default="", repr=False)
 
     @property
@@ -517,18 +520,20 @@ def put_down(found: Judged) -> Iterator[str]:
         )
 
 
-def of_copy(copy: ListingCopy, found: Judged) -> list[str]:
+def of_copy(copy: ListingCopy, result: Verification) -> list[str]:
     """What an office's copy of the listing prints, and in which lines it is another program."""
-    restored = run_once(found.recovered.scene).fields
-    agrees = found.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
+    scene = result.complete_scene
+    restored = run_once(scene).fields if scene else {}
+    agrees = result.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
     others = ", ".join(
         f"{check.name} {restored.get(check.name, 'nothing')}"
-        for check in found.fields
+        for check in result.fields
         if check.recomputed != restored.get(check.name)
     )
+    beside = f"; the restored listing prints {others or 'the same numbers'}" if scene else ""
+    said = "" if agrees else "not certainly " if result.verdict is Verdict.INCOMPLETE else "not "
     return [
-        f"this page is {'' if agrees else 'not '}what the copy {copy.file} prints; the restored "
-        f"listing prints {others or 'the same numbers'}",
+        f"this page is {said}what the copy {copy.file} prints{beside}",
         *(
             f"line {line.line}: the copy has {line.copy or 'nothing'} | "
             f"the restored listing {line.restored or 'nothing'}"

@@ -81,9 +81,7 @@ def predicted(read: Read, candidate: Candidate) -> Iterator[tuple[str, str, Plac
                 shown = reply_of(read, name, candidate.scene)
             if line in SPACED:  # its gaps are what they are
                 column = row.column(places[0]) if places else column
-                longer = bool(name) and len(shown) == len(places) + 1
-                if longer and read.cost(name, shown[1:]) < read.cost(name, shown[:-1]):
-                    column -= 1  # its sign was taken for a blank
+                column += read.shift(name, shown) if name else 0
             if not name and not text.strip():
                 shown = BLANK * len(places)
             for character in shown:

@@ -4,10 +4,10 @@ differ in a character or two, weighed by how well the program's page fits all ce
 This is the one module that knows how text is recovered.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from ..applesoft.decimaltext import is_number
 from ..errors import UserError
@@ -26,6 +26,8 @@ _SETTLED = 1.0
 """A page whose cells cost less than this in all needs no search."""
 _ROUNDS, _KEPT = 2, 3
 """Times that scenes next to the best are tried, and how many are the best."""
+_TRIED_IN_COPY = 12
+"""Scenes nearest by the restored listing that are run in an office's copy, 13 ms a run."""
 
 
 @dataclass
@@ -51,6 +53,18 @@ class Read:
         if (name, text) not in self._known:
             self._known[name, text] = self._cost(self.costs[name], text)
         return self._known[name, text]
+
+    def shift(self, name: str, text: str) -> int:
+        """Return by how many cells a number's text begins after the first of its cells: a faint
+        sign may have been taken for a blank before them, a speck for the first of them."""
+        costs = self.costs[name]
+        spare = len(costs) - len(text)
+        if spare == -1 and self.cost(name, text[1:]) < self.cost(name, text[:-1]):
+            return -1
+        right, left = (
+            _summed(costs, side) for side in (text.rjust(len(costs)), text.ljust(len(costs)))
+        )
+        return spare if spare > 0 and right < left else 0
 
     def _cost(self, costs: Floats, text: str) -> float:
         total = WORST * max(0, len(text) - len(costs))
@@ -90,10 +104,72 @@ class Candidate(NamedTuple):
     cost: float
 
 
-def scene_of(read: Read, seeds: Sequence[dict[str, str]] = ()) -> Candidate | None:
+class Copy(Protocol):
+    """An office's copy of the listing, as `judging.copies.CopyPages` has it."""
+
+    def outcomes(self, scenes: Sequence[Mapping[str, str]], /) -> list[Outcome]:
+        """Return what it prints for each scene."""
+
+    def typed_scenes(
+        self,
+        scene: Mapping[str, str],
+        printed: Mapping[str, str],
+        replies: Mapping[str, str],
+        /,
+    ) -> Iterator[dict[str, str]]:
+        """Yield what may have been typed for it where a page shows a scene."""
+
+    def prints(self, line: str, scene: Mapping[str, str], /) -> bool:
+        """Return whether it prints a line for a scene that the restored listing does not."""
+
+
+_Known = dict[tuple[tuple[str, str], ...], Candidate]
+
+
+def scene_of(
+    read: Read, seeds: Sequence[dict[str, str]] = (), copy: Copy | None = None
+) -> Candidate | None:
     """The scene whose page fits the cells best, None where none can be run. ``seeds``: scenes that
-    another reader found."""
-    known: dict[tuple[tuple[str, str], ...], Candidate] = {}
+    another reader found; ``copy``: what prints the page, in place of the restored listing; its
+    scene is what was typed."""
+    by_copy: _Known = {}
+    best: list[Candidate] = []
+    if copy:
+        inputs = {name: read.text(name) for name in INPUTS}
+        for scene in _direct(read):
+            best = _weighed_in_copy(read, copy, scene, inputs, by_copy)
+            if best and best[0].cost < _SETTLED:
+                return best[0]
+    known: _Known = {}
+    best = _searched(read, seeds, known)
+    if not copy:
+        return best[0] if best else None
+    nearest = sorted(known.values(), key=lambda candidate: candidate.cost)[:_TRIED_IN_COPY]
+    best = []
+    for candidate in nearest:
+        printed = candidate.outcome.fields
+        inputs = {name: printed[name] for name in INPUTS if name in printed}
+        best = _weighed_in_copy(read, copy, candidate.scene, inputs, by_copy)
+        if best and best[0].cost < _SETTLED:
+            break
+    return best[0] if best else None
+
+
+def _weighed_in_copy(
+    read: Read, copy: Copy, scene: dict[str, str], inputs: Mapping[str, str], known: _Known
+) -> list[Candidate]:
+    """The best of all scenes known of a copy, with what may have been typed where a page shows the
+    inputs of one more."""
+    try:
+        typed = [*copy.typed_scenes(scene, inputs, _typed(read))]
+    except (UserError, ValueError, OverflowError):
+        typed = []
+    return _weighed(read, typed, known, copy.outcomes)
+
+
+def _searched(read: Read, seeds: Sequence[dict[str, str]], known: _Known) -> list[Candidate]:
+    """The scenes that fit the cells best by the restored listing; all that were tried become
+    known."""
     best: list[Candidate] = []
     # the text's recovery is asked only where the numbers as read leave doubts
     for recovered in (False, True):
@@ -109,16 +185,22 @@ def scene_of(read: Read, seeds: Sequence[dict[str, str]] = ()) -> Candidate | No
                 break
         if best and best[0].cost < _SETTLED:
             break
-    return best[0] if best else None
+    return best
+
+
+_Program = Callable[[Sequence[Mapping[str, str]]], list[Outcome]]
+"""What prints pages: the outcome of each scene."""
 
 
 def _weighed(
-    read: Read, scenes: list[dict[str, str]], known: dict[tuple[tuple[str, str], ...], Candidate]
+    read: Read, scenes: list[dict[str, str]], known: _Known, program: _Program = run_all
 ) -> list[Candidate]:
     """The best of all scenes that are known, with some more."""
     keys = {tuple(sorted(scene.items())): scene for scene in scenes}
     new = {key: scene for key, scene in keys.items() if key not in known}
-    for (key, scene), outcome in zip(new.items(), _outcomes([*new.values()]), strict=False):
+    for (key, scene), outcome in zip(
+        new.items(), _outcomes([*new.values()], program), strict=False
+    ):
         fields = outcome.fields
         cost = 2 * WORST * len(set(fields) - set(read.costs))
         for name in read.costs:
@@ -128,10 +210,10 @@ def _weighed(
     return sorted(known.values(), key=lambda candidate: candidate.cost)[:_KEPT]
 
 
-def _outcomes(scenes: list[dict[str, str]]) -> list[Outcome]:
+def _outcomes(scenes: list[dict[str, str]], program: _Program = run_all) -> list[Outcome]:
     """What the program prints for scenes, nothing where one of them cannot be run."""
     try:
-        return run_all(scenes)
+        return program(scenes)
     except (UserError, ValueError, OverflowError):
         return []
 
@@ -158,11 +240,14 @@ def scenes_in(text: str) -> list[dict[str, str]]:
     return [found.scene for found in recovered if not found.missing]
 
 
-def borne_out(candidate: Candidate, shown: Mapping[str, str]) -> Candidate:
+def borne_out(
+    candidate: Candidate, shown: Mapping[str, str], copy: Copy | None = None
+) -> Candidate:
     """The scene with some inputs as the paper shows them, where the program's page is otherwise the
     same: results bear out neither an angle nor an arm that they do not depend on."""
     scene = candidate.scene | {scene_name(name): text for name, text in shown.items()}
-    for outcome in _outcomes([scene]) if shown else ():
+    program = copy.outcomes if copy else run_all
+    for outcome in _outcomes([scene], program) if shown else ():
         if outcome.fields == {**candidate.outcome.fields, **shown}:
             return Candidate(scene, outcome, candidate.cost)
     return candidate

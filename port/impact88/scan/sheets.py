@@ -17,7 +17,7 @@ from .holding import Added, Cell, Judged, held, judged, state
 from .ink import Floats, Image, Points, ink_of, points_of, without_pen
 from .layout import Sheet, sheets_of
 from .residue import Explained, Kind, Mark, Residue, residue_of
-from .scenes import Candidate, Read, borne_out, scene_of
+from .scenes import Candidate, Copy, Read, borne_out, scene_of
 from .typeface import BLANK, read_numbers
 
 _UPRIGHT = 600.0
@@ -92,11 +92,15 @@ class Looked:
 
 
 def looked(
-    grey: Image, seeds: Sequence[dict[str, str]] = (), coloured: Image | None = None
+    grey: Image,
+    seeds: Sequence[dict[str, str]] = (),
+    coloured: Image | None = None,
+    copy: Copy | None = None,
 ) -> Looked:
     """All printouts of a page, upright or turned by quarters, and all else that is on it.
     ``seeds``: scenes that another reader found; they are tried beside those of the picture;
-    ``coloured``: ink that is not in ``grey``."""
+    ``coloured``: ink that is not in ``grey``; ``copy``: what prints the pages, in place of the
+    restored listing."""
     if min(grey.shape) < _LEAST_SIDE:
         return Looked()
     ink = ink_of(grey)
@@ -107,8 +111,8 @@ def looked(
         if laid.upright:
             break
     found = best.grids
-    leaves = [leaf for pair in found for leaf in _leaves(*pair, seeds)]
-    return Looked(leaves, _rest(ink, coloured, leaves))
+    leaves = [leaf for pair in found for leaf in _leaves(*pair, seeds, copy)]
+    return Looked(leaves, _rest(ink, coloured, leaves, copy))
 
 
 class _Laid(NamedTuple):
@@ -150,7 +154,7 @@ def _laid(ink: Image, points: Points, turns: int) -> _Laid:
     return _Laid([(grid, sheets_of(grid.odds(), grid.tops)) for grid in grids])
 
 
-def _rest(ink: Image, coloured: Image | None, leaves: Sequence[Leaf]) -> Residue:
+def _rest(ink: Image, coloured: Image | None, leaves: Sequence[Leaf], copy: Copy | None) -> Residue:
     """What the printouts of a page do not explain; each mark is put down to one of them, too."""
     if not any(leaf.cells for leaf in leaves):
         return Residue()
@@ -165,6 +169,9 @@ def _rest(ink: Image, coloured: Image | None, leaves: Sequence[Leaf]) -> Residue
     residue = residue_of(np.rot90(ink, turns), upright, explained)
     for mark in residue.marks:
         leaf = min(leaves, key=lambda leaf: leaf.apart(mark.corners))
+        scene = leaf.found.scene if leaf.found else {}
+        if copy and mark.kind is Kind.TYPE and copy.prints(mark.sure, scene):
+            continue  # a line that only the copy prints
         leaf.marks.append(mark)
         if mark.bears and leaf.judged.verdict is Verdict.IDENTICAL:
             leaf.judged.verdict = Verdict.IDENTICAL_AS_READ
@@ -200,7 +207,9 @@ def _turns(ink: Image) -> list[int]:
     return [0, 2, 1, 3] if down >= across else [1, 3, 0, 2]
 
 
-def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) -> list[Leaf]:
+def _leaves(
+    grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]], copy: Copy | None
+) -> list[Leaf]:
     if sheets and grid.clarity < _REGULAR:
         likeliest = max(sheets, key=lambda sheet: sheet.gain)
         unread = Judged(Verdict.INCOMPLETE, reason="its type stands in no clear columns")
@@ -211,14 +220,14 @@ def _leaves(grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]]) ->
     costs = read_numbers(grid, [leaf.read.sheet for leaf in legible])
     for leaf, own in zip(legible, costs, strict=True):
         leaf.read.costs = own
-        leaf.found = scene_of(leaf.read, seeds)
+        leaf.found = scene_of(leaf.read, seeds, copy)
     known = [leaf for leaf in legible if leaf.found]
     _hold(grid, known)
     if sum(map(_mistaken, known)):
         _hold(grid, known)
     before = [leaf.found for leaf in known]
     for leaf in known:
-        leaf.found = leaf.found and borne_out(leaf.found, _shown(leaf.cells))
+        leaf.found = leaf.found and borne_out(leaf.found, _shown(leaf.cells), copy)
     if any(leaf.found is not earlier for leaf, earlier in zip(known, before, strict=True)):
         _hold(grid, known)
     for leaf in known:
