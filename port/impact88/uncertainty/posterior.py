@@ -45,7 +45,9 @@ SIGMAS = 3.0  # where a normal without limits ends, for draws and bounds alike
 PARTICLES = 8000
 FIRST_PARTICLES = 12  # times as many to begin with: thin arms of the distribution are met
 MOVES = 8  # steps of each particle at each hardness of the limits
-LAST_MOVES = 24  # steps before the first draws are taken
+LAST_MOVES = (
+    60  # steps before the first draws are taken: with 24 the rarer of two branches is 5 % too rare
+)
 BEYOND_DRAWS = 2.0  # bounds are sought so many times what draws span beyond them
 _CHUNK = 1 << 13  # impacts at a time: bounds the memory
 _JUMPS = 0.1  # steps the length of a difference of two particles, which join branches
@@ -78,7 +80,7 @@ class Posterior:
     there is no impulse, say, coefficients are open."""
 
     def __init__(self, solution: Reconstruction, progress: Progress = lambda impacts: None) -> None:
-        self.progress = progress
+        self.progress, self.level = progress, False
         self.system = system = solution.system
         self.known = system.known
         self.unsigned = solution.typed_mu is not None
@@ -241,7 +243,7 @@ class Posterior:
         self.progress(count)
         basis = np.broadcast_to(self.basis[:, :, None], (*self.basis.shape, count))
         matrix = np.concatenate([rows, basis]).transpose(2, 0, 1)
-        y = np.linalg.solve(matrix, np.concatenate([right, z]).T[:, :, None])[:, :, 0].T
+        y = _solutions(matrix, np.concatenate([right, z]).T).T
         values = self._values(inputs)
         here = Geometry(values) if self.varied else self.geometry
         scaled = dict(zip(self.unknown, y * self.scales[:, None], strict=True))
@@ -323,6 +325,8 @@ class Posterior:
             beyond = np.abs(value) / (FARTHEST * self.system.scale(name)) - 1
             excess = excess + np.square(np.maximum(beyond, 0.0))
         sound = np.isfinite(plain) & np.isfinite(excess)
+        if self.level:
+            plain = np.zeros_like(plain)
         return np.where(sound, plain, -np.inf), np.where(sound, excess, np.inf)
 
     def _logarithms_by_parts(self, points: Floats, signs: Floats) -> tuple[Floats, Floats]:
@@ -347,6 +351,15 @@ class Posterior:
         return speed, -np.log(np.abs(mass * speed))
 
     # -- sampling
+
+    def scattered(self, count: int, rng: np.random.Generator) -> tuple[Floats, Floats]:
+        """Return points as `sample` does, spread level over the coordinates within all limits: what
+        is hardly likely is met as often as anything else."""
+        self.level = True
+        try:
+            return self.sample(count, rng)
+        finally:
+            self.level = False
 
     def sample(self, count: int, rng: np.random.Generator) -> tuple[Floats, Floats]:
         """Return ``count`` points of the distribution (coordinates, n) and their friction signs;
@@ -408,18 +421,24 @@ class Posterior:
         deviations = np.array([self.known[n].standard_deviation for n in self.inputs])
         # what first order hardly tells is as wide as velocities may be
         weak = np.concatenate([np.full(len(self.basis), WIDENING / FARTHEST), 0 * deviations])
-        for center, sign in zip(self.centers, self.signs, strict=True):
+        about = [c for c in zip(self.centers, self.signs, strict=True) if self._is_near(*c)]
+        about = about or [(self.centers[0], self.signs[0])]
+        for center, sign in about:
             slopes = self._slopes(center, sign)
             sizes = np.linalg.norm(slopes, axis=0)
             sizes = np.where(sizes > 0, sizes, 1.0)
             square = (slopes / sizes).T @ (slopes / sizes) + np.diag(np.square(weak / sizes))
-            # Cholesky's root is the same in any units, up to their factors
-            roots.append(WIDENING * np.linalg.cholesky(np.linalg.inv(square)) / sizes[:, None])
+            try:
+                # Cholesky's root is the same in any units, up to their factors
+                root = np.linalg.cholesky(np.linalg.inv(square))
+            except np.linalg.LinAlgError:  # rounding leaves no positive definite matrix
+                root = np.diag(1 / np.sqrt(square.diagonal()))
+            roots.append(WIDENING * root / sizes[:, None])
         # far from all that was found, too: what first order knows nothing of
         wide = np.diag(np.concatenate([np.full(len(self.basis), BROAD), deviations]))
         roots += [wide] * len(roots)
-        centers, own_signs = self.centers * 2, self.signs * 2
-        shares = np.repeat([1 - BROAD_FRACTION, BROAD_FRACTION], len(self.centers))
+        centers, own_signs = [c for c, _ in about] * 2, [sign for _, sign in about] * 2
+        shares = np.repeat([1 - BROAD_FRACTION, BROAD_FRACTION], len(about))
         shares = shares / shares.sum()
         which = rng.choice(len(roots), size=count, p=shares)
         normal = rng.standard_normal((count, self.size))
@@ -446,6 +465,13 @@ class Posterior:
             return total
 
         return points, signs, first
+
+    def _is_near(self, center: Floats, sign: float) -> bool:
+        """Return whether an impact found has velocities that the distribution may reach: beside a
+        coefficient's pole some are endless, and a distribution about them is none."""
+        state, _, _ = self.impacts(center[:, None], np.array([sign]), weighed=False)
+        before = zip(VELOCITIES, state.before, strict=True)
+        return all(np.all(np.abs(v) <= FARTHEST * self.system.scale(n)) for n, v in before)
 
     def _slopes(self, center: Floats, sign: float) -> Floats:
         """Return the derivatives of all values known within limits, in standard deviations, over
@@ -594,6 +620,17 @@ class Ground:
         posterior = self.posterior
         state, _, _ = posterior.impacts(self.points(u[None]), np.array([sign]), weighed=False)
         return {n: float(np.ravel(posterior._observed(state, n)[0])[0]) for n in posterior.items}
+
+
+def _solutions(matrices: Array, right: Array) -> Array:
+    """Return the solutions of n systems of equations (n, unknowns), NaN where one is singular."""
+    try:
+        return np.asarray(np.linalg.solve(matrices, right[:, :, None])[:, :, 0])
+    except np.linalg.LinAlgError:
+        singular = np.linalg.det(matrices) == 0
+        matrices = np.where(singular[:, None, None], np.eye(matrices.shape[1]), matrices)
+        found = np.linalg.solve(matrices, right[:, :, None])[:, :, 0]
+        return np.asarray(np.where(singular[:, None], np.nan, found))
 
 
 def _unique_basis(rows: Floats) -> Floats:

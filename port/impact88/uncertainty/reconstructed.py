@@ -28,6 +28,7 @@ from .ascent import OUTSIDE, climb, extremes_of, spread_out
 from .boundstable import Spread
 from .posterior import Ground, Posterior
 from .uncertain import Uncertain, columns_of, fixed, random_numbers
+from .widening import extremes
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -54,7 +55,7 @@ LEARNT, UNSEEN, WALKS, PACES = 6, 9, 20, 40
 """Times each chain's place is met while the walls are learnt, until it has forgotten its start, and
 as a draw; each so many paces apart."""
 STANDSTILLS = 16  # of the slowest draws, from which a standstill is sought
-FEELERS = 1000  # particles that seek the way inside all limits where nothing was drawn
+FEELERS = 2000  # points spread over all within limits, however unlikely
 FREE = 4096
 """Draws as without walls that chains may start from."""
 NEAR, RIDGE = 1.5, 1e-9
@@ -171,26 +172,15 @@ def _extremes(
     progress: Progress,
 ) -> dict[str, Range]:
     """`ranges` over all branches: climbed from draws of the distribution."""
-    if drawn is None or drawn.signs is None:
-        points, signs = posterior.sample(FEELERS, random_numbers(seed, 0))
-    else:
-        points, signs = drawn.points.T, drawn.signs
+    points, signs = posterior.scattered(FEELERS, random_numbers(seed, 0))
+    if drawn is not None and drawn.signs is not None:
+        points = np.concatenate([drawn.points.T, points], axis=1)
+        signs = np.concatenate([drawn.signs, signs])
     if not len(signs):
         return {name: Range(np.nan, np.nan, {}, {}) for name in names}
     ground = Ground(posterior, names, points)
-    u = ground.shares(points)
-    functions = np.concatenate(
-        [
-            ground.at(u[first : first + CHUNK], signs[None, first : first + CHUNK])[1]
-            for first in range(0, len(u), CHUNK)
-        ]
-    )
-    parts = [np.arange(i, len(u), STARTS) for i in range(min(STARTS, len(u)))]
-    # the state of a point is its friction's sign, looked up by the point itself
-    order = {row.tobytes(): sign for row, sign in zip(u, signs, strict=True)}
-    (lower, upper), ends, done = extremes_of(
-        *(ground, u, functions, parts, 1, LEAST_GAIN),
-        lambda start: np.array([[order[row.tobytes()] for row in start]]),
+    (lower, upper), ends, states, done = extremes(
+        ground, ground.shares(points), signs, random_numbers(seed, 2)
     )
     box = _Box(solution, names, progress)
     endless = _endless(box, solution.system.known, names)
@@ -198,17 +188,18 @@ def _extremes(
     free = slice(0, len(posterior.basis))
     found = {}
     for i, name in enumerate(names):
-        low, high = (ground.values(at[i], signs[0]) for at in ends)
+        low, high = (ground.values(ends[side, i], states[side, i]) for side in (0, 1))
         inside = all((np.abs(at[i][free] - 0.5) < 0.5).all() for at in ends)
         searched = bool(done[:, i].all()) and inside
         least = float(lower[i])
         if name in SPEEDS and least > 0:
-            slowest = np.argsort(functions[:, i], kind="stable")[:STANDSTILLS]
-            still = ground.standstill(name, u[slowest], signs[slowest])
+            own = posterior.values(points, signs, [name])[0]
+            slowest = np.argsort(own, kind="stable")[:STANDSTILLS]
+            still = ground.standstill(name, ground.shares(points[:, slowest]), signs[slowest])
             if len(still):
                 least, low, searched = (
                     0.0,
-                    ground.values(still[0], signs[0]),
+                    ground.values(still[0], signs[slowest[0]]),
                     bool(done[1, i].all()),
                 )
         found[name] = Range(least, float(upper[i]), low, high, searched)
