@@ -11,7 +11,8 @@ import hashlib
 import math
 import textwrap
 
-from impact88.closedform.impactprograms import ALL, BODIES, COLUMNS, KERNELS, program_for
+from impact88.closedform.impactprograms import ALL, BODIES, COLUMNS, HURRIED, KERNELS, program_for
+from impact88.closedform.statusbits import UNDECIDED
 from impact88.native.program import Program
 
 HEAD = """\
@@ -26,15 +27,21 @@ CONDITIONS = ("EQUAL", "LESS", "LESS_OR_EQUAL", "EITHER", "BOTH", "NOT")
 
 def text() -> str:
     """The whole file."""
-    programs = {name: program_for(kinds, ALL) for name, kinds in BODIES.items()}
-    bodies = [_body(name, program) for name, program in programs.items()]
+    bodies = [_body(name, program) for name, program in programs().items()]
     return "\n".join([HEAD, *_places(), *bodies, _table(), ""])
+
+
+def programs() -> dict[str, Program]:
+    """Of every body."""
+    hurried = HURRIED.values()
+    return {
+        name: program_for(kinds, ALL, hurried=name in hurried) for name, kinds in BODIES.items()
+    }
 
 
 def digest() -> str:
     """By what the library and the formulas know that they belong together."""
-    programs = (program_for(kinds, ALL) for kinds in BODIES.values())
-    text = " ".join(f"{program.digest:016x}" for program in programs)
+    text = " ".join(f"{program.digest:016x}" for program in programs().values())
     return hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
 
 
@@ -45,6 +52,7 @@ def _places() -> list[str]:
         *textwrap.wrap(f"enum column {{ {columns} }};", 96, subsequent_indent="    "),
         f"#define RESULTS {len(ALL)}",
         f"#define STATUS_AT {ALL.index('STATUS')}",
+        f"#define UNDECIDED {UNDECIDED} /* of STATUS */",
         f'#define FORMULAS "{digest()}"',
         "",
     ]
@@ -78,6 +86,13 @@ def _body(name: str, program: Program) -> str:
 
 def _loop(lines: list[str]) -> list[str]:
     return ["    EACH_OF_EIGHTS {", *(f"        {line}" for line in lines), "    }"]
+
+
+def _numbers(operation: str, operands: list[str], conditions: set[str]) -> list[str]:
+    """A number of each condition among arithmetic's operands, without leaving floating point."""
+    if operation not in ARITHMETIC:
+        return operands
+    return [f"({x} ? 1.0 : 0.0)" if x in conditions else x for x in operands]
 
 
 def _pointers(program: Program) -> list[str]:
@@ -123,9 +138,10 @@ def _lines(program: Program) -> tuple[list[str], list[str], list[str]]:
             continue
         *operands, to = places
         texts = [values[place] for place in operands]
-        if operation in ARITHMETIC:  # a number of a condition, without leaving floating point
-            texts = [f"({x} ? 1.0 : 0.0)" if x in conditions else x for x in texts]
-        formula = f"{operation}({', '.join(texts)})"
+        formula = f"{operation}({', '.join(_numbers(operation, texts, conditions))})"
+        if operation == "PRODUCT_PLUS" and texts[0] in conditions:  # that number, or 0
+            product, rest = f"({texts[0]} ? {texts[1]} : 0.0)", texts[2:]
+            formula = f"ADD({product}, {_numbers('ADD', rest, conditions)[0]})"
         if operation in ("RESULT", "RESULT_OR_INFINITE", "BITS"):
             result = to - first
             keeps = formula if operation != "BITS" else texts[0]

@@ -269,3 +269,33 @@ def test_barriers_as_constants_and_as_columns(change, mu, constant):
     columns["TA"] = columns["TA"] + 7200.0
     assert_same_bits(*both(columns))
     assert_same_bits(*both({**columns, "VX": 1e-300, "WB": 1.0}))
+
+
+@pytest.mark.parametrize("mu", [0.3, -10.0])
+@pytest.mark.parametrize("size", [1.0, 1e14, 1e16, 1e60])
+def test_a_hurried_kernel_leaves_undecided_what_it_cannot_tell(mu, size):
+    """SINGULAR and NOT_FINITE, on both sides of where it is certain that they are clear."""
+    rng = np.random.default_rng(38)
+    count = 1000
+    columns, singular = scenes("casework", count, 8), scenes("singular", count, 8)
+    for name in columns:  # a few in every strip, and more than the machine looks at again in some
+        columns[name] = np.where(rng.random(count) < 0.05, singular[name], columns[name])
+        columns[name][-300:] = singular[name][-300:]
+    slides = np.where(columns["MU"] == -10.0, 0.3, columns["MU"])
+    columns["MU"] = slides if mu > 0 else np.full(count, mu)
+    for name in ("UX", "VY", "WA", "MA", "IB", "DA", "E"):
+        some = rng.random(count) < 0.02
+        columns[name] = np.where(
+            some, columns[name] * size ** rng.uniform(-1, 1, count), columns[name]
+        )
+    slight = rng.random(count) < 0.03  # a determinant that is nearly or exactly 0
+    columns["EM"] = np.where(slight, 0.5 - 10.0 ** rng.integers(-18, 0, count), columns["EM"])
+    for name in ("DA", "DB"):
+        columns[name] = np.where(slight & (rng.random(count) < 0.5), 0.0, columns[name])
+    still = rng.random(count) < 0.01  # no energy that a part could be lost of
+    for name in ("UX", "UY", "WA", "VX", "VY", "WB"):
+        columns[name] = np.where(still, 0.0, columns[name])
+    for names in (("STATUS",), ("DVA", "LOSS", "STATUS")):
+        compiled, alone = both(columns, names)
+        assert_same_bits(compiled, alone)
+    assert set(np.unique(alone["STATUS"] & 96)) >= ({0, 32, 64} if mu > 0 else {0, 64})

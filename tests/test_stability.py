@@ -403,3 +403,19 @@ def test_each_spin_keeps_its_own_digits(pivot, scales):
     if pivot:
         g["MU"] = np.full(120, -10.0)
     assert single_spin_errors(g) <= BACKWARD_STABLE
+
+
+@pytest.mark.parametrize("name", ["casework", "heavy", "extreme", "cancelling"])
+def test_a_pivot_that_gains_energy_is_as_accurate(name):
+    """EM > 1/2: both sums that the form of the final velocities is chosen by are negative."""
+    count, rng = 200, np.random.default_rng(38)
+    g = scenes(name, count, 38) | {"MU": np.full(count, -10.0)}
+    g["EM"] = rng.uniform(0.5, 3.0, count)
+    g |= {"VX": np.zeros(count), "VY": np.zeros(count)}  # which long arms leave all but unchanged
+    g |= {name: g[name] * 10.0 ** rng.uniform(0, 4, count) for name in ("DA", "DB")}
+    found, moved = solve(g, FINAL_VELOCITIES), movements(g, FINAL_VELOCITIES)
+    true = [exact(scene_at(g, i)) for i in range(count)]
+    for result in ("VAX", "VAY", "VBX", "VBY"):
+        error = [abs(float(found[result][i] - row[result])) for i, row in enumerate(true)]
+        size = [abs(float(row[result])) for row in true]
+        assert (np.array(error) <= BACKWARD_STABLE * ROUNDOFF * (moved[result] + size)).all()

@@ -33,6 +33,7 @@ DECIDED = 1e-6
 FAMILIES = {
     "friction": [*(set(POPULATIONS) - {"barriers", "pivots", "evolved"})],
     "pivot": [*(set(POPULATIONS) - {"barriers", "evolved"})],
+    "gaining_pivot": [*(set(POPULATIONS) - {"barriers", "evolved"})],
     "barrier": ["barriers"],
     "barrier_pivot": ["barriers"],
     "point": ["casework", "heavy", "extreme", "units"],
@@ -56,9 +57,16 @@ def start(family, size, seed, wide):
             )
     pivots = family.endswith("pivot")
     g["MU"] = np.full(size, PIVOT) if pivots else np.where(g["MU"] == PIVOT, 0.5, g["MU"])
+    if family == "gaining_pivot":
+        g["EM"] = above_half(g["EM"])
     if family == "point":
         g["M"] = np.full(size, 4.0)
     return g
+
+
+def above_half(em):
+    """EM above 1/2, where 1 - 2 EM is negative and a pivot may gain energy."""
+    return 0.5 + np.abs(em - 0.5)
 
 
 def units(g, of_bound):
@@ -81,7 +89,7 @@ def units(g, of_bound):
     return each
 
 
-def bred(g, rng, size):
+def bred(g, rng, size, family):
     """Children that are still of the family: an infinite body stays, and stays at rest."""
     made = child(g, rng, size)
     for body, speeds in (("A", ("UX", "UY")), ("B", ("VX", "VY"))):
@@ -92,6 +100,8 @@ def bred(g, rng, size):
                 made[name] = np.where(fixed, 0.0, made[name])
     made["M"], slides = g["M"], g["MU"] != PIVOT
     made["MU"] = np.where(slides, np.where(made["MU"] == PIVOT, 0.5, made["MU"]), PIVOT)
+    if family == "gaining_pivot":
+        made["EM"] = above_half(made["EM"])
     return made
 
 
@@ -111,7 +121,7 @@ def main():
     fit = units(best, options.bound)[own]
     began, generations = time.process_time(), 0
     while time.process_time() - began < options.seconds:
-        tried = bred(best, rng, size)
+        tried = bred(best, rng, size, options.family)
         new = units(tried, options.bound)[own]
         better = new > fit
         fit = np.where(better, new, fit)

@@ -44,8 +44,9 @@ from sys import float_info
 
 from ..names import PIVOT
 from ..native.formulas import Expression, ExpressionTable
+from ..status import Status
 from .energy import kinetic_energy
-from .statusbits import findings
+from .statusbits import UNDECIDED, findings, undecided
 
 LARGEST = float_info.max
 
@@ -57,6 +58,7 @@ def impact(
     point: bool | Expression,
     infinite: bool,
     sign: float | None = None,
+    hurried: bool = False,
 ) -> dict[str, Expression]:
     """The results of an impact by name, of the expressions of a scene's columns; beside them ``gn``
     and ``gt``, ``determinant``, which is zero where the equations have no solution, and
@@ -64,7 +66,8 @@ def impact(
 
     ``pivot``: True when MU = -10 throughout, False when nowhere, else the condition where it is.
     ``point``: the same for M = 4. ``infinite``: whether a body may be. ``sign``: what MU is
-    multiplied with instead of the sign rule.
+    multiplied with instead of the sign rule. ``hurried``: STATUS has `statusbits.UNDECIDED` instead
+    of what takes the final velocities to decide.
     """
     zero, absolute = table.constant(0.0), table.absolute
 
@@ -159,7 +162,7 @@ def impact(
         size = absolute(mu)
         straight = R * (1.0 + size) + J * (sn_ * (sn_ + size * st_))
         twisting = absolute(EM) * (Ired * (kn_ * (kn_ + size * kt_)))
-        condition = (absolute(z) * straight + twisting) / absolute(determinant)
+        condition = absolute(z) * straight + twisting
         impulse = [determinant, Pn, Pt, Px, Py]
         spins_after = [moment, spin_a, spin_b]
         return [*impulse, *spins_after, *velocities, slip, mu, mu, condition]
@@ -211,8 +214,8 @@ def impact(
         spin_b = R * kept_b - push_b + EM * turned_b
         # Of a light body that keeps little of its velocity the change has rounding errors of the
         # size of what it lost; the common velocity and a share of the final relative one have not,
-        # but spoil a small change by long arms.
-        short = levers < masses
+        # but spoil a small change by long arms. Sizes, for both are negative where EM > 1/2.
+        short = absolute(levers) < absolute(masses)
         part = table.choose(short, levers, -masses)
         share_a, share_b = ma * R_inverse, mb * R_inverse
         velocities = []
@@ -230,7 +233,7 @@ def impact(
             unless_point(moment / pivot_determinant),
             *(spin_a / pivot_determinant, spin_b / pivot_determinant),
             *(*velocities[::2], *velocities[1::2], zero, table.constant(PIVOT), zero),
-            condition / absolute(pivot_determinant),
+            condition,
         ]
 
     if isinstance(pivot, bool):
@@ -240,7 +243,7 @@ def impact(
         found = [table.choose(pivot, fixed, sliding) for fixed, sliding in pairs]
     # the moment is H/em = PM/(1 - em); the slip the tangential relative velocity at separation
     determinant, PN, PT, Px, Py, moment, spin_a, spin_b, *found = found
-    VAX, VAY, VBX, VBY, slip, MUP, sliding, cond = found
+    VAX, VAY, VBX, VBY, slip, MUP, sliding, absolute_sum = found
 
     # -- after impact
 
@@ -288,15 +291,24 @@ def impact(
     # determinant, times 3, the typical ratio to Bauer's number, the spectral radius of |A^-1||A|.
     # Over 10^4 scenes of each of the benchmark's populations within a factor 5 of it for 98 % and
     # within 55 always; for EM within 1e-1 to 1e-16 of 1/2, for 91 % and 400.
-    COND = 3.0 * cond
+    COND = 3.0 * (absolute_sum / absolute(determinant))
     turning = (an * at * ia + bn * bt * ib) * PN + kt * PM
     yielding = R + (at * at * ia + bt * bt * ib)
+    sign_of_pivot = table.choose(pivot_determinant < 0.0, table.constant(-1.0), table.constant(1.0))
     status = findings(
-        *(gn, PN, at, bt, DA, DB, lost, KI, E, EM, sliding, pivot_n, pivot_t),
+        *(gn, PN, at, bt, DA, DB, lost, KI, E, EM, sliding),
+        # of the pivot's impulse signs and ratios are asked for: its numerators, not the quotients
+        *(critical_denominator * sign_of_pivot, critical_numerator * sign_of_pivot),
         *(gt, turning, yielding, COND),
         VAX + VAY + VBX + VBY + WAF + WBF,
     )
+    if pivot is True:  # of friction none is at fault
+        del status[Status.FRICTION_ABOVE_CRITICAL], status[Status.FRICTION_WRONG_DIRECTION]
+    if hurried:
+        del status[Status.SINGULAR], status[Status.NOT_FINITE]
     bits = [condition * float(bit) for bit, condition in status.items()]
+    if hurried:
+        bits.append(undecided(determinant, absolute_sum, lost, KI) * float(UNDECIDED))
     return {
         **{"gn": gn, "gt": gt, "determinant": determinant, "PN": PN, "PT": PT, "PM": PM},
         **{"critical_denominator": critical_denominator, "VC": -gn, "VS": E * -gn},

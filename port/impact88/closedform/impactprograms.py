@@ -29,8 +29,11 @@ CIRCLE = _CIRCLE.ctypes.data
 
 
 @lru_cache(maxsize=1024)
-def program_for(kinds: Kinds, wanted: tuple[str, ...], sign: float | None = None) -> Program:
-    """No result is a negative zero, and NaN is what is not finite; COND alone may be infinite."""
+def program_for(
+    kinds: Kinds, wanted: tuple[str, ...], sign: float | None = None, hurried: bool = False
+) -> Program:
+    """``sign``, ``hurried``: see `impact`. No result is a negative zero, and NaN is what is not
+    finite; COND alone may be infinite."""
     table = ExpressionTable()
     kind = dict(zip(SCENE, kinds, strict=True))
     scene: dict[str, Expression] = {}
@@ -46,7 +49,7 @@ def program_for(kinds: Kinds, wanted: tuple[str, ...], sign: float | None = None
     if kind["M"] == "mixed":
         point = table.equals(scene["M"], 4.0)
     infinite = any("inf" in what for what in kinds)
-    found = impact(table, scene, pivot, point, infinite, sign)
+    found = impact(table, scene, pivot, point, infinite, sign, hurried)
     endings = {"COND": "RESULT_OR_INFINITE", "STATUS": "BITS"}
     return Program({x: found[x] for x in wanted}, [endings.get(x, "RESULT") for x in wanted])
 
@@ -66,7 +69,7 @@ def varying(pivot: bool, point: bool, infinite: bool = False, zeros: Iterable[st
 
 ALL = tuple(RESULTS)
 COLUMNS = tuple(SCENE)
-FORMULAS = "b8d96730f881ae5c"
+FORMULAS = "f8e1954879adabdc"
 """Digest of the bodies' programs (tests/kernels.py): the library is of the same formulas."""
 
 BODIES: dict[str, Kinds] = {
@@ -77,11 +80,16 @@ BODIES: dict[str, Kinds] = {
     "friction_without_moment": varying(False, False, True, ["EM"]),
     "smooth": varying(False, False, True, ["MU"]),
     "friction_without_arms": varying(False, False, True, ["DA", "DB"]),
+    "friction_hurried": varying(False, False, True),
+    "pivot_hurried": varying(True, False, True),
 }
 """Name -> kinds of what the machine has as a whole, written by tests/kernels.py. The first four are
-every scene there is; of the others all scenes of a call have to be."""
+every scene there is; of the others all scenes of a call have to be; the hurried leave what STATUS
+takes the final velocities for undecided (`statusbits.undecided`), and the machine looks again."""
+HURRIED = {"friction": "friction_hurried", "pivot": "pivot_hurried"}
 _MOTION = ("VC", "VS", "XA", "YA", "XB", "YB", "KI", "MUP")
 _IMPULSES = ("PN", "PT", "PM", "MUP", "DVA", "DVB", "VC", "VS")
+_WITH_STATUS = (("STATUS",), ("LOSS", "DVA", "DVB", "STATUS"))
 _SETS = (
     FINAL_VELOCITIES,
     _MOTION,
@@ -91,14 +99,14 @@ _SETS = (
     ("COND", "MUP"),
     ("XAF", "YAF", "XBF", "YBF", *FINAL_VELOCITIES),
     ("KI", "KF", *FINAL_VELOCITIES),
-    ("STATUS",),
-    ("LOSS", "DVA", "DVB", "STATUS"),
+    *_WITH_STATUS,
     ("LOSS", "DVA", "DVB", "STATUS", *FINAL_VELOCITIES),
     ALL,
 )
 KERNELS = [
     *((body, results) for body in ("friction", "pivot") for results in _SETS),
     *((body, results) for body in ("point", "point_pivot") for results in (FINAL_VELOCITIES, ALL)),
-    *((body, FINAL_VELOCITIES) for body in list(BODIES)[4:]),
+    *((body, FINAL_VELOCITIES) for body in list(BODIES)[4:7]),
+    *((body, results) for body in HURRIED.values() for results in _WITH_STATUS),
 ]
 """Body and results of each kernel, the cheapest first: the first that has what is wanted is run."""

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from .. import native
 from ..native.program import Addresses
 from ..processors import shared_out, workers
-from .columns import ORDINARY
-from .impactprograms import ALL, BODIES, CIRCLE, COLUMNS, FORMULAS
+from .columns import INERTIAS, ORDINARY
+from .impactprograms import ALL, BODIES, CIRCLE, COLUMNS, FORMULAS, HURRIED
+from .statusbits import MODERATE
 
 WORTH_A_THREAD = 32768
 """Scenes for each thread from which it pays: half a millisecond of the compiled machine, of which
@@ -20,6 +21,9 @@ starting a thread takes a fifth. With half as many two fifths; with twice as man
 scenes have one thread."""
 _LARGEST = np.finfo(np.float64).max
 _LIMITS = np.array([{**ORDINARY, "MU": (-_LARGEST, _LARGEST)}[name] for name in COLUMNS])
+_SIZES = np.array([(-MODERATE, MODERATE)] * len(COLUMNS))
+_SIZES[[COLUMNS.index(name) for name in INERTIAS], 0] = 1 / MODERATE
+_MODERATE = np.stack([np.maximum(_LIMITS, _SIZES)[:, 0], np.minimum(_LIMITS, _SIZES)[:, 1]], axis=1)
 _WITHOUT = {
     "friction_without_moment": (COLUMNS.index("EM"),),
     "smooth": (COLUMNS.index("MU"),),
@@ -43,13 +47,18 @@ def _of_these_formulas() -> bool:
 
 @lru_cache(maxsize=1024)
 def _kernels(wanted: tuple[str, ...], without: str | None) -> list[int]:
-    """Where the kernels are that compute the results ``wanted`` of each kind of scene."""
+    """Where the kernels are that compute the results ``wanted`` of each kind of scene, then the
+    hurried ones, 0 where there is none."""
     bits = sum(1 << ALL.index(name) for name in wanted)
     kernel_of, bodies = native.library.kernel_of, list(BODIES)
     kernels = [kernel_of(bodies.index(kind), bits) for kind in _KINDS]
     if without is not None:
         kernels[0] = kernel_of(bodies.index(without), bits) or kernels[0]
-    return kernels
+    hurried = [0] * len(_KINDS)
+    if "STATUS" in wanted:
+        for kind, body in HURRIED.items():
+            hurried[_KINDS.index(kind)] = kernel_of(bodies.index(body), bits) or 0
+    return kernels + hurried
 
 
 class Call:
@@ -58,13 +67,13 @@ class Call:
 
     def __init__(self, wanted: tuple[str, ...]) -> None:
         self._wanted = wanted
-        self.block = np.zeros(_KERNELS + len(_KINDS) + 2, np.int64)
+        self.block = np.zeros(_KERNELS + 2 * len(_KINDS) + 3, np.int64)
         self._at = self.block.ctypes.data
         self.columns = self.block[: len(COLUMNS)]
         self.steps = self.block[len(COLUMNS) : 2 * len(COLUMNS)]
         self._results = self.block[2 * len(COLUMNS) : _KERNELS]
         self._places = np.array([ALL.index(name) for name in wanted], np.int64)
-        self.block[-2:] = _LIMITS.ctypes.data, CIRCLE
+        self.block[-3:] = _LIMITS.ctypes.data, _MODERATE.ctypes.data, CIRCLE
         self.choose_kernels({})
 
     def choose_kernels(self, numbers: dict[int, float]) -> None:
@@ -73,7 +82,7 @@ class Call:
         zeros = {place for place, number in numbers.items() if number == 0.0}
         fit = (name for name, places in _WITHOUT.items() if zeros.issuperset(places))
         kernels = _kernels(self._wanted, next(fit, None) if zeros else None)
-        self.block[_KERNELS : _KERNELS + len(_KINDS)] = kernels
+        self.block[_KERNELS : _KERNELS + len(kernels)] = kernels
 
     def run(self, results: Addresses | Sequence[int], count: int, threads: int | None = 1) -> None:
         """Write the results wanted of ``count`` scenes to ``results``, addresses in their order."""

@@ -17,6 +17,10 @@ FRICTION_TOLERANCE = 1e-9
 or solved for, below the last digit anyone gives."""
 SIDE_TOLERANCE = 1e-9
 """How far a center may lie beyond the contact plane, of its distance to the contact point."""
+MODERATE = 1e15
+"""Largest size of a scene's numbers for `undecided`; the least inertia is its inverse."""
+UNDECIDED = 0x8000
+"""Beside STATUS's bits: set by a hurried kernel where `undecided` holds, and never seen outside."""
 LISTING_MISREADS = PIVOT
 """Line 510 takes any MU not above this for a pivot."""
 
@@ -135,6 +139,19 @@ def findings(
         Status.FRICTION_ABOVE_CRITICAL: above,
         Status.FRICTION_WRONG_DIRECTION: wrong,
     }
+
+
+def undecided(determinant: Any, absolute_sum: Any, twice_lost: Any, initial: Any) -> Any:
+    """Return where SINGULAR and NOT_FINITE are not certain to be clear, without the velocities.
+
+    ``absolute_sum``: the determinant's with absolute values, COND/3 times its size. The scene's
+    numbers are at most `MODERATE` in size, inertias at least its inverse (or infinite, of a rigid
+    barrier). No product in a velocity's numerator then exceeds 1e160, so that a determinant above
+    1e-100 leaves every velocity finite; of the energies the last comparison says it.
+    """
+    size = abs(determinant)
+    regular = absolute_sum < (SINGULAR_FROM / 6) * size
+    return ~((size > 1e-100) & regular & (abs(twice_lost) < 1e150 * initial))
 
 
 def bits(found: dict[Status, Any]) -> Any:

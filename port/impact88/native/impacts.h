@@ -56,13 +56,14 @@ EXPORT const char *formulas(void) { return FORMULAS; }
 enum kind { FRICTION, PIVOT, POINT, POINT_PIVOT, REFUSED, KINDS };
 
 /* ``column``: a number for each scene, or one for all where ``step`` is 0. ``result``: 0 where it is
-   not wanted. ``limits``: the least and the most of each column that is ordinary. */
+   not wanted. ``limits``: the least and the most of each column that is ordinary; ``moderate``: that a
+   hurried kernel takes. */
 typedef struct {
     const double *column[COLUMNS];
     int64_t step[COLUMNS];
     void *result[RESULTS];
-    kernel kernels[REFUSED];
-    const double *limits;
+    kernel kernels[REFUSED], hurried[REFUSED];
+    const double *limits, *moderate;
     const circle *circle;
 } impacts;
 
@@ -90,13 +91,14 @@ static inline ALWAYS_INLINE void find_kinds(
     }
 }
 
-/* Whether a number of a column is out of the ordinary, in scenes ``from`` to ``to``. */
-static inline ALWAYS_INLINE int64_t find_odd(const impacts *c, int64_t points, int64_t from, int64_t to)
+/* Whether a number of a column is outside the limits, in scenes ``from`` to ``to``. */
+static inline ALWAYS_INLINE int64_t find_odd(
+    const impacts *c, const double *limits, int64_t points, int64_t from, int64_t to)
 {
     int64_t odd = 0;
     for (int k = 0; k < AT_M; k++) {
         if (!c->step[k] || (points && UNUSED_BY_POINTS >> k & 1)) continue;
-        const double *x = c->column[k], least = c->limits[2 * k], most = c->limits[2 * k + 1];
+        const double *x = c->column[k], least = limits[2 * k], most = limits[2 * k + 1];
         int64_t outside = 0;
         for (int64_t i = from; i < to; i++) outside |= !((x[i] >= least) & (x[i] <= most));
         odd |= outside;
@@ -104,16 +106,16 @@ static inline ALWAYS_INLINE int64_t find_odd(const impacts *c, int64_t points, i
     return odd;
 }
 
-/* Copy ``length`` scenes from ``at`` side by side; whether a number is out of the ordinary. */
+/* Copy ``length`` scenes from ``at`` side by side; whether a number is outside the limits. */
 static inline ALWAYS_INLINE int64_t bring_near(
-    const impacts *c, int64_t points, int64_t at, int64_t length,
+    const impacts *c, const double *limits, int64_t points, int64_t at, int64_t length,
     double (*near)[AT_ONCE * STRIP + 8])
 {
     int64_t odd = 0;
     for (int k = 0; k < COLUMNS; k++) {
         if (!c->step[k]) continue;
         const double *restrict x = c->column[k] + at;
-        const double least = c->limits[2 * k], most = c->limits[2 * k + 1];
+        const double least = limits[2 * k], most = limits[2 * k + 1];
         double *restrict y = near[k];
         int64_t outside = 0;
         for (int64_t i = 0; i < length; i++) {
@@ -128,7 +130,8 @@ static inline ALWAYS_INLINE int64_t bring_near(
 /* Whether constants call for a look at each scene. Those of a rigid barrier do not: an infinite mass
    or inertia beside speeds of that body that are constants, too, and 0. ``fixed``: with angles
    within a turn. */
-static int64_t find_odd_constants(const impacts *c, int64_t points, double (*fixed)[STRIP])
+static int64_t find_odd_constants(
+    const impacts *c, const double *limits, int64_t points, double (*fixed)[STRIP])
 {
     static const int speeds[][3] = {
         {AT_MA, AT_UX, AT_UY}, {AT_IA, AT_WA, AT_WA}, {AT_MB, AT_VX, AT_VY}, {AT_IB, AT_WB, AT_WB}};
@@ -136,7 +139,7 @@ static int64_t find_odd_constants(const impacts *c, int64_t points, double (*fix
     for (int k = 0; k < COLUMNS; k++) {
         if (c->step[k] || (points && UNUSED_BY_POINTS >> k & 1)) continue;
         double y = fixed[k][0];
-        if (k == AT_M ? y == 4 || y == 6 : y >= c->limits[2 * k] && y <= c->limits[2 * k + 1]) continue;
+        if (k == AT_M ? y == 4 || y == 6 : y >= limits[2 * k] && y <= limits[2 * k + 1]) continue;
         if (!(INERTIAS >> k & 1) || y != INFINITY) return 1;
         infinite |= (int64_t)1 << k;
     }
@@ -151,34 +154,59 @@ static int64_t find_odd_constants(const impacts *c, int64_t points, double (*fix
     return bodies == 3;
 }
 
-/* Scenes of one kind from anywhere, computed once there are enough of them. */
+/* Scenes of one kind from anywhere, computed once there are enough of them: copied side by side while
+   their strip is in cache. ``slowly``: not by a hurried kernel. */
 typedef struct {
-    int64_t many, place[2 * STRIP];
+    int64_t many, slowly, place[2 * STRIP];
+    double copy[COLUMNS][2 * STRIP];
 } collection;
 
-/* The first ``n`` of a collection: copied side by side, computed, and put in place. */
+/* Add the scenes of the strip ``x`` from ``at`` on whose flags are 1, of ``count`` and as many 0 as
+   fill eights. */
+static inline ALWAYS_INLINE void collect(
+    const impacts *c, collection *into, const double *const *x, const uint8_t *flags, int64_t at,
+    int64_t count)
+{
+    int64_t many = into->many, first = many;
+    for (int64_t i = 0; i < count; i += 8) {
+        uint64_t eight;
+        memcpy(&eight, flags + i, 8);
+        if (!eight) continue;
+        for (int64_t k = i; k < i + 8; k++) {
+            into->place[many] = at + k;
+            many += flags[k];
+        }
+    }
+    into->many = many;
+    for (int k = 0; k < COLUMNS && first < many; k++)
+        for (int64_t i = first; i < many && c->step[k]; i++) into->copy[k][i] = x[k][into->place[i] - at];
+}
+
+/* The first ``n`` of a collection: computed, and put in place. ``copies``: the constants' strips. */
 static inline ALWAYS_INLINE void solve_collected(
-    const impacts *c, int k, collection *of, int64_t n, double (*copy)[STRIP], const double **copies,
-    double (*found)[STRIP])
+    const impacts *c, int k, collection *of, int64_t n, const double **copies, double (*found)[STRIP])
 {
     double *finds[RESULTS];
     int64_t padded = (n + 7) / 8 * 8, *place = of->place;
     for (int col = 0; col < COLUMNS; col++) {
         if (!c->step[col]) continue;
-        const double *x = c->column[col];
-        double *y = copy[col];
+        double *y = of->copy[col];
         copies[col] = y;
-        for (int64_t i = 0; i < n; i++) y[i] = x[place[i]];
         if (ANGLES >> col & 1) {
             int64_t large = 0;
             for (int64_t i = 0; i < n; i++) large |= !(fabs(y[i]) <= LARGE_ANGLE);
             for (int64_t i = 0; i < n && large; i++)
                 if (!(fabs(y[i]) <= LARGE_ANGLE)) y[i] = fmod(y[i], 360.0);
         }
-        for (int64_t i = n; i < padded; i++) y[i] = y[0];
+        for (int64_t i = n; i < padded; i++) y[i] = y[0]; /* only where none are left */
     }
     for (int r = 0; r < RESULTS; r++) finds[r] = found[r];
-    c->kernels[k](copies, finds, c->circle, padded / 8);
+    int64_t undecided = of->slowly || !c->hurried[k];
+    if (!undecided) {
+        c->hurried[k](copies, finds, c->circle, padded / 8);
+        for (int64_t i = 0; i < n; i++) undecided |= found[STATUS_AT][i] >= UNDECIDED;
+    }
+    if (undecided) c->kernels[k](copies, finds, c->circle, padded / 8);
     for (int r = 0; r < RESULTS; r++) {
         if (!c->result[r]) continue;
         if (r == STATUS_AT) {
@@ -190,43 +218,52 @@ static inline ALWAYS_INLINE void solve_collected(
         }
     }
     of->many -= n;
+    of->slowly &= of->many > 0;
     for (int64_t i = 0; i < of->many; i++) place[i] = place[n + i];
+    for (int col = 0; col < COLUMNS; col++)
+        for (int64_t i = 0; i < of->many && c->step[col]; i++)
+            of->copy[col][i] = of->copy[col][n + i];
 }
 
 /* Scenes ``start`` to ``stop``. */
 EXPORT CLONES void solve_impacts(const impacts *its, int64_t start, int64_t stop)
 {
     const impacts c = *its;
-    double fixed[COLUMNS][STRIP], copy[COLUMNS][STRIP], found[RESULTS][STRIP];
+    double fixed[COLUMNS][STRIP], found[RESULTS][STRIP];
     const double *in[COLUMNS], *copies[COLUMNS];
     double near[COLUMNS][AT_ONCE * STRIP + 8], *out[RESULTS];
     int64_t together = stop - start <= AT_ONCE * STRIP, first = start;
     collection collected[REFUSED];
-    int64_t odd_always, odd_somewhere = 0, odd = 0, looked = start, only_points;
+    int64_t large_always, large_somewhere = 0, large, odd_always, odd, looked = start, only_points;
     int64_t lanes = stop - start < STRIP ? (stop - start + 7) / 8 * 8 : STRIP;
 
     only_points = !c.step[AT_M] && *c.column[AT_M] == 4;
     for (int k = 0; k < COLUMNS; k++) {
-        copies[k] = copy[k];
         if (c.step[k]) continue;
         double y = *c.column[k];
         if (ANGLES >> k & 1 && !(fabs(y) <= LARGE_ANGLE)) y = fmod(y, 360.0);
         for (int64_t i = 0; i < lanes; i++) fixed[k][i] = y;
         in[k] = copies[k] = fixed[k];
     }
-    odd_always = find_odd_constants(&c, only_points, fixed);
-    for (int k = 0; k < REFUSED; k++) collected[k].many = 0;
+    /* where a hurried kernel may run, what is large is looked for first, then what is odd among it */
+    int64_t hurry = c.hurried[FRICTION] || c.hurried[PIVOT];
+    const double *limits = hurry ? c.moderate : c.limits;
+    large_always = find_odd_constants(&c, limits, only_points, fixed);
+    odd_always = hurry ? find_odd_constants(&c, c.limits, only_points, fixed) : large_always;
+    for (int k = 0; k < REFUSED; k++) collected[k].many = collected[k].slowly = 0;
 
     for (int64_t at = start; at < stop; at += STRIP) {
         int64_t many = stop - at < STRIP ? stop - at : STRIP, whole = many / 8;
         if (at >= looked) {
             int64_t length = stop - at < AT_ONCE * STRIP ? stop - at : AT_ONCE * STRIP;
-            odd_somewhere = odd_always;
-            if (together) odd_somewhere |= find_odd(&c, only_points, at, at + length);
-            else odd_somewhere |= bring_near(&c, only_points, at, length, near);
+            large_somewhere = large_always;
+            if (together) large_somewhere |= find_odd(&c, limits, only_points, at, at + length);
+            else large_somewhere |= bring_near(&c, limits, only_points, at, length, near);
             first = at, looked = at + length;
         }
-        odd = odd_always || (odd_somewhere && find_odd(&c, only_points, at, at + many));
+        large = large_always || (large_somewhere && find_odd(&c, limits, only_points, at, at + many));
+        odd = large;
+        if (large && hurry) odd = odd_always || find_odd(&c, c.limits, only_points, at, at + many);
         for (int k = 0; k < COLUMNS; k++)
             if (c.step[k]) in[k] = together ? c.column[k] + at : near[k] + (at - first);
         /* what is not wanted goes where nobody looks */
@@ -266,19 +303,34 @@ EXPORT CLONES void solve_impacts(const impacts *its, int64_t start, int64_t stop
         for (int k = 0; k < REFUSED; k++)
             if (numbers[k] > numbers[most]) most = k;
 
-        if (numbers[most] && whole) {
-            c.kernels[most](in, out, c.circle, whole);
-            for (int64_t i = 0; i < 8 * whole && status; i++) status[i] = BITS(found[STATUS_AT][i]);
+        int64_t done = numbers[most] ? 8 * whole : 0, undecided = 0;
+        if (done) {
+            int64_t hurried = !large && c.hurried[most];
+            (hurried ? c.hurried : c.kernels)[most](in, out, c.circle, whole);
+            for (int64_t i = 0; i < done && status; i++) status[i] = BITS(found[STATUS_AT][i]);
+            for (int64_t i = 0; i < done && hurried; i++) undecided += status[i] / UNDECIDED;
+            if (undecided > STRIP / 8) {
+                c.kernels[most](in, out, c.circle, whole);
+                for (int64_t i = 0; i < done; i++) status[i] = BITS(found[STATUS_AT][i]);
+                undecided = 0;
+            }
         }
-        int64_t done = numbers[most] ? 8 * whole : 0;
+        uint8_t flags[STRIP + 8] = {0};
+        if (undecided) {
+            for (int64_t i = 0; i < done; i++) {
+                int64_t here = apart ? kind[i] == most : (in[AT_MU][i] == -10) == (most & 1);
+                flags[i] = here & (status[i] / UNDECIDED);
+            }
+            collect(&c, collected + most, in, flags, at, done);
+            collected[most].slowly = 1;
+        }
         /* the rest of the strip, and what is of another kind */
         if (apart) {
             for (int k = 0; k < REFUSED; k++) {
-                collection *of = collected + k;
-                for (int64_t i = 0; i < many; i++) {
-                    of->place[of->many] = at + i;
-                    of->many += kind[i] == k && (k != most || turned[i] || i >= done);
-                }
+                for (int64_t i = 0; i < many; i++)
+                    flags[i] = (kind[i] == k) & ((k != most) | turned[i] | (i >= done));
+                collect(&c, collected + k, in, flags, at, many);
+                collected[k].slowly |= large;
             }
             for (int64_t i = 0; i < many && numbers[REFUSED]; i++)
                 for (int r = 0; r < RESULTS && kind[i] == REFUSED; r++) {
@@ -287,24 +339,23 @@ EXPORT CLONES void solve_impacts(const impacts *its, int64_t start, int64_t stop
                     else out[r][i] = NAN;
                 }
         } else {
-            collection *of = collected + most, *others = collected + (most ^ 1);
-            for (int64_t i = 0; i < done && numbers[most] < many; i++) {
-                others->place[others->many] = at + i;
-                others->many += (in[AT_MU][i] == -10) != (most & 1);
-            }
-            for (int64_t i = done; i < many; i++) {
-                int64_t here = !c.step[AT_MU] || (in[AT_MU][i] == -10) == (most & 1);
-                if (here) of->place[of->many++] = at + i;
-                else others->place[others->many++] = at + i;
+            for (int kind_of_mu = 0; kind_of_mu < 2; kind_of_mu++) {
+                int k = (most & 2) | kind_of_mu;
+                int64_t from = k == most ? done : 0;
+                if (!numbers[k] || from == many) continue;
+                for (int64_t i = 0; i < many; i++)
+                    flags[i] = ((in[AT_MU][i] == -10) == kind_of_mu) & (i >= from);
+                collect(&c, collected + k, in, flags, at, many);
+                collected[k].slowly |= large;
             }
         }
         for (int k = 0; k < REFUSED; k++)
             if (collected[k].many >= STRIP)
-                solve_collected(&c, k, collected + k, STRIP, copy, copies, found);
+                solve_collected(&c, k, collected + k, STRIP, copies, found);
     }
     for (int k = 0; k < REFUSED; k++)
         if (collected[k].many)
-            solve_collected(&c, k, collected + k, collected[k].many, copy, copies, found);
+            solve_collected(&c, k, collected + k, collected[k].many, copies, found);
 }
 
 /* A call that is made again and again: of some columns and all results wanted only the places are known,
