@@ -1015,3 +1015,9 @@ def test_a_reconstruction_begins_with_the_evidence_and_velocity_changes(
     worse = client.post("reconstruct", {"values": values, "units": ""}).get_json()
     assert worse["solutions"][0]["contradictory"]
     assert "evidence problem box" in worse["tables"]
+    verdict = worse["solutions"][0]["evidence"]
+    assert not any(verdict in line for line in worse["solutions"][0]["warnings"])
+    assert any("are widened" in line for line in worse["solutions"][0]["warnings"])
+    broken = {**values, "UX": "-29", "VAX": "-13", "E": "1.3"}
+    broken = client.post("reconstruct", {"values": broken, "units": ""}).get_json()
+    assert broken["tables"].index("Impossible: ") < broken["tables"].index("What follows")

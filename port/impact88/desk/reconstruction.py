@@ -22,7 +22,7 @@ DRAWS, _DIGITS, _DIGITS_TO_GO_ON = 20_000, 6, 12
 """Random draws for the quantiles, as many as for a collision's bounds; digits of a value shown, as
 the command prints, and of one that goes on into another computation."""
 _COLUMNS = {
-    **{"±": (3, "first_order"), "5 %": (6, "0.05"), "95 %": (6, "0.95"), "lower": (6, "lower")},
+    **{"±": (3, "spread"), "5 %": (6, "0.05"), "95 %": (6, "0.95"), "lower": (6, "lower")},
     **{"upper": (6, "upper"), "error amplified": (3, "amplified")},
 }
 """Columns of a table, the digits shown, and what stands there."""
@@ -42,8 +42,8 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     """The solutions for what is known: ``problems`` by name; ``waiting``, why there is none;
     ``units`` as `units_shown`; ``object``, what `impact88 reconstruct --json` prints;
     ``solutions``, each with the command's text (``printed``), the verdict on the ``evidence``,
-    ``rows`` and ``columns`` of a table, ``adjusted`` values, ``warnings`` and the ``scene`` (texts
-    by name, or None)."""
+    what of physics it breaks (``impossible``), ``rows`` and ``columns`` of a table, ``adjusted``
+    values, ``warnings`` and the ``scene`` (texts by name, or None)."""
     from ..reconstruction import adjustment
     from ..reconstruction.solutiontable import Exact, Impact
     from ..uncertainty.reconstructedtable import Measured
@@ -72,11 +72,13 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
             found = [best, *(Measured(solution, DRAWS, like=best) for solution in more)]
         else:
             found = Exact.all_of({name: item.nominal for name, item in known.items()})
-        solutions = [(impact.as_json(system), impact.as_text(system)) for impact in found]
+        solutions = [
+            (impact.as_json(system), impact.as_text(system), impact.impossible) for impact in found
+        ]
     except UserError as error:
         return {**answered, "waiting": str(error)}
     answered["object"] = stamped(
-        "reconstruct", {"solutions": [numbers for numbers, _ in solutions]}
+        "reconstruct", {"solutions": [numbers for numbers, *_ in solutions]}
     )
     answered["solutions"] = [_solution(case, known, *solution) for solution in solutions]
     return answered
@@ -88,7 +90,11 @@ def _read(name: str, text: str, units: str | None) -> Uncertain:
 
 
 def _solution(
-    case: Case, known: Mapping[str, Uncertain], values: Mapping[str, Any], printed: str
+    case: Case,
+    known: Mapping[str, Uncertain],
+    values: Mapping[str, Any],
+    printed: str,
+    impossible: str,
 ) -> dict[str, Any]:
     system = case.system
 
@@ -102,7 +108,11 @@ def _solution(
     for name, value in found.items():
         spread = values.get("uncertainty", {}).get(name, {})
         amplified = values.get("amplification", {}).get(name)
+        deviation = spread.get("first_order")
+        if deviation is None:  # the draws contradict it
+            deviation = spread.get("deviation")
         parts = {**spread, **spread.get("quantiles", {}), "amplified": amplified}
+        parts["spread"] = deviation
         numbers = {head: parts.get(part) for head, (_, part) in _COLUMNS.items()}
         row = {**what(name), "value": value, "known": name in values["known"], "numbers": numbers}
         row["said"] = spoken_direction(name, value, system)
@@ -122,6 +132,9 @@ def _solution(
     ]
     asked = [row for name in _ASKED for row in rows if row["name"] == name]
     evidence = values.get("evidence") or {}
+    # what stands above them is not said twice
+    verdict = f"{evidence.get('text', '')}; "
+    warnings = [line.removeprefix(verdict) for line in values["warnings"] if line not in impossible]
     return {
         "printed": printed,
         "rows": rows,
@@ -130,7 +143,8 @@ def _solution(
         "first": asked + [row for row in rows if row["solved"] and row["name"] not in _ASKED],
         "columns": [head for head in _COLUMNS if any(row["columns"][head] for row in rows)],
         "adjusted": adjusted,
-        "warnings": values["warnings"],
+        "impossible": impossible,
+        "warnings": warnings,
         "scene": _scene(case, known, {**found, **rounded}),
     }
 

@@ -88,9 +88,14 @@ class Impact:
 
     def headline(self, units: System) -> Sequence[tuple[str, str]]:
         """Return what is said before the answer: label and text."""
+        return [("IMPOSSIBLE", self.impossible)] if self.impossible else []
+
+    @property
+    def impossible(self) -> str:
+        """What of physics it breaks, in a sentence; nothing for an impact that may have been."""
         broken = int(self.values.get("STATUS", 0)) & IMPOSSIBLE
         said = "; ".join(sentences(broken))
-        return [("IMPOSSIBLE", f"{self.subject} breaks physics: {said}")] if broken else []
+        return f"{self.subject} breaks physics: {said}" if broken else ""
 
     def warnings(self, units: System = RULES) -> list[str]:
         """What a reader must know, in sentences."""

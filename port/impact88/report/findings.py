@@ -250,7 +250,7 @@ def _inverse(case: Case, source: str, samples: int, seed: int, units: System) ->
             remarks.insert(0, widened)
     whole = values, sought, spreads, remarks, scene
     told = evidence.text(units)
-    broken = "; ".join(text for label, text in spread.headline(units) if label == "IMPOSSIBLE")
+    broken = spread.impossible
     if broken:  # what the first line says is not said twice
         remarks[:] = [line for line in remarks if line not in broken]
     return Findings(True, *whole, told, evidence.contradictory, found[0].adjusted, broken)

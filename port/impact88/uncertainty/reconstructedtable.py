@@ -18,7 +18,7 @@ from ..reconstruction.solutiontable import DRIVERS, ROUNDING, Impact, completed,
 from ..reconstruction.state import COURSES, FORCES, SPEEDS
 from ..units import RULES, System, written
 from .boundstable import unbounded
-from .reconstructed import SIGMAS, Draws, Range, draws, ranges
+from .reconstructed import LEAST_GAIN, SIGMAS, Draws, Range, draws, ranges
 from .uncertain import Uncertain
 
 _RESULTS = (*VELOCITIES, *FINAL_STATE, *SPEEDS, *COURSES, "DVA", "DVB")
@@ -49,6 +49,15 @@ def _is_within_limits(solution: Reconstruction) -> bool:
     known = solution.system.known
     limits = [(item.adjusted, *known[item.name].limits(SIGMAS)) for item in solution.adjusted]
     return all(low <= value <= high for value, low, high in limits)
+
+
+def _ends(bound: Range) -> tuple[float, float]:
+    """Return the bounds, 0 where the search for them does not tell one from 0."""
+    width = bound.upper - bound.lower
+    if not math.isfinite(width):
+        return bound.lower, bound.upper
+    lower, upper = (0.0 if abs(x) < LEAST_GAIN * width else x for x in (bound.lower, bound.upper))
+    return lower, upper
 
 
 class Measured(Impact):
@@ -314,7 +323,7 @@ class Measured(Impact):
                 cells.append(number(factor * drawn.deviation, 3))
                 quantiles = [units.placed(name, q) for q in drawn.quantiles.values()]
                 quantiles = quantiles[::-1] if units.is_turned(name) else quantiles
-                limits = (*quantiles, *units.ends(name, bound.lower, bound.upper))
+                limits = (*quantiles, *units.ends(name, *_ends(bound)))
                 cells += [number(value, 5) for value in limits]
             rows.append([*cells, units.label(quantity(name).unit)])
         lines = table(rows, [*heading, "unit"], left=(0, len(heading))) if rows else []
@@ -376,7 +385,7 @@ class Measured(Impact):
         }
         if self.draws:
             drawn, bound = self.draws.spread(name, QUANTILES), self.ranges[name]
-            lower, upper = units.ends(name, bound.lower, bound.upper)
+            lower, upper = units.ends(name, *_ends(bound))
             at = (bound.at_lower, bound.at_upper)
             values = [units.placed(name, value) for value in drawn.quantiles.values()]
             if units.is_turned(name):  # quantiles stand in pairs about the half
