@@ -130,3 +130,29 @@ def test_bounds_take_in_every_draw():
     closing = math.sqrt(2 * 16500 * (1 / 100 + 1 / 80))
     assert bounds["UX"].upper == pytest.approx(36 + closing * (1 - 100 / 180), rel=1e-5)
     assert bounds["UX"].searched
+
+
+def test_an_exact_change_of_velocity_is_met_by_every_draw_and_both_roots_are_drawn():
+    """Point masses along x, MUP 0: of u, v and e flat and an exact change of velocity D of A,
+    w = -D m_a / m / (1 + e); B's velocity after is v + m_a D / m_b. The density over (v, e) is that
+    of w's derivative, 1 / (1 + e)."""
+    change, ma, mb = 15.0, 100.0, 80.0
+    known = {"M": 4.0, "MA": ma, "MB": mb, "GA": 180.0, "UY": 0.0, "VY": 0.0, "MUP": 0.0}
+    known |= {"E": read("0 .. 1", "E"), "VBX": read("normal 30 2", "VBX"), "DVA": change}
+    (first, *_) = reconstruct(known)
+    drawn = draws(first, ["UX", "VX", "E", "DVA"], 6000)
+    assert drawn.signs is not None
+    values = drawn.values
+    assert values["DVA"] == pytest.approx(change, rel=1e-9)
+    e, gained = values["E"], change * ma / mb
+    # density 1 / (1 + e) from 0 to 1
+    assert e.mean() == pytest.approx(1 / math.log(2) - 1, abs=0.012)
+    # struck from behind, or B strikes A: B gains or loses
+    struck = values["UX"] > values["VX"]
+    assert struck.mean() == pytest.approx(0.5, abs=0.05)
+    speeds = values["VX"] + gained * (2 * struck - 1)
+    assert speeds.mean() == pytest.approx(30, abs=0.12)
+    assert speeds.std() == pytest.approx(2 * 0.9866, rel=0.04)
+    bounds = ranges(first, ["VX", "UX"], 0, drawn)
+    assert bounds["VX"].lower == pytest.approx(24 - gained, rel=1e-6)
+    assert bounds["VX"].upper == pytest.approx(36 + gained, rel=1e-6)

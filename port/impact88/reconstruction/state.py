@@ -223,11 +223,16 @@ class State:
                 velocities[f"Y{vehicle}{suffix}"] = y + arm_y * spin
         return velocities
 
+    def change(self, vehicle: str) -> tuple[Any, Any]:
+        """A vehicle's change of velocity, along x and y."""
+        x, y = self.changes[:2] if vehicle == "A" else self.changes[3:5]
+        return x, y
+
     def _change(self, name: str) -> Any:
         """A vehicle's change of velocity: its size, or along its length, forward (F), or across, to
         its right (R)."""
         vehicle, part = name[2], name[3:]
-        x, y = self.changes[:2] if vehicle == "A" else self.changes[3:5]
+        x, y = self.change(vehicle)
         if not part:
             return _size(x, y)
         cosine, sine = _unit(facing(vehicle, self.values["T" + vehicle]))

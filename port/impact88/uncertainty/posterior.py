@@ -29,6 +29,7 @@ from ..reconstruction.state import (
     COURSES,
     CRUSH,
     DIRECTIONS,
+    ENERGIES,
     SPEEDS,
     State,
 )
@@ -52,6 +53,7 @@ BEYOND_DRAWS = 2.0  # bounds are sought so many times what draws span beyond the
 _CHUNK = 1 << 13  # impacts at a time: bounds the memory
 _JUMPS = 0.1  # steps the length of a difference of two particles, which join branches
 _INDEPENDENT = 1e-9  # smallest over largest singular value of what is determined
+MAX_NEIGHBOURS = 12  # tried, nearer and nearer, for one that an exact value allows
 STANDSTILL_STEPS = 25  # Newton's, to a speed of 0
 STILL = 1e-9  # of a typical speed: none
 _RANK = 1e-10  # singular values up to so much of the largest are none
@@ -69,13 +71,17 @@ FARTHEST = 20.0  # velocities before are at most so many times the largest speed
 LARGEST_COEFFICIENT = 20.0  # and so are coefficients that nothing is known of, either way
 LINEAR = (*SPEEDS, *DIRECTIONS, "VC", "VS", "DVAF", "DVAR", "DVBF", "DVBR")
 """Exact quantities that are linear conditions; speeds with their courses exact."""
+QUADRATIC = (*SPEEDS, "DVA", "DVB", *ENERGIES)
+"""Exact quantities of which one may be a condition: along a line its equation is quadratic."""
 
 
 class Posterior:
     """The distribution of the impacts that agree with what is known, begun about a solution and
     those found beside it.
 
-    ``supported``: whether the exact values are all linear conditions; ``closed``: whether they and
+    ``supported``: whether the exact values are all linear conditions, but for one at most, which is
+    ``curved``: its equation is quadratic along the last coordinate, that is solved for, and which
+    of the two roots a point has is its sign's size, 1 or 2; ``closed``: whether they and
     the values within limits determine impacts in general, though perhaps not the solution: where
     there is no impulse, say, coefficients are open."""
 
@@ -92,14 +98,13 @@ class Posterior:
         self.scales = np.array([scales[n] for n in self.unknown])
         laws = [n for n in COEFFICIENTS if not (system.point and n == "EM")]
         self.laws, self.open = laws, [n for n in laws if n not in self.known]
-        after = [n for n in system.exact if n not in (*LINEAR, *CRUSH)]
         self.exact = [n for n in system.exact if n not in loose and n not in CRUSH]
-        curved = ("DVA", "DVB", "KI", "KF", "EL", "LOSS", "DT")
+        along = [speed for course, speed in COURSES.items() if course in self.exact]
+        curved = [n for n in self.exact if n in QUADRATIC and n not in along]
+        self.curved = curved[0] if curved else None
+        self.exact = [n for n in self.exact if n != self.curved]
         # friction that is a share of each impact's own critical one is no linear condition
-        self.supported = not any(n in curved for n in after) and "MUC" not in system.constants
-        for course, speed in COURSES.items():
-            if speed in self.exact and course not in self.exact:
-                self.supported = False
+        self.supported = len(curved) <= 1 and "MUC" not in system.constants
         crush = [n for n in CRUSH if n in self.known]
         self.crush: list[str] = sorted(crush, key=lambda n: self.known[n].varies, reverse=True)
         self.supported &= not crush or (bool(self.crush) and self.known[self.crush[0]].varies)
@@ -152,20 +157,90 @@ class Posterior:
         rank = int((s > _RANK * s.max(initial=0.0)).sum())
         self.basis = _unique_basis(vt[rank:])
         self.supported &= rank == len(matrix)
-        self.size = len(self.basis) + len(self.inputs)
-        for y, own in zip(ys, parameters, strict=True):
+        if self.curved is not None and self.supported and len(self.basis):
+            self._turn(ys[0], parameters[0])
+        self.free = len(self.basis) - (self.curved is not None)
+        self.size = self.free + len(self.inputs)
+        self.supported &= self.free >= 0
+        for i, (y, own) in enumerate(zip(ys, parameters, strict=True)):
             z = self.basis @ (np.array(y) / self.scales)
-            self.centers.append(np.concatenate([z, own]))
+            if self.curved is not None and self.supported:
+                # which of the two roots it is: the one beside it
+                turned = self.signs[i] * np.array([1.0, 2.0])
+                twice = np.tile(np.concatenate([z[:-1], own])[:, None], 2)
+                lifted, _ = self._lifted(twice[: self.free], twice[self.free :], turned)
+                away = np.abs(np.real(lifted[-1]) - z[-1])
+                self.signs[i] = float(turned[int(np.nan_to_num(away, nan=np.inf).argmin())])
+            self.centers.append(np.concatenate([z[: self.free], own]))
         self.closed = self.supported and self.size > 0 and self._determines()
+
+    # -- one exact value that is no linear condition
+
+    def _curve(self, y: Array, inputs: Array) -> Array:
+        """Return what the quadratic equation of the curved value leaves over, at scaled
+        unknowns."""
+        name = self.curved
+        assert name is not None
+        values = self._values(inputs)
+        here = Geometry(values) if self.varied else self.geometry
+        scaled = dict(zip(self.unknown, y * self.scales[:, None], strict=True))
+        state, target = State({**values, **scaled}, here), self.known[name].nominal
+        if name in ("LOSS", "DT"):
+            share = target / (100.0 if name == "LOSS" else 1.0)
+            missed = state.energy_lost - share * state.initial_energy
+            return np.asarray(missed / self.system.scale("EL"))
+        if name in ENERGIES:
+            return np.asarray((state[name] - target) / self.system.scale("EL"))
+        x, across = (state[n] for n in SPEEDS[name]) if name in SPEEDS else state.change(name[2])
+        missed = x * x + across * across - target * target
+        return np.asarray(missed / self.system.scale(name) ** 2)
+
+    def _turn(self, y: Sequence[float], inputs: Sequence[float]) -> None:
+        """Turn the basis so that the last direction is the one along which the curved value changes
+        most at the solution."""
+        aside = (np.array(y) / self.scales)[:, None] + 1j * TINY * self.basis.T
+        own = np.tile(np.array(inputs)[:, None], len(self.basis)).reshape(len(inputs), -1)
+        slope = np.imag(self._curve(aside, own)) / TINY
+        size = np.linalg.norm(slope)
+        direction = slope / size if size > 0 else np.eye(len(slope))[-1]
+        others = _unique_basis_across(direction)
+        self.basis = np.concatenate([others, direction[None]]) @ self.basis
+
+    def _lifted(self, z: Array, inputs: Array, signs: Array) -> tuple[Array, Array]:
+        """Return all coordinates of points where the curved value is what it is known to be, and
+        how fast its equation changes with the last one, squared (negative: nowhere)."""
+        friction, upper = np.sign(signs), np.abs(signs) < 1.5
+        rows, right, _, _ = self._conditions(inputs, friction)
+        count = z.shape[1]
+        basis = np.broadcast_to(self.basis[:, :, None], (*self.basis.shape, count))
+        matrix = np.concatenate([rows, basis]).transpose(2, 0, 1)
+        at = [
+            self._curve(
+                _solutions(matrix, np.concatenate([right, z, np.full((1, count), t)]).T).T, inputs
+            )
+            for t in (-1.0, 0.0, 1.0)
+        ]
+        c, b, a = at[1], (at[2] - at[0]) / 2, (at[2] + at[0]) / 2 - at[1]
+        square = b * b - 4 * a * c
+        root = np.sqrt(np.where(np.real(square) >= 0, square, np.nan))
+        root = np.where(upper, root, -root)
+        # without a difference of nearly equal numbers
+        plain = np.real(b) * np.real(root) <= 0
+        last = np.where(plain, (root - b) / (2 * a), -2 * c / (b + root))
+        return np.concatenate([z, last[None]]), square
 
     def _determines(self) -> bool:
         """Return whether values within limits tell apart any two neighbours of an ordinary impact:
         one at a random distance from the solution."""
         rng = np.random.default_rng(0)
         spread = [self.known[n].standard_deviation for n in self.inputs]
-        aside = np.concatenate([np.full(len(self.basis), BROAD), spread])
-        point = self.centers[0] + aside * rng.standard_normal(self.size)
-        slopes = self._slopes(point, self.signs[0])
+        aside = np.concatenate([np.full(self.free, BROAD), spread])
+        for _ in range(1 if self.curved is None else MAX_NEIGHBOURS):
+            point = self.centers[0] + aside * rng.standard_normal(self.size)
+            slopes = self._slopes(point, self.signs[0])
+            if np.abs(slopes).sum(axis=0).all():
+                break
+            aside = aside / 2  # beyond where the curved value can be met
         sizes = np.linalg.norm(slopes, axis=0)
         if not (sizes > 0).all():
             return False
@@ -236,8 +311,11 @@ class Posterior:
     ) -> tuple[State, Array, Array]:
         """Return the impacts at points (coordinates, n), the logarithm of the Jacobian determinant
         there if ``weighed``, and where exact courses are driven along, not against."""
-        split = len(self.basis)
-        z, inputs = points[:split], points[split:]
+        z, inputs = points[: self.free], points[self.free :]
+        square: Any = 1.0
+        if self.curved is not None:
+            z, square = self._lifted(z, inputs, signs)
+        signs = np.sign(signs)
         rows, right, above, below = self._conditions(inputs, signs)
         count = points.shape[1]
         self.progress(count)
@@ -249,6 +327,9 @@ class Posterior:
         scaled = dict(zip(self.unknown, y * self.scales[:, None], strict=True))
         state = State({**values, **scaled}, here)
         volume = self._volume(matrix, y, above, below, values, signs) if weighed else np.zeros(1)
+        if self.curved in ("LOSS", "DT"):
+            volume = volume + np.log(np.abs(state.initial_energy))
+        volume = volume - 0.5 * np.log(np.abs(square))
         along = np.ones(count, bool)
         for name in (*self.exact, *self.implied):
             if name in DIRECTIONS:
@@ -420,7 +501,7 @@ class Posterior:
         roots = []
         deviations = np.array([self.known[n].standard_deviation for n in self.inputs])
         # what first order hardly tells is as wide as velocities may be
-        weak = np.concatenate([np.full(len(self.basis), WIDENING / FARTHEST), 0 * deviations])
+        weak = np.concatenate([np.full(self.free, WIDENING / FARTHEST), 0 * deviations])
         about = [c for c in zip(self.centers, self.signs, strict=True) if self._is_near(*c)]
         about = about or [(self.centers[0], self.signs[0])]
         for center, sign in about:
@@ -435,11 +516,17 @@ class Posterior:
                 root = np.diag(1 / np.sqrt(square.diagonal()))
             roots.append(WIDENING * root / sizes[:, None])
         # far from all that was found, too: what first order knows nothing of
-        wide = np.diag(np.concatenate([np.full(len(self.basis), BROAD), deviations]))
-        roots += [wide] * len(roots)
-        centers, own_signs = [c for c, _ in about] * 2, [sign for _, sign in about] * 2
-        shares = np.repeat([1 - BROAD_FRACTION, BROAD_FRACTION], len(about))
-        shares = shares / shares.sum()
+        wide = np.diag(np.concatenate([np.full(self.free, BROAD), deviations]))
+        everywhere = list(about)
+        if self.curved is not None:
+            everywhere += [(center, _other_root(sign)) for center, sign in about]
+        roots += [wide] * len(everywhere)
+        centers = [center for center, _ in (*about, *everywhere)]
+        own_signs = [float(sign) for _, sign in (*about, *everywhere)]
+        shares = np.repeat(
+            [(1 - BROAD_FRACTION) / len(about), BROAD_FRACTION / len(everywhere)],
+            [len(about), len(everywhere)],
+        )
         which = rng.choice(len(roots), size=count, p=shares)
         normal = rng.standard_normal((count, self.size))
         chi = np.sqrt(rng.chisquare(FREEDOM, count) / FREEDOM)
@@ -515,6 +602,8 @@ class Posterior:
             turned = signs[own]
             if self.unsigned:
                 turned = np.where(rng.random(len(own)) < _JUMPS, -turned, turned)
+            if self.curved is not None:  # to the equation's other root
+                turned = np.where(rng.random(len(own)) < _JUMPS, _other_root(turned), turned)
             after = (*self.logarithms(tried, turned), first(tried, turned))
             before = tuple(part[own] for part in parts)
             gain = _tempered(after, hardness) - _tempered(
@@ -537,7 +626,7 @@ class Ground:
     def __init__(self, posterior: Posterior, names: Sequence[str], drawn: Floats) -> None:
         self.posterior, self.names = posterior, names
         self.ratios = [n for n in names if n in posterior.open]
-        split = len(posterior.basis)
+        split = posterior.free
         low, high = drawn[:split].min(axis=1), drawn[:split].max(axis=1)
         reach = BEYOND_DRAWS * (high - low)
         limits = [posterior.items[n] for n in posterior.inputs]
@@ -620,6 +709,16 @@ class Ground:
         posterior = self.posterior
         state, _, _ = posterior.impacts(self.points(u[None]), np.array([sign]), weighed=False)
         return {n: float(np.ravel(posterior._observed(state, n)[0])[0]) for n in posterior.items}
+
+
+def _other_root(signs: Any) -> Any:
+    return np.sign(signs) * (3.0 - np.abs(signs))
+
+
+def _unique_basis_across(direction: Floats) -> Floats:
+    """Return an orthonormal basis of all that is orthogonal to a direction."""
+    projector = np.eye(len(direction)) - np.outer(direction, direction)
+    return _unique_basis(np.linalg.svd(projector)[2][: len(direction) - 1])
 
 
 def _solutions(matrices: Array, right: Array) -> Array:

@@ -185,7 +185,7 @@ def _extremes(
     box = _Box(solution, names, progress)
     endless = _endless(box, solution.system.known, names)
     endless |= {n for i, n in enumerate(ground.ratios, len(names)) if lower[i] < 0 < upper[i]}
-    free = slice(0, len(posterior.basis))
+    free = slice(0, posterior.free)
     found = {}
     for i, name in enumerate(names):
         low, high = (ground.values(ends[side, i], states[side, i]) for side in (0, 1))
