@@ -118,3 +118,19 @@ def test_a_search_for_draws_that_finds_nothing_accuses_nobody(monkeypatch):
         assert found.evidence.contradictory == contradictory
         lines = " ".join(found.warnings())
         assert ("found none there" in lines) != contradictory
+
+
+def test_amounts_of_the_verdict_are_written_out():
+    """No exponent for an energy, no probability smaller than tolerances can mean, the unit with
+    both amounts, and what was exact was given, not measured."""
+    from impact88.reconstruction.evidence import weigh
+    from impact88.units import SYSTEMS
+
+    energy = {"EL": (4e5, 205_812.0, -9.0, 0.5), "HAF": (140.0, 156.6, 2.0, 0.5)}
+    text = weigh(1470.2, 2, energy).text(SYSTEMS["us"])
+    assert "kinetic energy lost EL (400,000 ft-lb measured, 205,800 ft-lb adjusted)" in text
+    assert "1,470 where about 2 is expected; probability below 1e-12" in text
+    text = weigh(1470.2, 2, energy, exact=True).text(SYSTEMS["us"])
+    assert "(400,000 ft-lb given, " in text
+    text = weigh(14.0, 2, {"HAF": (140.0, 156.6, 2.0, 0.5)}).text(SYSTEMS["us"])
+    assert "course of A after impact HAF (140° measured, 156.6° adjusted)" in text

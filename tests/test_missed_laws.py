@@ -8,7 +8,10 @@ import pytest
 
 from impact88.cli import main
 from impact88.closedform.solve import solve
+from impact88.errors import UserError
+from impact88.names import FINAL_STATE
 from impact88.reconstruction.laws import missed_laws
+from impact88.reconstruction.unknowns import solve_for
 from impact88.scene import sample
 from impact88.units import SYSTEMS
 
@@ -167,3 +170,14 @@ def test_point_masses_are_tested_along_one_line():
     assert laws["E"].present == pytest.approx(e + 1 / u)
     (law,) = missed_laws({**known, "EL": 0.5 * (1 - e * e) * u * u / (1 / ma + 1 / mb) + 100})
     assert (law.law, law.amount) == ("EL", pytest.approx(100))
+
+
+def test_where_nothing_is_unknown_the_laws_missed_are_told():
+    """All twelve velocities and the coefficients: one velocity off is told by its laws."""
+    scene = {n: float(text) for n, text in sample(1).items()}
+    after = {n: float(v) for n, v in solve(scene, (*FINAL_STATE, "MUP")).items()}
+    known = {**{n: v for n, v in scene.items() if n != "MU"}, **after}
+    with pytest.raises(UserError, match="nothing is unknown; leave out"):
+        solve_for(known)
+    with pytest.raises(UserError, match=r"nothing is unknown, and .* momentum along n is missed"):
+        solve_for({**known, "VAX": known["VAX"] + 1})

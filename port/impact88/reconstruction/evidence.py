@@ -27,6 +27,7 @@ EQUALLY = 0.9
 """Values that add at least this share of what the largest adds are named with it."""
 NOISE = 1e-9  # sums of squares of measurements that agree to the last digit
 MOST_NAMED = 3  # values at odds that are named
+LEAST_PROBABILITY = 1e-12  # less is beyond what tolerances can mean
 AGREE, STRAINED, CONTRADICT = "agree", "agree poorly", "contradict"
 UNCHECKED = "not checked"
 
@@ -75,7 +76,7 @@ class Evidence:
     @property
     def sum_text(self) -> str:
         """The sum of squares as it is printed: what is rounding is 0."""
-        return number(self.squares if self.squares > NOISE else 0.0, 3)
+        return _amount(self.squares if self.squares > NOISE else 0.0, 3)
 
     def text(self, units: System = RULES) -> str:
         """Return the verdict in a sentence or two."""
@@ -86,7 +87,7 @@ class Evidence:
             return f"these exact values contradict one another{laws}; {self.named(units)}"
         sums = (
             f"sum of squared adjustments, in standard deviations, {self.sum_text} where about "
-            f"{self.redundancy} is expected; probability {number(self.probability, 2)}"
+            f"{self.redundancy} is expected; probability {_probability(self.probability)}"
         )
         if not self.contradictory:
             return f"the measurements {self.verdict}: {sums}"
@@ -103,10 +104,11 @@ class Evidence:
             # what the table of names says besides is for the tables
             meaning = re.split("[:;,]| as printed", quantity(item.name).meaning)[0]
             measured, adjusted = (
-                number(units.placed(item.name, float(x)), 4) + unit
+                _amount(units.placed(item.name, float(x))) + unit
                 for x in (item.measured, item.adjusted)
             )
-            parts.append(f"{meaning} {item.name} ({measured} measured, {adjusted} adjusted)")
+            word = "given" if self.exact else "measured"
+            parts.append(f"{meaning} {item.name} ({measured} {word}, {adjusted} adjusted)")
         text = "most at odds: " + "; ".join(parts)
         if len(self.at_odds) > 1:
             text += ", each as much"
@@ -135,6 +137,17 @@ class Evidence:
             "most_at_odds": rows,
             "laws_missed": [law.text(units) for law in self.laws],
         }
+
+
+def _amount(value: float, digits: int = 4) -> str:
+    """Return an amount to so many digits, without an exponent up to a billion."""
+    text = number(value, digits)
+    return f"{float(text):,.0f}" if "e+" in text and abs(value) < 1e9 else text
+
+
+def _probability(value: float) -> str:
+    """Return a probability to two digits."""
+    return number(value, 2) if value >= LEAST_PROBABILITY else f"below {LEAST_PROBABILITY:g}"
 
 
 def weigh(

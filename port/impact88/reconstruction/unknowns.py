@@ -63,6 +63,16 @@ _NOTHING, _OPEN = 1e-12, 1e-9
 of what is left open in a quantity, and equations' mismatch."""
 
 
+def _disagreement(values: Mapping[str, Any]) -> str:
+    """Return by how much values of which nothing is unknown miss a law, "" where they miss none."""
+    from .laws import missed_laws, told
+
+    if any(np.ndim(value) for value in values.values()):
+        return ""
+    laws = told(missed_laws({n: float(v) for n, v in values.items()}))
+    return f", and the values contradict one another: {laws}" if laws else ""
+
+
 class UnsolvableError(UserError):
     """The unknowns asked for are not determined; the message is the reason."""
 
@@ -210,7 +220,9 @@ class _Problem:
             if name not in self.absent:
                 raise UserError(f"{name} is both known and wanted; leave it out of one")
         if not self.wanted:
-            raise UserError("nothing is unknown; leave out the values to solve for")
+            raise UserError(
+                f"nothing is unknown{_disagreement(given)}; leave out values to solve for"
+            )
         try:
             self.shape = np.broadcast_shapes(*(value.shape for value in given.values()))
         except ValueError:

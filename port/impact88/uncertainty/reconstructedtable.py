@@ -183,6 +183,9 @@ class Measured(Impact):
             for name in folded[:MOST_FOLDED]:
                 value, scale = solution.values[name], solution.system.scale(name)
                 value = 0.0 if abs(value) < 1e-6 * scale else value
+                # a direction opposite to the axis is 180, from either side
+                opposite = name in (*COURSES, *FORCES) and value < -179.9995
+                value = 180.0 if opposite else value
                 texts.append(f"{name} about {number(units.placed(name, value), 4)}")
             amounts = ", ".join(texts)
             both = ", and draws and bounds have both" if self.draws else ""
