@@ -37,10 +37,10 @@ def main() -> None:
     with TemporaryDirectory() as name:
         folder = Path(name)
         copy = shutil.copytree(PACKAGE, folder / "impact88")
-        for built in copy.glob("native/_machine*"):
+        for built in copy.glob("mechanics/native/_machine*"):
             built.unlink()
-        library = copy / "native" / "_machine.so"
-        source = str(copy / "native" / "machine.c")
+        library = copy / "mechanics" / "native" / "_machine.so"
+        source = str(copy / "mechanics" / "native" / "machine.c")
         subprocess.run([COMPILER, *FLAGS, *SANITIZERS, "-o", library, source, "-lm"], check=True)
         probe = "from impact88 import native; print(native.__file__, native.accelerated)"
         given = {"env": environment(folder), "check": True, "timeout": SECONDS}

@@ -19,7 +19,7 @@ from hypothesis import settings
 from pytest_regressions.file_regression import FileRegressionFixture
 
 from captures import ROOT
-from impact88 import native
+from impact88.mechanics import native
 
 LONGEST = (
     *("compare", "causes", "scans", "desk_browser", "desk", "scan_pages", "installed", "fuzz"),

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from impact88.checking.captured import left_behind, stored
 from impact88.program import emulated
 from impact88.program.run import run as run_port
-from impact88.scene import Scene
+from impact88.program.scene import Scene
+from impact88.qualification.captured import left_behind, stored
 
 Report = tuple[int, dict[str, str], list[str] | None]
 

@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 
 import mpmath
 
-from impact88.accuracy.elimination import ORDER, eliminate, listing_rows
-from impact88.accuracy.reference import (
+from impact88.mechanics.accuracy.elimination import ORDER, eliminate, listing_rows
+from impact88.mechanics.accuracy.reference import (
     DIGITS,
     GUARD,
     Exact,

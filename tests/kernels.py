@@ -11,9 +11,16 @@ import hashlib
 import math
 import textwrap
 
-from impact88.closedform.impactprograms import ALL, BODIES, COLUMNS, HURRIED, KERNELS, program_for
-from impact88.closedform.statusbits import UNDECIDED
-from impact88.native.program import Program
+from impact88.mechanics.closedform.impactprograms import (
+    ALL,
+    BODIES,
+    COLUMNS,
+    HURRIED,
+    KERNELS,
+    program_for,
+)
+from impact88.mechanics.closedform.statusbits import UNDECIDED
+from impact88.mechanics.native.program import Program
 
 HEAD = """\
 /* Made from the formulas of closedform/impact.py by tests/kernels.py: not to be edited. */

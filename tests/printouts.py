@@ -9,9 +9,9 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import captures
-from impact88.fields import ANGLES, FIELDS
-from impact88.reading.plaintext import decoded
-from impact88.reading.printout import Printout, read_printouts
+from impact88.collision.fields import ANGLES, FIELDS
+from impact88.verification.reading.plaintext import decoded
+from impact88.verification.reading.printout import Printout, read_printouts
 
 SWEEP = int(os.environ.get("IMPACT88_SWEEP") or 0)
 """Set to n: every captured scene, and n changes of each; else a sample that takes seconds. A sweep

@@ -6,7 +6,7 @@
 PAGES is a folder of pictures with ``truth.jsonl.gz``, an object a picture: ``file``, ``kind``,
 ``prints`` and, of an altered page, ``altered`` or ``how``. Pages come in an order that is shuffled
 once and for all, so that a run cut short is a sample; each is a line of RESULTS.jsonl, and pages
-already there are passed over. ``table`` prints what `impact88.scan.rates.COUNTS` holds.
+already there are passed over. ``table`` prints what `scan.rates.COUNTS` holds.
 """
 
 import gzip
@@ -30,7 +30,7 @@ def offered(folder: Path, part: int, parts: int) -> Iterator[dict[str, Any]]:
 
 def run(folder: Path, results: Path, part: int = 0, parts: int = 1) -> None:
     """Verify each page that is not among the results yet, and add it to them."""
-    from impact88.reporting.examination import examine
+    from impact88.verification.reporting.examination import examine
 
     lines = results.read_text(encoding="utf-8").splitlines() if results.exists() else []
     done = {json.loads(line)["file"] for line in lines}

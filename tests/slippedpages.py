@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 
 import machines
 import printouts
-from impact88.explaining.causes import Cause
-from impact88.fields import ANGLES, INPUTS
+from impact88.collision.fields import ANGLES, INPUTS
+from impact88.verification.explaining.causes import Cause
 
 Row = dict[str, Any]
 Named = Callable[[Cause], bool]

@@ -12,17 +12,17 @@ import numpy as np
 import pytest
 
 from impact88.chapter.staged import collisions, fit
-from impact88.cli import main
-from impact88.closedform.solve import solve
+from impact88.collision.uncertain import Uncertain, fixed, read
+from impact88.commands.cli import main
 from impact88.errors import UserError
+from impact88.mechanics.closedform.solve import solve
+from impact88.mechanics.state import State
+from impact88.program.scene import Scene, sample
 from impact88.reconstruction.adjustment import polished, reconstruct, straight
-from impact88.reconstruction.state import State
+from impact88.reconstruction.reconstructed import draws, ranges
+from impact88.reconstruction.reconstructedtable import Measured
 from impact88.reconstruction.system import System
 from impact88.reconstruction.unknowns import solve_for
-from impact88.scene import Scene, sample
-from impact88.uncertainty.reconstructed import draws, ranges
-from impact88.uncertainty.reconstructedtable import Measured
-from impact88.uncertainty.uncertain import Uncertain, fixed, read
 
 GEOMETRY = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
 INITIAL = ("UX", "UY", "WA", "VX", "VY", "WB")

@@ -10,7 +10,7 @@ from math import pi
 
 import pytest
 
-from impact88.case import in_base_units as in_base
+from impact88.collision.case import in_base_units as in_base
 from impact88.errors import UserError
 
 FOOT, POUND = Fraction("0.3048"), Fraction("0.45359237")

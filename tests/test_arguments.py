@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import impact88
-from impact88.argumentkinds import described, fits
-from impact88.arguments import explains_arguments
+from impact88.messages.argumentkinds import described, fits
+from impact88.messages.arguments import explains_arguments
 
 SCENE = impact88.sample(1)
 NUMBERS = SCENE.numbers()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import captures
-from impact88.checking import captured
+from impact88.qualification import captured
 
 
 @pytest.mark.captures

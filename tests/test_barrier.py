@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from impact88 import barrier, sample, solve, solve_for
 from impact88.chapter.barrier import BARRIER, BARRIER_AFTER, VEHICLE
+from impact88.collision.geometry import GEOMETRY, clock, facing
 from impact88.errors import UserError
-from impact88.reconstruction.geometry import GEOMETRY, clock, facing
-from impact88.reconstruction.outcome import forces
-from impact88.reconstruction.state import State
+from impact88.mechanics.outcome import forces
+from impact88.mechanics.state import State
 from reference_cases import cases_of
 
 (CASE,) = cases_of("barrier")

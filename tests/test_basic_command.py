@@ -14,7 +14,7 @@ import pytest
 
 from impact88.files import packaged_text
 from impact88.program.run import run
-from impact88.scene import sample
+from impact88.program.scene import sample
 from installed import COMMAND, impact88
 
 REPLIES = "-29.04,0,0\n14.52,25.15,0\n"

@@ -15,11 +15,11 @@ from impact88.bench import figure, measure, plainc, tables
 from impact88.bench.measure import COMPONENTS
 from impact88.bench.methods import METHODS, reference, relative_errors
 from impact88.bench.populations import BENCHMARK, POPULATIONS, enlarged, scenes, texts
-from impact88.cli import main
-from impact88.closedform.solve import solve
+from impact88.commands.cli import main
 from impact88.figures import canvas
+from impact88.mechanics.closedform.solve import solve
+from impact88.messages.progress import progress
 from impact88.names import FINAL_VELOCITIES
-from impact88.progress import progress
 
 
 @pytest.fixture(autouse=True)

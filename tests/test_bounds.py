@@ -11,22 +11,18 @@ import numpy as np
 import pytest
 
 from impact88.bench.populations import scenes
-from impact88.closedform.solve import quantities
+from impact88.collision import uncertain
+from impact88.collision.uncertain import Uncertain, fixed, read
 from impact88.errors import UserError
+from impact88.mechanics.closedform.solve import quantities
+from impact88.mechanics.outcome import forward_model, reconstruction_model
 from impact88.names import FINAL_VELOCITIES, SCENE, VELOCITIES, quantity
-from impact88.reconstruction.outcome import forward_model, reconstruction_model
-from impact88.scene import sample
+from impact88.optimization.extremes import Piece
+from impact88.program.scene import sample
 from impact88.status import Status
-from impact88.uncertainty import uncertain
-from impact88.uncertainty.bounds import (
-    RECONSTRUCTED,
-    _ranks,
-    bounds,
-)
+from impact88.uncertainty.bounds import RECONSTRUCTED, _ranks, bounds
 from impact88.uncertainty.boundstable import as_json, table
-from impact88.uncertainty.extremes import Piece
 from impact88.uncertainty.ranges import input_names, read_correlations, read_inputs
-from impact88.uncertainty.uncertain import Uncertain, fixed, read
 
 
 def values(number: int = 1, **ranges: str) -> dict[str, Uncertain]:

@@ -10,10 +10,10 @@ import sys
 
 import pytest
 
-from impact88.cli import main
-from impact88.closedform.solve import solve
 from impact88.commands import bounds_command as command
-from impact88.scene import sample
+from impact88.commands.cli import main
+from impact88.mechanics.closedform.solve import solve
+from impact88.program.scene import sample
 
 RANGES = ["--range", "MU=0.7 .. 1", "--range", "UX=+- 10%"]
 DVA = ["--outputs", "DVA"]

@@ -13,14 +13,14 @@ import pytest
 
 import bugs
 import heldout
-from impact88.checking.compare import Comparison, compare
-from impact88.checking.constants import KNOWN, fitted
-from impact88.checking.diagnosis import OTHER_ROWS
-from impact88.checking.trials import Judge, Program
-from impact88.checking.vectors import CASEWORK, scenes
-from impact88.equations.edits import edits_on, variants
-from impact88.equations.evaluation import Run
-from impact88.equations.spelling import spellings
+from impact88.comparison.compare import Comparison, compare
+from impact88.comparison.constants import KNOWN, fitted
+from impact88.comparison.diagnosis import OTHER_ROWS
+from impact88.comparison.equations.edits import edits_on, variants
+from impact88.comparison.equations.evaluation import Run
+from impact88.comparison.equations.spelling import spellings
+from impact88.comparison.trials import Judge, Program
+from impact88.comparison.vectors import CASEWORK, scenes
 from impact88.names import FINAL_VELOCITIES, SCENE
 
 SWEEP = os.environ.get("IMPACT88_SWEEP")

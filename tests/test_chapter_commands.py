@@ -11,7 +11,7 @@ import pytest
 
 from impact88.chapter.deltav import ERROR
 from impact88.chapter.staged import collisions
-from impact88.cli import main
+from impact88.commands.cli import main
 
 TABLE_3_AFTER = """
 title = "Table 3, after"

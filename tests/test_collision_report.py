@@ -16,10 +16,10 @@ import numpy as np
 import pytest
 
 from impact88 import solve
-from impact88.cli import main
 from impact88.commands import reconstruct_command
+from impact88.commands.cli import main
+from impact88.program.scene import sample
 from impact88.reconstruction import adjustment
-from impact88.scene import sample
 
 pytest.importorskip("jinja2")
 

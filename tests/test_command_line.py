@@ -14,9 +14,9 @@ from pathlib import Path
 import pytest
 
 import impact88
-from impact88.cli import COMMANDS, main
 from impact88.commands import CHAPTER, CHAPTER_MEANING, GROUPS
-from impact88.scene import Scene, sample
+from impact88.commands.cli import COMMANDS, main
+from impact88.program.scene import Scene, sample
 from installed import COMMAND, process
 from installed import impact88 as command
 
@@ -368,7 +368,7 @@ def test_interrupt_signal_at_a_prompt_leaves_without_a_traceback() -> None:
 def test_first_commands_import_neither_numpy_nor_matplotlib() -> None:
     code = (
         "import sys\n"
-        "from impact88.cli import main\n"
+        "from impact88.commands.cli import main\n"
         "commands = ['run --sample 1', 'scene', '--help']\n"
         "status = max(main(command.split()) for command in commands)\n"
         "heavy = {'numpy', 'matplotlib', 'mpmath', 'scipy'} & set(sys.modules)\n"
@@ -383,7 +383,7 @@ def test_first_commands_import_neither_numpy_nor_matplotlib() -> None:
 def test_running_the_1988_program_loads_little() -> None:
     """Start-up is most of the time of a short run: numpy and typing alone would double it."""
     loads = "import sys; known = set(sys.modules); "
-    loads += "import impact88.cli, impact88.commands.run_command; "
+    loads += "import impact88.commands.cli, impact88.commands.run_command; "
     loads += "print(*sorted(set(sys.modules) - known))"
     done = subprocess.run([sys.executable, "-c", loads], capture_output=True, text=True, check=True)
     assert not {"numpy", "matplotlib", "typing", "dataclasses"} & set(done.stdout.split())
@@ -423,6 +423,6 @@ def test_a_missing_library_is_no_bug(
 
 @pytest.mark.parametrize("command", ["solve", "run", "delta-v"])
 def test_help_does_not_wait_for_numpy(command: str) -> None:
-    code = f"import sys; from impact88.cli import main; main(['help', {command!r}]); "
+    code = f"import sys; from impact88.commands.cli import main; main(['help', {command!r}]); "
     code += "sys.exit('numpy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True).returncode == 0

@@ -23,9 +23,8 @@ import pytest
 import bugs
 import heldout
 import strangers
-from impact88.accuracy import errorbound
-from impact88.checking import diagnosis
-from impact88.checking.compare import (
+from impact88.comparison import diagnosis
+from impact88.comparison.compare import (
     NO_RESULT,
     NOTHING_HERE,
     NOTHING_THERE,
@@ -33,12 +32,13 @@ from impact88.checking.compare import (
     Comparison,
     compare,
 )
-from impact88.checking.diagnosis import IN_THESE_ROWS, SINGLE, UNKNOWN
-from impact88.checking.vectors import CASEWORK, FAILURE, casework, scenes
-from impact88.closedform.solve import solve
+from impact88.comparison.diagnosis import IN_THESE_ROWS, SINGLE, UNKNOWN
+from impact88.comparison.vectors import CASEWORK, FAILURE, casework, scenes
 from impact88.errors import UserError
+from impact88.mechanics.accuracy import errorbound
+from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_VELOCITIES, SCENE
-from impact88.replay import replay
+from impact88.program.vectorized import replay
 from installed import impact88
 from mistakes import DEGREES, MISTAKES, MPH, SPINS, Squared, each, scaled, scaling
 from otherprogram import RESULTS, Numbers, Program, answers

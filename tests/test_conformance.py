@@ -17,11 +17,11 @@ from xml.etree import ElementTree
 import jsonschema
 import pytest
 
-from impact88 import schemas
-from impact88.checking.conformance import Conformance, check_conformance
-from impact88.checking.kit import write_kit
-from impact88.checking.vectors import REFUSE
+from impact88.comparison.conformance import Conformance, check_conformance
+from impact88.comparison.kit import write_kit
+from impact88.comparison.vectors import REFUSE
 from impact88.errors import UserError
+from impact88.messages import schemas
 from impact88.names import FINAL_VELOCITIES
 from installed import impact88
 

@@ -27,14 +27,15 @@ import numpy as np
 import pytest
 
 from captures import ROOT
-from impact88 import schemas, units
-from impact88.cli import main
+from impact88.collision import units
 from impact88.commands import options, reconstruct_command
+from impact88.commands.cli import main
 from impact88.errors import UserError
+from impact88.messages import schemas
 from impact88.names import SCENE, VELOCITIES
 from impact88.program.emulated import finished, loaded
 from impact88.program.run import run
-from impact88.scene import Scene, sample
+from impact88.program.scene import Scene, sample
 from installed import COMMAND
 from installed import impact88 as command
 

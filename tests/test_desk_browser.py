@@ -19,7 +19,7 @@ from desk_browser import Page, until
 from impact88.desk import collision as desk_collision
 from impact88.program.emulated import finished, loaded
 from impact88.program.run import run
-from impact88.scene import sample
+from impact88.program.scene import sample
 from installed import impact88 as command
 
 pytestmark = [

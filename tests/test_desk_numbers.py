@@ -19,11 +19,11 @@ import pytest
 
 import desk_browser
 from desk_browser import until
-from impact88.checking.vectors import scenes
-from impact88.cli import main
-from impact88.closedform.solve import solve
+from impact88.commands.cli import main
+from impact88.comparison.vectors import scenes
+from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_STATE, VELOCITIES
-from impact88.scene import sample
+from impact88.program.scene import sample
 from test_units_everywhere import texts
 
 SWEEP = bool(os.environ.get("IMPACT88_SWEEP"))

@@ -9,13 +9,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from impact88.applesoft import decimaltext
-from impact88.case import check_value
-from impact88.cli import main
-from impact88.doubles import double, doubles, is_number
+from impact88.collision import uncertain
+from impact88.collision.case import check_value
+from impact88.collision.doubles import double, doubles, is_number
+from impact88.commands.cli import main
 from impact88.errors import UserError
 from impact88.tables.cells import TableUnits, numbers
 from impact88.tables.rows import Rows
-from impact88.uncertainty import uncertain
 
 ODD = {".": 0.0, "1E": 1.0, "+": 0.0, "-": 0.0, "1 0": 10.0, " 7": 7.0, "E": 0.0, "1e2": 100.0}
 NO_NUMBERS = ("", " ", "1_0", "nan", "inf", "infinity", "0x1", "１", "1.5.5", "1,5", "--1", "1E1.5")

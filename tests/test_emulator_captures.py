@@ -7,8 +7,8 @@ import os
 import pytest
 
 import captures
-from impact88.checking.captured import left_behind, session
 from impact88.program import emulated
+from impact88.qualification.captured import left_behind, session
 
 NOT_FOLLOWED = {
     "fresh_list_451": "graphics",

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from impact88.applesoft.console import EndOfInput
 from impact88.applesoft.errorcodes import ApplesoftError
-from impact88.checking.captured import session
 from impact88.emulator.emulator import Applesoft
 from impact88.emulator.faults import TooManyStatements
 from impact88.emulator.tokens import KEYWORDS, TOKENS, split_number, tokenise, untokenised
+from impact88.qualification.captured import session
 
 BEL = "\a"
 

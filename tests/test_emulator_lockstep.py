@@ -11,7 +11,7 @@ from emulation import first_difference
 from impact88.applesoft.operators import Real
 from impact88.files import packaged_text
 from impact88.program import arithmetics
-from impact88.scene import Scene, sample
+from impact88.program.scene import Scene, sample
 
 STEP = max(1, len(captures.scenes()) // 5)
 CASES = captures.scenes()[::STEP]

@@ -7,12 +7,12 @@ import re
 import pytest
 
 from impact88.chapter.staged import collisions, forward
-from impact88.closedform.solve import solve
 from impact88.errors import UserError
+from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_STATE, VELOCITIES
 from impact88.program.run import Run, run
+from impact88.program.scene import sample
 from impact88.reconstruction.unknowns import solve_for
-from impact88.scene import sample
 
 
 def run1(**changes: str) -> Run:

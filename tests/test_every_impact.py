@@ -6,14 +6,14 @@ import math
 import numpy as np
 import pytest
 
-from impact88.closedform.solve import solve
+from impact88.collision.geometry import GEOMETRY
+from impact88.collision.uncertain import read
+from impact88.mechanics.closedform.solve import solve
+from impact88.mechanics.state import State
+from impact88.program.scene import sample
 from impact88.reconstruction.adjustment import reconstruct
-from impact88.reconstruction.geometry import GEOMETRY
-from impact88.reconstruction.state import State
-from impact88.scene import sample
-from impact88.uncertainty.reconstructed import draws, ranges
-from impact88.uncertainty.reconstructedtable import Measured
-from impact88.uncertainty.uncertain import read
+from impact88.reconstruction.reconstructed import draws, ranges
+from impact88.reconstruction.reconstructedtable import Measured
 
 SCENE = {name: float(text) for name, text in sample(1).items()}
 FINAL = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")

@@ -6,13 +6,13 @@ import math
 import numpy as np
 import pytest
 
-from impact88.cli import main
-from impact88.closedform.solve import solve
+from impact88.collision.uncertain import Uncertain, fixed
+from impact88.commands.cli import main
+from impact88.mechanics.closedform.solve import solve
+from impact88.program.scene import sample
 from impact88.reconstruction.adjustment import reconstruct
 from impact88.reconstruction.evidence import chi_square_tail
-from impact88.scene import sample
-from impact88.uncertainty.reconstructedtable import Measured
-from impact88.uncertainty.uncertain import Uncertain, fixed
+from impact88.reconstruction.reconstructedtable import Measured
 
 SCENE = {name: float(text) for name, text in sample(1).items()}
 MEASURED = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
@@ -104,8 +104,8 @@ def test_verdict_comes_first_and_deviations_are_widened(tmp_path, capsys):
 
 def test_a_search_for_draws_that_finds_nothing_accuses_nobody(monkeypatch):
     """An impact within all limits was found: that draws were not is no contradiction."""
-    from impact88.uncertainty.posterior import Posterior
-    from impact88.uncertainty.reconstructed import _Box
+    from impact88.reconstruction.posterior import Posterior
+    from impact88.reconstruction.reconstructed import _Box
 
     known = {n: v for n, v in sample(1).items() if n not in ("UX", "MU")}
     known |= {"MUP": "0.911", "VAX": "-13.3 +- 1", "VBX": "-9 +- 3", "VBY": "20 +- 3"}
@@ -123,8 +123,8 @@ def test_a_search_for_draws_that_finds_nothing_accuses_nobody(monkeypatch):
 def test_amounts_of_the_verdict_are_written_out():
     """No exponent for an energy, no probability smaller than tolerances can mean, the unit with
     both amounts, and what was exact was given, not measured."""
+    from impact88.collision.units import SYSTEMS
     from impact88.reconstruction.evidence import weigh
-    from impact88.units import SYSTEMS
 
     energy = {"EL": (4e5, 205_812.0, -9.0, 0.5), "HAF": (140.0, 156.6, 2.0, 0.5)}
     text = weigh(1470.2, 2, energy).text(SYSTEMS["us"])

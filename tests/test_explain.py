@@ -8,17 +8,17 @@ from typing import Any
 import pytest
 
 import printouts
-from impact88.doubles import double
-from impact88.explaining.causes import Cause
-from impact88.explaining.machines import cut
+from impact88.collision.doubles import double
 from impact88.program.run import run
-from impact88.reading.numerals import as_printed
-from impact88.reading.printout import FIELDS, read_printouts
-from impact88.recovery import replays
-from impact88.recovery.slips import slip
-from impact88.recovery.typedtext import opposite
-from impact88.reporting.examination import Verdict, verify
-from impact88.scene import Scene, sample
+from impact88.program.scene import Scene, sample
+from impact88.verification.explaining.causes import Cause
+from impact88.verification.explaining.machines import cut
+from impact88.verification.reading.numerals import as_printed
+from impact88.verification.reading.printout import FIELDS, read_printouts
+from impact88.verification.recovery import replays
+from impact88.verification.recovery.slips import slip
+from impact88.verification.recovery.typedtext import opposite
+from impact88.verification.reporting.examination import Verdict, verify
 from test_printout import SAMPLE
 
 

@@ -12,8 +12,8 @@ import pytest
 
 import printouts
 import slippedpages
-from impact88.reading.printout import read_printouts
-from impact88.reporting.examination import Verdict, Verification, verify
+from impact88.verification.reading.printout import read_printouts
+from impact88.verification.reporting.examination import Verdict, Verification, verify
 
 COUNT = printouts.SWEEP or 1
 LEFT_TO_SWEEPS = (

@@ -14,9 +14,8 @@ import numpy as np
 import pytest
 
 from impact88.chapter.staged import collisions, experimental, forward, predicted
-from impact88.cli import main
-from impact88.closedform.solve import solve
 from impact88.commands import figure_command as command
+from impact88.commands.cli import main
 from impact88.commands.figure_command import solved
 from impact88.errors import UserError
 from impact88.figures import canvas, charts, views
@@ -38,8 +37,9 @@ from impact88.figures.drawing import (
 from impact88.figures.scenegeometry import plan
 from impact88.figures.sceneview import scene_drawing, scene_svg
 from impact88.figures.views import configurations
+from impact88.mechanics.closedform.solve import solve
 from impact88.names import RESULTS, SCENE, quantity
-from impact88.scene import Scene, sample
+from impact88.program.scene import Scene, sample
 from impact88.uncertainty.bounds import bounds
 from impact88.uncertainty.ranges import read_inputs
 
@@ -372,7 +372,7 @@ class TestSvg:
         code = (
             "import sys\nsys.modules['matplotlib'] = None\n"
             "from impact88.figures.sceneview import scene_drawing, scene_svg\n"
-            "from impact88.scene import sample\n"
+            "from impact88.program.scene import sample\n"
             "assert '<svg' in scene_svg(sample(1), {'VAX': -13, 'VAY': 3, 'VBX': -9, 'VBY': 20})\n"
         )
         subprocess.run([sys.executable, "-c", code], check=True)
@@ -465,7 +465,7 @@ class TestCanvas:
         monkeypatch.chdir(tmp_path)
         assert main(line.format("usual").split()) == 0
         (tmp_path / "matplotlibrc").write_bytes(b"font.size: 40\nbogus\n\xff\xfe")
-        code = "import sys; from impact88.cli import main; sys.exit(main(sys.argv[1:]))"
+        code = "import sys; from impact88.commands.cli import main; sys.exit(main(sys.argv[1:]))"
         done = subprocess.run(
             [sys.executable, "-c", code, *line.format("set").split()],
             env={**os.environ, "MPLBACKEND": "nonsense"},

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from impact88.cli import COMMANDS, main
+from impact88.commands.cli import COMMANDS, main
 from impact88.commands.options import InputPath, OutputPath
 from test_options import arguments
 

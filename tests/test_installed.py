@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from captures import ROOT
-from impact88.cli import main
+from impact88.commands.cli import main
 
 pytest.importorskip("setuptools", "70.1", reason="older ones build no wheel by themselves")
 
@@ -32,9 +32,9 @@ import numpy
 from impact88 import cli, sample
 from impact88.bench.populations import evolved
 from impact88.desk import app
-from impact88.equations import edits
-from impact88.scan.typeface import prototypes
-from impact88.schemas import NUMBERS, text
+from impact88.comparison.equations import edits
+from impact88.verification.scan.typeface import prototypes
+from impact88.messages.schemas import NUMBERS, text
 statuses = {}
 def run(*arguments):
     with contextlib.redirect_stdout(io.StringIO()) as out:
@@ -137,7 +137,7 @@ pyodide.FS.mount(pyodide.FS.filesystems.NODEFS, { root: site }, "/site");
 console.log(pyodide.runPython(`
 import contextlib, importlib.util, io, json, sys
 sys.path.insert(0, "/site")
-from impact88.cli import main
+from impact88.commands.cli import main
 statuses, texts = {}, {}
 numpy = ["solve", "verify", "selfcheck"] if importlib.util.find_spec("numpy") else []
 asked = {

@@ -16,9 +16,9 @@ from pathlib import Path
 
 import pytest
 
-from impact88.checking.compare import Comparison, compare
-from impact88.checking.kit import write_kit
-from impact88.checking.vectors import ANSWER, EITHER, REFUSE
+from impact88.comparison.compare import Comparison, compare
+from impact88.comparison.kit import write_kit
+from impact88.comparison.vectors import ANSWER, EITHER, REFUSE
 from impact88.names import SCENE
 from installed import impact88
 

@@ -9,10 +9,10 @@ from collections import Counter
 import pytest
 
 import printouts
-from impact88.reading.fieldlabels import LabelState
-from impact88.reading.printout import read_printouts
-from impact88.reporting.examination import Verdict, Verification, verify
-from impact88.reporting.verification import lines
+from impact88.verification.reading.fieldlabels import LabelState
+from impact88.verification.reading.printout import read_printouts
+from impact88.verification.reporting.examination import Verdict, Verification, verify
+from impact88.verification.reporting.verification import lines
 from test_printout import SAMPLE
 
 LABEL = re.compile("(INITIAL KE|KE LOSS|VAX|VAY|VBX|VBY|[MIDWXY][AB]|[UV][XY]|MU|EM|E)=")

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import pytest
 
 from impact88.program.run import run
-from impact88.scene import sample
+from impact88.program.scene import sample
 from installed import impact88
 
 LEGACY = files("impact88.legacy")

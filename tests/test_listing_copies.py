@@ -14,18 +14,18 @@ import pytest
 import printouts
 import scanpages
 from captures import ROOT
-from impact88.cli import main
+from impact88.commands.cli import main
 from impact88.emulator.emulator import Applesoft
 from impact88.errors import UserError
-from impact88.explaining import explanations
-from impact88.judging import beside
-from impact88.judging.copies import CopyPages
 from impact88.program.emulated import ListingCopy
 from impact88.program.run import page as on_paper
 from impact88.program.run import run
-from impact88.reporting.examination import Verdict, examine
-from impact88.reporting.verification import summary
-from impact88.scene import sample
+from impact88.program.scene import sample
+from impact88.verification.explaining import explanations
+from impact88.verification.judging import beside
+from impact88.verification.judging.copies import CopyPages
+from impact88.verification.reporting.examination import Verdict, examine
+from impact88.verification.reporting.verification import summary
 
 LISTING = (ROOT / "legacy" / "impact.bas").read_text(encoding="utf-8")
 INT = re.compile(r"INT \(((?:[^()]|\([^()]*\))*)\)")

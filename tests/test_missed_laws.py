@@ -6,14 +6,14 @@ import math
 import numpy as np
 import pytest
 
-from impact88.cli import main
-from impact88.closedform.solve import solve
+from impact88.collision.units import SYSTEMS
+from impact88.commands.cli import main
 from impact88.errors import UserError
+from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_STATE
+from impact88.program.scene import sample
 from impact88.reconstruction.laws import missed_laws
 from impact88.reconstruction.unknowns import solve_for
-from impact88.scene import sample
-from impact88.units import SYSTEMS
 
 SCENE = {name: float(text) for name, text in sample(1).items()}
 FINAL = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")

@@ -16,15 +16,15 @@ import pytest
 
 import impact88
 import kernels
-from impact88 import native
 from impact88.bench.populations import POPULATIONS, enlarged, scenes, texts
-from impact88.closedform import kernelcalls
-from impact88.closedform import solve as solving
-from impact88.closedform.impactprograms import ALL, BODIES, FORMULAS, KERNELS
-from impact88.closedform.plain import FEW
-from impact88.closedform.solve import TILE, quantities
+from impact88.mechanics import native
+from impact88.mechanics.closedform import kernelcalls
+from impact88.mechanics.closedform import solve as solving
+from impact88.mechanics.closedform.impactprograms import ALL, BODIES, FORMULAS, KERNELS
+from impact88.mechanics.closedform.plain import FEW
+from impact88.mechanics.closedform.solve import TILE, quantities
 from impact88.names import RESULTS
-from impact88.replay import blocks
+from impact88.program.vectorized import blocks
 
 pytestmark = pytest.mark.skipif(native.library is None, reason="built without a C compiler")
 

@@ -16,12 +16,12 @@ from typing import Any
 import pytest
 
 import impact88
-from impact88.case import Case
-from impact88.cli import main
+from impact88.collision.case import Case
+from impact88.collision.scenefile import toml_texts
+from impact88.commands.cli import main
 from impact88.desk import collision
 from impact88.desk.forms import filled_in
 from impact88.names import SCENE
-from impact88.scenefile import toml_texts
 
 FILES = int(os.environ.get("IMPACT88_CASES", "4"))
 """Generated files; 200 take some minutes."""

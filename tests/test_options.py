@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from impact88.cli import COMMANDS, main
 from impact88.commands import options
+from impact88.commands.cli import COMMANDS, main
 from impact88.errors import UserError
 
 WITH_SET = (

@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 
 import captures
-from impact88.accuracy.errorbound import oracle_bounds, scales
 from impact88.bench import populations
 from impact88.bench.populations import POPULATIONS, texts
-from impact88.checking.oracle import answer, exact_decimal, oracle
-from impact88.checking.vectors import (
+from impact88.collision.doubles import doubles
+from impact88.comparison.oracle import answer, exact_decimal, oracle
+from impact88.comparison.vectors import (
     CLASSES,
     EDGES,
     FAILURE,
@@ -31,12 +31,12 @@ from impact88.checking.vectors import (
     scenes,
     vectors,
 )
-from impact88.closedform.solve import solve
-from impact88.doubles import doubles
+from impact88.mechanics.accuracy.errorbound import oracle_bounds, scales
+from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 from impact88.program.run import run
-from impact88.replay import replay
-from impact88.scene import sample
+from impact88.program.scene import sample
+from impact88.program.vectorized import replay
 from installed import COMMAND, impact88
 
 SCENE1 = dict(sample(1))
@@ -364,7 +364,7 @@ def test_a_stale_row_and_a_singular_friction_go_wrong_without_a_word() -> None:
 def test_without_mpmath_one_line_says_how_to_get_it() -> None:
     blocked = (
         "import sys; sys.modules['mpmath'] = None\n"
-        "from impact88.cli import main; sys.exit(main(sys.argv[1:]))"
+        "from impact88.commands.cli import main; sys.exit(main(sys.argv[1:]))"
     )
     command = [sys.executable, "-c", blocked, "oracle", "--vectors", "3"]
     done = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)

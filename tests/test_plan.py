@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from impact88.closedform.plan import Plan
-from impact88.native.formulas import ExpressionTable
-from impact88.native.schedule import Schedule
+from impact88.mechanics.closedform.plan import Plan
+from impact88.mechanics.native.formulas import ExpressionTable
+from impact88.mechanics.native.schedule import Schedule
 from passes import passes
 
 LENGTH = 7

@@ -5,11 +5,11 @@ import math
 
 import pytest
 
-from impact88.closedform.solve import solve
+from impact88.collision.uncertain import read
+from impact88.mechanics.closedform.solve import solve
+from impact88.mechanics.state import State
 from impact88.reconstruction.adjustment import reconstruct
-from impact88.reconstruction.state import State
-from impact88.uncertainty.reconstructed import draws, ranges
-from impact88.uncertainty.uncertain import read
+from impact88.reconstruction.reconstructed import draws, ranges
 
 SIDESWIPE = {
     **{"M": 6.0, "MA": 140.0, "MB": 101.74, "IA": 3172.0, "IB": 2562.2, "GA": 86.583},

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import impact88
-from impact88 import native
 from impact88.errors import UserError
+from impact88.mechanics import native
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 from impact88.status import Status
 from test_solve import mixed_scenes, same

@@ -9,10 +9,10 @@ import pytest
 import captures
 import impact88
 import printouts
+from impact88.collision.fields import ANGLES, FIELDS
 from impact88.errors import UserError
-from impact88.fields import ANGLES, FIELDS
-from impact88.reading.numerals import candidates
-from impact88.reading.printout import read_printouts
+from impact88.verification.reading.numerals import candidates
+from impact88.verification.reading.printout import read_printouts
 
 SAMPLE = """\
 MA= 143.5 MB= 95.8 IA= 3728 IB= 1961

@@ -6,13 +6,13 @@ from itertools import product
 import numpy as np
 import pytest
 
-from impact88.closedform.solve import solve
+from impact88.collision.uncertain import fixed
+from impact88.mechanics.closedform.solve import solve
+from impact88.mechanics.state import State
+from impact88.program.scene import sample
 from impact88.reconstruction.adjustment import reconstruct, straight
 from impact88.reconstruction.quadrics import Quadrics, follow_paths, quadratic_equations
-from impact88.reconstruction.state import State
 from impact88.reconstruction.system import System
-from impact88.scene import sample
-from impact88.uncertainty.uncertain import fixed
 
 
 def pairs_of_planes(size, rng, parallel=0):

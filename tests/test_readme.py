@@ -22,9 +22,9 @@ import pytest
 
 from captures import ROOT
 from extras import run_with
-from impact88.cli import COMMANDS
+from impact88.commands.cli import COMMANDS
 from impact88.names import SCENE
-from impact88.scene import sample
+from impact88.program.scene import sample
 from installed import COMMAND, impact88
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -19,9 +19,9 @@ from impact88.applesoft import functions as scalar_functions
 from impact88.applesoft import real
 from impact88.applesoft.errorcodes import ApplesoftError
 from impact88.applesoft.real import Number
-from impact88.replay import polynomials, textcolumns
-from impact88.replay.reals import Reals, compare, from_floats
-from impact88.replay.unit import Unit
+from impact88.program.vectorized import polynomials, textcolumns
+from impact88.program.vectorized.reals import Reals, compare, from_floats
+from impact88.program.vectorized.unit import Unit
 
 BYTES = (0x00, 0x01, 0x7F, 0x80, 0xFE, 0xFF)
 EXPONENTS = (

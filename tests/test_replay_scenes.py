@@ -19,12 +19,12 @@ import captures
 import impact88
 from impact88.errors import UserError
 from impact88.names import SCENE
-from impact88.replay import Replay, blocks, field_names, statements
-from impact88.replay.blocks import replay_scenes
-from impact88.replay.realcolumns import read_columns
-from impact88.replay.reals import from_floats
-from impact88.replay.statements import SOLVED as DONE
-from impact88.replay.unit import Unit
+from impact88.program.vectorized import Replay, blocks, field_names, statements
+from impact88.program.vectorized.blocks import replay_scenes
+from impact88.program.vectorized.realcolumns import read_columns
+from impact88.program.vectorized.reals import from_floats
+from impact88.program.vectorized.statements import SOLVED as DONE
+from impact88.program.vectorized.unit import Unit
 
 pytestmark = pytest.mark.usefixtures("both_machines")
 

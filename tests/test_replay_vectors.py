@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 import captures
-from impact88 import native
 from impact88.applesoft.decimaltext import scan
-from impact88.replay import compiled, polynomials, textcolumns
-from impact88.replay.reals import Reals, compare, constant, from_floats
-from impact88.replay.unit import Unit
+from impact88.mechanics import native
+from impact88.program.vectorized import compiled, polynomials, textcolumns
+from impact88.program.vectorized.reals import Reals, compare, constant, from_floats
+from impact88.program.vectorized.unit import Unit
 
 pytestmark = pytest.mark.captures
 

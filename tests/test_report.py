@@ -6,10 +6,10 @@ import re
 from hashlib import sha256
 from html.parser import HTMLParser
 
-from impact88.reading.printout import read_printouts
 from impact88.report.casefile import report
 from impact88.report.frame import hashes
-from impact88.reporting.examination import Examined, examine, verify
+from impact88.verification.reading.printout import read_printouts
+from impact88.verification.reporting.examination import Examined, examine, verify
 from installed import impact88
 from test_printout import SAMPLE
 

@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from impact88 import solve
-from impact88.accuracy.errorbound import relative_bounds, result_bounds, scales
 from impact88.bench.methods import reference
 from impact88.bench.populations import POPULATIONS, scenes
+from impact88.mechanics.accuracy.errorbound import relative_bounds, result_bounds, scales
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 
 NAMES = tuple(name for name in RESULTS if name not in ("COND", "STATUS"))

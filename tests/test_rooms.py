@@ -72,7 +72,7 @@ def test_applesoft_knows_nothing_of_collisions() -> None:
 
 
 def test_only_commands_import_commands() -> None:
-    upper = ("impact88.commands.", "impact88.cli")
+    upper = ("impact88.commands.", "impact88.commands.cli")
     below = {
         (name, module)
         for name, modules in rooms().items()
@@ -84,7 +84,7 @@ def test_only_commands_import_commands() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["impact88.program.listing", "impact88.program.run", "impact88.scene"]
+    "name", ["impact88.program.listing", "impact88.program.run", "impact88.program.scene"]
 )
 def test_faithful_path_imports_no_third_party(name: str) -> None:
     """Nothing but Python's own library lies between a typed digit and a printed one."""

@@ -11,7 +11,7 @@ from impact88.errors import UserError
 from impact88.program import emulated
 from impact88.program.arithmetics import APPLESOFT
 from impact88.program.run import run, start
-from impact88.scene import sample
+from impact88.program.scene import sample
 from installed import impact88
 
 REPLIES = "-29.04,0,0\n14.52,25.15,0\n"

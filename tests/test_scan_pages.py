@@ -17,15 +17,16 @@ import pytest
 import scanpages
 import scanrates
 from captures import ROOT
-from impact88.judging import beside
-from impact88.judging.judgement import Verdict
 from impact88.program.run import run
-from impact88.recovery.replays import run_all
-from impact88.reporting.examination import Examined, Verification, examine
-from impact88.reporting.verification import EXPLAINED, lines
-from impact88.scan import sheets
-from impact88.scan.claims import claims, is_of_a_printout
-from impact88.scan.holding import (
+from impact88.program.scene import sample
+from impact88.verification.judging import beside
+from impact88.verification.judging.judgement import Verdict
+from impact88.verification.recovery.replays import run_all
+from impact88.verification.reporting.examination import Examined, Verification, examine
+from impact88.verification.reporting.verification import EXPLAINED, lines
+from impact88.verification.scan import sheets
+from impact88.verification.scan.claims import claims, is_of_a_printout
+from impact88.verification.scan.holding import (
     FOREIGN,
     KIND,
     MOST_MISREAD,
@@ -35,11 +36,10 @@ from impact88.scan.holding import (
     judged,
     state,
 )
-from impact88.scan.layout import Place, Sheet
-from impact88.scan.rates import COUNTS, NONE, sentences, table
-from impact88.scan.scenes import WORST, Candidate, Read, borne_out
-from impact88.scan.typeface import READABLE
-from impact88.scene import sample
+from impact88.verification.scan.layout import Place, Sheet
+from impact88.verification.scan.rates import COUNTS, NONE, sentences, table
+from impact88.verification.scan.scenes import WORST, Candidate, Read, borne_out
+from impact88.verification.scan.typeface import READABLE
 from worked_cases import RUN_1
 
 pytest.importorskip("scipy", reason="the extra scan is not installed")
@@ -218,7 +218,7 @@ def test_pdfs_are_refused_before_they_are_rendered(pages: int, points: int, mess
 def test_a_page_that_takes_too_much_time_or_memory_is_refused_with_its_number(monkeypatch) -> None:
     """The process that renders is ended, or ends, and the caller goes on."""
     pdfium = pytest.importorskip("pypdfium2", reason="the extra scan is not installed")
-    from impact88.scan import pdfpages
+    from impact88.verification.scan import pdfpages
 
     document = pdfium.PdfDocument.new()
     document.new_page(4000, 4000)
@@ -233,7 +233,7 @@ def test_a_page_that_takes_too_much_time_or_memory_is_refused_with_its_number(mo
 
 
 def test_a_picture_larger_than_is_read_has_its_boxes_in_the_pixels_of_its_file(monkeypatch) -> None:
-    from impact88.scan import picture
+    from impact88.verification.scan import picture
 
     with Pillow.open(PAGES / "clean-001.png") as page:
         grey = page.convert("L")
@@ -285,7 +285,7 @@ def test_no_scene_is_searched_for_where_columns_are_not_clear(monkeypatch, clari
 
 def test_the_hair_of_a_thin_dash_is_ink_and_a_speck_is_none() -> None:
     """A dash of one pixel's height in a thin typeface is as light as a speck, but long."""
-    from impact88.scan.grid import Grid
+    from impact88.verification.scan.grid import Grid
 
     cells = np.zeros((4, 28, 20), np.float32)
     cells[0, 14, 5:15] = 0.7  # a dash
@@ -460,7 +460,7 @@ def test_a_whole_line_of_the_program_is_another_printouts(text: str, whole: bool
 
 def test_text_beside_a_line_leaves_its_numbers_where_they_are() -> None:
     """And no line is taken for five asterisks with something beside them."""
-    from impact88.scan.layout import sheets_of
+    from impact88.verification.scan.layout import sheets_of
 
     page = run(sample(1)).printout
     rows = [line for line in page.split("\n") if line.strip()]
@@ -486,7 +486,7 @@ def test_text_beside_a_line_leaves_its_numbers_where_they_are() -> None:
 
 def test_pen_is_left_out_of_the_geometry_and_type_is_not() -> None:
     """A stroke over two lines and a ruled line; a word that a bad copy joined is type."""
-    from impact88.scan.ink import without_pen
+    from impact88.verification.scan.ink import without_pen
 
     pitch = 10.0
     ink = np.zeros((200, 400), np.float32)
@@ -507,7 +507,7 @@ def test_pen_is_left_out_of_the_geometry_and_type_is_not() -> None:
 def test_strips_of_holes_are_left_out_and_a_column_of_rings_is_not(fill, count, stripped) -> None:
     from PIL import ImageDraw
 
-    from impact88.scan.cleaning import papers_of
+    from impact88.verification.scan.cleaning import papers_of
 
     page, _ = genuine()
     strip = round(0.15 * page.width)
@@ -530,7 +530,7 @@ def test_strips_of_holes_are_left_out_and_a_column_of_rings_is_not(fill, count, 
 def test_ink_of_another_colour_is_set_apart_and_the_type_under_it_stays() -> None:
     from PIL import ImageDraw
 
-    from impact88.scan.cleaning import papers_of
+    from impact88.verification.scan.cleaning import papers_of
 
     page, cells = genuine()
     stamp = Pillow.new("L", page.size, 0)
@@ -550,7 +550,7 @@ def test_ink_of_another_colour_is_set_apart_and_the_type_under_it_stays() -> Non
 
 
 def test_a_page_askew_is_set_straight_and_one_nearly_straight_is_left_alone() -> None:
-    from impact88.scan.cleaning import papers_of
+    from impact88.verification.scan.cleaning import papers_of
 
     page, _ = genuine()
     for degrees in (0, 3, 8, -11, 97):
@@ -635,8 +635,8 @@ def test_no_page_with_something_added_is_bare_identical(kind: str) -> None:
 
 
 def test_a_text_layer_must_agree_and_another_readers_words_decide_nothing(monkeypatch) -> None:
-    from impact88.reporting import scanned
-    from impact88.scan.picture import Page
+    from impact88.verification.reporting import scanned
+    from impact88.verification.scan.picture import Page
 
     row = next(row for row in TRUTH if row["file"] == "clean-001.png")
     with Pillow.open(PAGES / row["file"]) as page:

@@ -14,16 +14,16 @@ import pytest
 
 import printouts
 from captures import ROOT
+from impact88.collision.fields import INPUTS, outcome_fields
 from impact88.errors import UserError
-from impact88.fields import INPUTS, outcome_fields
-from impact88.judging import beside
-from impact88.judging.judgement import Status, settled
 from impact88.program.run import run
-from impact88.reading import alignment, printout
-from impact88.reading.numerals import printable
-from impact88.reading.printout import Printout, read_printouts
-from impact88.reporting.examination import Verdict, Verification, verify
-from impact88.scene import sample
+from impact88.program.scene import sample
+from impact88.verification.judging import beside
+from impact88.verification.judging.judgement import Status, settled
+from impact88.verification.reading import alignment, printout
+from impact88.verification.reading.numerals import printable
+from impact88.verification.reading.printout import Printout, read_printouts
+from impact88.verification.reporting.examination import Verdict, Verification, verify
 from printouts import SWEEP
 from test_printout import SAMPLE
 from test_verify import doubtful

@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 
 from captures import ROOT
-from impact88.cli import main
-from impact88.closedform.solve import solve
+from impact88.collision.scenefile import SIGNS, template
+from impact88.commands.cli import main
 from impact88.errors import UserError
 from impact88.figures.scenegeometry import plan
+from impact88.mechanics.closedform.solve import solve
 from impact88.names import SCENE
-from impact88.scene import Scene, published_data, sample
-from impact88.scenefile import SIGNS, template
+from impact88.program.scene import Scene, published_data, sample
 
 COMPLETE = sample(1).to_toml()
 

@@ -15,13 +15,13 @@ import pytest
 
 import impact88
 from captures import ROOT
-from impact88 import schemas
-from impact88.checking.selfcheck import checks
-from impact88.checking.vectors import published
-from impact88.cli import main
+from impact88.commands.cli import main
+from impact88.comparison.vectors import published
 from impact88.errors import UserError
+from impact88.messages import schemas
 from impact88.program.run import run
-from impact88.scene import sample
+from impact88.program.scene import sample
+from impact88.qualification.selfcheck import checks
 from installed import impact88 as command
 from tinyrom import rom
 

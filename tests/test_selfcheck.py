@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 import captures
-from impact88.checking import selfcheck
 from impact88.commands.selfcheck_command import _line
+from impact88.qualification import selfcheck
 from impact88.report.frame import capture_hashes, hashes
 
 GOLDEN = captures.ROOT / "golden"

@@ -22,9 +22,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from impact88.cli import main
+from impact88.commands.cli import main
 from impact88.names import SCENE
-from impact88.scene import sample
+from impact88.program.scene import sample
 from impact88.tables.lines import Lines
 
 TIMES = 8

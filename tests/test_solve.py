@@ -10,12 +10,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from impact88 import native, solve
+from impact88 import solve
 from impact88.bench.populations import POPULATIONS, scenes
-from impact88.closedform.columns import UNUSED_BY_POINTS, examine, part, sources
-from impact88.closedform.impactprograms import program_for
-from impact88.closedform.solve import SHARED_TILE
 from impact88.errors import UserError
+from impact88.mechanics import native
+from impact88.mechanics.closedform.columns import UNUSED_BY_POINTS, examine, part, sources
+from impact88.mechanics.closedform.impactprograms import program_for
+from impact88.mechanics.closedform.solve import SHARED_TILE
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 from impact88.status import Status
 from passes import passes

@@ -12,9 +12,9 @@ import pytest
 
 from impact88 import replay, solve
 from impact88.bench.populations import scenes, texts
-from impact88.cli import main
+from impact88.commands.cli import main
 from impact88.names import RESULTS, SCENE
-from impact88.scene import sample
+from impact88.program.scene import sample
 from impact88.tables import csvtable
 
 NAMES = list(SCENE)

@@ -2,7 +2,7 @@
 
 The bound is that of a backward stable method: the error of the final velocities is at most a small
 multiple of the unit roundoff times what the same relative change of the scene's numbers would do
-(`impact88.accuracy.errorbound`). The true values come from 50-digit arithmetic.
+(`accuracy.errorbound`). The true values come from 50-digit arithmetic.
 """
 
 from __future__ import annotations
@@ -16,8 +16,12 @@ import pytest
 
 from fiftydigits import exact, listing_elimination, relative_error, split
 from impact88 import solve
-from impact88.accuracy import reference
-from impact88.accuracy.elimination import (
+from impact88.applesoft.operators import Real
+from impact88.bench.populations import POPULATIONS, scenes
+from impact88.collision.degrees import sin_cos
+from impact88.collision.sinetable import STEP
+from impact88.mechanics.accuracy import reference
+from impact88.mechanics.accuracy.elimination import (
     LISTING_PI,
     ORDER,
     changes,
@@ -25,16 +29,12 @@ from impact88.accuracy.elimination import (
     fill,
     lapack,
 )
-from impact88.accuracy.errorbound import movements, sensitivity
-from impact88.accuracy.reference import fifty_digits
-from impact88.applesoft.operators import Real
-from impact88.bench.populations import POPULATIONS, scenes
-from impact88.closedform.columns import ANGLES
-from impact88.closedform.degrees import sin_cos
-from impact88.closedform.sinetable import STEP
+from impact88.mechanics.accuracy.errorbound import movements, sensitivity
+from impact88.mechanics.accuracy.reference import fifty_digits
+from impact88.mechanics.closedform.columns import ANGLES
 from impact88.names import FINAL_VELOCITIES, SCENE
 from impact88.program.run import run
-from impact88.scene import Scene, sample
+from impact88.program.scene import Scene, sample
 from impact88.status import Status
 from worked_cases import RUN_1
 

@@ -29,7 +29,7 @@ from impact88.chapter.staged import (
     undetermined_range,
     with_8a_reconstructed,
 )
-from impact88.cli import main
+from impact88.commands.cli import main
 
 ORDER = [1, 6, 7, 8, 9, 10, 11, 12, 3, 4, 5]
 SLIPS = {(3, "loss"), (6, "dVb_pred"), (8, "dVa_exp"), (11, "dVa_comp"), (12, "dVb_comp")}

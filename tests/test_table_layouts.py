@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import impact88
-from impact88.cli import main
+from impact88.commands.cli import main
 from impact88.errors import UserError
 from impact88.names import SCENE
 from impact88.tables import jsontable

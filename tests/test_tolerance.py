@@ -16,17 +16,17 @@ import pytest
 import bugs
 import heldout
 import strangers
-from impact88.accuracy.errorbound import scales
-from impact88.accuracy.reference import thirty_digits
 from impact88.bench import populations
-from impact88.checking import agreement
-from impact88.checking.agreement import DIFFER, LOST
-from impact88.checking.vectors import CASEWORK, CLASSES, casework, scenes
-from impact88.closedform.solve import solve
-from impact88.equations.roundoff import elimination_errors, running_errors
-from impact88.equations.spelling import spellings
+from impact88.comparison import agreement
+from impact88.comparison.agreement import DIFFER, LOST
+from impact88.comparison.equations.roundoff import elimination_errors, running_errors
+from impact88.comparison.equations.spelling import spellings
+from impact88.comparison.vectors import CASEWORK, CLASSES, casework, scenes
+from impact88.mechanics.accuracy.errorbound import scales
+from impact88.mechanics.accuracy.reference import thirty_digits
+from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_VELOCITIES, SCENE
-from impact88.scene import sample
+from impact88.program.scene import sample
 
 SWEEP = os.environ.get("IMPACT88_SWEEP")
 COUNT = 80 if SWEEP else 4

@@ -12,11 +12,11 @@ from typing import Any
 
 import pytest
 
-from impact88.cli import main
-from impact88.closedform.solve import solve
+from impact88.collision.units import SYSTEMS, shown_text, size_of
+from impact88.commands.cli import main
+from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_STATE, quantity
-from impact88.scene import sample
-from impact88.units import SYSTEMS, shown_text, size_of
+from impact88.program.scene import sample
 
 Amounts = dict[str, float]
 """By what it is called: values in m, kg, s, degrees and rad/s."""

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from impact88 import sample, solve, solve_for
 from impact88.bench.populations import scenes
 from impact88.errors import UserError
+from impact88.mechanics.outcome import initial_impact, outcome
 from impact88.names import COEFFICIENTS, FINAL_STATE, VELOCITIES
-from impact88.reconstruction.outcome import initial_impact, outcome
 from impact88.reconstruction.solutiontable import Impact
 from impact88.reconstruction.unknowns import UnsolvableError
 from reference_cases import Case, cases_of

@@ -10,8 +10,8 @@ import pytest
 
 from impact88.chapter import validation
 from impact88.chapter.validation import IIHS, NHTSA, checks, medians
-from impact88.cli import main
-from impact88.closedform.solve import solve
+from impact88.commands.cli import main
+from impact88.mechanics.closedform.solve import solve
 from routh import impulse
 
 

@@ -12,13 +12,13 @@ from impact88 import status
 from impact88.bench.populations import POPULATIONS, scenes
 from impact88.chapter.colinear import colinear
 from impact88.chapter.staged import collisions, forward
-from impact88.closedform.solve import solve
-from impact88.reconstruction.outcome import outcome
+from impact88.collision.uncertain import fixed
+from impact88.mechanics.closedform.solve import solve
+from impact88.mechanics.outcome import outcome
+from impact88.program.scene import sample
 from impact88.reconstruction.unknowns import solve_for
-from impact88.scene import sample
 from impact88.status import Status
 from impact88.uncertainty.bounds import bounds
-from impact88.uncertainty.uncertain import fixed
 from routh import final, impulse, judged, possible
 
 pytestmark = pytest.mark.usefixtures("both_machines")
@@ -314,14 +314,14 @@ class TestEverySolver:
 
 def status_range(value):
     """Uncertain in the last digit: something must vary."""
-    from impact88.uncertainty.uncertain import read
+    from impact88.collision.uncertain import read
 
     return read(f"{value} +- 1e-12", "DA")
 
 
 def test_barrier_reconstruction_has_energies():
     """An infinite body at rest adds no energy, in every solver."""
-    from impact88.reconstruction.outcome import reconstruction_model
+    from impact88.mechanics.outcome import reconstruction_model
 
     wall = {**RUN_1, "MB": np.inf, "IB": np.inf, "VX": 0.0, "VY": 0.0, "WB": 0.0, "E": 0.1}
     names = (*FINAL, "MUP", "KI", "KF", "LOSS", "STATUS")

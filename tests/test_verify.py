@@ -10,16 +10,16 @@ import pytest
 
 import captures
 import printouts
-from impact88.fields import ANGLES, INPUTS, outcome_fields
-from impact88.judging.judgement import FieldCheck, Status
+from impact88.collision.fields import ANGLES, INPUTS, outcome_fields
 from impact88.names import SCENE
 from impact88.program.run import run
-from impact88.reading.printout import read_printouts
-from impact88.recovery.search import in_doubles
-from impact88.recovery.typedtext import stored_and_printed, texts_that_print
-from impact88.reporting.examination import Verdict, Verification, examine, verify
-from impact88.reporting.verification import lines
-from impact88.scene import sample
+from impact88.program.scene import sample
+from impact88.verification.judging.judgement import FieldCheck, Status
+from impact88.verification.reading.printout import read_printouts
+from impact88.verification.recovery.search import in_doubles
+from impact88.verification.recovery.typedtext import stored_and_printed, texts_that_print
+from impact88.verification.reporting.examination import Verdict, Verification, examine, verify
+from impact88.verification.reporting.verification import lines
 from installed import impact88
 from test_printout import SAMPLE
 

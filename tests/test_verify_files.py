@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from impact88.doubles import double
-from impact88.reading.printout import read_printouts
-from impact88.reporting.examination import Verdict, verify
-from impact88.scene import sample
+from impact88.collision.doubles import double
+from impact88.program.scene import sample
+from impact88.verification.reading.printout import read_printouts
+from impact88.verification.reporting.examination import Verdict, verify
 from installed import impact88
 from printouts import SWEEP
 from test_printout import SAMPLE

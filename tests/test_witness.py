@@ -13,13 +13,13 @@ import os
 import pytest
 
 import captures
-from impact88.checking.captured import result
 from impact88.errors import UserError
 from impact88.program.emulated import LISTING
 from impact88.program.run import run
-from impact88.scene import sample
-from impact88.witness.apple import APPLE_II_PLUS, Apple, Lost, read_image
-from impact88.witness.hearing import (
+from impact88.program.scene import sample
+from impact88.qualification.captured import result
+from impact88.qualification.witness.apple import APPLE_II_PLUS, Apple, Lost, read_image
+from impact88.qualification.witness.hearing import (
     Case,
     cases,
     hear,
@@ -27,7 +27,7 @@ from impact88.witness.hearing import (
     hear_scene,
     own_programs,
 )
-from impact88.witness.session import Session, small_letters
+from impact88.qualification.witness.session import Session, small_letters
 from installed import impact88
 from tinyrom import CODE, START, rom
 

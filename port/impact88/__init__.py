@@ -47,32 +47,32 @@ if TYPE_CHECKING:
     from .chapter.colinear import colinear as colinear
     from .chapter.colinear import colinear_inverse as colinear_inverse
     from .chapter.deltav import delta_v as delta_v
-    from .checking.compare import compare as compare
-    from .checking.oracle import oracle as oracle
-    from .closedform.prepared import prepared as prepared
-    from .closedform.solve import solve as solve
+    from .collision.uncertain import Uncertain as Uncertain
+    from .comparison.compare import compare as compare
+    from .comparison.oracle import oracle as oracle
     from .emulator.emulator import Applesoft as Applesoft
     from .errors import PlausibilityWarning as PlausibilityWarning
     from .errors import UserError as UserError
     from .figures.sceneview import scene_svg as scene_svg
-    from .native import accelerated as accelerated
+    from .mechanics.closedform.prepared import prepared as prepared
+    from .mechanics.closedform.solve import solve as solve
+    from .mechanics.native import accelerated as accelerated
     from .program.run import Run as Run
     from .program.run import run as run
-    from .reading.printout import read_printouts as read_printouts
+    from .program.scene import Scene as Scene
+    from .program.scene import sample as sample
+    from .program.vectorized import Replay as Replay
+    from .program.vectorized import replay as replay
     from .reconstruction.adjustment import Reconstruction as Reconstruction
+    from .reconstruction.reconstructedtable import reconstruct as reconstruct
     from .reconstruction.unknowns import Solution as Solution
     from .reconstruction.unknowns import solve_for as solve_for
-    from .replay import Replay as Replay
-    from .replay import replay as replay
-    from .reporting.examination import Verification as Verification
-    from .reporting.examination import verify as verify
-    from .scene import Scene as Scene
-    from .scene import sample as sample
     from .tables.frames import solve_frame as solve_frame
     from .uncertainty.bounds import bounds as bounds
     from .uncertainty.boundstable import Bounds as Bounds
-    from .uncertainty.reconstructedtable import reconstruct as reconstruct
-    from .uncertainty.uncertain import Uncertain as Uncertain
+    from .verification.reading.printout import read_printouts as read_printouts
+    from .verification.reporting.examination import Verification as Verification
+    from .verification.reporting.examination import verify as verify
 
 _LAZY = {
     name: place
@@ -81,26 +81,26 @@ _LAZY = {
         "chapter.barrier": "barrier",
         "chapter.colinear": "colinear colinear_inverse",
         "chapter.deltav": "delta_v",
-        "checking.compare": "compare",
-        "checking.oracle": "oracle",
-        "closedform.prepared": "prepared",
-        "closedform.solve": "solve",
+        "comparison.compare": "compare",
+        "comparison.oracle": "oracle",
+        "mechanics.closedform.prepared": "prepared",
+        "mechanics.closedform.solve": "solve",
         "emulator.emulator": "Applesoft",
         "errors": "PlausibilityWarning UserError",
         "figures.sceneview": "scene_svg",
-        "native": "accelerated",
+        "mechanics.native": "accelerated",
         "program.run": "Run run",
-        "reading.printout": "read_printouts",
+        "verification.reading.printout": "read_printouts",
         "reconstruction.adjustment": "Reconstruction",
         "reconstruction.unknowns": "Solution solve_for",
-        "replay": "Replay replay",
-        "reporting.examination": "Verification verify",
-        "scene": "Scene sample",
+        "program.vectorized": "Replay replay",
+        "verification.reporting.examination": "Verification verify",
+        "program.scene": "Scene sample",
         "tables.frames": "solve_frame",
         "uncertainty.bounds": "bounds",
         "uncertainty.boundstable": "Bounds",
-        "uncertainty.reconstructedtable": "reconstruct",
-        "uncertainty.uncertain": "Uncertain",
+        "reconstruction.reconstructedtable": "reconstruct",
+        "collision.uncertain": "Uncertain",
     }.items()
     for name in names_there.split()
 }

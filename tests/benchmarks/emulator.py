@@ -25,7 +25,7 @@ from impact88.emulator.emulator import Applesoft
 from impact88.files import packaged_text
 from impact88.program import emulated
 from impact88.program.run import run
-from impact88.scene import Scene, sample
+from impact88.program.scene import Scene, sample
 
 SCENES = 100
 ROUNDS = 5

@@ -16,11 +16,11 @@ import sys
 
 import numpy as np
 
-from impact88.accuracy.elimination import ORDER
-from impact88.accuracy.errorbound import sensitivity
 from impact88.bench.methods import reference, relative_errors
 from impact88.bench.populations import POPULATIONS, scenes
-from impact88.closedform.solve import quantities, solve
+from impact88.mechanics.accuracy.elimination import ORDER
+from impact88.mechanics.accuracy.errorbound import sensitivity
+from impact88.mechanics.closedform.solve import quantities, solve
 from impact88.names import SCENE
 
 ANGLES = ("GA", "PA", "PB", "TA", "TB")

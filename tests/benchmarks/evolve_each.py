@@ -18,10 +18,10 @@ import time
 import numpy as np
 from evolve import child
 
-from impact88.accuracy.errorbound import DOUBLE, movements, result_bounds
 from impact88.bench.methods import reference
 from impact88.bench.populations import POPULATIONS, scenes
-from impact88.closedform.solve import quantities, solve
+from impact88.mechanics.accuracy.errorbound import DOUBLE, movements, result_bounds
+from impact88.mechanics.closedform.solve import quantities, solve
 from impact88.names import PIVOT, RESULTS, SCENE
 
 NOT_MEASURED = ("STATUS", "COND", "MUP")

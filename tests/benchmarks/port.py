@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import captures
 from impact88.program.run import run
-from impact88.scene import Scene
+from impact88.program.scene import Scene
 from installed import COMMAND
 
 ROUNDS = 9

@@ -20,11 +20,11 @@ import numpy as np
 
 from impact88.names import SCENE
 from impact88.program.run import run
-from impact88.replay import polynomials, textcolumns
-from impact88.replay.blocks import replay_scenes
-from impact88.replay.realcolumns import read_columns
-from impact88.replay.reals import Reals, compare, from_floats
-from impact88.replay.unit import Unit
+from impact88.program.vectorized import polynomials, textcolumns
+from impact88.program.vectorized.blocks import replay_scenes
+from impact88.program.vectorized.realcolumns import read_columns
+from impact88.program.vectorized.reals import Reals, compare, from_floats
+from impact88.program.vectorized.unit import Unit
 
 PORT_SCENES = 40
 

@@ -19,13 +19,13 @@ import numpy as np
 import captures
 import emulator_fuzz
 from impact88.applesoft.decimaltext import is_number
-from impact88.case import VALUE_LIMIT
-from impact88.case import Case as SceneCase
-from impact88.cli import COMMANDS
+from impact88.collision.case import VALUE_LIMIT
+from impact88.collision.case import Case as SceneCase
+from impact88.collision.scenefile import template
+from impact88.commands.cli import COMMANDS
 from impact88.errors import UserError
 from impact88.names import CHAPTER, FINAL_STATE, RESULTS, SCENE
-from impact88.scene import sample
-from impact88.scenefile import template
+from impact88.program.scene import sample
 
 from .case import Case
 
@@ -540,7 +540,7 @@ def _typed_tables() -> dict[str, bytes]:
     import os
     import tempfile
 
-    from impact88.cli import main
+    from impact88.commands.cli import main
 
     made = {}
     with tempfile.TemporaryDirectory() as folder:

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from ..accuracy.errorbound import APPLESOFT, DOUBLE, relative_bounds
 from ..figures.charts import Panel, key, powers
 from ..figures.drawing import GREY, ORANGE, VERMILION, Box, Drawing, Text, wrapped
+from ..mechanics.accuracy.errorbound import APPLESOFT, DOUBLE, relative_bounds
 from .measure import Row
 from .methods import METHODS
 from .populations import POPULATIONS

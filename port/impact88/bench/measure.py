@@ -15,14 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from .. import native
-from ..accuracy.errorbound import APPLESOFT, DOUBLE, movements, scales, sensitivity
-from ..closedform.plan import Plan
-from ..closedform.solve import TILE, solve
+from ..mechanics import native
+from ..mechanics.accuracy.errorbound import APPLESOFT, DOUBLE, movements, scales, sensitivity
+from ..mechanics.closedform.plan import Plan
+from ..mechanics.closedform.solve import TILE, solve
+from ..mechanics.native.formulas import ExpressionTable
+from ..mechanics.native.processors import processors
+from ..mechanics.native.program import Program, addresses
 from ..names import FINAL_VELOCITIES, PIVOT, SCENE
-from ..native.formulas import ExpressionTable
-from ..native.program import Program, addresses
-from ..processors import processors
 from ..version import __version__
 from . import plainc
 from .methods import METHODS, Method, reference, relative_errors

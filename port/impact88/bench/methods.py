@@ -8,15 +8,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import native
-from ..accuracy.elimination import ORDER, changes, eliminate, fill, lapack
-from ..accuracy.errorbound import APPLESOFT, DOUBLE
 from ..applesoft.operators import Real
-from ..closedform.solve import solve
 from ..figures.drawing import BLACK, BLUE, GREY, ORANGE, VERMILION
+from ..mechanics import native
+from ..mechanics.accuracy.elimination import ORDER, changes, eliminate, fill, lapack
+from ..mechanics.accuracy.errorbound import APPLESOFT, DOUBLE
+from ..mechanics.closedform.solve import solve
 from ..program.run import run
-from ..replay import replay
-from ..scene import Scene
+from ..program.scene import Scene
+from ..program.vectorized import replay
 from . import plainc
 from .populations import Columns, texts
 
@@ -153,7 +153,7 @@ METHODS: Sequence[Method] = (
 def reference(columns: Columns, names: Sequence[str] = ORDER) -> tuple[Floats, Floats]:
     """Results to 50 digits, a column for each of ``names``, each number as the sum of two doubles
     (hi, lo); NaN where there is none."""
-    from ..accuracy.reference import fifty_digits
+    from ..mechanics.accuracy.reference import fifty_digits
 
     hi, lo = np.full((2, len(columns["MA"]), len(names)), np.nan)
     for i in range(len(hi)):

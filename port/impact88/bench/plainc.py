@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..accuracy.elimination import ORDER
+from ..mechanics.accuracy.elimination import ORDER
+from ..mechanics.native.program import addresses
 from ..names import SCENE
-from ..native.program import addresses
 
 Floats = NDArray[np.float64]
 COMPILERS = ("cc", "gcc", "clang")

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from ..plaintable import table
+from ..messages.plaintable import table
 from .measure import Row
 from .populations import POPULATIONS
 

@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import explains_arguments
-from ..closedform.solve import solve
+from ..collision.mappings import in_base
 from ..errors import UserError
-from ..mappings import in_base
+from ..mechanics.closedform.solve import solve
+from ..messages.arguments import explains_arguments
 
 BARRIER = {
     **{"MB": np.inf, "IB": np.inf, "VX": 0.0, "VY": 0.0, "WB": 0.0},

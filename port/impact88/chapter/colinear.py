@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments import explains_arguments
-from ..closedform.statusbits import bits, findings
+from ..collision.mappings import columns
 from ..errors import UserError
-from ..mappings import columns
+from ..mechanics.closedform.statusbits import bits, findings
+from ..messages.arguments import explains_arguments
 from ..names import missing
 
 Array = NDArray[np.float64]

@@ -15,9 +15,9 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from ..arguments import explains_arguments
+from ..collision.mappings import columns
 from ..errors import UserError
-from ..mappings import columns
+from ..messages.arguments import explains_arguments
 from ..names import missing
 
 if TYPE_CHECKING:

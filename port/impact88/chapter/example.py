@@ -10,15 +10,15 @@ from dataclasses import dataclass
 from functools import cache
 from math import hypot
 
-from ..closedform.solve import solve
+from ..collision.uncertain import Uncertain
+from ..mechanics.closedform.solve import solve
+from ..mechanics.outcome import moment_ratio
+from ..mechanics.state import State
 from ..names import FINAL_VELOCITIES
 from ..program.arithmetics import FLOAT64
+from ..program.scene import sample
 from ..reconstruction.adjustment import reconstruct
-from ..reconstruction.outcome import moment_ratio
-from ..reconstruction.state import State
 from ..reconstruction.unknowns import solve_for
-from ..scene import sample
-from ..uncertainty.uncertain import Uncertain
 from .deltav import AS_PRINTED, AS_USED, delta_v, initial_velocity
 from .staged import Collision, closure
 

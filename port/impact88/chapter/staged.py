@@ -25,12 +25,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..closedform.solve import solve
+from ..collision.geometry import Geometry, moved
 from ..files import packaged_text
+from ..mechanics.closedform.solve import solve
+from ..mechanics.outcome import forces
+from ..mechanics.state import State
 from ..names import FINAL_STATE, VELOCITIES
-from ..reconstruction.geometry import Geometry, moved
-from ..reconstruction.outcome import forces
-from ..reconstruction.state import State
 from ..reconstruction.unknowns import typed
 from .deltav import delta_v
 

@@ -21,8 +21,8 @@ from math import cos, degrees, radians
 from statistics import median
 from typing import NamedTuple
 
-from ..closedform.solve import solve
 from ..files import packaged_text
+from ..mechanics.closedform.solve import solve
 from ..names import PIVOT
 from .barrier import BARRIER, barrier
 

@@ -23,10 +23,10 @@ exit status: 0 solved; 2 bad input, or unknowns that are not determined
 """
 
 from ..chapter.barrier import BARRIER, BARRIER_AFTER
+from ..collision.uncertain import fixed
 from ..errors import note
 from ..reconstruction.adjustment import share_resolved
 from ..reconstruction.solutiontable import Exact
-from ..uncertainty.uncertain import fixed
 from . import options
 
 KNOWABLE = (

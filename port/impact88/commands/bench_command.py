@@ -23,8 +23,8 @@ from ..bench import figure, measure, tables
 from ..bench.populations import BENCHMARK, POPULATIONS
 from ..errors import library
 from ..figures.canvas import check_ending, save
-from ..plaintable import plain
-from ..progress import progress
+from ..messages.plaintable import plain
+from ..messages.progress import progress
 from . import options
 
 __doc__ = (__doc__ or "").format(

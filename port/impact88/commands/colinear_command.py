@@ -15,12 +15,12 @@ import math
 from collections.abc import Iterator
 
 from ..chapter.colinear import colinear, colinear_inverse
+from ..collision.units import written
 from ..errors import UserError
+from ..mechanics.outcome import forces
+from ..messages.plaintable import decimals_for, fixed, paragraph, quantities, table
 from ..names import quantity
-from ..plaintable import decimals_for, fixed, paragraph, quantities, table
-from ..reconstruction.outcome import forces
 from ..status import sentences
-from ..units import written
 from . import options
 
 COMMON = ("MA", "MB", "E", "MUP")

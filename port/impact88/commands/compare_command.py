@@ -33,16 +33,16 @@ import math
 from collections import Counter
 from collections.abc import Iterator
 
-from ..accuracy.errorbound import DOUBLE
-from ..checking.agreement import EQUATIONS
-from ..checking.compare import HARMLESS, Comparison, compare, write_junit
+from ..comparison.agreement import EQUATIONS
+from ..comparison.compare import HARMLESS, Comparison, compare, write_junit
 from ..errors import UserError, note, shown
+from ..mechanics.accuracy.errorbound import DOUBLE
 from ..tables.table import format_of
 from . import options
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from ..checking.conformance import Conformance
+    from ..comparison.conformance import Conformance
 
 SHOWN = 20
 """Unreadable rows listed on stderr: a screen, and twice as many are two."""
@@ -98,7 +98,7 @@ def main(args: options.Args) -> int:
 
 def _conformance(args: options.Args) -> int:
     """Judge the table as answers to a kit's vectors."""
-    from ..checking import conformance  # its archives take 10 ms to import
+    from ..comparison import conformance  # its archives take 10 ms to import
 
     for option, value in (("--set", args.set), ("--units", args.units), ("--rtol", args.rtol)):
         if value:
@@ -116,7 +116,7 @@ def _conformance(args: options.Args) -> int:
 
 
 def _conformance_lines(done: Conformance) -> Iterator[str]:
-    from ..checking.conformance import REASONS
+    from ..comparison.conformance import REASONS
 
     yield f"{'class':<30}  passed  failed"
     for name, count in done.counts("kind").items():

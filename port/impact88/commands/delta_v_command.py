@@ -21,10 +21,10 @@ from math import hypot, isfinite, nan
 from typing import Any
 
 from ..chapter import deltav
+from ..collision.units import System, written
 from ..errors import BEYOND_DOUBLES, UserError
+from ..messages.plaintable import number, quantities, table
 from ..names import FINAL_VELOCITIES, SCENE, quantity
-from ..plaintable import number, quantities, table
-from ..units import System, written
 from . import options
 
 AFTER = FINAL_VELOCITIES[:4]

@@ -12,7 +12,7 @@ exit status: 0 all printed numbers reproduced; 1 not all
 from dataclasses import asdict
 
 from ..chapter.example import steps
-from ..plaintable import fixed, paragraph, table
+from ..messages.plaintable import fixed, paragraph, table
 from . import options
 
 ARGUMENTS = (options.JSON, options.OUTPUT)

@@ -31,15 +31,15 @@ from collections.abc import Callable
 from typing import Any
 
 from ..chapter.barrier import BARRIER, VEHICLE, barrier
-from ..closedform.solve import solve
 from ..errors import UserError
 from ..figures import charts
 from ..figures.canvas import check_ending, save
 from ..figures.drawing import Drawing
 from ..figures.sceneview import scene_drawing
 from ..figures.views import colinear, configurations, planar, strip_drawing
+from ..mechanics.closedform.solve import solve
 from ..names import FINAL_VELOCITIES, RESULTS, missing
-from ..scene import Scene, numbers_of
+from ..program.scene import Scene, numbers_of
 from ..tables.sweep import read_ranges
 from . import options
 

@@ -12,22 +12,30 @@ from contextlib import contextmanager
 from functools import partial
 from math import isfinite
 
-from ..case import OWN_AXES, OWN_NAMES, RANGES, Case, check_value, in_base_units, is_share
-from ..doubles import double
+from ..collision.case import (
+    OWN_AXES,
+    OWN_NAMES,
+    RANGES,
+    Case,
+    check_value,
+    in_base_units,
+    is_share,
+)
+from ..collision.doubles import double
+from ..collision.scenefile import case_in
 from ..errors import UserError, note, quoted
 from ..files import called, check_apart
 from ..names import SCENE, check_names
-from ..scene import SAMPLES, Scene, sample
-from ..scenefile import case_in
+from ..program.scene import SAMPLES, Scene, sample
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from ..collision.uncertain import Uncertain
+    from ..collision.units import System
     from ..reconstruction.solutiontable import Impact
     from ..uncertainty.boundstable import Bounds
-    from ..uncertainty.uncertain import Uncertain
-    from ..units import System
 
 FORMATS = ("csv", "jsonl", "npz", "parquet", "feather", "xlsx")
 """What ``--from`` and ``--to`` take."""
@@ -253,8 +261,8 @@ def print_json(form: str, found: Mapping[str, Any], indent: int | None = None) -
     """Print an object of a published form on one line; what is not finite is null."""
     import json
 
-    from ..plaintable import plain
-    from ..schemas import stamped
+    from ..messages.plaintable import plain
+    from ..messages.schemas import stamped
 
     record = stamped(form, plain(found))
     print(json.dumps(record, ensure_ascii=False, allow_nan=False, indent=indent), flush=True)
@@ -402,7 +410,7 @@ def note_remarks(case: Case | Scene, based: str = "") -> None:
     line with it what is ``based`` on the base units."""
     lines = list(case.remarks.values())
     if based and case.units in ("us", "metric"):  # the others are shown in their base units
-        from ..units import base_of, system_of
+        from ..collision.units import base_of, system_of
 
         lines = ["; ".join([f"{based} is in {base_of(system_of(case.units))}", *lines])]
     for line in lines:
@@ -410,7 +418,7 @@ def note_remarks(case: Case | Scene, based: str = "") -> None:
 
 
 def _within_limits(name: str, text: str, source: str, units: str | None) -> Uncertain:
-    from ..uncertainty.uncertain import fixed, read
+    from ..collision.uncertain import fixed, read
 
     if any(mark in text for mark in (*RANGES, "skid")) or is_share(text):
         return read(text, f"{source}: {name}", units=units)
@@ -431,7 +439,7 @@ def scene_given(args: Args, based: str = "") -> Scene | None:
     note_remarks(scene, based)
     if (move := getattr(args, "move_contact", None)) is None:
         return scene
-    from ..reconstruction.geometry import moved_texts
+    from ..collision.geometry import moved_texts
 
     parts = [part.strip() for part in move.split(",")]
     if len(parts) != 2:
@@ -474,7 +482,7 @@ EXPLORED = (
 
 def explored(args: Args, outputs: list[str], keep: bool = False) -> Bounds:
     """The bounds the options ask for, in the units of the inputs. Raises UserError."""
-    from ..progress import progress
+    from ..messages.progress import progress
     from ..uncertainty.bounds import bounds
     from ..uncertainty.boundstable import in_units
     from ..uncertainty.ranges import read_correlations, read_inputs

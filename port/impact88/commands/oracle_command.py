@@ -32,8 +32,8 @@ import sys
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from ..checking import kit, vectors
-from ..checking.oracle import BATCH, answer, published_tests
+from ..comparison import kit, vectors
+from ..comparison.oracle import BATCH, answer, published_tests
 from ..errors import UserError
 from ..files import LONGEST_LINE, called, encoding_of, open_bytes
 from . import options

@@ -55,22 +55,22 @@ import sys
 from collections.abc import Sequence
 from math import isclose
 
-from ..case import OWN_AXES, OWN_NAMES, SOURCE, Case
+from ..collision.case import OWN_AXES, OWN_NAMES, SOURCE, Case
+from ..collision.scenefile import template
+from ..collision.uncertain import Uncertain
 from ..errors import UserError, note
 from ..files import replacing
+from ..mechanics.state import KNOWABLE, QUANTITIES
+from ..messages.progress import progress
 from ..names import SCENE
-from ..progress import progress
 from ..reconstruction.adjustment import (
     Reconstruction,
     needs_adjustment,
     reconstruct,
     share_resolved,
 )
+from ..reconstruction.reconstructedtable import Measured
 from ..reconstruction.solutiontable import Exact, Impact
-from ..reconstruction.state import KNOWABLE, QUANTITIES
-from ..scenefile import template
-from ..uncertainty.reconstructedtable import Measured
-from ..uncertainty.uncertain import Uncertain
 from . import options
 
 ARGUMENTS = (

@@ -24,11 +24,11 @@ exit status: 0 written; 2 bad input
 
 import csv
 
-from ..case import Case
+from ..collision.case import Case
+from ..collision.scenefile import TOML_LIMIT, template, toml_texts
 from ..errors import UserError
 from ..files import decode, read_bytes, replacing
-from ..scene import sample
-from ..scenefile import TOML_LIMIT, template, toml_texts
+from ..program.scene import sample
 from . import options
 
 ARGUMENTS = (

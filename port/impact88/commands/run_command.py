@@ -19,13 +19,13 @@ from contextlib import ExitStack
 from itertools import chain, repeat
 
 from ..applesoft.console import PRINTER_SLOT, Console, EndOfInput
-from ..case import OWN_NAMES, Case, check_value
+from ..collision.case import OWN_NAMES, Case, check_value
 from ..errors import UserError
 from ..files import replacing, typed_line
 from ..names import SCENE, VELOCITIES
 from ..program.arithmetics import ARITHMETICS
 from ..program.run import Run, page, start
-from ..scene import Scene, published_data
+from ..program.scene import Scene, published_data
 from . import options
 
 MOST_REPLIES = 10_000

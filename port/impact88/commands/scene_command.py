@@ -16,9 +16,9 @@ examples:
   impact88 scene --sample 2         the scene of the Appendix's second sample run
 """
 
-from ..scene import sample
-from ..scenefile import SIGNS, template
-from ..units import system_named
+from ..collision.scenefile import SIGNS, template
+from ..collision.units import system_named
+from ..program.scene import sample
 from . import options
 
 __doc__ = (__doc__ or "").format(signs=SIGNS)

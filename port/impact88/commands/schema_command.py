@@ -14,7 +14,7 @@ exit status: 0 done; 2 no such schema
 
 import json
 
-from ..schemas import CONVENTIONS, NUMBERS, text
+from ..messages.schemas import CONVENTIONS, NUMBERS, text
 from . import options
 
 ARGUMENTS = (options.value("name", "NAME", "a form, or conventions", nargs="?"), options.OUTPUT)

@@ -10,7 +10,7 @@ exit status: 0 everything came out as captured; 1 something did not
 
 import sys
 
-from ..checking.selfcheck import Check, checks, record
+from ..qualification.selfcheck import Check, checks, record
 from . import options
 
 ARGUMENTS = (options.flag("--json", "print the record as one JSON object"), options.OUTPUT)

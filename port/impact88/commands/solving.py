@@ -11,24 +11,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..case import OWN_NAMES, VALUE_LIMIT, Case, check_value, is_share
-from ..closedform.columns import INERTIAS, UNUSED_BY_POINTS, examine, refusals
-from ..closedform.share import resolved, share_of
-from ..closedform.solve import share_typed, solve
-from ..doubles import is_number
+from ..collision.case import OWN_NAMES, VALUE_LIMIT, Case, check_value, is_share
+from ..collision.doubles import is_number
+from ..collision.fields import ZERO_DETERMINANT
+from ..collision.scenefile import case_in
+from ..collision.units import Convention, convention_named
 from ..errors import UserError, note, quoted
-from ..fields import ZERO_DETERMINANT
 from ..files import called, replacing
+from ..mechanics.closedform.columns import INERTIAS, UNUSED_BY_POINTS, examine, refusals
+from ..mechanics.closedform.share import resolved, share_of
+from ..mechanics.closedform.solve import share_typed, solve
+from ..messages.progress import progress
 from ..names import DEFAULT_M, RESULTS, SCENE, check_names
-from ..progress import progress
-from ..scenefile import case_in
 from ..status import Status
 from ..tables.cells import Share, TableUnits, check_scene_columns, filled, numbers, point_masses
 from ..tables.remarks import Remark, remarks
 from ..tables.rows import BadCell, Rows, shortest
 from ..tables.sweep import estimates, read_ranges, read_sweep
 from ..tables.table import ahead, behind, format_of, may_wait, open_reader, open_writer
-from ..units import Convention, convention_named
 from . import options
 
 Results = dict[str, NDArray[Any]]
@@ -272,7 +272,7 @@ def _read_shares(rows: Rows, columns: dict[str, NDArray[np.float64]]) -> None:
 
 def _applesoft(rows: Rows, units: TableUnits, wanted: Sequence[str], said: _Remarks) -> Results:
     """The listing's own arithmetic, `impact88.replay`."""
-    from ..replay import replay
+    from ..program.vectorized import replay
 
     said.look(rows, units, numbers(Rows(rows.count, rows.columns), units))
 

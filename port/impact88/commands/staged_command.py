@@ -31,12 +31,12 @@ from math import isfinite, sqrt
 from typing import Any
 
 from ..chapter import staged, validation
+from ..collision.geometry import GEOMETRY, Geometry, within_doubles
+from ..collision.units import base_of
 from ..errors import BEYOND_DOUBLES, UserError
+from ..messages.plaintable import fixed, paragraph, table
 from ..names import FINAL_STATE, VELOCITIES, missing
-from ..plaintable import fixed, paragraph, table
-from ..reconstruction.geometry import GEOMETRY, Geometry, within_doubles
 from ..reconstruction.unknowns import check_physical
-from ..units import base_of
 from . import options
 
 ARGUMENTS = (

@@ -29,10 +29,10 @@ import sys
 
 from .. import files
 from ..errors import UserError, note
-from ..reading.plaintext import decoded
-from ..reading.printout import LARGEST_FILE
-from ..reporting.examination import Examined, Verdict, examine
-from ..reporting.verification import lines
+from ..verification.reading.plaintext import decoded
+from ..verification.reading.printout import LARGEST_FILE
+from ..verification.reporting.examination import Examined, Verdict, examine
+from ..verification.reporting.verification import lines
 from . import options
 
 _ON_REPORT = ("date", "case", "examiner")

@@ -19,15 +19,15 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-from ..case import OWN_NAMES
-from ..checking.vectors import scenes
+from ..collision.case import OWN_NAMES
+from ..comparison.vectors import scenes
 from ..errors import UserError
+from ..messages.progress import progress
 from ..names import SCENE
-from ..progress import progress
-from ..scene import SAMPLES, Scene, sample
-from ..witness import hearing
-from ..witness.apple import Image, read_image
-from ..witness.session import Session
+from ..program.scene import SAMPLES, Scene, sample
+from ..qualification.witness import hearing
+from ..qualification.witness.apple import Image, read_image
+from ..qualification.witness.session import Session
 from . import options
 
 Job = Callable[[Session], hearing.Heard]

@@ -21,13 +21,13 @@ from jinja2 import ChoiceLoader, PackageLoader
 from markupsafe import Markup, escape
 from werkzeug.exceptions import HTTPException
 
+from ..collision.scenefile import SIGNS
 from ..errors import UserError
 from ..files import packaged_text
+from ..mechanics.state import KNOWABLE
+from ..messages.plaintable import number
 from ..names import DEFAULT_M, SCENE, quantity
-from ..plaintable import number
-from ..reconstruction.state import KNOWABLE
-from ..scene import SAMPLES, sample
-from ..scenefile import SIGNS
+from ..program.scene import SAMPLES, sample
 from ..version import __version__
 from . import collision, reconstruction
 from .forms import digits, filled_in
@@ -66,7 +66,7 @@ ALWAYS_KNOWN = frozenset("MA IA DA PA TA MB IB DB PB TB GA M".split())
 
 SYSTEMS = {"us": "lb, mph, ft", "chapter": "slug, ft/s, ft"}
 SYSTEMS |= {"metric": "kg, km/h, m", "si": "kg, m/s, m"}
-"""The systems of units (`impact88.units`), and what bare numbers are in them."""
+"""The systems of units (`collision.units`), and what bare numbers are in them."""
 PUBLISHED = ("run1-as-printed.txt", "run2-as-printed.txt", "table3-as-printed.txt")
 """The published printouts, as they stand in the chapter."""
 

@@ -1,7 +1,7 @@
 """The answers of the Collision view: 1988 printout, exact results, warnings, bounds, figure.
 
 A text that INPUT takes for a number goes into the program as it stands; of a range
-(`uncertainty.uncertain`) the nominal value does, and the bounds have the rest. What computes is
+(`collision.uncertain`) the nominal value does, and the bounds have the rest. What computes is
 imported on first use: the page is shown before numpy is there.
 """
 
@@ -9,18 +9,18 @@ from collections.abc import Mapping
 from itertools import groupby
 from typing import Any, NamedTuple
 
-from ..case import Case, check_value
-from ..doubles import double, doubles_of, is_number
+from ..collision import uncertain
+from ..collision.case import Case, check_value
+from ..collision.doubles import double, doubles_of, is_number
+from ..collision.geometry import placed
+from ..collision.scenefile import template, toml_texts
+from ..collision.units import RULES, System
 from ..emulator.screen import shown_character
 from ..errors import UserError
+from ..messages.plaintable import number
+from ..messages.schemas import stamped
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE, quantity
-from ..plaintable import number
-from ..reconstruction.geometry import placed
-from ..scene import Scene, sample
-from ..scenefile import template, toml_texts
-from ..schemas import stamped
-from ..uncertainty import uncertain
-from ..units import RULES, System
+from ..program.scene import Scene, sample
 from .forms import entries, spoken_direction, units_shown, without_rounding
 
 DRAWS = 20_000
@@ -115,10 +115,10 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     ``units`` as `units_shown`; for a complete scene also ``answer`` (`_answer`), ``oracle``, what
     `impact88 oracle` answers, its ``page``, ``results`` and ``warnings``, and the ``screen`` from
     the emulator's memory."""
-    from ..checking.oracle import oracle
-    from ..judging import beside
+    from ..comparison.oracle import oracle
     from ..program.emulated import finished, loaded
     from ..program.run import page
+    from ..verification.judging import beside
 
     form = read(values, units)
     parts = ("problems", "missing", "ranges", "remarks")
@@ -191,9 +191,9 @@ def _rows(
 
 def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
     """The scene from above as SVG, as `impact88 figure scene` draws it. Raises UserError."""
-    from ..closedform.solve import solve
     from ..figures.canvas import svg
     from ..figures.sceneview import scene_drawing
+    from ..mechanics.closedform.solve import solve
 
     form = read(values, units)
     if not form.scene:

@@ -4,16 +4,16 @@ import math
 from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
-from ..case import ABOUT, OWN_AXES, SOURCE, Case, in_base_units
+from ..collision.case import ABOUT, OWN_AXES, SOURCE, Case, in_base_units
+from ..collision.estimates import SIZES
+from ..collision.geometry import clock
+from ..collision.scenefile import toml_texts
+from ..collision.units import System, base_of
 from ..errors import UserError
-from ..estimates import SIZES
 from ..files import decode
+from ..mechanics.state import COURSES, FORCES
+from ..messages.plaintable import number
 from ..names import CHAPTER, DEFAULT_M, RESULTS, SCENE, check_names, quantity
-from ..plaintable import number
-from ..reconstruction.geometry import clock
-from ..reconstruction.state import COURSES, FORCES
-from ..scenefile import toml_texts
-from ..units import System, base_of
 
 UNITS = "units"
 """The problem that belongs to no single value."""

@@ -9,12 +9,12 @@ from typing import Any
 
 from ..errors import UserError
 from ..files import packaged_bytes
-from ..reading import plaintext as pasted
-from ..reading.printout import LARGEST_FILE
 from ..report.casefile import report as report_page
-from ..reporting import verification
-from ..reporting.examination import examine
-from ..reporting.verification import Examined, Verification
+from ..verification.reading import plaintext as pasted
+from ..verification.reading.printout import LARGEST_FILE
+from ..verification.reporting import verification
+from ..verification.reporting.examination import examine
+from ..verification.reporting.verification import Examined, Verification
 
 LONGEST_NAME = LONGEST_WORDS = 200
 """Characters of a file's name; of a date, a case or a name on the report: two of its lines."""

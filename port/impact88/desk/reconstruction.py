@@ -5,17 +5,17 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..case import Case
+from ..collision import uncertain
+from ..collision.case import Case
+from ..collision.scenefile import known_template
+from ..collision.uncertain import Uncertain
+from ..collision.units import RULES
 from ..errors import UserError
+from ..mechanics.state import KNOWABLE
+from ..messages.plaintable import number
+from ..messages.schemas import stamped
 from ..names import FINAL_STATE, SCENE, VELOCITIES, check_names, quantity
-from ..plaintable import number
-from ..reconstruction.state import KNOWABLE
-from ..scene import sample
-from ..scenefile import known_template
-from ..schemas import stamped
-from ..uncertainty import uncertain
-from ..uncertainty.uncertain import Uncertain
-from ..units import RULES
+from ..program.scene import sample
 from .forms import digits, entries, spoken_direction, units_shown, without_rounding
 
 DRAWS, _DIGITS, _DIGITS_TO_GO_ON = 20_000, 6, 12
@@ -45,8 +45,8 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     what of physics it breaks (``impossible``), ``rows`` and ``columns`` of a table, ``adjusted``
     values, ``warnings`` and the ``scene`` (texts by name, or None)."""
     from ..reconstruction import adjustment
+    from ..reconstruction.reconstructedtable import Measured
     from ..reconstruction.solutiontable import Exact, Impact
-    from ..uncertainty.reconstructedtable import Measured
 
     case, problems = entries(values, units)
     system = case.system if case else RULES
@@ -177,7 +177,7 @@ def known_file(values: Mapping[str, str], units: str = "") -> str:
 
 def known_of_sample(which: int) -> dict[str, Any]:
     """A published run with its results known and its initial velocities not. Raises UserError."""
-    from ..checking.oracle import oracle
+    from ..comparison.oracle import oracle
 
     scene = sample(which)
     results = oracle([scene], reference=False)[0]["results"]

@@ -30,7 +30,17 @@ from .memory import (
     TEMPORARIES,
 )
 from .screen import FLASHING, INVERSE, NORMAL
-from .tokens import BLANK, CLOSE, COLON, COMMA, FIRST, KEYWORDS, LAST_STATEMENT, OPEN, TOKENS
+from .tokens import (
+    BLANK,
+    CLOSE,
+    COLON,
+    COMMA,
+    FIRST,
+    KEYWORDS,
+    LAST_STATEMENT,
+    OPEN,
+    TOKENS,
+)
 from .variables import store
 
 FOR_SIZE, FOR_ROOM, GOSUB_SIZE, GOSUB_ROOM, NO_VARIABLE = 18, 74, 7, 64, -1

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..collision.units import RULES, System, system_of
 from ..errors import UserError
 from ..names import PIVOT, quantity
-from ..scene import numbers_of
+from ..program.scene import numbers_of
 from ..status import Status
 from ..tables.sweep import swept_columns
-from ..units import RULES, System, system_of
 from . import drawing as d
 from .drawing import BLACK, GREY, ROW, TEXT, Box, Drawing, Path, Text, short
 
@@ -361,7 +361,7 @@ def friction_sweep(scene: Any) -> Drawing:
     """Energy loss and both ΔV against the friction that opposes the sliding, from none to beyond
     the critical coefficient, at which the sliding ends; more would reverse it, which friction
     cannot do: shaded. Raises UserError when a value of the scene is no number."""
-    from ..closedform.solve import solve
+    from ..mechanics.closedform.solve import solve
 
     values: dict[str, Any] = numbers_of(scene)
     signed = solve({**values, "MU": PIVOT}, ["MUC"])
@@ -409,7 +409,7 @@ def _along(
 ) -> Drawing:
     """Results along a value, a panel for each of the ``groups``: the scene's ``own`` marked, where
     STATUS has ``faults`` shaded, a line at ``limit``; ``words`` for what is marked and shaded."""
-    from ..closedform.solve import solve
+    from ..mechanics.closedform.solve import solve
 
     numbers: dict[str, Any] = numbers_of(scene)
     units = _system(scene)

@@ -18,7 +18,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from ..names import FINAL_VELOCITIES
-from ..scene import numbers_of
+from ..program.scene import numbers_of
 from ..status import sentences
 from .drawing import check_drawable, degrees, unit
 

@@ -5,9 +5,9 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..arguments import explains_arguments
-from ..reconstruction.geometry import clock
-from ..units import RULES, System
+from ..collision.geometry import clock
+from ..collision.units import RULES, System
+from ..messages.arguments import explains_arguments
 from . import drawing as d
 from .canvas import Svg, svg
 from .drawing import ROW, Box, Drawing, Label, Path, Text, View, fitting, place, short
@@ -103,7 +103,7 @@ def scene_svg(scene: Any, result: Mapping[str, Any] | None = None) -> Svg:
     >>> impact88.scene_svg(impact88.sample(1))[:4]
     '<svg'
     """
-    from ..mappings import in_base
+    from ..collision.mappings import in_base
 
     return svg(scene_drawing(in_base(scene), result))
 

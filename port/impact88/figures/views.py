@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 from ..errors import UserError
-from ..scene import sample
+from ..program.scene import sample
 from . import drawing as d
 from . import sceneview as view
 from .drawing import ROW, Box, Drawing, Label, Path, Text, View, place

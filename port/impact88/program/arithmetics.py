@@ -7,11 +7,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
-from .. import doubles
 from ..applesoft import decimaltext, functions
 from ..applesoft.errorcodes import ApplesoftError, division_by_zero, illegal_quantity, overflow
 from ..applesoft.operators import Real
 from ..applesoft.real import ZERO, Number, absolute, floor
+from ..collision import doubles
 from ..errors import UserError
 
 TYPE_CHECKING = False

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from ..fields import ANGLES
+from ..collision.fields import ANGLES
 from ..names import SCENE
 
 Lines = Mapping[int, Sequence[str]]

@@ -16,9 +16,9 @@ from ..applesoft.errorcodes import ApplesoftError
 from ..emulator.emulator import Applesoft
 from ..emulator.faults import TooManyStatements
 from ..errors import UserError
-from ..scene import Scene
 from .copyvariables import find_variables, key_of
 from .run import Run
+from .scene import Scene
 
 LISTING = "impact.bas"
 

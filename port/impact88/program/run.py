@@ -8,13 +8,13 @@ from collections import namedtuple
 from collections.abc import Mapping
 from contextlib import nullcontext
 
-from .. import notebook
 from ..applesoft.console import Console
 from ..applesoft.operators import Real
-from ..arguments import explains_arguments
-from ..scene import Scene
+from ..messages import notebook
+from ..messages.arguments import explains_arguments
 from . import arithmetics, listing, stepping
 from .arithmetics import Arithmetic
+from .scene import Scene
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -17,18 +17,36 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..closedform.solve import share_typed, solve
+from ..collision.geometry import GEOMETRY, with_point_masses, within_doubles
+from ..collision.mappings import within_limits
+from ..collision.uncertain import Uncertain, fixed
 from ..errors import UserError
-from ..mappings import within_limits
-from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, SCENE, VELOCITIES, check_names
+from ..mechanics.closedform.solve import share_typed, solve
+from ..mechanics.outcome import IMPOSSIBLE, outcome
+from ..mechanics.state import (
+    COURSES,
+    CRUSH,
+    DIRECTIONS,
+    FORCES,
+    KNOWABLE,
+    OTHERS,
+    QUANTITIES,
+    SPEEDS,
+    State,
+)
+from ..names import (
+    COEFFICIENTS,
+    FINAL_STATE,
+    IMPULSES,
+    PIVOT,
+    SCENE,
+    VELOCITIES,
+    check_names,
+)
 from ..status import Status
-from ..uncertainty.uncertain import Uncertain, fixed
 from .evidence import Evidence, weigh
-from .geometry import GEOMETRY, with_point_masses, within_doubles
 from .laws import missed_laws, told
-from .outcome import IMPOSSIBLE, outcome
 from .quadrics import MAX_EQUATIONS, Paths, follow_paths, quadratic_equations
-from .state import COURSES, CRUSH, DIRECTIONS, FORCES, KNOWABLE, OTHERS, QUANTITIES, SPEEDS, State
 from .system import PARAMETERS, SPINS, System
 from .unknowns import UnsolvableError, check_physical, solve_for, typed
 

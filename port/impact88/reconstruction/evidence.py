@@ -13,9 +13,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ..collision.units import RULES, System
+from ..messages.plaintable import number
 from ..names import quantity
-from ..plaintable import number
-from ..units import RULES, System
 from .laws import Missed, told
 
 CONTRADICTION = 1e-3

@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..collision.geometry import GEOMETRY, Geometry, within_doubles
+from ..collision.units import RULES, System
+from ..mechanics.state import CHANGES, CONTACT, COURSES, ENERGIES, SPEEDS, State
+from ..messages.plaintable import number
 from ..names import FINAL_STATE, PIVOT, VELOCITIES, quantity
-from ..plaintable import number
-from ..units import RULES, System
-from .geometry import GEOMETRY, Geometry, within_doubles
-from .state import CHANGES, CONTACT, COURSES, ENERGIES, SPEEDS, State
 
 Floats = NDArray[np.float64]
 

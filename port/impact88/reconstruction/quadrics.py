@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .state import COURSES, SPEEDS, State
+from ..mechanics.state import COURSES, SPEEDS, State
 from .system import System
 
 Floats = NDArray[np.float64]

@@ -1,6 +1,6 @@
 """A solved impact as tables to read and as JSON to process: the answer in a few lines, velocities,
 coefficients, impulse, what follows, remarks. `Exact` is one of exact values (`unknowns`), one with
-tolerances is `uncertainty.reconstructedtable.Measured`.
+tolerances is `reconstruction.reconstructedtable.Measured`.
 """
 
 import math
@@ -8,14 +8,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from textwrap import wrap
 from typing import Any, Self
 
+from ..collision.geometry import clock, within_doubles
+from ..collision.units import RULES, VELOCITY, System, written
 from ..errors import UserError
+from ..mechanics.outcome import IMPOSSIBLE, forces, moment_ratio, outcome
+from ..mechanics.state import CHANGES, COURSES, FORCES
+from ..messages.plaintable import decimals_for, fixed, number, paragraph, plain, table
 from ..names import CHAPTER, FINAL_STATE, PIVOT, RESULTS, SCENE, VELOCITIES, quantity
-from ..plaintable import decimals_for, fixed, number, paragraph, plain, table
 from ..status import sentences
-from ..units import RULES, VELOCITY, System, written
-from .geometry import clock, within_doubles
-from .outcome import IMPOSSIBLE, forces, moment_ratio, outcome
-from .state import CHANGES, COURSES, FORCES
 from .unknowns import BADLY_CONDITIONED, Solution, solve_for
 
 _ORDER = (*SCENE, *RESULTS, *CHAPTER)

@@ -13,10 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES, quantity
-from ..uncertainty.uncertain import Uncertain
-from .geometry import GEOMETRY, Geometry
-from .state import (
+from ..collision.geometry import GEOMETRY, Geometry
+from ..collision.uncertain import Uncertain
+from ..mechanics.state import (
     CHANGES,
     CONTACT,
     COURSES,
@@ -28,6 +27,7 @@ from .state import (
     SPEEDS,
     State,
 )
+from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES, quantity
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]

@@ -23,10 +23,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments import explains_arguments
-from ..closedform.solve import solve
+from ..collision.geometry import GEOMETRY, with_point_masses, within_doubles
+from ..collision.mappings import columns
+from ..collision.uncertain import fixed
 from ..errors import UserError
-from ..mappings import columns
+from ..mechanics.closedform.solve import solve
+from ..mechanics.state import State
+from ..messages.arguments import explains_arguments
 from ..names import (
     COEFFICIENTS,
     FINAL_STATE,
@@ -39,9 +42,6 @@ from ..names import (
     missing,
     quantity,
 )
-from ..uncertainty.uncertain import fixed
-from .geometry import GEOMETRY, with_point_masses, within_doubles
-from .state import State
 from .system import SPINS, TINY, System
 
 Array = NDArray[np.float64]

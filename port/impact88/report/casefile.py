@@ -8,13 +8,13 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from .. import files
-from ..doubles import doubles_of
+from ..collision.doubles import doubles_of
+from ..collision.fields import FIELDS
 from ..errors import UserError
-from ..fields import FIELDS
-from ..judging.judgement import Status, Verdict
 from ..names import FINAL_VELOCITIES, quantity
-from ..reading.fieldlabels import LabelState
-from ..reporting.verification import (
+from ..verification.judging.judgement import Status, Verdict
+from ..verification.reading.fieldlabels import LabelState
+from ..verification.reporting.verification import (
     MEANINGS,
     TITLES,
     Examined,
@@ -86,8 +86,8 @@ def _drawing(result: Verification) -> str:
     scene = result.complete_scene
     if not scene or result.guessed or result.verdict is Verdict.INCOMPLETE:
         return ""
-    from ..closedform.solve import solve
     from ..figures.sceneview import scene_svg
+    from ..mechanics.closedform.solve import solve
 
     try:
         return scene_svg(scene, solve(doubles_of(scene), [*FINAL_VELOCITIES, "STATUS"]))

@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..case import ABOUT, Case
+from ..collision.case import ABOUT, Case
+from ..collision.geometry import MOVES, clock, moved, placed
+from ..collision.units import System, base_of
 from ..errors import UserError, library
 from ..figures.canvas import svg
 from ..figures.sceneview import scene_drawing
 from ..files import replacing
+from ..mechanics.state import COURSES, KNOWABLE
+from ..messages.plaintable import fixed, number
 from ..names import DEFAULT_M, SCENE, check_names, quantity
-from ..plaintable import fixed, number
-from ..reconstruction.geometry import MOVES, clock, moved, placed
 from ..reconstruction.solutiontable import without_noise
-from ..reconstruction.state import COURSES, KNOWABLE
 from ..status import sentences
-from ..units import System, base_of
 from .frame import render
 
 if TYPE_CHECKING:
@@ -163,7 +163,7 @@ def _cell(text: str) -> float | str | None:
 
 
 def _forward(case: Case, source: str, samples: int, seed: int, units: System) -> Findings:
-    from ..closedform.solve import share_typed, solve
+    from ..mechanics.closedform.solve import share_typed, solve
     from ..reconstruction.solutiontable import completed
     from ..uncertainty.bounds import bounds
     from ..uncertainty.boundstable import quantiles_of
@@ -204,9 +204,9 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
 
 
 def _inverse(case: Case, source: str, samples: int, seed: int, units: System) -> Findings:
+    from ..collision.uncertain import read
     from ..reconstruction.adjustment import reconstruct
-    from ..uncertainty.reconstructedtable import Measured
-    from ..uncertainty.uncertain import read
+    from ..reconstruction.reconstructedtable import Measured
 
     texts = {n: text for n, text in case.values.items() if text.strip() and n in KNOWABLE}
     texts.setdefault("M", DEFAULT_M)

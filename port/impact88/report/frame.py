@@ -13,8 +13,8 @@ from hashlib import sha256
 from importlib import resources
 from typing import Any
 
-from .. import native
 from ..errors import UserError, library, printable
+from ..mechanics import native
 from ..version import full_version
 
 PAPERS = {"letter": "8.5in 11in", "a4": "210mm 297mm"}

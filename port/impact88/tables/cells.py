@@ -11,12 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import doubles
-from ..closedform.columns import UNUSED_BY_POINTS
-from ..doubles import is_number
-from ..errors import UserError, quoted
-from ..names import RESULTS, SCENE, quantity
-from ..units import (
+from ..collision import doubles
+from ..collision.doubles import is_number
+from ..collision.units import (
     NUMBER,
     SYSTEMS,
     Convention,
@@ -29,6 +26,9 @@ from ..units import (
     turned,
     units_in,
 )
+from ..errors import UserError, quoted
+from ..mechanics.closedform.columns import UNUSED_BY_POINTS
+from ..names import RESULTS, SCENE, quantity
 from .rows import ArrowTexts, Column, Heading, Rows, heading
 
 _MEASURING = ("length", "length/time", "mass", "mass·length²", "mass·length²/time²")

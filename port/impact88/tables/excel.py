@@ -22,7 +22,16 @@ from ..files import decoding, replacing
 from ..names import SCENE
 from .cells import plain, typed
 from .npztable import check_unpacked
-from .rows import BLOCK_ROWS, Column, Named, Put, Reader, Rows, names_among, scene_names
+from .rows import (
+    BLOCK_ROWS,
+    Column,
+    Named,
+    Put,
+    Reader,
+    Rows,
+    names_among,
+    scene_names,
+)
 
 MOST_ABOVE, MOST_SHEETS = 50, 100
 """Rows among which the header is sought, and sheets: titles and remarks are some lines."""

@@ -13,14 +13,22 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments import explains_arguments
-from ..closedform.solve import solve
-from ..doubles import is_number
+from ..collision.doubles import is_number
 from ..errors import PlausibilityWarning, UserError, library, quoted
+from ..mechanics.closedform.solve import solve
+from ..messages.arguments import explains_arguments
 from ..names import DEFAULT_M, SCENE
 from .cells import TableUnits, check_scene_columns, numbers
 from .remarks import Remark, remarks
-from .rows import BLOCK_ROWS, Column, Reader, Rows, heading, heading_remarks, scene_names
+from .rows import (
+    BLOCK_ROWS,
+    Column,
+    Reader,
+    Rows,
+    heading,
+    heading_remarks,
+    scene_names,
+)
 
 Frame = TypeVar("Frame")
 Array = NDArray[Any]
@@ -39,7 +47,7 @@ def solve_frame(
     """Solve the impact of every row, and return the frame with the results as further columns.
 
     A row whose cell is missing (None, NaN, masked, null), no number or not allowed has NaN in every
-    result and NOT_FINITE in STATUS. Texts count as `impact88.doubles` reads them.
+    result and NOT_FINITE in STATUS. Texts count as `collision.doubles` reads them.
 
     Parameters
     ----------

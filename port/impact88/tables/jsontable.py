@@ -17,8 +17,8 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from .. import doubles
 from ..applesoft.decimaltext import scan
+from ..collision import doubles
 from ..errors import UserError, quoted
 from ..files import LONGEST_LINE
 from ..names import RESULTS, SCENE

@@ -22,15 +22,7 @@ from ..errors import UserError, quoted
 from ..files import ESCAPED, decoding, replacing
 from ..names import SCENE
 from .cells import typed
-from .rows import (
-    BLOCK_CHARACTERS,
-    BLOCK_ROWS,
-    Column,
-    Put,
-    Reader,
-    Rows,
-    scene_names,
-)
+from .rows import BLOCK_CHARACTERS, BLOCK_ROWS, Column, Put, Reader, Rows, scene_names
 
 MOST_ARRAYS = 10_000
 """A table has some fifty columns."""

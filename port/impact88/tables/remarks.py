@@ -1,4 +1,4 @@
-"""What is hardly meant in a table (`impact88.plausibility`), by columns: a remark a rule, with the
+"""What is hardly meant in a table (`collision.plausibility`), by columns: a remark a rule, with the
 number of rows it is about and the first of them."""
 
 import math
@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..closedform.columns import limits_of
-from ..estimates import CARS, weight_line
-from ..plausibility import (
+from ..collision.estimates import CARS, weight_line
+from ..collision.plausibility import (
     BEYOND_ARM,
     INERTIA_RATIO,
     LONGEST_ARM,
@@ -23,7 +22,8 @@ from ..plausibility import (
     rule_of_name,
     sideways_words,
 )
-from ..units import System
+from ..collision.units import System
+from ..mechanics.closedform.columns import limits_of
 
 Floats = NDArray[np.float64]
 Where = NDArray[np.bool_]

@@ -60,7 +60,7 @@ class ArrowTexts(ArrowColumn):
     """A column of texts without nulls."""
 
     def doubles(self) -> NDArray[np.float64] | None:
-        """The doubles that the texts are, by the rule of `impact88.doubles`; None where a cell
+        """The doubles that the texts are, by the rule of `collision.doubles`; None where a cell
         needs a closer look."""
         import pyarrow as pa
 

@@ -7,11 +7,11 @@ from itertools import islice, product
 from math import isfinite, prod
 from typing import Any, NamedTuple
 
-from ..case import Case, is_share
-from ..doubles import digits, double, is_number
+from ..collision.case import Case, is_share
+from ..collision.doubles import digits, double, is_number
+from ..collision.units import nominal, units_in
 from ..errors import UserError, quoted
 from ..names import SCENE, check_names
-from ..units import nominal, units_in
 from .rows import BLOCK_ROWS, Column, Heading, Reader, Rows
 
 MOST = 10_000_000

@@ -1,8 +1,8 @@
 """Upper and lower bounds from ranges of the data (chapter, Section V: "reasonable ranges of these
 variables should be used ... to provide upper and lower bounds on vehicle speed").
 
-Of one scene whose values are known within limits (`uncertainty.uncertain`), the box the ranges span
-is searched (`uncertainty.extremes`) for each sign that line 400 can give MU, correlations or not.
+Of one scene whose values are known within limits (`collision.uncertain`), the box the ranges span
+is searched (`optimization.extremes`) for each sign that line 400 can give MU, correlations or not.
 Every bound is attained at the inputs kept beside it; that none lies farther is likely, not proven.
 Where the equations become singular inside, a bound is infinite. Beside it stand seeded Monte Carlo
 (`Spread`) and what each input does alone (`Drive`).
@@ -19,18 +19,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import status
-from ..arguments import explains_arguments
-from ..case import check_mapping
-from ..closedform.solve import quantities, share_typed
+from ..collision.case import check_mapping
+from ..collision.geometry import MOVES, moved
+from ..collision.mappings import base_system, within_limits
+from ..collision.uncertain import Uncertain, columns_of, correlation_root, fixed, random_numbers
 from ..errors import UserError
-from ..mappings import base_system, within_limits
+from ..mechanics.closedform.solve import quantities, share_typed
+from ..mechanics.outcome import forward_model, reconstruction_model
+from ..messages.arguments import explains_arguments
 from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, VELOCITIES, check_names, listed
-from ..reconstruction.geometry import MOVES, moved
-from ..reconstruction.outcome import forward_model, reconstruction_model
+from ..optimization.extremes import CORNERS_IN_FULL, Extremes, Piece, merged
 from .boundstable import Bound, Bounds, Drive, Spread
-from .extremes import CORNERS_IN_FULL, Extremes, Piece, merged
 from .ranges import complete, read_correlations
-from .uncertain import Uncertain, columns_of, correlation_root, fixed, random_numbers
 
 Array = NDArray[np.float64]
 PROBLEMS = ("forward", "reconstruction")

@@ -9,12 +9,12 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import notebook
+from ..collision.uncertain import Uncertain
+from ..collision.units import System, system_of, written
+from ..messages import notebook
+from ..messages.plaintable import number, plain
+from ..messages.plaintable import table as columns
 from ..names import quantity
-from ..plaintable import number, plain
-from ..plaintable import table as columns
-from ..units import System, system_of, written
-from .uncertain import Uncertain
 
 Array = NDArray[np.float64]
 

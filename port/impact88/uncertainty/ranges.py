@@ -1,7 +1,7 @@
 """Scene files with ranges: the inputs of a problem whose values are known within limits.
 
-The file is a scene's (`impact88.scene`) whose values may be texts such as "0.7 .. 0.9"
-(`uncertainty.uncertain`), with ``correlations = "UX,VX 0.5; MA,IA 0.9"`` and, for a reconstruction,
+The file is a scene's (`program.scene`) whose values may be texts such as "0.7 .. 0.9"
+(`collision.uncertain`), with ``correlations = "UX,VX 0.5; MA,IA 0.9"`` and, for a reconstruction,
 the six final velocities and MUP, the signed P_t/P_n. Without those it takes them from the forward
 solution of the nominal values: how well would the initial velocities have been found again?
 """
@@ -9,14 +9,14 @@ solution of the nominal values: how well would the initial velocities have been 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
-from ..case import OWN_NAMES, Case, is_range
-from ..doubles import digits, double
+from ..collision import uncertain
+from ..collision.case import OWN_NAMES, Case, is_range
+from ..collision.doubles import digits, double
+from ..collision.geometry import MOVES, moved, placed
+from ..collision.uncertain import Uncertain
+from ..collision.units import opposite
 from ..errors import UserError
 from ..names import FINAL_VELOCITIES, SCENE, VELOCITIES, check_names
-from ..reconstruction.geometry import MOVES, moved, placed
-from ..units import opposite
-from . import uncertain
-from .uncertain import Uncertain
 
 Pair = tuple[str, str]
 AFTER = (*FINAL_VELOCITIES, "MUP")
@@ -124,7 +124,7 @@ def _forward_solution(case: Case) -> dict[str, str]:
             f"({' '.join(missing)} missing)",
             case.source,
         )
-    from ..closedform.solve import share_typed, solve
+    from ..mechanics.closedform.solve import share_typed, solve
 
     scene = moved({name: item.nominal for name, item in values.items()})
     friction = case.values["MU"]

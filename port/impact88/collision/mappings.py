@@ -1,0 +1,165 @@
+"""What Python callers hand over: a mapping of the listing's names to texts, numbers or arrays.
+
+Texts are what a file may hold: numbers as INPUT reads them (`doubles`), amounts with units, ranges
+where a value may be uncertain, ``units``, ``CAF CAL``, ``"estimate"``. Every public function that
+computes in double precision reads its values here, so that one text means one thing everywhere.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from ..errors import UserError, quoted
+from ..program.scene import Scene
+from .case import RANGES, Case, check_mapping, is_share
+from .doubles import digits, double
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .uncertain import Uncertain
+
+    Array = NDArray[Any]
+
+
+def in_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The values in base units: texts are texts of numbers or of ranges afterwards. Beside the
+    entry ``units`` numbers and arrays are in that system, too. Raises UserError."""
+    return _in_base(values)[0]
+
+
+def _in_base(values: Mapping[str, Any]) -> tuple[Mapping[str, Any], str | None]:
+    check_mapping(values)
+    texts = {name: value for name, value in values.items() if isinstance(value, str)}
+    if isinstance(values, Scene) or not texts:
+        return values, None
+    if "units" in texts:
+        texts |= {n: repr(v).upper() for n, v in values.items() if type(v) in (int, float)}
+    case = Case(texts, "values")
+    kept = {name: value for name, value in values.items() if name not in texts}
+    if case.units:
+        from .uncertain import Uncertain
+
+        for n, v in kept.items():
+            factor = case.system.factor(n)
+            kept[n] = v.over(factor) if isinstance(v, Uncertain) else in_doubles(n, v) / factor
+    based = dict(case.values)
+    if "M" not in texts:  # where it is needed it is 6
+        del based["M"]
+    # a blank is no number, and is refused where it is looked at
+    based |= {n: text for n, text in texts.items() if not text.strip()}
+    if case.correlations:
+        based["correlations"] = case.correlations
+    return {**kept, **based}, case.units
+
+
+def base_system(values: Mapping[str, Any]) -> str | None:
+    """Return the name of the system whose units the values have in base units; None where they name
+    none."""
+    from .units import system_of
+
+    named = values.units if isinstance(values, Scene) else _in_base(values)[1]
+    return None if named is None else system_of(named).base_name
+
+
+def in_doubles(name: str, values: Any) -> Array:
+    """A value, or an array of any shape, as numbers (float64 where it held texts). Raises UserError
+    for what holds no numbers."""
+    import numpy as np
+
+    if type(values) is str:
+        return np.float64(_double(name, values))  # type: ignore[return-value]
+    if hasattr(values, "mask") and isinstance(values, np.ma.MaskedArray):  # np.ma is a late import
+        if values.dtype.kind not in "fiub":
+            raise UserError(f"holds {values.dtype} values; expected numbers", f"column {name}")
+        return np.ma.filled(values.astype(np.float64), np.nan)
+    if hasattr(values, "__dask_graph__") and values.__dask_graph__() is not None:
+        raise UserError(
+            "is not computed yet; expected .compute(), or impact88.solve within map_blocks",
+            f"column {name}",
+        )
+    try:
+        array = np.asarray(values)
+    except ValueError as error:  # rows of several lengths
+        raise UserError(f"{error}; expected numbers", f"column {name}") from None
+    if array.dtype.kind in "fiub":
+        return array
+    if array.dtype.kind not in "USO":
+        raise UserError(f"holds {array.dtype} values; expected numbers", f"column {name}")
+    # a cell that is missing is not a number; whether its row needs it is checked later
+    cells = [
+        math.nan if cell is None and array.ndim else _double(name, cell)
+        for cell in array.reshape(-1).tolist()
+    ]
+    return np.array(cells, np.float64).reshape(array.shape)
+
+
+def _double(name: str, value: Any) -> float:
+    try:
+        if isinstance(value, bytes):
+            value = value.decode("ascii")
+        return double(value) if isinstance(value, str) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise UserError(f"{quoted(value)} is not a number", f"column {name}") from None
+
+
+def columns(values: Mapping[str, Any]) -> dict[str, Array]:
+    """`in_base` and `in_doubles` of every value. Raises UserError."""
+    import numpy as np
+
+    arrays = {name: in_doubles(name, value) for name, value in in_base(values).items()}
+    try:
+        np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
+        raise UserError(f"the columns' shapes do not broadcast together: {shapes}") from None
+    return arrays
+
+
+def within_limits(values: Mapping[str, Any]) -> dict[str, Uncertain]:
+    """Every value as a number or a range: an `Uncertain`, a number, or the text of either. Raises
+    UserError."""
+    import numpy as np
+
+    from .uncertain import Uncertain, fixed, read
+
+    based, units = _in_base(values)
+
+    def uncertain(name: str, value: Any) -> Uncertain:
+        if isinstance(value, Uncertain):
+            return value
+        marks = (*RANGES, "skid")
+        if isinstance(value, str) and (is_share(value) or any(mark in value for mark in marks)):
+            return read(value, name, units=units)
+        number = in_doubles(name, value)
+        if np.ndim(number):
+            raise UserError(f"{name} is an array; expected one number or range")
+        return fixed(float(number))
+
+    return {name: uncertain(name, value) for name, value in based.items()}
+
+
+def texts(values: Mapping[str, Any]) -> dict[str, str]:
+    """Every value as a text in base units; numbers by their shortest digits. Raises UserError."""
+    check_mapping(values)
+    given = {n: v if isinstance(v, str) else _shortest(n, v) for n, v in values.items()}
+    return Case(given, "values").values
+
+
+def typed(values: Mapping[str, Any]) -> Scene:
+    """A scene of such texts. Raises UserError."""
+    if isinstance(values, Scene):
+        return values
+    check_mapping(values)
+    return Scene({n: v if isinstance(v, str) else _shortest(n, v) for n, v in values.items()})
+
+
+def _shortest(name: str, value: Any) -> str:
+    import numpy as np
+
+    number = in_doubles(name, value)
+    if np.ndim(number) or not np.isfinite(number):
+        raise UserError(f"{name} is {quoted(value)}; expected one finite number")
+    return digits(float(number))

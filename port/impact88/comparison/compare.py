@@ -1,0 +1,415 @@
+"""Comparing another implementation's results with this one's, row by row by the scene's condition
+(`agreement`), and saying why they differ (`diagnosis`). What could not be compared is counted, and
+why."""
+
+import os
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..collision.doubles import double
+from ..collision.mappings import texts
+from ..errors import UserError, quoted
+from ..files import called
+from ..messages.arguments import explains_arguments
+from ..messages.plaintable import plain
+from ..messages.progress import progress
+from ..names import DEFAULT_M, RESULTS, SCENE
+from ..tables.cells import TableUnits, check_scene_columns, numbers
+from ..tables.rows import BadCell, Reader, Rows
+from ..tables.table import FORMATS, format_of, open_reader
+from . import agreement
+from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, Case
+from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, Diagnosis, Unexplained
+from .trials import Program
+from .vectors import FAILURE
+
+WORST = 20
+"""Rows that are shown of those that disagree most, and of those not compared."""
+NOT_COMPARED = ("STATUS", "COND")
+CARRIED = ("id", "class", "label", "expect", "flags", "comment")
+"""Columns of test vectors that say which row it is."""
+
+NO_RESULT = "no result on either side: theirs refuses, and so does the mathematics"
+NOTHING_HERE = "theirs gives numbers where the equations have no solution"
+NOTHING_THERE = "theirs gives nothing where there is a result"
+REFUSED = "theirs refuses a vector of the class failure, as it may"
+UNREADABLE = "the row could not be read"
+NO_DIGIT = "a number shares no digit with ours, where rounding or the digits written leave none"
+REASONS = (UNREADABLE, NO_RESULT, NOTHING_HERE, REFUSED, NO_DIGIT, NOTHING_THERE)
+HARMLESS = (NO_RESULT, REFUSED)
+"""Reasons that no program is to be blamed for."""
+
+
+class Row(NamedTuple):
+    """A row that disagrees: where it stands, its worst result, how far off, the likely cause."""
+
+    row: int
+    line: int
+    id: str
+    result: str
+    theirs: str
+    ours: float
+    relative: float
+    cause: str
+
+
+@dataclass
+class Tally:
+    """For one result: how many agree in which way, how many are missing on their side, and the
+    largest relative difference."""
+
+    compared: int = 0
+    double: int = 0
+    digits: int = 0
+    elimination: int = 0
+    differ: int = 0
+    missing: int = 0
+    largest: float = 0.0
+
+    def add(self, grades: NDArray[np.intp], relative: NDArray[np.float64]) -> None:
+        """Count a block's rows."""
+        counts = np.bincount(grades, minlength=LOST + 1).tolist()
+        absent, double, digits, elimination, differ, lost = counts
+        self.compared += grades.size - absent - lost
+        self.double += double
+        self.digits += digits
+        self.elimination += elimination
+        self.differ += differ
+        judged = (grades > ABSENT) & (grades < LOST)
+        self.largest = float(relative.max(initial=self.largest, where=judged))
+
+
+@dataclass
+class Elimination:
+    """Rows that agree only as closely as elimination can: how many, and the worst of them."""
+
+    rows: int = 0
+    worst_row: int = 0
+    worst_relative: float = 0.0
+    worst_condition: float = 0.0
+
+
+@dataclass
+class Skipped:
+    """Rows not compared for one reason: how many, and the first of them."""
+
+    rows: int = 0
+    first: list[int] = field(default_factory=list)
+
+
+@dataclass
+class Comparison:
+    """The result of `compare`.
+
+    ``causes``: likely cause -> rows it explains; ``evidence`` and ``programs``: what bears out each
+    cause that is a program, and the program; ``unexplained``: by kind of scene, of the rows that
+    were looked into; ``differences``: every row that disagrees;
+    ``not_compared``: by reason; ``unknown``: columns that were not recognised -> the name that was
+    meant, or ""; ``place``: where in a workbook the table stands (sheet and row of its headings);
+    ``remarks``: how its headings were understood.
+    """
+
+    rows: int = 0
+    agreeing: int = 0
+    differing: int = 0
+    tallies: dict[str, Tally] = field(default_factory=dict)
+    causes: Counter[str] = field(default_factory=Counter)
+    differences: list[Row] = field(default_factory=list)
+    not_compared: dict[str, Skipped] = field(default_factory=dict)
+    elimination: Elimination = field(default_factory=Elimination)
+    evidence: list[Cause] = field(default_factory=list)
+    programs: list[Program] = field(default_factory=list)
+    equations: dict[str, tuple[int, int]] = field(default_factory=dict)
+    unexplained: dict[str, Unexplained] = field(default_factory=dict)
+    bad: list[BadCell] = field(default_factory=list)
+    unknown: dict[str, str] = field(default_factory=dict)
+    place: dict[str, Any] = field(default_factory=dict)
+    remarks: list[str] = field(default_factory=list)
+
+    @property
+    def worst(self) -> list[Row]:
+        """The rows that disagree most."""
+        return sorted(self.differences, key=lambda row: -row.relative)[:WORST]
+
+    @property
+    def silent(self) -> list[str]:
+        """What would pass without a word: columns, rows and cells that were not compared."""
+        said = [f"column {name} not recognised" for name in self.unknown]
+        for reason, skipped in self.not_compared.items():
+            if reason not in HARMLESS:
+                said.append(f"{skipped.rows} rows not compared: {reason}")
+        for name, tally in self.tallies.items():
+            if tally.missing:
+                said.append(f"{tally.missing} cells of {name} are empty where there is a result")
+        return said
+
+    @property
+    def summary(self) -> str:
+        """One line."""
+        rows = f"{self.rows} row{'s' if self.rows != 1 else ''}"
+        line = f"{rows}: {self.agreeing} agree, {self.differing} disagree"
+        if skipped := sum(group.rows for group in self.not_compared.values()):
+            line += f", {skipped} not compared"
+        for cause, count in self.causes.most_common(1):
+            line += f"; likely cause of {count}: {cause}"
+        return line
+
+    def as_json(self) -> dict[str, Any]:
+        """The object `impact88 compare --json` prints."""
+        equations = {
+            number: {"checked": checked, "violated": violated}
+            for number, (checked, violated) in self.equations.items()
+        }
+        found = [{"row": row.row, "id": row.id, "cause": row.cause} for row in self.differences]
+        whole: dict[str, Any] = {
+            "summary": self.summary,
+            "rows": self.rows,
+            "agreeing": self.agreeing,
+            "differing": self.differing,
+            "results": {name: vars(tally) for name, tally in self.tallies.items()},
+            "causes": dict(self.causes.most_common()),
+            "evidence": [cause._asdict() for cause in self.evidence],
+            "equations": equations,
+            "unexplained": {name: kind._asdict() for name, kind in self.unexplained.items()},
+            "worst": [row._asdict() for row in self.worst],
+            "differences": found,
+            "elimination": vars(self.elimination),
+            "not_compared": {name: vars(skipped) for name, skipped in self.not_compared.items()},
+            "unknown_columns": self.unknown,
+            "bad_rows": list(map(str, self.bad)),
+            "table": self.place,
+            "remarks": self.remarks,
+        }
+        return {name: plain(value) for name, value in whole.items()}
+
+
+@explains_arguments
+def compare(
+    table: Any,
+    form: str | None = None,
+    values: Mapping[str, str] | None = None,
+    rtol: float | None = None,
+    encoding: str | None = None,
+    units: str | None = None,
+    causes: bool = True,
+) -> Comparison:
+    """Compare a table of scenes and results, block by block.
+
+    Parameters
+    ----------
+    table : str, path or frame
+        The table's file, or a DataFrame of pandas or polars, a pyarrow Table, a structured array, a
+        list of dicts or a dict of columns.
+    form : {"csv", "jsonl", "npz", "parquet", "feather", "xlsx"}, optional
+        The file's format, where its name does not say.
+    values : mapping of str to str, optional
+        Values, for all rows, of columns that the table lacks.
+    rtol : float, optional
+        The difference that agrees, as a share of the scene's largest velocity, spin or energy, in
+        place of what rounding allows.
+    encoding : str, optional
+        Of a CSV or of JSON Lines that are not UTF-8.
+    units : {"us", "chapter", "metric", "si"}, optional
+        The system of columns whose heading names no unit.
+    causes : bool
+        Look for causes where rows disagree.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    UserError
+        When the table has no result column or does not give a whole scene.
+
+    Examples
+    --------
+    >>> scene = impact88.sample(1).numbers()
+    >>> row = {**scene, "LOSS": float(impact88.solve(scene, ["LOSS"])["LOSS"])}
+    >>> impact88.compare([row]).summary
+    '1 row: 1 agree, 0 disagree'
+    """
+    if values is not None and not isinstance(values, Mapping):
+        raise UserError(f"values is {quoted(values)}; expected a mapping of names to values")
+    values = texts(values or {})
+    if form is not None and form not in FORMATS.values():
+        formats = " ".join(dict.fromkeys(FORMATS.values()))
+        raise UserError(f"form is {quoted(form)}; expected one of {formats}")
+    if rtol is not None and not (isinstance(rtol, int | float) and 0 <= rtol < 1):
+        raise UserError(f"rtol is {quoted(rtol)}; expected a share such as 1e-9")
+    for name, text in (("encoding", encoding), ("units", units)):
+        if text is not None and not isinstance(text, str):
+            raise UserError(f"{name} is {quoted(text)}; expected a text")
+    comparison = Comparison()
+    kept: list[Case] = []
+    with _opened(table, form, encoding) as (reader, where):
+        comparison.place, comparison.remarks = reader.place, reader.remarks
+        wanted = [name for name in reader.names if name in RESULTS and name not in NOT_COMPARED]
+        known = {*SCENE, *RESULTS, *CARRIED}
+        comparison.unknown = {name: _meant(name) for name in reader.names if name not in known}
+        if not wanted:
+            hints = [f"{name} for {meant}" for name, meant in comparison.unknown.items() if meant]
+            hint = f" ({', '.join(hints)}?)" if hints else ""
+            says = f"no column of results{hint}; expected some of {' '.join(RESULTS)}, beside the "
+            raise UserError(f"{says}scene's", where)
+        check_scene_columns({*reader.names, *values})
+        comparison.tallies = {name: Tally() for name in wanted}
+        with progress(reader.total, "compare", "B") as meter:
+            before = 0
+            measured: TableUnits | None = None
+            for rows in reader:
+                measured = measured or TableUnits(reader.names, units, rows, wanted, where)
+                enough = max(0, LOOKED_INTO - comparison.agreeing)
+                kept.append(_compare_block(rows, values, comparison, rtol, measured, enough))
+                meter.update(rows.place - before)
+                before = rows.place
+    if not any(tally.compared for tally in comparison.tallies.values()):
+        raise UserError("no result could be compared", where)
+    if causes and comparison.differing:
+        case = agreement.joined(kept)
+        right = np.flatnonzero(~case.wrong)[:LOOKED_INTO]
+        found = Diagnosis(case.part(np.concatenate([np.flatnonzero(case.wrong), right])))
+        rows_wrong = comparison.differences
+        comparison.equations, comparison.programs = found.equations, found.programs
+        comparison.unexplained = found.unexplained
+        comparison.evidence = [
+            cause._replace(parts={says: rows_wrong[at].row for says, at in cause.parts.items()})
+            for cause in found.evidence
+        ]
+        both = zip(rows_wrong, found.causes, strict=True)
+        comparison.differences = [row._replace(cause=cause) for row, cause in both]
+        comparison.causes.update(found.causes)
+    return comparison
+
+
+@contextmanager
+def _opened(table: Any, form: str | None, encoding: str | None) -> Iterator[tuple[Reader, str]]:
+    """Open a table's file or a frame, with what messages call it. Raises UserError."""
+    if isinstance(table, str | os.PathLike):
+        path = os.fspath(table)
+        with open_reader(path, format_of(path, form), encoding, True) as reader:
+            yield reader, called(path)
+        return
+    from ..tables.frames import read_frame
+
+    if form is not None or encoding is not None:
+        raise UserError("form and encoding are a file's; a frame has its own")
+    with read_frame(table) as reader:
+        yield reader, ""
+
+
+def _meant(name: str) -> str:
+    """The result or scene column that a name stands for: in other letters, with something behind
+    it, or nearly."""
+    known = (*RESULTS, *SCENE)
+    whole = name.strip().upper()
+    for text in (whole, re.split(r"[^A-Z]", whole)[0]):
+        if text in known:
+            return text
+    from difflib import get_close_matches  # rarely wanted
+
+    return next(iter(get_close_matches(whole, known, 1, 0.75)), "")
+
+
+@np.errstate(all="ignore")
+def _compare_block(
+    rows: Rows,
+    values: Mapping[str, str],
+    comparison: Comparison,
+    rtol: float | None,
+    units: TableUnits,
+    enough: int,
+) -> Case:
+    """Count a block; the rows that may be looked into are returned, of those that agree no more
+    than are ``enough``."""
+    whole = {"M": DEFAULT_M, **values}
+    scene = {name: np.full(rows.count, double(whole[name])) for name in whole if name in SCENE}
+    scene |= numbers(rows, units)
+    theirs = {name: agreement.read_theirs(rows, name, units) for name in comparison.tallies}
+    readable = np.ones(rows.count, bool)
+    readable[[index for index, *_ in rows.bad]] = False
+    for given, _ in theirs.values():
+        given[~readable] = np.nan
+    case = agreement.case_of(scene, theirs, rtol)
+    grades, relative = case.judged()
+    wrong, lost = (grades == DIFFER).any(0), (grades == LOST).any(0)
+    compared = ((grades > ABSENT) & (grades < LOST)).any(0) & (wrong | ~lost)
+    solved = (grades > ABSENT).any(0) & np.isfinite(case.ours)
+    for place, tally in enumerate(comparison.tallies.values()):
+        tally.add(grades[place], relative[place])
+        tally.missing += int((solved[place] & (grades[place] == ABSENT)).sum())
+    comparison.rows += rows.count
+    comparison.bad += rows.complaints()
+    comparison.agreeing += int((compared & ~wrong).sum())
+    comparison.differing += int(wrong.sum())
+    solvable, answered = np.isfinite(case.ours).any(0), np.isfinite(case.values).any(0)
+    kinds = rows.columns.get("class", [""] * rows.count)
+    refused = solvable & ~answered & np.array([str(kind) == FAILURE for kind in kinds], bool)
+    conditions = (~readable, ~solvable & ~answered, ~solvable, refused, lost)
+    reasons = np.select(conditions, REASONS[:-1], REASONS[-1])
+    for reason in REASONS:
+        if found := (rows.first + np.flatnonzero(~compared & (reasons == reason))).tolist():
+            skipped = comparison.not_compared.setdefault(reason, Skipped())
+            skipped.rows += len(found)
+            skipped.first = (skipped.first + found)[:WORST]
+    loosely = ~wrong & (grades == ELIMINATION)
+    by_row = np.where(loosely, relative, 0.0).max(0)
+    loose = comparison.elimination
+    loose.rows += int(loosely.any(0).sum())
+    if (largest := float(by_row.max(initial=0.0))) > loose.worst_relative:
+        worst = int(by_row.argmax())
+        loose.worst_row, loose.worst_relative = rows.first + worst, largest
+        loose.worst_condition = float(case.condition[worst])
+    off = np.where(grades == DIFFER, relative, -1.0).argmax(0)
+    comparison.differences += _differing(rows, np.flatnonzero(wrong), off, relative, case)
+    right = np.flatnonzero(compared & ~wrong)[:enough]
+    return case.part(np.concatenate([np.flatnonzero(wrong), right]))
+
+
+def _differing(
+    rows: Rows, places: NDArray[np.intp], worst: Any, relative: Any, case: Case
+) -> Iterator[Row]:
+    ids = rows.one_per_row("id") if "id" in rows.columns else None
+    written = [rows.one_per_row(name) for name in case.names]
+    for index in places.tolist():
+        place = int(worst[index])
+        yield Row(
+            rows.first + index,
+            rows.lines[index] if rows.lines else 0,
+            str(ids[index]) if ids is not None else "",
+            case.names[place],
+            str(written[place][index]),
+            float(case.ours[place, index]),
+            float(relative[place, index]),
+            UNKNOWN,
+        )
+
+
+def write_junit(path: str, name: str, comparison: Comparison, strict: bool) -> None:
+    """Write the JUnit report that systems for continuous integration read: a failing test for every
+    row that disagrees, one test for those that agree, one for each reason why rows were not
+    compared (failing with ``strict``). Raises UserError when the place cannot be written to."""
+    from .junit import Suite  # XML takes 4 ms to import
+
+    suite = Suite(f"impact88 compare {name}")
+    suite.test(f"{comparison.agreeing} of {comparison.rows} rows agree")
+    for row in comparison.differences:
+        place = f"row {row.row}" + (f", id {row.id}" if row.id else "")
+        said = f"{row.result} {row.theirs}, here {row.ours:.12g}, off by {row.relative:.2g}"
+        suite.test(place, "failure", f"{said}; {row.cause}")
+    for bad in comparison.bad:
+        suite.test(f"row {bad.row}", "error", str(bad))
+    for said in comparison.silent:
+        suite.test(said, "failure" if strict else "skipped", said)
+    for reason, skipped in comparison.not_compared.items():
+        if reason in HARMLESS:
+            suite.test(f"{skipped.rows} rows: {reason}", "skipped", reason)
+    suite.write(path)

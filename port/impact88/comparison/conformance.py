@@ -1,0 +1,479 @@
+"""Conformance: whether a program answers the kit's vectors as it must, each of them, by name.
+
+The vectors are those that the kit's seed makes; a kit that holds other ones is refused. Every id
+comes once, its inputs are the vector's own doubles, and what is asked of it is enforced: an answer
+where one is due, no number where there is none. Nothing that is missing is passed over.
+"""
+
+import hashlib
+import io
+import json
+import math
+import os
+import re
+import shutil
+import tempfile
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+from zipfile import BadZipFile, ZipFile
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..collision.doubles import doubles_of
+from ..errors import UserError, quoted, shown
+from ..files import called, open_bytes, read_bytes
+from ..messages.plaintable import plain
+from ..messages.schemas import NUMBERS
+from ..names import FINAL_VELOCITIES, RESULTS, SCENE
+from ..tables.cells import TableUnits, numbers
+from ..tables.rows import Rows
+from ..tables.table import open_reader
+from . import agreement
+from .agreement import DIFFER, LOST, Case, Floats
+from .junit import Suite
+from .vectors import ANSWER, EITHER, REFUSE, expectation, scenes
+
+NOT_COMPARED = ("STATUS", "COND")
+ABOUT = "KIT.json"
+SCENES = "vectors.csv"
+MOST_VECTORS = 10**7
+MOST_STRAYS = 1000  # rows of no vector that are listed
+REASONS = {
+    "missing": "no row has this id",
+    "repeated": "the id comes more than once",
+    "inputs": "the inputs are not the vector's",
+    "no answer": "an answer is missing where one is due",
+    "no solution": "a number stands where there is none",
+    "malformed": "a cell is neither a number nor left empty",
+    "partial": "some results are given, others are not",
+    "no digit": "a number shares no digit with ours",
+    "differs": "a number differs",
+}
+"""Why a vector fails, in the order in which it is said."""
+_INFINITE = re.compile(r"[+-]?(inf|infinity)", re.IGNORECASE)
+
+
+class Vector(NamedTuple):
+    """A vector of the kit: what it is called, what is asked, the scene's texts."""
+
+    id: str
+    kind: str
+    label: str
+    expect: str
+    scene: Mapping[str, str]
+
+
+class Verdict(NamedTuple):
+    """What became of a vector: ``reason`` is a key of `REASONS`, "" where it passes; ``row``: of
+    the table, from 1, 0 where it has none."""
+
+    vector: Vector
+    reason: str
+    detail: str
+    row: int
+
+
+@dataclass
+class Kit:
+    """A kit: where it is, its vectors, and what it says of itself."""
+
+    place: str
+    seed: int
+    sha256: str
+    vectors: Sequence[Vector]
+
+
+@dataclass
+class Conformance:
+    """The result of `check_conformance`.
+
+    Attributes
+    ----------
+    kit : Kit
+    table : str
+        Name of the table of answers.
+    sha256 : str
+        Of the table's bytes.
+    results : list of str
+        The results that it has.
+    verdicts : list of Verdict
+        One a vector, in the kit's order.
+    strays : list of str
+        Rows that are no vector's: unknown ids, and none.
+    unknown : list of str
+        Columns that were not recognised.
+    refused : int
+        How many vectors that pass have no answer, as they may.
+    place : dict
+        Where in a workbook the table stands: its sheet, and the row of its headings.
+    remarks : list of str
+        How the table was read.
+    """
+
+    kit: Kit
+    table: str
+    sha256: str
+    results: list[str]
+    verdicts: list[Verdict] = field(default_factory=list)
+    strays: list[str] = field(default_factory=list)
+    unknown: list[str] = field(default_factory=list)
+    refused: int = 0
+    place: dict[str, Any] = field(default_factory=dict)
+    remarks: list[str] = field(default_factory=list)
+
+    @property
+    def failures(self) -> list[Verdict]:
+        """The vectors that fail."""
+        return [verdict for verdict in self.verdicts if verdict.reason]
+
+    @property
+    def passed(self) -> int:
+        """How many vectors pass."""
+        return len(self.verdicts) - len(self.failures)
+
+    @property
+    def conforms(self) -> bool:
+        """Whether every vector passes, and no row is anything else."""
+        return not self.failures and not self.strays
+
+    @property
+    def badge(self) -> str:
+        """One line: which vectors, how many of them pass, and of which table."""
+        state = "conforms" if self.conforms else "does not conform"
+        count = f"{self.passed} of {len(self.verdicts)}"
+        which = f"impact88 vectors/{NUMBERS['vectors']} seed {self.kit.seed}"
+        return f"{which}: {state}, {count} (table {self.sha256[:12]}, kit {self.kit.sha256[:12]})"
+
+    def counts(self, what: str) -> dict[str, dict[str, int]]:
+        """How many pass and fail by class ("kind") or by "label"."""
+        every: dict[str, dict[str, int]] = {}
+        for verdict in self.verdicts:
+            group = every.setdefault(getattr(verdict.vector, what), {"passed": 0, "failed": 0})
+            group["failed" if verdict.reason else "passed"] += 1
+        return every
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the object that `impact88 compare --kit DIR --json` prints."""
+        whole: dict[str, Any] = {
+            "summary": self.badge,
+            "conforms": self.conforms,
+            "kit": {
+                "vectors": f"vectors/{NUMBERS['vectors']}",
+                "seed": self.kit.seed,
+                "count": len(self.verdicts),
+                "sha256": self.kit.sha256,
+            },
+            "table": {
+                "name": self.table,
+                "sha256": self.sha256,
+                "results": self.results,
+                **self.place,
+            },
+            "passed": self.passed,
+            "failed": len(self.failures),
+            "refused": self.refused,
+            "classes": self.counts("kind"),
+            "labels": self.counts("label"),
+            "reasons": dict(Counter(verdict.reason for verdict in self.failures)),
+            "failures": [
+                {
+                    "id": verdict.vector.id,
+                    "class": verdict.vector.kind,
+                    "label": verdict.vector.label,
+                    "expect": verdict.vector.expect,
+                    "row": verdict.row,
+                    "reason": verdict.reason,
+                    "detail": verdict.detail,
+                }
+                for verdict in self.failures
+            ],
+            "strays": self.strays,
+            "unknown_columns": self.unknown,
+            "remarks": self.remarks,
+        }
+        return {name: plain(value) for name, value in whole.items()}
+
+
+def read_kit(place: str) -> Kit:
+    """Return the kit in a folder or an archive (.zip), its vectors made anew from its seed.
+
+    Raises
+    ------
+    UserError
+        Where there is no kit, it is of another number than this version's, or its vectors are not
+        those of its seed.
+    """
+    about = _parsed(place, _kit_file(place, ABOUT))
+    mine = f"vectors/{NUMBERS['vectors']}"
+    if about.get("kit") != mine:
+        says = f"is of {shown(str(about.get('kit')), 40)}, and this version judges {mine}"
+        raise UserError(f"{says}; expected a kit of impact88 oracle --kit", _in(place, ABOUT))
+    seed, count = about.get("seed"), about.get("vectors")
+    if type(seed) is not int or type(count) is not int or not 0 < count <= MOST_VECTORS:
+        raise UserError("has no seed and count of vectors", _in(place, ABOUT))
+    data = _kit_file(place, SCENES)
+    digest = hashlib.sha256(data).hexdigest()
+    hashes = about.get("sha256")
+    if not isinstance(hashes, dict) or hashes.get(SCENES) != digest:
+        raise UserError(f"is not the file that {ABOUT} has the hash of", _in(place, SCENES))
+    made = list(_vectors(count, seed))
+    lines = data.decode("utf-8", "replace").splitlines()[1:]
+    if len(lines) != count:
+        raise UserError(f"has {len(lines)} vectors, not {count}", _in(place, SCENES))
+    for number, (line, vector) in enumerate(zip(lines, made, strict=True), 2):
+        head = [vector.id, vector.kind, vector.expect]
+        cells = line.split(",")
+        if cells[:3] != head or cells[4 : 4 + len(SCENE)] != list(vector.scene.values()):
+            where = f"{_in(place, SCENES)}, line {number}"
+            raise UserError(f"is not the vector {vector.id} of seed {seed}", where)
+    return Kit(place, seed, digest, made)
+
+
+def _in(place: str, name: str) -> str:
+    return os.path.join(place, name)
+
+
+def _kit_file(place: str, name: str) -> bytes:
+    """Return a file of a kit. Raises UserError."""
+    if os.path.isdir(place):
+        return read_bytes(_in(place, name))
+    try:
+        with ZipFile(io.BytesIO(read_bytes(place))) as archive:
+            if archive.getinfo(name).file_size > 1 << 30:
+                raise UserError("is larger than a kit's", _in(place, name))
+            return archive.read(name)
+    except KeyError:
+        raise UserError(f"holds no {name}; expected a kit", place) from None
+    except (BadZipFile, NotImplementedError, RuntimeError, OSError, EOFError) as error:
+        raise UserError(f"is no kit: {error}; expected a folder or a .zip", place) from None
+    except Exception as error:  # zlib's own
+        raise UserError(f"cannot be unpacked: {error}", place) from None
+
+
+def _parsed(place: str, data: bytes) -> dict[str, Any]:
+    try:
+        about = json.loads(data)
+    except (ValueError, RecursionError):
+        about = None
+    if not isinstance(about, dict):
+        raise UserError("is not a JSON object", _in(place, ABOUT))
+    return about
+
+
+def _vectors(count: int, seed: int) -> Iterator[Vector]:
+    """Yield the vectors of a seed, with what is asked of a program by each."""
+    rows = list(scenes(count, seed))
+    for index, (kind, label, scene) in enumerate(rows):
+        yield Vector(f"{seed}-{index:06d}", kind, label, expectation(kind, scene), scene)
+
+
+class _Cell(NamedTuple):
+    """A result as written: its value (NaN where there is none), the unit of its last digit, and
+    what is wrong with it, "" if nothing."""
+
+    value: float
+    unit: float
+    fault: str
+
+
+_EMPTY = _Cell(math.nan, 0.0, "")
+
+
+@dataclass
+class _Table:
+    """The rows of a table that are a vector's: place of the vector -> its rows in the table, and of
+    the first of them the inputs and the results."""
+
+    rows: dict[int, list[int]] = field(default_factory=dict)
+    scenes: dict[int, dict[str, float]] = field(default_factory=dict)
+    cells: dict[int, dict[str, _Cell]] = field(default_factory=dict)
+
+
+def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = None) -> Conformance:
+    """Judge a table of another program's answers to a kit's vectors, vector by vector.
+
+    Parameters
+    ----------
+    kit : str
+        The kit's folder, or its archive.
+    theirs : str
+        The table; ``-`` is standard input.
+    form : str
+        Its format: csv, jsonl, npz, parquet, feather or xlsx.
+    encoding : str, optional
+        Of a CSV or of JSON Lines that are not UTF-8.
+
+    Raises
+    ------
+    UserError
+        Where kit or table cannot be read, or the table lacks ids or a final velocity.
+    """
+    whole = read_kit(kit)
+    with _on_disk(theirs) as path, open_reader(path, form, encoding, True) as reader:
+        results = [n for n in reader.names if n in RESULTS and n not in NOT_COMPARED]
+        where = called(theirs)
+        if "id" not in reader.names:
+            raise UserError("no column id; expected the kit's ids, one a row", where)
+        if missing := [name for name in FINAL_VELOCITIES if name not in results]:
+            raise UserError(
+                f"no column {' '.join(missing)}; expected all of {' '.join(FINAL_VELOCITIES)}",
+                where,
+            )
+        done = Conformance(whole, where, _digest(path), [str(name) for name in results])
+        known = {*SCENE, *RESULTS, "id", "class", "label", "expect", "flags", "comment"}
+        done.unknown = [str(name) for name in reader.names if name not in known]
+        done.place, done.remarks = reader.place, reader.remarks
+        table = _Table()
+        places = {vector.id: place for place, vector in enumerate(whole.vectors)}
+        units: TableUnits | None = None
+        for rows in reader:
+            units = units or TableUnits(reader.names, None, rows, results, where)
+            _take(rows, results, units, places, table, done)
+    _judge(whole, results, table, done)
+    return done
+
+
+@contextmanager
+def _on_disk(path: str) -> Iterator[str]:
+    """The table's file; standard input is written to one, so that its bytes have a hash."""
+    if path != "-":
+        yield path
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        copy = os.path.join(folder, "standard input.csv")
+        with open_bytes("-") as source, open(copy, "wb") as file:
+            shutil.copyfileobj(source, file)
+        yield copy
+
+
+def _digest(path: str) -> str:
+    digest = hashlib.sha256()
+    with open_bytes(path) as file:
+        while part := file.read(1 << 20):
+            digest.update(part)
+    return digest.hexdigest()
+
+
+def _take(
+    rows: Rows,
+    results: Sequence[str],
+    units: TableUnits,
+    places: Mapping[str, int],
+    table: _Table,
+    done: Conformance,
+) -> None:
+    """Keep a block's rows by vector."""
+    ids = [str(cell) for cell in rows.one_per_row("id")]
+    written = {name: list(rows.one_per_row(name)) for name in results}
+    scene = numbers(rows, units)
+    theirs = {name: agreement.read_theirs(rows, name, units) for name in results}
+    wrong: dict[int, str] = {}
+    for index, name, reason in rows.bad:
+        wrong.setdefault(index, f"{name}: {reason}" if name else reason)
+    malformed = {(index, name) for index, name, _ in rows.bad}
+    scene = {name: np.broadcast_to(column, (rows.count,)) for name, column in scene.items()}
+    for index, name in enumerate(ids):
+        row = rows.first + index
+        place = places.get(name)
+        if place is None:
+            if len(done.strays) < MOST_STRAYS:
+                says = f"id {quoted(name)} is no vector's" if name else "no id"
+                done.strays.append(f"row {row}: {wrong.get(index, says)}")
+            continue
+        table.rows.setdefault(place, []).append(row)
+        if len(table.rows[place]) == 1:
+            table.scenes[place] = {n: float(column[index]) for n, column in scene.items()}
+            cells = table.cells[place] = {}
+            for result, (values, units_of) in theirs.items():
+                value, text = float(values[index]), str(written[result][index]).strip()
+                fault = "malformed" if (index, result) in malformed else ""
+                fault = "infinite" if math.isinf(value) or _INFINITE.fullmatch(text) else fault
+                cells[result] = _Cell(value, float(units_of[index]), fault)
+
+
+def _judge(kit: Kit, results: Sequence[str], table: _Table, done: Conformance) -> None:
+    """Judge every vector."""
+    count = len(kit.vectors)
+    texts = [vector.scene for vector in kit.vectors]
+    scene = {name: np.array([doubles_of(text)[name] for text in texts]) for name in SCENE}
+    theirs: dict[str, tuple[Floats, Floats]] = {}
+    for name in results:
+        cells = [table.cells.get(place, {}).get(name, _EMPTY) for place in range(count)]
+        theirs[name] = (
+            np.array([cell.value for cell in cells]),
+            np.array([cell.unit for cell in cells]),
+        )
+    case = agreement.case_of(scene, theirs)
+    grades, _ = case.judged()
+    for place, vector in enumerate(kit.vectors):
+        rows = table.rows.get(place, [])
+        reason, detail = _verdict(vector, place, rows, table, case, grades)
+        done.verdicts.append(Verdict(vector, reason, detail, rows[0] if rows else 0))
+        nothing = not np.isfinite(case.values[:, place]).any()
+        done.refused += int(nothing and not reason)
+
+
+def _verdict(
+    vector: Vector,
+    place: int,
+    rows: Sequence[int],
+    table: _Table,
+    case: Case,
+    grades: NDArray[np.intp],
+) -> tuple[str, str]:
+    """Return why a vector fails, and what exactly; nothing where it passes."""
+    if not rows:
+        return "missing", ""
+    if len(rows) > 1:
+        return "repeated", f"rows {', '.join(map(str, rows[:5]))}"
+    for name, value in table.scenes[place].items():
+        if value != doubles_of(vector.scene)[name]:
+            return "inputs", f"{name} is {value!r}, not {vector.scene[name]}"
+    cells = table.cells[place]
+    if malformed := [name for name, cell in cells.items() if cell.fault == "malformed"]:
+        return "malformed", " ".join(malformed)
+    if infinite := [name for name, cell in cells.items() if cell.fault == "infinite"]:
+        says = "is infinite; a refusal leaves the cells empty"
+        reason = "no answer" if vector.expect == ANSWER else "no solution"
+        return reason, f"{' '.join(infinite)} {says}"
+    given, ours = np.isfinite(case.values[:, place]), np.isfinite(case.ours[:, place])
+    names = np.array(case.names)
+    if vector.expect == REFUSE:
+        return ("no solution", " ".join(names[given])) if given.any() else ("", "")
+    if vector.expect == EITHER and not given.any():
+        return "", ""
+    if (given & ~ours).any():
+        return "no solution", " ".join(names[given & ~ours])
+    if (ours & ~given).any():
+        reason = "partial" if given.any() else "no answer"
+        return reason, f"{' '.join(names[ours & ~given])} missing"
+    for grade, reason in ((DIFFER, "differs"), (LOST, "no digit")):
+        for at in np.flatnonzero(grades[:, place] == grade)[:1]:
+            value, mine = case.values[at, place], case.ours[at, place]
+            return reason, f"{names[at]} is {value:.12g}, here {mine:.12g}"
+    return "", ""
+
+
+def write_junit(path: str, done: Conformance) -> None:
+    """Write a JUnit report: a test a vector, its class the vector's; one for each row that is no
+    vector's. Raises UserError when the place cannot be written to."""
+    suite = Suite(f"impact88 compare --kit, {done.table}")
+    suite.tell("kit.sha256", done.kit.sha256)
+    suite.tell("table.sha256", done.sha256)
+    suite.tell("kit.vectors", f"vectors/{NUMBERS['vectors']} seed {done.kit.seed}")
+    for verdict in done.verdicts:
+        vector = verdict.vector
+        message = f"{REASONS[verdict.reason]}; {verdict.detail}" if verdict.reason else ""
+        suite.test(
+            f"{vector.id} {vector.label}",
+            "failure" if message else "",
+            message.removesuffix("; "),
+            f"kit.{vector.kind}",
+        )
+    for stray in done.strays:
+        suite.test(stray, "failure", stray, "kit.strays")
+    suite.write(path)

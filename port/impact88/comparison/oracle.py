@@ -1,0 +1,192 @@
+"""The oracle: everything this project knows about a scene, for checking other programs.
+
+What the 1988 program prints; each result as Applesoft has it (text, the five bytes stored, their
+exact decimal value), in doubles by the closed form, to 30 digits; its condition; how far rounding
+may take final velocities and spins, relative to `errorbound.scales`; what is unphysical about it.
+"""
+
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from decimal import Decimal
+from typing import Any
+
+from .. import status
+from ..applesoft.operators import Real
+from ..chapter import validation
+from ..collision import doubles
+from ..collision.mappings import typed
+from ..collision.units import base_of, system_of
+from ..errors import UserError
+from ..mechanics.accuracy import errorbound
+from ..mechanics.closedform.solve import solve
+from ..messages.arguments import explains_arguments
+from ..messages.plaintable import plain
+from ..messages.schemas import stamped
+from ..names import DEFAULT_M, RESULTS, SCENE
+from ..program.run import run
+from ..program.scene import Scene
+from ..program.vectorized import replay
+
+BATCH = 256
+"""Scenes computed together: enough that reading and replaying them costs little a scene."""
+
+_NO_NUMBERS = ("COND", "STATUS")
+_decode = json.JSONDecoder(parse_float=str, parse_int=str).decode
+
+
+def answer(
+    lines: Iterable[tuple[int, str]], reference: bool = True, units: str | None = None
+) -> Iterator[dict[str, Any]]:
+    """The answers to lines of JSON with their numbers; one that cannot be used gives
+    ``{"id", "error": {"line", "message"}}``. ``reference``: give 30 digits too; ``units``: of bare
+    numbers where a scene names none."""
+    asked: list[tuple[dict[str, Any], Scene | None]] = []
+    for line, text in lines:
+        head: dict[str, Any] = {"id": None}
+        try:
+            asked.append((head, _asked(text, head, units)))
+        except (UserError, ValueError, RecursionError) as error:
+            message = str(error) or type(error).__name__
+            asked.append(({"id": head["id"], "error": {"line": line, "message": message}}, None))
+    answers = iter(oracle([scene for _, scene in asked if scene is not None], reference))
+    for whole, scene in asked:
+        if scene is not None:
+            whole |= {"scene": {name: scene[name] for name in SCENE}, **next(answers)}
+            if scene.units:
+                whole["units"] = base_of(system_of(scene.units))
+            if remarks := [*scene.remarks.values()]:
+                whole["remarks"] = remarks
+        yield stamped("oracle", whole)
+
+
+def published_tests(reference: bool = True) -> Iterator[dict[str, Any]]:
+    """Yield the answer to each published crash test: with its ``source``, and each number that was
+    ``reported`` there beside the one computed here."""
+    checks: dict[str, list[dict[str, Any]]] = {}
+    for check in validation.checks():
+        own = check._asdict()
+        name = f"{own.pop('source')} {own.pop('test')}"
+        checks.setdefault(name, []).append(own)
+    tests = validation.program_scenes()
+    answers = oracle(
+        [typed({"M": float(DEFAULT_M), **scene}) for scene in tests.values()], reference
+    )
+    for (name, scene), whole in zip(tests.items(), answers, strict=True):
+        given = typed({"M": float(DEFAULT_M), **scene})
+        source = next(text for kind, text in validation.SOURCES.items() if name.startswith(kind))
+        head = {"id": name, "source": source, "reported": checks[name]}
+        yield stamped("oracle", {**head, "scene": {n: given[n] for n in SCENE}, **whole})
+
+
+def _asked(text: str, head: dict[str, Any], units: str | None) -> Scene:
+    """The scene of a line; ``id``, ``class`` and ``label`` as given go to ``head``."""
+    try:
+        # ids keep their type; the scene's numbers keep their digits
+        whole, digits = json.loads(text), _decode(text)
+    except ValueError as error:
+        raise ValueError(f"is not JSON: {error}") from None
+    if not isinstance(whole, dict):
+        raise ValueError('is not a JSON object; expected {"id": ..., "scene": {...}}')
+    head |= {name: whole[name] for name in ("id", "class", "label") if name in whole}
+    values = digits.get("scene")
+    if not isinstance(values, dict):
+        raise ValueError('has no "scene" object')
+    for name, value in values.items():
+        if not isinstance(value, str):
+            raise ValueError(f"{name} is not a number; expected a number or its decimal text")
+    return _checked(Scene.from_mapping({"M": DEFAULT_M, **values}, "scene", units))
+
+
+def _checked(scene: Scene) -> Scene:
+    if doubles.double(scene["M"]) not in (4, 6):
+        raise UserError(f"M is {scene['M']}; expected 6 or 4")
+    return scene
+
+
+@explains_arguments
+def oracle(
+    scenes: Mapping[str, Any] | Iterable[Mapping[str, Any]], reference: bool = True
+) -> list[dict[str, Any]]:
+    """Return all that is known of each scene, to check another program with.
+
+    Parameters
+    ----------
+    scenes : mapping, or iterable of mapping
+        Scenes as `Scene`, or as mappings of names to decimal texts or to numbers, which stand for
+        their shortest digits; M must be 4 or 6.
+    reference : bool, default True
+        Compute each result to 30 digits, too (extra ``oracle``).
+
+    Returns
+    -------
+    list of dict
+        For each scene the printout, each result as printed, stored, in double precision and to 30
+        digits, and its error bounds: the form of ``impact88 schema oracle``.
+
+    Raises
+    ------
+    UserError
+        For a scene that cannot be used, and where mpmath is needed and not installed.
+
+    Examples
+    --------
+    >>> import impact88
+    >>> (answer,) = impact88.oracle(impact88.sample(1))
+    >>> answer["results"]["VAX"]["printed"], answer["results"]["VAX"]["stored"]
+    ('-13.263', '84d433d66f')
+    """
+    if isinstance(scenes, Mapping) or not isinstance(scenes, Iterable):
+        scenes = [scenes]
+    scenes = [_checked(typed(scene)) for scene in scenes]
+    if not scenes:
+        return []
+    if reference:
+        from ..mechanics.accuracy.reference import thirty_digits
+
+    texts = {name: [scene[name] for scene in scenes] for name in SCENE}
+    numbers = {name: doubles.doubles(column) for name, column in texts.items()}
+    found = solve(numbers)
+    solved = {name: column.tolist() for name, column in found.items()}
+    replayed = replay(texts)
+    applesoft = {
+        name: (
+            replayed.present(name).tolist(),
+            replayed.printed(name).tolist() if name != "KF" else [None] * len(scenes),
+            replayed.reals(name).tolist(),
+        )
+        for name in RESULTS
+        if name in replayed.names
+    }
+    double, listing = errorbound.oracle_bounds(scenes, numbers, found)
+    nothing = ([False] * len(scenes),) * 3
+    out = []
+    for index, scene in enumerate(scenes):
+        ported = run(scene)
+        digits = thirty_digits(scene) if reference else {}
+        results: dict[str, dict[str, Any]] = {}
+        for name in [name for name in RESULTS if name not in _NO_NUMBERS]:
+            present, text, real = (column[index] for column in applesoft.get(name, nothing))
+            # line 690 prints LOSS without storing it
+            stored = f"{real:010x}" if present and name != "LOSS" else None
+            results[name] = {
+                "printed": (present and text) or None,
+                "stored": stored,
+                "decimal": exact_decimal(stored) if stored else None,
+                "double": solved[name][index],
+                "reference": digits.get(name),
+            }
+        whole = {
+            "printout": ported.printout,
+            "ending": "ZERO DETERMINANT" if ported.zero_determinant else ported.error,
+            "results": results,
+            "condition": solved["COND"][index],
+            "error_bound": {"double": double[index], "applesoft": listing[index]},
+            "status": status.names(int(solved["STATUS"][index])),
+        }
+        out.append(plain(whole))
+    return out
+
+
+def exact_decimal(stored: str) -> str:
+    """The value of five stored bytes, which a double holds, as an exact decimal, all its digits."""
+    return f"{Decimal(float(Real.from_stored(stored))):f}"

@@ -1,0 +1,1 @@
+"""The planar impact in double precision: closed form, compiled kernels, accuracy, outcome."""

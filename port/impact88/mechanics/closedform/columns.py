@@ -1,0 +1,223 @@
+"""Columns of scenes: from what a caller hands over to blocks ready for a plan.
+
+Columns may be scalars or arrays of any shapes that broadcast together, and are never copied as a
+whole. Blocks are looked at once: which columns are the same for all their scenes, which are 0,
+which numbers cannot be used. The answers choose the program.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...collision.fields import ANGLES
+from ...collision.mappings import in_base, in_doubles
+from ...errors import UserError
+from ...names import DEFAULT_M, PIVOT, SCENE
+from .. import native
+from ..native.program import addresses
+from .written import LARGE_ANGLE
+
+Array = NDArray[Any]
+Floats = NDArray[np.float64]
+
+INERTIAS = ("MA", "MB", "IA", "IB")
+BODIES = (("MA", "IA", ("UX", "UY"), "WA"), ("MB", "IB", ("VX", "VY"), "WB"))
+"""Mass, inertia, velocities and spin of A and of B."""
+UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
+"""What a point-mass scene (M = 4) does not look at."""
+
+Limits = tuple[float, float]
+"""Least and most."""
+_LARGEST = float(np.finfo(np.float64).max)
+_SMALLEST = float(np.nextafter(0.0, 1.0))
+
+
+Source = Array | Any
+"""A column: flat and of full length, of length 1, or an iterator over it in the common shape."""
+
+
+def part(source: Source, start: int, stop: int) -> Floats:
+    """Scenes ``start`` to ``stop`` of a column, or its only value, as float64 side by side."""
+    if len(source) > 1:
+        source = source[start:stop]
+    return np.ascontiguousarray(source, np.float64)
+
+
+def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int, ...]]:
+    """Name -> source for every scene name, in the table's order, and the common shape.
+
+    Raises UserError for an unknown or missing name, a column that holds no numbers, and shapes that
+    do not broadcast together. M may be missing; when it is 4 throughout, so may be what a point
+    mass does not look at. Scenes of M = 4 may have anything there, such as NaN or None.
+    """
+    columns = in_base(columns)
+    unknown = [name for name in columns if name not in SCENE]
+    if unknown:
+        raise UserError(
+            f"{unknown[0]!r} is not a scene name; expected {' '.join(SCENE)} "
+            "(impact88.solve_frame takes further columns)"
+        )
+    arrays = {name: in_doubles(name, columns[name]) for name in SCENE if name in columns}
+    arrays.setdefault("M", np.array(float(DEFAULT_M)))
+    if arrays["M"].size and bool((arrays["M"] == 4).all()):
+        for name in UNUSED_BY_POINTS:
+            arrays.setdefault(name, np.array(0.0))
+    missing = [name for name in SCENE if name not in arrays]
+    if missing:
+        raise UserError(f"missing: {' '.join(missing)}; a scene needs {' '.join(SCENE)}")
+    try:
+        shape = np.broadcast_shapes(*{array.shape for array in arrays.values()})
+    except ValueError:
+        shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
+        raise UserError(f"the columns' shapes do not broadcast together: {shapes}") from None
+    return {name: _source(arrays[name], shape) for name in SCENE}, shape
+
+
+def _source(array: Array, shape: tuple[int, ...]) -> Source:
+    if array.size == 1:
+        return array.reshape(1)
+    if array.shape == shape and (array.ndim == 1 or array.flags.c_contiguous):
+        return array.reshape(-1)
+    return np.broadcast_to(array, shape).flat
+
+
+class Block(NamedTuple):
+    """A block of scenes made ready: ``fixed`` columns have length 1, ``varying`` its length;
+    ``refused``: True where the numbers cannot be used, or None if nowhere.
+
+    ``kinds`` says of each scene name what a program may rely on: ``array``, ``scalar``, ``0`` or
+    ``1`` (for all scenes), of MA MB IA IB also ``array with infinities`` and ``inf``; of MU
+    ``pivot`` or ``mixed`` (some pivots), else no pivot is in it; of M ``6``, ``4`` or ``mixed``;
+    ``unused`` where all scenes are point masses and do not look at it.
+    """
+
+    fixed: dict[str, Floats]
+    varying: dict[str, Floats]
+    kinds: tuple[str, ...]
+    refused: NDArray[np.bool_] | None
+
+
+def examine(values: Mapping[str, Floats]) -> Block:
+    """Find out what kind of block this is. ``values``: columns of one length, or of length 1. Only
+    where something may be unusable are the scenes looked at one by one."""
+    extremes = dict(zip(values, limits_of(list(values.values())), strict=True))
+    only_points = extremes["M"] == (4.0, 4.0)
+    fixed: dict[str, Floats] = {}
+    varying: dict[str, Floats] = {}
+    kinds: dict[str, str] = {}
+    usable = True
+    for name, column in values.items():
+        if only_points and name in UNUSED_BY_POINTS:
+            fixed[name], kinds[name] = column[:1], "unused"
+            continue
+        (least, most), (low, high) = extremes[name], ORDINARY[name]
+        if name in ANGLES and not (low <= least and most <= high):
+            if name in UNUSED_BY_POINTS:
+                column = np.where(values["M"] == 4, 0.0, column)
+            with np.errstate(invalid="ignore"):
+                column = np.where(np.abs(column) <= LARGE_ANGLE, column, np.fmod(column, 360.0))
+            least, most = float(column.min()), float(column.max())
+        alike = len(column) == 1 or least == most
+        ordinary = low <= least and most <= high  # NaN is neither
+        kind = alike_kind(name, least) if alike and ordinary else "scalar" if alike else "array"
+        if name == "M" and not ordinary:
+            ordinary = only_points
+            kind = "4" if only_points else "6" if alike else "mixed"
+        elif name in INERTIAS and not ordinary:
+            ordinary = alike and most == np.inf
+            kind = "inf" if ordinary else "scalar" if alike else "array with infinities"
+        elif name == "MU" and not ordinary:
+            ordinary = least >= -_LARGEST and most <= _LARGEST
+            if bool((column == PIVOT).any()):
+                kind = "pivot" if alike else "mixed"
+        kinds[name] = kind
+        usable = usable and ordinary
+        (fixed if alike else varying)[name] = column[:1] if alike else column
+    ordered = tuple(kinds[name] for name in SCENE)
+    if usable and _at_rest_where_infinite(kinds):
+        return Block(fixed, varying, ordered, None)
+    together = {name: fixed[name] if name in fixed else varying[name] for name in SCENE}
+    refused = np.zeros(max(map(len, values.values())), np.bool_)
+    for refusal in refusals(together):
+        refused |= refusal.where
+    return Block(fixed, varying, ordered, refused if refused.any() else None)
+
+
+def limits_of(columns: Sequence[Floats]) -> list[Limits]:
+    """The least and the largest number of each column; both NaN where one is."""
+    if native.library is None:
+        return [(float(column.min()), float(column.max())) for column in columns]
+    order = sorted(range(len(columns)), key=lambda i: -len(columns[i]))
+    where, found = addresses(columns[i] for i in order), np.empty((len(order), 2))
+    count = len(columns[order[0]])
+    many = sum(len(column) == count for column in columns)
+    extremes = native.library.find_extremes
+    extremes(where.ctypes.data, many, len(order), count, found.ctypes.data)
+    return [(least, most) for least, most in found[np.argsort(order)].tolist()]
+
+
+ORDINARY: dict[str, Limits] = {
+    **dict.fromkeys(SCENE, (-_LARGEST, _LARGEST)),
+    **dict.fromkeys(ANGLES, (-LARGE_ANGLE, LARGE_ANGLE)),
+    **dict.fromkeys(INERTIAS, (_SMALLEST, _LARGEST)),
+    **{"M": (6.0, 6.0), "MU": (float(np.nextafter(PIVOT, 0.0)), _LARGEST)},
+}
+"""Name -> within which a column is an ordinary array, or an ordinary value: nothing in it has to be
+looked at."""
+
+
+def alike_kind(name: str, value: float) -> str:
+    """The kind of an ordinary column that has one value."""
+    if name == "M":
+        return str(int(value))
+    # an inertia is never left out
+    return "scalar" if name in INERTIAS else {0.0: "0", 1.0: "1"}.get(value, "scalar")
+
+
+def _at_rest_where_infinite(kinds: Mapping[str, str]) -> bool:
+    """Whether the kinds alone show that infinite bodies are at rest, and one at most."""
+    infinite = []
+    for mass, inertia, velocities, spin in BODIES:
+        no_shift, no_turn = kinds[mass] == "inf", kinds[inertia] == "inf"
+        if no_shift and any(kinds[name] != "0" for name in velocities):
+            return False
+        if no_turn and kinds[spin] != "0":
+            return False
+        infinite.append(no_shift or no_turn)
+    return not all(infinite)
+
+
+class Refusal(NamedTuple):
+    """Why scenes cannot be used: the column at fault, the reason, and where (True)."""
+
+    column: str
+    reason: str
+    where: NDArray[np.bool_]
+
+
+def refusals(columns: Mapping[str, Floats]) -> Iterator[Refusal]:
+    """What cannot be used in ``columns`` (every scene name -> array of one length, or of length 1).
+    A point-mass scene is not asked for what it does not look at."""
+    point = columns["M"] == 4
+    yield Refusal("M", "is neither 4 nor 6", ~(point | (columns["M"] == 6)))
+    for name, column in columns.items():
+        if name == "M":
+            continue
+        asked = ~point if name in UNUSED_BY_POINTS else True
+        if name in INERTIAS:
+            yield Refusal(name, "is not above 0", ~(column > 0) & asked)
+        else:
+            yield Refusal(name, "is not finite", ~np.isfinite(column) & asked)
+    infinite = []
+    for mass, inertia, velocities, spin in BODIES:
+        no_shift = columns[mass] == np.inf
+        no_turn = (columns[inertia] == np.inf) & ~point
+        for name in velocities:
+            moves = no_shift & (columns[name] != 0)
+            yield Refusal(name, f"is not 0, but {mass} is infinite: a barrier is at rest", moves)
+        turns = no_turn & (columns[spin] != 0)
+        yield Refusal(spin, f"is not 0, but {inertia} is infinite: a barrier is at rest", turns)
+        infinite.append(no_shift | no_turn)
+    yield Refusal("MB", "or IB is infinite, and so is MA or IA", infinite[0] & infinite[1])

@@ -1,0 +1,112 @@
+"""What is run for a kind of block and the results wanted: a program, by the compiled machine in one
+pass over the scenes, or by numpy one step after another (`plan`)."""
+
+import struct
+from collections.abc import Iterable
+from functools import lru_cache
+
+import numpy as np
+
+from ...collision import degrees, sinetable
+from ...names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE
+from ..native.formulas import Expression, ExpressionTable
+from ..native.program import Program
+from .columns import INERTIAS, UNUSED_BY_POINTS
+from .impact import impact
+
+Kinds = tuple[str, ...]
+"""Of each column, see `closedform.columns.Block`."""
+
+_CIRCLE = np.frombuffer(
+    struct.pack(
+        *("P8dq", degrees.table().ctypes.data, 1 / sinetable.STEP, sinetable.STEP),
+        *(sinetable.INTEGER_IN_LOW_BITS, *sinetable.POLYNOMIALS, sinetable.STEPS),
+    ),
+    np.uint8,
+).copy()
+CIRCLE = _CIRCLE.ctypes.data
+"""Where the machine finds what sines and cosines are made of, ``circle`` there."""
+
+
+@lru_cache(maxsize=1024)
+def program_for(
+    kinds: Kinds, wanted: tuple[str, ...], sign: float | None = None, hurried: bool = False
+) -> Program:
+    """``sign``, ``hurried``: see `impact`. No result is a negative zero, and NaN is what is not
+    finite; COND alone may be infinite."""
+    table = ExpressionTable()
+    kind = dict(zip(SCENE, kinds, strict=True))
+    scene: dict[str, Expression] = {}
+    for name, what in kind.items():
+        if what in ("0", "1", "inf", "unused"):
+            scene[name] = table.constant(0.0 if what == "unused" else float(what))
+        else:
+            scene[name] = table.column(name, varies=what.startswith(("array", "mixed")))
+    pivot: bool | Expression = kind["MU"] == "pivot"
+    if kind["MU"] == "mixed":
+        pivot = table.equals(scene["MU"], PIVOT)
+    point: bool | Expression = kind["M"] == "4"
+    if kind["M"] == "mixed":
+        point = table.equals(scene["M"], 4.0)
+    infinite = any("inf" in what for what in kinds)
+    found = impact(table, scene, pivot, point, infinite, sign, hurried)
+    endings = {"COND": "RESULT_OR_INFINITE", "STATUS": "BITS"}
+    return Program({x: found[x] for x in wanted}, [endings.get(x, "RESULT") for x in wanted])
+
+
+def varying(pivot: bool, point: bool, infinite: bool = False, zeros: Iterable[str] = ()) -> Kinds:
+    """The kinds where every column varies but M, MU of pivots, and those that are 0; ``infinite``:
+    inertias may be."""
+    kinds = {"M": "4" if point else "6", **dict.fromkeys(zeros, "0")}
+    if infinite:
+        kinds |= dict.fromkeys(INERTIAS, "array with infinities")
+    if pivot:
+        kinds["MU"] = "pivot"
+    if point:
+        kinds |= dict.fromkeys(UNUSED_BY_POINTS, "unused")
+    return tuple(kinds.get(name, "array") for name in SCENE)
+
+
+ALL = tuple(RESULTS)
+COLUMNS = tuple(SCENE)
+FORMULAS = "f8e1954879adabdc"
+"""Digest of the bodies' programs (tests/kernels.py): the library is of the same formulas."""
+
+BODIES: dict[str, Kinds] = {
+    "friction": varying(False, False, True),
+    "pivot": varying(True, False, True),
+    "point": varying(False, True, True),
+    "point_pivot": varying(True, True, True),
+    "friction_without_moment": varying(False, False, True, ["EM"]),
+    "smooth": varying(False, False, True, ["MU"]),
+    "friction_without_arms": varying(False, False, True, ["DA", "DB"]),
+    "friction_hurried": varying(False, False, True),
+    "pivot_hurried": varying(True, False, True),
+}
+"""Name -> kinds of what the machine has as a whole, written by tests/kernels.py. The first four are
+every scene there is; of the others all scenes of a call have to be; the hurried leave what STATUS
+takes the final velocities for undecided (`statusbits.undecided`), and the machine looks again."""
+HURRIED = {"friction": "friction_hurried", "pivot": "pivot_hurried"}
+_MOTION = ("VC", "VS", "XA", "YA", "XB", "YB", "KI", "MUP")
+_IMPULSES = ("PN", "PT", "PM", "MUP", "DVA", "DVB", "VC", "VS")
+_WITH_STATUS = (("STATUS",), ("LOSS", "DVA", "DVB", "STATUS"))
+_SETS = (
+    FINAL_VELOCITIES,
+    _MOTION,
+    _IMPULSES,
+    ("LOSS", "KI", "ELN", "ELT", "ELM", "EESA", "EESB", *_IMPULSES),
+    ("MUC", "MUP"),
+    ("COND", "MUP"),
+    ("XAF", "YAF", "XBF", "YBF", *FINAL_VELOCITIES),
+    ("KI", "KF", *FINAL_VELOCITIES),
+    *_WITH_STATUS,
+    ("LOSS", "DVA", "DVB", "STATUS", *FINAL_VELOCITIES),
+    ALL,
+)
+KERNELS = [
+    *((body, results) for body in ("friction", "pivot") for results in _SETS),
+    *((body, results) for body in ("point", "point_pivot") for results in (FINAL_VELOCITIES, ALL)),
+    *((body, FINAL_VELOCITIES) for body in list(BODIES)[4:7]),
+    *((body, results) for body in HURRIED.values() for results in _WITH_STATUS),
+]
+"""Body and results of each kernel, the cheapest first: the first that has what is wanted is run."""

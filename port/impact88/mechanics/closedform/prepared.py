@@ -1,0 +1,299 @@
+"""`impact88.prepared`: everything that calls of `solve` have in common, done once."""
+
+import ctypes
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...collision.case import check_mapping
+from ...collision.mappings import in_base, in_doubles
+from ...collision.units import system_of
+from ...errors import UserError
+from ...messages.arguments import explains_arguments
+from ...names import RESULTS, SCENE, listed
+from ...status import Status
+from .. import native
+from . import kernelcalls
+from .columns import sources
+from .impactprograms import ALL, COLUMNS
+from .kernelcalls import PreparedCall
+from .plain import PLAIN, WORTH_KEEPING, memory
+from .share import share_of
+from .solve import solve
+
+Array = NDArray[Any]
+
+_FLOATS = np.dtype(np.float64)
+
+
+@explains_arguments
+def prepared(
+    names: Sequence[str] | str,
+    outputs: Sequence[str] | str | None = None,
+    scene: Mapping[str, object] | None = None,
+) -> "Prepared":
+    """Return a function of some of a scene's numbers, for many short calls.
+
+    Names are checked, the scene is read and the computation chosen once. What is left to a call is
+    a few microseconds, whatever is computed: for root finders, samplers and optimizers.
+
+    Parameters
+    ----------
+    names : sequence of str, or str
+        The inputs given at each call, in the order of their rows (``impact88.names.SCENE``).
+    outputs : sequence of str, or str, optional
+        Result names; all of them by default.
+    scene : mapping of str to float or str, optional
+        The inputs that stay, one number each, as `impact88.solve` reads them. What it holds of
+        ``names`` is not looked at. M is 6 where left out.
+
+    Returns
+    -------
+    Prepared
+        Called with an array whose rows are the inputs, ``names`` by n, or with a sequence of
+        numbers or arrays, one for each name: the results by name, n each, and numbers where the
+        inputs are numbers. It has attributes ``names`` and ``outputs``, may be called by several
+        threads at a time, and be sent to other processes.
+
+    Raises
+    ------
+    UserError
+        For missing, unknown or repeated names, an MU that is a share of the critical friction, and
+        whatever else `impact88.solve` refuses; when called, for rows that do not fit ``names``.
+
+    Notes
+    -----
+    The results have the bits of `impact88.solve`, in fresh memory. An array of float64 in C order
+    is read where it is; anything else is copied. Where ``scene`` names ``units``, a call's numbers
+    are in that system, too.
+
+    Examples
+    --------
+    >>> loss = impact88.prepared(["MU"], ["LOSS"], impact88.sample(1))
+    >>> print(loss([0.5])["LOSS"].round(2))
+    44.43
+    >>> loss([[0.5, 0.911, -10]])["LOSS"].round(2)
+    array([44.43, 57.47, 57.56])
+    """
+    chosen = listed(names) if isinstance(names, str) else tuple(names)
+    wanted = ALL if outputs is None else outputs
+    wanted = listed(wanted) if isinstance(wanted, str) else tuple(wanted)
+    rest = {} if scene is None else scene
+    check_mapping(rest)
+    _check_names(chosen, SCENE, "scene")
+    _check_names(wanted, RESULTS, "result")
+    if len(set(chosen)) < len(chosen):
+        raise UserError(f"a name stands twice in {' '.join(chosen)}; expected each once")
+    return Prepared(tuple(chosen), tuple(dict.fromkeys(wanted)), rest)
+
+
+def _check_names(names: Sequence[str], table: Iterable[str], what: str) -> None:
+    """Raises UserError where no names are given, or one is not in the table."""
+    if not names:
+        raise UserError(f"no {what} name is given; expected some of {' '.join(table)}")
+    for name in names:
+        if name not in table:
+            raise UserError(f"{name!r} is not a {what} name; expected some of {' '.join(table)}")
+
+
+class Prepared:
+    """Results of scenes that share all but some numbers: see `prepared`."""
+
+    def __init__(
+        self, names: tuple[str, ...], outputs: tuple[str, ...], scene: Mapping[str, object]
+    ) -> None:
+        self.names = names
+        self.outputs = outputs
+        self._scene = {name: value for name, value in scene.items() if name not in names}
+        based = in_base(self._scene)
+        if "MU" in based and share_of(based["MU"]) is not None:
+            raise UserError(
+                f"MU = {based['MU']!r} is a share of the critical friction, which each scene has "
+                "for itself; expected a number"
+            )
+        # 6: a number that M may be
+        given, shape = sources({**based, **dict.fromkeys(names, 6.0)})
+        if shape:
+            arrays = [name for name, source in given.items() if len(source) != 1]
+            raise UserError(
+                f"{(arrays or ['scene'])[0]} holds more than one number; expected it among the "
+                "names that are given at each call"
+            )
+        self._values = np.array([float(given[name][0]) for name in COLUMNS])
+        self._call: PreparedCall | None = None
+        self._rows = tuple(name for name in outputs if name != "STATUS")
+        self._has_status = len(self._rows) < len(outputs)
+        self._expected = (len(names),)
+        self._factors = None
+        if "units" in self._scene:
+            system = system_of(str(self._scene["units"]))
+            self._factors = np.array([system.factor(name) for name in names])
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Prepared, (self.names, self.outputs, self._scene)
+
+    @explains_arguments
+    def __call__(self, values: ArrayLike) -> dict[str, Array]:
+        """Return the results by name of values, a row for each of ``names``. Raises UserError."""
+        rows = self._rows_of(values)
+        if self._factors is not None:
+            rows = rows / self._factors.reshape(-1, *[1] * (rows.ndim - 1))
+        if native.library is None or not kernelcalls.usable():
+            return self._solved(rows)
+        call = self._call or self._made()
+        shape = rows.shape[1:]
+        results, bits = self._room(shape)
+        call.run(
+            _address(rows),
+            _address(results),
+            0 if bits is None else _address(bits),
+            math.prod(shape),
+        )
+        return self._by_name(results, bits)
+
+    @explains_arguments
+    def bind(self, values: Array) -> "Bound":
+        """Return a function without arguments: the results of what an array holds when it is
+        called.
+
+        Parameters
+        ----------
+        values : ndarray
+            float64 in C order, a row for each of ``names``: its numbers are changed in place
+            between the calls.
+
+        Returns
+        -------
+        Bound
+            Its calls write over one set of arrays, ``results``, and return it: nothing is
+            left to a call but the computation. For one thread at a time.
+
+        Raises
+        ------
+        UserError
+            For another kind of array.
+
+        Examples
+        --------
+        >>> values = np.full((1, 3), 0.5)
+        >>> loss = impact88.prepared(["MU"], ["LOSS"], impact88.sample(1)).bind(values)
+        >>> values[:] = 0.5, 0.911, -10
+        >>> loss()["LOSS"].round(2)
+        array([44.43, 57.47, 57.56])
+        """
+        if self._rows_of(values) is not values:
+            raise UserError(
+                f"values are not an array of float64 in C order, one row for each of "
+                f"{' '.join(self.names)}; expected one, to be changed in place"
+            )
+        return Bound(self, values)
+
+    def _rows_of(self, values: Any) -> Array:
+        """The values where they are, if they lie side by side, else a copy. Raises UserError."""
+        if type(values) is np.ndarray and values.dtype == _FLOATS:
+            flags = values.flags
+            if flags.c_contiguous and flags.aligned and values.shape[:1] == self._expected:
+                return values
+        return self._read(values)
+
+    def _solved(self, rows: Array) -> dict[str, Array]:
+        """The results without the compiled machine."""
+        based = dict(zip(COLUMNS, self._values.tolist(), strict=True))
+        return solve({**based, **dict(zip(self.names, rows, strict=True))}, self.outputs)
+
+    def _made(self) -> PreparedCall:
+        places = [COLUMNS.index(name) for name in self.names]
+        self._call = PreparedCall(self.outputs, places, self._values)
+        return self._call
+
+    def _room(self, shape: tuple[int, ...]) -> tuple[Array, Array | None]:
+        """Memory for the results that are float64, and for STATUS."""
+        size = len(self._rows) * math.prod(shape)
+        small = size < WORTH_KEEPING // 8
+        room = (len(self._rows), *shape)
+        results = np.empty(room) if small else memory(size).reshape(room)
+        return results, np.empty(shape, np.uint16) if self._has_status else None
+
+    def _by_name(self, results: Array, bits: Array | None) -> dict[str, Array]:
+        by_name = dict(zip(self._rows, results))  # noqa: B905 - strict takes as long as the rest
+        if bits is None:
+            return by_name
+        by_name["STATUS"] = bits[()]
+        return {name: by_name[name] for name in self.outputs}
+
+    def _read(self, values: Any) -> Array:
+        """The rows as an array, of whatever else the values are. Raises UserError."""
+        told = f"one row for each of {' '.join(self.names)}"
+        if isinstance(values, np.ndarray) and not values.ndim:
+            raise UserError(f"values are one number; expected {told}")
+        if isinstance(values, (str, bytes, Mapping)) or not hasattr(values, "__len__"):
+            raise UserError(f"values are of type {type(values).__name__}; expected {told}")
+        if len(values) != len(self.names):
+            raise UserError(f"values have {len(values)} rows; expected {told}")
+        if PLAIN.issuperset(map(type, values)):
+            try:
+                return np.array(values, np.float64)
+            except OverflowError as error:
+                raise UserError(f"a value is no number: {error}") from None
+        rows = [in_doubles(name, row) for name, row in zip(self.names, values, strict=True)]
+        try:
+            shape = np.broadcast_shapes(*(row.shape for row in rows))
+        except ValueError:
+            shapes = ", ".join(f"{n} {x.shape}" for n, x in zip(self.names, rows, strict=True))
+            raise UserError(f"the rows' shapes do not broadcast together: {shapes}") from None
+        every = np.empty((len(rows), *shape))
+        for place, row in enumerate(rows):
+            every[place] = row
+        return every
+
+
+class Bound:
+    """Results of one array's numbers, as they are when it is called: see `Prepared.bind`.
+
+    ``values``: the array; ``results``: by name what the last call found, NaN before the first.
+    """
+
+    def __init__(self, prepared_call: Prepared, values: Array) -> None:
+        self.values = values
+        self._prepared = prepared_call
+        self._kept = results, bits = prepared_call._room(values.shape[1:])
+        results.fill(np.nan)
+        if bits is not None:
+            bits.fill(Status.NOT_FINITE)
+        names = prepared_call._rows
+        rows = {name: results[place, ...] for place, name in enumerate(names)}
+        if bits is not None:
+            rows["STATUS"] = bits
+        self.results: dict[str, Array] = {name: rows[name] for name in prepared_call.outputs}
+        self._at: int | None = None
+        self._machine = native.library if kernelcalls.usable() else None
+        count = math.prod(values.shape[1:])
+        in_one_call = count < 2 * kernelcalls.WORTH_A_THREAD and prepared_call._factors is None
+        if self._machine is not None and in_one_call:
+            call = prepared_call._call or prepared_call._made()
+            status = 0 if bits is None else _address(bits)
+            self._block = call.bound(_address(values), _address(results), status, count)
+            self._call = call
+            self._at = self._block.ctypes.data
+            self._run = self._machine.solve_bound
+
+    def __call__(self) -> dict[str, Array]:
+        """Return the results of what ``values`` hold, in the arrays of the call before."""
+        if self._at is not None and native.library is self._machine:
+            self._run(self._at)
+        else:
+            for name, found in self._prepared(self.values).items():
+                self.results[name][...] = found
+        return self.results
+
+
+def _address(array: Any) -> int:
+    """Where an array begins in memory. For one that can be written to by the buffer it is: that
+    takes a fourth of the time."""
+    if array.size and array.flags.writeable:
+        return ctypes.addressof(ctypes.c_char.from_buffer(array))
+    start: int = array.__array_interface__["data"][0]
+    return start

@@ -1,0 +1,159 @@
+"""STATUS: one rule a bit of `impact88.status.Status`: comparisons joined by & | ~, one text for
+arrays and `Expression`s. A comparison with NaN is false: what cannot be decided stays clear."""
+
+from math import inf
+from typing import Any
+
+from ...names import PIVOT
+from ...status import Status
+
+SINGULAR_FROM = 2.0**26
+"""COND from which SINGULAR is set: 1/sqrt(unit roundoff). Half of a double's digits may be lost
+there, and of the 32 bits of the 1988 program's numbers a handful at most are left."""
+ENERGY_TOLERANCE = 1e-12
+"""What may be gained of the initial kinetic energy before it counts: some thousand roundings."""
+FRICTION_TOLERANCE = 1e-9
+"""How far P_t/P_n may lie outside what friction can do: above the rounding of a coefficient typed
+or solved for, below the last digit anyone gives."""
+SIDE_TOLERANCE = 1e-9
+"""How far a center may lie beyond the contact plane, of its distance to the contact point."""
+MODERATE = 1e15
+"""Largest size of a scene's numbers for `undecided`; the least inertia is its inverse."""
+UNDECIDED = 0x8000
+"""Beside STATUS's bits: set by a hurried kernel where `undecided` holds, and never seen outside."""
+LISTING_MISREADS = PIVOT
+"""Line 510 takes any MU not above this for a pivot."""
+
+
+def friction_faults(
+    gn: Any,
+    pn: Any,
+    mu: Any,
+    pivot_pn: Any,
+    pivot_pt: Any,
+    gt: Any = 0.0,
+    turning: Any = 0.0,
+    yielding: Any = 0.0,
+) -> tuple[Any, Any]:
+    """Return (above critical, wrong direction): where friction cannot make an impact.
+
+    ``gn``: normal relative velocity before, ``pn``: normal impulse on A, ``mu``: P_t/P_n with its
+    sign, 0 for a pivot; ``pivot_pn``, ``pivot_pt``: the impulse on A if the sliding ended at
+    separation; ``gt``, ``turning``, ``yielding``: see `slides_forth_and_back`. They broadcast.
+
+    In an approach (gn < 0, Pn > 0) friction is admissible from 0 to what ends the sliding, the
+    pivot's P_t/P_n, MUC; with more it is reversed. The direction of the sliding before the impact
+    decides nothing by itself: a normal impulse on eccentric contact can turn it round without
+    friction, and before it does friction may act the other way. Where the pivot's normal impulse
+    would pull, no friction ends the sliding, and any in the pivot's direction is admissible. Where
+    MUC is 0 none is.
+    """
+    room = FRICTION_TOLERANCE
+    approach, limited, down = (gn < 0) & (pn > 0), pivot_pn > 0, pivot_pt < 0
+    most = abs(pivot_pt)
+    # mu in the direction of pivot_pt, less the tolerance, and times pivot_pn
+    forward_down, forward_up = (-mu - room) * pivot_pn, (mu - room) * pivot_pn
+    backward = approach & (down & (mu > room) | ~down & (mu < -room))
+    none = limited & (most <= room * pivot_pn)
+    above = approach & limited & (down & (forward_down > most) | ~down & (forward_up > most))
+    above = above | backward & none
+    wrong = backward & ~none & (most > 0)
+    excused = slides_forth_and_back(pn, mu, gt, turning, yielding)
+    return above & ~excused, wrong & ~excused
+
+
+def slides_forth_and_back(pn: Any, mu: Any, gt: Any, turning: Any, yielding: Any) -> Any:
+    """Return where friction can make the impact by acting against the sliding before it for as
+    long as that lasts, and the other way, less long, after the normal impulse has reversed it.
+
+    ``gt``: the sliding before, along t; ``turning``: K Pn, what the normal impulse, and the moment
+    in proportion to it, adds to the sliding; ``yielding``: K_tt, what a unit of the tangential
+    impulse adds.
+
+    Let friction of coefficient m act against the sliding, and the normal impulse reverse it after
+    p1 = abs(gt)/(m K_tt + abs(K)) of Pn. What is left in the end is Pt = m (Pn - 2 p1) along the
+    sliding before. Its least value over m is
+
+        -Pn (w - abs(K))^2 / (abs(K) K_tt)  with  w^2 = 2 abs(gt K)/Pn,
+
+    for abs(gt/K) between Pn/2 and 2 Pn. Below that, it only ever acts along the sliding before;
+    above, friction that ends the sliding is the most. Written here without the root: with b =
+    2 abs(gt) - abs(K) Pn and a = abs(Pt) K_tt, b >= a and (b - a)^2 >= 4 abs(K) Pn a.
+    """
+    size = abs(turning)
+    across = (abs(mu) - FRICTION_TOLERANCE) * (pn * yielding)
+    left = abs(gt) + abs(gt) - size
+    rest = left - across
+    # by what fails, so that what is not known excuses
+    straight = (gt * turning >= 0) | (mu * gt >= 0)
+    outside = (left <= 0) | (left >= 3.0 * size)
+    return ~(straight | outside | (rest < 0) | (rest * rest < 4.0 * (size * across)))
+
+
+def findings(
+    gn: Any,
+    pn: Any,
+    arm_a: Any,
+    arm_b: Any,
+    da: Any,
+    db: Any,
+    twice_lost: Any,
+    initial: Any,
+    e: Any,
+    em: Any,
+    friction_mu: Any,
+    pivot_pn: Any,
+    pivot_pt: Any,
+    gt: Any,
+    turning: Any,
+    yielding: Any,
+    condition: Any,
+    sum_of_velocities: Any,
+) -> dict[Status, Any]:
+    """Bit -> the condition under which it is set; only NOT_FINITE and SINGULAR for a NaN.
+
+    ``gn``: normal relative velocity at the contact point, A minus B; ``pn``: normal impulse on A;
+    ``arm_a``, ``arm_b``: the tangential lever arms, minus the distances of A's and B's center from
+    the contact plane, each towards its own side; ``da``, ``db``: the distances to the contact
+    point; ``twice_lost`` and ``initial``: energies; ``friction_mu``: MU with its sign, 0 for a
+    pivot; ``pivot_pn``, ``pivot_pt``, ``gt``, ``turning``, ``yielding``: see `friction_faults`;
+    ``condition``: COND. They broadcast.
+    """
+    sliding = gt, turning, yielding
+    above, wrong = friction_faults(gn, pn, friction_mu, pivot_pn, pivot_pt, *sliding)
+    # what the sum of velocities does not show, the energies and the quotients do
+    finite = abs(sum_of_velocities) < inf
+    finite = finite & (abs(initial - 0.5 * twice_lost) < inf) & (abs(twice_lost / initial) < inf)
+    return {
+        Status.SEPARATING: gn >= 0,
+        Status.PULLING: pn < 0,
+        Status.ENERGY_GAINED: -twice_lost > (2 * ENERGY_TOLERANCE) * initial,
+        Status.E_OUT_OF_RANGE: (e < 0) | (e > 1),
+        # NaN: 0/0 in the condition itself, as singular as can be
+        Status.SINGULAR: ~(condition < SINGULAR_FROM),
+        Status.NOT_FINITE: ~(finite & (condition <= inf)),
+        Status.A_ON_WRONG_SIDE: arm_a > SIDE_TOLERANCE * abs(da),
+        Status.B_ON_WRONG_SIDE: arm_b > SIDE_TOLERANCE * abs(db),
+        Status.EM_OUT_OF_RANGE: (em < -1) | (em > 0) & ((em < 1) | (em > 1)),
+        Status.MU_OUT_OF_RANGE: friction_mu <= LISTING_MISREADS,
+        Status.FRICTION_ABOVE_CRITICAL: above,
+        Status.FRICTION_WRONG_DIRECTION: wrong,
+    }
+
+
+def undecided(determinant: Any, absolute_sum: Any, twice_lost: Any, initial: Any) -> Any:
+    """Return where SINGULAR and NOT_FINITE are not certain to be clear, without the velocities.
+
+    ``absolute_sum``: the determinant's with absolute values, COND/3 times its size. The scene's
+    numbers are at most `MODERATE` in size, inertias at least its inverse (or infinite, of a rigid
+    barrier). No product in a velocity's numerator then exceeds 1e160, so that a determinant above
+    1e-100 leaves every velocity finite; of the energies the last comparison says it.
+    """
+    size = abs(determinant)
+    regular = absolute_sum < (SINGULAR_FROM / 6) * size
+    return ~((size > 1e-100) & regular & (abs(twice_lost) < 1e150 * initial))
+
+
+def bits(found: dict[Status, Any]) -> Any:
+    """STATUS of conditions over arrays, which broadcast: integers."""
+    return sum(condition * int(bit) for bit, condition in found.items())

@@ -1,0 +1,194 @@
+"""What a solved impact means, and the closed forms: final velocities, or initial ones from them.
+
+What follows from an impact (contact point, ΔV, energy, critical friction, STATUS) is computed from
+the velocities before and after and from the impulse, as far as they are known.
+
+The inverse of Equations 13-18 (chapter, Section IV-C: "if the final velocities are known, these
+equations are linear and can be solved for the initial velocities, as done in an accident
+reconstruction"): with the relative contact velocities after impact Gn and the relative spin GW
+
+    M  = (1 - e_m)/e_m · GW / (1/I_a + 1/I_b)                             Equation 18
+    Pn = [(1 + 1/e) Gn - (a_n/I_a - b_n/I_b) M] / (R + S_nn + μ S_nt)      Equations 15 and 16
+    Pt = μ Pn                                                              Equation 16
+    v  = V - impulse / mass                                                Equations 13, 14 and 17
+
+with S_nn = a_n²/I_a + b_n²/I_b and S_nt = a_n a_t/I_a + b_n b_t/I_b. There is no such solution at
+e = 0, at e_m = 0 (which the chapter omits) and for the pivot, which has only five equations for
+the six; errors of the final velocities grow as 1/e. `unknowns` solves any other set of
+unknowns, more slowly, and says why a set cannot be solved.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..collision.geometry import Geometry, with_point_masses
+from ..errors import UserError
+from ..names import FINAL_STATE, PIVOT, SCENE, VELOCITIES
+from ..status import Status
+from .closedform.solve import quantities, solve
+from .closedform.statusbits import bits, findings
+from .state import CHANGES, CONTACT, COURSES, FORCES, SPEEDS, State
+
+Array = NDArray[Any]
+
+IMPOSSIBLE = (
+    Status.SEPARATING
+    | Status.PULLING
+    | Status.ENERGY_GAINED
+    | Status.E_OUT_OF_RANGE
+    | Status.EM_OUT_OF_RANGE
+    | Status.FRICTION_ABOVE_CRITICAL
+    | Status.FRICTION_WRONG_DIRECTION
+)
+"""What breaks physics."""
+
+Divided = tuple[dict[str, Array], list[Array]]
+"""Arrays by name, and what divides them: where one of these is zero, some of them are infinite."""
+
+
+@np.errstate(all="ignore")
+def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
+    """The consequences of ``values`` (geometry, velocities, coefficients, PN and PT, by name), as
+    far as what they need is known: contact point, STATUS, direction of force, contact velocities,
+    energies, velocity changes, speeds and courses, and MUC."""
+    values = with_point_masses(values)
+    given = {name: np.asarray(value, np.float64) for name, value in values.items()}
+    if (given.get("M", np.array(6.0)) == 4).all():
+        given = {"WA": np.zeros(()), "WB": np.zeros(()), "EM": np.zeros(()), **given}
+        given = {"WAF": given["WA"], "WBF": given["WB"], **given}
+    state = State.of_known(given)
+    here = state.here
+    result = {"CAX": -here.d4, "CAY": -here.d3, "CBX": here.d2, "CBY": here.d1}
+    names = (*CONTACT, *CHANGES, "KI", "KF", "LOSS", *SPEEDS, *COURSES)
+    following = {name: state[name] for name in names} | state.contact_velocities()
+    result |= {name: value for name, value in following.items() if not np.isnan(value).all()}
+    if "PN" in given and "PT" in given:
+        result |= {name: state[name] for name in FORCES}
+        result["P"] = np.hypot(given["PN"], given["PT"])
+    condition: Any = 1.0
+    if all(name in given for name in SCENE if name != "M"):
+        scene = {name: given[name] for name in SCENE if name in given}
+        result["MUC"], condition = solve(scene, ("MUC", "COND")).values()
+    result["STATUS"] = status(state, given, condition)
+    shape = np.broadcast_shapes(*(np.shape(value) for value in given.values()))
+    return {name: np.broadcast_to(value, shape) for name, value in result.items()}
+
+
+def moment_ratio(em: Any) -> Any:
+    """R/R0: the relative spin after the impact over that before, as far as the moment impulse alone
+    makes it (Equation 18 as printed with P = 0): -em/(1 - 2 em). 1 at em = +1, no moment; 0 at 0,
+    where the spins become equal; 1/3 at -1. Infinite at em = 1/2."""
+    em = np.asarray(em, np.float64)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return -em / (1 - 2 * em)
+
+
+def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Array:
+    """STATUS of an impact; what cannot be decided for lack of a value is not remarked.
+
+    ``given``: what is known of the velocities before and after, and of the scene; ``condition``:
+    COND, where the forward equations are at hand.
+    """
+    here, value = state.here, state.values
+    e, em, mu = (value.get(name, np.array(np.nan)) for name in ("E", "EM", "MUP"))
+    known = [given[name] for name in (*VELOCITIES, *FINAL_STATE) if name in given]
+    # of the same impact if the sliding ended at separation
+    pivot = {name: given[name] for name in SCENE if name in given} | {"MU": np.array(PIVOT)}
+    complete = all(name in pivot for name in SCENE if name != "M")
+    ending = quantities(pivot, ("PN", "PT")) if complete else dict.fromkeys(("PN", "PT"), np.nan)
+    with np.errstate(all="ignore"):
+        lost, initial = 2 * state.energy_lost, state.initial_energy
+        operands = (
+            *(state.relative_before[0], value["PN"], here.at, here.bt),
+            *(np.where(here.point, 0.0, value[name]) for name in ("DA", "DB")),
+            # energies that are not known are not numbers that are not finite
+            *(np.where(np.isnan(lost), 0.0, lost), np.where(np.isnan(initial), 1.0, initial)),
+            *(e, np.where(here.point, 0.0, em), np.where(mu == PIVOT, 0.0, mu)),
+            *(ending["PN"], ending["PT"], state.relative_before[1], *_turning(here, value)),
+            *(np.asarray(condition), sum(known, np.zeros(()))),
+        )
+        return np.asarray(bits(findings(*operands)), np.uint16)
+
+
+def _turning(here: Geometry, value: Mapping[str, Any]) -> tuple[Any, Any]:
+    """Return what the normal and the moment impulse add to the sliding, and what a unit of the
+    tangential one does."""
+    a, b = here.inverse_ia, here.inverse_ib
+    by_normal = here.an * here.at * a + here.bn * here.bt * b
+    by_moment = here.at * a - here.bt * b
+    moment = np.where(here.point, 0.0, value.get("PM", np.nan))
+    yielding = here.inverse_mass + here.at * here.at * a + here.bt * here.bt * b
+    return by_normal * value["PN"] + by_moment * moment, yielding
+
+
+def forces(impulse: Any, contact_time: Any) -> dict[str, Array]:
+    """Average force FA = P/t_f of an impulse over a contact time, and the range FM2 ... FM3 of the
+    peak force, "typically two to three times the average" (chapter, Section III). Raises UserError
+    unless every contact time is positive."""
+    time = np.asarray(contact_time, np.float64)
+    if not (time > 0).all() or not np.isfinite(time).all():
+        raise UserError(f"contact time {contact_time} is not positive; expected a duration")
+    average = np.abs(np.asarray(impulse, np.float64)) / time
+    return {"FA": average, "FM2": 2.0 * average, "FM3": 3.0 * average}
+
+
+def initial_impact(columns: Mapping[str, Any]) -> State:
+    """The impact of six final velocities, with the velocities before and the impulses PN PT PM.
+
+    ``columns``: numbers or arrays that broadcast: the geometry, the coefficients E, EM and MUP (the
+    *signed* P_t/P_n) and VAX VAY VBX VBY WAF WBF. Where there is no solution (e = 0, e_m = 0, the
+    pivot's -10, singular friction) the values are NaN or infinite. Point masses keep their spins.
+    """
+    values = {name: np.asarray(value, np.float64) for name, value in columns.items()}
+    geometry = Geometry(columns)
+    e, em, mu = (values[name] for name in ("E", "EM", "MUP"))
+    with np.errstate(all="ignore"):
+        mu = np.where(mu == PIVOT, np.nan, mu)
+        normal, _, spin = geometry.relative([values[name] for name in FINAL_STATE])
+        a, b = geometry.inverse_ia, geometry.inverse_ib
+        moment = np.where(geometry.point, 0.0, (1 - em) / em * spin / geometry.inverse_spin_inertia)
+        turned = (geometry.an * a - geometry.bn * b) * moment
+        pn = ((1 + 1 / e) * normal - turned) / _along_impulse(geometry, mu)
+        impulse = {"PN": pn, "PT": mu * pn, "PM": moment}
+        return State({**values, **impulse}, geometry, from_after=VELOCITIES)
+
+
+def _along_impulse(geometry: Geometry, mu: Array) -> Array:
+    """R + S_nn + μ S_nt: what a unit of Pn, with the friction that goes with it, changes of Gn."""
+    a, b = geometry.inverse_ia, geometry.inverse_ib
+    snn = geometry.an * geometry.an * a + geometry.bn * geometry.bn * b
+    snt = geometry.an * geometry.at * a + geometry.bn * geometry.bt * b
+    return np.asarray(geometry.inverse_mass + snn + mu * snt)
+
+
+def forward_model(
+    columns: Mapping[str, Any], outputs: Sequence[str], sign: float | None = None
+) -> Divided:
+    """Equations 13-18 solved for the final velocities."""
+    names = ["determinant", "critical_denominator"] if "MUC" in outputs else ["determinant"]
+    values = quantities(columns, (*outputs, *names), sign)
+    return {name: values[name] for name in outputs}, [values[name] for name in names]
+
+
+def reconstruction_model(
+    columns: Mapping[str, Any], outputs: Sequence[str], sign: float | None = None
+) -> Divided:
+    """Equations 13-18 solved for the initial velocities, and what follows; STATUS is that of the
+    impact found, ``sign`` counts for nothing."""
+    state = initial_impact(columns)
+    before = dict(zip(VELOCITIES, state.before, strict=True))
+    denominators = [state.values["E"], state.values["EM"]]
+    denominators.append(_along_impulse(state.here, state.values["MUP"]))
+    result = {n: state[n] for n in outputs if n not in ("MUC", "STATUS")}
+    if "MUC" in outputs:
+        # the critical friction depends on MU's sign as little as on MU
+        values = {**state.values, **before, "MU": 0.0}
+        scene = {name: values[name] for name in SCENE if name in values}
+        result["MUC"], zero = quantities(scene, ("MUC", "critical_denominator")).values()
+        denominators.append(zero)
+    if "STATUS" in outputs:
+        result["STATUS"] = status(state, {**state.values, **before})
+    return result, denominators

@@ -1,0 +1,282 @@
+"""An impact known from its vehicles, initial velocities and impulse: everything else follows.
+
+Equations 13, 14 and 17 are "velocity after = velocity before + impulse / inertia" for each vehicle:
+a `State` obeys them whatever its numbers are. Equations 15, 16 and 18 are its `law`s. All is made
+of sums, products, roots and quotients, over numbers or arrays, real or complex (an imaginary part
+carries a derivative).
+"""
+
+from collections.abc import Collection, Mapping
+from functools import cached_property, lru_cache
+from typing import Any, Self
+
+import numpy as np
+
+from .. import names
+from ..collision.geometry import Geometry, facing, sin_cos
+from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
+from .closedform.energy import kinetic_energy
+
+SPEEDS = {"SA": ("UX", "UY"), "SB": ("VX", "VY"), "SAF": ("VAX", "VAY"), "SBF": ("VBX", "VBY")}
+"""Speeds, each with its velocity's components."""
+COURSES = {"HA": "SA", "HB": "SB", "HAF": "SAF", "HBF": "SBF"}
+"""The course that belongs to each speed, the direction of that velocity from the x axis."""
+FORCES = {"PDOFA": "A", "PDOFB": "B"}
+"""Where the force on a vehicle comes from, clockwise from its front."""
+DIRECTIONS = (*COURSES, *FORCES)
+BARRIER_SPEEDS = {"EBSA": "ELA", "EBSB": "ELB"}
+"""Equivalent barrier speeds, each with the energy it stands for."""
+CRUSH = ("ELA", "ELB", *BARRIER_SPEEDS)
+"""What was lost in each vehicle, energies that sum to EL: known of both or not at all."""
+CONTACT = ("VC", "VS")
+CHANGES = ("DVA", "DVB", "DVAF", "DVAR", "DVBF", "DVBR")
+ENERGIES = ("KI", "KF", "EL", "LOSS", "DT")
+QUANTITIES = (
+    *(*VELOCITIES, *FINAL_STATE, *COEFFICIENTS, *IMPULSES, *SPEEDS, *COURSES),
+    *(*CHANGES, *ENERGIES, *CONTACT, *FORCES),
+)
+"""What a state can be asked for."""
+OTHERS = (
+    *(name for pair in zip(SPEEDS, COURSES, strict=True) for name in pair),
+    *(*CHANGES, *ENERGIES, *CRUSH, *CONTACT, *FORCES),
+)
+"""What `adjustment` knows and `unknowns.solve_for` does not."""
+KNOWABLE = (*names.SCENE, "MUP", *names.FINAL_VELOCITIES, *OTHERS)
+"""What may be known of an impact."""
+
+
+class State:
+    """``values``: vehicles and geometry, IMPULSES, and each of VELOCITIES or, where it stands in
+    ``from_after``, the velocity after the impact instead; for laws the coefficients too."""
+
+    def __init__(
+        self,
+        values: Mapping[str, Any],
+        geometry: Geometry | None = None,
+        from_after: Collection[str] = (),
+    ) -> None:
+        self.values = values
+        self.here = Geometry(values) if geometry is None else geometry
+        self.from_after = from_after
+
+    @classmethod
+    def of_known(cls, values: Mapping[str, Any]) -> Self:
+        """An impact of which these velocities, before and after, and impulses are known; what they
+        do not tell is NaN."""
+        early, late = ([values.get(n, np.nan) for n in six] for six in (VELOCITIES, FINAL_STATE))
+        state = cls({**dict.fromkeys(IMPULSES, np.nan), **values})
+        state.before, state.after = early, late
+        state.changes = [after - before for before, after in zip(early, late, strict=True)]
+        state.energy_lost = state.initial_energy - state._energy(late)
+        return state
+
+    @property
+    def impulse(self) -> list[Any]:
+        return [self.values[name] for name in IMPULSES]
+
+    @cached_property
+    def changes(self) -> list[Any]:
+        return self.here.changes(*self.impulse)
+
+    @cached_property
+    def before(self) -> list[Any]:
+        return [
+            self.values[late] - change if early in self.from_after else self.values[early]
+            for early, late, change in zip(VELOCITIES, FINAL_STATE, self.changes, strict=True)
+        ]
+
+    @cached_property
+    def after(self) -> list[Any]:
+        return [
+            self.values[late] if early in self.from_after else self.values[early] + change
+            for early, late, change in zip(VELOCITIES, FINAL_STATE, self.changes, strict=True)
+        ]
+
+    @cached_property
+    def relative_before(self) -> tuple[Any, Any, Any]:
+        return self.here.relative(self.before)
+
+    @cached_property
+    def relative_after(self) -> tuple[Any, Any, Any]:
+        return self.here.relative(self.after)
+
+    def law(self, coefficient: str) -> Any:
+        """What Equation 15 (E), 16 (MUP) or 18 (EM) leaves over, 0 where it holds: a velocity, an
+        impulse, a spin. MUP = -10 is the pivot, no tangential relative velocity afterwards."""
+        value = self.values[coefficient]
+        if coefficient == "MUP" and np.all(value == PIVOT):
+            return self.relative_after[1]
+        above, below = self.quotient(coefficient)
+        if coefficient == "MUP" and (critical := self.values.get("MUC")):
+            value = value * self.critical_friction / critical
+        return above - value * below
+
+    @cached_property
+    def critical_friction(self) -> Any:
+        """P_t/P_n of the impact whose contact points end their sliding at separation, by Equations
+        15 and 18 with the pivot's condition."""
+        here = self.here
+        e, em = (self.values.get(name) for name in ("E", "EM"))
+        e = self["E"] if e is None else e
+        em = self["EM"] if em is None else em
+        normal, tangential, spin = self.relative_before
+        # what a unit of P_n, P_t and M changes of the relative velocities
+        units = [here.relative(here.changes(*row)) for row in np.eye(3)]
+        moment = [(1 - em) * unit[2] for unit in units]
+        moment[2] = moment[2] - em * here.inverse_spin_inertia
+        last = np.where(here.point, 0.0, -(1 - em) * spin)
+        moment = [np.where(here.point, float(i == 2), row) for i, row in enumerate(moment)]
+        rows = [[unit[0] for unit in units], [unit[1] for unit in units], moment]
+        right = [-(1 + e) * normal, -tangential, last]
+        every = np.broadcast_arrays(*(x for row in rows for x in row), *right)
+        shape = every[0].shape
+        matrix = np.stack(every[:9], axis=-1).reshape(*shape, 3, 3)
+        solution = np.linalg.solve(matrix, np.stack(every[9:], axis=-1)[..., None])[..., 0]
+        return solution[..., 1] / solution[..., 0]
+
+    def __getitem__(self, name: str) -> Any:
+        """A quantity by name; coefficients are what velocities and impulse make them."""
+        if name in VELOCITIES:
+            return self.before[VELOCITIES.index(name)]
+        if name in IMPULSES:
+            return self.values[name]
+        if name in FINAL_STATE:
+            return self.after[FINAL_STATE.index(name)]
+        if name in SPEEDS:
+            return _size(*self._components(name))
+        if name in COURSES:
+            return course(*self._components(COURSES[name]))
+        if name in COEFFICIENTS:
+            above, below = self.quotient(name)
+            return above / below
+        if name in CHANGES:
+            return self._change(name)
+        if name in FORCES:
+            return self._pdof(name)
+        if name in CONTACT:
+            return -self.relative_before[0] if name == "VC" else self.relative_after[0]
+        lost, initial = self.energy_lost, self.initial_energy
+        if name in ("LOSS", "DT"):
+            return (100.0 if name == "LOSS" else 1.0) * lost / initial
+        return {"KI": initial, "KF": initial - lost, "EL": lost}[name]
+
+    def _components(self, speed: str) -> tuple[Any, Any]:
+        x, y = SPEEDS[speed]
+        return self[x], self[y]
+
+    def along_and_across(self, direction: str) -> tuple[Any, Any]:
+        """The components along and across the course given, or of the push from the PDOF given; the
+        second is 0 where the velocity, or the impulse, runs along it."""
+        (x, y), (cosine, sine) = self._vector(direction), self._given(direction)
+        return x * cosine + y * sine, y * cosine - x * sine
+
+    def _vector(self, direction: str) -> tuple[Any, Any]:
+        if direction in COURSES:
+            return self._components(COURSES[direction])
+        pn, pt, _ = self.impulse
+        sign = 1.0 if direction == "PDOFA" else -1.0
+        cosine, sine = self.here.cosine, self.here.sine
+        return sign * (pn * cosine - pt * sine), sign * (pn * sine + pt * cosine)
+
+    def _given(self, direction: str) -> tuple[Any, Any]:
+        value = self.values[direction]
+        if direction in FORCES:
+            vehicle = FORCES[direction]
+            value = facing(vehicle, self.values["T" + vehicle]) + 180 - value
+        return _unit(value)
+
+    def _pdof(self, name: str) -> Any:
+        """Above -180 and up to 180; NaN without impulse."""
+        vehicle, (x, y) = FORCES[name], self._vector(name)
+        clockwise = facing(vehicle, self.values["T" + vehicle]) + 180 - course(x, y)
+        turned = clockwise - 360 * np.ceil((np.real(clockwise) - 180) / 360)
+        return np.where((x == 0) & (y == 0), np.nan, turned)
+
+    # -- quantities
+
+    def quotient(self, coefficient: str) -> tuple[Any, Any]:
+        """What E, MUP or EM is, above and below the line: where the second is 0 it has no value."""
+        pn, pt, moment = self.impulse
+        if coefficient == "E":
+            return -self.relative_after[0], self.relative_before[0]
+        if coefficient == "MUP":
+            return pt, pn
+        spin = self.relative_after[2]
+        return spin, spin + moment * self.here.inverse_spin_inertia
+
+    def crush_energy(self, vehicle: str) -> Any:
+        """The energy lost in a vehicle as ELA or ELB, or EBSA or EBSB, is known."""
+        speed = self.values.get("EBS" + vehicle)
+        if speed is None:
+            return self.values["EL" + vehicle]
+        return 0.5 * self.values["M" + vehicle] * speed * speed
+
+    def contact_velocities(self) -> dict[str, Any]:
+        """XA YA XB YB of the contact points, and XAF ... YBF (listing lines 340, 700 and 710)."""
+        velocities, here = {}, self.here
+        arms = (("A", 0, here.d3, -here.d4), ("B", 3, -here.d1, here.d2))
+        for suffix, six in (("", self.before), ("F", self.after)):
+            for vehicle, first, arm_x, arm_y in arms:
+                x, y, spin = six[first : first + 3]
+                spin = np.where(here.point, 0.0, spin)
+                velocities[f"X{vehicle}{suffix}"] = x + arm_x * spin
+                velocities[f"Y{vehicle}{suffix}"] = y + arm_y * spin
+        return velocities
+
+    def change(self, vehicle: str) -> tuple[Any, Any]:
+        """A vehicle's change of velocity, along x and y."""
+        x, y = self.changes[:2] if vehicle == "A" else self.changes[3:5]
+        return x, y
+
+    def _change(self, name: str) -> Any:
+        """A vehicle's change of velocity: its size, or along its length, forward (F), or across, to
+        its right (R)."""
+        vehicle, part = name[2], name[3:]
+        x, y = self.change(vehicle)
+        if not part:
+            return _size(x, y)
+        cosine, sine = _unit(facing(vehicle, self.values["T" + vehicle]))
+        return x * cosine + y * sine if part == "F" else x * sine - y * cosine
+
+    def _energy(self, velocities: list[Any]) -> Any:
+        inertias = [
+            np.where(np.isinf(np.real(self.values[n])), 0, self.values[n])
+            for n in ("MA", "MB", "IA", "IB")
+        ]
+        six = list(velocities)
+        six[2], six[5] = (np.where(self.here.point, 0.0, six[i]) for i in (2, 5))
+        return kinetic_energy(inertias, six)
+
+    @cached_property
+    def initial_energy(self) -> Any:
+        return self._energy(self.before)
+
+    @cached_property
+    def energy_lost(self) -> Any:
+        """The work of the impulse at the mean relative velocities, negated: no digits are lost as
+        in the difference of two energies."""
+        parts = zip(self.impulse, self.relative_before, self.relative_after, strict=True)
+        return -0.5 * sum(part * (early + late) for part, early, late in parts)
+
+
+def _size(x: Any, y: Any) -> Any:
+    return np.sqrt(x * x + y * y)
+
+
+def _unit(degrees: Any) -> tuple[Any, Any]:
+    sine, cosine = _of_number(degrees) if isinstance(degrees, float) else sin_cos(degrees)
+    return cosine, sine
+
+
+_of_number = lru_cache(maxsize=64)(sin_cos)
+"""What is known exactly is asked for again and again."""
+
+
+def course(x: Any, y: Any) -> Any:
+    """The direction of (x, y) in degrees; the imaginary part is its derivative's."""
+    real = np.degrees(np.arctan2(np.real(y), np.real(x)))
+    if not (np.iscomplexobj(x) or np.iscomplexobj(y)):
+        return real
+    square = np.square(np.real(x)) + np.square(np.real(y))
+    turn = (np.real(x) * np.imag(y) - np.real(y) * np.imag(x)) / square
+    return real + 1j * np.degrees(turn)

@@ -1,0 +1,67 @@
+"""What is said of an argument of another kind than a public function takes.
+
+Public functions read what they are given without asking first what it is, so that a good call pays
+nothing. Where one then fails, its arguments are held against its annotations: an argument that does
+not fit them is a UserError that names it; where all fit, the error is a bug and stays as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+
+from ..errors import UserError
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeVar
+
+    Function = TypeVar("Function", bound=Callable[..., Any])
+
+FAILURES = (TypeError, ValueError, AttributeError, LookupError, ArithmeticError)
+"""What Python and numpy raise for a value of another kind."""
+
+
+def explains_arguments(function: Function) -> Function:
+    """Return ``function`` with a UserError for an argument that its annotations exclude.
+
+    Parameters
+    ----------
+    function : callable
+        A function or method with annotations. One that cannot be resolved (a type that only a
+        type checker imports) admits anything.
+
+    Returns
+    -------
+    callable
+        Calls ``function``; where that fails and an argument does not fit its annotation, raises
+        UserError naming function and argument.
+
+    Examples
+    --------
+    >>> from impact88.messages.arguments import explains_arguments
+    >>> @explains_arguments
+    ... def half(number: float) -> float:
+    ...     return number / 2
+    >>> half(3)
+    1.5
+    >>> half("3")
+    Traceback (most recent call last):
+    ...
+    impact88.errors.UserError: half: number is '3'; expected a number
+    """
+
+    @wraps(function)
+    def call(*args: Any, **keywords: Any) -> Any:
+        try:
+            return function(*args, **keywords)
+        except UserError:
+            raise
+        except FAILURES as error:
+            from .argumentkinds import misfit  # inspect and typing take 10 ms to import
+
+            if (reason := misfit(function, args, keywords)) is None:
+                raise
+            raise UserError(reason, function.__name__) from error
+
+    return call  # type: ignore[return-value]

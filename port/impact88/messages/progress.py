@@ -1,0 +1,62 @@
+"""Progress of long work, on a terminal only: tqdm's bar if installed (extra ``progress``), else one
+line that is written over."""
+
+import math
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
+
+from ..errors import note
+
+SECONDS_BETWEEN_LINES = 2.0
+"""In a log: thirty lines a minute at most."""
+
+
+class _Lines:
+    """Progress on stderr: on a terminal a line that is written over; elsewhere nothing, or plain
+    lines now and then, for a log."""
+
+    def __init__(self, total: int | None, what: str, terminal: bool, lines: bool) -> None:
+        self.total, self.what, self.done = total, what, 0
+        self._terminal, self._width = terminal, 0
+        self._wait = 0.1 if terminal else SECONDS_BETWEEN_LINES if lines else math.inf
+        self._last = 0.0 if terminal else time.monotonic()
+
+    def update(self, n: int) -> None:
+        self.done += n
+        now = time.monotonic()
+        if now - self._last < self._wait:
+            return
+        self._last = now
+        if not self._terminal:
+            note(None, f"{self.what}: {self.done:,} of {self.total:,}")
+            return
+        share = f"{min(100, 100 * self.done // self.total)} %" if self.total else f"{self.done:,}"
+        text = f"{self.what}: {share}"
+        print(f"\r{text.ljust(self._width)}", end="", file=sys.stderr, flush=True)
+        self._width = len(text)
+
+    def close(self) -> None:
+        if self._width:
+            print(f"\r{' ' * self._width}\r", end="", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def progress(total: int | None, what: str, unit: str = "", lines: bool = False) -> Iterator[Any]:
+    """A meter for work of ``total`` units (None: unknown), whose ``update(n)`` says that ``n`` more
+    are done. Where stderr is not a terminal it is silent, or writes plain ``lines``."""
+    terminal = sys.stderr.isatty()
+    meter: Any = _Lines(total, what, terminal, lines)
+    if terminal:
+        with suppress(ImportError):
+            from tqdm import tqdm  # type: ignore[import-untyped]
+
+            meter = tqdm(
+                total=total, desc=what, unit=unit, unit_scale=True, leave=False, dynamic_ncols=True
+            )
+    try:
+        yield meter
+    finally:
+        meter.close()

@@ -1,0 +1,1 @@
+"""Is a printout what the program prints: reading, recovering, judging, explaining, reporting."""

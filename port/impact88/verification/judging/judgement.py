@@ -1,0 +1,390 @@
+"""Judging: every number on the paper against the program's page for the recovered scene.
+
+Each number is read exactly, doubtful (look-alikes, illegible or stray glyphs, but what the program
+prints fits them), contradicted (cleanly read, and not what the program prints) or not read. The
+verdict follows from these alone.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from typing import Any, NamedTuple
+
+from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES
+from ..reading.fieldlabels import LabelState
+from ..reading.glyphs import Region
+from ..reading.numerals import Doubt, Match, Spot, compare, cut_as, note_start
+from ..reading.printout import Piece, Printout, Reading, reading_of
+from ..recovery.recovered import Recovered, reply_ways, without_mark
+from ..recovery.slips import Rereading
+from ..recovery.typedtext import stored_and_printed
+
+
+class Verdict(StrEnum):
+    """What a printout is found to be."""
+
+    IDENTICAL = "identical"
+    IDENTICAL_AS_READ = "identical_as_read"
+    DIFFERS = "differs"
+    INCOMPLETE = "incomplete"
+
+
+class Status(StrEnum):
+    """What became of one number."""
+
+    READ = "read"
+    DOUBTFUL = "doubtful"
+    CONTRADICTED = "contradicted"
+    NOT_READ = "not read"
+    NOT_COMPARED = "not compared"
+
+
+class Doubtful(NamedTuple):
+    """One place where the paper was not read as the program prints it: line and column (from 1),
+    offset in the text, what was read and what the program prints (either may be empty), and how
+    they differ (`numerals.Doubt`)."""
+
+    line: int
+    column: int
+    start: int
+    read: str
+    printed: str
+    how: str
+
+
+@dataclass
+class FieldCheck:
+    """One printed number against the replay.
+
+    ``printed``: what was read; ``recomputed``: what the program prints; ``exact``: what exact
+    arithmetic gives, ``difference``: printed less exact; ``line``, ``column`` (from 1), ``start``,
+    ``stop`` (offsets): its place in the text; ``doubts``: where reading and printout part."""
+
+    name: str
+    printed: str | None
+    recomputed: str | None
+    status: Status = Status.NOT_COMPARED
+    exact: str | None = None
+    difference: str | None = None
+    line: int | None = None
+    column: int | None = None
+    start: int | None = None
+    stop: int | None = None
+    doubts: list[Doubtful] = field(default_factory=list)
+
+    @property
+    def same(self) -> bool | None:
+        """True when read exactly so, False when contradicted, None when doubtful, not read or not
+        to be compared."""
+        return {Status.READ: True, Status.CONTRADICTED: False}.get(self.status)
+
+    @property
+    def mark(self) -> str:
+        """How the number is marked: not at all where it was read exactly."""
+        return {Status.READ: "", Status.CONTRADICTED: "differs"}.get(self.status, self.status)
+
+    def as_json(self) -> dict[str, Any]:
+        """The object `impact88 verify --json` prints for a number."""
+        doubts = [doubt._asdict() for doubt in self.doubts]
+        return {**vars(self), "same": self.same, "status": str(self.status), "doubts": doubts}
+
+    def swapped(self) -> list[tuple[str, str]]:
+        """The digits cleanly read as other digits: (printed by the program, read)."""
+        return [
+            (doubt.printed, doubt.read)
+            for doubt in self.doubts
+            if doubt.how == Doubt.CONTRADICTS and doubt.read.isdigit() and doubt.printed.isdigit()
+        ]
+
+
+@dataclass
+class Judged:
+    """A printout held against the page of the scene that was recovered: every number, the replies,
+    the ending, and the verdict. ``notes``: text typed beside a number that was read exactly."""
+
+    paper: Printout
+    recovered: Recovered
+    fields: list[FieldCheck]
+    replies: list[FieldCheck]
+    ending: FieldCheck
+    verdict: Verdict
+    notes: list[Piece] = field(default_factory=list)
+
+    @property
+    def contradicted(self) -> list[FieldCheck]:
+        """The numbers and the ending that are not what the program prints."""
+        every = [*self.fields, *self.replies, self.ending]
+        return [check for check in every if check.status == Status.CONTRADICTED]
+
+
+def judge(paper: Printout, recovered: Recovered, others: Sequence[FieldCheck] = ()) -> Judged:
+    """The printout, judged. ``others``: replies that were compared elsewhere."""
+    replies = [_reply(paper, recovered, name, reading) for name, reading in paper.replies.items()]
+    checks, notes = _fields(paper, recovered)
+    if all(check.status != Status.CONTRADICTED for check in checks):
+        _doubt_damaged_replies(paper, replies)
+    ending = _ending(paper, recovered)
+    found = Judged(paper, recovered, checks, [*replies, *others], ending, Verdict.IDENTICAL, notes)
+    found.verdict = _verdict(found)
+    return found
+
+
+def _verdict(found: Judged) -> Verdict:
+    paper, missing = found.paper, found.recovered.missing
+    if paper.mislabelled:
+        return Verdict.DIFFERS
+    if found.contradicted:
+        misread = paper.badly_read or (paper.machine_read and missing)
+        return Verdict.INCOMPLETE if misread else Verdict.DIFFERS
+    unread = any(check.status in (Status.NOT_READ, Status.NOT_COMPARED) for check in found.fields)
+    if unread or found.ending.same is None or missing or paper.fragment_of_run or paper.unread:
+        return Verdict.INCOMPLETE
+    doubtful = any(check.status != Status.READ for check in [*found.fields, *found.replies])
+    beside = any(piece.beside for piece in paper.left_over) or bool(found.notes or paper.remarks)
+    if doubtful or beside or any(label.doubt for label in paper.labels):
+        return Verdict.IDENTICAL_AS_READ
+    return Verdict.IDENTICAL
+
+
+# --- numbers -------------------------------------------------------------------------------------
+
+
+def _fields(paper: Printout, recovered: Recovered) -> tuple[list[FieldCheck], list[Piece]]:
+    """Every field that is printed or should be, in the order of the printout; and the notes typed
+    beside numbers that were read."""
+    checks, notes = [], []
+    row = _angle_row(paper, recovered)
+    for name in FIELDS:
+        text = recovered.outcome.fields.get(name)
+        reading = reading_of(paper.page, row[name]) if name in row else paper.fields.get(name)
+        if reading is None and text is None:
+            expected = recovered.missing and not paper.ending
+            if not expected or (name in FINAL_SPINS and recovered.scene["M"] != "6"):
+                continue
+        check = _check(name, reading, text)
+        if reading is None:
+            check.status = Status.NOT_READ
+        elif text is not None:
+            noted = note_start(reading.region)
+            if noted < len(reading.region) and reading.region[:noted]:
+                own = compare(reading.region[:noted], text)
+                if not own.contradicts:
+                    notes.append(_note(paper, reading.region[noted:]))
+                    check.stop = reading.region[noted - 1].offset + 1
+                    reading = replace(reading, region=reading.region[:noted], stop=check.stop)
+            match = compare(reading.region, text, reading.cut, reading.sign_free)
+            if name in row and name != ANGLES[0] and not reading.region[0].gap:
+                match = match._replace(spots=(Spot(0, "", "", Doubt.BLANK), *match.spots))
+            check.status = _status(match, reading.region, text)
+            check.doubts = _doubts(paper, reading, match.spots)
+            if check.status is Status.READ:
+                check.printed = text
+            elif check.printed == text or (
+                check.status is Status.CONTRADICTED and not reading.clean
+            ):
+                check.printed = _as_it_stands(paper, reading)
+        elif not recovered.missing:
+            check.status = Status.CONTRADICTED
+        checks.append(check)
+    return checks, notes
+
+
+_SHOWN = 30
+"""Characters of a number's place that are shown."""
+
+
+def _as_it_stands(paper: Printout, reading: Reading) -> str:
+    """Return the text in a number's place, as it stands on the paper."""
+    end = reading.region[-1].offset + 1
+    text = " ".join(paper.page.text[reading.start : end].split())
+    return text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
+
+
+def _note(paper: Printout, region: Region) -> Piece:
+    start, stop = region[0].offset, region[-1].offset + 1
+    text = " ".join(paper.page.text[start:stop].split())
+    return Piece(text, *paper.page.place(start), start, stop, beside=True)
+
+
+def _check(name: str, reading: Reading | None, text: str | None) -> FieldCheck:
+    check = FieldCheck(name, reading.text if reading else None, text)
+    if reading:
+        check.line, check.column = reading.line, reading.column
+        check.start, check.stop = reading.start, reading.stop
+    return check
+
+
+def _status(match: Match, region: Region, text: str) -> Status:
+    """What a number is, by how its glyphs are explained by what the program prints."""
+    if not match.spots:
+        return Status.READ
+    if any(spot.doubt is Doubt.CUT for spot in match.spots) and not match.contradicts:
+        return Status.NOT_READ
+    foreign = any(not glyph.char.isdigit() and glyph.char not in "-.+" for glyph in region)
+    if (foreign or not match.contradicts) and _hardly_read(match, text):
+        return Status.NOT_READ
+    return Status.CONTRADICTED if match.contradicts else Status.DOUBTFUL
+
+
+def _hardly_read(match: Match, text: str) -> bool:
+    if any(spot.doubt is Doubt.RETYPED for spot in match.spots):
+        return False
+    alike = sum(spot.doubt in (Doubt.LOOK_ALIKE, Doubt.BLANK) for spot in match.spots)
+    if not match.exact and not alike:
+        return True
+    return len(text) > 2 and 2 * match.exact + alike < len(text)
+
+
+def _angle_row(paper: Printout, recovered: Recovered) -> dict[str, Region]:
+    """Where the angles stand in a row that blanks alone do not cut; none where it is plain."""
+    texts = tuple(recovered.outcome.fields.get(name, "") for name in ANGLES)
+    cuts = cut_as(paper.angle_row, texts) if paper.angle_row and all(texts) else ()
+    pairs = zip(ANGLES, cuts, strict=bool(cuts))
+    return {name: paper.angle_row[start:stop] for name, (start, stop) in pairs}
+
+
+def _doubts(paper: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Doubtful]:
+    starts = [*(glyph.offset for glyph in reading.region), reading.stop]
+    return [
+        Doubtful(*paper.page.place(starts[spot.at]), starts[spot.at], *spot[1:3], str(spot.doubt))
+        for spot in spots
+    ]
+
+
+# --- replies, and the ending ---------------------------------------------------------------------
+
+
+def _reply(paper: Printout, recovered: Recovered, name: str, reading: Reading) -> FieldCheck:
+    """A reply shown at a prompt against the velocity of the scene, as a number; laid beside its
+    text as typed or as printed, with or without its first glyph, whichever explains it best."""
+    value = recovered.typed.get(name, recovered.scene[name])
+    if name in recovered.missing:
+        return _check(name, reading, None)
+    check = _check(name, reading, value)
+    if reading.clean and same_value(reading.text, value):
+        check.status = Status.READ
+        return check
+    seen = stored_and_printed(value)
+    texts = sorted({value, seen[1]} if seen else {value})
+    parts = filter(None, (reading, without_mark(reading)))
+    matches = [(part, compare(part.region, text)) for part in parts for text in texts]
+    part, match = min(matches, key=lambda pair: pair[1].cost)
+    check.status, how = Status.NOT_READ, Doubt.ILLEGIBLE
+    if any(same_value(text, value) for text, _, _ in reply_ways(reading)):
+        check.status, how = Status.DOUBTFUL, Doubt.LOOK_ALIKE
+    elif reading.clean or (match.contradicts and not _hardly_read(match, value)):
+        check.status, check.doubts = Status.CONTRADICTED, _doubts(paper, part, match.spots)
+        return check
+    place = reading.line, reading.column, reading.start
+    shown = reading.text if reading.text != value else _as_it_stands(paper, reading)
+    check.doubts = [Doubtful(*place, shown, value, str(how))]
+    return check
+
+
+def _doubt_damaged_replies(paper: Printout, replies: Sequence[FieldCheck]) -> None:
+    """Doubt the replies at a prompt that was itself misread, its letters or its question mark,
+    where every printed number is the program's: the reader damaged that line."""
+    misread = {label.name for label in paper.labels if label.state is LabelState.DAMAGED}
+    by_name = {check.name: check for check in replies}
+    for side, names in REPLIES.items():
+        own = [by_name[name] for name in names if name in by_name]
+        mark = own and own[0].name == names[0] and own[0].status is Status.DOUBTFUL
+        mark = mark or names[0] in paper.misread_prompts
+        for check in own if mark or f"REPLY_{side}" in misread else ():
+            if check.status is Status.CONTRADICTED:
+                check.status = Status.DOUBTFUL
+                place = check.line or 0, check.column or 0, check.start or 0
+                read, printed = check.printed or "", check.recomputed or ""
+                check.doubts = [Doubtful(*place, read, printed, str(Doubt.LOOK_ALIKE))]
+
+
+def same_value(text: str, other: str) -> bool:
+    """Whether two typed texts are the same real."""
+    seen, expected = stored_and_printed(text), stored_and_printed(other)
+    return seen is not None and expected is not None and seen[0] == expected[0]
+
+
+def _ending(paper: Printout, recovered: Recovered) -> FieldCheck:
+    """How the printout ends against how the replay does; one that is cut off shows no message."""
+    recomputed = recovered.outcome.ending
+    unsure = recovered.missing or paper.ending is None
+    status = Status.NOT_COMPARED if unsure else Status.CONTRADICTED
+    status = Status.READ if paper.ending == recomputed else status
+    return FieldCheck("ENDING", paper.ending, recomputed, status)
+
+
+# --- looking past a reader's mistakes ------------------------------------------------------------
+
+_AS_WELL = 1.0
+"""Scenes that cost so little more than the best explain the page as well; doubled or halved, of 95
+readings that differ none is settled otherwise."""
+_LOST_AND_ADDED = 3
+"""So many numbers with a glyph lost or added may be put down to a reader; doubled, 1 of 95 more is
+settled, and with one 1 of 10 less."""
+
+
+def looked_past(found: Judged, rereading: Rereading) -> Judged | None:
+    """The printout judged with its reader's slips put right; None where they are not its alone.
+
+    Scenes with slips put right are judged as if they were the printout's own; what is still wrong
+    must be the reader's. Of 110 readings of genuine pages 6 are settled so.
+    The scene that explains most decides, and every other that explains the page as well must
+    bear it out: a digit altered in one angle can be made good by a sign of the angle beside it.
+    """
+    paper, recovered = found.paper, found.recovered
+    no_reader = not paper.machine_read or paper.fragment_of_run or paper.ending or paper.unread
+    if no_reader or recovered.missing:
+        return None
+    apart = set(recovered.apart)
+    tried = [r for r in rereading.best() if apart.isdisjoint(change.field for change in r.changes)]
+    runs = [reread.scored for reread in tried]
+    runs.append(recovered.search.replayed_scene(recovered.scene, recovered.assumed))
+    runs.sort(key=lambda run: run.cost)
+    best = None
+    for run in runs:
+        if run.cost <= runs[0].cost + _AS_WELL:
+            scene = replace(recovered, scene=run.scene, assumed=run.assumed, outcome=run.outcome)
+            judged = judge(paper, scene)
+            if not settled(judged.fields, judged.replies):
+                return None
+            best = best or judged
+    assert best is not None
+    for check in [*best.fields, *best.replies]:
+        if check.status == Status.CONTRADICTED:
+            check.status = Status.DOUBTFUL
+    best.verdict = Verdict.IDENTICAL_AS_READ
+    return best
+
+
+def settled(checks: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> bool:
+    """Whether all that a machine-read page contradicts is its reader's doing.
+
+    A reader loses and adds signs and points, and a digit of a number here and there, and where it
+    takes one digit for another it does so in more places than one. A digit altered on the paper
+    stands alone: a digit cleanly read as another is not looked past unless the page shows the
+    same mistake again.
+    """
+    every = [*checks, *replies]
+    if any(check.status in (Status.NOT_READ, Status.NOT_COMPARED) for check in checks):
+        return False
+    wrong = [check for check in every if check.status == Status.CONTRADICTED]
+    swapped = Counter(pair for check in every for pair in check.swapped())
+    return (
+        1 not in swapped.values()
+        and all(_digits_lost_or_added(check) <= 1 for check in wrong)
+        and sum(not check.swapped() for check in wrong) <= _LOST_AND_ADDED
+    )
+
+
+def _digits_lost_or_added(check: FieldCheck) -> int:
+    """How many digits of a number were not read, or read where none is printed; all that is lost
+    behind a point is lost in one piece, for the program ends no number so."""
+    wrong = [doubt for doubt in check.doubts if doubt.how == Doubt.CONTRADICTS]
+    if check.printed and check.printed.endswith(".") and not any(doubt.read for doubt in wrong):
+        return 1
+    return sum(
+        (doubt.read + doubt.printed).isdigit()
+        for doubt in wrong
+        if not (doubt.read and doubt.printed)
+    )

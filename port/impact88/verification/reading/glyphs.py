@@ -1,0 +1,185 @@
+"""Glyphs: what typists and optical readers put where the printer struck a digit or a sign.
+
+A page is a row of glyphs, blanks and control characters left out, each with the kind of gap before
+it and the place where it stood. Capitals and small letters, the many minus signs and the full-width
+forms are one glyph each; a soft hyphen, a superscript or a stroke through a digit stay what they
+are, for they mean something else.
+"""
+
+import re
+import unicodedata
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator
+from enum import IntEnum
+from functools import lru_cache
+from itertools import pairwise, repeat
+from math import log10
+from typing import NamedTuple
+
+from ...files import packaged_text
+
+ILLEGIBLE = "?"
+"""Stands for a character that cannot be read."""
+
+_GLYPHS = {
+    **dict.fromkeys("−‐‑‒–—―﹣⁻", "-"),
+    **dict.fromkeys("﹦≡", "="),
+    **dict.fromkeys("∗✱⁎", "*"),
+    **dict.fromkeys("μµ", "M"),
+}
+
+NUMERIC = frozenset("0123456789.-+E")
+"""The glyphs numbers are made of."""
+
+
+class Gap(IntEnum):
+    """What stands before a glyph; the break of a full line parts nothing."""
+
+    NONE = 0
+    BLANK = 1
+    WIDE = 2
+    LINE = 3
+
+
+class Glyph(NamedTuple):
+    """One glyph: the character it is taken for, the gap before it, and its offset in the text."""
+
+    char: str
+    gap: Gap
+    offset: int
+
+
+Region = tuple[Glyph, ...]
+
+
+class Page:
+    """A text as glyphs. ``text``: the original; ``glyphs``: its glyphs in order, ``lines``: those
+    of each line; ``width``: where lines were broken or cut off, 0 where they were not."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self._lines = [0, *(match.end() for match in re.finditer("\n", text))]
+        # a screen that wraps fills its lines (40 columns as a rule), several to one length
+        lengths = [len(line.rstrip("\r")) for line in text.split("\n")]
+        full = 0 < max(lengths) <= 80 and lengths.count(max(lengths)) >= 3
+        self.width = max(lengths) if full else 0
+        self.glyphs = tuple(self._read())
+        starts = [at for at, glyph in enumerate(self.glyphs) if glyph.gap is Gap.LINE or not at]
+        self.lines = [range(*ends) for ends in pairwise([*starts, len(self.glyphs)])]
+
+    def _read(self) -> Iterator[Glyph]:
+        last = 0  # where the glyph before ended
+        for word in re.finditer(r"\S+", self.text):
+            start, text = word.start(), word.group()
+            if text.isascii() and text.isprintable():
+                yield Glyph(text[0].upper(), self._gap(last, start), start)
+                last = word.end()
+                yield from map(Glyph, text[1:].upper(), repeat(Gap.NONE), range(start + 1, last))
+                continue
+            for offset, character in enumerate(text, start):
+                for plain in plain_glyphs(character):
+                    yield Glyph(plain, self._gap(last, offset), offset)
+                    last = offset + 1
+
+    def _gap(self, last: int, offset: int) -> Gap:
+        """What lies between where a glyph ended and where the next begins."""
+        between = self.text[last:offset]
+        if "\n" in between or not last:
+            full = between == "\n" and self.place(last)[1] == self.width + 1
+            return Gap.NONE if full else Gap.LINE
+        blanks = sum(map(str.isspace, between))
+        return Gap.WIDE if blanks > 1 or "\t" in between else Gap.BLANK if blanks else Gap.NONE
+
+    def place(self, offset: int) -> tuple[int, int]:
+        """Line and column, counted from 1, of an offset in the text."""
+        line = bisect_right(self._lines, offset)
+        return line, offset - self._lines[line - 1] + 1
+
+    def span(self, start: int, stop: int) -> tuple[int, int]:
+        """Offsets of the text from glyph ``start`` up to before glyph ``stop``, without the blanks
+        after it."""
+        return self.glyphs[start].offset, self.glyphs[stop - 1].offset + 1
+
+    def shown(self, start: int, stop: int) -> str:
+        """The text from glyph ``start`` up to before glyph ``stop``, blanks as one."""
+        return " ".join(self.text[slice(*self.span(start, stop))].split())
+
+
+@lru_cache(maxsize=4096)
+def plain_glyphs(character: str) -> str:
+    """The glyphs of one character: none for what does not show, else capitals."""
+    if " " < character < "\x7f":
+        return character.upper()
+    plain = _GLYPHS.get(character)
+    if plain is None and character != "\u00ad":
+        if unicodedata.category(character) in ("Cf", "Cc"):
+            return ""
+        if "\uff01" <= character <= "\uff5e":
+            return chr(ord(character) - 0xFEE0).upper()
+    upper = plain or character.upper()
+    return upper if len(upper) == 1 else character
+
+
+def letters(region: Iterable[Glyph]) -> str:
+    """The glyphs as one string."""
+    return "".join(glyph.char for glyph in region)
+
+
+_CHANNEL: dict[str, list[list[str]]] = {}
+"""The rows of `channel.txt`, by section."""
+for _line in packaged_text(__package__, "channel.txt").splitlines():
+    if _line.startswith("["):
+        _rows = _CHANNEL.setdefault(_line.strip("[]"), [])
+    elif _line and not _line.startswith("# "):
+        _rows.append(_line.split())
+COSTS = {" ".join(name): int(cost) for *name, cost in _CHANNEL["costs"]}
+"""What departures from the page cost, in hundredths of one wrong letter."""
+GAP_COSTS = {name: [int(cost) for cost in costs] for name, *costs in _CHANNEL["gaps"]}
+"""What a glyph costs by the gap before it."""
+_TYPED = 8  # readings that a shape counts for; doubled, 4 of 47 texts are weighed otherwise
+
+
+def _counted(kind: str) -> dict[str, tuple[int, dict[str, int]]]:
+    """By printed glyph: how often it was printed, and how often it was read as what."""
+    counts = {}
+    for printed, total, *readings in _CHANNEL[f"{kind}s"]:
+        counts[printed] = (int(total), {reading[0]: int(reading[1:]) for reading in readings})
+    for printed, *shapes in _CHANNEL[f"{kind} shapes"]:
+        seen = counts[printed][1]
+        seen.update({read: seen.get(read, 0) + _TYPED for read in "".join(shapes)})
+    return counts
+
+
+_OF_NUMBERS, _OF_LABELS = _counted("number"), _counted("label")
+
+
+@lru_cache(maxsize=8192)
+def label_cost(printed: str, read: str) -> int:
+    """The cost of reading a glyph of a label, an asterisk or a prompt as another."""
+    if printed == read:
+        return 0
+    total, seen = _OF_LABELS.get(printed, (1, {}))
+    cost = COSTS["unseen"]
+    if read in seen:
+        cost = round(-25 * log10(seen[read] / total))
+    if printed == "=" and read in "-~_":  # rather the number's
+        return COSTS["dash for ="]
+    if printed == "*" and not read.isdigit():
+        return min(cost, COSTS["any for *"])
+    if not read.isdigit() or (read in seen and printed != "="):
+        return cost
+    return cost + COSTS["figure for =" if printed == "=" else "figure unseen"]
+
+
+@lru_cache(maxsize=1024)
+def printed_for(read: str) -> dict[str, float]:
+    """What a glyph that stands in no number was read for, with what each costs, likeliest first."""
+    every = _OF_NUMBERS.items()
+    shares = {printed: seen[read] / total for printed, (total, seen) in every if read in seen}
+    best = max(shares.values(), default=0.0)
+    likely = sorted(shares.items(), key=lambda item: -item[1])
+    return {
+        printed: COSTS["look-alike"] / 100 + log10(best / share) / 4
+        for printed, share in likely
+        if share >= best / 5
+    }

@@ -1,0 +1,326 @@
+"""What people type, paste and save: encodings, markup, and words with places, made plain text.
+
+Markup is blanked out, never shortened, so that every character keeps its line and column. Words
+with their places, as optical readers save them (hOCR, ALTO, TSV), are laid out: those whose middles
+are level stand on one line, and a gap between two becomes as many blanks as it is wide, in widths
+of the page's own letters; line and column then count in that text.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+from ...errors import UserError
+
+_PICTURE = "is a picture; expected text: tesseract FILE out --psm 6 makes it"
+_NO_TEXT = {
+    b"%PDF": "is a PDF; expected text: pdftotext -layout FILE.pdf makes it, or, of a scan, "
+    "ocrmypdf --sidecar FILE.txt",
+    **dict.fromkeys((b"\x89PNG", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"GIF8"), _PICTURE),
+    b"PK\x03\x04": "is a Word or other packed file; expected text: save it as plain text, or "
+    "pandoc -t plain FILE",
+    b"\xd0\xcf\x11\xe0": "is a Word file; expected text: save it as plain text, or antiword FILE",
+    b"\x1f\x8b": "is packed; expected text: gunzip FILE",
+}
+"""First bytes of files that are not text, and what makes text of them."""
+
+_MARKS = ("MA=", "MB=", "KE=", "VAX", "UX=", "ENTER", "LOSS", "PA PB", "ZERO DET", "MA ")
+
+
+def decoded(data: bytes, where: str) -> str:
+    """The text of a file, by the encoding that makes sense of it. Raises UserError for no text."""
+    for start, message in _NO_TEXT.items():
+        if data.startswith(start):
+            raise UserError(message, where)
+    text = _decoded(data)
+    odd = sum(char < " " and char not in "\t\n\r\f\a\b\0\x04\x1b" for char in text)
+    if odd > 4 + len(text) / 50:
+        raise UserError("is not UTF-8 text, nor any other this reads; expected plain text", where)
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _decoded(data: bytes) -> str:
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return data.decode("utf-16", "replace")
+    # UTF-16 whose byte-order mark was lost: every other byte of such a text is zero
+    for encoding, zeros in (("utf-16-le", data[1::2]), ("utf-16-be", data[0::2])):
+        if len(data) > 8 and zeros.count(0) > 0.9 * len(zeros):
+            return data.decode(encoding, "replace")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        ways = [data.decode(name, "replace") for name in ("cp1252", "mac_roman", "latin-1")]
+        # a mainframe's, and an Apple II's with its high bits set
+        ways.append(data.decode("cp037").replace("\x85", "\n"))
+        ways.append(bytes(byte & 0x7F for byte in data).decode("ascii"))
+        return max(ways, key=_sense)
+
+
+def _sense(text: str) -> tuple[int, int]:
+    """How many marks of a printout are in a text, and dashes right before numbers."""
+    dashes = len(re.findall(r"[–—−\u00ad-]\s?[.0-9]", text))
+    return sum(mark in text.upper() for mark in _MARKS), dashes - 5 * text.count("�")
+
+
+_ELEMENTS = (
+    "a|abbr|address|article|b|big|blockquote|body|br|caption|center|cite|code|col|colgroup|dd|div|"
+    "dl|dt|em|font|footer|form|h[1-6]|head|header|hr|html|i|img|kbd|li|link|main|meta|nav|ol|p|"
+    "pre|s|samp|section|small|span|strike|strong|style|sub|sup|table|tbody|td|tfoot|th|thead|"
+    "title|tr|tt|u|ul|var|[a-z]{1,3}:[a-z]+"
+)
+"""Elements of HTML; what else stands in angle brackets was typed."""
+_MARKUP = re.compile(
+    rf"""(?mx) ^(?:\s*>)+                                   # quotes of a mail
+    | <(?:/?(?i:{_ELEMENTS})(?![\w:])[^<>\n]{{0,80}}|!--.*?--|[!?][a-zA-Z][^<>\n]{{0,80}})>
+    | ^[ \t]*(?:```|~~~).*$                                # fences of Markdown, its list marks
+    | ^[ \t]*[•*‣◦][ \t]+(?=[-A-Za-z(.0-9])
+    | ^[ \t]*[0-9]{{1,5}}[ ]+(?:                           # lines of a BASIC program
+      (?:REM|PRINT|INPUT|IF|GOTO|GOSUB|FOR|NEXT|DIM|END|RETURN|DATA|ON)\b
+      |[A-Z][A-Z0-9]*[$%]?(?:\([^)\n]*\))?[ ]?=[^=\n]*:).*$"""
+)
+_DASHED_ITEM = re.compile(r"(?m)^[ \t]*[-+][ \t]+(?=[-A-Za-z(])")
+"""An item of a list; a dash before a line by itself may be a minus."""
+_RTF = re.compile(r"\\[a-z]+-?[0-9]* ?|[{}]")
+_ENTITY = re.compile(r"&(?:#[0-9]{1,6}|#[xX][0-9a-fA-F]{1,6}|[a-zA-Z]{2,8});")
+_ROW_OF_TABLE = re.compile(r"(?m)^\s*\|.*\|\s*$")
+_NUMBERED = re.compile(r"(?m)^[ \t]*[\[(]?([0-9]{1,5})[\])]?[:.|]?(?=[ \t]|$)")
+_SMALL = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−–", "0123456789---")
+_POWER = re.compile(
+    r"(?<=[0-9])[ ]?[×xX·*][ ]?10(?:\^[{(]?([-−–]?[0-9])[)}]?|([-⁻−–][0-9]|[⁻−–]?[⁰¹²³⁴⁵⁶⁷⁸⁹]))"
+    r"(?![0-9⁰¹²³⁴⁵⁶⁷⁸⁹.])"
+)
+"""A power of ten written out."""
+_ROW = re.compile(
+    r"""(?mx) ^[ \t]* (?P<quote>["']?) (?P<name>[A-Za-z]{1,9}(?:[ ][A-Za-z]{2,4})?)
+    (?P=quote) [ \t]* [,;\t] [ \t]*
+    (?P<other>["']?) (?P<number>[-+−–.,0-9Ee]+) (?P=other) [ \t]*$"""
+)
+"""A row of a table of two columns: a name, a comma, semicolon or tabulator, and a number."""
+_HEADING = re.compile(
+    r"""(?m)^[ \t]*["']?[A-Za-z]+["']?[ \t]*[,;\t][ \t]*["']?[A-Za-z]+["']?[ \t]*$"""
+)
+_GROUPED = re.compile(r"(?<![0-9.,])[0-9]{1,3}(?:[.][0-9]{3})+(?=,[0-9]|(?![0-9.,]))")
+_LINES = 6
+"""So many lines, and all of them, numbered upward: an editor or a listing did it; so many rows of
+names and numbers are a table."""
+
+
+def unwrapped(text: str) -> str:
+    """A text with markup blanked out: e-mail quotes, HTML, RTF, TeX, Markdown, line numbers, the
+    separators of tables. Of equal length."""
+    text = text.replace("\r\n", " \n").replace("\r", "\n")
+    lines = [line for line in text.split("\n") if line.strip()]
+    if len(lines) >= _LINES and all(map(_NUMBERED.match, lines)):
+        numbers = [int(number) for number in _NUMBERED.findall(text)]
+        if all(before < after for before, after in pairwise(numbers)):
+            text = _NUMBERED.sub(_blank, text)
+    if text.lstrip().startswith("{\\rtf"):
+        text = _RTF.sub(_blank, text)
+    if len(_DASHED_ITEM.findall(text)) >= _LINES:
+        text = _DASHED_ITEM.sub(_blank, text)
+    text = _ENTITY.sub(_entity, _MARKUP.sub(_blank, text))
+    text = re.sub(r"\$(-|−)\$", r"  \1", text)
+    text = re.sub(r"(?<=[VW])_\{?|(?<=[VW]_\{[abxy])\}|(?<=[VW]_\{[ab][xy])\}", _blank, text)
+    if len(_ROW_OF_TABLE.findall(text)) >= 3:
+        text = re.sub(r"(?m)^\s*\|[-:| \t]+\|\s*$", _blank, text)
+        text = _ROW_OF_TABLE.sub(lambda row: row.group().replace("|", " "), text)
+    if len(_ROW.findall(text)) >= _LINES:
+        text = _ROW.sub(_row_parted, _HEADING.sub(_blank, text))
+    return _POWER.sub(_exponent, _groups_joined(text))
+
+
+def _median(values: Sequence[float]) -> float:
+    """Return the median; that of `statistics` takes 5 ms to import."""
+    ordered, middle = sorted(values), len(values) // 2
+    return ordered[middle] if len(values) % 2 else (ordered[middle - 1] + ordered[middle]) / 2
+
+
+def _blank(match: re.Match[str]) -> str:
+    return re.sub(r"[^\n]", " ", match.group())
+
+
+def _entity(match: re.Match[str]) -> str:
+    from html import unescape
+
+    character = unescape(match.group())
+    return character.rjust(len(match.group())) if len(character) == 1 else match.group()
+
+
+def _row_parted(row: re.Match[str]) -> str:
+    name = row.group()[: row.start("number") - row.start()]
+    return re.sub(r"""["';,\t]""", " ", name) + row["number"].ljust(len(row.group()) - len(name))
+
+
+def _exponent(match: re.Match[str]) -> str:
+    """An exponent of one digit: so the program never prints it, and the verdict tells."""
+    power = (match.group(1) or match.group(2)).translate(_SMALL)
+    return f"E{power if power.startswith('-') else '+' + power}".ljust(len(match.group()))
+
+
+def _groups_joined(text: str) -> str:
+    """The points that part thousands where commas part decimals (``100.904,929``) as blanks. Only a
+    labelled number says so: replies at a prompt are parted by commas (``-86.903,0,0``)."""
+    grouped = len(_GROUPED.findall(text))
+    points = len(re.findall(r"[0-9][.][0-9]|(?<![0-9])[.][0-9]", text))
+    both = re.search(r"[=:]\s*-?[0-9]{1,3}(?:[.][0-9]{3})+,[0-9]", text)
+    if not both or grouped < points - grouped:
+        return text
+    return _GROUPED.sub(lambda number: number.group().replace(".", "\u2009"), text)
+
+
+_FIRST_WORDS = re.compile(
+    r"(?i)(?<![A-Za-z])(?:ENTER +THE|MA *=|DA *=|PA\s+PB\s+TA|UX *=|VX *=|E *=|INITIAL +KE|"
+    r"VAX *=|VBX *=)"
+)
+"""What lines of a printout begin with, each of another line."""
+_SHARED = 4
+"""Kinds of lines that stand in both of two columns, at least."""
+_NARROW = 30
+"""Columns of text that the left one of two takes at least."""
+_GUTTER = 10
+"""Characters by which lines of the right column begin earlier or later than most."""
+_RAGGED = 4
+"""The same of lines without labels."""
+
+
+def columns(text: str) -> list[str]:
+    """Return the texts of printouts that stand side by side, the left one first; a text in one
+    column as it is. Each is the whole text with the other columns blanked out, so that every
+    character keeps its line and column."""
+    lines = text.split("\n")
+    left: list[re.Match[str]] = []
+    right: list[re.Match[str]] = []
+    cuts: list[int | None] = []
+    margin = min((len(line) - len(line.lstrip()) for line in lines if line.strip()), default=0)
+    for line in lines:
+        words = [*_FIRST_WORDS.finditer(line)]
+        first = words[0].start() - margin if words else 0
+        beyond = words if first >= _NARROW else words[1:]
+        left += words[: len(words) - len(beyond)]
+        right += beyond[:1]
+        cuts.append(beyond[0].start() if beyond else None)
+    gutter = round(_median([word.start() for word in right] or [0]))
+    level = sum(abs(word.start() - gutter) <= _GUTTER for word in right)
+    shared = {*map(_plain_word, left)} & {*map(_plain_word, right)}
+    if len(shared) < _SHARED or 4 * level < 3 * len(right):
+        return [text]
+    own, others = [], []
+    for line, cut in zip(lines, cuts, strict=True):
+        at = _gutter_of(line, gutter) if cut is None else cut
+        own.append(line[:at].ljust(len(line)))
+        others.append(" " * len(line[:at]) + line[at:])
+    return ["\n".join(own), *columns("\n".join(others))]
+
+
+def _plain_word(match: re.Match[str]) -> str:
+    return "".join(match.group().upper().split())
+
+
+def _gutter_of(line: str, gutter: int) -> int:
+    """Return where the right column begins in a line without labels: behind the gap that ends
+    nearest to the gutter; the line's length where all of it is the left column's."""
+    gaps = [gap.end() for gap in re.finditer(r"^\s*|\s{2,}|\t", line) if gap.end() < len(line)]
+    nearest = min(gaps, key=lambda end: abs(end - gutter), default=len(line))
+    return nearest if abs(nearest - gutter) <= _RAGGED else len(line)
+
+
+_TAG = re.compile(r"""<([\w:]+)((?:"[^"]*"|'[^']*'|[^"'<>])*)>([^<]*)""")
+_ATTRIBUTE = re.compile(r"""\b([\w:]++)\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s"'>]+))""")
+_BOX = re.compile(r"\bbbox +(-?[0-9]+) +(-?[0-9]+) +(-?[0-9]+) +(-?[0-9]+)")
+_FARTHEST = 1e7  # pixels, or tenths of a millimetre
+_NARROWEST = 0.01  # width of a letter, in the same units
+_PRINTER = 80
+"""Columns of a printer's line: no gap is wider."""
+
+
+class _Word(NamedTuple):
+    """A word and its box; x to the right, y downward."""
+
+    text: str
+    left: float
+    top: float
+    width: float
+    height: float
+
+
+def laid_out(text: str, where: str) -> str:
+    """The text of an hOCR or ALTO document or of tesseract's TSV; any other text as it is. Raises
+    UserError for a document that is damaged or holds no words."""
+    head = text[:4000].lower()
+    table = head.startswith("level\tpage_num\t")
+    if not table and not re.search("<alto|ocr_page|ocrx_word|ocr-system", head):
+        return text
+    pages: dict[str, list[_Word]] = {}
+    try:
+        for page, word, *place in _rows(text) if table else _elements(text):
+            if word.strip():
+                pages.setdefault(page, []).append(_Word(word.strip(), *map(_pixels, place)))
+    except (KeyError, TypeError, ValueError):
+        raise UserError("is damaged: the place of a word is not a number", where) from None
+    if not pages:
+        raise UserError("holds no words with places; expected hOCR, ALTO or TSV of a page", where)
+    return "\n\n".join(map(_lines_of, pages.values()))
+
+
+def _pixels(text: str) -> float:
+    """Return a place as a number. Raises ValueError for one that no page has, nan and inf too."""
+    value = float(text)
+    if not abs(value) < _FARTHEST:
+        raise ValueError(text)
+    return value
+
+
+def _rows(text: str) -> Iterator[list[str]]:
+    """The words of TSV: page, text, left, top, width, height."""
+    import csv  # with its dialects heavier than a page needs
+
+    for row in csv.DictReader(text.splitlines(), delimiter="\t", quoting=csv.QUOTE_NONE):
+        place = [row[name] for name in ("left", "top", "width", "height")]
+        yield [row["page_num"], row["text"] or "", *place]
+
+
+def _elements(text: str) -> Iterator[list[str]]:
+    """The words of hOCR and ALTO, in the same way."""
+    from html import unescape
+
+    page, box = 0, None
+    for name, attributes, after in _TAG.findall(text):
+        given = {
+            key.lower(): unescape("".join(value)) for key, *value in _ATTRIBUTE.findall(attributes)
+        }
+        kind, element = given.get("class", ""), name.lower().rpartition(":")[2]
+        if kind == "ocr_page" or element == "page":
+            page += 1
+        elif kind in ("ocrx_word", "ocr_word"):
+            box = _BOX.search(given.get("title", ""))
+        elif element == "string" and "content" in given:
+            place = [given.get(key, "0") for key in ("hpos", "vpos", "width", "height")]
+            yield [str(page), given["content"], *place]
+        if box and after.strip():
+            left, top, right, bottom = map(int, box.groups())
+            place = [*map(str, (left, top, right - left, bottom - top))]
+            yield [str(page), unescape(after), *place]
+            box = None
+
+
+def _lines_of(words: Sequence[_Word]) -> str:
+    """A page's words in lines: those whose middles are less than half a height apart are level."""
+    lines: list[list[_Word]] = []
+    middle = 0.0
+    for word in sorted(words, key=lambda word: word.top + word.height / 2):
+        before, middle = middle, word.top + word.height / 2
+        if not lines or middle - before >= word.height / 2:
+            lines.append([])
+        lines[-1].append(word)
+    letter = _median([word.width / len(word.text) for word in words])
+    letter = letter if letter > _NARROWEST else 1.0
+    text = ""
+    for line in lines:
+        line.sort(key=lambda word: word.left)
+        text += line[0].text
+        for earlier, word in pairwise(line):
+            gap = round((word.left - earlier.left - earlier.width) / letter)
+            text += " " * min(max(1, gap), _PRINTER) + word.text
+        text += "\n"
+    return text

@@ -1,0 +1,193 @@
+"""Slips: what a printed or typed number may really have been, and which slips in the inputs, put
+right, make the page agree with itself.
+
+One digit taken for another, two adjacent digits swapped, a sign or a decimal point lost, added or
+moved, one digit lost or doubled, two digits of one number. Nothing here is a verdict: `explaining`
+names what is found, and `judging` says when a reader's slips may be looked past.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from itertools import combinations
+from operator import ne
+from typing import NamedTuple
+
+from ...collision.doubles import double
+from ...collision.fields import ANGLES, INPUTS, scene_name
+from ..reading.numerals import is_number, printable
+from .recovered import Recovered
+from .search import Column, Scored, column_of, one_each
+from .typedtext import opposite
+
+DIGIT = "digit misread"
+SWAP = "digits swapped"
+SIGN = "sign misread"
+POINT = "decimal point misread"
+COUNT = "digit lost or added"
+TWO_DIGITS = "two digits misread"
+
+BITS = {SIGN: 9.5, DIGIT: 10.0, POINT: 10.5, SWAP: 11.0, COUNT: 12.5, TWO_DIGITS: 19.0}
+"""What it takes to believe each kind: a digit misread is one of 9 others of some 200 on a page, and
+the other kinds about as likely by their number; chosen so that the given slips are named first."""
+_UNLIKE = 0.4
+"""Bits more for each rank in the likeness of two digits' shapes."""
+_TWO_SLIPS = 6.05
+"""What two slips may cost: two digits misread as those least like them (3.02 each)."""
+_REPLAYED = 60  # combinations of slips that are replayed
+_ALIKE = {
+    text[0]: text[1:]
+    for text in "0869 1742 2713 3859 4917 5638 6805 7129 83069 94807".split()
+}  # fmt: skip
+"""For each digit those it is most easily taken for."""
+
+
+class Change(NamedTuple):
+    """One input put right: the kind of slip, the field, its text as printed or given apart, the
+    true one."""
+
+    kind: str
+    field: str
+    printed: str
+    would_be: str
+
+    @property
+    def bits(self) -> float:
+        """What it takes to believe it; nothing for a change that is no slip."""
+        bits = BITS.get(self.kind, 0.0)
+        if self.kind == DIGIT:
+            bits += _UNLIKE * _unlikeness(self.printed, self.would_be)
+        if bits and self.field in ANGLES and abs(double(self.would_be)) > 360:
+            bits += BITS[DIGIT]  # nobody types more than a full turn
+        return bits
+
+
+class Reread(NamedTuple):
+    """A scene with some inputs put right."""
+
+    changes: tuple[Change, ...]
+    scored: Scored
+
+
+class Rereading:
+    """The slips of one printout's inputs, tried. ``apart``: those in inputs that stand nowhere on
+    the page and were given apart, too; they are slips of what was typed there, as INPUT reads it:
+    blanks and small letters make no difference."""
+
+    def __init__(self, recovered: Recovered, apart: bool = False) -> None:
+        self._recovered = recovered
+        self._base = {name: recovered.assumed[name] for name in INPUTS if name in recovered.assumed}
+        for name in recovered.apart if apart else ():
+            self._base[name] = recovered.scene[scene_name(name)].replace(" ", "").upper()
+
+    def best(self, most: int = 2, exchanged: Mapping[str, str] | None = None) -> list[Reread]:
+        """Scenes with one input put right, or with up to two, those that explain most first.
+        ``exchanged``: texts printed in place of others, by field, and not to be put right."""
+        columns = [*self._columns]
+        for name, text in (exchanged or {}).items():
+            place = INPUTS.index(name)
+            columns[place] = column_of(name, [(text, 0.0)], columns[place].typed)
+        search = self._recovered.search
+        if most == 1:
+            picks = search.screened(columns, one_each(columns), 2 if exchanged else _REPLAYED)
+        else:
+            wrong = self._recovered.wrong
+            picks = search.promising(columns, 100_000, _REPLAYED, _TWO_SLIPS, wrong)
+        rereads = []
+        for pick, scored in zip(picks.tolist(), search.replayed(columns, picks), strict=True):
+            taken = zip(INPUTS, pick, strict=False)
+            changes = tuple(self._slips[name][at - 1][1] for name, at in taken if at)
+            rereads.append(Reread(changes, scored))
+        return sorted(rereads, key=lambda reread: reread.scored.cost)
+
+    @cached_property
+    def _columns(self) -> list[Column]:
+        """Every input as it is, and with its slips."""
+        scene, columns = self._recovered.scene, []
+        for name in INPUTS:
+            text = self._base.get(name, scene[scene_name(name)])
+            slips = [(slip.would_be, cost) for cost, slip in self._slips.get(name, [])]
+            apart = name not in self._recovered.assumed
+            columns.append(column_of(name, [(text, 0.0), *slips], apart))
+        return [*columns, column_of("M", [(scene["M"], 0.0)], True)]
+
+    def single(self) -> Iterator[Change]:
+        """Every slip in one input."""
+        return (slip for slips in self._slips.values() for _, slip in slips)
+
+    @cached_property
+    def _slips(self) -> dict[str, list[tuple[float, Change]]]:
+        """The slips of every input with what each costs, cheapest first. One is cheaper (2.7) than
+        a result that differs (3.0), two are dearer."""
+        slips = {}
+        for name, text in self._base.items():
+            possible = printable if name in self._recovered.assumed else is_number
+            changes = (Change(kind, name, text, other) for other, kind in misreadings(text).items())
+            some = [
+                (0.7 + change.bits / 5, change) for change in changes if possible(change.would_be)
+            ]
+            slips[name] = sorted(some, key=lambda pair: (pair[0], pair[1].would_be))
+        return slips
+
+
+def misreadings(text: str) -> dict[str, str]:
+    """The texts one slip away, with the likeliest kind of each."""
+    kinds: dict[str, str] = {text: ""}
+    for kind, other in _slips_of(text):
+        kinds.setdefault(other, kind)
+    del kinds[text]
+    return kinds
+
+
+def slip(text: str, other: str) -> str | None:
+    """The kind of slip that makes one text of the other, None when one slip is not enough."""
+    if len(text) == len(other):
+        near = sum(map(ne, text, other)) <= 2 or text.replace(".", "") == other.replace(".", "")
+    else:
+        short, long = sorted((text, other), key=len)
+        near = any(long[:at] + long[at + 1 :] == short for at in range(len(long)))
+    return misreadings(text).get(other) if near else None
+
+
+def _unlikeness(text: str, other: str) -> int:
+    """How unlike two texts that differ in one digit look: 0 most alike, 4 not."""
+    old, new = next(pair for pair in zip(text, other, strict=True) if pair[0] != pair[1])
+    place = _ALIKE.get(old, "").find(new)
+    return place if place >= 0 else 4
+
+
+def _slips_of(text: str) -> Iterator[tuple[str, str]]:
+    """The texts one slip away, each with its kind, some more than once; commoner kinds first."""
+    places = [index for index, glyph in enumerate(text) if glyph.isdigit()]
+    for place in places:
+        for digit in "0123456789":
+            yield DIGIT, text[:place] + digit + text[place + 1 :]
+    yield SIGN, opposite(text)
+    if "E" in text:
+        yield SIGN, re.sub("E.", "E+" if "E-" in text else "E-", text)
+    sign = "-" * text.startswith("-")
+    size, mark, exponent = text.removeprefix("-").partition("E")
+    exponent = mark + exponent
+    figures = size.replace(".", "")
+    yield POINT, sign + figures + exponent
+    for place in range(len(figures)):
+        yield POINT, sign + figures[:place] + "." + figures[place:] + exponent
+    for place in places[:-1]:
+        if text[place + 1].isdigit():
+            yield SWAP, text[:place] + text[place + 1] + text[place] + text[place + 2 :]
+    for place in range(len(size) + 1):
+        if size[place : place + 1].isdigit() and len(figures) > 1:
+            yield COUNT, sign + size[:place] + size[place + 1 :] + exponent
+        for digit in "0123456789":
+            yield COUNT, sign + size[:place] + digit + size[place:] + exponent
+    for first_place, two in combinations(places[:9], 2):
+        for first in "0123456789".replace(text[first_place], ""):
+            for second in "0123456789".replace(text[two], ""):
+                other = (
+                    text[:first_place]
+                    + first
+                    + text[first_place + 1 : two]
+                    + second
+                    + text[two + 1 :]
+                )
+                yield TWO_DIGITS, other

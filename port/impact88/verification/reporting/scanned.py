@@ -1,0 +1,235 @@
+"""Scans and photographs of printouts, verified from their pictures."""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from itertools import takewhile
+from typing import Any
+
+import numpy as np
+
+from ...collision.fields import FIELDS, REPLIES
+from ...errors import UserError
+from ...files import called
+from ...messages.progress import progress
+from ...names import SCENE
+from ..judging.copies import CopyPages, as_printed, converted_inputs
+from ..judging.judgement import Doubtful, FieldCheck, Status, Verdict
+from ..reading.printout import read_printouts
+from ..scan.cleaning import Paper, papers_of
+from ..scan.exhibit import exhibit, shown
+from ..scan.grid import Grid
+from ..scan.holding import Cell, state
+from ..scan.ink import Floats
+from ..scan.picture import Page, pages_of
+from ..scan.rates import sentences
+from ..scan.residue import Mark
+from ..scan.scenes import scenes_in
+from ..scan.sheets import Leaf, looked
+from ..scan.typeface import BLANK
+from .verification import Verification
+
+
+def verified(
+    path: str, data: bytes, seed: str | Sequence[str] = "", copy: CopyPages | None = None
+) -> Iterator[Verification]:
+    """Each printout in a picture or PDF. ``seed``: what other readers made of it; their scenes
+    are tried, and they decide nothing; ``copy``: the listing that prints it, in place of the
+    restored one. Raises UserError when no printout is found."""
+    results: list[Verification] = []
+    without, causes = list[int](), ""
+    texts = [seed] if isinstance(seed, str) else seed
+    seeds = [scene for text in texts for scene in scenes_in(text)]
+    with progress(None, "pages read", "page") as meter:
+        for page in pages_of(data, path):
+            found: list[Verification] = []
+            unread = 0
+            for paper in papers_of(page.picture):
+                tried = [*seeds, *scenes_in(page.text)]
+                seen = looked(paper.grey, tried, paper.coloured, copy)
+                unread += not seen.leaves
+                causes = causes or ("" if seen.leaves else "; ".join(paper.remarks))
+                for leaf in seen.leaves:
+                    number = len(results) + len(found) + 1
+                    result = _verification(path, number, page, paper, leaf, copy)
+                    result.exhibit = partial(exhibit, paper.grey, seen.leaves, leaf)
+                    result.remarks += [f"page {page.number}: {said}" for said in paper.remarks]
+                    found.append(result)
+            if found and unread:
+                said = f"no printout was found on {unread} of the sheets it shows"
+                found[0].remarks.append(f"page {page.number}: {said}")
+            if page.text.strip():
+                _layered(found, page.text)
+            if not found:
+                without.append(page.number)
+            results += found
+            meter.update(1)
+    if not results:
+        raise UserError(
+            f"{called(path)}: no printout was found in the picture; expected lines of fixed pitch, "
+            "10 pixels or more a character" + (f" ({causes})" if causes else "")
+        )
+    if without:
+        pages = ", ".join(map(str, without))
+        results[0].remarks.append(f"no printout was found on page {pages} of the file")
+    yield from results
+
+
+def _layered(results: list[Verification], text: str) -> None:
+    """Holds a PDF's text layer against what its picture shows: one that says another number is
+    told, and nothing is settled."""
+    try:
+        layer = [printout for printout in read_printouts(text) if not printout.fragment]
+    except UserError:
+        layer = []
+    if len(layer) != len(results):
+        for result in results:
+            result.remarks.append(f"page {result.page}: no such printout is in its text layer")
+        return
+    for result, page in zip(results, layer, strict=True):
+        other = [
+            f"{check.name} {page.text(check.name)} for {check.printed}"
+            for check in result.fields
+            if page.text(check.name) is not None and page.text(check.name) != check.printed
+        ]
+        if other:
+            result.remarks.append(
+                f"page {result.page}: its text layer does not agree with its picture: "
+                + ", ".join(other)
+            )
+            if result.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ):
+                result.verdict = Verdict.INCOMPLETE
+
+
+def _verification(
+    path: str, number: int, page: Page, paper: Paper, leaf: Leaf, copy: CopyPages | None
+) -> Verification:
+    settled = leaf.judged.verdict is not Verdict.INCOMPLETE
+    known = {name: _printed(cells) for name, cells in leaf.by_name.items()} if settled else {}
+    text, starts = leaf.read.page(known)
+    printed = leaf.found.outcome.fields if leaf.found else {}
+    scene: dict[str, str | None] = dict.fromkeys(SCENE)
+    converted = False
+    if leaf.found and settled:
+        scene |= {name: leaf.found.scene[name] for name in SCENE}
+        if copy:
+            scene |= as_printed(leaf.found.scene, printed)
+            converted = bool(converted_inputs(leaf.found.scene, printed))
+    fields = [
+        _check(leaf, name, printed.get(name), leaf.by_name.get(name, []))
+        for name in FIELDS
+        if name in printed or name in leaf.read.costs
+    ]
+    line = min((row.start for row in leaf.read.sheet.rows.values()), default=0) + 1
+    result = Verification(path, number, line, leaf.judged.verdict, scene, fields)
+    result.converted = converted
+    result.replies, result.page = [*_replies(leaf)], page.number
+    result.text, result.stop, result.basis = text, len(text), sentences()
+    for check in result.fields:
+        if check.printed and check.name in starts:
+            check.start = starts[check.name]
+            check.stop = check.start + len(check.printed)
+    result.cells = [
+        _described(cell, page, paper, leaf.grid)
+        for cell in leaf.cells  # blanks and labels that hold are not told
+        if (cell.name and cell.predicted != BLANK) or state(cell) != "holds"
+    ]
+    result.marks = [_marked(mark, page, paper, leaf.grid) for mark in leaf.marks]
+    if leaf.judged.reason:
+        result.remarks.append(f"page {page.number}: {leaf.judged.reason}")
+    result.findings += [
+        f"page {page.number}, line {cell.place.line + 1}, cell {cell.place.cell + 1}: "
+        f"{cell.name or 'a label'} shows {shown(cell.other)} where the program prints "
+        f"{shown(cell.predicted)} (margin {cell.margin:+.2f}, {cell.count} and {cell.other_count} "
+        "cells of each on the page)"
+        for cell in leaf.judged.differing
+    ]
+    result.findings += [
+        f"page {page.number}, {_where(mark)}: the typed text {mark.reads!r} gives {claim.label} "
+        f"{claim.typed}, where the program prints {claim.printed}"
+        for mark in leaf.marks
+        for claim in mark.claims
+    ]
+    return result
+
+
+def _where(mark: Mark) -> str:
+    assert mark.place is not None
+    return f"line {mark.place.line + 1}, cell {mark.place.cell + 1}"
+
+
+def _check(leaf: Leaf, name: str, recomputed: str | None, cells: Sequence[Cell]) -> FieldCheck:
+    states = [state(cell) for cell in cells]
+    status = Status.READ
+    if leaf.judged.verdict is Verdict.INCOMPLETE and "differs" in states:
+        status = Status.NOT_COMPARED
+    elif recomputed is None or not cells:
+        status = Status.NOT_READ
+    elif "differs" in states:
+        status = Status.CONTRADICTED
+    elif "doubtful" in states:
+        status = Status.DOUBTFUL
+    doubts = [
+        Doubtful(cell.place.line + 1, cell.place.cell + 1, 0, cell.other, cell.predicted, "picture")
+        for cell in cells
+        if state(cell) == "doubtful"
+    ]
+    check = FieldCheck(name, _printed(cells) or None, recomputed, status, doubts=doubts)
+    if cells:
+        check.line, check.column = cells[0].place.line + 1, cells[0].place.cell + 1
+    return check
+
+
+def _printed(cells: Sequence[Cell]) -> str:
+    """What stands in cells that were held against the page."""
+    return "".join(cell.other if state(cell) == "differs" else cell.predicted for cell in cells)
+
+
+def _replies(leaf: Leaf) -> Iterator[FieldCheck]:
+    for side, names in REPLIES.items() if leaf.found else ():
+        cells = iter(leaf.by_name.get(f"REPLY_{side}", []))
+        for name in names:
+            part = list(takewhile(lambda cell: cell.predicted != ",", cells))
+            if part:
+                yield _check(leaf, name, "".join(cell.predicted for cell in part), part)
+
+
+def _box(corners: Floats, page: Page, paper: Paper, turns: int) -> list[float]:
+    """Return left, top, right, bottom of a region of the upright sheet in the file's picture as it
+    lies, in pixels."""
+    x, y = corners.T
+    height, width = paper.grey.shape
+    x, y = ((x, y), (width - y, x), (width - x, height - y), (y, height - x))[turns]
+    x, y = page.scale * paper.place(np.stack([x, y], axis=-1)).T
+    return [round(float(v), 1) for v in (x.min(), y.min(), x.max(), y.max())]
+
+
+def _marked(mark: Mark, page: Page, paper: Paper, grid: Grid) -> dict[str, Any]:
+    """A mark as JSON; ``line`` and ``cell`` from 1, where it stands on the grid."""
+    return {
+        "page": page.number,
+        "box": _box(mark.corners, page, paper, grid.turns),
+        "kind": str(mark.kind),
+        "reads": mark.reads,
+        "line": mark.place.line + 1 if mark.place else None,
+        "cell": mark.place.cell + 1 if mark.place else None,
+        "touches": mark.touches,
+        "beside": mark.beside,
+        "bears": mark.bears,
+        "contradicts": [claim.label for claim in mark.claims],
+    }
+
+
+def _described(cell: Cell, page: Page, paper: Paper, grid: Grid) -> dict[str, Any]:
+    """A cell as JSON; ``box``: left, top, right, bottom in the picture as it lies, in pixels."""
+    return {
+        "page": page.number,
+        "box": _box(grid.around(*cell.place), page, paper, grid.turns),
+        "field": cell.name or None,
+        "predicted": cell.predicted,
+        "state": state(cell),
+        "margin": round(cell.margin, 3),
+        "runner_up": cell.other,
+        "distance": round(cell.distance, 2),
+        "cells_of_predicted": cell.count,
+        "cells_of_runner_up": cell.other_count,
+    }

@@ -1,0 +1,93 @@
+"""Pictures of pages: PNG, JPEG and TIFF files and PDFs, no finer than they are read."""
+
+import io
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+import PIL.Image
+from numpy.typing import NDArray
+from PIL import ImageOps
+
+from ...errors import UserError
+from ...files import called
+from .pdfpages import MAX_PAGES, PdfError, render_pages
+
+Picture = NDArray[np.uint8]
+"""Grey, shape (rows, columns), or red, green and blue, shape (rows, columns, 3)."""
+
+MAX_PIXELS = 60_000_000  # of a page in its file: more than A3 at 500 dots an inch
+MAX_SIDE = 4000
+"""Pixels of the longer side of a page as it is read: 200 columns, two printouts side by side, then
+have 20 pixels a character, and 16 are read. Of 400 pages the longest has 3,888."""
+
+
+class Page(NamedTuple):
+    """One page: its number, its picture, the text layer of a PDF ("": none), and how many pixels
+    of the file (of a PDF: 300ths of an inch, or what the picture has) one of the picture takes."""
+
+    number: int
+    picture: Picture
+    text: str = ""
+    scale: float = 1.0
+
+
+def pages_of(data: bytes, path: str) -> Iterator[Page]:
+    """Yield the pages of a file. Raises UserError when it cannot be read."""
+    if data.startswith(b"%PDF-"):
+        yield from _pdf(data, called(path))
+        return
+    where, number = called(path), 1
+    try:
+        with PIL.Image.open(io.BytesIO(data)) as file:
+            count = getattr(file, "n_frames", 1)
+            if count > MAX_PAGES:
+                raise UserError(f"has {count:,} pages; expected at most {MAX_PAGES}", where)
+            for number in range(1, count + 1):
+                file.seek(number - 1)
+                if file.width * file.height > MAX_PIXELS:
+                    size = f"{file.width} x {file.height}"
+                    limit = f"expected at most {MAX_PIXELS:,}"
+                    raise UserError(f"{where}: page {number}: {size} pixels; {limit}")
+                longer = max(file.size)
+                if count == 1:  # a JPEG is made smaller while it is decoded
+                    file.draft(None, (MAX_SIDE, MAX_SIDE))
+                picture = _upright(file)
+                yield Page(number, picture, "", longer / max(picture.shape[:2]))
+    except UserError:
+        raise
+    except Exception as error:  # a library's, of whatever kind, on a file that is damaged
+        message = str(error).splitlines()[0] if str(error) else "damaged"
+        raise UserError(f"{where}: is not a picture that can be read: {message}") from None
+
+
+def _upright(file: PIL.Image.Image) -> Picture:
+    """Return a picture turned as its file says, no longer than `MAX_SIDE`."""
+    upright = ImageOps.exif_transpose(file)
+    if upright.mode in ("RGBA", "LA", "P", "PA"):  # what is transparent is paper
+        upright = upright.convert("RGBA")
+        paper = PIL.Image.new("RGBA", upright.size, "white")
+        upright = PIL.Image.alpha_composite(paper, upright).convert("RGB")
+    elif upright.mode.startswith(("I", "F")):
+        values = np.asarray(upright, np.float32)
+        values = np.nan_to_num(values * np.float32(255 / max(float(values.max(initial=1)), 1)))
+        upright = PIL.Image.fromarray(np.clip(values, 0, 255).astype(np.uint8))
+    elif upright.mode in ("1", "L"):
+        upright = upright.convert("L")
+    else:
+        upright = upright.convert("RGB")
+    if max(upright.size) > MAX_SIDE:
+        part = MAX_SIDE / max(upright.size)
+        size = (max(1, round(upright.width * part)), max(1, round(upright.height * part)))
+        upright = upright.resize(size, PIL.Image.Resampling.BOX)
+    return np.asarray(upright, np.uint8)
+
+
+def _pdf(data: bytes, where: str) -> Iterator[Page]:
+    try:
+        for number, page in enumerate(render_pages(data, MAX_SIDE), 1):
+            pixels = np.frombuffer(page.pixels, np.uint8)
+            picture = pixels.reshape(page.height, page.width, 3)[:, :, ::-1]
+            yield Page(number, picture, page.text)
+    except PdfError as error:
+        raise UserError(f"{where}: {error}") from None
