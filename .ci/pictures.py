@@ -66,7 +66,7 @@ def scene_file(folder: Path) -> str:
 
 def photograph_desk(picture: Path) -> None:
     """Save what the desk shows of a published run as a PNG."""
-    sys.path.insert(0, str(ROOT / "tests"))
+    sys.path.insert(0, str(ROOT / "tests" / "support"))
     from desk_browser import browser, desk, until
 
     with desk() as address, browser() as page:

@@ -16,7 +16,7 @@ COMPILER = os.environ.get("CC", "gcc")
 # as pyproject.toml has them, for one instruction set, less optimized
 FLAGS = "-shared -fPIC -O1 -g1 -ffp-contract=off -fno-math-errno -fno-trapping-math".split()
 SANITIZERS = ["-fsanitize=address,undefined", "-fno-sanitize-recover=undefined"]
-TESTS = ["tests/test_native.py"]
+TESTS = ["tests/mechanics/test_native.py"]
 SECONDS = 300
 
 

@@ -15,16 +15,24 @@ from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
+from captures import ROOT
 from hypothesis import settings
 from pytest_regressions.file_regression import FileRegressionFixture
 
-from captures import ROOT
 from impact88.mechanics import native
 
 LONGEST = (
-    *("compare", "causes", "scans", "desk_browser", "desk", "scan_pages", "installed", "fuzz"),
-    *("figures", "verify", "listing_copies", "replay_scenes", "adjustment", "oracle", "files"),
-    *("doors", "public", "desk_numbers", "bounds", "schemas", "native", "witness", "unknowns"),
+    *("comparison", "causes", "scan", "desk_browser", "desk", "scan_pages", "installed", "fuzz"),
+    *(
+        "figures",
+        "verification",
+        "listing_copies",
+        "replay_scenes",
+        "reconstruction",
+        "oracle",
+        "files",
+    ),
+    *("doors", "public", "desk_numbers", "uncertainty", "schemas", "native", "witness", "unknowns"),
     "readme",
 )
 """Files of tests that take more than some seconds (``--durations=0`` has the times)."""

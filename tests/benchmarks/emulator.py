@@ -18,9 +18,10 @@ import sys
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 
 import captures
+
 from impact88.emulator.emulator import Applesoft
 from impact88.files import packaged_text
 from impact88.program import emulated

@@ -14,12 +14,13 @@ import sys
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 
 import captures
+from installed import COMMAND
+
 from impact88.program.run import run
 from impact88.program.scene import Scene
-from installed import COMMAND
 
 ROUNDS = 9
 SCENES = 100

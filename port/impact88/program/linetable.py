@@ -1,6 +1,6 @@
 """Which BASIC line the Python lines of `listing` translate, and what each line assigns.
 
-Made by tests/linetable.py from the comments of listing.py; not to be edited by hand.
+Made by tests/support/linetable.py from the comments of listing.py; not to be edited by hand.
 """
 
 FIRST_PYTHON_LINE = 53

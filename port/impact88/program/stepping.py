@@ -22,7 +22,9 @@ _LISTING = listing.impact.__code__
 AfterLine = Callable[[int, "Variables"], object]
 
 if _LISTING.co_firstlineno != linetable.FIRST_PYTHON_LINE:
-    raise ImportError("linetable.py does not belong to listing.py; run python tests/linetable.py")
+    raise ImportError(
+        "linetable.py does not belong to listing.py; run python tests/support/linetable.py"
+    )
 
 
 Variables = namedtuple("Variables", "reals A")

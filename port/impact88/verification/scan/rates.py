@@ -1,6 +1,6 @@
 """How pages with known truth fared: the counts, and what may be said of them.
 
-Every page that was offered counts, whatever became of it. `tests/scanrates.py` counts them.
+Every page that was offered counts, whatever became of it. `tests/support/scanrates.py` counts them.
 """
 
 from collections.abc import Iterator

@@ -1,0 +1,133 @@
+"""The rooms of port/impact88: data flows one way, and lower rooms never import upper ones."""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from functools import cache
+from graphlib import CycleError, TopologicalSorter
+from importlib.util import resolve_name
+from pathlib import Path
+
+import pytest
+from captures import ROOT
+
+PACKAGE = ROOT / "port" / "impact88"
+
+
+def name_of(path: Path) -> str:
+    parts = path.relative_to(ROOT / "port").with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+FILES = {name_of(path): path for path in PACKAGE.rglob("*.py")}
+
+
+def imported(name: str) -> set[str]:
+    """The modules of this package that a module imports, at its top or on first use."""
+    path = FILES[name]
+    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom):
+            base = resolve_name("." * node.level + (node.module or ""), package)
+            for alias in node.names:
+                whole = f"{base}.{alias.name}"
+                found.add(whole if whole in FILES else base)
+        elif isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+    return {module for module in found if module in FILES} - {name}
+
+
+@cache
+def rooms() -> dict[str, set[str]]:
+    """The imports of every module: read when a test asks, not when tests are collected."""
+    return {name: imported(name) for name in FILES}
+
+
+def test_no_room_is_both_above_and_below_another() -> None:
+    # the package itself holds no more than its version
+    graph = {name: modules - {"impact88"} for name, modules in rooms().items()}
+    try:
+        list(TopologicalSorter(graph).static_order())
+    except CycleError as error:
+        pytest.fail(" -> ".join(error.args[1]))
+
+
+MACHINE = ("impact88.applesoft", "impact88.emulator")
+LOADER = ("impact88.emulator.programfile", "impact88.errors")
+"""It reads what a user hands over, and what it tells the user is what all errors are."""
+
+
+def test_applesoft_knows_nothing_of_collisions() -> None:
+    outside = {
+        (name, module)
+        for name, modules in rooms().items()
+        if name.startswith(MACHINE)
+        for module in modules
+        if not module.startswith(MACHINE) and (name, module) != LOADER
+    }
+    assert not outside
+
+
+def test_only_commands_import_commands() -> None:
+    upper = ("impact88.commands.", "impact88.commands.cli")
+    below = {
+        (name, module)
+        for name, modules in rooms().items()
+        if not name.startswith((*upper, "impact88.commands", "impact88.__main__"))
+        for module in modules
+        if module.startswith(upper)
+    }
+    assert not below
+
+
+@pytest.mark.parametrize(
+    "name", ["impact88.program.listing", "impact88.program.run", "impact88.program.scene"]
+)
+def test_faithful_path_imports_no_third_party(name: str) -> None:
+    """Nothing but Python's own library lies between a typed digit and a printed one."""
+    seen, waiting = set(), {name}
+    while waiting:
+        module = waiting.pop()
+        seen.add(module)
+        waiting |= rooms()[module] - seen
+        text = FILES[module].read_text(encoding="utf-8")
+        assert not {"numpy", "matplotlib", "mpmath", "scipy", "tqdm"} & {
+            (node.names[0].name if isinstance(node, ast.Import) else node.module or "").split(".")[
+                0
+            ]
+            for node in ast.walk(ast.parse(text))
+            if isinstance(node, ast.Import | ast.ImportFrom)
+        }, module
+
+
+def needed(name: str) -> set[str]:
+    """A module and all that it imports, and they in turn, on first use too."""
+    seen, waiting = set(), {name}
+    while waiting:
+        module = waiting.pop()
+        seen.add(module)
+        waiting |= rooms()[module] - seen
+    return seen
+
+
+GROUND = {f"impact88.{name}" for name in ("names", "fields", "doubles", "errors")}
+"""Tables of names and fields, decimal text to double, and the error users are shown."""
+FAITHFUL = {"impact88.program.listing", "impact88.program.arithmetics"}
+
+
+def test_the_faithful_path_needs_no_other_room() -> None:
+    """Whatever else this project grows, what prints the 1988 digits stands alone."""
+    for name in sorted(FILES):
+        if name in FAITHFUL or name.startswith("impact88.applesoft"):
+            own = {n for n in needed(name) if n.startswith("impact88.applesoft")}
+            assert needed(name) <= own | FAITHFUL | GROUND, name
+
+
+def test_no_module_name_is_used_twice() -> None:
+    """A traceback, a test and a search name a module by its last part."""
+    names = Counter(
+        name.rpartition(".")[2] for name, path in FILES.items() if path.stem != "__init__"
+    )
+    assert not [name for name, uses in names.items() if uses > 1]

@@ -1,0 +1,301 @@
+"""The compiled machine and numpy give the same bits: every result, population, path and slice.
+
+Where the machine was not built these tests are skipped; the rest of the suite then runs on numpy
+alone, and where it was, `test_solve` and the tests beside it run both ways.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import kernels
+import numpy as np
+import pytest
+
+import impact88
+from impact88.bench.populations import POPULATIONS, enlarged, scenes, texts
+from impact88.mechanics import native
+from impact88.mechanics.closedform import kernelcalls
+from impact88.mechanics.closedform import solve as solving
+from impact88.mechanics.closedform.impactprograms import ALL, BODIES, FORMULAS, KERNELS
+from impact88.mechanics.closedform.plain import FEW
+from impact88.mechanics.closedform.solve import TILE, quantities
+from impact88.names import RESULTS
+from impact88.program.vectorized import blocks
+
+pytestmark = pytest.mark.skipif(native.library is None, reason="built without a C compiler")
+
+SIX = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
+
+
+def both(columns, outputs=None, **given):
+    compiled = impact88.solve(columns, outputs, **given)
+    with native.switched_off():
+        alone = impact88.solve(columns, outputs, **given)
+    return compiled, alone
+
+
+def assert_same_bits(compiled, alone):
+    assert list(compiled) == list(alone)
+    for name, values in alone.items():
+        mine = np.asarray(compiled[name])
+        assert (mine.dtype, mine.shape) == (values.dtype, values.shape), name
+        assert mine.tobytes() == values.tobytes(), name
+
+
+@pytest.mark.parametrize("name", POPULATIONS)
+@pytest.mark.parametrize("count", [2, FEW, FEW + 1])
+def test_every_result_of_every_population(name, count):
+    assert_same_bits(*both(enlarged(scenes(name, min(count, 500), 11), count), threads=1))
+
+
+def test_what_is_compiled_as_a_whole_is_what_the_formulas_say(file_regression):
+    file = Path(native.__file__).with_name("kernels.h")
+    file_regression.check(kernels.text(), fullpath=file, encoding="ascii")
+    assert kernels.digest() == FORMULAS  # in impactprograms.py; then build the library again
+    assert kernelcalls.usable()
+
+
+def test_each_kernel_is_of_what_it_says():
+    """Every kind of scene has kernels for all results, each set of its own."""
+    for body in range(4):
+        assert native.library.kernel_of(body, (1 << len(ALL)) - 1)
+    for body, results in KERNELS:
+        bits = sum(1 << ALL.index(name) for name in results)
+        assert native.library.kernel_of(list(BODIES).index(body), bits)
+
+
+def odd(count: int, seed: int) -> dict[str, np.ndarray]:
+    """Casework in which scenes are now and then of another kind, or cannot be used."""
+    rng = np.random.default_rng(seed)
+    columns = enlarged(scenes("casework", min(count, 5000), seed), count)
+    columns["M"] = np.full(count, 6.0)
+
+    def some(share: float) -> np.ndarray:
+        return rng.random(count) < share
+
+    columns["MU"][some(0.1)] = -10
+    columns["MU"][some(0.01)] = -11
+    columns["M"][some(0.1)] = 4
+    columns["M"][some(0.001)] = 5
+    columns["GA"][some(0.01)] += 3600
+    columns["TA"][some(0.001)] = np.inf
+    columns["IB"][some(0.01)] = np.inf
+    columns["MA"][some(0.001)] = -1
+    columns["UX"][some(0.001)] = np.nan
+    columns["EM"][some(0.01)] = 0.5
+    for name in ("UX", "UY", "WA", "VX", "VY", "WB"):
+        columns[name][some(0.01)] = 0
+    columns["UX"][some(0.001)] *= 1e200
+    return columns
+
+
+@pytest.mark.parametrize("count", [60, 127, 5000, 70_000])
+def test_scenes_of_all_kinds_among_each_other(count):
+    assert_same_bits(*both(odd(count, count)))
+
+
+def test_kinds_that_change_far_behind_what_was_looked_at():
+    """The machine goes on over all scenes of one kind, and must notice where another begins."""
+    count = 2 * TILE + 5000
+    for name, value in {"MU": -10.0, "GA": 1e6, "IA": np.inf, "UX": np.nan, "M": 4.0}.items():
+        columns = enlarged(scenes("casework", 5000, 5), count)
+        columns["M"] = np.full(count, 6.0)
+        columns["EM"] = np.full(count, -0.5)
+        columns[name][-5003] = value
+        columns["EM"][-7] = -0.25  # a column of one value but for a single scene
+        assert_same_bits(*both(columns, threads=1))
+
+
+def test_a_column_of_one_value_that_another_follows_far_behind():
+    columns = {name: values.copy() for name, values in scenes("casework", 3 * FEW, 6).items()}
+    columns["EM"][:] = -0.5
+    columns["EM"][-7] = -0.25
+    assert_same_bits(*both(columns, threads=1))
+
+
+def test_what_varies_may_go_beyond_what_was_looked_at(monkeypatch):
+    """Numbers that are only larger than those looked at make no other kind."""
+    columns = scenes("casework", 3 * FEW, 6)
+    columns["UX"][-7] = 10 * columns["UX"].max()
+    with native.switched_off():
+        expected = impact88.solve(columns, SIX)
+    monkeypatch.setattr(solving, "_solved", None)  # the way of the other kinds
+    assert_same_bits(impact88.solve(columns, SIX), expected)
+
+
+def test_memory_of_results_is_used_again_only_once_nobody_holds_them():
+    columns = scenes("casework", 3 * FEW, 6)
+    other = {**columns, "UX": columns["UX"] + 1}
+    held = impact88.solve(columns, SIX)
+    kept = {name: values.copy() for name, values in held.items()}
+    one = held["VBY"]
+    del held
+    impact88.solve(other, SIX)
+    np.testing.assert_array_equal(one, kept["VBY"])
+    before = one.ctypes.data
+    del one
+    # two blocks take turns: what was held is free by now
+    again = [impact88.solve(columns, SIX)["VBY"].ctypes.data for _ in range(3)]
+    assert len({before, *again}) <= 3
+    assert len(set(again)) == 1
+
+
+def test_slices_types_and_shapes():
+    columns = odd(6000, 3)
+    thirds = {name: values[::3] for name, values in columns.items()}
+    assert_same_bits(*both(thirds))
+    grid = {name: values.reshape(60, 100) for name, values in columns.items()}
+    assert_same_bits(*both({**grid, "MU": np.linspace(-1, 1, 100)}))
+    columns["UX"][np.abs(columns["UX"]) > 1e30] = 0
+    single = {name: values.astype(np.float32) for name, values in columns.items()}
+    assert_same_bits(*both(single))
+    scalar = {name: float(values[0]) for name, values in columns.items()} | {"M": 6}
+    for name in ("MU", "GA", "IA", "E"):
+        assert_same_bits(*both({**scalar, name: columns[name][:50]}))
+    empty = {**scalar, "MU": np.empty(0)}
+    assert_same_bits(*both(empty))
+
+
+def test_selections():
+    columns = odd(3 * FEW, 9)
+    for name in RESULTS:
+        assert_same_bits(*both(columns, name))
+    few = {name: values[:100] for name, values in scenes("casework", 100, 4).items()}
+    for names in (SIX, ("STATUS",), ("DVA", "STATUS", "MUC")):
+        assert_same_bits(*both(few, names))
+
+
+def test_threads_and_room_of_the_callers():
+    columns = odd(280_000, 2)
+    room = {name: np.empty(280_000) for name in SIX}
+    alone = both(columns, SIX, threads=2)[1]
+    assert_same_bits(impact88.solve(columns, out=room, threads=2), alone)
+
+
+def test_quantities_that_are_no_results():
+    columns = odd(500, 8)
+    names = ("gt", "determinant", "critical_denominator")
+    compiled = quantities(columns, names, sign=-1.0)
+    with native.switched_off():
+        assert_same_bits(compiled, quantities(columns, names, sign=-1.0))
+
+
+REPLAYED = (
+    "casework",
+    "heavy",
+    "singular",
+    "units",
+    "tangential",
+    "cancelling",
+    "em-half",
+    "pivots",
+)
+SCENES = int(os.environ.get("IMPACT88_REPLAY_SCENES", "0")) or 200
+
+
+@pytest.mark.parametrize("name", REPLAYED)
+def test_replay_of_every_population(name):
+    """Every stored real, code and line; scenes out of the ordinary go the way of the arrays."""
+    columns = texts(scenes(name, SCENES, 17))
+    few = {key: values[:8] for key, values in texts(scenes("extreme", 8, 1)).items()}
+    columns = {key: [*values, *few[key]] for key, values in columns.items()}
+    columns["M"] = ["4" if i % 50 == 0 else "6" for i in range(SCENES + 8)]
+    columns["MU"][::40] = ["-10"] * len(columns["MU"][::40])
+    columns["IA"][7] = "0"
+    compare_replays(columns)
+
+
+@pytest.mark.parametrize("shared", ["MU", "UX", "IA"])
+def test_replay_of_scenes_that_share_all_but_one(shared, monkeypatch):
+    columns = texts(scenes("casework", 2500, 6))
+    one = {key: values[0] for key, values in columns.items()}
+    monkeypatch.setattr(blocks, "WORTH_SHARING", 0)
+    compare_replays({**one, shared: columns[shared]})
+
+
+def compare_replays(columns):
+    compiled = impact88.replay(columns)
+    with native.switched_off():
+        alone = impact88.replay(columns)
+    assert np.array_equal(compiled.code, alone.code)
+    assert np.array_equal(compiled.line, alone.line)
+    for name in alone.names:
+        assert np.array_equal(compiled.reals(name), alone.reals(name)), name
+
+
+def test_the_variable_turns_it_off(monkeypatch):
+    monkeypatch.setenv(native.VARIABLE, "0")
+    code = "import impact88; print(impact88.accelerated)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "None\n"
+    assert impact88.accelerated
+
+
+@pytest.mark.parametrize("pivots", [0.0, 0.1, 0.5, 1.0])
+@pytest.mark.parametrize("unusable", [False, True])
+def test_constants_selections_pivots_and_an_unusable_scene(pivots, unusable):
+    """Each column as one number for all, and each result by itself: the bits of numpy."""
+    rng = np.random.default_rng(38)
+    count = 300
+    columns = scenes("casework", count, 38) | {"M": np.full(count, 6.0)}
+    columns["MU"] = np.where(rng.random(count) < pivots, -10.0, columns["MU"])
+    with native.switched_off():
+        expected = {}
+        for name in columns:
+            for value in {float(columns[name][0]), 0.0 if name[0] not in "MI" else 6.0}:
+                given = {**columns, name: value}
+                if unusable:
+                    other = "UX" if name != "UX" else "UY"
+                    given[other] = columns[other].copy()
+                    given[other][200] = np.nan
+                expected[name, value] = given, impact88.solve(given)
+    for given, whole in expected.values():
+        assert_same_bits(impact88.solve(given), whole)
+        for chosen in (*((name,) for name in RESULTS), SIX, ("DVA", "LOSS", "STATUS")):
+            found = impact88.solve(given, chosen)
+            assert_same_bits(found, {name: whole[name] for name in chosen})
+
+
+@pytest.mark.parametrize("change", [{"MB": np.inf, "IB": np.inf}, {"IB": np.inf}, {"MB": np.inf}])
+@pytest.mark.parametrize("mu", [0.3, -10.0])
+@pytest.mark.parametrize("constant", [False, True])
+def test_barriers_as_constants_and_as_columns(change, mu, constant):
+    columns = scenes("casework", 300, 4) | dict.fromkeys(("VX", "VY", "WB"), 0.0) | {"MU": mu}
+    columns |= {k: v if constant else np.full(300, v) for k, v in change.items()}
+    columns["TA"] = columns["TA"] + 7200.0
+    assert_same_bits(*both(columns))
+    assert_same_bits(*both({**columns, "VX": 1e-300, "WB": 1.0}))
+
+
+@pytest.mark.parametrize("mu", [0.3, -10.0])
+@pytest.mark.parametrize("size", [1.0, 1e14, 1e16, 1e60])
+def test_a_hurried_kernel_leaves_undecided_what_it_cannot_tell(mu, size):
+    """SINGULAR and NOT_FINITE, on both sides of where it is certain that they are clear."""
+    rng = np.random.default_rng(38)
+    count = 1000
+    columns, singular = scenes("casework", count, 8), scenes("singular", count, 8)
+    for name in columns:  # a few in every strip, and more than the machine looks at again in some
+        columns[name] = np.where(rng.random(count) < 0.05, singular[name], columns[name])
+        columns[name][-300:] = singular[name][-300:]
+    slides = np.where(columns["MU"] == -10.0, 0.3, columns["MU"])
+    columns["MU"] = slides if mu > 0 else np.full(count, mu)
+    for name in ("UX", "VY", "WA", "MA", "IB", "DA", "E"):
+        some = rng.random(count) < 0.02
+        columns[name] = np.where(
+            some, columns[name] * size ** rng.uniform(-1, 1, count), columns[name]
+        )
+    slight = rng.random(count) < 0.03  # a determinant that is nearly or exactly 0
+    columns["EM"] = np.where(slight, 0.5 - 10.0 ** rng.integers(-18, 0, count), columns["EM"])
+    for name in ("DA", "DB"):
+        columns[name] = np.where(slight & (rng.random(count) < 0.5), 0.0, columns[name])
+    still = rng.random(count) < 0.01  # no energy that a part could be lost of
+    for name in ("UX", "UY", "WA", "VX", "VY", "WB"):
+        columns[name] = np.where(still, 0.0, columns[name])
+    for names in (("STATUS",), ("DVA", "LOSS", "STATUS")):
+        compiled, alone = both(columns, names)
+        assert_same_bits(compiled, alone)
+    assert set(np.unique(alone["STATUS"] & 96)) >= ({0, 32, 64} if mu > 0 else {0, 64})

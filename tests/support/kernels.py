@@ -1,0 +1,167 @@
+"""C text of the impact as a whole, for `native/kernels.h`: one body for each kind of scene.
+
+A body computes every result; the kernels made of it keep some, and the compiler leaves out what
+these do not need. test_native checks that the file is what the formulas say; ``--force-regen``
+writes it anew.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import textwrap
+
+from impact88.mechanics.closedform.impactprograms import (
+    ALL,
+    BODIES,
+    COLUMNS,
+    HURRIED,
+    KERNELS,
+    program_for,
+)
+from impact88.mechanics.closedform.statusbits import UNDECIDED
+from impact88.mechanics.native.program import Program
+
+HEAD = """\
+/* Made from the formulas of closedform/impact.py by tests/support/kernels.py: not to be edited. */
+
+#define COLUMN(name) const double *restrict name = in[AT_##name];
+#define RESULT_AT(name, p) double *restrict to_##name = out[p];
+"""
+ARITHMETIC = ("ADD", "MULTIPLY", "PRODUCT_PLUS", "PRODUCTS_PLUS")
+CONDITIONS = ("EQUAL", "LESS", "LESS_OR_EQUAL", "EITHER", "BOTH", "NOT")
+
+
+def text() -> str:
+    """The whole file."""
+    bodies = [_body(name, program) for name, program in programs().items()]
+    return "\n".join([HEAD, *_places(), *bodies, _table(), ""])
+
+
+def programs() -> dict[str, Program]:
+    """Of every body."""
+    hurried = HURRIED.values()
+    return {
+        name: program_for(kinds, ALL, hurried=name in hurried) for name, kinds in BODIES.items()
+    }
+
+
+def digest() -> str:
+    """By what the library and the formulas know that they belong together."""
+    text = " ".join(f"{program.digest:016x}" for program in programs().values())
+    return hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
+
+
+def _places() -> list[str]:
+    """Where columns and results are, and what the library says of its formulas."""
+    columns = ", ".join([*(f"AT_{name}" for name in COLUMNS), "COLUMNS"])
+    return [
+        *textwrap.wrap(f"enum column {{ {columns} }};", 96, subsequent_indent="    "),
+        f"#define RESULTS {len(ALL)}",
+        f"#define STATUS_AT {ALL.index('STATUS')}",
+        f"#define UNDECIDED {UNDECIDED} /* of STATUS */",
+        f'#define FORMULAS "{digest()}"',
+        "",
+    ]
+
+
+def _table() -> str:
+    """The kernels: the number of the body, its name, and the results each keeps, as bits."""
+    rows = []
+    for place, (name, results) in enumerate(KERNELS):
+        mask = sum(1 << ALL.index(result) for result in results)
+        rows.append(f"X({place}, {list(BODIES).index(name)}, {name}, {mask:#x})")
+    return " \\\n    ".join(["#define KERNELS(X)", *rows])
+
+
+def _body(name: str, program: Program) -> str:
+    sines, angles, lines = _lines(program)
+    return "\n".join(
+        [
+            f"static inline ALWAYS_INLINE void {name}(",
+            "    const double *const *in, double *const *out, const circle *circle,",
+            "    int64_t eights, const uint64_t wanted)",
+            "{",
+            *(f"    {line}" for line in _pointers(program)),
+            f"    double {', '.join(f'{x}[STRIP]' for x in sines)};",
+            *_loop(angles),
+            *_loop(lines),
+            "}\n",
+        ]
+    )
+
+
+def _loop(lines: list[str]) -> list[str]:
+    return ["    EACH_OF_EIGHTS {", *(f"        {line}" for line in lines), "    }"]
+
+
+def _numbers(operation: str, operands: list[str], conditions: set[str]) -> list[str]:
+    """A number of each condition among arithmetic's operands, without leaving floating point."""
+    if operation not in ARITHMETIC:
+        return operands
+    return [f"({x} ? 1.0 : 0.0)" if x in conditions else x for x in operands]
+
+
+def _pointers(program: Program) -> list[str]:
+    columns = [f"COLUMN({column})" for column in program.columns]
+    results = [f"RESULT_AT({name}, {place})" for place, name in enumerate(ALL)]
+    return [
+        line.replace("~", " ")
+        for line in textwrap.wrap(" ".join([*columns, *results]).replace(", ", ",~"), 92)
+    ]
+
+
+def _lines(program: Program) -> tuple[list[str], list[str], list[str]]:
+    """The arrays of sines and cosines, the lines that fill them, and all others. In a loop of their
+    own they take a tenth less of the six velocities' time: a processor has several scenes of a
+    short loop in work at once, of one as long as a body hardly two."""
+    values = {place: f"{column}[i]" for place, column in enumerate(program.columns)}
+    first, conditions = len(values), set[str]()
+    for place, scalar in enumerate(program.scalars, program.moving):
+        assert isinstance(scalar, float)
+        values[place] = "INFINITY" if math.isinf(scalar) else scalar.hex()
+    sines: list[str] = []
+    angles: dict[str, None] = {}
+    lines: dict[str, None] = {}
+    line_of: dict[str, str] = {}
+    operands_of: dict[str, list[str]] = {}
+
+    def move(value: str) -> None:
+        """Compute a value among the angles."""
+        for operand in operands_of.get(value, ()):
+            move(operand)
+        if value in line_of:
+            lines.pop(line_of[value], None)
+            angles[line_of[value]] = None
+
+    for number, (operation, places) in enumerate(program.steps):
+        if operation == "SINE_AND_COSINE":
+            angle, sine, cosine = places
+            source = values[angle]
+            move(source)
+            sines += [f"s{number}", f"c{number}"]
+            values[sine], values[cosine] = f"s{number}[i]", f"c{number}[i]"
+            angles[f"SINE_AND_COSINE({source}, {values[sine]}, {values[cosine]});"] = None
+            continue
+        *operands, to = places
+        texts = [values[place] for place in operands]
+        formula = f"{operation}({', '.join(_numbers(operation, texts, conditions))})"
+        if operation == "PRODUCT_PLUS" and texts[0] in conditions:  # that number, or 0
+            product, rest = f"({texts[0]} ? {texts[1]} : 0.0)", texts[2:]
+            formula = f"ADD({product}, {_numbers('ADD', rest, conditions)[0]})"
+        if operation in ("RESULT", "RESULT_OR_INFINITE", "BITS"):
+            result = to - first
+            keeps = formula if operation != "BITS" else texts[0]
+            lines[f"if (wanted >> {result} & 1) to_{ALL[result]}[i] = {keeps};"] = None
+        else:
+            kind = "int64_t" if operation in CONDITIONS else "double"
+            values[to] = name = f"v{number}"
+            if operation in CONDITIONS:
+                conditions.add(name)
+            line_of[name], operands_of[name] = f"{kind} {name} = {formula};", texts
+            lines[line_of[name]] = None
+    return sines, list(angles), list(lines)
+
+
+if __name__ == "__main__":
+    print(text(), end="")
