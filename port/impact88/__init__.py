@@ -33,9 +33,7 @@ Today's work, in double precision
 Each is imported on first use: running the 1988 program does not pay for numpy.
 """
 
-import sys
 from importlib import import_module
-from types import ModuleType
 
 from .version import __version__
 
@@ -108,18 +106,6 @@ _LAZY = {
 table against the imports above."""
 
 __all__ = [*_LAZY, "__version__"]
-
-
-class _Package(ModuleType):
-    """This package: ``impact88.replay`` stays the function when the room of that name is imported.
-    Python would bind the name to the module once anything imports it."""
-
-    def __setattr__(self, name: str, value: object) -> None:
-        if not (isinstance(value, ModuleType) and _LAZY.get(name)):
-            super().__setattr__(name, value)
-
-
-sys.modules[__name__].__class__ = _Package
 
 
 if not TYPE_CHECKING:  # a checker that saw it would take any name for a public one

@@ -18,7 +18,7 @@ from typing import Any
 import desk_browser
 import pytest
 from desk_browser import until
-from test_units_everywhere import texts
+from unitscenes import texts
 
 from impact88.commands.cli import main
 from impact88.comparison.vectors import scenes

@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from captures import ROOT
 
+import impact88
+
 PACKAGE = ROOT / "port" / "impact88"
 
 
@@ -52,6 +54,37 @@ def test_no_room_is_both_above_and_below_another() -> None:
         list(TopologicalSorter(graph).static_order())
     except CycleError as error:
         pytest.fail(" -> ".join(error.args[1]))
+
+
+def package_of(name: str) -> str:
+    """The package that a module is in; a package is in itself."""
+    return name if FILES[name].name == "__init__.py" else name.rpartition(".")[0]
+
+
+def test_no_package_imports_another_that_imports_it() -> None:
+    """Imports within functions count: what is imported on first use is needed as well."""
+    graph: dict[str, set[str]] = {}
+    for name, modules in rooms().items():
+        own = package_of(name)
+        packages = {package_of(module) for module in modules} - {own, "impact88"}
+        if own != "impact88":
+            graph.setdefault(own, set()).update(packages)
+    try:
+        list(TopologicalSorter(graph).static_order())
+    except CycleError as error:
+        pytest.fail(" -> ".join(error.args[1]))
+
+
+MAX_BOXES = 24  # folders and modules at the root: what a reader takes in at a glance
+
+
+def test_the_root_is_a_table_of_contents() -> None:
+    """A package is found from the question, and none has the name of a public function."""
+    boxes = {name.split(".")[1] for name in FILES if "." in name} - {"__main__"}
+    assert len(boxes) <= MAX_BOXES, sorted(boxes)
+    public = {name for name in impact88.__all__ if callable(getattr(impact88, name))}
+    packages = {name.rpartition(".")[2] for name in FILES if FILES[name].name == "__init__.py"}
+    assert not packages & public
 
 
 MACHINE = ("impact88.applesoft", "impact88.emulator")
@@ -112,7 +145,12 @@ def needed(name: str) -> set[str]:
     return seen
 
 
-GROUND = {f"impact88.{name}" for name in ("names", "fields", "doubles", "errors")}
+GROUND = {
+    "impact88.names",
+    "impact88.errors",
+    "impact88.collision.fields",
+    "impact88.collision.doubles",
+}
 """Tables of names and fields, decimal text to double, and the error users are shown."""
 FAITHFUL = {"impact88.program.listing", "impact88.program.arithmetics"}
 

@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from unitscenes import SCENE, texts
 
-from impact88.collision.units import SYSTEMS, shown_text, size_of
+from impact88.collision.units import SYSTEMS, size_of
 from impact88.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_STATE, quantity
@@ -20,9 +21,6 @@ from impact88.program.scene import sample
 
 Amounts = dict[str, float]
 """By what it is called: values in m, kg, s, degrees and rad/s."""
-METRES = {"MA": "1500", "MB": "1100", "IA": "2500", "IB": "1500", "DA": "1.9", "DB": "1.4"}
-SPEEDS = {"UX": "-12", "UY": "1", "WA": "0.2", "VX": "6", "VY": "9", "WB": "-0.1"}
-SCENE = {**sample(1), **METRES, **SPEEDS, "GA": "-20", "MU": ".4"}
 
 
 def si(name: str, value: float, unit: str) -> float:
@@ -32,17 +30,6 @@ def si(name: str, value: float, unit: str) -> float:
     size = size_of(unit, rule) or size_of(unit.replace("-", " "), rule)
     assert size is not None, (name, unit)
     return value * float(size[0])
-
-
-def texts(system: str, values: Mapping[str, str] = SCENE) -> dict[str, str]:
-    """The values as bare numbers of a system."""
-    shown = SYSTEMS[system]
-    result = {}
-    for name, text in values.items():
-        base = float(text) / float(shown.scale(quantity(name).unit))
-        plain = quantity(name).unit in ("1", "degree")
-        result[name] = text if plain else shown_text(name, repr(base), shown)
-    return result
 
 
 def toml(system: str, **more: str) -> str:

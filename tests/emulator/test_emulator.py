@@ -6,32 +6,11 @@ import os
 
 import captures
 import pytest
+from emulation import FUZZ, PROGRAMS
 
 from impact88.program import emulated
 from impact88.qualification.captured import left_behind, session
 
-NOT_FOLLOWED = {
-    "fresh_list_451": "graphics",
-    "fresh_list_489": "graphics",
-    "fresh_list_491": "tape and shapes",
-    "fresh_list_495": "graphics",
-    "known_PEEK_ROM": "the bytes of the ROM, which are not ours to give",
-    "known__U": "the key came to that ROM behind its cursor's blink: control-U took the cursor",
-}
-"""Captured corners that are not done here, and why."""
-
-PROGRAMS = [
-    path
-    for part in ("programs", "corners/programs")
-    for path in sorted((captures.folder() / part).glob("*.bas"))
-    if path.stem not in NOT_FOLLOWED
-]
-FUZZ = [
-    case
-    for name in ("fuzz", "corners/fuzz", "corners/witnessed")
-    if (captures.folder() / f"{name}.jsonl.gz").exists()
-    for case in captures.jsonl(name)
-]
 SCENES = captures.scenes()[:: 1 if "IMPACT88_CAPTURES" in os.environ else 3]
 """The port replays the others, and is compared with the emulator line by line."""
 

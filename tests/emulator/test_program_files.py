@@ -10,10 +10,10 @@ from typing import Any
 
 import captures
 import pytest
+from emulation import FUZZ, PROGRAMS
 from hypothesis import example, given
 from hypothesis import strategies as st
 from installed import impact88, process
-from test_emulator_captures import FUZZ, PROGRAMS
 
 from impact88.emulator.emulator import Applesoft
 from impact88.emulator.programfile import read_program

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_solve import mixed_scenes, same
+from mixedscenes import mixed_scenes, same
 
 import impact88
 from impact88.errors import UserError

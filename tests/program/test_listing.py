@@ -220,7 +220,8 @@ assert error.line == 480 and error.printout.endswith("IN 480"), error.printout
 @pytest.mark.captures
 def test_compiled_files_alone_run_the_captures(tmp_path):
     """A package without its sources, as a freezing installer makes it."""
-    root, rooms = captures.ROOT / "port" / "impact88", {"applesoft", "checking", "program"}
+    root = captures.ROOT / "port" / "impact88"
+    rooms = {"applesoft", "collision", "messages", "program", "qualification"}
     shutil.copytree(
         root,
         tmp_path / "impact88",

@@ -7,7 +7,7 @@ from hashlib import sha256
 from html.parser import HTMLParser
 
 from installed import impact88
-from test_printout import SAMPLE
+from printouts import SAMPLE
 
 from impact88.report.casefile import report
 from impact88.report.frame import hashes

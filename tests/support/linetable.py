@@ -2,7 +2,8 @@
 
     python tests/support/linetable.py
 
-writes port/impact88/program/linetable.py anew; tests/program/test_listing.py checks that it is this one.
+writes port/impact88/program/linetable.py anew; tests/program/test_listing.py checks that it is this
+one.
 """
 
 from __future__ import annotations

@@ -11,12 +11,42 @@ from typing import Any, NamedTuple
 import captures
 
 from impact88.collision.fields import ANGLES, FIELDS
+from impact88.verification.judging.judgement import FieldCheck, Status
 from impact88.verification.reading.plaintext import decoded
 from impact88.verification.reading.printout import Printout, read_printouts
+from impact88.verification.reporting.examination import Verification
 
 SWEEP = int(os.environ.get("IMPACT88_SWEEP") or 0)
 """Set to n: every captured scene, and n changes of each; else a sample that takes seconds. A sweep
 takes minutes a test: add ``-o faulthandler_timeout=0`` to pytest's options."""
+
+SAMPLE = """\
+MA= 143.5 MB= 95.8 IA= 3728 IB= 1961
+
+DA= 7.59 DB= 3.44
+
+ PA PB TA TB GA
+ -19.8      -38.7      0      60      -30
+
+UX= -29.04 UY= 0 WA= 0 XA= -29.04 YA= 0
+
+VX= 14.52 VY= 25.15 WB= 0 XB= 14.51 YB= 25.14
+
+ E= 5E-03 MU= .911 EM= -.715
+
+INITIAL KE= 100904.929 KE LOSS= 57.47 %
+
+*****
+
+VAX= -13.263 VAY= 3.449 (XA=-8.78 YA= 15.91)
+
+VBX= -9.114 VBY= 19.982 (XB=-8.09 YB= 17.35)
+
+ WA= -1.745 WB= -.8202
+
+*****
+"""
+"""A page as an optical reader gives it."""
 
 _NUMBER = re.compile(r"-?[.0-9]+(?:E[+-][0-9]{2})?")
 _WORDS = {
@@ -31,6 +61,11 @@ _WORDS = {
     "WAF": "WA=",
     "WBF": "WB=",
 }
+
+
+def doubtful(result: Verification) -> list[FieldCheck]:
+    """The numbers that could be neither confirmed nor contradicted."""
+    return [check for check in result.fields if check.status is Status.DOUBTFUL]
 
 
 def from_bytes(data: bytes, where: str) -> list[Printout]:

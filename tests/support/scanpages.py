@@ -1,7 +1,8 @@
 """Printouts as pictures, drawn for tests: casework at random, many kinds of type, worn paper.
 
-``python tests/support/scanpages.py FOLDER COUNT [SEED [KIND ...]]`` writes COUNT pages of each of `KINDS`
-and their truth (truth.jsonl). Fonts come from Debian's packages; those not installed are left out.
+``python tests/support/scanpages.py FOLDER COUNT [SEED [KIND ...]]`` writes COUNT pages of each of
+`KINDS` and their truth (truth.jsonl). Fonts come from Debian's packages; those not installed are
+left out.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ from typing import Any
 
 import printouts
 import pytest
-from test_printout import SAMPLE
+from printouts import SAMPLE
 
 from impact88.collision.doubles import double
 from impact88.program.run import run

@@ -8,7 +8,7 @@ from collections import Counter
 
 import printouts
 import pytest
-from test_printout import SAMPLE
+from printouts import SAMPLE
 
 from impact88.verification.reading.fieldlabels import LabelState
 from impact88.verification.reading.printout import read_printouts

@@ -7,39 +7,13 @@ from itertools import zip_longest
 import captures
 import printouts
 import pytest
+from printouts import SAMPLE
 
 import impact88
 from impact88.collision.fields import ANGLES, FIELDS
 from impact88.errors import UserError
 from impact88.verification.reading.numerals import candidates
 from impact88.verification.reading.printout import read_printouts
-
-SAMPLE = """\
-MA= 143.5 MB= 95.8 IA= 3728 IB= 1961
-
-DA= 7.59 DB= 3.44
-
- PA PB TA TB GA
- -19.8      -38.7      0      60      -30
-
-UX= -29.04 UY= 0 WA= 0 XA= -29.04 YA= 0
-
-VX= 14.52 VY= 25.15 WB= 0 XB= 14.51 YB= 25.14
-
- E= 5E-03 MU= .911 EM= -.715
-
-INITIAL KE= 100904.929 KE LOSS= 57.47 %
-
-*****
-
-VAX= -13.263 VAY= 3.449 (XA=-8.78 YA= 15.91)
-
-VBX= -9.114 VBY= 19.982 (XB=-8.09 YB= 17.35)
-
- WA= -1.745 WB= -.8202
-
-*****
-"""
 
 
 def texts(printout: str) -> dict[str, str]:

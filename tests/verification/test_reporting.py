@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 from installed import impact88
-from printouts import SWEEP
-from test_printout import SAMPLE
+from printouts import SAMPLE, SWEEP
 
 from impact88.collision.doubles import double
 from impact88.program.scene import sample

@@ -13,9 +13,7 @@ from typing import Any
 import printouts
 import pytest
 from captures import ROOT
-from printouts import SWEEP
-from test_printout import SAMPLE
-from test_verify import doubtful
+from printouts import SAMPLE, SWEEP, doubtful
 
 from impact88.collision.fields import INPUTS, outcome_fields
 from impact88.errors import UserError

@@ -10,13 +10,12 @@ import numpy as np
 import printouts
 import pytest
 from installed import impact88
-from test_printout import SAMPLE
+from printouts import SAMPLE, doubtful
 
 from impact88.collision.fields import ANGLES, INPUTS, outcome_fields
 from impact88.names import SCENE
 from impact88.program.run import run
 from impact88.program.scene import sample
-from impact88.verification.judging.judgement import FieldCheck, Status
 from impact88.verification.reading.printout import read_printouts
 from impact88.verification.recovery.search import in_doubles
 from impact88.verification.recovery.typedtext import stored_and_printed, texts_that_print
@@ -31,10 +30,6 @@ def verified(text: str) -> Verification:
 
 def differing(result: Verification) -> list[str]:
     return [check.name for check in result.differing]
-
-
-def doubtful(result: Verification) -> list[FieldCheck]:
-    return [check for check in result.fields if check.status is Status.DOUBTFUL]
 
 
 # --- the captured scenes -------------------------------------------------------------------------

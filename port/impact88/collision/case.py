@@ -312,6 +312,13 @@ def kind_of(name: str, text: str) -> str:
     return "range" if is_range(words) else "value"
 
 
+def case_of(values: object) -> Case | None:
+    """Return the case that a scene was made of, whose values are in base units already; None for
+    any other mapping."""
+    case = getattr(values, "case", None)
+    return case if isinstance(case, Case) else None
+
+
 def is_share_text(text: str) -> bool:
     """Return whether a friction is a share of the critical one: "85 %", "80 .. 90 %", but not
     ".8 +- 5 %", whose percentage is its tolerance."""

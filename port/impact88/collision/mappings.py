@@ -12,8 +12,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError, quoted
-from ..program.scene import Scene
-from .case import RANGES, Case, check_mapping, is_share
+from .case import RANGES, Case, case_of, check_mapping, is_share
 from .doubles import digits, double
 
 if TYPE_CHECKING:
@@ -33,7 +32,7 @@ def in_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
 def _in_base(values: Mapping[str, Any]) -> tuple[Mapping[str, Any], str | None]:
     check_mapping(values)
     texts = {name: value for name, value in values.items() if isinstance(value, str)}
-    if isinstance(values, Scene) or not texts:
+    if case_of(values) or not texts:
         return values, None
     if "units" in texts:
         texts |= {n: repr(v).upper() for n, v in values.items() if type(v) in (int, float)}
@@ -60,7 +59,8 @@ def base_system(values: Mapping[str, Any]) -> str | None:
     none."""
     from .units import system_of
 
-    named = values.units if isinstance(values, Scene) else _in_base(values)[1]
+    case = case_of(values)
+    named = case.units if case else _in_base(values)[1]
     return None if named is None else system_of(named).base_name
 
 
@@ -144,19 +144,12 @@ def within_limits(values: Mapping[str, Any]) -> dict[str, Uncertain]:
 def texts(values: Mapping[str, Any]) -> dict[str, str]:
     """Every value as a text in base units; numbers by their shortest digits. Raises UserError."""
     check_mapping(values)
-    given = {n: v if isinstance(v, str) else _shortest(n, v) for n, v in values.items()}
+    given = {n: v if isinstance(v, str) else shortest_text(n, v) for n, v in values.items()}
     return Case(given, "values").values
 
 
-def typed(values: Mapping[str, Any]) -> Scene:
-    """A scene of such texts. Raises UserError."""
-    if isinstance(values, Scene):
-        return values
-    check_mapping(values)
-    return Scene({n: v if isinstance(v, str) else _shortest(n, v) for n, v in values.items()})
-
-
-def _shortest(name: str, value: Any) -> str:
+def shortest_text(name: str, value: Any) -> str:
+    """Return the shortest text that reads as a number. Raises UserError."""
     import numpy as np
 
     number = in_doubles(name, value)

@@ -1,6 +1,6 @@
 """Accepted forms of amounts that were written otherwise.
 
-A text that is not an amount in `collision.units`'s grammar is often one in another habit of writing:
+A text that is not an amount in the grammar of `collision.units` is often one in another habit:
 ``40-45 mph``, ``5'-10 1/2"``, ``1,78 m``. It is not read, for it may mean something else, but the
 message says how to write it. Each habit is a rule that rewrites a text; a suggestion is whatever a
 chain of rewritings reaches that the grammar accepts.

@@ -14,7 +14,8 @@ from .. import status
 from ..applesoft.operators import Real
 from ..chapter import validation
 from ..collision import doubles
-from ..collision.mappings import typed
+from ..collision.case import check_mapping
+from ..collision.mappings import shortest_text
 from ..collision.units import base_of, system_of
 from ..errors import UserError
 from ..mechanics.accuracy import errorbound
@@ -69,10 +70,10 @@ def published_tests(reference: bool = True) -> Iterator[dict[str, Any]]:
         checks.setdefault(name, []).append(own)
     tests = validation.program_scenes()
     answers = oracle(
-        [typed({"M": float(DEFAULT_M), **scene}) for scene in tests.values()], reference
+        [_scene_of({"M": float(DEFAULT_M), **scene}) for scene in tests.values()], reference
     )
     for (name, scene), whole in zip(tests.items(), answers, strict=True):
-        given = typed({"M": float(DEFAULT_M), **scene})
+        given = _scene_of({"M": float(DEFAULT_M), **scene})
         source = next(text for kind, text in validation.SOURCES.items() if name.startswith(kind))
         head = {"id": name, "source": source, "reported": checks[name]}
         yield stamped("oracle", {**head, "scene": {n: given[n] for n in SCENE}, **whole})
@@ -95,6 +96,14 @@ def _asked(text: str, head: dict[str, Any], units: str | None) -> Scene:
         if not isinstance(value, str):
             raise ValueError(f"{name} is not a number; expected a number or its decimal text")
     return _checked(Scene.from_mapping({"M": DEFAULT_M, **values}, "scene", units))
+
+
+def _scene_of(values: Mapping[str, Any]) -> Scene:
+    """Return the scene of texts and numbers, these by their shortest digits. Raises UserError."""
+    if isinstance(values, Scene):
+        return values
+    check_mapping(values)
+    return Scene({n: v if isinstance(v, str) else shortest_text(n, v) for n, v in values.items()})
 
 
 def _checked(scene: Scene) -> Scene:
@@ -137,7 +146,7 @@ def oracle(
     """
     if isinstance(scenes, Mapping) or not isinstance(scenes, Iterable):
         scenes = [scenes]
-    scenes = [_checked(typed(scene)) for scene in scenes]
+    scenes = [_checked(_scene_of(scene)) for scene in scenes]
     if not scenes:
         return []
     if reference:

@@ -1,8 +1,8 @@
 """A page as evidence: the numbers on it, and which of them a cause leaves unexplained.
 
 A cause predicts a range for each number, of one value where it says what is printed. Bits and
-limits of this room were chosen on the classes of tests/support/slippedpages.py; what doubling one does was
-seen on 37 of their pages.
+limits of this room were chosen on the classes of tests/support/slippedpages.py; what doubling one
+does was seen on 37 of their pages.
 """
 
 import math
