@@ -17,6 +17,8 @@ from impact88 import solve
 from impact88.bench.populations import POPULATIONS, scenes
 from impact88.errors import UserError
 from impact88.mechanics import native
+from impact88.mechanics.accuracy.errorbound import scales
+from impact88.mechanics.accuracy.reference import fifty_digits
 from impact88.mechanics.closedform.columns import examine, part, sources
 from impact88.mechanics.closedform.impactprograms import program_for
 from impact88.mechanics.closedform.solve import SHARED_TILE
@@ -49,6 +51,74 @@ def test_reference_case(case):
     mu = case["result"]["mu_used"]
     assert found["MUP"] == (-10 if mu is None else float(mu))
     assert found["KF"] == pytest.approx(found["KI"] * (1 - found["LOSS"] / 100), rel=1e-13)
+
+
+MAX_ERROR = 1e-9  # of each result's scale: a thousand times what the worst population rounds to
+
+
+def turning(name, count=30, seed=44):
+    """A population whose vehicles both spin before the impact."""
+    g = scenes(name, count, seed)
+    rng = np.random.default_rng(seed)
+    return {**g, "WA": rng.uniform(-3, 3, count), "WB": rng.uniform(-3, 3, count)}
+
+
+POINTS = {"M": np.full(30, 4.0)}
+PIVOTS = {"MU": np.full(30, -10.0)}
+BARRIER = {
+    **dict.fromkeys(("MB", "IB"), np.full(30, np.inf)),
+    **dict.fromkeys(("VX", "VY", "WB"), np.zeros(30)),
+}
+KINDS = {
+    "friction": {},
+    "pivots": PIVOTS,
+    "points": POINTS,
+    "point pivots": {**POINTS, **PIVOTS},
+    "barrier": BARRIER,
+    "barrier pivots": {**BARRIER, **PIVOTS},
+    "no arms": dict.fromkeys(("DA", "DB"), np.zeros(30)),
+}
+"""Kinds of scene whose formulas differ, as changes of cars that all spin."""
+
+
+def check_against_reference(g):
+    """Every result against 50 digits from the equations, which share no formula with `solve`."""
+    found = solve(g, NUMBERS)
+    count = len(g["MA"])
+    rows = [fifty_digits({name: float(g[name][i]) for name in SCENE}) for i in range(count)]
+    true = {
+        name: np.array([float(row.get(name, np.nan)) for row in rows])
+        for name in NUMBERS
+        if name != "COND"
+    }
+    for name in true:
+        missing = name != "MUC" and not np.isfinite(true[name]).any()
+        assert not missing, f"{name} has no reference: compute it in accuracy/reference.py"
+    scale = scales(g, {**found, **true})
+    tolerance = MAX_ERROR * np.fmax(1, solve(g, ["COND"])["COND"] / 1000)
+    for name, exact in true.items():
+        assert np.array_equal(np.isfinite(exact), np.isfinite(found[name])), name
+        if name in ("EESA", "EESB"):
+            # the square root of a loss that is nearly nothing has half of its digits
+            error = np.abs(found[name] ** 2 - exact**2)
+            size = 2 * scale["KI"] / g["MA" if name == "EESA" else "MB"]
+        else:
+            error, size = np.abs(found[name] - exact), scale[name]
+        wrong = error > tolerance * size
+        assert not wrong.any(), (
+            f"{name} in closedform/impact.py is not {name} in accuracy/reference.py: off by "
+            f"{np.max(error[wrong])}"
+        )
+
+
+@pytest.mark.parametrize("name", POPULATIONS)
+def test_every_result_of_every_population_is_the_reference(name):
+    check_against_reference(scenes(name, 30, 43))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_result_of_spinning_cars_is_the_reference(kind):
+    check_against_reference({**turning("casework"), **KINDS[kind]})
 
 
 def test_barrier_case():
