@@ -85,7 +85,12 @@ def test_every_data_file_matches_a_pattern_of_package_data(
             for pattern in patterns
         )
     ]
+    if package == "impact88":
+        missed = [path for path in missed if path.suffix not in (".c", ".h")]
     if package == "impact88.golden":
+        # the wheel has an archive of them, made when it is built
+        assert "programs.zip" in patterns
+        missed = [path for path in missed if path.parts[0] != "programs"]
         for_tests = [path for path in data if FOR_TESTS & set(path.parts)]
         assert set(for_tests) <= set(missed)
         missed = [path for path in missed if path not in for_tests]

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..applesoft import decimaltext, functions, real
 from ..applesoft.errorcodes import ApplesoftError
+from ..files import files_of
 
 if TYPE_CHECKING:
     from ..emulator.emulator import Applesoft
@@ -42,14 +43,14 @@ def rows(folder: Any, name: str) -> list[dict[str, Any]]:
 
 def calls(folder: Any) -> dict[str, list[list[str]]]:
     """The captured calls of the arithmetic, by file: operation, operands, extension, result."""
-    files = [file for file in _files(folder, ARITHMETIC) if file.name.endswith(".tsv.gz")]
+    files = [file for file in files_of(folder, ARITHMETIC) if file.name.endswith(".tsv.gz")]
     return {f.name.partition(".")[0]: [row.split("\t") for row in _lines(f)] for f in files}
 
 
 def programs(folder: Any) -> Iterator[tuple[str, str, dict[str, str]]]:
     """The captured programs, then the fuzz: kind, name, texts by ending."""
     found: dict[str, dict[str, str]] = {}
-    for file in _files(folder, PROGRAMS):
+    for file in files_of(folder, PROGRAMS):
         name, _, ending = file.name.rpartition(".")
         if ending in ENDINGS:
             found.setdefault(name, {})[ending] = file.read_bytes().decode("latin-1")
@@ -61,10 +62,6 @@ def programs(folder: Any) -> Iterator[tuple[str, str, dict[str, str]]]:
 
 def _lines(file: Any) -> list[str]:
     return gzip.decompress(file.read_bytes()).decode().splitlines()
-
-
-def _files(folder: Any, name: str) -> list[Any]:
-    return sorted(folder.joinpath(name).iterdir(), key=lambda file: str(file.name))
 
 
 def call(operation: str, first: str, second: str, extension: str) -> str:

@@ -14,6 +14,7 @@ from importlib import resources
 from typing import Any
 
 from ..errors import UserError, library, printable
+from ..files import files_of
 from ..mechanics import native
 from ..version import full_version
 
@@ -94,8 +95,8 @@ def capture_hashes() -> list[tuple[str, str]]:
     golden = resources.files("impact88.golden")
     files = [(name, golden.joinpath(name)) for name in ("scenes.jsonl.gz", "fuzz.jsonl.gz")]
     for folder in ("arithmetic", "programs"):
-        files += [(f"{folder}/{file.name}", file) for file in golden.joinpath(folder).iterdir()]
-    return sorted((path, sha256(f.read_bytes()).hexdigest()) for path, f in files if f.is_file())
+        files += [(f"{folder}/{file.name}", file) for file in files_of(golden, folder)]
+    return sorted((path, sha256(file.read_bytes()).hexdigest()) for path, file in files)
 
 
 def versions() -> dict[str, str]:

@@ -19,7 +19,7 @@ from ...applesoft.console import Console
 from ...collision.fields import FIELDS, outcome_fields
 from ...emulator.faults import TooManyStatements
 from ...errors import UserError
-from ...files import packaged_bytes, read_bytes, write_folder
+from ...files import files_of, packaged_bytes, read_bytes, write_folder
 from ...names import SCENE
 from ...program import emulated
 from ...program.run import run
@@ -292,7 +292,8 @@ def save(folder: str, heard: Iterable[Heard]) -> None:
             if kind != OWN:
                 index[name] = str(done["instructions"])
     if index:
-        text = captured.golden().joinpath(PROGRAMS, "index.tsv").read_text("utf-8")
+        programs = {file.name: file for file in files_of(captured.golden(), PROGRAMS)}
+        text = programs["index.tsv"].read_text("utf-8")
         heading, *rows = (line.split("\t") for line in text.splitlines())
         kept = [[*row[:-1], index[row[0]]] for row in rows if row[0] in index]
         files[os.path.join(PROGRAMS, "index.tsv")] = ["\t".join(r) + "\n" for r in (heading, *kept)]
