@@ -90,7 +90,7 @@ class TestConversion:
         for system in SYSTEMS.values():
             for rule, name in _NAMES.items():
                 value, _ = in_base({"units": system.name, name: f"12.5 {system.usual[rule]}"}, "f")
-                assert system.shown(rule, float(value[name])) == pytest.approx(12.5)
+                assert system.display_value(rule, float(value[name])) == pytest.approx(12.5)
                 assert size_of(system.usual[rule], rule)
 
 

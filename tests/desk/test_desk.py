@@ -35,7 +35,7 @@ from impact88.commands.cli import main
 from impact88.errors import UserError
 from impact88.messages import schemas
 from impact88.names import SCENE, VELOCITIES
-from impact88.program.emulated import finished, loaded
+from impact88.program.emulated import load_machine, run_machine
 from impact88.program.run import run
 from impact88.program.scene import Scene, sample
 
@@ -244,8 +244,8 @@ def test_a_published_run_is_answered_with_the_programs_own_printout(number: int,
 def test_the_screen_is_the_emulators_memory() -> None:
     for number in (1, 2, 3):
         told = collision.answer(dict(sample(number)))["screen"]
-        apple = loaded(sample(number))
-        finished(apple)
+        apple = load_machine(sample(number))
+        run_machine(apple)
         machine = apple.machine
         assert len(told) == 24
         for row, runs in enumerate(told):

@@ -18,7 +18,7 @@ from desk_browser import Page, until
 from installed import impact88 as command
 
 from impact88.desk import collision as desk_collision
-from impact88.program.emulated import finished, loaded
+from impact88.program.emulated import load_machine, run_machine
 from impact88.program.run import run
 from impact88.program.scene import sample
 
@@ -95,8 +95,8 @@ def test_the_answer_stands_first_in_the_units_chosen(collision: Page) -> None:
 
 
 def test_the_screen_holds_what_the_apples_memory_holds(collision: Page) -> None:
-    machine = loaded(sample(1))
-    finished(machine)
+    machine = load_machine(sample(1))
+    run_machine(machine)
     rows = [bytes(b & 0x7F for b in row).decode() for row in machine.screen_rows()]
     assert collision.text("collision-apple") == "".join(row + "\n" for row in rows)
     assert not collision.at("collision-apple").is_displayed()

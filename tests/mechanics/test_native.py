@@ -213,7 +213,7 @@ def test_replay_of_every_population(name):
 def test_replay_of_scenes_that_share_all_but_one(shared, monkeypatch):
     columns = texts(scenes("casework", 2500, 6))
     one = {key: values[0] for key, values in columns.items()}
-    monkeypatch.setattr(blocks, "WORTH_SHARING", 0)
+    monkeypatch.setattr(blocks, "MIN_SCENES_TO_SPECIALIZE", 0)
     compare_replays({**one, shared: columns[shared]})
 
 

@@ -13,7 +13,7 @@ from impact88 import status
 from impact88.bench.populations import POPULATIONS, scenes
 from impact88.chapter.colinear import colinear
 from impact88.chapter.staged import collisions, forward
-from impact88.collision.uncertain import fixed
+from impact88.collision.uncertain import fixed_value
 from impact88.mechanics.closedform.solve import solve
 from impact88.mechanics.outcome import outcome
 from impact88.program.scene import sample
@@ -306,7 +306,7 @@ class TestEverySolver:
         known = {n: v for n, v in {**scene, **after}.items() if n not in (*INITIAL, "MU")}
         (back,) = solve_for(known)
         assert int(outcome({**known, **back.values})["STATUS"]) == expected
-        ranges = {name: fixed(value) for name, value in known.items()}
+        ranges = {name: fixed_value(value) for name, value in known.items()}
         ranges["DA"] = status_range(scene["DA"])
         told = bounds(ranges, ["SA"], problem="reconstruction", samples=2).warnings
         assert set(told) == set(status.names(expected))

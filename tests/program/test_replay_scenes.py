@@ -128,11 +128,11 @@ def check_matrix(runs: list[dict[str, Any]]) -> None:
         pivot = bool(values["MU"].v[0] == -10)
         with np.errstate(all="ignore"):
             results = statements.run(unit, values, statements.Kind(M, pivot), matrix=True)
-        if not unit.reached(DONE)[0]:
+        if not unit.has_passed(DONE)[0]:
             continue
         for row in range(1, 7):
             for column in range(1, 8):
-                got = f"{int(results[f'A({row},{column})'].packed()[0]):010x}"
+                got = f"{int(results[f'A({row},{column})'].pack()[0]):010x}"
                 element = zero_or(run["A"]["data"][row + 7 * column])
                 if got != element:
                     wrong.append((i, run["scene"], (row, column), element, got))
@@ -380,7 +380,7 @@ def test_blocks_and_threads_change_nothing(
     scenes = read_columns(columns_of([run["scene"] for run in awkward]))
     whole = replay_scenes(scenes, threads=1)
     same(whole, replay_scenes(scenes, threads=1, block=60), scenes.size)
-    monkeypatch.setattr(blocks, "WORTH_A_THREAD", 500)
+    monkeypatch.setattr(blocks, "MIN_SCENES_PER_THREAD", 500)
     many = scenes._replace(
         values={name: np.resize(v, 1500) for name, v in scenes.values.items()},
         size=1500,
@@ -419,8 +419,7 @@ def test_stored_reals_are_taken_as_they_are(awkward: list[dict[str, Any]]) -> No
     good = [run for run in awkward if not error_of(run["printout"])][:50]
     columns = columns_of([run["scene"] for run in good])
     stored = {
-        name: from_floats(v, None, True).packed()
-        for name, v in read_columns(columns).values.items()
+        name: from_floats(v, None, True).pack() for name, v in read_columns(columns).values.items()
     }
     same(impact88.replay(columns), impact88.replay(stored), len(good))
 

@@ -50,7 +50,7 @@ def values(stored: list[str], extensions: list[str], unit: Unit) -> Reals:
 
 def shown(result: Reals, unit: Unit) -> list[str]:
     """Results as the files write them, the sign byte cut to its top bit; "zero" for any zero."""
-    packed = result.packed()  # rounds, and so may overflow
+    packed = result.pack()  # rounds, and so may overflow
     mantissas = (result.bits & (1 << 52) - 1 | 1 << 52) >> 13
     exponents = (result.bits >> 52 & 0x7FF) - 894
     return [
@@ -89,11 +89,11 @@ def rows(path: Path) -> tuple[list[str], list[str], list[str], list[str]]:
 def by_machine(operation: Callable[..., Reals], operands: list[Reals]) -> tuple[Reals, list[bool]]:
     """The operation as a program of the compiled machine, and which results it leaves to others."""
     names = ("left", "right")[: len(operands)]
-    program = compiled.traced(
+    program = compiled.trace(
         lambda _, given: {"result": operation(*given.values())}, names, frozenset(names)
     )
     columns = {name: operand.v for name, operand in zip(names, operands, strict=True)}
-    results, odd = compiled.computed(program, columns, operands[0].v.size)
+    results, odd = compiled.run_program(program, columns, operands[0].v.size)
     return from_floats(results["result"], Unit(odd.size)), odd.tolist()
 
 
@@ -119,7 +119,7 @@ def test_vectors(path: Path, both_machines: None) -> None:
         order = compare(left, right)
         assert [f"{int(x) & 0xFF:02x}" for x in order] == results
         if native.library is not None:
-            below, odd = by_machine(lambda a, b: compiled.Noted(a < b, None), [left, right])
+            below, odd = by_machine(lambda a, b: compiled.SymbolicReals(a < b, None), [left, right])
             less = [result == "01" for result in results]
             wrong = zip(below.v.tolist(), less, odd, strict=True)
             assert all(odd or got == expected for got, expected, odd in wrong)

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from impact88.collision.uncertain import Uncertain, fixed
+from impact88.collision.uncertain import Uncertain, fixed_value
 from impact88.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
 from impact88.program.scene import sample
@@ -23,7 +23,7 @@ def known_with(errors):
     """The final velocities of the first published run, each in error by so many deviations of
     1 (spins .05), three initial velocities and nothing else but the vehicles."""
     after = solve(SCENE, MEASURED)
-    known = {n: fixed(v) for n, v in SCENE.items() if n not in UNKNOWN}
+    known = {n: fixed_value(v) for n, v in SCENE.items() if n not in UNKNOWN}
     for name, error in zip(MEASURED, errors, strict=True):
         sd = 0.05 if name in ("WAF", "WBF") else 1.0
         value = float(after[name]) + error * sd

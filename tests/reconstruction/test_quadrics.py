@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from impact88.collision.uncertain import fixed
+from impact88.collision.uncertain import fixed_value
 from impact88.mechanics.closedform.solve import solve
 from impact88.mechanics.state import State
 from impact88.program.scene import sample
@@ -63,7 +63,7 @@ def test_random_starts_find_nothing_that_the_paths_do_not():
     state = State({**values, **{name: float(x) for name, x in solve(values).items()}})
     known = {n: x for n, x in values.items() if n not in ("UX", "UY", "VX", "VY", "MU")}
     known |= {name: float(state[name]) for name in ("SA", "SB", "DVA", "SBF", "MUP")}
-    exact = System({n: fixed(v) for n, v in known.items()}, adjusted=False)
+    exact = System({n: fixed_value(v) for n, v in known.items()}, adjusted=False)
     equations = quadratic_equations(exact)
     assert equations is not None
     assert equations.size == 4

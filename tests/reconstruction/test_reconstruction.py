@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from impact88.chapter.staged import collisions, fit
-from impact88.collision.uncertain import Uncertain, fixed, read
+from impact88.collision.uncertain import Uncertain, fixed_value, read
 from impact88.commands.cli import main
 from impact88.errors import UserError
 from impact88.mechanics.closedform.solve import solve
@@ -194,8 +194,8 @@ class TestLeastOfAll:
     def test_a_saddle_is_no_solution(self):
         """Of UX = 1, UY = 0 and a speed of 10, each within 1, squares are least at UX = 5.5. At
         UX = -4.5 their slope is nothing, too, but to the left and right it goes down."""
-        known = {name: fixed(value) for name, value in TABLE_3.items() if name != "MU"}
-        known |= {"MUP": fixed(0.5), "SA": normal(10.0), "UX": normal(1.0), "UY": normal(0.0)}
+        known = {name: fixed_value(value) for name, value in TABLE_3.items() if name != "MU"}
+        known |= {"MUP": fixed_value(0.5), "SA": normal(10.0), "UX": normal(1.0), "UY": normal(0.0)}
         system = System(known, adjusted=True)
 
         def solved(ux):

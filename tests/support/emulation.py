@@ -65,7 +65,7 @@ def emulator_reports(scene: Scene, text: str | None = None) -> tuple[list[Report
     """The emulator's variables after every line of the listing, and its run."""
     reports: list[Report] = []
 
-    machine = emulated.loaded(scene, dos=False, text=text)
+    machine = emulated.load_machine(scene, dos=False, text=text)
 
     def after(line: int) -> None:
         a = machine.array("A")
@@ -73,7 +73,7 @@ def emulator_reports(scene: Scene, text: str | None = None) -> tuple[list[Report
         reports.append((line, reals, a and [stored(value) for value in a["data"]]))
 
     machine.machine.after_line = after
-    return reports, emulated.finished(machine)
+    return reports, emulated.run_machine(machine)
 
 
 def first_difference(scene: Scene, text: str | None = None) -> Any:

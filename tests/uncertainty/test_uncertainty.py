@@ -12,7 +12,7 @@ import pytest
 
 from impact88.bench.populations import scenes
 from impact88.collision import uncertain
-from impact88.collision.uncertain import Uncertain, fixed, read
+from impact88.collision.uncertain import Uncertain, fixed_value, read
 from impact88.errors import UserError
 from impact88.mechanics.closedform.solve import quantities
 from impact88.mechanics.outcome import forward_model, reconstruction_model
@@ -173,7 +173,7 @@ class TestSignOfFriction:
                 )
                 for name in names
             }
-            known = {name: fixed(value) for name, value in scene.items()}
+            known = {name: fixed_value(value) for name, value in scene.items()}
             found = bounds({**known, **ranges}, OUTPUTS, samples=2).bounds
 
             low, width = (
@@ -208,7 +208,7 @@ class TestSignOfFriction:
 
     def test_every_bound_is_attained_or_approached(self):
         scene = beside_the_tie(0, 31)
-        around = {n: fixed(v) for n, v in scene.items()}
+        around = {n: fixed_value(v) for n, v in scene.items()}
         around["UY"] = Uncertain("uniform", scene["UY"], scene["UY"] - 6, scene["UY"] + 6)
         for name, bound in bounds(around, ["VAX", "MUP"], samples=2).bounds.items():
             for value, inputs in ((bound.lower, bound.at_lower), (bound.upper, bound.at_upper)):
@@ -256,7 +256,11 @@ class TestPoles:
 
 
 class TestCopula:
-    INPUTS: ClassVar = {"UX": read("1 .. 2", "UX"), "VX": read("1 .. 2", "VX"), "E": fixed(0.1)}
+    INPUTS: ClassVar = {
+        "UX": read("1 .. 2", "UX"),
+        "VX": read("1 .. 2", "VX"),
+        "E": fixed_value(0.1),
+    }
 
     def test_correlation_of_the_variates(self):
         names, root = uncertain.correlation_root({("UX", "VX"): -0.6}, self.INPUTS)
@@ -479,7 +483,7 @@ class TestRefusals:
         [
             ({"M": read("4 .. 6", "M")}, {}, "M: expected 6"),
             ({"MU": read("-12 .. 1", "MU")}, {}, "MU: a range must keep off -10"),
-            ({"XX": fixed(1)}, {}, "'XX' is not a value"),
+            ({"XX": fixed_value(1)}, {}, "'XX' is not a value"),
             ({}, {"outputs": ["FOO"]}, "'FOO' is not a result"),
             ({}, {"outputs": []}, "no result is asked for"),
             ({}, {"samples": 1}, "too few"),
@@ -487,7 +491,7 @@ class TestRefusals:
             ({}, {"quantiles": [2.0]}, "not a quantile"),
             ({}, {"problem": "sideways"}, "not a problem"),
             ({}, {"exclude": ["BAD"]}, "not a warning"),
-            ({"MA": fixed(0)}, {}, "no finite value at the nominal"),
+            ({"MA": fixed_value(0)}, {}, "no finite value at the nominal"),
         ],
     )
     def test_refuses(self, changes, options, says):
@@ -553,8 +557,8 @@ class TestReconstruction:
     @pytest.mark.parametrize(
         ("changes", "says"),
         [
-            ({"MUP": fixed(-10)}, "MUP: the pivot"),
-            ({"E": fixed(0)}, "no reconstruction at E = 0"),
+            ({"MUP": fixed_value(-10)}, "MUP: the pivot"),
+            ({"E": fixed_value(0)}, "no reconstruction at E = 0"),
             ({"E": read("-.1 .. .2", "E")}, "no reconstruction at E = 0"),
             ({"EM": read("-.5 .. 0", "EM")}, "no reconstruction at EM = 0"),
         ],
@@ -564,7 +568,7 @@ class TestReconstruction:
             bounds({**reconstruction(3, VAX="+- 1"), **changes}, problem="reconstruction")
 
     def test_point_masses_need_no_moment_coefficient(self):
-        scene = {**reconstruction(2, VAX="+- 1"), "EM": fixed(0)}
+        scene = {**reconstruction(2, VAX="+- 1"), "EM": fixed_value(0)}
         assert "WA" not in bounds(scene, problem="reconstruction", samples=10).bounds
 
 
@@ -572,7 +576,7 @@ class TestInputs:
     def test_finals_of_the_forward_solution(self):
         inputs = read_inputs(dict(sample(1)), {"VAX": "+- 1"}, "reconstruction")
         assert inputs.values["VAX"].limits(3) == pytest.approx((-14.2626557, -12.2626557))
-        assert inputs.values["VBY"] == fixed(inputs.values["VBY"].nominal)
+        assert inputs.values["VBY"] == fixed_value(inputs.values["VBY"].nominal)
         assert set(inputs.derived) == {"VAY", "VBX", "VBY", "WAF", "WBF", "MUP"}
 
     def test_friction_takes_the_sign_of_line_400(self):

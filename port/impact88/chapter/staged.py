@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..collision.geometry import Geometry, moved
+from ..collision.geometry import Geometry, resolve_contact_point
 from ..files import packaged_text
 from ..mechanics.closedform.solve import solve
 from ..mechanics.outcome import forces
@@ -400,7 +400,7 @@ def claims() -> tuple[Claim, ...]:
     def changed(c: Collision, **changes: Any) -> dict[str, Array]:
         """With Table 2's coefficients and some values changed; friction keeps the sign of Table 2,
         whatever the sliding does."""
-        scene = moved({**c.scene, **changes})
+        scene = resolve_contact_point({**c.scene, **changes})
         em = np.asarray(scene.pop("EM", c.coefficients["EM"]))
         mu = typed_friction(scene, c.coefficients["MUP"])
         return solve({**scene, "E": c.coefficients["E"], "EM": em, "MU": mu}, ("DVA", "LOSS"))

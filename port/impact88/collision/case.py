@@ -1,10 +1,9 @@
-"""A case: what a file, a published run, a form or a mapping says of a collision, resolved once.
+"""A case: the entries of a file, published run, form or mapping about one collision, resolved once.
 
-Every door (a command, the desk, a table's scene, a function for Python) takes a case and asks it
-for what it needs. A case keeps each entry's text as it was written, and is not changed:
-`Case.replaced` makes the case of the edited file, and nothing else makes another one. So
-``COMMAND FILE --set K=V`` is ``COMMAND FILE'`` where the line was edited, for every command and
-every kind of value.
+Every entry point (a command, the desk, a table's scene, a Python function) reads its values from a
+case. A case keeps the text of each entry as written and is immutable; `Case.replaced` returns the
+case of the edited file. So ``COMMAND FILE --set K=V`` gives the same result as editing that line of
+FILE, for every command and every kind of value.
 """
 
 from __future__ import annotations
@@ -24,36 +23,38 @@ if TYPE_CHECKING:
     from typing import Self
 
 VALUE_LIMIT = 70
-"""The longest value: three of them and their commas fit the 239 characters INPUT keeps."""
+"""Characters of the longest value: three with their commas fit the 239 that INPUT keeps."""
 OWN_AXES = {"A": ("CAF", "CAL"), "B": ("CBF", "CBL")}
-"""The contact point in each vehicle's own axes, in place of DA PA and DB PB."""
+"""The contact point in each vehicle's own axes, given in place of DA PA and DB PB."""
 OWN_NAMES = ("CAF", "CAL", "CBF", "CBL", "LA", "BA", "LB", "BB")
-"""What a file may have in place of values of a scene, to estimate them, or to draw by."""
+"""Entries that replace values of a scene, give sizes to estimate an inertia, or an outline."""
 SOURCE = "_source"
-"""The end of an entry that says where a value comes from: UX_source = "event data recorder"."""
+"""Suffix of an entry that says where a value comes from: UX_source = "event data recorder"."""
 RANGES = ("..", "+-", "±", "+/-", "uniform", "triangular", "normal")
-"""What marks a value known within limits."""
+"""Marks of a value known within limits."""
 ESTIMATE = "estimate"
-"""What stands for a yaw inertia that is not known (`collision.estimates`)."""
+"""The word for an unknown yaw inertia, see `collision.estimates`."""
 TOLERANCES = ("+-", "±", "+/-")
-"""What begins a tolerance around the value that stands there already."""
+"""Marks that begin a tolerance around the value already given."""
 ABOUT = ("title", "case", "correlations", "units", "axes", "headings")
-"""Entries that say something of the whole file."""
+"""Entries about the whole file."""
 _SIZES = frozenset(("LA", "BA", "LB", "BB"))
 _MOVES = ("CX", "CY")
 
 
 class Entry(namedtuple("Entry", "name text kind unit base source")):
-    """One value of a case: its ``text`` as written; the ``kind``: value, range, tolerance, share
-    (of the critical friction) or estimate; the ``unit`` it is written in, its system's for a bare
-    number, "" where there is none; ``base``: the text in base units and the listing's axes;
-    ``source``: where it comes from, in the file's words."""
+    """One value of a case.
+
+    ``text``: as written; ``kind``: "value", "range", "tolerance", "share" (a percentage of the
+    critical friction) or "estimate"; ``unit``: the unit it is written in (for a bare number that of
+    the system, "" if there is none); ``base``: the text in base units and the listing's axes;
+    ``source``: the file's note on where the value comes from."""
 
     __slots__ = ()
 
 
 class Case:
-    """What is said of a collision, see the module.
+    """The entries about one collision and the values they resolve to.
 
     Parameters
     ----------
@@ -61,32 +62,32 @@ class Case:
         The entries by name, as written: values, ``title``, ``case``, ``units``, ``axes``,
         ``headings``, ``correlations``, and NAME_source.
     source
-        What messages call the file.
+        Name of the file in messages.
     units, axes, headings
-        What holds where the texts do not say (``--units``, ``--axes``, ``--headings``).
+        Defaults for entries the texts do not have (``--units``, ``--axes``, ``--headings``).
     single
-        Take the middle of each value known within limits.
+        Use the nominal value (middle, mode or mean) of each value known within limits.
 
     Attributes
     ----------
     values : dict
-        By name, in base units and in the listing's axes, texts of numbers, of limits or of shares
-        of the critical friction; inertias estimated, the contact point as DA PA DB PB (CAF CAL CBF
-        CBL where they are known within limits), M = 6 where it is not given.
+        Texts by name, in base units and the listing's axes: numbers, ranges or percentages of the
+        critical friction. Inertias are estimated; the contact point is DA PA DB PB (CAF CAL CBF CBL
+        if those are known within limits); M defaults to 6.
     system : System
         The units and directions that values are shown in.
     estimated : dict
-        How each estimate was found.
+        The rule behind each estimate, in words.
     outlines : dict
         LA BA LB BB, in base units.
     remarks : dict
-        By name, how entries were understood, and what of them is hardly meant.
+        By name, how entries were understood, and which values are implausible.
 
     Raises
     ------
     UserError
-        For a text that is not an amount, a unit of something else, bare numbers among amounts with
-        units where no system is named, and half of what belongs together.
+        If a text is not an amount, a unit does not measure the quantity, bare numbers stand among
+        amounts with units and no system is named, or one of a pair of entries is missing.
     """
 
     def __init__(
@@ -110,32 +111,32 @@ class Case:
         self.source, self.is_single = source, single
         self._options = (units, axes, headings)
         self._places: dict[str, str] = {}
-        given = {n: t for n, t in texts.items() if t.strip() and not n.endswith(SOURCE)}
+        entries = {n: t for n, t in texts.items() if t.strip() and not n.endswith(SOURCE)}
         self.sources = {n.removesuffix(SOURCE): t for n, t in texts.items() if n.endswith(SOURCE)}
         for name in self.sources:
             if name not in texts:
                 raise UserError(f"{name}{SOURCE} is given, and {name} is not", source)
-        self.given: Mapping[str, str] = MappingProxyType(given)
-        self.title, self.case = given.get("title"), given.get("case")
-        self.correlations = given.get("correlations", "")
-        axes, headings = given.get("axes", axes), given.get("headings", headings)
+        self.given: Mapping[str, str] = MappingProxyType(entries)
+        self.title, self.case = entries.get("title"), entries.get("case")
+        self.correlations = entries.get("correlations", "")
+        axes, headings = entries.get("axes", axes), entries.get("headings", headings)
         convention = convention_named(axes, headings, source)
-        amounts = {n: t for n, t in given.items() if n not in ABOUT or n == "units"}
-        based, self.units = in_base_units(amounts, source, units)
+        amounts = {n: t for n, t in entries.items() if n not in ABOUT or n == "units"}
+        base_texts, self.units = in_base_units(amounts, source, units)
         self.system = system_of(self.units)
         if convention:
             self.system = self.system._replace(convention=convention)
         if convention:
-            based = in_listing_axes(based, self.system, source)
-        self._based: Mapping[str, str] = MappingProxyType(dict(based))
+            base_texts = in_listing_axes(base_texts, self.system, source)
+        self._based: Mapping[str, str] = MappingProxyType(dict(base_texts))
         self.estimated: dict[str, str] = {}
         self.outlines: dict[str, float] = {}
         self.remarks: dict[str, str] = {}
-        self.values = {**based, "M": based.get("M", DEFAULT_M)}
+        self.values = {**base_texts, "M": base_texts.get("M", DEFAULT_M)}
         self._resolve()
 
     def _resolve(self) -> None:
-        """Take middles, estimate inertias, and place the contact point."""
+        """Replace ranges if asked, estimate inertias, and compute DA PA DB PB."""
         values, source = self.values, self.source
         uncertain = [name for name, text in values.items() if is_range(text)]
         if self.units or uncertain:
@@ -160,7 +161,7 @@ class Case:
         self._remark()
 
     def _remark(self) -> None:
-        """Add remarks on what is hardly meant."""
+        """Add remarks on implausible values."""
         from . import plausibility
 
         numbers: dict[str, float] = {}
@@ -170,12 +171,12 @@ class Case:
             elif is_range(text) and not self.is_single:
                 from .units import nominal
 
-                with suppress(ValueError):  # whoever reads the entry says what is wrong
+                with suppress(ValueError):  # reported by the code that reads the entry
                     numbers[name] = double(nominal(name, text, self.source))
-        found = plausibility.remarks(numbers, self.given, self.system, self.outlines)
-        for name, text in found.items():
-            known = self.remarks.get(name)
-            self.remarks[name] = f"{known}; {text}" if known else text
+        new_remarks = plausibility.remarks(numbers, self.given, self.system, self.outlines)
+        for name, text in new_remarks.items():
+            earlier = self.remarks.get(name)
+            self.remarks[name] = f"{earlier}; {text}" if earlier else text
 
     def __repr__(self) -> str:
         return f"Case({dict(self.texts)!r}, {self.source!r})"
@@ -199,9 +200,9 @@ class Case:
     def _unit(self, name: str, text: str) -> str:
         from .units import units_in
 
-        written = [unit for unit, _ in units_in(name, text)]
+        units = [unit for unit, _ in units_in(name, text)]
         try:
-            return written[0] if written else self.system.unit(name)
+            return units[0] if units else self.system.unit(name)
         except KeyError:
             return ""
 
@@ -211,14 +212,14 @@ class Case:
         Parameters
         ----------
         changes
-            Name -> text as a file may have it; an empty text takes the entry out; one that begins
-            with ``+-`` is around the value that stands there.
+            New text by name, as in a file. An empty text removes the entry; one that begins with
+            ``+-`` puts a tolerance around the present value.
         where
-            What messages call the changes, such as ``--set``.
+            Name of the changes in messages, such as ``--set``.
         """
         from .units import middle_of, units_in
 
-        texts, typed = dict(self.texts), {}
+        texts, new_texts = dict(self.texts), {}
         for name, text in changes.items():
             if isinstance(text, str) and text.strip().startswith(TOLERANCES):
                 before = self.given.get(name) or ("0" if name in _MOVES else "")
@@ -226,24 +227,24 @@ class Case:
                 if middle and units_in(name, text) and not units_in(name, middle):
                     middle += f" {self.system.unit(name)}"
                 text = f"{middle} {text.strip()}".strip()
-            typed[name] = text
+            new_texts[name] = text
             texts.pop(name + SOURCE, None)
             if isinstance(text, str) and not text.strip():
                 texts.pop(name, None)
             else:
                 texts[name] = text
         place = where or self.source
-        amounts = {n: t for n, t in typed.items() if n not in ABOUT and not n.endswith(SOURCE)}
+        amounts = {n: t for n, t in new_texts.items() if n not in ABOUT and not n.endswith(SOURCE)}
         for name, text in amounts.items():
             if not isinstance(text, str):
                 raise UserError(f"{name} is {text!r}; expected the number's text", place)
         in_base_units(amounts, place, texts.get("units") or self.units)
-        return self._edited(texts, {**self._places, **dict.fromkeys(typed, place)})
+        return self._with_texts(texts, {**self._places, **dict.fromkeys(new_texts, place)})
 
-    def _edited(
+    def _with_texts(
         self, texts: Mapping[str, str], places: Mapping[str, str], single: bool | None = None
     ) -> Self:
-        """Return the case of other texts; ``places``: what messages call what was changed."""
+        """Return the case of other texts; ``places``: the origins of changed entries."""
         units, axes, headings = self._options
         single = self.is_single if single is None else single
         case = type(self)(texts, self.source, units, axes, headings, single)
@@ -251,36 +252,36 @@ class Case:
         return case
 
     def place(self, name: str) -> str:
-        """Return what messages call the place where a value was given: the file, or an option."""
+        """Return the origin of a value for messages: the file, or an option."""
         return self._places.get(name, self.source)
 
-    def noted(self, notes: Mapping[str, str]) -> Self:
-        """Return this case with notes on where values come from."""
+    def with_sources(self, notes: Mapping[str, str]) -> Self:
+        """Return this case with notes on the origin of values, by name."""
         texts = {**self.texts, **{name + SOURCE: text for name, text in notes.items()}}
-        return self._edited(texts, self._places)
+        return self._with_texts(texts, self._places)
 
     def shown_in(
         self, units: str | None, axes: str | None = None, headings: str | None = None
     ) -> Self:
-        """Return this case with its numbers rewritten in another system, other directions; what is
-        None stays. Raises UserError."""
+        """Return this case with its numbers rewritten in another system or other directions; None
+        leaves that unchanged. Raises UserError."""
         if not (units or axes or headings):
             return self
-        asked = {"units": units, "axes": axes, "headings": headings}
-        about = {name: text for name, text in asked.items() if text}
-        there = type(self)({**self.about, **about}, self.source)
-        based = {name: text for name, text in self._based.items() if is_number(text)}
-        return type(self)({**self.texts, **there.written(based), **about}, self.source)
+        options = {"units": units, "axes": axes, "headings": headings}
+        about = {name: text for name, text in options.items() if text}
+        target = type(self)({**self.about, **about}, self.source)
+        numbers = {name: text for name, text in self._based.items() if is_number(text)}
+        return type(self)({**self.texts, **target.display_texts(numbers), **about}, self.source)
 
-    def single(self) -> Self:
-        """Return this case with the middle of each value known within limits."""
+    def at_nominal(self) -> Self:
+        """Return this case with the nominal value of each value known within limits."""
         if self.is_single:
             return self
-        return self._edited(self.texts, self._places, single=True)
+        return self._with_texts(self.texts, self._places, single=True)
 
-    def written(self, values: Mapping[str, float | str]) -> dict[str, str]:
-        """Return texts as this case would have them for values in base units and the listing's
-        axes: bare numbers of its system, in its directions."""
+    def display_texts(self, values: Mapping[str, float | str]) -> dict[str, str]:
+        """Return values in base units and the listing's axes as texts of this case: bare numbers in
+        its units and directions."""
         from .units import shown_text
 
         texts = {n: v if isinstance(v, str) else repr(v).upper() for n, v in values.items()}
@@ -288,12 +289,12 @@ class Case:
 
     @property
     def named_units(self) -> str | None:
-        """The system that the file or an option names; None where it only follows from units."""
+        """The system that the file or an option names; None if it only follows from the units."""
         return self.units if "units" in self.given or self._options[0] else None
 
     @property
     def about(self) -> dict[str, str]:
-        """The entries on the whole file, options included, as a file has them."""
+        """The entries about the whole file, options included, as a file has them."""
         _, axes, headings = self._options
         options = {"units": self.named_units, "axes": axes, "headings": headings}
         texts = {name: self.given.get(name) or options.get(name) or "" for name in ABOUT}
@@ -301,7 +302,7 @@ class Case:
 
 
 def kind_of(name: str, text: str) -> str:
-    """Return what kind of entry a text is: value, range, tolerance, share or estimate."""
+    """Return the kind of an entry: "value", "range", "tolerance", "share" or "estimate"."""
     words = text.strip()
     if words.startswith(ESTIMATE):
         return ESTIMATE
@@ -313,14 +314,14 @@ def kind_of(name: str, text: str) -> str:
 
 
 def case_of(values: object) -> Case | None:
-    """Return the case that a scene was made of, whose values are in base units already; None for
-    any other mapping."""
+    """Return the case behind a `Scene`, whose values are already in base units; None for any other
+    mapping."""
     case = getattr(values, "case", None)
     return case if isinstance(case, Case) else None
 
 
 def is_share_text(text: str) -> bool:
-    """Return whether a friction is a share of the critical one: "85 %", "80 .. 90 %", but not
+    """Return True if a friction is a percentage of the critical one: "85 %", "80 .. 90 %", but not
     ".8 +- 5 %", whose percentage is its tolerance."""
     head = text
     for mark in TOLERANCES:
@@ -329,24 +330,24 @@ def is_share_text(text: str) -> bool:
 
 
 def is_share(text: object) -> bool:
-    """Whether MU is a share of the critical friction, such as ``85 %``."""
+    """Return True if MU is a single percentage of the critical friction, such as ``85 %``."""
     return isinstance(text, str) and text.endswith("%") and not is_range(text)
 
 
 def is_range(text: str) -> bool:
-    """Return whether a text is a value known within limits, estimates excepted."""
+    """Return True if a text is a value known within limits; estimates are not."""
     return any(mark in text for mark in RANGES) and not text.startswith(ESTIMATE)
 
 
 def check_mapping(values: object) -> None:
-    """Raises UserError for what is not a mapping of names, such as the name of a file."""
+    """Raise UserError unless ``values`` is a mapping with text keys."""
     if not isinstance(values, Mapping) or not all(isinstance(name, str) for name in values):
         hint = ", such as impact88.Scene.from_toml(...)" if isinstance(values, str) else ""
         raise UserError(f"{quoted(values)}: expected a mapping of names to values{hint}")
 
 
 def check_value(name: str, text: str, source: str | None) -> str:
-    """``text`` if INPUT would take it for a number; ``name`` is any table's. Raises UserError."""
+    """Return ``text`` if INPUT reads it as one number; ``name``: of any table. Raises UserError."""
     if not isinstance(text, str):
         raise UserError(f"{name} is {text!r}; expected the number's text", source)
     if not is_number(text):
@@ -363,8 +364,10 @@ def check_value(name: str, text: str, source: str | None) -> str:
 def in_base_units(
     texts: Mapping[str, str], source: str, units: str | None = None
 ) -> tuple[dict[str, str], str | None]:
-    """The texts in base units (`collision.units`), and the system's name; as they are where no
-    value, nor the entry ``units``, nor ``units`` names any. Raises UserError."""
+    """Return the texts in base units, and the name of their system.
+
+    Without any unit, ``units`` entry or ``units`` argument the texts are returned unchanged, with
+    None. Raises UserError, see `collision.units.in_base`."""
     if units is None and all(BARE.issuperset(texts[n]) for n in texts if n not in NO_AMOUNTS):
         return dict(texts), None
     from .units import in_base
@@ -373,23 +376,24 @@ def in_base_units(
 
 
 def _with_contact_point(values: dict[str, str], source: str) -> dict[str, str]:
-    """The values with DA PA or DB PB worked out from CAF CAL or CBF CBL, forward and to the left of
-    the center of gravity. Within limits they stay, for `collision.geometry.moved`."""
+    """Return the values with DA PA (DB PB) computed from CAF CAL (CBF CBL), the contact point
+    forward and to the left of the center of gravity. Ranges are left for
+    `geometry.resolve_contact_point`."""
     for vehicle, names in OWN_AXES.items():
         absent = [name for name in names if name not in values]
         if len(absent) == len(names):
             continue
         if absent:
             raise UserError(f"{absent[0]} is missing beside {' '.join(names)}", source)
-        both = [name for name in (f"D{vehicle}", f"P{vehicle}") if name in values]
-        if both:
-            raise UserError(f"{both[0]} and {names[0]} are both given; expected one pair", source)
+        polar = [name for name in (f"D{vehicle}", f"P{vehicle}") if name in values]
+        if polar:
+            raise UserError(f"{polar[0]} and {names[0]} are both given; expected one pair", source)
         if any(is_range(values[name]) for name in names):
             continue
-        forward, left = (double(check_value(name, values.pop(name), source)) for name in names)
-        distance = math.hypot(forward, left)
+        forward, leftward = (double(check_value(name, values.pop(name), source)) for name in names)
+        distance = math.hypot(forward, leftward)
         if math.isinf(distance):
             raise UserError(f"{' '.join(names)}: {BEYOND_DOUBLES}", source)
         values[f"D{vehicle}"] = repr(distance).upper()
-        values[f"P{vehicle}"] = repr(math.degrees(math.atan2(left, forward))).upper()
+        values[f"P{vehicle}"] = repr(math.degrees(math.atan2(leftward, forward))).upper()
     return values

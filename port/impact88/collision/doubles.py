@@ -1,8 +1,8 @@
 """Decimal text to double precision: the one place where a text becomes a float.
 
-What is a number is INPUT's rule (`applesoft.decimaltext.scan`): blanks anywhere, a lone sign, a
-lone point and a bare E count as zeros, letters in either case. Its value is the double nearest to
-the decimal.
+A text is a number if Applesoft's INPUT reads it as one (`applesoft.decimaltext.scan`): blanks are
+allowed anywhere; a lone sign, a lone point and a bare E count as zero; E may be in either case. The
+value is the double nearest to the decimal.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,29 +10,30 @@ from collections.abc import Mapping, Sequence
 from ..applesoft import decimaltext
 
 _PLAIN = frozenset("0123456789+-.eE")
-"""Characters of which Python's float makes a number only where INPUT makes the same one."""
+"""In texts of these characters alone, whatever Python's float accepts INPUT reads the same."""
 BARE = _PLAIN | {" "}
 """Characters of a number without a unit."""
 
 
 def read(text: str, start: int = 0) -> tuple[float, int]:
-    """The number that begins at ``start`` and where it ends, as `decimaltext.read` does it for
-    reals; infinite past the range of doubles. No number at all reads as zero."""
+    """Return the number that begins at ``start`` and the index after it, like `decimaltext.read`.
+
+    Infinite past the range of doubles; without any number the result is 0."""
     numeral = decimaltext.scan(text.upper(), start)
-    sign, whole, decimals, exponent_sign, exponent_digits, end = numeral
+    sign, integer, decimals, exponent_sign, exponent_digits, end = numeral
     exponent = exponent_sign + (exponent_digits or "0")
-    value = float(f"{whole or '0'}.{decimals or '0'}E{exponent}")
+    value = float(f"{integer or '0'}.{decimals or '0'}E{exponent}")
     return (-value if sign == "-" else value), end
 
 
 def is_number(text: str) -> bool:
-    """Whether INPUT takes the whole of ``text`` for one number."""
+    """Return True if INPUT reads the whole of ``text`` as one number."""
     return decimaltext.is_number(text.upper())
 
 
 def double(text: str) -> float:
-    """The double that the whole of ``text`` is; infinite past the range of doubles. Raises
-    ValueError for a text that INPUT would not take for one number."""
+    """Return the value of ``text``, infinite past the range of doubles. Raises ValueError if INPUT
+    would not read the whole text as one number."""
     if _PLAIN.issuperset(text):
         try:
             return float(text)
@@ -44,13 +45,13 @@ def double(text: str) -> float:
 
 
 def doubles_of(texts: Mapping[str, str]) -> dict[str, float]:
-    """`double` of each text, by name."""
+    """Return the `double` of each text, by name."""
     return {name: double(text) for name, text in texts.items()}
 
 
 def doubles(texts: Sequence[str]) -> list[float]:
-    """`double` of each of many texts. Raises ValueError if any is not a number, TypeError if any is
-    not text."""
+    """Return the `double` of each text, fast for many. Raises ValueError if one is not a number and
+    TypeError if one is not text."""
     if _PLAIN.issuperset("".join(texts)):
         try:
             return list(map(float, texts))
@@ -60,5 +61,5 @@ def doubles(texts: Sequence[str]) -> list[float]:
 
 
 def digits(value: float) -> str:
-    """The fewest digits that read back to a float, as INPUT takes them."""
+    """Return the shortest text that INPUT reads back as ``value``."""
     return repr(value).removesuffix(".0").upper()

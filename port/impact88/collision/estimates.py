@@ -1,19 +1,20 @@
-"""Yaw inertia where none is known, estimated from the weight, or from mass, length and width.
+"""Estimates of an unknown yaw inertia, from the weight, or from mass, length and width.
 
-``IA = "estimate"`` (``"estimate +- 15%"`` where tolerances are taken) stands for one of two
-estimates, and the result is marked as one:
+``IA = "estimate"`` (``"estimate +- 15%"`` where tolerances are accepted) selects one of two
+estimates, and the value is marked as estimated:
 
-- with the vehicle's length and width given as LA BA (LB BB), a uniform rectangle's, m (L² + W²)/12.
-  Cars carry less of their mass at the corners than a rectangle does: expect it 5 to 20 % high (6
-  to 14 % on seven vehicles that were crash tested).
-- from the weight alone, the straight line fitted to passenger cars that NHTSA measured: 1.03 W -
-  1206 in lb-ft-s², W in lb (Garrott, Monk and Chrstos, "Vehicle Inertial Parameters - Measured
-  Values and Approximations", SAE paper 881767, 1988; its two numbers as later texts quote them, the
-  paper itself was not at hand). Beside the 22 inertias of the chapter's Table 1, assigned by class
-  of size, it is 13 % low to 37 % high; on the seven 6 to 29 % high. Of sport utilities and light
-  trucks it is highest; outside `CARS` it is refused.
+- with the vehicle's length and width given as LA BA (LB BB), that of a uniform rectangle,
+  m (L² + W²)/12. Cars carry less of their mass at the corners than a rectangle does: expect it 5 to
+  20 % high (6 to 14 % on seven crash-tested vehicles).
+- from the weight alone, a line fitted to passenger cars measured by NHTSA: 1.03 W - 1206 in
+  lb-ft-s², W in lb (Garrott, Monk and Chrstos, "Vehicle Inertial Parameters - Measured Values and
+  Approximations", SAE paper 881767, 1988; both numbers as later texts quote them, the paper itself
+  was not at hand). Compared with the 22 inertias of the chapter's Table 1, assigned by size class,
+  it is 13 % low to 37 % high; on the seven crash-tested vehicles 6 to 29 % high, most for sport
+  utilities and light trucks. Outside `CARS` it is refused.
 
-Beside a known inertia LA BA are the outline that is drawn. A weight needs no estimate of its mass.
+With a known inertia LA BA are only the outline that is drawn. The mass is never estimated: it
+follows from the weight.
 """
 
 from collections.abc import Mapping
@@ -25,59 +26,60 @@ from .doubles import digits, double
 from .units import INERTIA, MASS, SYMBOLS, SYSTEMS, System, nominal
 
 WORD = "estimate"
-"""What stands in a file for an inertia that is not known."""
+"""The word in a file for an unknown inertia."""
 CARS = (1500, 6000)
-"""Weights in lb between which the line from the weight is used."""
+"""Range of weights in lb in which the line from the weight is used."""
 SIZES = {"A": ("LA", "BA"), "B": ("LB", "BB")}
 """Length and width of each vehicle."""
-_SLOPE, _OFFSET = 1.03, 1206
-"""Of the line from the weight, as published."""
+_SLOPE = 1.03  # ft-s2 per lb of weight, as published
+_OFFSET = 1206  # lb-ft-s2, as published
 
 
 def with_estimates(
     texts: Mapping[str, str], source: str, units: str | None
 ) -> tuple[dict[str, str], dict[str, str], dict[str, float]]:
-    """The texts with estimates of IA and IB where they are asked for, without LA BA LB BB; for each
-    estimated name how it was found; and the vehicles' sizes that were given. ``texts``: by name, in
-    base units; ``units``: the name of their system, None if it is not known. An estimate has four
-    digits. Beside a known inertia a size is the vehicle's outline and no more. Raises UserError
-    where the mass, one of two sizes or the system is missing, and for a weight that is no car's."""
-    values, how, outlines = dict(texts), {}, {}
+    """Return the texts with IA and IB estimated where asked for and without LA BA LB BB; the rule
+    used for each estimate, by name; and the vehicles' sizes.
+
+    ``texts``: by name, in base units; ``units``: the name of their system, None if unknown. An
+    estimate has four digits. A size given with a known inertia is only the vehicle's outline.
+    Raises UserError if the mass, one of two sizes or the system is missing, or if the weight is not
+    that of a passenger car."""
+    values, rules, outlines = dict(texts), {}, {}
     for vehicle, sizes in SIZES.items():
-        name, given = f"I{vehicle}", [size for size in sizes if size in values]
+        name, sizes_given = f"I{vehicle}", [size for size in sizes if size in values]
         text = values.get(name, "")
-        if given and len(given) < len(sizes):
+        if sizes_given and len(sizes_given) < len(sizes):
             absent = next(size for size in sizes if size not in values)
-            raise UserError(f"{absent} is missing beside {given[0]}", source)
-        for size in given:
+            raise UserError(f"{absent} is missing beside {sizes_given[0]}", source)
+        for size in sizes_given:
             outlines[size] = _number(values.pop(size), size, f"the outline of {vehicle}", source)
-        if (text or not given) and text.partition(" ")[0] != WORD:
+        if (text or not sizes_given) and text.partition(" ")[0] != WORD:
             continue
         mass = _number(values.get(f"M{vehicle}", ""), f"M{vehicle}", name, source)
-        if given:
+        if sizes_given:
             length, width = (outlines[size] for size in sizes)
             inertia = mass * (length**2 + width**2) / 12
-            how[name] = (
+            rules[name] = (
                 f"M{vehicle} ({sizes[0]}² + {sizes[1]}²)/12, a uniform rectangle{_bias(6, 14)}"
             )
         else:
-            inertia = _of_weight(mass, name, source, units)
-            how[name] = f"1.03 W - 1206 for passenger cars, from the weight alone{_bias(6, 29)}"
+            inertia = _inertia_from_weight(mass, name, source, units)
+            rules[name] = f"1.03 W - 1206 for passenger cars, from the weight alone{_bias(6, 29)}"
         values[name] = digits(float(f"{inertia:.4g}")) + text.removeprefix(WORD)
-    return values, how, outlines
+    return values, rules, outlines
 
 
 def _bias(least: int, most: int) -> str:
-    """Return how far a rule lay above the yaw inertias of seven vehicles that were crash tested,
-    the sport utilities farthest."""
+    """Return in words by how much a rule exceeds the measured inertias of seven tested vehicles."""
     return f"; {least} to {most} % high on seven tested vehicles, sport utilities most"
 
 
 def rule_of(
     vehicle: str, mass: float, outlines: Mapping[str, float], system: System
 ) -> float | None:
-    """Return the yaw inertia that the rules give a vehicle of that mass, in base units; None where
-    neither its size is known nor its weight is a car's."""
+    """Return the estimated yaw inertia of a vehicle of this mass, in base units; None if its size
+    is unknown and its weight is not that of a passenger car."""
     if not 0 < mass < inf:
         return None
     length, width = (outlines.get(size) for size in SIZES[vehicle])
@@ -90,25 +92,26 @@ def rule_of(
 
 
 def weight_line(mass: Any, system: System) -> tuple[Any, Any]:
-    """Return the weight in lb, and the inertia that the line from it gives, in base units; of an
-    array as well as of a number. The line is for `CARS`."""
+    """Return the weight in lb and the inertia 1.03 W - 1206, in base units; ``mass`` may be an
+    array. Valid for weights within `CARS`."""
     weight = mass * float(system.scale(MASS) / SYMBOLS["lb"][1])
     scale = float(SYSTEMS["us"].scale(INERTIA) / system.scale(INERTIA))
     return weight, (_SLOPE * weight - _OFFSET) * scale
 
 
-def _number(text: str, name: str, wanted: str, source: str) -> float:
-    """The value, or the middle of one known within limits."""
+def _number(text: str, name: str, purpose: str, source: str) -> float:
+    """Return the value, or the middle of a range. Raises UserError unless it is above 0."""
     try:
         value = double(nominal(name, text, source))
     except ValueError:
         value = 0.0
     if not 0 < value < inf:
-        raise UserError(f"{wanted} needs a number above 0 for {name}", source)
+        raise UserError(f"{purpose} needs a number above 0 for {name}", source)
     return value
 
 
-def _of_weight(mass: float, name: str, source: str, units: str | None) -> float:
+def _inertia_from_weight(mass: float, name: str, source: str, units: str | None) -> float:
+    """Return 1.03 W - 1206 in base units. Raises UserError outside `CARS` or without units."""
     if units is None:
         raise UserError(
             f'{name} is to be estimated from the weight; expected units = "us" (or metric, si, '

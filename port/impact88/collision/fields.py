@@ -1,7 +1,7 @@
-"""The one table of the printed fields: what lines 620 to 760 print, in the order they print it.
+"""The table of printed fields: the numbers that lines 620 to 760 print, in order.
 
-Reading a printout, replaying one over arrays, comparing and qualifying all take a field's line,
-places and kind from here.
+Reading, replaying, comparing and qualifying printouts all take a field's line, decimal places and
+kind from here.
 """
 
 import re
@@ -9,8 +9,8 @@ from collections import namedtuple
 
 
 class Field(namedtuple("Field", ("name", "line", "places"))):
-    """One printed number: its name in the project's table, the listing line that prints it, and
-    the decimal places it is floored to (None: printed in full)."""
+    """One printed number: its name in `names`, the listing line that prints it, and the decimal
+    places it is floored to (None: printed in full)."""
 
     __slots__ = ()
 
@@ -36,25 +36,25 @@ FIELDS: dict[str, Field] = {
     )
     for name in names.split()
 }
-"""The printed numbers in the order they are printed."""
+"""The printed numbers, in printing order."""
 
 ANGLES = tuple(name for name, field in FIELDS.items() if field.line == 650)
 """The angles, in the order of line 650; typed and printed in degrees."""
 INPUTS = tuple(name for name, field in FIELDS.items() if field.places is None and name != "KI")
-"""Fields that print what was put in; MUP is MU after line 400."""
+"""Fields that print an input; MUP is MU after line 400."""
 
 
 def scene_name(name: str) -> str:
-    """The scene's value that a printed input stands for."""
+    """Return the scene's name of a printed input: MU for MUP, else the name itself."""
     return "MU" if name == "MUP" else name
 
 
 REPLIES = {"A": ("UX", "UY", "WA"), "B": ("VX", "VY", "WB")}
-"""What the prompts of lines 200 and 220 ask for."""
+"""Values that the prompts of lines 200 and 220 ask for, by vehicle."""
 FINAL_SPINS = tuple(name for name, field in FIELDS.items() if field.line == 760)
-"""What line 750 leaves out unless M = N."""
+"""Fields that line 750 skips unless M = N."""
 ZERO_DETERMINANT = "ZERO DETERMINANT"
-"""What line 1160 prints in place of results."""
+"""The text that line 1160 prints in place of results."""
 
 _LABELS = {
     "MUP": "MU=",
@@ -62,24 +62,26 @@ _LABELS = {
     "LOSS": "KE LOSS=",
     **{name: f"{name[:-1]}=" for name in ("XAF", "YAF", "XBF", "YBF", *FINAL_SPINS)},
 }
-"""Labels that are not the field's name."""
+"""Labels that differ from the field's name."""
 _VALUE = r"[^ )\n\0\a?][^ )\n\0\a]*"
 
 
 def label(name: str) -> str:
-    """What is printed before a field, ``MA=``; the angles share one heading."""
+    """Return the text printed before a field, such as ``MA=``; the angles share one heading."""
     return "PA PB TA TB GA" if name in ANGLES else _LABELS.get(name, f"{name}=")
 
 
 def outcome_fields(printed: str) -> dict[str, str]:
-    """The fields of what one run printed, by name, as far as it got; none where it stopped before
-    printing any. For the program's own output, whose layout is known to the last blank."""
-    found: dict[str, str] = {}
+    """Return the fields that one run printed, by name; empty if it stopped before the first.
+
+    For the program's own output, whose layout is known to the last blank; old printouts are read by
+    `verification.reading`."""
+    texts: dict[str, str] = {}
     place = printed.find("MA= ")
     for name in FIELDS if place >= 0 else ():
         before = "" if name in ANGLES[1:] else f".*?{re.escape(label(name))}"
         value = re.compile(f"(?>{before}[ \n]*)({_VALUE})", re.DOTALL).match(printed, place)
         if value is None:
             break
-        found[name], place = value[1], value.end()
-    return found
+        texts[name], place = value[1], value.end()
+    return texts

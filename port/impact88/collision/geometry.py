@@ -1,14 +1,15 @@
-"""Where and how two vehicles touch: lever arms and inverse inertias, over arrays.
+"""Geometry of the contact: lever arms and inverse inertias of two vehicles, over arrays.
 
 The contact plane makes the angle Γ with the y axis; n = (cos Γ, sin Γ) is normal to it, t =
 (-sin Γ, cos Γ) lies in it. The contact point is at (-d4, -d3) from A's center of gravity and at
 (d2, d1) from B's, so A is on the +n side. The impulse (P_n, P_t) and moment impulse M act on A,
-their opposites on B. Masses appear inverted only: a rigid barrier is nothing special.
+their opposites on B. Masses appear only as inverses, so a rigid barrier needs no special case.
 
 DA PA and DB PB are the contact point's polar coordinates in each vehicle, from its front: B's
 contact point lies at the angle θ_b + φ_b from its center of gravity, so B faces θ_b; A's lies at
-θ_a + φ_a + 180°, so A faces θ_a + 180°. One point has four numbers there, so a move of it changes
-all four together: varied apart they tear it in two.
+θ_a + φ_a + 180°, so A faces θ_a + 180°. The one contact point
+has four coordinates there, so moving it changes all four: varied independently they would describe
+two different points.
 """
 
 import math
@@ -29,34 +30,36 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 GEOMETRY = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
-"""The values of a scene that make its geometry; M (6 or 4) is optional."""
+"""The values of a scene that define its geometry; M (6 or 4) is optional."""
 _POINT_MASS = dict.fromkeys(GEOMETRY[:2] + GEOMETRY[3:7], 0.0) | {"IA": 1.0, "IB": 1.0}
-"""What a point mass does not look at, and may be left out where M is 4 throughout."""
+"""Values a point mass does not use, which may be omitted if M is 4 throughout."""
 
 
 def within_doubles(function: Callable[P, R]) -> Callable[P, R]:
-    """``function`` without numpy's warnings: what lies beyond the range of doubles is said in words
-    at the end. A matrix that is not finite, and so has no decomposition, is a UserError."""
+    """Return ``function`` with numpy's warnings silenced and LinAlgError turned into UserError.
+
+    Callers check results for values beyond the range of doubles; only a matrix that is not finite,
+    and so has no decomposition, fails here."""
 
     @wraps(function)
-    def quiet(*arguments: P.args, **options: P.kwargs) -> R:
+    def silenced(*arguments: P.args, **options: P.kwargs) -> R:
         with np.errstate(all="ignore"):
             try:
                 return function(*arguments, **options)
             except np.linalg.LinAlgError:
                 raise UserError(BEYOND_DOUBLES) from None
 
-    return quiet
+    return silenced
 
 
 def _numbers(value: Any) -> Array:
-    """Doubles; complex ones stay, whose imaginary part carries a derivative (`adjustment`)."""
+    """Return values as float64; complex ones, which carry a derivative, are kept (`adjustment`)."""
     array = np.asarray(value)
     return array if np.iscomplexobj(array) else array.astype(np.float64, copy=False)
 
 
 def sin_cos(degrees: Any) -> tuple[Array, Array]:
-    """Sine and cosine of angles in degrees, derivatives too where they are complex."""
+    """Return sine and cosine of angles in degrees; of complex ones with their derivatives."""
     degrees = np.asarray(degrees)
     if not np.iscomplexobj(degrees):
         return real_sin_cos(degrees)
@@ -66,17 +69,37 @@ def sin_cos(degrees: Any) -> tuple[Array, Array]:
 
 
 def with_point_masses(columns: Mapping[str, Any]) -> dict[str, Any]:
-    """``columns`` with what point masses may leave out, where they are (M = 4 throughout)."""
+    """Return ``columns``, completed with the values point masses may omit if M = 4 throughout."""
     m = np.asarray(columns.get("M", 6), np.float64)
     return {**(_POINT_MASS if m.size and (m == 4).all() else {}), **columns}
 
 
 class Geometry:
-    """Of scenes given by name (`GEOMETRY`, and M where not 6), angles in degrees, as arrays that
-    broadcast: ``cosine`` and ``sine`` of Γ; ``d1`` ... ``d4`` as in listing line 330; ``an`` ``at``
-    ``bn`` ``bt``: the spins' shares in the normal and tangential velocity of A minus B at the
-    contact point; ``inverse_mass``: R = 1/m_a + 1/m_b, ``inverse_spin_inertia``: 1/Ī = 1/I_a +
-    1/I_b; ``point``: point masses (M = 4: no lever arms, nothing turns them)."""
+    """Contact geometry of scenes, as arrays that broadcast.
+
+    Parameters
+    ----------
+    columns : mapping of str to array_like
+        The values named in `GEOMETRY`, angles in degrees, and M (default 6).
+
+    Attributes
+    ----------
+    cosine, sine : ndarray
+        Of Γ, the angle of the contact plane.
+    d1, d2, d3, d4 : ndarray
+        Lever arms along x and y, as in listing line 330.
+    an, at, bn, bt : ndarray
+        Coefficients of the spins of A and B in the normal and tangential velocity of A minus B at
+        the contact point: v_n = ... + an ω_a + bn ω_b, v_t = ... + at ω_a + bt ω_b.
+    inverse_ma, inverse_mb, inverse_ia, inverse_ib : ndarray
+        1/m_a, 1/m_b, 1/I_a, 1/I_b.
+    inverse_mass : ndarray
+        R = 1/m_a + 1/m_b.
+    inverse_spin_inertia : ndarray
+        1/Ī = 1/I_a + 1/I_b.
+    point : ndarray of bool
+        True for point masses (M = 4), which have no lever arms and do not turn.
+    """
 
     def __init__(self, columns: Mapping[str, Any]) -> None:
         columns = with_point_masses(columns)
@@ -97,16 +120,17 @@ class Geometry:
         self.bt = -(self.d2 * self.cosine + self.d1 * self.sine)
 
     def relative(self, velocities: Sequence[Any]) -> tuple[Array, Array, Array]:
-        """Relative normal, tangential and angular velocity, A minus B, at the contact point; of UX
-        UY WA VX VY WB or the final velocities in that order."""
+        """Return normal, tangential and angular velocity of A minus B at the contact point.
+
+        ``velocities``: UX UY WA VX VY WB, or the final ones in that order."""
         ux, uy, wa, vx, vy, wb = velocities
         dx, dy, c, s = ux - vx, uy - vy, self.cosine, self.sine
         normal = c * dx + s * dy + self.an * wa + self.bn * wb
         return normal, c * dy - s * dx + self.at * wa + self.bt * wb, wa - wb
 
     def changes(self, pn: Any, pt: Any, moment: Any) -> list[Array]:
-        """The changes of the six velocities an impulse makes: the transpose of `relative`'s map,
-        times the inverse inertias."""
+        """Return the changes of the six velocities due to an impulse on A and its opposite on B:
+        the transpose of the map in `relative`, times the inverse inertias."""
         x, y = self.cosine * pn - self.sine * pt, self.sine * pn + self.cosine * pt
         on_a, on_b = self.an * pn + self.at * pt + moment, self.bn * pn + self.bt * pt - moment
         a, b = self.inverse_ma, self.inverse_mb
@@ -116,41 +140,44 @@ class Geometry:
 # -- in a vehicle's own axes
 
 MOVES = ("CX", "CY")
-"""How far the contact point moves along the scene's x and y."""
+"""Displacements of the contact point along the scene's x and y."""
 
 
 def facing(vehicle: str, theta: Any) -> Any:
-    """The direction (degrees from the x axis) a vehicle's front points to."""
+    """Return the direction of a vehicle's front, in degrees from the x axis."""
     return np.asarray(theta) + (180.0 if vehicle == "A" else 0.0)
 
 
 def clock(pdof: float) -> str:
-    """A PDOF as the nearest hour of the clock: 12 o'clock is the front, 3 o'clock the right."""
+    """Return a PDOF as the nearest clock hour: 12 o'clock is the front, 3 o'clock the right."""
     return f"{round(pdof / 30) % 12 or 12} o'clock"
 
 
-def placed(names: Iterable[str], given: Iterable[str]) -> tuple[str, ...]:
-    """``names`` with CAF CAL in place of DA PA, CBF CBL of DB PB, where those are ``given``."""
-    own: dict[str, str] = {}
+def coordinate_names(names: Iterable[str], present: Iterable[str]) -> tuple[str, ...]:
+    """Return ``names`` with CAF CAL in place of DA PA, CBF CBL of DB PB, where those are
+    ``present``."""
+    replacements: dict[str, str] = {}
     for vehicle, axes in OWN_AXES.items():
-        if set(axes) & set(given):
-            own |= dict(zip((f"D{vehicle}", f"P{vehicle}"), axes, strict=True))
-    return tuple(own.get(name, name) for name in names)
+        if set(axes) & set(present):
+            replacements |= dict(zip((f"D{vehicle}", f"P{vehicle}"), axes, strict=True))
+    return tuple(replacements.get(name, name) for name in names)
 
 
 @within_doubles
-def moved(values: Mapping[str, Any]) -> dict[str, Any]:
-    """``values`` (a scene's geometry, numbers or arrays, with CX and CY, or CAF CAL CBF CBL) with
-    DA PA DB PB of the contact point as it is moved, or given, and without those."""
-    kept = dict(values)
+def resolve_contact_point(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return ``values`` with CAF CAL CBF CBL and CX CY replaced by the DA PA DB PB they give.
+
+    ``values``: a scene's geometry, numbers or arrays. A vehicle's own coordinates (CAF forward, CAL
+    to the left) become polar ones, then the point is moved by CX and CY along the scene's axes."""
+    result = dict(values)
     for vehicle, axes in OWN_AXES.items():
-        if axes[0] in kept:
-            forward, left = (np.asarray(kept.pop(name), np.float64) for name in axes)
-            kept[f"D{vehicle}"] = np.hypot(forward, left)
-            kept[f"P{vehicle}"] = np.degrees(np.arctan2(left, forward))
-    if not set(MOVES) & set(kept):
-        return kept
-    values, kept = kept, {name: value for name, value in kept.items() if name not in MOVES}
+        if axes[0] in result:
+            forward, leftward = (np.asarray(result.pop(name), np.float64) for name in axes)
+            result[f"D{vehicle}"] = np.hypot(forward, leftward)
+            result[f"P{vehicle}"] = np.degrees(np.arctan2(leftward, forward))
+    if not set(MOVES) & set(result):
+        return result
+    values, result = result, {name: value for name, value in result.items() if name not in MOVES}
     dx, dy = (np.asarray(values.get(name, 0.0), np.float64) for name in MOVES)
     for vehicle, sign in (("A", -1.0), ("B", 1.0)):
         heading = np.asarray(values[f"T{vehicle}"], np.float64)
@@ -159,21 +186,23 @@ def moved(values: Mapping[str, Any]) -> dict[str, Any]:
         # A's polar coordinates point from the contact point to its center of gravity
         x = distance * np.cos(angle) + sign * dx
         y = distance * np.sin(angle) + sign * dy
-        kept[f"D{vehicle}"] = np.hypot(x, y)
-        kept[f"P{vehicle}"] = np.degrees(np.arctan2(y, x)) - heading
-    return kept
+        result[f"D{vehicle}"] = np.hypot(x, y)
+        result[f"P{vehicle}"] = np.degrees(np.arctan2(y, x)) - heading
+    return result
 
 
 def moved_texts(texts: Mapping[str, str], dx: float, dy: float) -> dict[str, str]:
-    """What a move of the contact point changes in a scene's texts: DA PA DB PB. Raises UserError
-    where a number of it lies beyond the range of doubles."""
+    """Return the texts of DA PA DB PB after moving the contact point by ``dx``, ``dy``. Raises
+    UserError if one of them lies beyond the range of doubles."""
     names = [kind + vehicle for vehicle in "AB" for kind in "DPT"]
-    values = moved({**{name: double(texts[name]) for name in names}, "CX": dx, "CY": dy})
-    changed = {name: float(values[name]) for name in ("DA", "PA", "DB", "PB")}
-    for name, value in changed.items():
+    values = resolve_contact_point(
+        {**{name: double(texts[name]) for name in names}, "CX": dx, "CY": dy}
+    )
+    polar = {name: float(values[name]) for name in ("DA", "PA", "DB", "PB")}
+    for name, value in polar.items():
         if not math.isfinite(value):
             raise UserError(
                 f"the contact point cannot be moved: {name} would be {value}; expected numbers "
                 "within the range of doubles"
             )
-    return {name: repr(value).upper() for name, value in changed.items()}
+    return {name: repr(value).upper() for name, value in polar.items()}

@@ -1,8 +1,8 @@
-"""What Python callers hand over: a mapping of the listing's names to texts, numbers or arrays.
+"""Values from Python callers: a mapping of the listing's names to texts, numbers or arrays.
 
-Texts are what a file may hold: numbers as INPUT reads them (`doubles`), amounts with units, ranges
+Texts are those a file may hold: numbers as INPUT reads them (`doubles`), amounts with units, ranges
 where a value may be uncertain, ``units``, ``CAF CAL``, ``"estimate"``. Every public function that
-computes in double precision reads its values here, so that one text means one thing everywhere.
+computes in double precision reads its values here, so that a text means the same everywhere.
 """
 
 from __future__ import annotations
@@ -24,12 +24,14 @@ if TYPE_CHECKING:
 
 
 def in_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The values in base units: texts are texts of numbers or of ranges afterwards. Beside the
-    entry ``units`` numbers and arrays are in that system, too. Raises UserError."""
+    """Return the values in base units; texts become texts of plain numbers or ranges.
+
+    If there is an entry ``units``, numbers and arrays are in that system, too. Raises UserError."""
     return _in_base(values)[0]
 
 
 def _in_base(values: Mapping[str, Any]) -> tuple[Mapping[str, Any], str | None]:
+    """Return `in_base` and the name of the system of units, None without units."""
     check_mapping(values)
     texts = {name: value for name, value in values.items() if isinstance(value, str)}
     if case_of(values) or not texts:
@@ -37,36 +39,37 @@ def _in_base(values: Mapping[str, Any]) -> tuple[Mapping[str, Any], str | None]:
     if "units" in texts:
         texts |= {n: repr(v).upper() for n, v in values.items() if type(v) in (int, float)}
     case = Case(texts, "values")
-    kept = {name: value for name, value in values.items() if name not in texts}
+    numbers = {name: value for name, value in values.items() if name not in texts}
     if case.units:
         from .uncertain import Uncertain
 
-        for n, v in kept.items():
+        for n, v in numbers.items():
             factor = case.system.factor(n)
-            kept[n] = v.over(factor) if isinstance(v, Uncertain) else in_doubles(n, v) / factor
-    based = dict(case.values)
-    if "M" not in texts:  # where it is needed it is 6
-        del based["M"]
-    # a blank is no number, and is refused where it is looked at
-    based |= {n: text for n, text in texts.items() if not text.strip()}
+            numbers[n] = v.over(factor) if isinstance(v, Uncertain) else in_doubles(n, v) / factor
+    base_values = dict(case.values)
+    if "M" not in texts:  # the default 6 is set where it is needed
+        del base_values["M"]
+    # a blank text is refused by the code that reads it
+    base_values |= {n: text for n, text in texts.items() if not text.strip()}
     if case.correlations:
-        based["correlations"] = case.correlations
-    return {**kept, **based}, case.units
+        base_values["correlations"] = case.correlations
+    return {**numbers, **base_values}, case.units
 
 
 def base_system(values: Mapping[str, Any]) -> str | None:
-    """Return the name of the system whose units the values have in base units; None where they name
-    none."""
+    """Return the system whose units are the base units of the values ("si" or "chapter"); None if
+    they name no system."""
     from .units import system_of
 
     case = case_of(values)
-    named = case.units if case else _in_base(values)[1]
-    return None if named is None else system_of(named).base_name
+    units = case.units if case else _in_base(values)[1]
+    return None if units is None else system_of(units).base_name
 
 
 def in_doubles(name: str, values: Any) -> Array:
-    """A value, or an array of any shape, as numbers (float64 where it held texts). Raises UserError
-    for what holds no numbers."""
+    """Return a value or an array of any shape as an array of numbers, float64 if it held texts.
+
+    Missing cells of an array are NaN. Raises UserError if it holds anything else."""
     import numpy as np
 
     if type(values) is str:
@@ -88,7 +91,7 @@ def in_doubles(name: str, values: Any) -> Array:
         return array
     if array.dtype.kind not in "USO":
         raise UserError(f"holds {array.dtype} values; expected numbers", f"column {name}")
-    # a cell that is missing is not a number; whether its row needs it is checked later
+    # a missing cell becomes NaN; whether its row needs it is checked later
     cells = [
         math.nan if cell is None and array.ndim else _double(name, cell)
         for cell in array.reshape(-1).tolist()
@@ -97,6 +100,7 @@ def in_doubles(name: str, values: Any) -> Array:
 
 
 def _double(name: str, value: Any) -> float:
+    """Return one cell as a double. Raises UserError naming its column."""
     try:
         if isinstance(value, bytes):
             value = value.decode("ascii")
@@ -106,7 +110,7 @@ def _double(name: str, value: Any) -> float:
 
 
 def columns(values: Mapping[str, Any]) -> dict[str, Array]:
-    """`in_base` and `in_doubles` of every value. Raises UserError."""
+    """Return all values in base units as arrays of numbers that broadcast. Raises UserError."""
     import numpy as np
 
     arrays = {name: in_doubles(name, value) for name, value in in_base(values).items()}
@@ -119,15 +123,15 @@ def columns(values: Mapping[str, Any]) -> dict[str, Array]:
 
 
 def within_limits(values: Mapping[str, Any]) -> dict[str, Uncertain]:
-    """Every value as a number or a range: an `Uncertain`, a number, or the text of either. Raises
-    UserError."""
+    """Return every value as an `Uncertain`: from an `Uncertain`, a number, or the text of a number
+    or range. Raises UserError."""
     import numpy as np
 
-    from .uncertain import Uncertain, fixed, read
+    from .uncertain import Uncertain, fixed_value, read
 
-    based, units = _in_base(values)
+    base_values, units = _in_base(values)
 
-    def uncertain(name: str, value: Any) -> Uncertain:
+    def to_uncertain(name: str, value: Any) -> Uncertain:
         if isinstance(value, Uncertain):
             return value
         marks = (*RANGES, "skid")
@@ -136,16 +140,17 @@ def within_limits(values: Mapping[str, Any]) -> dict[str, Uncertain]:
         number = in_doubles(name, value)
         if np.ndim(number):
             raise UserError(f"{name} is an array; expected one number or range")
-        return fixed(float(number))
+        return fixed_value(float(number))
 
-    return {name: uncertain(name, value) for name, value in based.items()}
+    return {name: to_uncertain(name, value) for name, value in base_values.items()}
 
 
 def texts(values: Mapping[str, Any]) -> dict[str, str]:
-    """Every value as a text in base units; numbers by their shortest digits. Raises UserError."""
+    """Return every value as a text in base units; numbers by their shortest text. Raises
+    UserError."""
     check_mapping(values)
-    given = {n: v if isinstance(v, str) else shortest_text(n, v) for n, v in values.items()}
-    return Case(given, "values").values
+    as_texts = {n: v if isinstance(v, str) else shortest_text(n, v) for n, v in values.items()}
+    return Case(as_texts, "values").values
 
 
 def shortest_text(name: str, value: Any) -> str:

@@ -1,6 +1,6 @@
 """Scene files: flat TOML, keyed by the listing's names, read and written.
 
-Only the raw text of a value is used, never TOML's own idea of the number.
+Values keep their raw text; TOML's parsed number is never used.
 """
 
 from __future__ import annotations
@@ -19,10 +19,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from .units import System
 
-TOML_LIMIT = 100_000
-"""Bytes of the largest scene file that is read: a bound on time; a whole scene has 2,000."""
-LONGEST_ENTRY = 2_000
-"""Characters of the longest line of a scene file; a TOML reader may be slow with long keys."""
+MAX_TOML_BYTES = 100_000  # bounds the time to read; a complete scene has 2,000
+MAX_ENTRY_LENGTH = 2_000  # characters a line; TOML parsers may be slow with long keys
 _ENTRY = r"""[ \t]*(?:([A-Za-z0-9_-]+)|"([^"]*)"|'([^']*)')[ \t]*=[ \t]*(.*)"""
 
 
@@ -37,30 +35,32 @@ def case_in(
 
 
 def toml_file(path: str) -> dict[str, str]:
-    """The entries of a flat TOML file (``-``: standard input), see `toml_texts`."""
-    return toml_texts(read_text(path, TOML_LIMIT), called(path))
+    """Return the entries of a flat TOML file (``-``: standard input), see `toml_texts`."""
+    return toml_texts(read_text(path, MAX_TOML_BYTES), called(path))
 
 
 def toml_texts(text: str, source: str) -> dict[str, str]:
-    """The entries of a flat TOML document, one a line, as texts: numbers as they stand in the file,
-    strings as what they hold, and of ``NAME = {value = ..., source = ...}`` or a table of these two
-    both. Raises UserError for anything else, naming the line."""
+    """Return the entries of a flat TOML document, one per line, as texts by name.
+
+    A number keeps its digits; a string gives its contents. ``NAME = {value = ..., source = ...}``,
+    or a table with these keys, gives NAME and NAME_source. Raises UserError for anything else,
+    naming the line."""
     texts: dict[str, str] = {}
     lines: dict[str, int] = {}
     tables: dict[str, str] = {}
     table = ""
     for number, line in enumerate(text.split("\n"), 1):
-        where = f"{source}, line {number}"
-        if len(line) > LONGEST_ENTRY:
-            message = f"has more than {LONGEST_ENTRY:,} characters; expected one value a line"
-            raise UserError(message, where)
+        place = f"{source}, line {number}"
+        if len(line) > MAX_ENTRY_LENGTH:
+            message = f"has more than {MAX_ENTRY_LENGTH:,} characters; expected one value a line"
+            raise UserError(message, place)
         if not line.strip() or line.lstrip().startswith("#"):
             continue
         if header := re.fullmatch(r"\s*\[([A-Za-z0-9_-]+)\]\s*(#.*)?", line):
             table = header[1]
             if table in lines or table in tables:
-                raise UserError(f"{table} is given twice", where)
-            tables[table] = where
+                raise UserError(f"{table} is given twice", place)
+            tables[table] = place
             continue
         if (match := re.match(_ENTRY, line)) is None:
             if re.match(r"\s*\d+ *[A-Za-z?]", line):
@@ -69,23 +69,24 @@ def toml_texts(text: str, source: str) -> dict[str, str]:
                     "take another copy of the listing as --listing",
                     source,
                 )
-            raise UserError(f"{quoted(line.strip())} is not an entry; expected NAME = VALUE", where)
+            raise UserError(f"{quoted(line.strip())} is not an entry; expected NAME = VALUE", place)
         key = match[1] or match[2] or match[3] or ""
         if table:
             if key not in ("value", "source"):
-                raise UserError(f"{table} is a table; expected a number", where)
+                raise UserError(f"{table} is a table; expected a number", place)
             key = table if key == "value" else table + SOURCE
         if key in lines:
-            raise UserError(f"{key} is given twice (first in line {lines[key]})", where)
+            raise UserError(f"{key} is given twice (first in line {lines[key]})", place)
         lines[key] = number
-        texts |= _toml_values(key, match[4], where)
-    for table, where in tables.items():
+        texts |= _toml_values(key, match[4], place)
+    for table, place in tables.items():
         if table not in texts:
-            raise UserError(f"{table} is a table; expected a number", where)
+            raise UserError(f"{table} is a table; expected a number", place)
     return texts
 
 
 def _toml_values(key: str, text: str, where: str) -> dict[str, str]:
+    """Return the entries of one line ``key = text``: the value, and its source if it has one."""
     import tomllib
 
     raw = text.partition("#")[0].strip()
@@ -103,8 +104,8 @@ def _toml_values(key: str, text: str, where: str) -> dict[str, str]:
         if not is_number(raw):
             reason = str(error).partition(" (at line")[0]
             raise UserError(f"{key} = {quoted(raw)} is not TOML: {reason}", where) from None
-        whole = re.sub(r"\.(?![0-9])", ".0", re.sub(r"^([+-]?)\.", r"\g<1>0.", raw))
-        bare = f"{whole} or " if _plain_toml(whole) else ""
+        with_digits = re.sub(r"\.(?![0-9])", ".0", re.sub(r"^([+-]?)\.", r"\g<1>0.", raw))
+        bare = f"{with_digits} or " if _plain_toml(with_digits) else ""
         raise UserError(f'{key} = {raw} is not TOML; write {bare}"{raw}"', where) from None
     texts = {}
     if isinstance(value, dict) and "value" in value and set(value) <= {"value", "source"}:
@@ -130,12 +131,12 @@ SIGNS = """\
 Angles and spins are positive counterclockwise. An approach has A moving against n, towards B.
 The impulse P_n n + P_t t acts on A, its opposite on B; friction (MU above 0) opposes the sliding.
 """
-"""Sides, axes and signs, for people who fill in a scene."""
+"""Sides, axes and signs, explained at the top of a scene file."""
 
 
 def template(case: Case | None = None, units: str | None = None) -> str:
-    """Return a commented scene file: a case's, its texts as they were written, or one whose numbers
-    are left to fill in, bare ones in the system ``units``."""
+    """Return a commented scene file: that of ``case`` with its texts as written, or one to fill in,
+    whose bare numbers are in the system ``units``."""
     from .units import system_of
 
     system = case.system if case else system_of(units)
@@ -146,43 +147,43 @@ def template(case: Case | None = None, units: str | None = None) -> str:
         "#",
         *(f"# {line}".rstrip() for line in SIGNS.splitlines()),
         "",
-        f"title = {_quoted(texts.get('title', ''))}",
+        f"title = {_toml_string(texts.get('title', ''))}",
         *_about_lines(case.about if case else texts),
     ]
-    heading, rest = None, _remaining(texts, SCENE)
+    heading, remaining = None, _remaining(texts, SCENE)
     for row in SCENE.values():
         if row.line != heading:
             heading = row.line
             lines += ["", f"# line {heading} of the listing"]
-        if row.name not in texts and (own := _in_place_of(row.name, texts)):
-            lines += [line for name in own for line in _entry(name, texts, 20, system)]
-            rest = [name for name in rest if name not in own]
+        if row.name not in texts and (contact_names := _in_place_of(row.name, texts)):
+            lines += [line for name in contact_names for line in _entry(name, texts, 20, system)]
+            remaining = [name for name in remaining if name not in contact_names]
         elif not _in_place_of(row.name, texts, either=True) or row.name in texts:
             line, *source = _entry(row.name, texts, 20, system)
             mark = ", estimated" if case and row.name in case.estimated else ""
             lines += [line + mark, *source]
-    if rest:
-        lines += ["", *(line for name in rest for line in _entry(name, texts, 20, system))]
+    if remaining:
+        lines += ["", *(line for name in remaining for line in _entry(name, texts, 20, system))]
     return "\n".join(lines) + "\n"
 
 
 def _in_place_of(name: str, texts: Mapping[str, str], either: bool = False) -> tuple[str, ...]:
-    """Return the names of the contact point in a vehicle's own axes where they stand for DA or DB,
-    or, with ``either``, for PA or PB too."""
-    own = OWN_AXES.get(name[1:], ()) if name[0] in "DP" else ()
-    stands = set(own) & set(texts) and (either or name[0] == "D")
-    return tuple(own) if stands else ()
+    """Return CAF CAL (CBF CBL) if they are given in place of DA (DB), else nothing; with ``either``
+    also for PA (PB)."""
+    contact_names = OWN_AXES.get(name[1:], ()) if name[0] in "DP" else ()
+    present = set(contact_names) & set(texts) and (either or name[0] == "D")
+    return tuple(contact_names) if present else ()
 
 
 def known_template(names: Sequence[str], case: Case | None = None, units: str | None = None) -> str:
-    """Return a file to fill in with what is known of ``names``; of a ``case`` what is known."""
+    """Return a file with entries for ``names`` to fill in, filled with the values of ``case``."""
     from .units import system_of
 
     system = case.system if case else system_of(units)
     texts = case.texts if case else {"M": DEFAULT_M, "units": units or ""}
     lines = ["# Fill in what is known; what stays empty is solved for. Any consistent units."]
     if texts.get("title"):
-        lines.append(f"title = {_quoted(texts['title'])}")
+        lines.append(f"title = {_toml_string(texts['title'])}")
     lines += _about_lines(case.about if case else texts)
     for name in names:
         lines += _entry(name, texts, 12, system, quotes=True)
@@ -192,23 +193,25 @@ def known_template(names: Sequence[str], case: Case | None = None, units: str | 
 
 
 def _about_lines(texts: Mapping[str, str]) -> list[str]:
-    """Return the lines of what is said of the whole file, the title excepted."""
+    """Return the lines about the whole file, except the title."""
     return [
-        f"{name} = {_quoted(texts[name])}" for name in ABOUT if name != "title" and texts.get(name)
+        f"{name} = {_toml_string(texts[name])}"
+        for name in ABOUT
+        if name != "title" and texts.get(name)
     ]
 
 
 def _remaining(texts: Mapping[str, str], names: Collection[str]) -> list[str]:
-    """Return the entries beside ``names``, without notes on sources and on the whole file."""
+    """Return entries other than ``names``, sources and entries about the whole file."""
     return [n for n in texts if n not in names and n not in ABOUT and not n.endswith(SOURCE)]
 
 
 def _entry(
     name: str, texts: Mapping[str, str], width: int, system: System, quotes: bool = False
 ) -> list[str]:
-    """Return the line of an entry, with its meaning, and that of its source."""
+    """Return the line of an entry with its meaning, and the line of its source."""
     text = texts.get(name, DEFAULT_M if name == "M" else "")
-    entry = f"{name} = {text if _plain_toml(text) and not quotes else _quoted(text)}"
+    entry = f"{name} = {text if _plain_toml(text) and not quotes else _toml_string(text)}"
     try:
         row = quantity(name)
     except KeyError:
@@ -218,16 +221,16 @@ def _entry(
         symbol = f"{row.symbol}: "
         lines = [f"{entry:<{width}} # {symbol}{meaning} [{system.label(row.unit)}]"]
     if name + SOURCE in texts:
-        lines.append(f"{name}{SOURCE} = {_quoted(texts[name + SOURCE])}")
+        lines.append(f"{name}{SOURCE} = {_toml_string(texts[name + SOURCE])}")
     return lines
 
 
-def _quoted(text: str) -> str:
-    """A text as TOML has it, on one line whatever it holds."""
+def _toml_string(text: str) -> str:
+    """Return a text as a one-line TOML string."""
     line = "".join(character if character.isprintable() else " " for character in text)
     return '"{}"'.format(line.replace("\\", "\\\\").replace('"', '\\"'))
 
 
 def _plain_toml(text: str) -> bool:
-    """Whether TOML takes the number unquoted."""
+    """Return True if TOML accepts the number unquoted."""
     return re.fullmatch(r"[+-]?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?", text) is not None

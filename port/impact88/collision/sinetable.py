@@ -1,6 +1,6 @@
-"""What sine and cosine of degrees are made of (`collision.degrees`), and those of one angle.
+"""Table and polynomials for sine and cosine of degrees, and both functions of one angle.
 
-Python's own numbers alone: a scene is read without numpy.
+Uses Python's own numbers only, so that a scene is read without numpy; arrays: `collision.degrees`.
 """
 
 from collections.abc import Callable
@@ -11,17 +11,16 @@ from typing import Any
 STEPS = 2048
 """Table entries in a full turn."""
 STEP = 360 / STEPS
-"""45/256 degree: exact, and so is its product with any number below 2**47."""
+"""45/256 degree: exact, as is its product with any whole number below 2**47."""
 
 _PI = Decimal("3.14159265358979323846264338327950288419716939937510")
 _QUARTER = STEPS // 4
-# adding this leaves the nearest integer in a double's lowest bits
-INTEGER_IN_LOW_BITS = 1.5 * 2.0**52
+INTEGER_IN_LOW_BITS = 1.5 * 2.0**52  # adding it rounds a double to the nearest integer
 
 
 @cache
 def turn() -> list[float]:
-    """sin of the multiples of `STEP`, a turn and a quarter, so that cos is the same table later."""
+    """Return sin(k STEP) for a turn and a quarter: entry k + STEPS/4 is the cosine."""
     octant = _QUARTER // 2
     with localcontext(Context(prec=40)):
         step = 2 * _PI / STEPS
@@ -39,7 +38,7 @@ def turn() -> list[float]:
 
 
 def _series(term: Decimal, x: Decimal, first: int) -> Decimal:
-    """Of the sine from x and 3, of the cosine from 1 and 2."""
+    """Return a Taylor series: of the sine for term = x, first = 3, of the cosine for 1 and 2."""
     total = term
     for n in range(first, 25, 2):
         term = -term * x * x / (n * (n - 1))
@@ -50,25 +49,28 @@ def _series(term: Decimal, x: Decimal, first: int) -> Decimal:
 with localcontext(Context(prec=40)):
     _r = _PI / 180
     POLYNOMIALS = tuple(map(float, (_r, -(_r**3) / 6, _r**5 / 120, -(_r**2) / 2, _r**4 / 24)))
-"""Coefficients of sin r = r·(s0 + s1·r² + s2·r⁴) and cos r - 1 = r²·(c1 + c2·r²), r in degrees: the
-series themselves. The first term left out is, at |r| = STEP/2, below 3e-21 of the sine and 2e-20 of
-the cosine."""
+"""Taylor coefficients of sin r = r (s0 + s1 r² + s2 r⁴) and cos r - 1 = r² (c1 + c2 r²), r in
+degrees. At |r| = STEP/2 the first omitted term is below 3e-21 (sine) and 2e-20 (cosine)."""
 
 
 def sine_and_cosine(
     angle: Any, table: Any = None, whole: Callable[[Any], Any] = int
 ) -> tuple[Any, Any]:
-    """Sine and cosine of an angle in degrees, finite and at most 2**40; of an array of them with an
-    array for a ``table`` and ``whole`` for making whole numbers. The operations stand in a fixed
-    order, that of ``native/machine.c``."""
+    """Return sine and cosine of a finite angle in degrees, at most 2**40.
+
+    For arrays, ``table`` is `turn` as an array and ``whole`` converts an array to integers. The
+    order of operations is that of ``native/machine.c``, so that the bits agree."""
     table = turn() if table is None else table
     s0, s1, s2, c1, c2 = POLYNOMIALS
     steps = angle * (1 / STEP) + INTEGER_IN_LOW_BITS - INTEGER_IN_LOW_BITS
     index = whole(steps) & (STEPS - 1)
     sine, cosine = table[index], table[index + _QUARTER]
-    rest = angle - steps * STEP
-    square = rest * rest
-    small = ((square * s2 + s1) * square + s0) * rest
-    less = (square * c2 + c1) * square
+    remainder = angle - steps * STEP
+    square = remainder * remainder
+    sin_r = ((square * s2 + s1) * square + s0) * remainder
+    cos_r_less_one = (square * c2 + c1) * square
     # sin(k + r) = sin k + (cos k sin r + sin k (cos r - 1)), and the cosine likewise
-    return sine + (cosine * small + sine * less), cosine + (cosine * less - sine * small)
+    return (
+        sine + (cosine * sin_r + sine * cos_r_less_one),
+        cosine + (cosine * cos_r_less_one - sine * sin_r),
+    )

@@ -1,25 +1,22 @@
-"""Accepted forms of amounts that were written otherwise.
+"""Suggestions for amounts that the grammar does not accept.
 
-A text that is not an amount in the grammar of `collision.units` is often one in another habit:
-``40-45 mph``, ``5'-10 1/2"``, ``1,78 m``. It is not read, for it may mean something else, but the
-message says how to write it. Each habit is a rule that rewrites a text; a suggestion is whatever a
-chain of rewritings reaches that the grammar accepts.
+A text outside the grammar of `collision.units` often follows another habit of writing:
+``40-45 mph``, ``5'-10 1/2"``, ``1,78 m``. It is not read, because it may mean something else, but
+the message says how to write it. Each habit is a rewriting rule; a suggestion is an accepted text
+reached by a chain of rewritings.
 """
 
 import re
 from collections.abc import Callable
 from typing import NamedTuple
 
-MAX_SUGGESTIONS = 2
-"""More readings than that are no suggestion."""
-LONGEST = 80
-"""Characters of the longest text that is rewritten."""
-MAX_TEXTS = 200
-"""Texts that rewriting one may lead to: a bound on time."""
+MAX_SUGGESTIONS = 2  # with more readings the text is too ambiguous to suggest any
+MAX_LENGTH = 80  # characters of a text that is rewritten
+MAX_TEXTS = 200  # rewritings of one text, a bound on time
 
 
 class Habit(NamedTuple):
-    """A habit of writing: its ``pattern``, and ``forms``, the accepted ways of writing the same."""
+    """A habit of writing: a ``pattern`` to replace, and ``forms``, its accepted equivalents."""
 
     pattern: re.Pattern[str]
     forms: tuple[str, ...]
@@ -73,13 +70,13 @@ def suggestions(text: str, accepted: Callable[[str], bool]) -> list[str]:
     text : str
         The text as typed.
     accepted : callable
-        Says of a text whether it is an amount of the quantity at hand.
+        Returns True if a text is an amount of the quantity in question.
 
     Returns
     -------
     list of str
-        The texts that the fewest rewritings lead to; empty where none is accepted, or where more
-        than `MAX_SUGGESTIONS` are.
+        The accepted texts reached by the fewest rewritings; empty if there are none, or more than
+        `MAX_SUGGESTIONS`.
 
     Examples
     --------
@@ -89,17 +86,17 @@ def suggestions(text: str, accepted: Callable[[str], bool]) -> list[str]:
     ['40 .. 45 mph']
     """
     start = " ".join(text.split())
-    if len(start) > LONGEST:
+    if len(start) > MAX_LENGTH:
         return []
-    texts, seen = [start], {start}
+    texts, reached = [start], {start}
     while texts:
         rewritten = []
-        for written in texts:
+        for source in texts:
             for pattern, forms in HABITS:
                 for form in forms:
-                    result = " ".join(pattern.sub(form, written).split())
-                    if result not in seen and len(seen) < MAX_TEXTS:
-                        seen.add(result)
+                    result = " ".join(pattern.sub(form, source).split())
+                    if result not in reached and len(reached) < MAX_TEXTS:
+                        reached.add(result)
                         rewritten.append(result)
         accepted_texts = [result for result in rewritten if accepted(result)]
         if accepted_texts:

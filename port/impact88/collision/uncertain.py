@@ -1,18 +1,18 @@
-"""A value known only within limits: the notation for it, and drawing values from it.
+"""Values known within limits: their notation, and random draws from them.
 
-Wherever a scene for ``impact88 bounds`` has a value, it may have one of these texts instead:
+Any value of a scene for ``impact88 bounds`` may be one of these texts:
 
     0.911                             known: a single value
     0.7 .. 0.9                        between two values, none preferred
     0.8 +- 0.1    143.5 +- 5%         the same, by middle and half width (± will do for +-)
-    +- 0.1        +- 5%               the same, around the value the scene file has
+    +- 0.1        +- 5%               the same, around the value in the scene file
     uniform 0.7 0.9                   the same as 0.7 .. 0.9
     triangular 0.7 0.75 0.9           lower limit, most likely value, upper limit
     normal 0.8 0.05                   mean and standard deviation
     normal 0.8 0.05 within 0.7 .. 1   the same, cut off at limits
 
-Values that depend on each other are drawn through a Gaussian copula: the correlation given is that
-of the underlying normal variates (the rank correlation is then 6/π·asin(ρ/2)).
+Correlated values are drawn through a Gaussian copula: the correlation ρ is that of the underlying
+normal variates (the rank correlation is then 6/π·asin(ρ/2)).
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ class Uncertain:
     deviation : float, default 0
         The standard deviation of a normal.
     share : bool, default False
-        True where all of them are shares of the critical friction (MU = "85 %").
+        True if the numbers are fractions of the critical friction (MU = "85 %").
     critical : float, default 0
-        The critical friction at the nominal values, where such shares were made numbers with it:
-        the friction stays that share of each impact's own.
+        The critical friction at the nominal values that turned such fractions into numbers; the
+        friction stays the same fraction of each impact's own critical friction.
 
     Examples
     --------
@@ -68,17 +68,18 @@ class Uncertain:
     critical: float = 0.0
 
     def over(self, factor: float) -> Uncertain:
-        """The same in other units, all values divided."""
+        """Return the value in another unit: all numbers divided by ``factor``."""
         nominal, low, high = (value / factor for value in (self.nominal, self.low, self.high))
         return replace(self, nominal=nominal, low=low, high=high, deviation=self.deviation / factor)
 
     @property
     def varies(self) -> bool:
+        """True unless it is a single value."""
         return self.kind != "fixed"
 
     @property
     def standard_deviation(self) -> float:
-        """A normal's is its own, limits or not."""
+        """The standard deviation; a normal's is that without its limits."""
         if self.kind == "triangular":
             a, c, b = self.low, self.nominal, self.high
             return math.sqrt((a * a + b * b + c * c - a * b - a * c - b * c) / 18)
@@ -86,24 +87,25 @@ class Uncertain:
 
     @property
     def tolerance(self) -> float:
-        """What a person calls it: half of a range, a normal's standard deviation."""
+        """Half of the range, or a normal's standard deviation."""
         return self.deviation if self.kind == "normal" else (self.high - self.low) / 2
 
     def limits(self, sigmas: float) -> tuple[float, float]:
-        """The interval bounds are sought over; a normal is cut at ``sigmas`` deviations."""
+        """Return lower and upper limit; a normal is cut at ``sigmas`` standard deviations."""
         if self.kind != "normal":
             return self.low, self.high
         reach = sigmas * self.deviation
         return max(self.low, self.nominal - reach), min(self.high, self.nominal + reach)
 
     def around(self, nominal: float) -> Uncertain:
-        """The same range with ``nominal`` as its best single value, if it lies inside."""
+        """Return the range with ``nominal`` as its nominal value, unchanged if that lies
+        outside."""
         if self.kind != "uniform" or not self.low <= nominal <= self.high:
             return self
         return replace(self, nominal=nominal)
 
     def quantile(self, share: float) -> float:
-        """The value below which ``share`` (0 ... 1) of the draws lie."""
+        """Return the quantile at probability ``share``, 0 to 1."""
         if self.kind == "fixed":
             return self.nominal
         if self.kind == "uniform":
@@ -123,7 +125,7 @@ class Uncertain:
         return min(max(normal.inv_cdf(target), self.low), self.high)
 
     def draws(self, rng: np.random.Generator, count: int) -> NDArray[np.float64]:
-        """``count`` independent values."""
+        """Return ``count`` independent random values."""
         import numpy as np
 
         if self.kind == "fixed":
@@ -135,7 +137,7 @@ class Uncertain:
         return self.from_normal(rng.standard_normal(count))
 
     def log_density(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The logarithm of a triangular or normal density within the limits, but for a constant."""
+        """Return the log density of a triangular or normal within its limits, up to a constant."""
         import numpy as np
 
         off = values - self.nominal
@@ -146,8 +148,10 @@ class Uncertain:
             return np.asarray(np.log(np.clip(1 - np.abs(off) / np.where(off == 0, 1, side), 0, 1)))
 
     def from_normal(self, variates: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The value at the quantile each standard normal variate stands at, by a table: its error,
-        below 1e-6 of the spread, is a thousandth of what a million samples resolve."""
+        """Return the values that standard normal variates map to, quantile to quantile.
+
+        Interpolated in a table: the error, below 1e-6 of the spread, is a thousandth of what a
+        million samples resolve."""
         import numpy as np
 
         if self.kind == "normal" and math.isinf(self.low) and math.isinf(self.high):
@@ -156,7 +160,7 @@ class Uncertain:
 
 
 def random_numbers(seed: int, stream: int) -> np.random.Generator:
-    """Return the generator of a seed's stream. Raises UserError for a seed that numpy refuses."""
+    """Return the random generator of a seed and stream. Raises UserError for an invalid seed."""
     import numpy as np
 
     try:
@@ -167,7 +171,7 @@ def random_numbers(seed: int, stream: int) -> np.random.Generator:
 
 @lru_cache(maxsize=64)
 def _quantile_table(item: Uncertain) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Standard normal variates and the quantiles at them."""
+    """Return standard normal variates and the values at the same quantiles."""
     from statistics import NormalDist
 
     import numpy as np
@@ -181,7 +185,7 @@ def _quantile_table(item: Uncertain) -> tuple[NDArray[np.float64], NDArray[np.fl
 def columns_of(
     limits: Mapping[str, tuple[float, float]], u: NDArray[np.float64]
 ) -> dict[str, NDArray[np.float64]]:
-    """Points of the unit cube, n x k -> the k values, n each; exact at the limits."""
+    """Return points of the unit cube, shape (n, k), as k columns of values, exact at the limits."""
     import numpy as np
 
     return {
@@ -190,16 +194,17 @@ def columns_of(
     }
 
 
-def fixed(value: float) -> Uncertain:
+def fixed_value(value: float) -> Uncertain:
+    """Return a single value as an `Uncertain`."""
     return Uncertain("fixed", value, value, value)
 
 
 def read(text: str, name: str, center: float | None = None, units: str | None = None) -> Uncertain:
-    """What ``text`` says about the quantity ``name``; see the notation above.
+    """Return the value that ``text`` gives the quantity ``name``, in the notation above.
 
-    ``center``: the value ``+- D`` is taken around, and a range's nominal value where it lies
-    inside; ``units``: the system the numbers are in, which a `skid` needs. Raises UserError for a
-    text of none of the forms, limits in the wrong order, and a number too large.
+    ``center``: the value around which ``+- D`` is taken, and a range's nominal value if it lies
+    inside; ``units``: the system of the numbers, which a `skid` needs. Raises UserError for any
+    other text, limits in the wrong order, or a number too large.
     """
     if text.lstrip().startswith("skid") and name.endswith(("SAF", "SBF")):
         return skid(text, name, units)
@@ -210,8 +215,8 @@ def read(text: str, name: str, center: float | None = None, units: str | None = 
         numbers = [double(a.sign + a.parts[0][0]) for a in amounts if a]
     except ValueError:
         raise UserError(f"{text!r} is not an amount; {ACCEPTED}", name) from None
-    own = {unit for a in amounts if a for unit in a.units}
-    shares = own == {"%"} and name.endswith("MU")
+    units_in_text = {unit for a in amounts if a for unit in a.units}
+    shares = units_in_text == {"%"} and name.endswith("MU")
     if shares:
         numbers = [numbers[0] / 100, *(x if share else x / 100 for x in numbers[1:])]
     elif any(a and (a.units or len(a.parts) > 1) for a in amounts):
@@ -219,7 +224,7 @@ def read(text: str, name: str, center: float | None = None, units: str | None = 
     if not all(map(math.isfinite, numbers)):
         raise UserError(f"{text!r} has a number too large", name)
     if kind == "fixed":
-        return replace(fixed(numbers[0]), share=shares)
+        return replace(fixed_value(numbers[0]), share=shares)
     value = replace(_of_kind(kind, numbers, center, share, text, name), share=shares)
     return value if center is None or shares else value.around(center)
 
@@ -228,8 +233,9 @@ _SKID = re.compile(r"skid (.+) at (.+)")
 
 
 def skid(text: str, name: str, units: str | None) -> Uncertain:
-    """The speed v = √(2 μ g d) at the begin of a skid to rest, of a text "skid D at MU" whose
-    values may have limits. ``units``: the system D is in. Raises UserError."""
+    """Return the speed v = √(2 μ g d) at the start of a skid to rest, from a text "skid D at MU".
+
+    D and MU may be ranges; ``units``: the system D is in. Raises UserError."""
     match, gravity = _SKID.fullmatch(" ".join(text.split())), gravity_in(system_of(units))
     if match is None:
         raise UserError(f"{text!r} is not a skid; expected such as 'skid 62 ft at 0.7'", name)
@@ -245,7 +251,7 @@ def skid(text: str, name: str, units: str | None) -> Uncertain:
     nominal = speed([part.nominal for part in parts])
     kinds = {part.kind for part in parts} - {"fixed"}
     if not kinds:
-        return fixed(nominal)
+        return fixed_value(nominal)
     low, high = (speed([part.limits(3.0)[end] for part in parts]) for end in (0, 1))
     if "normal" in kinds:
         shares = [part.deviation / part.nominal for part in parts]
@@ -256,6 +262,7 @@ def skid(text: str, name: str, units: str | None) -> Uncertain:
 def _of_kind(
     kind: str, numbers: Sequence[float], center: float | None, share: bool, text: str, name: str
 ) -> Uncertain:
+    """Return the value of a `parse`d text of ``kind``; ``text`` and ``name`` for messages."""
     deviation = 0.0
     if kind == "around":
         middle = numbers[0] if len(numbers) == 2 else center
@@ -282,34 +289,35 @@ def _of_kind(
         raise UserError(f"{text!r} is wider than the range of doubles", name)
     if not low <= nominal <= high:
         raise UserError(f"{text!r} is out of order; expected the lower limit first", name)
-    return Uncertain(kind, nominal, low, high, deviation) if low < high else fixed(nominal)
+    return Uncertain(kind, nominal, low, high, deviation) if low < high else fixed_value(nominal)
 
 
 def correlation_root(
     pairs: Mapping[tuple[str, str], float], inputs: Mapping[str, Uncertain]
 ) -> tuple[list[str], NDArray[np.float64]]:
-    """The correlated names, n of them, and an n x n matrix that makes independent standard normal
-    variates (rows) correlated: ``variates @ root``. Raises UserError for a name that does not vary,
-    a correlation outside -1 ... 1, two values for one pair, and correlations that contradict one
-    another (matrix not positive semidefinite)."""
+    """Return the n correlated names and an n by n root R of their correlation matrix.
+
+    ``variates @ root`` correlates rows of independent standard normal variates (Rᵀ R = C). Raises
+    UserError for a name that does not vary, a correlation outside -1 ... 1, two values for one
+    pair, and contradicting correlations (C is not positive semidefinite)."""
     import numpy as np
 
-    given: dict[frozenset[str], float] = {}
+    correlations: dict[frozenset[str], float] = {}
     for (first, second), value in pairs.items():
-        where = f"correlation {first},{second}"
+        place = f"correlation {first},{second}"
         for name in (first, second):
             if name not in inputs or not inputs[name].varies:
                 varying = " ".join(key for key, item in inputs.items() if item.varies) or "none"
-                raise UserError(f"{name} does not vary; those that do: {varying}", where)
+                raise UserError(f"{name} does not vary; those that do: {varying}", place)
         if first == second:
-            raise UserError("a value's correlation with itself is 1 and cannot be given", where)
+            raise UserError("a value's correlation with itself is 1 and cannot be given", place)
         if not -1 <= value <= 1:
-            raise UserError(f"{value:g} is not a correlation; expected -1 ... 1", where)
-        if given.setdefault(frozenset((first, second)), value) != value:
-            raise UserError("is given twice, with different values", where)
-    names = [name for name in inputs if any(name in pair for pair in given)]
+            raise UserError(f"{value:g} is not a correlation; expected -1 ... 1", place)
+        if correlations.setdefault(frozenset((first, second)), value) != value:
+            raise UserError("is given twice, with different values", place)
+    names = [name for name in inputs if any(name in pair for pair in correlations)]
     matrix = np.eye(len(names))
-    for pair, value in given.items():
+    for pair, value in correlations.items():
         row, column = (names.index(name) for name in pair)
         matrix[row, column] = matrix[column, row] = value
     eigenvalues, vectors = np.linalg.eigh(matrix)

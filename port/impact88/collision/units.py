@@ -1,23 +1,21 @@
-"""Units, and amounts as people write them: sizes, systems, and the one grammar of numbers, units,
-ranges and tolerances.
+"""Units and amounts: unit sizes, systems, and the grammar of numbers, units, ranges and tolerances.
 
     -25 mph   3,091 lb   5 1/2 ft   6 ft 6 in   6'6"   8°30'   2,000 lb ft2   a number with a unit
     -31..-29 mph      30 mph .. 35 mph         between two values
     30 +- 2 mph       143.5 slug +- 5%         a middle and a half width (±, +/-)
-    +- 2 mph          +- 5%                    the same, around the value known otherwise
+    +- 2 mph          +- 5%                    the same, around a value given elsewhere
     uniform A B    triangular A M B    normal MEAN SD [within A .. B]
     estimate          estimate +- 20 %         a yaw inertia (`collision.estimates`)
 
-A unit that one number has and others lack belongs to all of them. Numbers that stand side by side
-without a unit between them, or with a sign, are refused, and so is a comma that may be a decimal
-one (1,234.5 can only be thousands). A bare number without any system of units stays the text it is,
-digit for digit.
+If only one of the numbers has a unit, it applies to all of them. Numbers side by side without a
+unit between them, or with a sign, are refused, and so is a comma that may be a decimal one (1,234.5
+can only be thousands). A bare number without any system of units keeps its text, digit for digit.
 
 An amount is converted once, by exact fractions, to its system's base: ft, slug and s, or m, kg and
 s; angles are in degrees, spins in radians a second. A unit is an expression of symbols ("slug ft2",
-"lb-ft-s2"), whose dimension is worked out and compared with what a quantity measures: in "lb ft2"
-only the mass gives an inertia, in "lb-ft-s2" only the force. A units library would take a quarter
-of a second to import, and has one "lb".
+"lb-ft-s2"), whose dimension is computed and compared with that of the quantity: "lb ft2" is an
+inertia only if lb is a mass, "lb-ft-s2" only if it is a force. A units library would take a quarter
+of a second to import, and knows only one "lb".
 """
 
 import re
@@ -38,16 +36,32 @@ _GRAVITY = Fraction("9.80665")
 _SLUG = _POUND * _GRAVITY / _FOOT
 _DEGREE = Fraction("0.017453292519943295769236907684886127134")
 
-LENGTH, VELOCITY, MASS, SPIN = "length", "length/time", "mass", "rad/time"
-INERTIA, ENERGY = "mass·length²", "mass·length²/time²"
-FORCE, IMPULSE, TURNING = "mass·length/time²", "mass·length/time", "mass·length²/time"
-TIME, ANGLE, NUMBER, PERCENT = "time", "degree", "1", "percent"
+LENGTH = "length"
+VELOCITY = "length/time"
+MASS = "mass"
+SPIN = "rad/time"
+INERTIA = "mass·length²"
+ENERGY = "mass·length²/time²"
+FORCE = "mass·length/time²"
+IMPULSE = "mass·length/time"
+TURNING = "mass·length²/time"
+TIME = "time"
+ANGLE = "degree"
+NUMBER = "1"
+PERCENT = "percent"
 
 Dimension = tuple[int, ...]
 """Exponents of length, mass, time and angle."""
-_LENGTH, _MASS, _TIME, _ANGLE = (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1)
-_SPEED, _RATE, _FORCE, _ENERGY = (1, 0, -1, 0), (0, 0, -1, 1), (1, 1, -2, 0), (2, 1, -2, 0)
-_US, _SI = "us", "metric"
+_LENGTH = (1, 0, 0, 0)
+_MASS = (0, 1, 0, 0)
+_TIME = (0, 0, 1, 0)
+_ANGLE = (0, 0, 0, 1)
+_SPEED = (1, 0, -1, 0)
+_RATE = (0, 0, -1, 1)
+_FORCE = (1, 1, -2, 0)
+_ENERGY = (2, 1, -2, 0)
+_US = "us"
+_SI = "metric"
 
 SYMBOLS: dict[str, tuple[Dimension, Fraction, str]] = {
     name: (dimension, size, system)
@@ -86,16 +100,16 @@ SYMBOLS: dict[str, tuple[Dimension, Fraction, str]] = {
     )
     for name in names.split()
 }
-"""Symbol -> its dimension, its size in m, kg, s and radians, and whose it is."""
+"""Symbol -> dimension, size in m, kg, s and radians, and system ("" if both systems use it)."""
 _ARC = {"'": _DEGREE / 60, "min": _DEGREE / 60, '"': _DEGREE / 3600, "''": _DEGREE / 3600}
-"""What else divides an angle."""
+"""Symbols of minutes and seconds of arc, in angles only."""
 _WEIGHTS = ("lb", "lbs", "pound", "pounds")
-"""Symbols of a mass, or of the force that is its weight."""
+"""Symbols of a mass or of its weight, a force."""
 
 _EXPONENT = r"(?:[²³]|(?:\^|\*\*)-?[1-9]|[23](?![\w.,'\"°]))"
 _FACTOR = rf"(?:[a-zA-Z]+(?:\.(?![.\d]))?{_EXPONENT}?|[°%\"]|''?)"
 UNIT = rf"{_FACTOR}(?:(?: ?[-*·/] ?| ){_FACTOR})*"
-"""What a unit looks like: symbols with exponents, multiplied and divided."""
+"""Pattern of a unit: symbols with exponents, multiplied and divided."""
 _STEP = re.compile(rf"( ?[-*·/] ?| |)({_FACTOR})")
 _POWER = re.compile(r"(.+?)\.?(?:([²³])|(?:\^|\*\*)?(-?\d))?")
 _EXPONENTS = {"²": 2, "³": 3}
@@ -103,49 +117,51 @@ _EXPONENTS = {"²": 2, "³": 3}
 
 @lru_cache(maxsize=4096)
 def size_of(unit: str, rule: str) -> tuple[Fraction, str] | None:
-    """The size of a unit in m, kg, s and radians, and whose it is; None for one that does not
-    measure what ``rule`` says ("length/time")."""
+    """Return the size of a unit in m, kg, s and radians, and its system; None if its dimension is
+    not that of ``rule`` ("length/time")."""
     if rule in (NUMBER, PERCENT):
         return (Fraction(1 if rule == PERCENT else Fraction(1, 100)), "") if unit == "%" else None
-    wanted = _dimension(rule)
+    dimension = _dimension(rule)
     words = re.sub(r" per ", "/", unit)
     for force in (False, True):
-        found = _product(words, rule == ANGLE, force)
-        if found and found[0] == wanted:
-            return found[1:]
+        product = _product(words, rule == ANGLE, force)
+        if product and product[0] == dimension:
+            return product[1:]
     return None
 
 
 @lru_cache
 def _dimension(rule: str) -> Dimension:
-    found = _product(rule, False, False)
-    return found[0] if found else (0, 0, 0, 0)
+    """Return the dimension of a rule such as "length/time"."""
+    product = _product(rule, False, False)
+    return product[0] if product else (0, 0, 0, 0)
 
 
 def _product(text: str, arc: bool, force: bool) -> tuple[Dimension, Fraction, str] | None:
-    """Dimension, size and system of an expression; ``force``: its pounds are forces; ``arc``: of an
-    angle, which has minutes."""
+    """Return dimension, size and system of a unit; None if it has unknown symbols or mixes systems.
+
+    ``arc``: accept minutes and seconds of arc; ``force``: read pounds as forces."""
     dimension: Dimension = (0, 0, 0, 0)
-    size, systems, at = Fraction(1), set(), 0
-    while at < len(text):
-        step = _STEP.match(text, at)
+    size, systems, position = Fraction(1), set(), 0
+    while position < len(text):
+        step = _STEP.match(text, position)
         if not step:
             return None
-        at = step.end()
+        position = step.end()
         match = _POWER.fullmatch(step[2])
         assert match is not None
         symbol, power = match[1].lower(), int(_EXPONENTS.get(match[2]) or match[3] or 1)
-        known = SYMBOLS.get(symbol)
+        entry = SYMBOLS.get(symbol)
         if arc and symbol in _ARC:
-            known = (_ANGLE, _ARC[symbol], "")
+            entry = (_ANGLE, _ARC[symbol], "")
         elif force and symbol in _WEIGHTS:
-            known = SYMBOLS["lbf"]
-        if known is None:
+            entry = SYMBOLS["lbf"]
+        if entry is None:
             return None
         power = -power if "/" in step[1] else power
-        dimension = tuple(d + power * k for d, k in zip(dimension, known[0], strict=True))
-        size *= known[1] ** power
-        systems.add(known[2])
+        dimension = tuple(d + power * k for d, k in zip(dimension, entry[0], strict=True))
+        size *= entry[1] ** power
+        systems.add(entry[2])
     systems -= {""}
     if len(systems) > 1:
         return None
@@ -153,16 +169,18 @@ def _product(text: str, arc: bool, force: bool) -> tuple[Dimension, Fraction, st
 
 
 class Convention(NamedTuple):
-    """Directions other than the listing's. ``axes``: "sae": y to the right of x, angles and spins
-    clockwise; ``headings``: "compass": headings of the vehicles' fronts and courses clockwise from
-    north, which is y (with "sae" x)."""
+    """Directions other than the listing's.
+
+    ``axes``: "sae" has y to the right of x, angles and spins clockwise. ``headings``: "compass" has
+    headings of the vehicles' fronts and courses clockwise from north, which is y (with "sae" x).
+    "" is the listing's convention."""
 
     axes: str = ""
     headings: str = ""
 
-    def turned(self, name: str) -> tuple[int, int] | None:
-        """Return sign and offset (degrees) by which a value in the listing's axes is shown, and a
-        shown one read; None where it is the same."""
+    def sign_and_offset(self, name: str) -> tuple[int, int] | None:
+        """Return (sign, offset in degrees) of ``shown = offset + sign * value``; None if the value
+        is shown unchanged. The sign is -1, so the same pair converts back."""
         if self.headings and name in COURSES:
             # A faces TA + 180
             return -1, (0 if self.axes else 90) + (180 if name == "TA" else 0)
@@ -170,23 +188,25 @@ class Convention(NamedTuple):
 
 
 AXES = ("listing", "sae")
-"""What ``axes = "..."`` and ``--axes`` may say."""
+"""Choices of ``axes = "..."`` and ``--axes``."""
 HEADINGS = ("listing", "compass")
-"""What ``headings = "..."`` and ``--headings`` may say."""
+"""Choices of ``headings = "..."`` and ``--headings``."""
 COURSES = ("TA", "TB", "HA", "HB", "HAF", "HBF")
-"""Directions of vehicles and velocities."""
+"""Names of directions of vehicles and velocities."""
 MIRRORED = frozenset(
     "UY WA VY WB VAY WAF VBY WBF YA YB YAF YBF GA PA PB TA TB HA HB HAF HBF PT PM MUP MUC "
     "CAY CBY CY".split()
 )
-"""What has the other sign where y and the sense of turning are the other way round. Left and right,
-forward and PDOF are said in the vehicle, and stay."""
+"""Names whose sign changes when y and the sense of rotation are reversed. Left, right, forward and
+PDOF are relative to the vehicle and do not change."""
 
 
 class System(NamedTuple):
-    """A consistent set and how its quantities are written. ``base``: sizes of its length and mass
-    in m and kg (its time is the second); ``usual``: the unit of a bare number, by what it
-    measures; ``convention``: directions, where they are not the listing's."""
+    """A consistent system of units and directions.
+
+    ``base``: sizes of the base units of length and mass in m and kg (time is in seconds);
+    ``usual``: the unit of a bare number, by rule; ``convention``: directions, None for the
+    listing's."""
 
     name: str
     base: tuple[Fraction, Fraction]
@@ -195,80 +215,84 @@ class System(NamedTuple):
 
     @property
     def is_bare(self) -> bool:
-        """Whether no units are given: rules stand for units, and values are shown as they are."""
+        """True without units: rules stand in for units, and values are shown unchanged."""
         return not self.usual
 
     @property
     def base_name(self) -> str:
-        """The name of the system that is shown in these base units."""
+        """The name of the system whose usual units are these base units."""
         return "si" if self.base == _METRES else "chapter"
 
     def scale(self, rule: str) -> Fraction:
-        """The size in m, kg, s and radians of one base unit of what ``rule`` measures."""
+        """Return the size of the base unit of ``rule`` in m, kg, s and radians."""
         if rule == ANGLE:
             return _DEGREE
         length, mass, _, _ = _dimension(rule)
         return Fraction(self.base[0] ** length * self.base[1] ** mass)
 
     def label(self, rule: str) -> str:
-        """The unit that values of a rule ("length/time") are shown in."""
+        """Return the unit in which values of a rule ("length/time") are shown."""
         return self.usual.get(rule, rule)
 
-    def shown(self, rule: str, value: float) -> float:
-        """A value in base units as it is shown."""
+    def display_value(self, rule: str, value: float) -> float:
+        """Return a value in base units, converted to the unit it is shown in."""
         size = size_of(self.usual.get(rule, ""), rule)
         return value * float(self.scale(rule) / size[0]) if size else value
 
     def factor(self, name: str) -> float:
-        """What a quantity's value in base units is multiplied with to be shown."""
-        return self.shown(quantity(name).unit, 1.0)
+        """Return the factor from base units to the unit a quantity is shown in."""
+        return self.display_value(quantity(name).unit, 1.0)
 
-    def displayed(self, name: str, value: Any) -> Any:
+    def display(self, name: str, value: Any) -> Any:
         """Return values in base units and the listing's axes, numbers or arrays, as they are shown.
-        The factor is put right by the last digits, so that what was typed as -25 is -25 again."""
+
+        A single float is rounded to the shortest digits that convert back, so that a value typed as
+        -25 is shown as -25."""
         if isinstance(value, float) and isfinite(value):
             return double(shown_text(name, digits(value), self))
-        turn = self.convention.turned(name) if self.convention else None
+        turn = self.convention.sign_and_offset(name) if self.convention else None
         if turn is None:
             factor = self.factor(name)
             return value if factor == 1 else value * factor
         sign, offset = turn
         if self.convention and self.convention.headings and name in COURSES:
             return (offset + sign * value) % 360.0
-        # the pivot's -10 is no friction
+        # MUP = -10 marks a pivot and keeps its sign
         sign = 1 - 2 * (value != PIVOT) if name == "MUP" else sign
         return sign * value * self.factor(name)
 
     def is_turned(self, name: str) -> bool:
-        """Return whether a value grows here where it falls in the listing's axes."""
-        turn = self.convention.turned(name) if self.convention else None
+        """Return True if the sign of a value is opposite to that in the listing's axes."""
+        turn = self.convention.sign_and_offset(name) if self.convention else None
         return turn is not None and turn[0] < 0
 
-    def placed(self, name: str, value: Any) -> Any:
-        """Return `displayed` values, directions not brought within a turn: limits stay in order."""
-        turn = self.convention.turned(name) if self.convention else None
+    def display_unwrapped(self, name: str, value: Any) -> Any:
+        """Return values like `display`, but directions not reduced to one turn, to keep limits in
+        order."""
+        turn = self.convention.sign_and_offset(name) if self.convention else None
         if turn and name in COURSES:
             return turn[1] + turn[0] * value
-        return self.displayed(name, value)
+        return self.display(name, value)
 
     def ends(self, name: str, low: Any, high: Any) -> tuple[Any, Any]:
-        """Return two limits as they are placed, the lower one first."""
-        low, high = (self.placed(name, end) for end in (low, high))
+        """Return two limits as shown (`display_unwrapped`), the lower one first."""
+        low, high = (self.display_unwrapped(name, end) for end in (low, high))
         return (high, low) if self.is_turned(name) else (low, high)
 
     def unit(self, name: str) -> str:
-        """The unit a quantity is shown in; nothing for a mere number or where none is known."""
+        """Return the unit a quantity is shown in; "" for a pure number or without units."""
         label = self.label(quantity(name).unit)
-        known = not self.is_bare and label not in (NUMBER, PERCENT, "bits")
-        return label if known else ""
+        is_known = not self.is_bare and label not in (NUMBER, PERCENT, "bits")
+        return label if is_known else ""
 
     def heading(self, name: str) -> str:
-        """A column's heading: ``DVA [mph]``."""
+        """Return the heading of a column, such as ``DVA [mph]``."""
         unit = self.unit(name)
         return f"{name} [{unit}]" if unit else name
 
 
-_FEET, _METRES = (_FOOT, _SLUG), (Fraction(1), Fraction(1))
+_FEET = (_FOOT, _SLUG)
+_METRES = (Fraction(1), Fraction(1))
 _COMMON = {SPIN: "rad/s", ANGLE: "deg", TIME: "s", PERCENT: "percent"}
 _US_UNITS = {LENGTH: "ft", INERTIA: "lb-ft-s2", ENERGY: "ft-lb", **_COMMON}
 _US_UNITS |= {FORCE: "lb", IMPULSE: "lb-s", TURNING: "ft-lb-s"}
@@ -280,41 +304,42 @@ SYSTEMS = {
     "metric": System("metric", _METRES, {**_SI_UNITS, VELOCITY: "km/h"}),
     "si": System("si", _METRES, {**_SI_UNITS, VELOCITY: "m/s"}),
 }
-"""What ``units = "..."`` and ``--units`` may say."""
+"""Choices of ``units = "..."`` and ``--units``."""
 RULES = System("", _METRES, {})
-"""No units given: rules stand for units ("length/time"), and values are shown as they are."""
+"""The system without units: rules ("length/time") stand in for units, values are unchanged."""
 
 
 def base_of(system: System) -> str:
-    """The base units in words."""
+    """Return the base units in words."""
     base = "m, kg, s" if system.base == _METRES else "ft, slug, s"
     return base if not system.is_bare else "any consistent units"
 
 
 def gravity_in(system: System) -> float | None:
-    """Standard gravity in the system's base units; None where there are no units."""
+    """Return standard gravity in the system's base units; None without units."""
     return None if system.is_bare else float(_GRAVITY / system.base[0])
 
 
 def system_of(name: str | None) -> System:
-    """The system of that name, `RULES` for none."""
+    """Return the system of that name, `RULES` for None."""
     return SYSTEMS[name] if name else RULES
 
 
 def system_named(name: str, source: str) -> System:
-    """The system of that name. Raises UserError."""
+    """Return the system of that name. Raises UserError."""
     if not isinstance(name, str) or name.lower() not in SYSTEMS:
-        expected = " ".join(SYSTEMS)
-        raise UserError(f"{quoted(name)} is not a system of units; expected {expected}", source)
+        names = " ".join(SYSTEMS)
+        raise UserError(f"{quoted(name)} is not a system of units; expected {names}", source)
     return SYSTEMS[name.lower()]
 
 
 def system_using(units: Iterable[tuple[str, str]], source: str) -> System:
-    """The system that values with some units, each with what it measures, are shown in: of those
-    they belong to, the one that uses most of them. `RULES` where they belong to all. Raises
-    UserError for units of two systems."""
-    used = set(units)
-    sides = {size[1] for unit, rule in used if (size := size_of(unit, rule))} - {""}
+    """Return the system to show values in that were written in ``units``, pairs of unit and rule.
+
+    Of the systems with the same base units, the one that uses most of these units; `RULES` if all
+    systems have them. Raises UserError for units of two systems."""
+    uses = set(units)
+    sides = {size[1] for unit, rule in uses if (size := size_of(unit, rule))} - {""}
     if len(sides) > 1:
         raise UserError(
             'units of two systems; expected units = "us" or "metric" in the file', source
@@ -326,7 +351,7 @@ def system_using(units: Iterable[tuple[str, str]], source: str) -> System:
     def matching(system: System) -> int:
         return sum(
             size_of(unit, rule) == size_of(system.usual[rule], rule)
-            for unit, rule in used
+            for unit, rule in uses
             if rule in (VELOCITY, MASS)
         )
 
@@ -334,17 +359,17 @@ def system_using(units: Iterable[tuple[str, str]], source: str) -> System:
 
 
 def check_unit(unit: str, rule: str, what: str, source: str) -> None:
-    """Raises UserError, naming ``what`` has it, for a unit that does not measure ``rule``."""
+    """Raise UserError, which names ``what``, if a unit does not have the dimension of ``rule``."""
     if size_of(unit, rule) is None:
         measures = "a ratio" if rule == NUMBER else rule.replace("·", " ")
         raise UserError(f"{what}: {unit} is not a unit of {measures}", source)
 
 
-def written(values: Mapping[str, float], system: System) -> dict[str, float]:
-    """Values in base units as they are shown."""
+def display_values(values: Mapping[str, float], system: System) -> dict[str, float]:
+    """Return values in base units as they are shown, by name."""
     if system.is_bare and not system.convention:
         return dict(values)
-    return {name: system.displayed(name, value) for name, value in values.items()}
+    return {name: system.display(name, value) for name, value in values.items()}
 
 
 ACCEPTED = (
@@ -353,9 +378,9 @@ ACCEPTED = (
     "'normal MEAN SD [within A .. B]'"
 )
 ENTRY = "units"
-"""The entry of a file that names its system."""
+"""Entry of a file that names its system of units."""
 SHARED = ("MU", "MUP")
-"""Ratios whose percentage is a share of something else; kept for the code that knows of what."""
+"""Ratios whose percentage refers to another value; the code that knows it reads them."""
 
 _MEANT = str.maketrans(
     {"−": "-", "′": "'", "’": "'", "″": '"', "”": '"', "⋅": "·", "×": "*", "•": "·", "º": "°"}
@@ -364,8 +389,8 @@ _MEANT = str.maketrans(
 _DECIMAL = r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NUMBER = rf"\d{{1,3}}(?:,\d{{3}})+(?:\.\d*)?(?![\d,])|(?:\d+ )?\d+ ?/ ?\d+|{_DECIMAL}"
 _DECIMAL_COMMA = re.compile(r"\d{1,3},\d{3}|0,.*")
-"""What may be a number with a decimal comma, where the unit does not show how its writer counts; a
-second comma, or a point behind it, shows that a comma divides thousands."""
+"""Numbers that may have a decimal comma, unless their unit shows that the writer uses points. A
+second comma, or a point after it, shows that the comma separates thousands."""
 _AFTER = r"[a-zA-Z°%²³^]"
 _PART = re.compile(rf"({_NUMBER})(?![\d,/]) ?(?:({UNIT})(?!{_AFTER})|(?!{_AFTER})) ?")
 _FORMS = (
@@ -377,31 +402,33 @@ _FORMS = (
     ("around", r"(.*?) ?(?:\+-|±|\+/-) ?(.+)", (1, 1), "{} +- {}"),
     ("range", r"(.+?) ?\.\. ?(.+)", (1, 1), "{} .. {}"),
 )
-"""Notations of a value known within limits: pattern, how many amounts each part holds, layout."""
+"""Notations of a range: kind, pattern, number of amounts in each group, layout."""
 _PHRASES: dict[str, tuple[re.Pattern[str], tuple[str, ...]]] = {
     "estimate": (re.compile(r"estimate(?: (.+))?"), ("",)),
     "skid": (re.compile(r"skid (.+) at (.+)"), (LENGTH, NUMBER)),
 }
-"""Phrases that hold values of their own: the pattern, and what each value measures ("": what the
-entry does). Whoever reads the entry finds the phrase again, its values in base units."""
+"""Phrases that contain amounts: the pattern, and the rule of each amount ("": that of the entry).
+The phrase is kept, with its amounts in base units, for the code that reads the entry."""
 
 
 class Amount(NamedTuple):
-    """One amount: its ``sign``, its numbers as written, each with its unit ("" for none)."""
+    """One amount: its ``sign``, and ``parts``, its numbers as written with their units ("" for
+    none)."""
 
     sign: str
     parts: tuple[tuple[str, str], ...]
 
     @property
     def units(self) -> list[str]:
-        """The units it has."""
+        """Its units, in order."""
         return [unit for _, unit in self.parts if unit]
 
 
 class Notation(NamedTuple):
-    """A text taken apart: its ``kind`` ("fixed" or one of the notations above), its ``amounts`` in
-    order (the middle of ``around`` may be None), whether the last is a share in percent, and its
-    ``layout``."""
+    """A parsed text.
+
+    ``kind``: "fixed" or a kind of `_FORMS`; ``amounts``: in order (the middle of "around" may be
+    None); ``share``: True if the last is a percentage; ``layout``: a format for the amounts."""
 
     kind: str
     amounts: tuple[Amount | None, ...]
@@ -410,15 +437,15 @@ class Notation(NamedTuple):
 
     @property
     def units(self) -> list[str]:
-        """The units it has."""
+        """Its units, in order."""
         return [unit for amount in self.amounts if amount for unit in amount.units]
 
 
 def parse(text: str) -> Notation:
-    """A value or range taken apart. Raises ValueError for what is neither."""
+    """Parse a value or range. Raises ValueError for any other text."""
     words = " ".join(text.replace("⁻¹", "^-1").replace("⁻²", "^-2").translate(_MEANT).split())
     if "..." in words or any(c.isdecimal() and not c.isascii() for c in words):
-        raise ValueError(text)  # INPUT knows the Apple's digits alone
+        raise ValueError(text)  # INPUT reads ASCII digits only
     for kind, pattern, counts, layout in _FORMS:
         if match := re.fullmatch(pattern, words):
             amounts: list[Amount | None] = []
@@ -431,22 +458,23 @@ def parse(text: str) -> Notation:
 
 
 def _amount(text: str) -> Amount:
+    """Parse one amount, such as "-25 mph" or "6 ft 6 in". Raises ValueError."""
     sign = text[0] if text[:1] in ("+", "-") else ""
-    rest = text.removeprefix(sign).lstrip()
+    remaining = text.removeprefix(sign).lstrip()
     parts: list[tuple[str, str]] = []
-    while rest:
-        part = _PART.match(rest)
+    while remaining:
+        part = _PART.match(remaining)
         if not part or (parts and not parts[-1][1]):
             raise ValueError(text)
         parts.append((part[1], part[2] or ""))
-        rest = rest[part.end() :]
+        remaining = remaining[part.end() :]
     if not parts or (len(parts) > 1 and not _descend([unit for _, unit in parts])):
         raise ValueError(text)
     return Amount(sign, tuple(parts))
 
 
 def _descend(units: list[str]) -> bool:
-    """Whether units are such as may follow one another: feet and inches, degrees and minutes."""
+    """Return True if units decrease like feet and inches or degrees and minutes, in one system."""
     for rule in (LENGTH, ANGLE, MASS):
         sizes = [size_of(unit, rule) for unit in units]
         if all(sizes) and all(a[0] > b[0] for a, b in pairwise(filter(None, sizes))):
@@ -455,36 +483,38 @@ def _descend(units: list[str]) -> bool:
 
 
 def _split(text: str, count: int) -> list[Amount]:
-    """So many amounts that stand side by side. Raises ValueError unless there is one way."""
+    """Split a text at blanks into ``count`` amounts. Raises ValueError unless exactly one way
+    works."""
     if count == 1:
         return [_amount(text)]
-    found = []
+    splits = []
     for at in [match.start() for match in re.finditer(" ", text)]:
         try:
-            found.append([_amount(text[:at]), *_split(text[at + 1 :], count - 1)])
+            splits.append([_amount(text[:at]), *_split(text[at + 1 :], count - 1)])
         except ValueError:
             continue
-    if len(found) != 1:
+    if len(splits) != 1:
         raise ValueError(text)
-    return found[0]
+    return splits[0]
 
 
 def is_amount(text: str, rule: str) -> bool:
-    """Return whether a text is an amount of what ``rule`` measures, or limits of one, with no comma
-    that may be a decimal one."""
+    """Return True if a text is an amount or range with the dimension of ``rule``, and none of its
+    commas may be a decimal one."""
     try:
         value = _Value("", text, rule, "", advise=False)
-        based = value.based(RULES, False)
+        base_text = value.in_base(RULES, False)
     except UserError:
         return False
     if value.notation.kind != "range":
         return True
-    lower, _, upper = based.partition(" .. ")
+    lower, _, upper = base_text.partition(" .. ")
     return double(lower) <= double(upper)
 
 
 def _accepted_forms(text: str, rule: str) -> str:
-    """How an amount is written that is not accepted as it stands; nothing where that is unclear."""
+    """Return advice on how to write an amount that is not accepted; "" if its meaning is
+    unclear."""
     from .suggestions import suggestions  # needed for a message only
 
     forms = suggestions(text.translate(_MEANT), lambda form: is_amount(form, rule))
@@ -492,7 +522,10 @@ def _accepted_forms(text: str, rule: str) -> str:
 
 
 class _Value:
-    """The text of one entry, and what it measures. Raises UserError for what is not an amount."""
+    """An entry's amount or range, parsed and checked against the rule of its quantity.
+
+    Raises UserError if the text is not an amount or has a unit of something else; ``advise``: with
+    a suggestion how to write it."""
 
     def __init__(self, name: str, text: str, rule: str, source: str, advise: bool = True) -> None:
         self.text, self.advise = text, advise
@@ -516,11 +549,12 @@ class _Value:
 
     @property
     def uses(self) -> list[tuple[str, str]]:
-        """The units it has, each with what it measures."""
+        """The units of the text, each with the rule of the quantity."""
         return [(unit, self.rule) for unit in self.notation.units]
 
-    def based(self, system: System, strict: bool) -> str:
-        """The text in base units; ``strict``: bare numbers that measure something are refused."""
+    def in_base(self, system: System, strict: bool) -> str:
+        """Return the text in base units; ``strict``: refuse bare numbers of quantities with
+        units."""
         units = set(self.notation.units)
         common = units.pop() if len(units) == 1 else None
         numbers = []
@@ -539,11 +573,11 @@ class _Value:
         return self.notation.layout.format(*numbers).lstrip()
 
     def _number(self, amount: Amount, usual: str, system: System) -> str:
-        """One amount as a number of base units: the digits as written where no factor is needed."""
-        known = [size_of(unit or usual, self.rule) for _, unit in amount.parts]
-        sizes = [size[0] if size else Fraction(1) for size in known]
+        """Return one amount in base units, with its digits as written if the factor is 1."""
+        unit_sizes = [size_of(unit or usual, self.rule) for _, unit in amount.parts]
+        sizes = [size[0] if size else Fraction(1) for size in unit_sizes]
         scale = system.scale(self.rule) if usual or amount.units else Fraction(1)
-        for (number, _), size in zip(amount.parts, known, strict=True):
+        for (number, _), size in zip(amount.parts, unit_sizes, strict=True):
             if _DECIMAL_COMMA.fullmatch(number) and (
                 number[0] == "0" or not size or size[1] != "us"
             ):
@@ -559,6 +593,7 @@ class _Value:
         return "0" if not value else ("-" if amount.sign == "-" else "") + digits(value)
 
     def _refuse(self, what: str) -> NoReturn:
+        """Raise UserError with advice on how to write the amount."""
         advice = (self.advise and _accepted_forms(self.text, self.rule)) or ACCEPTED
         raise UserError(f"{what}; {advice}", self.source)
 
@@ -567,25 +602,26 @@ _UNITLESS = (NUMBER, ANGLE, SPIN, PERCENT)
 
 
 def _fraction(text: str) -> Fraction:
-    """A number as written, exactly. Raises OverflowError where no double is as large."""
+    """Return a number as written, exactly. Raises OverflowError past the range of doubles."""
     number = text.replace(",", "")
     if "/" in number:
-        whole, _, part = number.replace(" /", "/").replace("/ ", "/").rpartition(" ")
-        return Fraction(whole or 0) + Fraction(part)
+        integer, _, fraction = number.replace(" /", "/").replace("/ ", "/").rpartition(" ")
+        return Fraction(integer or 0) + Fraction(fraction)
     value = double(number)
     if abs(value) == inf:
         raise OverflowError
-    if not value:  # exponents of nine digits are not worked out
+    if not value:  # a Fraction of 1E-999999999 would take for ever
         return Fraction(0)
     try:
         return Fraction(number)
-    except ValueError:  # what only INPUT takes, such as 1E
+    except ValueError:  # a number to INPUT only, such as 1E
         return Fraction(value)
 
 
 def nominal(name: str, text: str, source: str) -> str:
-    """The single value that stands for a value or range in base units: as written where it is, the
-    middle of two limits. Raises UserError for what is neither, and for a tolerance alone."""
+    """Return the nominal value of a value or range in base units, as text: a single value, mode or
+    mean as written, else the middle of two limits. Raises UserError for any other text and for a
+    tolerance without a value."""
     try:
         kind, amounts, *_ = parse(text)
     except ValueError:
@@ -601,9 +637,9 @@ def nominal(name: str, text: str, source: str) -> str:
     return digits(float(sum(map(_fraction, numbers)) / 2)) + share
 
 
-def _taken_apart(name: str, text: str, source: str) -> tuple[str, list[_Value]]:
-    """The values an entry holds, and its text with ``{}`` in place of each; no values where it is
-    read elsewhere, or refused there."""
+def _parse_entry(name: str, text: str, source: str) -> tuple[str, list[_Value]]:
+    """Return an entry's text with ``{}`` in place of each amount, and the amounts; none if the
+    entry is read, or refused, elsewhere."""
     if name in NO_AMOUNTS or not any(character.isdigit() for character in text):
         return text, []
     try:
@@ -618,69 +654,73 @@ def _taken_apart(name: str, text: str, source: str) -> tuple[str, list[_Value]]:
         ends = [0, *(place for at in range(len(rules)) for place in match.span(at + 1)), None]
         between = [words[a:b] for a, b in zip(ends[::2], ends[1::2], strict=True)]
         parts = zip(match.groups(), rules, strict=True)
-        return "{}".join(between), [_Value(name, part, own or rule, source) for part, own in parts]
+        return "{}".join(between), [
+            _Value(name, part, part_rule or rule, source) for part, part_rule in parts
+        ]
     return "{}", [_Value(name, text, rule, source)]
 
 
 def in_base(
     texts: Mapping[str, str], source: str, units: str | None = None
 ) -> tuple[dict[str, str], str | None]:
-    """The texts in base units, and the name of their system (None where nothing says). ``texts``:
-    by name, as they were written, and perhaps the entry ``units``; ``units``: the system of bare
-    numbers, where no entry says. Raises UserError for what is not an amount, a unit that does not
-    measure the quantity, for bare numbers among others with units, and for units of two systems
-    where none is named."""
+    """Return the texts in base units and the name of their system, None without units.
+
+    ``texts``: by name, as written, optionally with the entry ``units``; ``units``: the system of
+    bare numbers if there is no such entry. Raises UserError if a text is not an amount, a unit does
+    not measure the quantity, bare numbers stand among amounts with units, or units belong to two
+    systems and none is named."""
     entries = dict(texts)
     system = system_named(units, "--units") if units else None
-    if (named := entries.pop(ENTRY, None)) is not None:
-        system = system_named(named, source)
-    held = {name: _taken_apart(name, text, source) for name, text in entries.items()}
+    if (name_of_system := entries.pop(ENTRY, None)) is not None:
+        system = system_named(name_of_system, source)
+    entry_values = {name: _parse_entry(name, text, source) for name, text in entries.items()}
     strict = system is None
     system = system or system_using(
-        [use for _, values in held.values() for value in values for use in value.uses], source
+        [use for _, values in entry_values.values() for value in values for use in value.uses],
+        source,
     )
     strict = strict and not system.is_bare
-    for name, (layout, values) in held.items():
+    for name, (layout, values) in entry_values.items():
         if values and (not system.is_bare or not BARE.issuperset(entries[name])):
-            entries[name] = layout.format(*(v.based(system, strict) for v in values))
+            entries[name] = layout.format(*(v.in_base(system, strict) for v in values))
     return entries, system.name or None
 
 
-def converted(name: str, text: str, system: System) -> str:
-    """One entry in base units; its bare numbers are the system's. Raises UserError."""
-    layout, values = _taken_apart(name, text, "")
-    return layout.format(*(v.based(system, False) for v in values)) if values else text
+def text_in_base(name: str, text: str, system: System) -> str:
+    """Return one entry in base units; bare numbers are in ``system``. Raises UserError."""
+    layout, values = _parse_entry(name, text, "")
+    return layout.format(*(v.in_base(system, False) for v in values)) if values else text
 
 
 def convention_named(axes: str | None, headings: str | None, source: str) -> Convention | None:
     """Return the convention of that name; None for the listing's own. Raises UserError."""
-    for name, text, known in (("axes", axes, AXES), ("headings", headings, HEADINGS)):
-        if text and text.lower() not in known:
-            expected = " or ".join(f'"{word}"' for word in known)
-            raise UserError(f"{name} = {quoted(text)}; expected {expected}", source)
+    for name, text, choices in (("axes", axes, AXES), ("headings", headings, HEADINGS)):
+        if text and text.lower() not in choices:
+            choice_words = " or ".join(f'"{word}"' for word in choices)
+            raise UserError(f"{name} = {quoted(text)}; expected {choice_words}", source)
     chosen = Convention(*((text or "").lower().replace("listing", "") for text in (axes, headings)))
     return chosen if any(chosen) else None
 
 
 def in_listing_axes(texts: Mapping[str, str], system: System, source: str) -> dict[str, str]:
-    """Return texts in base units, from the directions of ``system`` to the listing's. Raises
-    UserError."""
+    """Return texts in base units, converted from the directions of ``system`` to the listing's.
+    Raises UserError."""
     assert system.convention is not None
-    turns = {name: system.convention.turned(name) for name in texts}
+    turns = {name: system.convention.sign_and_offset(name) for name in texts}
     return {
-        name: text if turn is None else turned(name, text, *turn, source)
+        name: text if turn is None else reorient_text(name, text, *turn, source)
         for name, text in texts.items()
         for turn in [turns[name]]
     }
 
 
 def opposite(text: str) -> str:
-    """Return a number, or limits, in base units with the other sign."""
-    return turned("", text, -1, 0)
+    """Return a number or range in base units with its sign reversed."""
+    return reorient_text("", text, -1, 0)
 
 
-def turned(name: str, text: str, sign: int, offset: int, source: str = "") -> str:
-    """Return a number, or limits, of ``offset + sign * value``."""
+def reorient_text(name: str, text: str, sign: int, offset: int, source: str = "") -> str:
+    """Return the text of ``offset + sign * value`` for a number or range. Raises UserError."""
     if name in SHARED and "%" in text:
         raise UserError(f"{name} = {text}: a share has no sign to turn; expected MU", source)
     try:
@@ -691,19 +731,22 @@ def turned(name: str, text: str, sign: int, offset: int, source: str = "") -> st
         return text
     numbers = [amount.sign + amount.parts[0][0] if amount else "" for amount in amounts]
     places = {"around": 1, "normal": 1, "triangular": 3}.get(kind, len(numbers))
-    turned = [_number_turned(text, sign, offset) if text else "" for text in numbers[:places]]
+    new_numbers = [
+        _reorient_number(text, sign, offset) if text else "" for text in numbers[:places]
+    ]
     numbers = [
-        *(reversed(turned) if kind in ("range", "uniform", "triangular") else turned),
+        *(reversed(new_numbers) if kind in ("range", "uniform", "triangular") else new_numbers),
         *(numbers[places:2] if kind == "normal" else numbers[places:]),
     ]
     if kind == "normal" and len(amounts) == 4:
-        ends = [amount.sign + amount.parts[0][0] for amount in amounts[2:] if amount]
-        numbers += [_number_turned(text, sign, offset) for text in reversed(ends)]
+        normal_limits = [amount.sign + amount.parts[0][0] for amount in amounts[2:] if amount]
+        numbers += [_reorient_number(text, sign, offset) for text in reversed(normal_limits)]
     return layout.format(*numbers).lstrip()
 
 
-def _number_turned(text: str, sign: int, offset: int) -> str:
-    """Return ``offset + sign * value`` of a number, its digits kept where only the sign changes."""
+def _reorient_number(text: str, sign: int, offset: int) -> str:
+    """Return ``offset + sign * value`` of a number; its digits are kept if only the sign
+    changes."""
     if not double(text):
         return str(offset) if offset else text
     if not offset and sign < 0:
@@ -712,8 +755,7 @@ def _number_turned(text: str, sign: int, offset: int) -> str:
 
 
 def middle_of(name: str, text: str, system: System, source: str) -> str:
-    """Return the middle of a text as it was written, with its unit: what a tolerance alone is
-    around."""
+    """Return the middle of a text as written, with its unit, to put a tolerance around."""
     if text.strip().startswith("estimate"):
         return "estimate"
     try:
@@ -726,7 +768,7 @@ def middle_of(name: str, text: str, system: System, source: str) -> str:
     if first is None:
         return ""
     if kind not in ("range", "uniform"):
-        words = [f"{number} {own or unit}".strip() for number, own in first.parts]
+        words = [f"{number} {part_unit or unit}".strip() for number, part_unit in first.parts]
         return first.sign + " ".join(words)
     ends = [amount for amount in amounts if amount]
     if all(len(end.parts) == 1 for end in ends) and (unit or not any(e.units for e in ends)):
@@ -734,42 +776,42 @@ def middle_of(name: str, text: str, system: System, source: str) -> str:
             sum(_fraction(end.parts[0][0]) * (-1 if end.sign == "-" else 1) for end in ends) / 2
         )
         return f"{digits(float(middle))} {unit}".strip()
-    based = nominal(name, converted(name, text, system), source)
+    nominal_text = nominal(name, text_in_base(name, text, system), source)
     rule = quantity(name).unit
     base = SYSTEMS[system.base_name].usual.get(rule, "")
-    return f"{based} {base}".strip()
+    return f"{nominal_text} {base}".strip()
 
 
 def shown_text(name: str, text: str, system: System) -> str:
-    """A number in base units as one of the system's usual units, in its directions: the fewest
-    digits that are read as the same number again; as it stands where no factor is needed."""
-    turn = system.convention.turned(name) if system.convention else None
+    """Return a number in base units in the system's usual unit and directions, with the fewest
+    digits that convert back to the same number; unchanged if the factor is 1."""
+    turn = system.convention.sign_and_offset(name) if system.convention else None
     if turn and any(map(str.isdigit, text)) and "%" not in text:
-        text = turned(name, text, *turn)
+        text = reorient_text(name, text, *turn)
         headings = system.convention is not None and system.convention.headings
         if headings and name in COURSES and is_number(text):
             return digits(double(text) % 360.0)
     factor = system.factor(name)
     if factor == 1 or not is_number(text):
         return text
-    value, rounded = double(text), ""
+    value, shortest = double(text), ""
     for places in (15, 16, 17):
-        rounded = f"{value * factor:.{places}g}".upper()
-        if double(converted(name, rounded, system)) == value:
+        shortest = f"{value * factor:.{places}g}".upper()
+        if double(text_in_base(name, shortest, system)) == value:
             break
-    return rounded
+    return shortest
 
 
 def units_in(name: str, text: str) -> list[tuple[str, str]]:
-    """The units in a text, each with what it measures; none where it is not an amount."""
+    """Return the units in a text, each with its rule; none if it is not an amount."""
     try:
-        return [use for value in _taken_apart(name, text, "")[1] for use in value.uses]
+        return [use for value in _parse_entry(name, text, "")[1] for use in value.uses]
     except UserError:
         return []
 
 
 def remarks(texts: Mapping[str, str], system: str | None) -> dict[str, str]:
-    """What a reader should know of how entries were understood, by name."""
+    """Return remarks on the interpretation of entries, by name."""
     bare = [n for n in ("IA", "IB") if (text := texts.get(n, "").strip()) and is_number(text)]
     if system != "us" or not bare:
         return {}

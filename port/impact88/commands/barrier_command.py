@@ -23,7 +23,7 @@ exit status: 0 solved; 2 bad input, or unknowns that are not determined
 """
 
 from ..chapter.barrier import BARRIER, BARRIER_AFTER
-from ..collision.uncertain import fixed
+from ..collision.uncertain import fixed_value
 from ..errors import note
 from ..reconstruction.adjustment import share_resolved
 from ..reconstruction.solutiontable import Exact
@@ -40,7 +40,9 @@ ARGUMENTS = (*options.SOLUTION, options.sample_option("vehicle A of a published 
 def main(args: options.Args) -> None:
     given, units = options.known_within_limits(args, KNOWABLE, single=True)
     barrier = BARRIER if "UX" in given else BARRIER | BARRIER_AFTER
-    known, friction = share_resolved(given | {n: fixed(value) for n, value in barrier.items()})
+    known, friction = share_resolved(
+        given | {n: fixed_value(value) for n, value in barrier.items()}
+    )
     if friction:
         note(None, friction)
     everything = {name: item.nominal for name, item in known.items()} | BARRIER_AFTER

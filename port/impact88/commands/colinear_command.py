@@ -15,7 +15,7 @@ import math
 from collections.abc import Iterator
 
 from ..chapter.colinear import colinear, colinear_inverse
-from ..collision.units import written
+from ..collision.units import display_values
 from ..errors import UserError
 from ..mechanics.outcome import forces
 from ..messages.plaintable import decimals_for, fixed, paragraph, quantities, table
@@ -54,7 +54,7 @@ def main(args: options.Args) -> None:
         values["TF"] = args.contact_time
         values |= {n: float(v) for n, v in forces(values["P"], args.contact_time).items()}
     warnings = sentences(int(values.pop("STATUS")), values)
-    values = written(values, system)
+    values = display_values(values, system)
     solved_for = BEFORE if after else AFTER
     units = {name: system.label(quantity(name).unit) for name in values}
     record = {"solved_for": solved_for, "values": values, "units": units, "warnings": warnings}

@@ -21,7 +21,7 @@ from math import hypot, isfinite, nan
 from typing import Any
 
 from ..chapter import deltav
-from ..collision.units import System, written
+from ..collision.units import System, display_values
 from ..errors import BEYOND_DOUBLES, UserError
 from ..messages.plaintable import number, quantities, table
 from ..names import FINAL_VELOCITIES, SCENE, quantity
@@ -81,8 +81,8 @@ def _answer(known: dict[str, float], like: str | None, factor: float, units: Sys
         change = deltav.delta_v({**{n: known[n] for n in GIVEN}, "LOSS": loss}, factor)
         estimate = {"LOSS": loss, **{name: float(value) for name, value in change.items()}}
         _check_finite(estimate.values())
-        estimates.append(written(estimate, units))
-    speeds = written({n: known[n] for n in GIVEN}, units)
+        estimates.append(display_values(estimate, units))
+    speeds = display_values({n: known[n] for n in GIVEN}, units)
     label = units.label("length/time")
     rows = [[number(estimate[n]) for n in ("LOSS", "DVA", "DVB")] for estimate in estimates]
     heading = ["loss [percent]", f"DVA [{label}]", f"DVB [{label}]"]
@@ -112,7 +112,7 @@ def _speeds_before(
                 if not repeat:
                     raise
                 row = dict.fromkeys(("UX", "VY", "DVA", "DVB"), nan)
-            found.append({"LOSS": loss, **written(row, units), "speeds": speeds})
+            found.append({"LOSS": loss, **display_values(row, units), "speeds": speeds})
     labels = _labels(("LOSS", "UX", "VY", "DVA", "DVB"), units)
     heading = [f"{name} [{'%' if name == 'LOSS' else unit}]" for name, unit in labels.items()]
     rows = [[number(row[n]) or "none" for n in labels] + [row["speeds"]] for row in found]
@@ -128,10 +128,14 @@ def _loss(known: dict[str, float], like: str | None, factor: float, units: Syste
     changes = {name: value for name, value in known.items() if name in ("DVA", "DVB")}
     found = {n: deltav.loss_of({**given, n: x}, factor) for n, x in changes.items()}
     _check_finite(found.values())
-    displayed = written(changes, units)
+    displayed = display_values(changes, units)
     rows = [[name, number(displayed[name]), number(loss)] for name, loss in found.items()]
     heading = ["from", f"velocity change [{units.label('length/time')}]", "loss [percent]"]
-    record = {"given": written(given, units), "LOSS_from": found, "units": _labels(given, units)}
+    record = {
+        "given": display_values(given, units),
+        "LOSS_from": found,
+        "units": _labels(given, units),
+    }
     return record, [*table(rows, heading), ""]
 
 

@@ -294,7 +294,7 @@ def settings(texts: Sequence[str], units: str | None = None) -> dict[str, str]:
     """Return what ``--set`` gives for all rows of a table: the text of a number for each name, in
     base units; ``units``: the system of bare numbers. Raises UserError."""
     changes = set_pairs(texts, tuple(SCENE))
-    case = changed(Case({}, "--set", units), changes, "--set").single()
+    case = changed(Case({}, "--set", units), changes, "--set").at_nominal()
     given = {name: case.values[name] for name in changes if name in case.given}
     for name, text in given.items():
         if not (name == "MU" and is_share(text)):
@@ -380,7 +380,7 @@ def known_case(args: Args, allowed: Collection[str], single: bool = False) -> Ca
         raise UserError("nothing is known; expected a file, or --set NAME=VALUE")
     set_pairs(args.set, (*allowed, *OWN_NAMES))
     case = case_given(args)
-    case = case.single() if single else case
+    case = case.at_nominal() if single else case
     if args.scene:
         for name in set(sum(OWN_AXES.values(), ())).intersection(case.values) - {*allowed}:
             raise UserError(
@@ -418,14 +418,14 @@ def note_remarks(case: Case | Scene, based: str = "") -> None:
 
 
 def _within_limits(name: str, text: str, source: str, units: str | None) -> Uncertain:
-    from ..collision.uncertain import fixed, read
+    from ..collision.uncertain import fixed_value, read
 
     if any(mark in text for mark in (*RANGES, "skid")) or is_share(text):
         return read(text, f"{source}: {name}", units=units)
     value = double(check_value(name, text, source))
     if not isfinite(value):
         raise UserError(f"{name} = {text} is too large for a double", source)
-    return fixed(value)
+    return fixed_value(value)
 
 
 def scene_given(args: Args, based: str = "") -> Scene | None:
@@ -447,7 +447,7 @@ def scene_given(args: Args, based: str = "") -> Scene | None:
     case = scene.case
     moves = Case({"CX": parts[0], "CY": parts[1]}, "--move-contact", case.units).values
     numbers = [double(check_value(name, moves[name], "--move-contact")) for name in ("CX", "CY")]
-    texts = case.written(moved_texts(scene, *numbers))
+    texts = case.display_texts(moved_texts(scene, *numbers))
     nothing = {name: "" for pair in OWN_AXES.values() for name in pair if name in case.texts}
     return Scene.of(case.replaced({**nothing, **texts}, "--move-contact"))
 

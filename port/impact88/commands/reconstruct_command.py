@@ -141,7 +141,7 @@ def _write_scene(solutions: list[Reconstruction], args: options.Args, case: Case
     found = {n: value for n, value in values.items() if n not in kept | own and n != "M"}
     notes = {n: t for n, t in case.texts.items() if n.removesuffix(SOURCE) in kept}
     title = f"Reconstructed from {options.source_of(args) or '--set'}"
-    texts = {**case.about, "title": title, **notes, **case.written(found)}
+    texts = {**case.about, "title": title, **notes, **case.display_texts(found)}
     texts.setdefault("M", "4" if values["M"] == 4 else "6")
     with replacing(args.write_scene) as file:
         file.write(template(Case(texts, args.write_scene)))

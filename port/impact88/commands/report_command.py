@@ -25,7 +25,7 @@ exit status: 0 written; 2 bad input
 import csv
 
 from ..collision.case import Case
-from ..collision.scenefile import TOML_LIMIT, template, toml_texts
+from ..collision.scenefile import MAX_TOML_BYTES, template, toml_texts
 from ..errors import UserError
 from ..files import decode, read_bytes, replacing
 from ..program.scene import sample
@@ -62,11 +62,11 @@ def main(args: options.Args) -> None:
         case = sample(args.sample).case.shown_in(*chosen)
         data = template(case).encode()
     else:
-        data = read_bytes(args.scene, TOML_LIMIT)
+        data = read_bytes(args.scene, MAX_TOML_BYTES)
         case = Case(toml_texts(decode(data, source), source), source, *chosen)
     changes = options.set_pairs(args.set)
     case = options.changed(case, changes, "--set")
-    case = case.noted({n: "changed with --set" for n in changes if n in case.given})
+    case = case.with_sources({n: "changed with --set" for n in changes if n in case.given})
     options.note_remarks(case)
     asked = {n: getattr(args, n) for n in ("samples", "seed", "title", "paper")}
     asked["number"] = args.case

@@ -105,7 +105,7 @@ def _published(args: options.Args) -> dict[str, str]:
     """Return the listing's own data, with what ``--set`` changes or adds."""
     data = Case({**published_data(), "units": "chapter"}, "the listing").shown_in(args.units)
     changes = options.set_pairs(args.set, (*SCENE, *OWN_NAMES))
-    case = options.changed(data, changes, "--set").single()
+    case = options.changed(data, changes, "--set").at_nominal()
     options.note_remarks(case, "the program's page" if args.set else "")
     return {n: check_value(n, text, "--set") for n, text in case.values.items() if n in SCENE}
 

@@ -58,7 +58,7 @@ def solve_table(args: options.Args) -> int:
         if one_scene:
             options.set_pairs(args.set, (*SCENE, *OWN_NAMES))
             case = options.case_given(argparse.Namespace(**{**vars(args), "scene": path}))
-            options.note_remarks(case.single())
+            options.note_remarks(case.at_nominal())
             swept = read_ranges(options.sweeps(args.sweep), case)
             source = stack.enter_context(read_sweep(case, swept))
         else:
@@ -83,7 +83,7 @@ def solve_table(args: options.Args) -> int:
                 beside = Case({}, "--set", *chosen)
             elif not beside.units and not units.system.is_bare:
                 _refuse_bare(beside, units)
-            beside = options.changed(beside, changes, "--set").single()
+            beside = options.changed(beside, changes, "--set").at_nominal()
             given = _given(beside, changes, source.names)
             inertias = {
                 name: partial(_estimated, units=units, name=name, estimate=estimate, case=beside)
@@ -108,7 +108,7 @@ def solve_table(args: options.Args) -> int:
         if not may_wait(path or ""):
             blocks = stack.enter_context(ahead(blocks))
         units.based = given
-        told = [*case.single().remarks] if one_scene else []
+        told = [*case.at_nominal().remarks] if one_scene else []
         if args.scene and beside is not None:
             told = [name for name in beside.remarks if name not in source.names]
         said = _Remarks(told, given, beside)
@@ -177,8 +177,8 @@ class _Remarks:
 def _filling(args: options.Args) -> Case:
     """Return the case that fills the columns that the table lacks."""
     case = case_in(args.scene, args.units, args.axes, args.headings)
-    options.note_remarks(case.single())
-    check_names(case.single().values, SCENE, "value of a scene", called(args.scene))
+    options.note_remarks(case.at_nominal())
+    check_names(case.at_nominal().values, SCENE, "value of a scene", called(args.scene))
     return case
 
 
@@ -222,7 +222,7 @@ def _estimated(
         try:
             mass = cell if isinstance(cell, str) else repr(float(cell)).upper()
             based = units.cell(f"M{name[1]}", mass)
-            texts.append(estimate(case.written({f"M{name[1]}": based})[f"M{name[1]}"]))
+            texts.append(estimate(case.display_texts({f"M{name[1]}": based})[f"M{name[1]}"]))
         except (UserError, TypeError, ValueError):
             texts.append(None)
     return texts

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from ..collision import uncertain
 from ..collision.case import Case, check_value
 from ..collision.doubles import double, doubles_of, is_number
-from ..collision.geometry import placed
+from ..collision.geometry import coordinate_names
 from ..collision.scenefile import template, toml_texts
 from ..collision.units import RULES, System
 from ..emulator.screen import shown_character
@@ -86,7 +86,9 @@ def read(values: Mapping[str, str], units: str = "", title: str = "") -> Form:
         problems["M"] = "M: expected 6, or 4 for point masses"
     # a form shows the M that it takes
     given = {n for n in case.values if n != "M" or "M" in case.given}
-    missing = [name for name in placed(SCENE, given) if name not in given | problems.keys()]
+    missing = [
+        name for name in coordinate_names(SCENE, given) if name not in given | problems.keys()
+    ]
     scene = None
     if not problems and not missing:
         try:
@@ -116,7 +118,7 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     `impact88 oracle` answers, its ``page``, ``results`` and ``warnings``, and the ``screen`` from
     the emulator's memory."""
     from ..comparison.oracle import oracle
-    from ..program.emulated import finished, loaded
+    from ..program.emulated import load_machine, run_machine
     from ..program.run import page
     from ..verification.judging import beside
 
@@ -127,9 +129,9 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     if form.scene:
         scene = form.scene
         known = oracle([scene], reference=False)[0]
-        results, system, machine = known["results"], form.system, loaded(scene)
+        results, system, machine = known["results"], form.system, load_machine(scene)
         exact = {n: row["double"] for n, row in results.items() if row["double"] is not None}
-        finished(machine)
+        run_machine(machine)
         found |= {
             "oracle": stamped("oracle", {"id": None, "scene": dict(scene), **known}),
             "answer": _answer(scene, exact, system),
@@ -153,7 +155,7 @@ def _answer(scene: Scene, exact: Mapping[str, float], system: System) -> list[di
         if not values.keys() >= set(names):
             continue
         rule = quantity(names[0]).unit
-        amounts = {name: system.displayed(name, values[name]) for name in names}
+        amounts = {name: system.display(name, values[name]) for name in names}
         texts = [
             {
                 "name": name,
@@ -182,7 +184,7 @@ def _rows(
     rows = []
     for name, exact in doubles.items():
         if name != "STATUS":
-            value, label = system.displayed(name, float(exact)), system.unit(name)
+            value, label = system.display(name, float(exact)), system.unit(name)
             row = {**RESULTS[name]._asdict(), "printed": results[name]["printed"] or ""}
             row |= {"exact": number(exact, _DIGITS), "value": value, "label": label}
             rows.append({**row, "shown": f"{number(value)} {label}" if label else ""})

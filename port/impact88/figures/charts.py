@@ -428,14 +428,16 @@ def _along(
     for output in outputs:
         d.check_drawable(found[output], output)
     d.check_drawable(axis, name)
-    axis, own, shaded = (units.placed(name, x) for x in (axis, own, shaded))
-    limit = units.placed(name, limit) if limit else limit
-    here = {n: units.placed(n, float(value)) for n, value in solve(numbers, outputs).items()}
+    axis, own, shaded = (units.display_unwrapped(name, x) for x in (axis, own, shaded))
+    limit = units.display_unwrapped(name, limit) if limit else limit
+    here = {
+        n: units.display_unwrapped(n, float(value)) for n, value in solve(numbers, outputs).items()
+    }
     summary = " ".join(f"{_label(output, units)}: {short(here[output])}." for output in outputs)
     drawing = Drawing(d.COLUMN, titles[0], f"In this scene: {summary}")
     top = drawing.heading() - _TOP
     entries: list[tuple[str, str, Any]] = []
-    values = {output: units.placed(output, found[output]) for output in outputs}
+    values = {output: units.display_unwrapped(output, found[output]) for output in outputs}
     reaches = [_reach([(values[o], here[o]) for o in group], faulty) for group in groups]
     numbers_y = (text for y in reaches for _, text in ticks(*y, 4))
     left = max(_LEFT, max(d.text_width(text, TEXT) for text in numbers_y) + 3.2)

@@ -292,7 +292,7 @@ _SECOND = 44.0  # in mm: where the key's second column starts
 def with_unit(value: float, rule: str, units: System) -> str:
     """An amount in the units shown, named where they have names."""
     label = "" if units.is_bare else units.label(rule)
-    return f"{short(units.shown(rule, value))} {label}".strip()
+    return f"{short(units.display_value(rule, value))} {label}".strip()
 
 
 def _key(drawing: Drawing, field: _Field, y: float, units: System, left_edge: float = 0.0) -> float:
@@ -306,10 +306,10 @@ def _key(drawing: Drawing, field: _Field, y: float, units: System, left_edge: fl
 
     def scale(word: str, size: float, per_unit: float, rule: str) -> tuple[list[Path], str]:
         """A bar of 1, 2 or 5 times a power of ten, at most half of ``size``, and what it means."""
-        half = units.shown(rule, size) * 0.5
+        half = units.display_value(rule, size) * 0.5
         power = 10.0 ** math.floor(math.log10(half))
         amount = max(step * power for step in (1, 2, 5) if step * power <= half * (1 + 1e-12))
-        end = per_unit / units.shown(rule, 1.0) * amount
+        end = per_unit / units.display_value(rule, 1.0) * amount
         bar = [Path((0, end), d.BLACK, 0.4, role=f"{word} scale")]
         bar += [Path((x - 0.7j, x + 0.7j), d.BLACK, 0.4) for x in (0, end)]
         unit = f" {units.label(rule)}"
@@ -376,7 +376,7 @@ def table_and_notes(drawing: Drawing, shapes: Plan, y: float, units: System) -> 
 
 def _cells(vehicle: Vehicle, shapes: Plan, units: System, widest: float) -> list[str]:
     def speed(value: float) -> str:
-        return fitting(units.shown(_SPEED, value), widest)
+        return fitting(units.display_value(_SPEED, value), widest)
 
     cells = [speed(vehicle.before.speed), "–", "–", "–"]
     turn = -1.0 if units.is_turned("WA") else 1.0
@@ -394,7 +394,7 @@ def _notes(shapes: Plan, units: System) -> list[str]:
     first = []
     for vehicle in shapes.vehicles:
         if vehicle.name in shapes.measured:
-            length = short(units.shown(_LENGTH, vehicle.length))
+            length = short(units.display_value(_LENGTH, vehicle.length))
             width = with_unit(vehicle.width, _LENGTH, units)
             first.append(f"{vehicle.name} drawn as measured, {length} by {width}.")
     assumed = [v.name for v in shapes.bodies if v.name not in shapes.measured]

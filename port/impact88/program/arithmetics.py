@@ -122,7 +122,7 @@ FLOAT64 = Arithmetic(
 ARITHMETICS = {arithmetic.name: arithmetic for arithmetic in (APPLESOFT, FLOAT64)}
 
 
-def named(name: str | Arithmetic) -> Arithmetic:
+def get_arithmetic(name: str | Arithmetic) -> Arithmetic:
     """The arithmetic of that name, or the one itself. Raises UserError for an unknown one."""
     if isinstance(name, Arithmetic):
         return name

@@ -52,11 +52,11 @@ class CopyVariables(NamedTuple):
 def find_variables(lines: Lines, restored: Lines) -> CopyVariables:
     """Return which variable of a copy takes each value of a scene. ``restored``: the restored
     listing."""
-    given = dict(_given(lines))
+    given = dict(_assigned_variables(lines))
     numbers = {key for key in given.values() if not key.endswith("$")}
-    computed = _computed(lines)
-    printed = _printed(lines)
-    places = {key: place for place, key in _given(restored)}
+    computed = _dependencies(lines)
+    printed = _printed_variables(lines)
+    places = {key: place for place, key in _assigned_variables(restored)}
     of_value: dict[str, str] = {}
     missing = []
     for name in SCENE:
@@ -80,7 +80,7 @@ def find_variables(lines: Lines, restored: Lines) -> CopyVariables:
     for name in SCENE.keys() - of_value.keys() - set(missing):
         if not _sources(printed.get(name, ""), computed, numbers) <= taken:
             missing.append(name)
-    asked = [key for key in dict.fromkeys(_asked(lines)) if not key.endswith("$")]
+    asked = [key for key in dict.fromkeys(_input_variables(lines)) if not key.endswith("$")]
     return CopyVariables(
         of_value, [name for name in missing if name != "M"], [k for k in asked if k not in taken]
     )
@@ -92,7 +92,7 @@ def _statements(lines: Lines) -> Iterator[tuple[int, int, str]]:
             yield line, at, statement
 
 
-def _given(lines: Lines) -> Iterator[tuple[Place, str]]:
+def _assigned_variables(lines: Lines) -> Iterator[tuple[Place, str]]:
     """The variables that are given numbers: assigned a constant, read or asked for."""
     for line, at, statement in _statements(lines):
         if match := _LIST.fullmatch(statement):
@@ -104,7 +104,7 @@ def _given(lines: Lines) -> Iterator[tuple[Place, str]]:
                 yield (line, at, 0), key_of(match[1])
 
 
-def _asked(lines: Lines) -> Iterator[str]:
+def _input_variables(lines: Lines) -> Iterator[str]:
     for _, _, statement in _statements(lines):
         match = _LIST.fullmatch(statement)
         if match and match[1].upper() == "INPUT":
@@ -120,7 +120,7 @@ def _variables(expression: str) -> set[str]:
     return names
 
 
-def _computed(lines: Lines) -> dict[str, set[str]]:
+def _dependencies(lines: Lines) -> dict[str, set[str]]:
     """For each variable those that its formulas use, itself left out."""
     uses: dict[str, set[str]] = {}
     for _, _, statement in _statements(lines):
@@ -146,7 +146,7 @@ def _sources(shown: str, computed: Mapping[str, set[str]], numbers: set[str]) ->
     return sources
 
 
-def _printed(lines: Lines) -> dict[str, str]:
+def _printed_variables(lines: Lines) -> dict[str, str]:
     """The variable that is printed first under the label of each value; the angles stand below
     their heading."""
     printed: dict[str, str] = {}

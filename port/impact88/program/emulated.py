@@ -23,7 +23,7 @@ from .scene import Scene
 LISTING = "impact.bas"
 
 
-def loaded(
+def load_machine(
     scene: Mapping[str, str], *, dos: bool = True, slot: int = 0, text: str | None = None
 ) -> Applesoft:
     """The restored listing, or ``text``, in a machine, with a scene's lines typed in, and its
@@ -41,7 +41,7 @@ def loaded(
     return machine
 
 
-def finished(machine: Applesoft) -> Run:
+def run_machine(machine: Applesoft) -> Run:
     """RUN, and what it left. Raises `console.EndOfInput` if a changed program asks for more than a
     scene holds."""
     machine.run()
@@ -58,7 +58,7 @@ def finished(machine: Applesoft) -> Run:
 
 def run(scene: Mapping[str, str], *, dos: bool = True, slot: int = 0) -> Run:
     """Run the listing on a scene in the emulator, and keep everything."""
-    return finished(loaded(scene, dos=dos, slot=slot))
+    return run_machine(load_machine(scene, dos=dos, slot=slot))
 
 
 LARGEST_COPY = 100_000
@@ -92,12 +92,12 @@ class ListingCopy:
         data = files.read_bytes(path, LARGEST_COPY)
         self.file, self.sha256 = files.called(path), sha256(data).hexdigest()
         try:
-            self._lines = _listed(data)
+            self._lines = _list_program(data)
         except (ValueError, ApplesoftError) as error:
             raise UserError(f"is not an Applesoft program: {error}", path) from None
         if not self._lines:
             raise UserError("holds no program; expected numbered lines of Applesoft", path)
-        restored = _listed(files.packaged_text("impact88.legacy", LISTING))
+        restored = _list_program(files.packaged_text("impact88.legacy", LISTING))
         self._variables = find_variables(self._lines, restored)
         self._values = {key: name for name, key in self._variables.of_value.items()}
 
@@ -120,7 +120,7 @@ class ListingCopy:
     def changed_lines(self) -> list[ChangedLine]:
         """The lines in which the copy is another program than the restored listing; remarks and
         blanks apart."""
-        both = self._lines, _listed(files.packaged_text("impact88.legacy", LISTING))
+        both = self._lines, _list_program(files.packaged_text("impact88.legacy", LISTING))
         changed = []
         for number in sorted({*both[0], *both[1]}):
             copy, restored = (lines.get(number, []) for lines in both)
@@ -138,7 +138,7 @@ class ListingCopy:
             machine.feed(",".join(scene.get(value, "0") for value in values))
         machine.machine.statements_left = STATEMENTS
         try:
-            return finished(machine)
+            return run_machine(machine)
         except EndOfInput:
             raise UserError("asks for more than a scene holds", self.file) from None
         except TooManyStatements:
@@ -172,7 +172,7 @@ def _items(statement: str, verb: str) -> list[str]:
     return [item.strip() for item in match["items"].split(",")] if match and found else []
 
 
-def _listed(program: str | bytes) -> dict[int, list[str]]:
+def _list_program(program: str | bytes) -> dict[int, list[str]]:
     """The statements of a program by line, as LIST shows them."""
     machine = Applesoft()
     machine.load(program)

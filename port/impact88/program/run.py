@@ -98,7 +98,7 @@ def start(
 
     Raises UserError for an unknown arithmetic and `console.EndOfInput`.
     """
-    chosen = arithmetics.named(arithmetic)
+    chosen = arithmetics.get_arithmetic(arithmetic)
     error, zero_determinant = None, False
     watching = stepping.after_every_line(after_line, chosen.unset) if after_line else nullcontext()
     try:
@@ -123,8 +123,8 @@ def start(
         "",
         error.message if error else None,
         error.line if error else None,
-        {name: _shown(value) for name, value in reals.items()},
-        {"dims": array.sizes, "data": list(map(_shown, array.data))} if array else None,
+        {name: _record_value(value) for name, value in reals.items()},
+        {"dims": array.sizes, "data": list(map(_record_value, array.data))} if array else None,
         zero_determinant,
     )
 
@@ -178,7 +178,7 @@ def run(
     return finished._replace(printout="".join(characters))
 
 
-def _shown(value: Any) -> Any:
+def _record_value(value: Any) -> Any:
     """A real's stored bytes in hexadecimal; a double as it is, or in words where JSON has none."""
     if isinstance(value, Real):
         return value.stored().hex()

@@ -86,7 +86,7 @@ class Scene(Mapping[str, str]):
         return scene
 
     def _take(self, case: Case) -> None:
-        single, source = case.single(), case.source
+        single, source = case.at_nominal(), case.source
         given = dict(single.values)
         check_names(given, SCENE, "value of a scene", source)
         absent = [name for name in SCENE if name not in given]

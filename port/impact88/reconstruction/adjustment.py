@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ..collision.geometry import GEOMETRY, with_point_masses, within_doubles
 from ..collision.mappings import within_limits
-from ..collision.uncertain import Uncertain, fixed
+from ..collision.uncertain import Uncertain, fixed_value
 from ..errors import UserError
 from ..mechanics.closedform.solve import share_typed, solve
 from ..mechanics.outcome import IMPOSSIBLE, outcome
@@ -720,10 +720,10 @@ def _ordered(
 def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertain]:
     given = within_limits(known)
     check_names(given, KNOWABLE, "value of an impact")
-    if given.setdefault("M", fixed(6.0)).nominal == 4:
+    if given.setdefault("M", fixed_value(6.0)).nominal == 4:
         ignored = (*SPINS, "EM", "DA", "DB", "PA", "PB", "IA", "IB")
         given = {name: item for name, item in given.items() if name not in ignored}
-        given = {n: fixed(v) for n, v in with_point_masses({"M": 4.0}).items()} | given
+        given = {n: fixed_value(v) for n, v in with_point_masses({"M": 4.0}).items()} | given
     check_physical(
         {n: np.array([x.nominal if x.kind == "normal" else x.low]) for n, x in given.items()}
     )
@@ -747,7 +747,7 @@ def _check_crush(given: dict[str, Uncertain]) -> None:
         if any(n in given for n in CRUSH if n.endswith(own)) and not names:
             if not math.isinf(given["M" + vehicle].nominal):
                 raise UserError("ELA and ELB (or EBSA and EBSB) sum to EL; expected both, or EL")
-            given["EL" + vehicle] = fixed(0.0)
+            given["EL" + vehicle] = fixed_value(0.0)
         for name in names:
             if given[name].nominal < 0:
                 raise UserError(f"{name} is negative; expected what was lost in {vehicle}")
@@ -1045,7 +1045,7 @@ def share_resolved(known: Mapping[str, Uncertain]) -> tuple[dict[str, Uncertain]
         name, value = "MUP", signed
     scale = value / item.nominal if item.nominal else 0.0
     low, high = sorted((item.low * scale, item.high * scale))
-    found = fixed(value)
+    found = fixed_value(value)
     if item.varies:
         spread = abs(item.deviation * scale)
         found = replace(item, nominal=value, low=low, high=high, deviation=spread, share=False)
@@ -1064,7 +1064,7 @@ def _signed(others: Mapping[str, Uncertain], share: float) -> float:
         if exact:
             scene = {**numbers, **solve_for({**numbers, "MUP": mu})[0].values}
         else:
-            scene = reconstruct({**others, "MUP": fixed(mu)})[0].scene()
+            scene = reconstruct({**others, "MUP": fixed_value(mu)})[0].scene()
         scene = {name: value for name, value in scene.items() if name in SCENE}
         return mu - share * float(solve({**scene, "MU": 0.0}, ("MUC",))["MUC"])
 

@@ -104,7 +104,7 @@ class Evidence:
             # what the table of names says besides is for the tables
             meaning = re.split("[:;,]| as printed", quantity(item.name).meaning)[0]
             measured, adjusted = (
-                _amount(units.placed(item.name, float(x))) + unit
+                _amount(units.display_unwrapped(item.name, float(x))) + unit
                 for x in (item.measured, item.adjusted)
             )
             word = "given" if self.exact else "measured"
@@ -122,8 +122,8 @@ class Evidence:
         rows = [
             {
                 "name": item.name,
-                "measured": units.placed(item.name, float(item.measured)),
-                "adjusted": units.placed(item.name, float(item.adjusted)),
+                "measured": units.display_unwrapped(item.name, float(item.measured)),
+                "adjusted": units.display_unwrapped(item.name, float(item.adjusted)),
                 "standardized_residual": item.residual,
                 "probability_without": item.without,
             }

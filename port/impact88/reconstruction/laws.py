@@ -71,7 +71,7 @@ class Missed:
         text = f"{self.name} is missed by {amount}"
         if self.law not in NAMES:
             present, given = (
-                number(units.placed(self.law, x), 6) for x in (self.present, self.given)
+                number(units.display_unwrapped(self.law, x), 6) for x in (self.present, self.given)
             )
             return f"{text} ({present} by the velocities, {given} is given)"
         if not math.isnan(self.present):

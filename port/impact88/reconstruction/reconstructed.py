@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..collision.geometry import GEOMETRY, Geometry, within_doubles
-from ..collision.uncertain import Uncertain, columns_of, fixed, random_numbers
+from ..collision.uncertain import Uncertain, columns_of, fixed_value, random_numbers
 from ..mechanics.state import CRUSH, DIRECTIONS, SPEEDS, State
 from ..names import COEFFICIENTS, IMPULSES, VELOCITIES
 from ..optimization.ascent import OUTSIDE, climb, extremes_of, spread_out
@@ -552,7 +552,7 @@ def _endless(box: _Box, known: Mapping[str, Uncertain], names: Sequence[str]) ->
     """The quantities that nothing determines when E is 0, where it may be."""
     if "E" not in box.system.laws or not known["E"].low <= 0 <= known["E"].high:
         return set()
-    nothing = System({**box.system.known, "E": fixed(0.0)}, adjusted=False)
+    nothing = System({**box.system.known, "E": fixed_value(0.0)}, adjusted=False)
     _, null = pseudo_inverse(nothing.slopes(box.x))
     slopes = nothing.gradients(box.x, names)
     left_open = np.abs(slopes @ null).max(axis=1, initial=0.0)

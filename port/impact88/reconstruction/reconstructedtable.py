@@ -9,7 +9,7 @@ import numpy as np
 
 from ..collision.geometry import within_doubles
 from ..collision.uncertain import Uncertain
-from ..collision.units import RULES, System, written
+from ..collision.units import RULES, System, display_values
 from ..mechanics.state import COURSES, FORCES, SPEEDS
 from ..messages import notebook
 from ..messages.arguments import explains_arguments
@@ -170,7 +170,7 @@ class Measured(Impact):
             lines.append(
                 "the known values contradict one another and none has a tolerance: all known "
                 "velocities were given the same one (spins that divided by the radius of gyration, "
-                f"{number(units.shown('length', solution.system.gyration), 4)}{unit}); "
+                f"{number(units.display_value('length', solution.system.gyration), 4)}{unit}); "
                 "deviations are those of the misfit"
             )
         elif self.evidence.contradictory:
@@ -186,7 +186,7 @@ class Measured(Impact):
                 # a direction opposite to the axis is 180, from either side
                 opposite = name in (*COURSES, *FORCES) and value < -179.9995
                 value = 180.0 if opposite else value
-                texts.append(f"{name} about {number(units.placed(name, value), 4)}")
+                texts.append(f"{name} about {number(units.display_unwrapped(name, value), 4)}")
             amounts = ", ".join(texts)
             both = ", and draws and bounds have both" if self.draws else ""
             lines.append(
@@ -255,7 +255,7 @@ class Measured(Impact):
             share = deviation / system.scale(name)
             if name in (*VELOCITIES, *FINAL_STATE) and share > ILL_POSED:
                 if apart := self._apart(name, deviation):
-                    amounts = [number(units.placed(name, value), 3) for value in apart]
+                    amounts = [number(units.display_unwrapped(name, value), 3) for value in apart]
                     listed = " or ".join(dict.fromkeys(amounts))
                     lines.append(
                         f"{name} is about {listed} {units.unit(name)}".rstrip()
@@ -294,7 +294,9 @@ class Measured(Impact):
             half = math.nan if item.kind == "normal" else a.tolerance
             rounding = abs(a.adjusted) < 1e-9 * item.standard_deviation
             adjusted = 0.0 if rounding else a.adjusted
-            measured, now = (units.placed(a.name, float(x)) for x in (a.measured, adjusted))
+            measured, now = (
+                units.display_unwrapped(a.name, float(x)) for x in (a.measured, adjusted)
+            )
             factor = units.factor(a.name)
             sizes = [(measured, 6), (half * factor, 3), (item.standard_deviation * factor, 3)]
             cells = [number(x, n) for x, n in (*sizes, (now, 6))]
@@ -324,7 +326,7 @@ class Measured(Impact):
             if self.draws:
                 drawn, bound = self.draws.spread(name, QUANTILES), self.ranges[name]
                 cells.append(number(factor * drawn.deviation, 3))
-                quantiles = [units.placed(name, q) for q in drawn.quantiles.values()]
+                quantiles = [units.display_unwrapped(name, q) for q in drawn.quantiles.values()]
                 quantiles = quantiles[::-1] if units.is_turned(name) else quantiles
                 limits = (*quantiles, *units.ends(name, *_ends(bound)))
                 cells += [number(value, 5) for value in limits]
@@ -361,9 +363,9 @@ class Measured(Impact):
         for a in solution.adjusted:
             small = abs(a.adjusted) < ROUNDING * solution.system.scale(a.name)
             sizes = {
-                "measured": units.placed(a.name, float(a.measured)),
+                "measured": units.display_unwrapped(a.name, float(a.measured)),
                 "tolerance": units.factor(a.name) * a.tolerance,
-                "adjusted": units.placed(a.name, 0.0 if small else float(a.adjusted)),
+                "adjusted": units.display_unwrapped(a.name, 0.0 if small else float(a.adjusted)),
             }
             adjusted.append({"name": a.name, **sizes, "moved": a.moved})
         return {
@@ -390,19 +392,19 @@ class Measured(Impact):
             drawn, bound = self.draws.spread(name, QUANTILES), self.ranges[name]
             lower, upper = units.ends(name, *_ends(bound))
             at = (bound.at_lower, bound.at_upper)
-            values = [units.placed(name, value) for value in drawn.quantiles.values()]
+            values = [units.display_unwrapped(name, value) for value in drawn.quantiles.values()]
             if units.is_turned(name):  # quantiles stand in pairs about the half
                 at, values = at[::-1], values[::-1]
             quantiles = dict(zip(drawn.quantiles, values, strict=True))
             record |= {
-                "mean": units.placed(name, drawn.mean),
+                "mean": units.display_unwrapped(name, drawn.mean),
                 "deviation": drawn.deviation * factor,
                 "quantiles": {f"{q:g}": v for q, v in quantiles.items()},
                 "lower": lower,
                 "upper": upper,
                 "unbounded": unbounded(bound),
-                "at_lower": written(at[0], units),
-                "at_upper": written(at[1], units),
+                "at_lower": display_values(at[0], units),
+                "at_upper": display_values(at[1], units),
             }
         return record
 

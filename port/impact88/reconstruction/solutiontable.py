@@ -9,7 +9,7 @@ from textwrap import wrap
 from typing import Any, Self
 
 from ..collision.geometry import clock, within_doubles
-from ..collision.units import RULES, VELOCITY, System, written
+from ..collision.units import RULES, VELOCITY, System, display_values
 from ..errors import UserError
 from ..mechanics.outcome import IMPOSSIBLE, forces, moment_ratio, outcome
 from ..mechanics.state import CHANGES, COURSES, FORCES
@@ -113,7 +113,7 @@ class Impact:
         remarks = self.warnings(units)
         undetermined = [paragraph(f"! {remarks.pop(0)}")] if self.undetermined else []
         clean = without_noise(self.values)
-        values = written(clean, units)
+        values = display_values(clean, units)
         named = (
             *(("E", "MUP", "EM", "RR0"), ("PN", "PT", "PM", "P", "PDOFA", "PDOFB")),
             *(("TF", "FA", "FM2", "FM3"), (*CHANGES, "VC", "VS"), ("KI", "KF", "EL", "LOSS")),
@@ -136,7 +136,7 @@ class Impact:
         # what was given stands as it was given
         given = {n: v for n, v in self.values.items() if self.known.get(n) == v}
         clean = {**without_noise(self.values, ROUNDING), **given}
-        values = {n: v for n, v in written(clean, units).items() if n != "STATUS"}
+        values = {n: v for n, v in display_values(clean, units).items() if n != "STATUS"}
         record: dict[str, Any] = plain(
             {
                 "known": [*self.known],
@@ -155,7 +155,7 @@ class Impact:
         def size(vehicle: str, name: str) -> str:
             if name not in values:
                 return f"{vehicle} unknown"
-            speed = units.shown(VELOCITY, values[name])
+            speed = units.display_value(VELOCITY, values[name])
             text = f"{vehicle} {number(speed, 3)}"
             if not units.is_bare:
                 road, factor = _ROAD.get(unit, ("", 0.0))
@@ -163,7 +163,9 @@ class Impact:
             if name in self.drivers:
                 bound = self.ranges.get(name)
                 sizes = (self.deviations[name], *((bound.lower, bound.upper) if bound else ()))
-                deviation, *ends = (number(units.shown(VELOCITY, size), 3) for size in sizes)
+                deviation, *ends = (
+                    number(units.display_value(VELOCITY, size), 3) for size in sizes
+                )
                 text += f", sd {deviation}"
                 text += f", between {ends[0]} and {ends[1]}" if ends and all(ends) else ""
             return text
@@ -173,7 +175,7 @@ class Impact:
         for vehicle in vehicles:
             text, course = size(vehicle, name := f"S{vehicle}"), f"H{vehicle}"
             if values.get(name) and course in values:
-                text += f", heading {number(units.displayed(course, values[course]), 3)}".replace(
+                text += f", heading {number(units.display(course, values[course]), 3)}".replace(
                     "-180", "180"
                 )
             rows.append(("BEFORE IMPACT", text))
@@ -321,7 +323,7 @@ class Exact(Impact):
     def warnings(self, units: System = RULES) -> list[str]:
         lines = []
         if self.solution.contradictory:
-            mismatch = units.shown(VELOCITY, float(self.solution.mismatch))
+            mismatch = units.display_value(VELOCITY, float(self.solution.mismatch))
             lines.append(
                 "the known values contradict one another: the solution fits them by least squares, "
                 f"root-mean-square mismatch {number(mismatch, 3)} [{units.label(VELOCITY)}]"
@@ -343,7 +345,7 @@ class Exact(Impact):
             f"{number(self.solution.gyration, 4)}, coefficients times the closing speed): "
             f"{', '.join(errors)}"
         )
-        values = written(self.values, units)
+        values = display_values(self.values, units)
         return [self._named(("CAX", "CAY", "CBX", "CBY"), values, units), conditions]
 
     def more(self, units: System) -> dict[str, Any]:
@@ -352,6 +354,6 @@ class Exact(Impact):
             "solved_for": list(self.solution.unknown),
             "amplification": self.solution.amplification,
             "badly_conditioned": self.solution.badly_conditioned,
-            "mismatch": self.solution.mismatch * units.shown(VELOCITY, 1.0),
+            "mismatch": self.solution.mismatch * units.display_value(VELOCITY, 1.0),
             "contradictory": self.solution.contradictory,
         }

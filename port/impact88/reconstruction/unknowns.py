@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from ..collision.geometry import GEOMETRY, with_point_masses, within_doubles
 from ..collision.mappings import columns
-from ..collision.uncertain import fixed
+from ..collision.uncertain import fixed_value
 from ..errors import UserError
 from ..mechanics.closedform.solve import solve
 from ..mechanics.state import State
@@ -347,7 +347,9 @@ def _determined(given: Mapping[str, Any], wanted: Sequence[str], point: bool) ->
     ``mismatch``, ``gyration``, and whether the ``parts`` of all wanted coefficients are."""
     count, ignored = len(given["MA"]), (*SPINS, "EM", "PM") if point else ()
     system = System(
-        {n: fixed(v) for n, v in given.items() if n not in ignored}, adjusted=False, barrier=False
+        {n: fixed_value(v) for n, v in given.items() if n not in ignored},
+        adjusted=False,
+        barrier=False,
     )
 
     def held(state: State) -> State:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..collision.case import ABOUT, Case
-from ..collision.geometry import MOVES, clock, moved, placed
+from ..collision.geometry import MOVES, clock, coordinate_names, resolve_contact_point
 from ..collision.units import System, base_of
 from ..errors import UserError, library
 from ..figures.canvas import svg
@@ -105,9 +105,9 @@ def report(
     UserError."""
     units = case.system
     given = {n for n, text in case.values.items() if text.strip()}
-    scene = placed(SCENE, given)
+    scene = coordinate_names(SCENE, given)
     forward = set(scene) - {"M"} <= given <= {*scene, *MOVES}
-    check_names(given, placed((*KNOWABLE, *MOVES), given), "name used here", source)
+    check_names(given, coordinate_names((*KNOWABLE, *MOVES), given), "name used here", source)
     found = (_forward if forward else _inverse)(case, source, samples, seed, units)
     drawing = None
     tables = [_answer(found, units), *_details(found, case, units)]
@@ -170,7 +170,7 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
     from ..uncertainty.ranges import read_inputs
 
     inputs = read_inputs(case)
-    nominal = moved({name: item.nominal for name, item in inputs.values.items()})
+    nominal = resolve_contact_point({name: item.nominal for name, item in inputs.values.items()})
     if inputs.values["MU"].share:
         nominal["MU"] = share_typed(nominal, nominal["MU"])
     results = {name: float(value) for name, value in solve(nominal).items()}
@@ -291,7 +291,7 @@ def _room(
 
 def _amount(name: str, value: float, units: System, like: float = math.nan) -> str:
     """A value as it is shown: two digits of its standard deviation, or five of itself."""
-    amount = float(units.displayed(name, float(value)))
+    amount = float(units.display(name, float(value)))
     if math.isnan(amount):
         return ""
     if math.isinf(amount):

@@ -19,11 +19,11 @@ from ..collision.units import (
     Convention,
     System,
     check_unit,
-    converted,
+    reorient_text,
     size_of,
     system_named,
     system_using,
-    turned,
+    text_in_base,
     units_in,
 )
 from ..errors import UserError, quoted
@@ -108,9 +108,9 @@ class TableUnits:
             raise UserError(
                 f"{quoted(text)}: expected its unit in the heading, or --units {found.name}"
             )
-        based = converted(name, text, System("", self.system.base, usual))
-        turn = self.convention.turned(name) if self.convention else None
-        return turned(name, based, *turn) if turn and is_number(based) else based
+        based = text_in_base(name, text, System("", self.system.base, usual))
+        turn = self.convention.sign_and_offset(name) if self.convention else None
+        return reorient_text(name, based, *turn) if turn and is_number(based) else based
 
     def result(self, name: str, text: str) -> tuple[float, float]:
         """A cell of a result in base units, and the size of the last digit it is written with (0
@@ -125,7 +125,7 @@ class TableUnits:
 
     def turned(self, name: str, values: Any) -> Any:
         """Return numbers in base units in the listing's axes."""
-        turn = self.convention.turned(name) if self.convention else None
+        turn = self.convention.sign_and_offset(name) if self.convention else None
         return values if turn is None or name in self.based else turn[1] + turn[0] * values
 
     def headings(self, results: Sequence[str]) -> list[str]:
@@ -136,7 +136,7 @@ class TableUnits:
     def shown(self, results: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
         """Results in base units as they are shown."""
         system = self.system._replace(convention=self.convention)
-        return {n: system.displayed(n, v) if n in RESULTS else v for n, v in results.items()}
+        return {n: system.display(n, v) if n in RESULTS else v for n, v in results.items()}
 
 
 def _measures(system: str) -> str:

@@ -13,7 +13,7 @@ from ..collision.estimates import CARS, weight_line
 from ..collision.plausibility import (
     BEYOND_ARM,
     INERTIA_RATIO,
-    LONGEST_ARM,
+    MAX_ARM,
     MEASURES,
     ONE_SPIN,
     SPEEDS,
@@ -113,7 +113,7 @@ class _Table:
                 low, high, words = MEASURES[rule]
                 scale = float(self.system.scale(rule))
             elif arm:
-                high = LONGEST_ARM
+                high = MAX_ARM
                 low, scale, words = -high, float(self.system.scale("length")), BEYOND_ARM
             else:
                 continue

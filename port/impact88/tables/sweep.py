@@ -81,8 +81,8 @@ def estimates(case: Case) -> dict[str, Callable[[str], str]]:
     def estimate_of(name: str) -> Callable[[str], str]:
         @lru_cache(maxsize=4096)
         def estimate(mass: str) -> str:
-            changed = case.replaced({f"M{name[1]}": mass}).single()
-            return changed.written({name: changed.values[name]})[name]
+            changed = case.replaced({f"M{name[1]}": mass}).at_nominal()
+            return changed.display_texts({name: changed.values[name]})[name]
 
         return estimate
 
@@ -92,14 +92,14 @@ def estimates(case: Case) -> dict[str, Callable[[str], str]]:
 def swept_columns(case: Case, name: str, run: Sequence[float]) -> dict[str, Any]:
     """Return a case's values in base units as `impact88.solve` takes them, one of them running:
     numbers, a share of the critical friction, and inertias estimated from a mass that runs."""
-    values = case.single().values
+    values = case.at_nominal().values
     columns: dict[str, Any] = {
         n: values[n] if is_share(values[n]) else double(values[n]) for n in SCENE
     }
     for inertia in estimates(case):
         if name == f"M{inertia[1]}":
-            masses = [case.written({name: float(mass)})[name] for mass in run]
-            singles = [case.replaced({name: mass}).single() for mass in masses]
+            masses = [case.display_texts({name: float(mass)})[name] for mass in run]
+            singles = [case.replaced({name: mass}).at_nominal() for mass in masses]
             columns[inertia] = [double(single.values[inertia]) for single in singles]
     return {**columns, name: run}
 
@@ -111,12 +111,12 @@ def read_sweep(case: Case, ranges: Mapping[str, Range]) -> Iterator[Reader]:
     depends on a value that runs, an estimated inertia or a share of the critical friction, is
     that of each scene."""
     system = case.system
-    values = case.single().values
+    values = case.at_nominal().values
     scene = {name: values[name] for name in SCENE if name in values}
     headed = {n: Heading(n, system.heading(n), system.unit(n)) for n in scene}
-    texts: dict[str, str] = {headed[n]: t for n, t in case.written(scene).items()}
+    texts: dict[str, str] = {headed[n]: t for n, t in case.display_texts(scene).items()}
     swept: dict[str, Range] = {}
     for n, run in ranges.items():
-        low, high = (system.displayed(n, limit) for limit in run[:2])
+        low, high = (system.display(n, limit) for limit in run[:2])
         swept[headed[n]] = Range(low, high, run.steps)
     yield Reader(list(texts), _blocks(case, texts, swept), prod(r.steps for r in ranges.values()))

@@ -20,9 +20,15 @@ from numpy.typing import NDArray
 
 from .. import status
 from ..collision.case import check_mapping
-from ..collision.geometry import MOVES, moved
+from ..collision.geometry import MOVES, resolve_contact_point
 from ..collision.mappings import base_system, within_limits
-from ..collision.uncertain import Uncertain, columns_of, correlation_root, fixed, random_numbers
+from ..collision.uncertain import (
+    Uncertain,
+    columns_of,
+    correlation_root,
+    fixed_value,
+    random_numbers,
+)
 from ..errors import UserError
 from ..mechanics.closedform.solve import quantities, share_typed
 from ..mechanics.outcome import forward_model, reconstruction_model
@@ -229,7 +235,7 @@ class _Box:
     ) -> None:
         check_names([problem], PROBLEMS, "problem")
         given = within_limits(values)
-        given.setdefault("M", fixed(6.0))
+        given.setdefault("M", fixed_value(6.0))
         _check_values(given, problem)
         self.inputs = {name: item for name, item in given.items() if item.varies}
         self.known = {name: item.nominal for name, item in given.items() if not item.varies}
@@ -261,7 +267,7 @@ class _Box:
         return self.model(self.scenes(columns), outputs, None)[0]
 
     def scenes(self, columns: Mapping[str, Array]) -> Mapping[str, Array | float]:
-        values = moved({**self.known, **columns})
+        values = resolve_contact_point({**self.known, **columns})
         return {**values, "MU": share_typed(values, values["MU"])} if self.share else values
 
     def extremes(self, rng: np.random.Generator) -> Extremes:

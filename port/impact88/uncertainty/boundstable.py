@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..collision.uncertain import Uncertain
-from ..collision.units import System, system_of, written
+from ..collision.units import System, display_values, system_of
 from ..messages import notebook
 from ..messages.plaintable import number, plain
 from ..messages.plaintable import table as columns
@@ -177,7 +177,7 @@ def in_units(found: Bounds, system: System | str | None) -> Bounds:
     if system.is_bare and not system.convention:
         return found
 
-    place = system.placed
+    place = system.display_unwrapped
 
     def in_order(name: str, low: Any, high: Any) -> tuple[Any, Any]:
         return (high, low) if system.is_turned(name) else (low, high)
@@ -192,8 +192,8 @@ def in_units(found: Bounds, system: System | str | None) -> Bounds:
             place(name, value.nominal),
             place(name, lower),
             place(name, upper),
-            written(at_lower, system),
-            written(at_upper, system),
+            display_values(at_lower, system),
+            display_values(at_upper, system),
             place(name, corner_lower),
             place(name, corner_upper),
             lower_warnings,

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from ..collision import uncertain
 from ..collision.case import OWN_NAMES, Case, is_range
 from ..collision.doubles import digits, double
-from ..collision.geometry import MOVES, moved, placed
+from ..collision.geometry import MOVES, coordinate_names, resolve_contact_point
 from ..collision.uncertain import Uncertain
 from ..collision.units import opposite
 from ..errors import UserError
@@ -45,7 +45,7 @@ def input_names(problem: str) -> tuple[str, ...]:
 def complete(given: Collection[str], problem: str, source: str | None = None) -> tuple[str, ...]:
     """The names a problem needs, the contact point's as they are ``given``. Raises UserError where
     one is missing."""
-    names = placed(input_names(problem), given)
+    names = coordinate_names(input_names(problem), given)
     if missing := [name for name in names if name not in given]:
         hint = " (MUP: the friction coefficient as signed P_t/P_n)" if "MUP" in missing else ""
         raise UserError(
@@ -77,9 +77,9 @@ def read_inputs(
     case = texts if isinstance(texts, Case) else Case(texts, source)
     source, changes = case.source, changes or {}
     forward = problem == "forward"
-    scene = placed(SCENE, case.values)
+    scene = coordinate_names(SCENE, case.values)
     check_names(case.values, (*scene, *AFTER, *MOVES), "name used here", source)
-    wanted = placed(input_names(problem), {**case.values, **changes})
+    wanted = coordinate_names(input_names(problem), {**case.values, **changes})
     # what only the forward solution is made of has one value
     single = [name for name, text in changes.items() if not forward and not is_range(text)]
     allowed = (*wanted, *MOVES, *OWN_NAMES, *(name for name in scene if name in single))
@@ -90,7 +90,7 @@ def read_inputs(
     if not forward and not set(AFTER) & set(case.values) and not set(AFTER) <= set(changes):
         solution = _forward_solution(case)
         derived = tuple(name for name in AFTER if name not in changes)
-        case = case.replaced(case.written(solution))
+        case = case.replaced(case.display_texts(solution))
     late = {name: text for name, text in changes.items() if name in AFTER}
     case = case.replaced(late, "--range") if late else case
     values = _read(case, (*scene, *MOVES) if forward else tuple(case.values))
@@ -117,7 +117,7 @@ def _forward_solution(case: Case) -> dict[str, str]:
     """Return the final velocities and MUP of the forward solution of the nominal values, as texts
     in base units; MUP has the limits of MU."""
     values = _read(case, tuple(case.values))
-    missing = [name for name in placed(SCENE, values) if name not in values]
+    missing = [name for name in coordinate_names(SCENE, values) if name not in values]
     if missing:
         raise UserError(
             f"neither final velocities ({' '.join(AFTER)}) nor the whole scene to have them from "
@@ -126,7 +126,7 @@ def _forward_solution(case: Case) -> dict[str, str]:
         )
     from ..mechanics.closedform.solve import share_typed, solve
 
-    scene = moved({name: item.nominal for name, item in values.items()})
+    scene = resolve_contact_point({name: item.nominal for name, item in values.items()})
     friction = case.values["MU"]
     if values["MU"].share:
         friction = digits(float(share_typed(scene, values["MU"].nominal)))

@@ -15,97 +15,100 @@ from .result import OTHER_M, Replay
 from .unit import NEVER, Bools, Ints, Unit, stamp
 
 Computed = tuple[Mapping[str, Floats], Ints, Any]
-"""Results by name, the record of failures (`Unit.first`), and which scenes are left (True)."""
-BLOCK = 16384
-"""Scenes computed at a time: fewer make numpy's calls dear, and threads hand the interpreter over
-between these; more fall out of the cache. By the machine half as many take 5 % longer and twice as
-many as long; by numpy half as many take 3 % less."""
-WORTH_SHARING = 32768
-"""Scenes from which it pays to note a program for just these columns, which computes once what the
-scenes share: 14 ms, and where three columns vary it saves .4 us a scene. With twice as many it is
-all the same to a call with 50,000; with half as many the first such call is slower."""
-WORTH_A_THREAD = 8192
-"""Fewer scenes are not shared out: threads would wait for each other more than they compute."""
+"""Results by name, records of errors (`Unit.first`), and the scenes still to be computed (True)."""
+BLOCK_SIZE = 16384
+"""Scenes computed at a time. Smaller blocks pay more overhead for numpy's calls and for passing the
+GIL between threads; larger ones fall out of the cache. With the compiled kernel half the size takes
+5 % longer and twice the size as long; with numpy half the size takes 3 % less."""
+MIN_SCENES_TO_SPECIALIZE = 32768
+"""From this many scenes on, a program is traced for the columns that vary, which computes shared
+values once: tracing takes 14 ms and, if three columns vary, saves 0.4 us a scene. A threshold twice
+as high makes no difference to 50,000 scenes; half as high, the first call becomes slower."""
+MIN_SCENES_PER_THREAD = 8192
+"""With fewer scenes each, threads wait for one another more than they compute."""
 
 
-def replay_scenes(scenes: Scenes, threads: int | None = None, block: int = BLOCK) -> Replay:
-    """Replay scenes that have been read. ``threads``: None for as many as there are processors, as
-    long as each has enough to do. ``block``: how many scenes at a time, at most."""
+def replay_scenes(scenes: Scenes, threads: int | None = None, block: int = BLOCK_SIZE) -> Replay:
+    """Replay scenes and return their results.
+
+    ``threads``: at most so many; None for as many as there are processors, if each has enough to
+    do. ``block``: scenes per block, at most."""
     unit = Unit(scenes.size)
     unit.first[...] = scenes.first
     M = scenes.values["M"]
     six = np.broadcast_to(M == 6, scenes.size)
-    known = np.broadcast_to((M == 4) | (M == 6), scenes.size)
+    valid_m = np.broadcast_to((M == 4) | (M == 6), scenes.size)
     pivot = compare(from_floats(scenes.values["MU"], None, True), statements.MINUS_10) == 0
     pivot = np.broadcast_to(pivot, scenes.size)
     unit.at(350)
-    unit.fails(~known, OTHER_M)
+    unit.record_error(~valid_m, OTHER_M)
     values = {name: np.zeros(scenes.size) for name in statements.ASSIGNED}
-    threads = workers(scenes.size, threads, WORTH_A_THREAD)
+    threads = workers(scenes.size, threads, MIN_SCENES_PER_THREAD)
     block = max(1, min(block, -(-scenes.size // threads)))
 
-    left = np.array(known)  # what has not been computed yet
+    pending = np.array(valid_m)  # scenes not computed yet
 
     def compute(work: Callable[..., Computed]) -> None:
-        """Compute what is left, block by block."""
+        """Compute the pending scenes, block by block."""
 
-        def some_blocks(start: int, stop: int) -> None:
+        def compute_jobs(start: int, stop: int) -> None:
             for rows, kind in jobs[start:stop]:
                 columns = {name: v[rows] if v.size > 1 else v for name, v in scenes.values.items()}
-                results, unit.first[rows], left[rows] = work(columns, unit.first[rows], kind)
+                results, unit.first[rows], pending[rows] = work(columns, unit.first[rows], kind)
                 for name, column in results.items():
                     values[name][rows] = column
 
-        jobs = _blocks(left, six, pivot, block)
-        shared_out(some_blocks, len(jobs), max(1, min(threads, len(jobs))))
+        jobs = _blocks(pending, six, pivot, block)
+        shared_out(compute_jobs, len(jobs), max(1, min(threads, len(jobs))))
 
     if native.library is not None:
-        compute(partial(_compiled, scenes.size >= WORTH_SHARING))
-    compute(_by_arrays)
+        compute(partial(_compute_compiled, scenes.size >= MIN_SCENES_TO_SPECIALIZE))
+    compute(_compute_by_arrays)
     return Replay(scenes, six, unit, values)
 
 
 def _blocks(
-    left: Bools, six: Bools, pivot: Bools, block: int
+    pending: Bools, six: Bools, pivot: Bools, block: int
 ) -> list[tuple[Ints | slice, statements.Kind]]:
-    """Which scenes go together, and their kind. A slice where they are neighbours."""
+    """Return the pending scenes as blocks of one kind each: their rows (a slice if all scenes are
+    of one kind) and the kind."""
     result: list[tuple[Ints | slice, statements.Kind]] = []
     for M in (6, 4):
         for is_pivot in (False, True):
             kind = statements.Kind(M, is_pivot)
-            kept = left & (six == (M == 6)) & (pivot == is_pivot)
-            if kept.all():
-                return [(slice(at, at + block), kind) for at in range(0, kept.size, block)]
-            rows = np.flatnonzero(kept)
+            selected = pending & (six == (M == 6)) & (pivot == is_pivot)
+            if selected.all():
+                return [(slice(at, at + block), kind) for at in range(0, selected.size, block)]
+            rows = np.flatnonzero(selected)
             result += [(rows[at : at + block], kind) for at in range(0, rows.size, block)]
     return result
 
 
-def _compiled(
-    sharing: bool, columns: dict[str, Floats], first: Ints, kind: statements.Kind
+def _compute_compiled(
+    specialize: bool, columns: dict[str, Floats], first: Ints, kind: statements.Kind
 ) -> Computed:
-    """One block by the compiled machine; what it has marked is left."""
-    if not sharing:
+    """Compute one block with the compiled kernel; the scenes it marks as `ODD` stay pending."""
+    if not specialize:
         columns = {name: np.broadcast_to(v, first.size) for name, v in columns.items()}
     varying = frozenset(name for name in compiled.NAMES if columns[name].size > 1)
     program = compiled.program(kind, varying)
-    results, odd = compiled.computed(program, columns, first.size)
+    results, odd = compiled.run_program(program, columns, first.size)
     return results, first, odd | (first != NEVER)
 
 
 @np.errstate(all="ignore")
-def _by_arrays(columns: dict[str, Floats], first: Ints, kind: statements.Kind) -> Computed:
-    """One block by arrays; nothing is left."""
-    own = Unit(first.size)
-    own.first[...] = first
-    scene = {name: from_floats(v, own, True) for name, v in columns.items()}
-    results = statements.run(own, scene, kind)
-    # line 400 turns MU, and line 590 adds to KF, only in scenes that get there
+def _compute_by_arrays(columns: dict[str, Floats], first: Ints, kind: statements.Kind) -> Computed:
+    """Compute one block with numpy arrays; no scene stays pending."""
+    unit = Unit(first.size)
+    unit.first[...] = first
+    scene = {name: from_floats(v, unit, True) for name, v in columns.items()}
+    results = statements.run(unit, scene, kind)
+    # a scene that ends before line 400 keeps the sign of MU; before line 590, KF without spins
     for name, place, before in (
         ("MUP", stamp(400), scene["MU"]),
         ("KF", stamp(590), results.pop("KF580")),
     ):
-        early = ~own.reached(place)
+        early = ~unit.has_passed(place)
         if early.any():
             results[name] = select(early, before, results[name])
-    return {name: x.v for name, x in results.items()}, own.first, False
+    return {name: x.v for name, x in results.items()}, unit.first, False

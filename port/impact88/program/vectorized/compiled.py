@@ -1,6 +1,8 @@
-"""The replay's statements as a program for the compiled machine: `statements.run` is run once with
-values that only note what is done with them. Scenes out of the ordinary (an error, a value beyond
-2^100 or below 2^-100, a comparison without its carry) are marked and left to the arrays."""
+"""The replay's statements as a program for the compiled kernel.
+
+`statements.run` is traced: run once on symbolic values that record the operations applied to them.
+Unusual scenes (an error, a magnitude above 2^100 or below 2^-100, a comparison without its carry)
+are marked in the result `ODD` and computed with arrays instead."""
 
 from __future__ import annotations
 
@@ -19,18 +21,18 @@ from .unit import Bools, Unit
 
 NAMES = tuple(name for name in SCENE if name != "M")
 ODD = "ODD"
-"""The result that marks a scene: 1, else 0."""
+"""Name of the result that is 1 for scenes to be computed with arrays, else 0."""
 
 
-def _noted(operation: str, stored: bool | None = None) -> Any:
-    """The method that notes an operation; what it makes is as it was if ``stored`` does not say."""
-    return lambda self, *others: self.made(
+def _recorder(operation: str, stored: bool | None = None) -> Any:
+    """Return a method that records an operation; its result is ``stored``, by default as before."""
+    return lambda self, *others: self.apply(
         operation, *others, stored=self.stored if stored is None else stored
     )
 
 
-class Noted(Reals):
-    """A real of which only the operation that makes it is noted."""
+class SymbolicReals(Reals):
+    """A symbolic real: the expression that computes it, instead of an array of values."""
 
     __slots__ = ("expression",)
 
@@ -42,18 +44,20 @@ class Noted(Reals):
 
     @property
     def v(self) -> Any:  # type: ignore[override]
+        """The expression, in place of float64 values."""
         return self.expression
 
-    def made(self, operation: str, *others: Reals, stored: bool = False) -> Noted:
+    def apply(self, operation: str, *others: Reals, stored: bool = False) -> SymbolicReals:
+        """Return the symbolic result of an operation on this and ``others``."""
         table = self.expression.table
-        operands = (noted(table, x) for x in (self, *others))
-        return Noted(table.combine(operation, *operands), self.unit, stored)
+        operands = (expression_of(table, x) for x in (self, *others))
+        return SymbolicReals(table.combine(operation, *operands), self.unit, stored)
 
     def rounded(self) -> Reals:
-        return self if self.stored else self.made("real_rounded", stored=True)
+        return self if self.stored else self.apply("real_rounded", stored=True)
 
-    def combined(self, operation: str, left: Reals, right: Reals) -> Any:
-        """A known zero is no operand: x + 0 is x rounded, 0 + x is x, 0 * x is 0."""
+    def combine(self, operation: str, left: Reals, right: Reals) -> Any:
+        """Return the result of an operator; zeros are folded: x + 0 is x rounded, 0 * x is 0."""
         if operation in ("add", "subtract") and right.zero:
             return left.rounded()
         if operation in ("add", "subtract") and left.zero:
@@ -63,114 +67,123 @@ class Noted(Reals):
         if operation == "greater":
             operation, left, right = "less", -left, -right
         table = self.expression.table
-        made = table.combine(f"real_{operation}", noted(table, left), noted(table, right))
-        return made if operation == "less" else Noted(made, self.unit)
+        expression = table.combine(
+            f"real_{operation}", expression_of(table, left), expression_of(table, right)
+        )
+        return expression if operation == "less" else SymbolicReals(expression, self.unit)
 
-    def chosen(self, condition: Any, yes: Reals, no: Reals) -> Noted:
+    def choose(self, condition: Any, yes: Reals, no: Reals) -> SymbolicReals:
         table = self.expression.table
-        made = table.choose(condition, noted(table, yes), noted(table, no))
-        return Noted(made, yes.unit or no.unit, yes.stored and no.stored)
+        expression = table.choose(condition, expression_of(table, yes), expression_of(table, no))
+        return SymbolicReals(expression, yes.unit or no.unit, yes.stored and no.stored)
 
-    def below(self, limit: Reals) -> Expression:
-        return self.expression < noted(self.expression.table, limit)
+    def is_below(self, limit: Reals) -> Expression:
+        return self.expression < expression_of(self.expression.table, limit)
 
-    def nothing(self) -> Expression:
+    def is_zero(self) -> Expression:
         return self.expression.table.equals(self.expression, 0.0)
 
     def exceeds(self, limit: float) -> bool:
-        return False  # else the scene is marked
+        """Return False: larger values mark the scene."""
+        return False
 
-    def kept_within_powers(self) -> None:
-        """What is not is marked."""
+    def check_powers(self) -> None:
+        """Nothing to do: powers out of range mark the scene."""
 
-    __neg__, __abs__ = _noted("negative"), _noted("absolute")
-    floor, scaled = _noted("real_int", False), _noted("real_scaled", False)
-    fraction, exponent = _noted("real_fraction"), _noted("real_exponent", True)
-    whole = _noted("real_whole", True)
+    __neg__, __abs__ = _recorder("negative"), _recorder("absolute")
+    floor, scale_by_power = _recorder("real_int", False), _recorder("real_scaled", False)
+    fraction, exponent = _recorder("real_fraction"), _recorder("real_exponent", True)
+    whole_part = _recorder("real_whole", True)
 
-    def with_extension(self, more: int) -> Noted:
+    def with_extension(self, more: int) -> SymbolicReals:
         bits = np.int64(more << 13).view(np.float64)
-        return self.made("real_halved", Reals(np.array([bits]), None))
+        return self.apply("real_halved", Reals(np.array([bits]), None))
 
 
-def noted(table: ExpressionTable, x: Reals) -> Expression:
-    """The expression of a real, which may be a constant."""
-    return x.expression if isinstance(x, Noted) else table.constant(float(x.v[0]))
+def expression_of(table: ExpressionTable, x: Reals) -> Expression:
+    """Return the expression of a symbolic real or of a constant."""
+    return x.expression if isinstance(x, SymbolicReals) else table.constant(float(x.v[0]))
 
 
-class _Notes(Unit):
-    """Where errors are recorded while notes are taken: nowhere but in the mark."""
+class _SymbolicUnit(Unit):
+    """A `Unit` for tracing: errors are not recorded, but combined into the expression
+    ``marked``."""
 
     def __init__(self, table: ExpressionTable) -> None:
         super().__init__(1)
         self.marked = table.constant(0.0)
 
     def skip(self, skipped: Any) -> None:
-        """What is marked needlessly is computed all the same."""
+        """Ignore: a scene marked without need is computed with arrays, with the same result."""
 
-    def fails(self, failed: Any, code: int) -> bool:
-        if isinstance(failed, Expression):
-            self.marked = self.marked | failed
-        elif np.any(failed):  # in every scene
+    def record_error(self, failures: Any, code: int) -> bool:
+        if isinstance(failures, Expression):
+            self.marked = self.marked | failures
+        elif np.any(failures):  # in every scene
             self.marked = self.marked.table.constant(1.0)
         return False
 
-    def still(self, chosen: dict[int, Any]) -> dict[int, Any]:
-        """None: a scene in which no other row is chosen is marked by its pivot."""
+    def drop_empty(self, chosen: dict[int, Any]) -> dict[int, Any]:
+        """Return no rows: scenes that exchange rows are marked by their pivot."""
         return {}
 
 
 @lru_cache(maxsize=64)
 def program(kind: statements.Kind, varying: frozenset[str]) -> Program:
-    """The program for a kind of scenes: of ``varying`` columns the results, and `ODD`."""
+    """Return the program for a kind of scenes: results and `ODD`, given the ``varying`` columns."""
 
-    def make(unit: Unit, scene: Mapping[str, Noted]) -> Mapping[str, Reals]:
+    def make(unit: Unit, scene: Mapping[str, SymbolicReals]) -> Mapping[str, Reals]:
         results = statements.run(unit, scene, kind)
         return {name: results[name] for name in statements.ASSIGNED if name in results}
 
-    return traced(make, NAMES, varying)
+    return trace(make, NAMES, varying)
 
 
 @lru_cache(maxsize=64)
 def field_program(names: tuple[str, ...], varying: frozenset[str]) -> Program:
-    """What PRINT gets for the fields ``names``, of ``varying`` values, and `ODD`."""
+    """Return the program for the printed values of fields ``names``, and `ODD`."""
 
-    def make(unit: Unit, given: Mapping[str, Noted]) -> Mapping[str, Reals]:
-        return {name: statements.shown(name, *(given[x] for x in sources(name))) for name in names}
+    def make(unit: Unit, given: Mapping[str, SymbolicReals]) -> Mapping[str, Reals]:
+        return {
+            name: statements.printed_value(name, *(given[x] for x in sources(name)))
+            for name in names
+        }
 
-    return traced(make, tuple(x for name in names for x in sources(name)), varying)
+    return trace(make, tuple(x for name in names for x in sources(name)), varying)
 
 
 def sources(field: str) -> tuple[str, ...]:
-    """The values that a field is made of."""
+    """Return the results from which a field is printed."""
     return ("KI", "KF") if field == "LOSS" else (field,)
 
 
-def traced(
-    make: Callable[[Unit, Mapping[str, Noted]], Mapping[str, Reals]],
+def trace(
+    make: Callable[[Unit, Mapping[str, SymbolicReals]], Mapping[str, Reals]],
     names: Sequence[str],
     varying: frozenset[str],
 ) -> Program:
+    """Return ``make`` as a program: run once on symbolic columns ``names``, of which ``varying``
+    have a value for each scene and the others one for all."""
     table = ExpressionTable()
-    unit = _Notes(table)
-    given = {}
+    unit = _SymbolicUnit(table)
+    symbols = {}
     for name in names:
         column = table.column(name, name in varying)
-        given[name] = Noted(table.combine("real_ordinary", column), unit, True)
-    results = {name: noted(table, x) for name, x in make(unit, given).items()}
+        symbols[name] = SymbolicReals(table.combine("real_ordinary", column), unit, True)
+    results = {name: expression_of(table, x) for name, x in make(unit, symbols).items()}
     results[ODD] = table.combine("odd", unit.marked, varies=True)
     return Program(results, ["COPY"] * len(results))
 
 
-def computed(
+def run_program(
     program: Program, columns: Mapping[str, Floats], count: int
 ) -> tuple[dict[str, Floats], Bools]:
-    """The results of a program, and which scenes it has marked. ``columns``: of ``count`` values or
-    of one."""
-    own = [np.ascontiguousarray(columns[name]) for name in program.columns]
-    found = np.empty((len(program.results), count))
-    fixed = {x: float(columns[x][0]) for x in program.scalars if isinstance(x, str)}
-    into = found.ctypes.data + found.strides[0] * np.arange(len(found))
-    program.run(addresses(own), into, count, fixed=fixed)
-    results = dict(zip(program.results, found, strict=True))
+    """Run a program on columns of ``count`` values, or of one; return its results by name, and True
+    for each scene marked as `ODD`."""
+    inputs = [np.ascontiguousarray(columns[name]) for name in program.columns]
+    outputs = np.empty((len(program.results), count))
+    scalars = {x: float(columns[x][0]) for x in program.scalars if isinstance(x, str)}
+    destinations = outputs.ctypes.data + outputs.strides[0] * np.arange(len(outputs))
+    program.run(addresses(inputs), destinations, count, fixed=scalars)
+    results = dict(zip(program.results, outputs, strict=True))
     return results, results.pop(ODD) != 0

@@ -1,4 +1,4 @@
-"""From the columns a caller gives to the stored reals the listing would have."""
+"""The caller's columns, read as the stored reals that the listing would have."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
@@ -12,18 +12,21 @@ from .reals import Floats, Packed, from_packed
 from .textcolumns import read
 from .unit import NEVER, Ints, Unit, key
 
-_AT_A_TIME = 32768
-"""Texts up to which all columns are read together: few calls for few, cache for many."""
+_MAX_TEXTS_TOGETHER = 32768
+"""Up to this many texts all columns are read in one call; more are read column by column, to stay
+in the cache."""
 
 PLACES = {
     name: (SCENE[name].line, i) for i, name in enumerate(dict.fromkeys([*VELOCITIES, *SCENE]))
 }
-"""Where the program reads each value: line, and position in it."""
+"""Name -> line at which the program reads the value, and position among all values."""
 
 
 class Scenes(NamedTuple):
-    """Each name's values, of length 1 where all scenes share one; the number of scenes; and what
-    reading recorded, see `Unit.first`."""
+    """The scenes to replay.
+
+    ``values``: by name, of length 1 if all scenes share one; ``size``: the number of scenes;
+    ``first``: errors recorded while reading, see `Unit.first`."""
 
     values: dict[str, Floats]
     size: int
@@ -31,51 +34,52 @@ class Scenes(NamedTuple):
 
 
 def read_columns(columns: Mapping[str, Any]) -> Scenes:
-    """Read all columns. Raises UserError for a missing or unknown name, lengths that do not agree,
-    a text that is not a number, or values that are neither texts nor stored reals."""
+    """Read all columns. Raises UserError for a missing or unknown name, columns of different
+    lengths, a text that is not a number, or values that are neither texts nor stored reals."""
     check_mapping(columns)
     unknown = [name for name in columns if name not in SCENE]
     if unknown:
         raise UserError(f"{unknown[0]!r} is not a value of a scene (expected {' '.join(SCENE)})")
-    given = {"M": DEFAULT_M, **columns}
-    missing = [name for name in SCENE if name not in given]
+    all_columns = {"M": DEFAULT_M, **columns}
+    missing = [name for name in SCENE if name not in all_columns]
     if missing:
         raise UserError(f"missing {' '.join(missing)}")
     texts: dict[str, Sequence[str]] = {}
-    packed: dict[str, Packed] = {}
+    packed_columns: dict[str, Packed] = {}
     for name in SCENE:
-        _sort_out(name, given[name], texts, packed)
+        _sort_out(name, all_columns[name], texts, packed_columns)
     sizes = {name: len(column) for name, column in texts.items()}
-    sizes |= {name: column.size for name, column in packed.items()}
+    sizes |= {name: column.size for name, column in packed_columns.items()}
     lengths = set(sizes.values()) - {1}
     if len(lengths) > 1:
         all_sizes = ", ".join(f"{name} {size}" for name, size in sizes.items() if size != 1)
         raise UserError(f"columns of different lengths: {all_sizes}")
     count = lengths.pop() if lengths else 1
     first = np.full(count, NEVER, np.int64)
-    values = {name: from_packed(column, None).v for name, column in packed.items()}
-    together = sum(sizes[name] for name in texts) <= _AT_A_TIME
+    values = {name: from_packed(column, None).v for name, column in packed_columns.items()}
+    together = sum(sizes[name] for name in texts) <= _MAX_TEXTS_TOGETHER
     for group in [texts] if texts and together else [{name: texts[name]} for name in texts]:
         _read_texts(group, values, first)
     return Scenes(values, count, first)
 
 
 def _read_texts(texts: dict[str, Sequence[str]], values: dict[str, Floats], first: Ints) -> None:
-    """Read some columns of texts as one."""
-    every, *others = texts.values()
-    if others:
-        every = [text for column in texts.values() for text in column]
+    """Read columns of texts in one call; add their reals to ``values``, their errors to
+    ``first``."""
+    joined, *other_columns = texts.values()
+    if other_columns:
+        joined = [text for column in texts.values() for text in column]
     sizes = [len(column) for column in texts.values()]
     starts = np.concatenate([[0], np.cumsum(sizes)])
-    unit = Unit(len(every))
+    unit = Unit(len(joined))
     unit.place = np.repeat([key(*PLACES[name]) for name in texts], sizes)
 
-    def where(index: int) -> str:
+    def place_of(index: int) -> str:
         column = int(np.searchsorted(starts, index, side="right")) - 1
         row = f", row {index - starts[column] + 1}" if sizes[column] > 1 else ""
         return list(texts)[column] + row
 
-    x = read(every, unit, where).rounded()
+    x = read(joined, unit, place_of).rounded()
     for name, start, size in zip(texts, starts, sizes, strict=False):
         values[name] = x.v[start : start + size]
         np.minimum(first, unit.first[start : start + size], out=first)
@@ -84,7 +88,7 @@ def _read_texts(texts: dict[str, Sequence[str]], values: dict[str, Floats], firs
 def _sort_out(
     name: str, column: Any, texts: dict[str, Sequence[str]], packed: dict[str, Packed]
 ) -> None:
-    """Put a column with the texts or with the stored reals."""
+    """Add a column to ``texts`` or, as stored reals, to ``packed``. Raises UserError."""
     if isinstance(column, str):
         texts[name] = [column]
     elif isinstance(column, (list, tuple)) and column and isinstance(column[0], str):

@@ -1,17 +1,17 @@
 """The listing over arrays: lines 280 to 760 and 1000 to 1170, for a block of scenes of one `Kind`.
 
-Each value is computed by the listing's own expression, operation by operation, in its order. What
-is saved is repetition, only where it cannot change a bit:
+Each value is computed by the listing's own expression, operation by operation, in its order. Only
+repetition is saved, where that cannot change a bit:
 
-- the sines and cosines, which several lines ask for, are computed once;
-- MA * (COS (GA) - MU * SIN (GA)) of line 530 is A(3,2) of line 410: a left operand is rounded, so
-  being stored first changes nothing. Likewise UY - D4 * WA in line 540 is YA of line 340, and the
-  sums of line 550 are A(5,2) and A(5,3);
-- (-EM) * MA is the negative of EM * MA (signs are apart from mantissas), but a quotient keeps its
-  own sign, because the ROM's division can lose it;
+- sines and cosines that several lines use are computed once;
+- MA * (COS (GA) - MU * SIN (GA)) of line 530 is A(3,2) of line 410: a left operand is rounded
+  anyway, so storing it first changes nothing. Likewise UY - D4 * WA in line 540 is YA of line 340,
+  and the sums of line 550 are A(5,2) and A(5,3);
+- (-EM) * MA is the negative of EM * MA (the sign does not affect the mantissa), but a quotient is
+  computed with its own sign, because the ROM's division can lose it;
 - a value known to be zero in every scene costs nothing (`reals`).
 
-The same text serves arrays (`reals`) and values that only note what is done with them (`compiled`).
+The same code runs on arrays (`reals`) and on symbolic values that record it (`compiled`).
 """
 
 from collections.abc import Mapping
@@ -29,32 +29,42 @@ C_1E3 = from_number(scalar.read("1E3")[0])
 C_1E4 = from_number(scalar.read("1E4")[0])
 C_1E_9 = from_number(scalar.read("1E-9")[0]).rounded()
 AG = (from_number(scalar.read("3.14159265")[0]) / 180).rounded()
-"""Line 300's radians per degree."""
+"""Radians per degree, as line 300 computes them."""
 MINUS_10 = constant(-10)
 
-ZERO_DETERMINANT = 1
-"""What `Unit.code` says for the listing's own END at line 1160, which is not an error."""
-SOLVED = stamp(570, 900)
-"""The place after line 570's GOSUB 1000."""
-NEAR_OVERFLOW = 2.0**120
-"""Below this no number overflows that is multiplied by what the listing floors by, or added up."""
+ZERO_DETERMINANT = 1  # `Unit.code` of the END at line 1160, which is not an error
+SOLVED = stamp(570, 900)  # the place after line 570's GOSUB 1000
+NEAR_OVERFLOW = 2.0**120  # smaller numbers do not overflow in sums or when line 620 ff. floor them
 
 
 class Kind(NamedTuple):
-    """What the scenes of a block have in common: the order M, and whether line 390 jumps."""
+    """The kind of a block's scenes: the order M (6 or 4), and whether line 390 jumps (a pivot)."""
 
     M: int
     pivot: bool
 
 
 ASSIGNED: dict[str, int] = {
-    **{"KI": stamp(320), "XA": stamp(340, 1), "YA": stamp(340, 2)},
-    **{"XB": stamp(340, 3), "YB": stamp(340, 4), "MUP": stamp(*PLACES["MU"])},
-    **dict.fromkeys(("VAX", "VAY", "VBX", "VBY", "WAF", "WBF"), SOLVED),
-    **{"KF": stamp(580), "LOSS": stamp(690, 2), "XAF": stamp(700, 1), "YAF": stamp(700, 2)},
-    **{"XBF": stamp(710, 1), "YBF": stamp(710, 2)},
+    "KI": stamp(320),
+    "XA": stamp(340, 1),
+    "YA": stamp(340, 2),
+    "XB": stamp(340, 3),
+    "YB": stamp(340, 4),
+    "MUP": stamp(*PLACES["MU"]),
+    "VAX": SOLVED,
+    "VAY": SOLVED,
+    "VBX": SOLVED,
+    "VBY": SOLVED,
+    "WAF": SOLVED,
+    "WBF": SOLVED,
+    "KF": stamp(580),
+    "LOSS": stamp(690, 2),
+    "XAF": stamp(700, 1),
+    "YAF": stamp(700, 2),
+    "XBF": stamp(710, 1),
+    "YBF": stamp(710, 2),
 }
-"""Result -> the place in the program that sets it: a scene that got past it has the value."""
+"""Result -> the place in the program that assigns it: a scene that got past it has the value."""
 
 PRINTED: dict[str, int] = {
     field.name: stamp(line, position)
@@ -75,9 +85,11 @@ FLOORED: dict[str, Reals] = {
 def run(
     unit: Unit, scene: Mapping[str, Reals], kind: Kind, matrix: bool = False
 ) -> dict[str, Reals]:
-    """The results of a block by name, whatever failed on the way (``unit`` knows); with ``matrix``
-    also each element of A as the program leaves it, as "A(1,1)". ``scene``: stored reals by the
-    listing's names, all but M."""
+    """Run lines 280 to 760 on a block and return its results by name.
+
+    ``scene``: stored reals by the listing's names, without M; ``unit`` records the errors, after
+    which a scene's values have no meaning; ``matrix``: also return the elements of A as the program
+    leaves them, named "A(1,1)"."""
     E, MU, EM, DA, DB = (scene[name] for name in ("E", "MU", "EM", "DA", "DB"))
     MA, MB, IA, IB = (scene[name] for name in ("MA", "MB", "IA", "IB"))
     UX, UY, WA, VX, VY, WB = (scene[name] for name in ("UX", "UY", "WA", "VX", "VY", "WB"))
@@ -153,10 +165,10 @@ def run(
     at(560)
     turning = -MA * D3 * UX / IA + MA * D4 * UY / IA - MB * D1 * VX / IB + MB * D2 * VY / IB
     A[6, last] = (EM * (turning + WA - WB)).rounded()
-    A[5, last] = angular  # not before: of M = 4 it takes the place of IA
+    A[5, last] = angular  # only now: for M = 4 it overwrites A(5,5) = IA
 
     eliminate(unit, A, M, matrix)  # 570
-    V = [A[row, last] for row in range(1, 7)]  # M = 4: 5 and 6 are what lines 700 and 710 find
+    V = [A[row, last] for row in range(1, 7)]  # for M = 4 lines 700 and 710 use rows 5 and 6, too
 
     at(580)
     moving = MA * (square(V[0]) + square(V[1])) + MB * (square(V[2]) + square(V[3]))
@@ -166,7 +178,7 @@ def run(
         at(590)
         KF = (KF + (IA * square(V[4]) + IB * square(V[5])) / 2).rounded()
 
-    # 600: the angles themselves are worked out when printed
+    # 600: the angles themselves are computed when printed
     for position, angle in enumerate((TA, TB, PA, PB, GA)):
         if angle.exceeds(NEAR_OVERFLOW):
             at(600, position)
@@ -176,7 +188,7 @@ def run(
     for name in ("XA", "YA", "XB", "YB"):
         _check(unit, name, results[name])
     at(*_place("LOSS"))
-    results["LOSS"] = shown("LOSS", KI, KF).rounded()
+    results["LOSS"] = printed_value("LOSS", KI, KF).rounded()
 
     final = {}
     at(700, 1)
@@ -196,25 +208,24 @@ def run(
 
 
 def eliminate(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool) -> None:
-    """Lines 1000-1170: column M + 1 of ``A`` as they leave it; with ``matrix`` all of A.
+    """Run lines 1000-1170: compute column M + 1 of ``A`` in place; with ``matrix`` all of A.
 
-    All its oddities are kept, see `accuracy.elimination.eliminate`. Columns J of the rows being
-    eliminated are left out: A(I,J) / AP is exactly 1, and what line 1040 leaves in column J is
-    never read again, unless it overflows. (It is not always zero: the ROM's multiplication by 1 can
-    miss.)
-    """
+    All its oddities are kept, see `accuracy.elimination.eliminate`. Column J is skipped: A(J,J) /
+    AP is exactly 1, and the elements that line 1040 leaves in column J are never read again, so
+    they matter only if they overflow. (They are not always zero: the ROM's product by 1 can be
+    inexact.)"""
     RX: dict[int, Any] = {}  # row -> the scenes in which RX is that row
     for J in range(1, M + 1):
         # 1080-1110
-        RX = unit.still(RX) if J < M else {}
+        RX = unit.drop_empty(RX) if J < M else {}
         largest = C_1E_9
         for row in range(J, M + 1) if J < M else ():
             if not A[row, J].zero:
                 size = abs(A[row, J])
-                taken = ~size.below(largest)
-                largest = select(taken, size, largest)
-                before = {other: scenes & ~taken for other, scenes in RX.items()}
-                RX = before | {row: before[row] | taken if row in before else taken}
+                is_larger = ~size.is_below(largest)
+                largest = select(is_larger, size, largest)
+                before = {row_before: scenes & ~is_larger for row_before, scenes in RX.items()}
+                RX = before | {row: before[row] | is_larger if row in before else is_larger}
         # 1140
         for row, scenes in RX.items():
             if row == J or not scenes.any():
@@ -226,12 +237,12 @@ def eliminate(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool)
                     A[row, column] = select(scenes, mine, theirs)
         unit.at(1160, order=stamp(570, 100 * J))
         AP = A[J, J]
-        none = abs(AP).below(C_1E_9)
-        if unit.fails(none, ZERO_DETERMINANT):
-            AP = select(none, constant(1), AP)
+        is_singular = abs(AP).is_below(C_1E_9)
+        if unit.record_error(is_singular, ZERO_DETERMINANT):
+            AP = select(is_singular, constant(1), AP)
         cells = [A[row, column] for row in range(1, M + 1) for column in range(J, M + 2)]
-        large = matrix or any(x.exceeds(NEAR_OVERFLOW) for x in cells)
-        first = J if large else J + 1
+        whole_matrix = matrix or any(x.exceeds(NEAR_OVERFLOW) for x in cells)
+        first = J if whole_matrix else J + 1
         columns = [column for column in range(first, M + 2) if not A[J, column].zero]
         unit.at(1150, order=stamp(570, 100 * J + 1))
         for column in columns:
@@ -244,23 +255,27 @@ def eliminate(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool)
 
 
 def _line_530(unit: Unit, MU: Reals, A32: Reals, A33: Reals, UY: Reals, VX: Reals) -> Reals:
-    """Lines 510-530: a MU of -10 or less, such as 10 made -10 by line 400, gets a pivot's 0."""
+    """Return A(3,M+1) of lines 510-530: 0, as for a pivot, if MU is -10 or less, which it also is
+    after line 400 reversed a MU of 10."""
     like_pivot = ~(MU > MINUS_10)
-    some = bool(like_pivot.any())
-    unit.skip(like_pivot if some else None)
+    has_any = bool(like_pivot.any())
+    unit.skip(like_pivot if has_any else None)
     unit.at(530)
     value = (A32 * UY + A33 * VX).rounded()
     unit.skip(None)
-    return select(like_pivot, ZERO, value) if some else value
+    return select(like_pivot, ZERO, value) if has_any else value
 
 
 def radians(degrees: Reals) -> Reals:
-    """Line 300."""
+    """Return angles in radians, by the multiplication of line 300."""
     return (degrees * AG).rounded()
 
 
-def shown(name: str, x: Reals, KF: Reals | None = None) -> Reals:
-    """What PRINT gets for a field of value ``x`` (LOSS: of KI and ``KF``); its extension counts."""
+def printed_value(name: str, x: Reals, KF: Reals | None = None) -> Reals:
+    """Return the value that PRINT receives for a field, extension included.
+
+    ``x``: the value of the field; for LOSS it is KI, and ``KF`` is given, too.
+    """
     if KF is not None:
         return (C_1E4 * (x - KF) / x).floor() / 100
     if name in FLOORED:
@@ -269,11 +284,12 @@ def shown(name: str, x: Reals, KF: Reals | None = None) -> Reals:
 
 
 def _place(name: str) -> tuple[int, int]:
+    """Return the line that prints a field, and the position in it."""
     return divmod(PRINTED[name], 1000)
 
 
 def _check(unit: Unit, name: str, x: Reals) -> None:
-    """Whether printing a velocity overflows. Its digits are worked out when asked for."""
+    """Record an OVERFLOW of printing a velocity; its digits are computed on first use."""
     if x.exceeds(NEAR_OVERFLOW / 1e4):
         unit.at(*_place(name))
-        shown(name, x)
+        printed_value(name, x)

@@ -1,7 +1,7 @@
 """Decimal texts to arrays of reals and back, as Applesoft reads numbers and PRINT writes them.
 
-The scalar text of these rules is `impact88.applesoft.decimaltext`; here all numbers of a column are
-read and written together, a step at a time.
+The scalar form of these rules is `impact88.applesoft.decimaltext`; here all numbers of a column are
+read and written together, step by step.
 """
 
 from collections.abc import Callable, Sequence
@@ -23,85 +23,81 @@ _BILLION = from_number(scalar.BILLION)
 _NINE_DIGITS = from_number(scalar.NINE_DIGITS)
 _EIGHT_DIGITS = from_number(scalar.EIGHT_DIGITS)
 
-_EXACT_DIGITS = 9
-"""So many digits make a whole number below 2^32, which MUL10 and adding a digit leave exact."""
+_EXACT_DIGITS = 9  # a whole number with so many digits is below 2^32, where MUL10 is exact
 
 TEXT = np.dtype("<U15")
 """The longest field: sign, point, nine digits, exponent."""
-AT_A_TIME = 32768
-"""Numbers that are written together, by arrays."""
+WRITE_BLOCK = 32768  # numbers written at a time with arrays, to stay in the cache
 
-_QUARTER_LIMIT = 2.0**125
-"""Four times this is exponent byte 256."""
-_ROUNDS_TO_OVERFLOW = 2.0**127 - 2.0**94
-"""From exponent byte 255, mantissa FFFFFFFF and extension 80 on."""
+_QUARTER_LIMIT = 2.0**125  # four times this is exponent byte 256
+_ROUNDS_TO_OVERFLOW = 2.0**127 - 2.0**94  # exponent byte 255, mantissa FFFFFFFF, extension 80
 
 
 def times_ten(x: Reals) -> Reals:
-    """MUL10: x rounded, as (4x + x) doubled, of which nothing is cut off. Records OVERFLOW."""
+    """Return 10 x of x rounded: MUL10, (4x + x) doubled, which is exact. Records OVERFLOW."""
     x = x.rounded()
-    failed = np.abs(x.v) >= _QUARTER_LIMIT
-    if failed.any():
-        x.fails(failed, OVERFLOW)
-        x = select(failed, ZERO, x)
-    return Reals(x.v * 10, x.unit)._settled()
+    overflows = np.abs(x.v) >= _QUARTER_LIMIT
+    if overflows.any():
+        x.record_error(overflows, OVERFLOW)
+        x = select(overflows, ZERO, x)
+    return Reals(x.v * 10, x.unit)._check_exponents()
 
 
 def over_ten(x: Reals) -> Reals:
-    """DIV10: |x| rounded, divided by ten."""
+    """Return |x| / 10 of x rounded: DIV10."""
     return abs(x) / _TEN
 
 
 def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals:
-    """The numbers that texts are, extension included: as many texts as ``unit`` has scenes.
+    """Return the numbers of ``texts``, one for each scene of ``unit``, extension included.
 
-    Records OVERFLOW. Raises UserError for a text that is not a number; ``where`` names its place.
-    """
+    Records OVERFLOW. Raises UserError for a text that is not a number; ``where`` returns the name
+    of its place, given its index."""
     try:
         data = ("\n".join(texts) + "\n").encode("ascii")
     except (TypeError, UnicodeEncodeError):
         data = b""
-    v, odd = np.zeros(len(texts)), np.ones(len(texts), np.bool_)
+    v, unread = np.zeros(len(texts)), np.ones(len(texts), np.bool_)
     if native.library is not None and data.count(b"\n") == len(texts):
-        native.library.read_numbers(data, len(texts), v.ctypes.data, odd.ctypes.data)
-    x, rows = Reals(v, unit), np.flatnonzero(odd)
+        native.library.read_numbers(data, len(texts), v.ctypes.data, unread.ctypes.data)
+    x, rows = Reals(v, unit), np.flatnonzero(unread)
     if rows.size:
-        some = [(texts[row], row) for row in rows.tolist()]
-        _treat(x, rows, lambda part: _read_together(some, part.unit or Unit(1), where))
+        numbered_texts = [(texts[row], row) for row in rows.tolist()]
+        _apply(x, rows, lambda part: _read_with_arrays(numbered_texts, part.unit or Unit(1), where))
     return x
 
 
-def _read_together(
+def _read_with_arrays(
     texts: Sequence[tuple[str, int]], unit: Unit, where: Callable[[int], str]
 ) -> Reals:
-    """`read`, of texts and their places, without the compiled machine."""
+    """Return `read` of texts with their indices, without the compiled kernel."""
     numerals = []
     for text, place in texts:
         plain = text.replace(" ", "").upper() if isinstance(text, str) else ""
-        found = scalar.NUMERAL.fullmatch(plain)
-        if not plain or not found:
+        match = scalar.NUMERAL.fullmatch(plain)
+        if not plain or not match:
             raise UserError(f"{text!r} is not a number; expected decimal text", where(place))
-        sign, whole, decimals, power_sign, power = found.groups("")
+        sign, integer, decimals, power_sign, power = match.groups("")
         exponent = min(max(int(power_sign + (power.lstrip("0")[:3] or "0")), -100), 100)
-        count = (exponent - len(decimals) + 128 & 0xFF) - 128  # kept in one byte
-        numerals.append((whole + decimals, count, exponent == 100, sign == "-"))
+        count = (exponent - len(decimals) + 128 & 0xFF) - 128  # the ROM keeps it in one signed byte
+        numerals.append((integer + decimals, count, exponent == 100, sign == "-"))
     digits, counts, overflow, negative = zip(*numerals, strict=True)
     x = Reals(np.array([int(text[:_EXACT_DIGITS] or 0) for text in digits], float), unit, True)
     for place in range(_EXACT_DIGITS, max(map(len, digits))):
         rows = np.array([row for row, text in enumerate(digits) if len(text) > place])
         digit = Reals(np.array([float(digits[i][place]) for i in rows]), None, True)
-        _treat(x, rows, times_ten)
-        _treat(x, rows, digit.__radd__)
-    unit.fails(np.array(overflow), OVERFLOW)
+        _apply(x, rows, times_ten)
+        _apply(x, rows, digit.__radd__)
+    unit.record_error(np.array(overflow), OVERFLOW)
     for step, steps in ((times_ten, np.array(counts)), (over_ten, -np.array(counts))):
-        for finished in range(max(steps)):
-            _treat(x, np.flatnonzero(steps > finished), step)
+        for steps_done in range(max(steps)):
+            _apply(x, np.flatnonzero(steps > steps_done), step)
     np.negative(x.v, out=x.v, where=negative)
     return x
 
 
-def _treat(x: Reals, rows: Ints, operation: Callable[[Reals], Reals]) -> None:
-    """Apply an operation to some rows of ``x`` in place, recording its errors with them."""
+def _apply(x: Reals, rows: Ints, operation: Callable[[Reals], Reals]) -> None:
+    """Apply an operation to the given rows of ``x`` in place, recording its errors there."""
     assert x.unit is not None
     part = x.unit.part(rows)
     result = operation(Reals(x.v[rows], part))
@@ -111,44 +107,48 @@ def _treat(x: Reals, rows: Ints, operation: Callable[[Reals], Reals]) -> None:
 
 
 def write(x: Reals, texts: Strings | None = None) -> Strings:
-    """The characters PRINT makes of each: at most nine digits, the extension counted; into
-    ``texts``, if given. Records OVERFLOW where rounding the very largest numbers fails."""
+    """Return the numbers as PRINT writes them, with at most nine digits, extension included.
+
+    Written into ``texts``, if given. Records OVERFLOW for the very largest numbers, which the ROM
+    fails to round."""
     v = np.ascontiguousarray(x.v)
     texts = np.empty(v.shape, TEXT) if texts is None else texts
     unit = x.unit or Unit(v.size)
-    odd = np.ones(v.shape, np.bool_)
+    unwritten = np.ones(v.shape, np.bool_)
     if native.library is not None:
-        native.library.write_numbers(v.ctypes.data, v.size, texts.ctypes.data, odd.ctypes.data)
-    rows = np.flatnonzero(odd)
-    for at in range(0, rows.size, AT_A_TIME):
-        some = rows[at : at + AT_A_TIME]
-        part = unit.part(some)
-        texts.reshape(-1)[some] = _written_together(Reals(v.reshape(-1)[some], part))
-        unit.join(part, some)
+        native.library.write_numbers(
+            v.ctypes.data, v.size, texts.ctypes.data, unwritten.ctypes.data
+        )
+    rows = np.flatnonzero(unwritten)
+    for at in range(0, rows.size, WRITE_BLOCK):
+        block = rows[at : at + WRITE_BLOCK]
+        part = unit.part(block)
+        texts.reshape(-1)[block] = _write_with_arrays(Reals(v.reshape(-1)[block], part))
+        unit.join(part, block)
     return texts
 
 
-def _written_together(x: Reals) -> Strings:
-    """`write`, without the compiled machine: of |x| = N * 10^d the nine digits N, and d."""
+def _write_with_arrays(x: Reals) -> Strings:
+    """Return `write` without the compiled kernel: find nine digits N and d of |x| = N * 10^d."""
     v = np.abs(x.v)
-    failed = v >= _ROUNDS_TO_OVERFLOW  # when DIV10 rounds it, which it does first of all
-    x.fails(failed, OVERFLOW)
-    v[failed] = 0.0
+    overflows = v >= _ROUNDS_TO_OVERFLOW  # in DIV10, which rounds first
+    x.record_error(overflows, OVERFLOW)
+    v[overflows] = 0.0
     nonzero, small = v != 0, (v != 0) & (v < 1)
     unit = Unit(v.size)
     v = np.where(small, (_BILLION * Reals(v, unit)).v, v)
     d = np.where(small, -9, 0)
-    while (above := (order := compare(_NINE_DIGITS, Reals(v, unit))) > 0).any():
-        v = np.where(above, over_ten(Reals(v, unit)).v, v)
-        d += above
+    while (too_large := (order := compare(_NINE_DIGITS, Reals(v, unit))) > 0).any():
+        v = np.where(too_large, over_ten(Reals(v, unit)).v, v)
+        d += too_large
     rounds = nonzero & (order != 0)
-    while (below := rounds & (compare(_EIGHT_DIGITS, Reals(v, unit)) <= 0)).any():
-        v = np.where(below, times_ten(Reals(v, unit)).v, v)
-        d -= below
+    while (too_small := rounds & (compare(_EIGHT_DIGITS, Reals(v, unit)) <= 0)).any():
+        v = np.where(too_small, times_ten(Reals(v, unit)).v, v)
+        d -= too_small
     v = np.where(rounds, (_HALF + Reals(v, unit)).v, v)
     signs = np.where(x.v < 0, "-", "").tolist()
     texts = [
         scalar.lay_out(sign, str(int(nine)), power) if nine else "0"
         for sign, nine, power in zip(signs, np.floor(v).tolist(), d.tolist(), strict=True)
     ]
-    return np.where(failed, "", np.array(texts, TEXT))
+    return np.where(overflows, "", np.array(texts, TEXT))
