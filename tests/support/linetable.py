@@ -26,14 +26,15 @@ Made by tests/support/linetable.py from the comments of listing.py; not to be ed
 """
 
 FIRST_PYTHON_LINE = {first}
-"""Where `listing.impact` begins."""
+"""The line of ``listing.py`` at which `listing.impact` begins."""
 _PYTHON = """
 {PYTHON_LINES}
 """
 _BASIC = """
 {BASIC_LINES}
 """
-PYTHON_LINES, BASIC_LINES = (tuple(map(int, lines.split())) for lines in (_PYTHON, _BASIC))
+PYTHON_LINES = tuple(map(int, _PYTHON.split()))
+BASIC_LINES = tuple(map(int, _BASIC.split()))
 """The Python line of each comment, and the number of the BASIC line it holds."""
 REALS = """
 {REALS}

@@ -1,6 +1,6 @@
-"""The arithmetics the port can take: `APPLESOFT`, and `FLOAT64`, Python's float and math printed by
-Applesoft's layout. Both offer the same operations to the same statements, so that a difference
-between two printouts is the arithmetic's alone."""
+"""The arithmetics the port can use: `APPLESOFT`, and `FLOAT64`, Python's float and math printed in
+Applesoft's layout. Both offer the same operations to the same statements, so that any difference
+between two printouts is due to the arithmetic."""
 
 from __future__ import annotations
 
@@ -20,9 +20,13 @@ if TYPE_CHECKING:
 
 
 class Arithmetic:
-    """What the listing needs of a machine's numbers. ``read(text, start)``: the number that begins
-    there and where it ends; ``LET`` rounds as storing does, ``NEXT`` increments a loop's variable;
-    ``unset``: the zero of a variable never assigned, distinguished by ``is`` from ``zero``."""
+    """The operations on numbers that the listing uses.
+
+    ``read(text, start)``: the number that begins at ``start`` and the index after it; ``LET``:
+    rounding of an assignment; ``NEXT``: the increment of a loop's variable; ``INT`` ... ``COS``:
+    BASIC's functions; ``write``: the text PRINT shows; ``errors``: Python's exceptions and the
+    Applesoft errors they stand for; ``unset``: the value of a variable never assigned, a zero that
+    ``is`` distinguishes from ``zero``."""
 
     name: str
     read: Callable[[str, int], tuple[Any, int]]
@@ -42,18 +46,18 @@ class Arithmetic:
         self._constants: dict[str, Any] = {}
 
     def error(self, exception: Exception) -> ApplesoftError | None:
-        """An exception as Applesoft's error; None for one that is not this arithmetic's."""
+        """Return an exception as an Applesoft error; None if it is not one of this arithmetic's."""
         if isinstance(exception, ApplesoftError):
             return exception
-        made = self.errors.get(type(exception))
-        return made and made()
+        make_error = self.errors.get(type(exception))
+        return make_error and make_error()
 
     def number(self, text: str) -> Any:
-        """A number from its text, not yet rounded. Raises ApplesoftError OVERFLOW."""
+        """Return the number of a text, not yet rounded. Raises ApplesoftError OVERFLOW."""
         return self.read(text.upper(), 0)[0]
 
     def constant(self, text: str) -> Any:
-        """The same for a constant of the program, read once."""
+        """Return the `number` of a constant of the program, which is read once."""
         if text not in self._constants:
             self._constants[text] = self.number(text)
         return self._constants[text]
@@ -65,11 +69,12 @@ def _read_real(text: str, start: int) -> tuple[Real, int]:
 
 
 def _of_reals(function: Callable[[Number], Number]) -> Callable[[Real], Real]:
+    """Return a function of numbers as one of `Real`."""
     return lambda x: Real(function(x.number))
 
 
 def _finite(x: float) -> float:
-    """A double. Raises OVERFLOW past their range."""
+    """Return ``x``. Raises OVERFLOW if it is not finite."""
     if not math.isfinite(x):
         raise overflow()
     return x
@@ -123,7 +128,8 @@ ARITHMETICS = {arithmetic.name: arithmetic for arithmetic in (APPLESOFT, FLOAT64
 
 
 def get_arithmetic(name: str | Arithmetic) -> Arithmetic:
-    """The arithmetic of that name, or the one itself. Raises UserError for an unknown one."""
+    """Return the arithmetic of that name; an `Arithmetic` is returned as it is. Raises
+    UserError."""
     if isinstance(name, Arithmetic):
         return name
     if name not in ARITHMETICS:

@@ -1,9 +1,9 @@
-"""Which variable of a copy of the listing takes each value of a scene.
+"""The variables of a copy of the listing that hold the values of a scene.
 
-An office may have renamed variables, or may convert what is typed (``INPUT V:UX = V * 1.46667``). A
-value's variable is one that the copy gives a number: assigned, read or asked for. It has the
-listing's name; or the copy prints it under the value's label; or what is printed there is computed
-from it alone; or it stands in the place of the listing's.
+An office may have renamed variables, or may convert input (``INPUT V:UX = V * 1.46667``). The
+variable of a value is given a number by the copy: assigned a constant, READ or INPUT. It is the one
+printed under the value's label; or has the listing's name; or is the only one from which the
+printed value is computed; or stands in the same place as in the listing.
 """
 
 import re
@@ -16,7 +16,7 @@ from ..names import SCENE
 Lines = Mapping[int, Sequence[str]]
 """A program: the statements of each line."""
 Place = tuple[int, int, int]
-"""Line, statement of it, variable of that."""
+"""Line number, index of the statement in it, index of the variable in that."""
 
 _ASSIGNMENT = re.compile(
     r"\s*(?:IF\b.*\bTHEN\s*)?(?:LET\s*)?([A-Z][A-Z0-9]*[$%]?)\s*=\s*(.*)", re.I | re.S
@@ -28,11 +28,11 @@ _LABEL = re.compile(r"([A-Z]+)\s*[=:]?\s*$", re.I)
 _VARIABLE = re.compile(r"[A-Z][A-Z0-9]*[$%]?", re.I)
 _FUNCTIONS = frozenset("ABS ATN COS EXP INT LOG RND SGN SIN SQR TAN FN PEEK AND OR NOT E".split())
 _MANTISSA = re.compile(r"(?<![A-Z0-9])[0-9.]+\s*E\s*[-+]?\s*[0-9]+", re.I)
-"""A number with an exponent, whose E is no variable."""
+"""A number with an exponent, whose E is not a variable."""
 
 
 def key_of(name: str) -> str:
-    """Return what Applesoft knows a variable by: two characters and the type."""
+    """Return the name by which Applesoft distinguishes a variable: two characters and the type."""
     name = "".join(name.upper().split())
     suffix = name[-1] if name.endswith(("$", "%")) else ""
     return name.removesuffix(suffix)[:2] + suffix
@@ -41,8 +41,8 @@ def key_of(name: str) -> str:
 class CopyVariables(NamedTuple):
     """The variables of a copy.
 
-    ``of_value``: for each value of a scene the variable that takes it; ``missing``: the values for
-    which there is none; ``unknown``: variables asked for by INPUT that take no value of a scene."""
+    ``of_value``: the variable of each value of a scene; ``missing``: values without a variable;
+    ``unknown``: variables of INPUT that hold no value of a scene."""
 
     of_value: dict[str, str]
     missing: list[str]
@@ -50,50 +50,53 @@ class CopyVariables(NamedTuple):
 
 
 def find_variables(lines: Lines, restored: Lines) -> CopyVariables:
-    """Return which variable of a copy takes each value of a scene. ``restored``: the restored
+    """Return the variables of a copy that hold a scene's values; ``restored``: the restored
     listing."""
-    given = dict(_assigned_variables(lines))
-    numbers = {key for key in given.values() if not key.endswith("$")}
-    computed = _dependencies(lines)
-    printed = _printed_variables(lines)
-    places = {key: place for place, key in _assigned_variables(restored)}
+    assigned_at = dict(_assigned_variables(lines))
+    numbers = {key for key in assigned_at.values() if not key.endswith("$")}
+    dependencies = _dependencies(lines)
+    printed_as = _printed_variables(lines)
+    restored_places = {key: place for place, key in _assigned_variables(restored)}
     of_value: dict[str, str] = {}
     missing = []
     for name in SCENE:
-        shown = printed.get(name, "")
-        sources = _sources(shown, computed, numbers)
+        printed_variable = printed_as.get(name, "")
+        sources = _sources(printed_variable, dependencies, numbers)
         key = ""
-        if shown in numbers and (name not in numbers or shown not in SCENE):
-            key = shown
+        if printed_variable in numbers and (name not in numbers or printed_variable not in SCENE):
+            key = printed_variable
         elif name in numbers:
             key = name
         elif len(sources) == 1:
             (key,) = sources
-        elif given.get(places[name], "") in numbers - SCENE.keys():
-            key = given[places[name]]
+        elif assigned_at.get(restored_places[name], "") in numbers - SCENE.keys():
+            key = assigned_at[restored_places[name]]
         if key:
             of_value[name] = key
         elif not (sources and sources <= numbers):
             missing.append(name)
-    # what is computed from other values alone needs none of its own
-    taken = set(of_value.values())
+    # a value computed only from others needs no variable of its own
+    keys_used = set(of_value.values())
     for name in SCENE.keys() - of_value.keys() - set(missing):
-        if not _sources(printed.get(name, ""), computed, numbers) <= taken:
+        if not _sources(printed_as.get(name, ""), dependencies, numbers) <= keys_used:
             missing.append(name)
-    asked = [key for key in dict.fromkeys(_input_variables(lines)) if not key.endswith("$")]
+    input_names = [key for key in dict.fromkeys(_input_variables(lines)) if not key.endswith("$")]
     return CopyVariables(
-        of_value, [name for name in missing if name != "M"], [k for k in asked if k not in taken]
+        of_value,
+        [name for name in missing if name != "M"],
+        [k for k in input_names if k not in keys_used],
     )
 
 
 def _statements(lines: Lines) -> Iterator[tuple[int, int, str]]:
+    """Yield line number, index in the line, and text of each statement."""
     for line, statements in lines.items():
         for at, statement in enumerate(statements):
             yield line, at, statement
 
 
 def _assigned_variables(lines: Lines) -> Iterator[tuple[Place, str]]:
-    """The variables that are given numbers: assigned a constant, read or asked for."""
+    """Yield place and name of each variable given a number: by a constant, READ or INPUT."""
     for line, at, statement in _statements(lines):
         if match := _LIST.fullmatch(statement):
             for item, name in enumerate(match[2].split(",")):
@@ -105,6 +108,7 @@ def _assigned_variables(lines: Lines) -> Iterator[tuple[Place, str]]:
 
 
 def _input_variables(lines: Lines) -> Iterator[str]:
+    """Yield the variables of INPUT."""
     for _, _, statement in _statements(lines):
         match = _LIST.fullmatch(statement)
         if match and match[1].upper() == "INPUT":
@@ -112,7 +116,7 @@ def _input_variables(lines: Lines) -> Iterator[str]:
 
 
 def _variables(expression: str) -> set[str]:
-    """The variables of an expression, arrays included."""
+    """Return the variables of an expression, arrays included."""
     bare = _MANTISSA.sub(" ", re.sub(r'"[^"]*"?', " ", expression))
     names = {key_of(name) for name in _VARIABLE.findall(bare) if name.upper() not in _FUNCTIONS}
     if re.search(r"(?<![A-Z0-9])E(?![A-Z0-9])", bare, re.I):
@@ -121,7 +125,7 @@ def _variables(expression: str) -> set[str]:
 
 
 def _dependencies(lines: Lines) -> dict[str, set[str]]:
-    """For each variable those that its formulas use, itself left out."""
+    """Return, for each variable, the others that its formulas use."""
     uses: dict[str, set[str]] = {}
     for _, _, statement in _statements(lines):
         if match := _ASSIGNMENT.fullmatch(statement):
@@ -130,26 +134,26 @@ def _dependencies(lines: Lines) -> dict[str, set[str]]:
     return uses
 
 
-def _sources(shown: str, computed: Mapping[str, set[str]], numbers: set[str]) -> set[str]:
-    """The variables given numbers from which a variable is computed, the listing's constants left
-    out."""
+def _sources(variable: str, dependencies: Mapping[str, set[str]], numbers: set[str]) -> set[str]:
+    """Return the other variables that are given numbers (``numbers``) and from which ``variable``
+    is computed, directly or not."""
     sources: set[str] = set()
-    followed: set[str] = set()
-    pending = [shown]
+    visited_keys: set[str] = set()
+    pending = [variable]
     while pending:
         key = pending.pop()
-        if key and key not in followed:
-            followed.add(key)
-            pending += computed.get(key, ())
-            if key in numbers and key != shown:
+        if key and key not in visited_keys:
+            visited_keys.add(key)
+            pending += dependencies.get(key, ())
+            if key in numbers and key != variable:
                 sources.add(key)
     return sources
 
 
 def _printed_variables(lines: Lines) -> dict[str, str]:
-    """The variable that is printed first under the label of each value; the angles stand below
-    their heading."""
-    printed: dict[str, str] = {}
+    """Return the variable first printed under the label of each value; the angles are printed
+    below a common heading."""
+    variables: dict[str, str] = {}
     label, row = "", []
     for _, _, statement in _statements(lines):
         if not (match := _PRINT.fullmatch(statement)):
@@ -160,11 +164,11 @@ def _printed_variables(lines: Lines) -> dict[str, str]:
                     continue
                 if "".join(literal.upper().split()) == "".join(ANGLES):
                     row = list(ANGLES)
-                elif found := _LABEL.search(literal.rstrip()):
-                    label, row = found[1].upper(), []
+                elif label_match := _LABEL.search(literal.rstrip()):
+                    label, row = label_match[1].upper(), []
                 continue
             name = row.pop(0) if row else label
             if name in SCENE and _VARIABLE.fullmatch(expression.strip()):
-                printed.setdefault(name, key_of(expression))
+                variables.setdefault(name, key_of(expression))
             label = ""
-    return printed
+    return variables

@@ -4,7 +4,7 @@ Made by tests/support/linetable.py from the comments of listing.py; not to be ed
 """
 
 FIRST_PYTHON_LINE = 53
-"""Where `listing.impact` begins."""
+"""The line of ``listing.py`` at which `listing.impact` begins."""
 _PYTHON = """
 100 101 102 103 104 105 106 107 108 109 111 113 116 118 121 122 123 124 125 127 129 131 133 135
 137 139 141 143 145 147 149 152 154 156 158 160 162 164 166 168 170 172 174 177 179 181 183 185
@@ -17,7 +17,8 @@ _BASIC = """
 580 590 600 610 620 630 640 650 660 670 680 690 700 710 720 730 740 750 760 770 780 1000 1010
 1020 1030 1040 1050 1060 1070 1080 1090 1100 1110 1120 1130 1140 1150 1160 1170
 """
-PYTHON_LINES, BASIC_LINES = (tuple(map(int, lines.split())) for lines in (_PYTHON, _BASIC))
+PYTHON_LINES = tuple(map(int, _PYTHON.split()))
+BASIC_LINES = tuple(map(int, _BASIC.split()))
 """The Python line of each comment, and the number of the BASIC line it holds."""
 REALS = """
 AG AP AR AS CO D1 D2 D3 D4 DA DB E EM GA I IA IB J KF KI M MA MB MU MX N OL PA PB RO RX TA TB UX

@@ -1,5 +1,6 @@
-"""Run the 1988 program on a scene, as if typed in and started with RUN: the port gets the scene's
-data lines, and its velocities over the keyboard."""
+"""Run the 1988 program on a scene, as if typed in and started with RUN.
+
+The port reads the scene's data lines, and its velocities from the keyboard."""
 
 from __future__ import annotations
 
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
 
 BELL = "\a"
 _UNPRINTED = {code: None for code in range(32) if chr(code) not in "\n\b"}
-"""Control-H stays: without it what was typed and taken back would look typed."""
+"""Control characters that are not shown. Control-H stays, so that a deleted character is
+visible."""
 
 
 class Run(namedtuple("Run", "printout error line reals A zero_determinant")):
@@ -31,14 +33,14 @@ class Run(namedtuple("Run", "printout error line reals A zero_determinant")):
     Parameters
     ----------
     printout : str
-        Every character sent, RETURN as newline.
+        Every character sent to the output, RETURN as newline.
     error : str or None
         The Applesoft error that ended the run.
     line : int or None
         The line of the error.
     reals : dict of str to str or float
-        Every real variable that was assigned, as its five stored bytes in hexadecimal; in double
-        precision a float.
+        Every real variable that was assigned: its five stored bytes in hexadecimal, or a float in
+        double precision.
     A : dict or None
         The array A: ``dims`` (sizes) and ``data``, first subscript fastest; None before line 360.
     zero_determinant : bool
@@ -61,28 +63,28 @@ class Run(namedtuple("Run", "printout error line reals A zero_determinant")):
 
     @property
     def page(self) -> str:
-        """The printout as a person reads it."""
+        """The printout without control characters, for people."""
         return page(self.printout)
 
     @property
     def floats(self) -> dict[str, float]:
-        """The real variables as floats: exactly what the five bytes hold."""
+        """The real variables as floats, equal to their five stored bytes."""
         values = self.reals.items()
-        stored = {name for name, value in values if isinstance(value, str) and len(value) == 10}
-        return {n: float(Real.from_stored(x) if n in stored else x) for n, x in values}
+        real_names = {name for name, value in values if isinstance(value, str) and len(value) == 10}
+        return {n: float(Real.from_stored(x) if n in real_names else x) for n, x in values}
 
     def __repr__(self) -> str:
         ending = self.error or ("ZERO DETERMINANT" if self.zero_determinant else "END")
         return f"<Run: {ending}; {len(self.printout)} characters, {len(self.reals)} variables>"
 
     def _repr_html_(self) -> str:
-        """The printout, as a notebook shows it."""
+        """Return the printout as HTML for a notebook."""
         return notebook.preformatted(self.page)
 
 
 def page(text: str) -> str:
-    """Text for a person, without what only a machine acts on: the form feed of line 200, bells,
-    the NULs that INPUT shows for a prompt, control-D."""
+    """Return a printout without characters that only a machine acts on: the form feed of line 200,
+    bells, the NULs that INPUT shows for a prompt, control-D."""
     return text.translate(_UNPRINTED)
 
 
@@ -93,31 +95,31 @@ def start(
     slot: str = "0",
     after_line: stepping.AfterLine | None = None,
 ) -> Run:
-    """Run the port on a console until the program ends; the Run's printout is empty, because the
-    console's devices have it, an error's message too.
+    """Run the port on a console until the program ends.
 
-    Raises UserError for an unknown arithmetic and `console.EndOfInput`.
+    The printout, with any error message, goes to the console; that of the returned Run is empty.
+    Raises UserError for an unknown arithmetic, and `console.EndOfInput`.
     """
     chosen = arithmetics.get_arithmetic(arithmetic)
     error, zero_determinant = None, False
-    watching = stepping.after_every_line(after_line, chosen.unset) if after_line else nullcontext()
+    tracing = stepping.after_every_line(after_line, chosen.unset) if after_line else nullcontext()
     try:
         names: Mapping[str, Any]
-        with watching:
+        with tracing:
             names = listing.impact(data, chosen, console, slot)
     except listing.End as end:
         zero_determinant = True
-        _, names = stepping.left_at(end.__traceback__)
+        _, names = stepping.failure_state(end.__traceback__)
     except Exception as exception:
         error = chosen.error(exception)
         if error is None:
             raise
-        error.line, names = stepping.left_at(exception.__traceback__)
+        error.line, names = stepping.failure_state(exception.__traceback__)
     reals, array = stepping.variables(names, chosen.unset)
     if error is not None and error.line is not None:
-        asked = console.reply.begun if console.reply else None
-        if begun := stepping.begun_assignment(error.line, reals, asked):
-            reals[begun] = chosen.zero
+        replies_read = console.reply.begun if console.reply else None
+        if variable := stepping.unfinished_assignment(error.line, reals, replies_read):
+            reals[variable] = chosen.zero
         console.put(f"\n?{error.kind} ERROR{BELL} IN {error.line}")
     return Run(
         "",
@@ -138,30 +140,30 @@ def run(
     slot: int = 0,
     after_line: stepping.AfterLine | None = None,
 ) -> Run:
-    """Run the 1988 program on a scene and return all that it leaves behind.
+    """Run the 1988 program on a scene and return its printout, variables and error.
 
     Parameters
     ----------
     scene : mapping of str to str
-        The scene: the digits typed count.
+        The scene, as texts: the digits typed matter.
     arithmetic : {"applesoft", "double"} or Arithmetic, default "applesoft"
-        What computes and writes numbers.
+        The arithmetic that computes and writes numbers.
     dos : bool, default True
-        True where a disk system takes lines that begin with control-D.
+        True if a disk system handles lines that begin with control-D.
     slot : int, default 0
         The digit of line 190: 1 is the printer, whose output is part of the printout.
     after_line : callable, optional
-        Called after every line with its number and the variables.
+        Called after every BASIC line with its number and the variables.
 
     Returns
     -------
     Run
-        Printout, variables, error.
+        The record of the run.
 
     Raises
     ------
     UserError
-        For an unknown arithmetic, and for a scene that could not be typed into the program
+        For an unknown arithmetic, or a scene that cannot be typed into the program
         (`Scene.check_typed`).
 
     Examples
@@ -174,12 +176,12 @@ def run(
     characters: list[str] = []
     replies = iter(scene.keyboard())
     console = Console(lambda: next(replies, None), characters.append, dos=dos)
-    finished = start(scene, console, arithmetic, str(slot), after_line)
-    return finished._replace(printout="".join(characters))
+    record = start(scene, console, arithmetic, str(slot), after_line)
+    return record._replace(printout="".join(characters))
 
 
 def _record_value(value: Any) -> Any:
-    """A real's stored bytes in hexadecimal; a double as it is, or in words where JSON has none."""
+    """Return a real's stored bytes in hexadecimal; a double unchanged, or as text if not finite."""
     if isinstance(value, Real):
         return value.stored().hex()
     return value if math.isfinite(value) else str(value)

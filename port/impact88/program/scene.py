@@ -1,9 +1,8 @@
-"""A scene: the listing's 21 values as the text that was typed, and the files that hold them.
+"""A scene: the listing's 21 values as typed, and the files that hold them.
 
-The digits typed are part of the evidence (90315.8817 and 90315.88170 differ in their last bit), so
-a scene keeps text; an arithmetic reads it later. The file form is TOML, flat, keyed by the
-listing's names; only the raw text of a value is used, never TOML's own idea of the number.
-"""
+The digits typed matter (90315.8817 and 90315.88170 differ in their last bit), so a scene keeps
+text, which an arithmetic reads later. A scene file is flat TOML, keyed by the listing's names;
+values keep their raw text, TOML's parsed number is never used."""
 
 from __future__ import annotations
 
@@ -28,10 +27,8 @@ DATA_LINES = (280, 290, 310)
 """Lines of the listing that set values."""
 REPLY_LINES = (210, 230)
 """Lines of the listing that ask for values."""
-M_LINE = 350
-"""The line of the listing that sets M."""
-TYPED_LIMIT = 239
-"""Characters that the Apple takes in a line."""
+M_LINE = 350  # the line of the listing that sets M
+MAX_LINE_LENGTH = 239  # characters of a line that the Apple keeps
 LISTING = "impact.bas"
 
 
@@ -41,23 +38,22 @@ class Scene(Mapping[str, str]):
     Parameters
     ----------
     values : mapping of str to str
-        Texts by name as a file may have them: numbers, amounts with units, limits (whose middle is
-        taken), a share of the critical friction, estimates; M is 6 where it is missing.
+        Texts by name as in a file: numbers, amounts with units, ranges (whose nominal value is
+        used), a percentage of the critical friction, estimates. M defaults to 6.
     title, source : str, optional
-        What the scene is called, and what messages call it.
+        The scene's title, and its name in messages.
     units : str, optional
-        The system of bare numbers, where no entry names one. The scene's texts are in its base
-        units.
+        The system of bare numbers if no entry names one. The scene's texts are in its base units.
 
     Attributes
     ----------
     case : Case
-        All that was said of the scene, as it was written.
+        The entries of the scene as written.
 
     Raises
     ------
     UserError
-        For a missing or unknown name, and for text that is no amount.
+        For a missing or unknown name, or a text that is not an amount.
 
     Examples
     --------
@@ -86,21 +82,22 @@ class Scene(Mapping[str, str]):
         return scene
 
     def _take(self, case: Case) -> None:
-        single, source = case.at_nominal(), case.source
-        given = dict(single.values)
-        check_names(given, SCENE, "value of a scene", source)
-        absent = [name for name in SCENE if name not in given]
+        """Set the values from the nominal values of ``case``. Raises UserError."""
+        nominal_case, source = case.at_nominal(), case.source
+        values = dict(nominal_case.values)
+        check_names(values, SCENE, "value of a scene", source)
+        absent = [name for name in SCENE if name not in values]
         if absent:
             raise UserError(missing(absent), source)
-        self.remarks = dict(single.remarks)
-        if is_share(given["MU"]):
+        self.remarks = dict(nominal_case.remarks)
+        if is_share(values["MU"]):
             from ..mechanics.closedform.share import resolved  # needed for a share only
 
-            checked = {
-                n: check_value(n, text, case.place(n)) for n, text in given.items() if n != "MU"
+            texts = {
+                n: check_value(n, text, case.place(n)) for n, text in values.items() if n != "MU"
             }
-            given["MU"], self.remarks["MU"] = resolved({**checked, "MU": given["MU"]}, source)
-        self._values = {name: check_value(name, given[name], case.place(name)) for name in SCENE}
+            values["MU"], self.remarks["MU"] = resolved({**texts, "MU": values["MU"]}, source)
+        self._values = {name: check_value(name, values[name], case.place(name)) for name in SCENE}
         self.case = case
 
     @classmethod
@@ -124,22 +121,22 @@ class Scene(Mapping[str, str]):
 
     @property
     def title(self) -> str | None:
-        """The title that the case has."""
+        """The title, None without one."""
         return self.case.title
 
     @property
     def source(self) -> str:
-        """What messages call the scene."""
+        """The scene's name in messages."""
         return self.case.source
 
     @property
     def units(self) -> str | None:
-        """The system of units the case was written in; the values are in its base units."""
+        """The system of units of the entries, None without units; values are in its base units."""
         return self.case.units
 
     @property
     def estimated(self) -> dict[str, str]:
-        """How each value that is an estimate was found."""
+        """The rule behind each estimated value, in words."""
         return self.case.estimated
 
     def __getitem__(self, name: str) -> str:
@@ -155,21 +152,22 @@ class Scene(Mapping[str, str]):
         return f"Scene({self._values!r})"
 
     def _repr_html_(self) -> str:
-        """The scene file, as a notebook shows it."""
+        """Return the scene file as HTML for a notebook."""
         return notebook.preformatted(self.to_toml())
 
     def replaced(self, changes: Mapping[str, str]) -> Self:
-        """Return this scene with some values changed, as `Case.replaced` does; a share of the
-        critical friction stays that share. Raises UserError."""
+        """Return this scene with some values changed, see `Case.replaced`; a percentage of the
+        critical friction stays that percentage. Raises UserError."""
         check_mapping(changes)
         return type(self).of(self.case.replaced(changes))
 
     def keyboard(self) -> list[str]:
-        """The replies to the INPUTs of lines 210 and 230."""
+        """Return the replies to the INPUTs of lines 210 and 230."""
         return [",".join(self[n] for n in names) for names in (VELOCITIES[:3], VELOCITIES[3:])]
 
     def typed_lines(self) -> list[str]:
-        """The program lines to retype for this scene: 280, 290, 310, and 350 unless M is 6."""
+        """Return the program lines to retype for this scene: 280, 290, 310, and 350 unless M is
+        6."""
         lines = [
             f"{line} "
             + ":".join(f"{q.name} = {self[q.name]}" for q in SCENE.values() if q.line == line)
@@ -180,13 +178,13 @@ class Scene(Mapping[str, str]):
         return lines
 
     def numbers(self) -> dict[str, float]:
-        """The values in double precision. Raises UserError for one past the range of doubles."""
+        """Return the values as doubles by name. Raises UserError past the range of doubles."""
         return numbers_of(self)
 
     def check_typed(self) -> None:
-        """Raises UserError unless the values can be typed into the program's lines and mean there
-        what INPUT takes them for: ``E`` is the variable there, ``-`` alone no number, and a line
-        has at most 239 characters."""
+        """Raise UserError unless the values can be typed into program lines and mean the same there
+        as to INPUT: in a line ``E`` is the variable and ``-`` alone is not a number. A line has at
+        most 239 characters."""
         for value in SCENE.values():
             text = self[value.name]
             if value.line not in REPLY_LINES and not re.match(r"[ +-]*[0-9.]", text):
@@ -196,21 +194,21 @@ class Scene(Mapping[str, str]):
                     self.source,
                 )
         for line in self.typed_lines():
-            if len(line) > TYPED_LIMIT:
+            if len(line) > MAX_LINE_LENGTH:
                 raise UserError(
                     f"program line {line.split()[0]} has {len(line)} characters with these values; "
-                    f"the Apple takes {TYPED_LIMIT}",
+                    f"the Apple takes {MAX_LINE_LENGTH}",
                     self.source,
                 )
 
     def to_toml(self) -> str:
-        """Return the scene as a commented TOML file, as it was written."""
+        """Return the scene as a commented TOML file, with its entries as written."""
         return template(self.case)
 
 
 def numbers_of(scene: Mapping[str, object]) -> dict[str, float]:
-    """The scene's values, texts or numbers, as doubles by name. Raises UserError for a missing
-    value or one that is not a finite number."""
+    """Return a scene's values, texts or numbers, as doubles by name. Raises UserError if one is
+    missing or not a finite number."""
     result = {}
     for name in SCENE:
         text = scene.get(name, DEFAULT_M if name == "M" else None)
@@ -225,13 +223,13 @@ def numbers_of(scene: Mapping[str, object]) -> dict[str, float]:
 
 
 def published_data() -> dict[str, str]:
-    """The values in the published listing's own lines 280, 290, 310 and 350."""
+    """Return the values in lines 280, 290, 310 and 350 of the published listing."""
     data: dict[str, str] = {}
     for line in packaged_text("impact88.legacy", LISTING).splitlines():
         number, _, statements = line.partition(" ")
         if int(number) in (*DATA_LINES, M_LINE):
-            given = statements.partition(": REM")[0].split(":")
-            data |= dict(statement.split(" = ") for statement in given)
+            assignments = statements.partition(": REM")[0].split(":")
+            data |= dict(statement.split(" = ") for statement in assignments)
     return {name: data[name] for name in SCENE if name in data}
 
 
@@ -245,7 +243,7 @@ _SAMPLES = {
         "GA=0 PA=0 PB=-40 TA=0 TB=90 MA=96 MB=145 IA=1970 IB=3770",
     ),
 }
-"""The published runs: title, and what is typed beside the listing's own data."""
+"""The published runs: title, and the values typed in addition to the listing's data."""
 
 SAMPLES = tuple(_SAMPLES)
 
@@ -262,12 +260,12 @@ def sample(number: int) -> Scene:
     Returns
     -------
     Scene
-        Its 21 values in ft, slug and s, each as the listing or the printout has it.
+        Its 21 values in ft, slug and s, each as in the listing or the printout.
 
     Raises
     ------
     UserError
-        For another number.
+        For any other number.
 
     Examples
     --------
@@ -276,7 +274,7 @@ def sample(number: int) -> Scene:
     """
     if not isinstance(number, Hashable) or number not in _SAMPLES:
         raise UserError(f"there is no sample {number}; expected {', '.join(map(str, SAMPLES))}")
-    title, typed = _SAMPLES[number]
-    values = published_data() | dict(entry.split("=") for entry in typed.split())
+    title, entries = _SAMPLES[number]
+    values = published_data() | dict(entry.split("=") for entry in entries.split())
     # the chapter's values are in ft, slug and s
     return Scene({**values, "units": "chapter"}, title, f"sample {number}")

@@ -21,8 +21,8 @@ BLOCK_SIZE = 16384
 GIL between threads; larger ones fall out of the cache. With the compiled kernel half the size takes
 5 % longer and twice the size as long; with numpy half the size takes 3 % less."""
 MIN_SCENES_TO_SPECIALIZE = 32768
-"""From this many scenes on, a program is traced for the columns that vary, which computes shared
-values once: tracing takes 14 ms and, if three columns vary, saves 0.4 us a scene. A threshold twice
+"""Scenes from which a program is traced for the columns that vary, which computes shared values
+once: tracing takes 14 ms and, if three columns vary, saves 0.4 us a scene. A threshold twice
 as high makes no difference to 50,000 scenes; half as high, the first call becomes slower."""
 MIN_SCENES_PER_THREAD = 8192
 """With fewer scenes each, threads wait for one another more than they compute."""
