@@ -1,8 +1,8 @@
 """impact88: Brach's 1988 planar impact program, digit for digit, and the same mechanics made fast.
 
-A scene is a mapping of the listing's names (`names.SCENE`) to values, wherever one is asked for:
-texts for what computes as the Apple did, because the digits typed count, numbers or arrays for
-double precision. Results carry the names of `names.RESULTS`.
+A scene is a mapping of the listing's names (`names.SCENE`) to values: texts for functions that
+compute as the Apple did, because the digits typed matter, numbers or arrays for those in double
+precision. Results have the names of `names.RESULTS`.
 
 The 1988 program
     Scene, sample       a scene: from a mapping, a TOML file, or a published run
@@ -11,26 +11,26 @@ The 1988 program
     Applesoft           the machine itself, for any Applesoft program
 
 Old printouts and other programs
-    verify, read_printouts      is a printout what the program prints, and if not, why
-    oracle              all that is known of some scenes, to check another program with
-    compare             another program's table against this one's results
+    verify, read_printouts      check a printout against the program's own, and explain differences
+    oracle              complete reference results of scenes, to check other programs with
+    compare             another program's table compared with this one's results
 
 Today's work, in double precision
     solve               final velocities and the rest, over arrays
     prepared            the same for many short calls: root finders, samplers
     solve_frame         the same for pandas, polars, pyarrow, xarray, records, lists of dicts
-    bounds, Uncertain   what follows from values known within limits
+    bounds, Uncertain   results of values known within limits
     solve_for           Equations 13-18 for any unknowns, over arrays
-    reconstruct, Reconstruction     the same with tolerances: what was measured is adjusted
+    reconstruct, Reconstruction     the same with tolerances: measured values are adjusted
     colinear, colinear_inverse, barrier, delta_v    the chapter's other problems
     scene_svg           a scene from above
 
-    accelerated         the processor's instructions `solve` uses, None where it leaves all to numpy
+    accelerated         the processor's instructions that `solve` uses, None if it uses numpy only
     names, status       the tables of names and of STATUS's bits
     UserError           raised for input that cannot be used
-    PlausibilityWarning     given for values of a frame that are hardly meant
+    PlausibilityWarning     issued for implausible values of a frame
 
-Each is imported on first use: running the 1988 program does not pay for numpy.
+Each is imported on first use, so that running the 1988 program does not import numpy.
 """
 
 from importlib import import_module
@@ -102,13 +102,13 @@ _LAZY = {
     }.items()
     for name in names_there.split()
 }
-"""Public name -> the module that holds it, nothing for a module of this package. A test holds this
-table against the imports above."""
+"""Public name -> its module, "" for a module of this package. A test compares this table with the
+imports above."""
 
 __all__ = [*_LAZY, "__version__"]
 
 
-if not TYPE_CHECKING:  # a checker that saw it would take any name for a public one
+if not TYPE_CHECKING:  # a type checker that saw it would accept any name
 
     def __getattr__(name: str) -> object:
         place = _LAZY.get(name)
@@ -117,7 +117,7 @@ if not TYPE_CHECKING:  # a checker that saw it would take any name for a public 
         if not place:
             return import_module(f".{name}", __name__)
         value = getattr(import_module(f".{place}", __name__), name)
-        globals()[name] = value  # found at once from now on
+        globals()[name] = value  # later lookups are direct
         return value
 
 

@@ -1,32 +1,32 @@
-"""The one error a user of this package is shown, what is said on standard error beside the result,
-and how foreign text stands in either."""
+"""The error shown to users, notes on standard error, and the display of untrusted text in both."""
 
 import sys
 from contextlib import suppress
 from importlib import import_module
 from types import ModuleType
 
-LONGEST_MESSAGE, LONGEST_PLACE, LONGEST_QUOTE = 500, 200, 60
-"""Characters: six lines of a terminal; a path and a line of it; a cell, or a number with its unit.
-"""
+# lengths in characters
+LONGEST_MESSAGE = 500  # six lines of a terminal
+LONGEST_PLACE = 200  # a path and a line number
+LONGEST_QUOTE = 60  # a cell, or a number with its unit
 BEYOND_DOUBLES = "the values known lead beyond the range of doubles"
 
 
-def shown(text: str, longest: int = LONGEST_MESSAGE) -> str:
-    """``text`` on one line of at most ``longest`` characters, fit for a terminal. Whatever does not
-    print (control characters, terminal escapes, line ends, marks that turn the writing direction,
-    lone surrogates) is shown as Python would write it in a literal; of a longer text the middle is
-    left out."""
+def one_line(text: str, longest: int = LONGEST_MESSAGE) -> str:
+    """Return ``text`` on one line of at most ``longest`` characters, safe for a terminal.
+
+    Characters that do not print (controls, terminal escapes, line ends, marks of writing direction,
+    lone surrogates) are written as in a Python literal; the middle of a longer text is left out."""
     if len(text) > longest:
-        kept = longest - 5
-        text = f"{text[: kept - kept // 3]} ... {text[-(kept // 3) :]}"
+        length = longest - 5
+        text = f"{text[: length - length // 3]} ... {text[-(length // 3) :]}"
     text = printable(text)
-    # escapes are longer than what they show
-    return text if len(text) <= longest else shown(text, longest)
+    # escapes are longer than the characters they replace
+    return text if len(text) <= longest else one_line(text, longest)
 
 
 def printable(text: str, kept: str = "") -> str:
-    """``text`` with escapes for the characters that do not print, but for those ``kept``."""
+    """Return ``text`` with escapes for characters that do not print, except those in ``kept``."""
     if text.isprintable():
         return text
     return "".join(
@@ -35,23 +35,23 @@ def printable(text: str, kept: str = "") -> str:
 
 
 def quoted(value: object) -> str:
-    """A value as it was given, in quotes if it is text, short enough to stand in a message."""
+    """Return a value for a message: shortened, and in quotes if it is text."""
     if isinstance(value, str):
         value = value[: 2 * LONGEST_QUOTE]
-    return shown(repr(value), LONGEST_QUOTE)
+    return one_line(repr(value), LONGEST_QUOTE)
 
 
 class UserError(ValueError):
-    """Input that cannot be used: one line saying what is wrong, where, and what is expected.
+    """Input that cannot be used: one line on what is wrong, where, and what is expected.
 
-    The command line prints the message on stderr and ends with status 2, without a traceback.
+    The command line prints the message on stderr and exits with status 2, without a traceback.
 
     Parameters
     ----------
     message : str
-        What is wrong, and what is expected.
+        The problem, and what is expected.
     where : str, optional
-        The place (file, row, field), put in front.
+        The place (file, row, field), which begins the message.
 
     Examples
     --------
@@ -63,19 +63,17 @@ class UserError(ValueError):
     """
 
     def __init__(self, message: str, where: str | None = None) -> None:
-        message = shown(message)
-        super().__init__(f"{shown(where, LONGEST_PLACE)}: {message}" if where else message)
+        message = one_line(message)
+        super().__init__(f"{one_line(where, LONGEST_PLACE)}: {message}" if where else message)
         self.where = where
 
 
 class PlausibilityWarning(UserWarning):
-    """Values of a frame that are hardly meant: a mass, speed, arm or inertia that no vehicle has,
-    velocities and headings in two conventions, EM = 0.
+    """Implausible values in a frame: a mass, speed, arm or inertia that no vehicle has, velocities
+    and headings in different conventions, EM = 0.
 
-    Notes
-    -----
-    Nothing is refused. ``warnings.filterwarnings("ignore", category=impact88.PlausibilityWarning)``
-    silences it.
+    Notes ----- The values are used all the same. ``warnings.filterwarnings("ignore",
+    category=impact88.PlausibilityWarning)`` silences it.
 
     Examples
     --------
@@ -91,15 +89,15 @@ class PlausibilityWarning(UserWarning):
 
 
 def note(command: str | None, text: str) -> None:
-    """A line on stderr, where there is one that takes it: "impact88 COMMAND: text"."""
+    """Write the line "impact88 COMMAND: text" to stderr, if that accepts it."""
     name = f"impact88 {command}" if command else "impact88"
     with suppress(OSError, ValueError):  # closed, or full
-        print(f"{name}: {shown(text)}", file=sys.stderr, flush=True)
+        print(f"{name}: {one_line(text)}", file=sys.stderr, flush=True)
 
 
 def library(name: str, extra: str, what: str) -> ModuleType:
-    """The module of that name, which ``what`` needs. Raises UserError, naming the extra that
-    installs it, where it is missing."""
+    """Import and return an optional module that ``what`` needs. Raises UserError, naming the extra
+    that installs it, if it is missing."""
     try:
         return import_module(name)
     except ImportError:

@@ -1,6 +1,6 @@
-"""Files: reading what may be anything, and writing so that nothing is half-written or lost.
+"""Files: bounded reading of untrusted input, and writing that leaves no file incomplete or lost.
 
-Every reader is bounded, and every error of the system names the file it met.
+Every system error becomes a UserError that names the file.
 """
 
 from __future__ import annotations
@@ -19,13 +19,11 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import IO, Any
 
-LARGEST = 100_000_000
-"""Bytes of the largest file that is read as a whole, unless a reader says otherwise: a bound on
-memory, thousands of times what is usual."""
-LONGEST_LINE = 1_000_000
-"""Characters of the longest line that is read: a bound on memory; rows have hundreds."""
+MAX_FILE_BYTES = 100_000_000  # bounds memory; thousands of times the usual size
+LONGEST_LINE = 1_000_000  # characters; bounds memory, rows have hundreds
 ESCAPED = "impact88.escaped"
-"""The error handler of text streams: what they cannot encode becomes \\uXXXX, as in JSON."""
+"""Error handler of text streams that writes characters they cannot encode as \\uXXXX, as in
+JSON."""
 
 _BYTE_ORDER_MARKS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
@@ -35,6 +33,7 @@ _BYTE_ORDER_MARKS = (
 
 
 def _escape(error: UnicodeError) -> tuple[str, int]:
+    """Return \\uXXXX for the characters that cannot be encoded, see `codecs.register_error`."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     units = error.object[error.start : error.end].encode("utf-16-be", "surrogatepass").hex()
@@ -44,19 +43,19 @@ def _escape(error: UnicodeError) -> tuple[str, int]:
 codecs.register_error(ESCAPED, _escape)
 
 
-def called(path: str) -> str:
-    """What messages call a file to read: its name, and ``-`` by what it stands for."""
+def display_name(path: str) -> str:
+    """Return the name of an input file for messages; "standard input" for ``-``."""
     return "standard input" if path == "-" else path
 
 
 def encoding_of(start: bytes) -> str:
-    """The encoding that a text's first bytes announce: UTF-8, or UTF-16 with its mark."""
+    """Return the encoding by a text's first bytes: UTF-16 with its byte-order mark, else UTF-8."""
     return next((name for mark, name in _BYTE_ORDER_MARKS if start.startswith(mark)), "utf-8")
 
 
 def decode(data: bytes, where: str) -> str:
-    """The text of ``data``: UTF-8, or UTF-16 with a byte-order mark; line ends become newlines.
-    Raises UserError (naming ``where`` and the byte) if it is neither."""
+    """Return the text of UTF-8 bytes, or UTF-16 with a byte-order mark; line ends become newlines.
+    Raises UserError, naming ``where`` and the byte, if it is neither."""
     encoding = encoding_of(data)
     try:
         text = data.decode(encoding)
@@ -70,36 +69,36 @@ def decode(data: bytes, where: str) -> str:
 
 
 @contextmanager
-def _naming(path: str, done: str) -> Iterator[None]:
-    """Errors of the system within are UserErrors that name the file."""
+def _naming(path: str, action: str) -> Iterator[None]:
+    """Context that turns system errors into UserErrors naming the file."""
     try:
         yield
     except (BrokenPipeError, UserError):
         raise
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or error
-        raise UserError(f"cannot be {done}: {why}", path) from None
+        raise UserError(f"cannot be {action}: {why}", path) from None
 
 
 @contextmanager
 def decoding(path: str, message: str = "cannot be read") -> Iterator[None]:
     """Turn whatever a library raises while it decodes a named file into a UserError.
 
-    Libraries raise what they like at bytes that are not what they expect (zlib.error, struct.error,
-    UnicodeDecodeError, SystemError ...). Only the library's calls belong within: an error of this
-    package's own code is a bug.
+    Libraries raise arbitrary exceptions for unexpected bytes (zlib.error, struct.error,
+    UnicodeDecodeError, SystemError ...). Only calls of the library belong in the block: an error of
+    this package's own code is a bug.
 
     Parameters
     ----------
     path : str
-        The file, and the place in it where that is known.
+        The file, and the place in it if that is known.
     message : str
-        What is said before the library's reason.
+        Text before the library's reason.
 
     Raises
     ------
     UserError
-        For any exception but those that say something else: memory that ran out, a closed pipe.
+        For any exception except MemoryError and BrokenPipeError, which have other causes.
     """
     try:
         yield
@@ -113,12 +112,12 @@ def decoding(path: str, message: str = "cannot be read") -> Iterator[None]:
 
 
 class Source(io.RawIOBase):
-    """The bytes of a file or of standard input; an error in reading them is a UserError that names
-    it. ``count``: the bytes read so far."""
+    """A binary stream from a file or standard input, whose read errors are UserErrors naming it.
+    ``count``: the bytes read so far."""
 
     def __init__(self, path: str) -> None:
         """Raises UserError if there is no such file or it cannot be opened."""
-        self.name = called(path)
+        self.name = display_name(path)
         self.count = 0
         self._inner: Any = None
         self._keep = path == "-"
@@ -128,18 +127,18 @@ class Source(io.RawIOBase):
 
     @property
     def extent(self) -> tuple[int | None, Callable[[], int]]:
-        """Its size in bytes, None where that is not known; and how many have been read."""
+        """The size in bytes, None if unknown, and a function that returns the bytes read so far."""
         with suppress(OSError):
             if not self._keep and os.path.isfile(self._inner.name):
                 return os.fstat(self._inner.fileno()).st_size, lambda: self.count
         return None, lambda: 0
 
     def readable(self) -> bool:
-        """True."""
+        """Return True."""
         return True
 
     def readinto(self, buffer: Any) -> int:
-        """Read into ``buffer``; how many bytes, 0 at the end. Raises UserError."""
+        """Read into ``buffer`` and return the number of bytes, 0 at the end. Raises UserError."""
         with _naming(self.name, "read"):
             count: int = self._fill(buffer) or 0
         self.count += count
@@ -153,42 +152,42 @@ class Source(io.RawIOBase):
 
 
 def open_bytes(path: str) -> io.BufferedReader:
-    """A file opened for reading, ``-`` is standard input. Raises UserError, later reads too."""
+    """Open a file for reading (``-``: standard input). Raises UserError, as do later reads."""
     return io.BufferedReader(Source(path))
 
 
-def read_bytes(path: str, limit: int = LARGEST) -> bytes:
-    """The bytes of a file (``-`` is standard input). Raises UserError if it cannot be read or has
-    more than ``limit`` bytes."""
+def read_bytes(path: str, limit: int = MAX_FILE_BYTES) -> bytes:
+    """Return the bytes of a file (``-``: standard input). Raises UserError if it cannot be read or
+    has more than ``limit`` bytes."""
     with open_bytes(path) as file:
         data = file.read(limit + 1)
     if len(data) > limit:
-        raise UserError(f"is larger than {limit:,} bytes, the limit here", called(path))
+        raise UserError(f"is larger than {limit:,} bytes, the limit here", display_name(path))
     return data
 
 
-def read_text(path: str, limit: int = LARGEST) -> str:
-    """The text of a file, see `read_bytes` and `decode`."""
-    return decode(read_bytes(path, limit), called(path))
+def read_text(path: str, limit: int = MAX_FILE_BYTES) -> str:
+    """Return the text of a file, see `read_bytes` and `decode`."""
+    return decode(read_bytes(path, limit), display_name(path))
 
 
 def typed_line() -> str | None:
-    """The next line of standard input without its end, None when there is none. Raises UserError
-    if it is not text or too long."""
+    """Return the next line of standard input without its end, None at the end of input. Raises
+    UserError if it is not text or too long."""
     sys.stdout.flush()
-    with _naming(called("-"), "read"):
+    with _naming(display_name("-"), "read"):
         try:
             line = sys.stdin.readline(LONGEST_LINE)
         except UnicodeDecodeError as error:
             what = f"contains bytes that are not {error.encoding} text"
-            raise UserError(what, called("-")) from None
+            raise UserError(what, display_name("-")) from None
     if len(line) == LONGEST_LINE and not line.endswith("\n"):
-        raise UserError(f"has a line longer than {LONGEST_LINE:,} characters", called("-"))
+        raise UserError(f"has a line longer than {LONGEST_LINE:,} characters", display_name("-"))
     return line.rstrip("\r\n") if line else None
 
 
 class _Sink(io.FileIO):
-    """A file being written; an error in writing it is a UserError that names it."""
+    """A file being written, whose write errors are UserErrors naming it."""
 
     target = ""
 
@@ -198,7 +197,8 @@ class _Sink(io.FileIO):
 
 
 def _sink(file: str, target: str, mode: str, private: bool) -> IO[Any]:
-    """A file to write; ``private``: one that must not be there yet, for its owner only."""
+    """Open ``file`` for writing, named ``target`` in messages; ``private``: it must not exist yet,
+    and only its owner may access it."""
 
     def opener(path: str, flags: int) -> int:
         return os.open(path, flags | os.O_EXCL, 0o600)
@@ -214,38 +214,39 @@ def _sink(file: str, target: str, mode: str, private: bool) -> IO[Any]:
 
 @contextmanager
 def replacing(path: str, mode: str = "w") -> Iterator[IO[Any]]:
-    """Open a temporary file beside ``path``; rename it to ``path`` when the block ends well.
-    ``mode`` is ``"w"`` (text, UTF-8) or ``"wb"``. The bytes are on the disk before the rename. When
-    the block raises, or the process is asked to leave, the temporary file is removed and ``path``
-    stays as it was. A path that is not a regular file (a terminal, a pipe, /dev/null) is written
-    directly: there is nothing to rename. Raises UserError when the place cannot be written to, the
-    disk is full, or what stands there is read-only."""
-    target, usual = _target(path)
+    """Context that writes a temporary file and renames it to ``path`` when the block succeeds.
+
+    ``mode`` is ``"w"`` (text, UTF-8) or ``"wb"``. The bytes are on the disk before the rename. If
+    the block raises, or the process is told to terminate, the temporary file is removed and
+    ``path`` is unchanged. A path that is not a regular file (a terminal, a pipe, /dev/null) is
+    written directly. Raises UserError if the place cannot be written to, the disk is full, or the
+    file is read-only."""
+    target, mode_bits = _target(path)
     if os.path.exists(target) and not os.path.isfile(target):
         with _sink(target, path, mode, False) as file:
             yield file
         return
     folder, name = os.path.split(target)
-    # at most 255 bytes if that name has
-    beside = os.path.join(folder, f".{name[:56]}.{os.urandom(8).hex()}.part")
-    # its name is known before it is there: a signal at any moment finds what to remove
+    # short enough for the limit of 255 bytes
+    temporary = os.path.join(folder, f".{name[:56]}.{os.urandom(8).hex()}.part")
+    # the name is chosen before the file exists, so that a signal at any time removes it
     try:
-        with _sink(beside, path, mode, True) as file:
+        with _sink(temporary, path, mode, True) as file:
             yield file
             file.flush()
             with _naming(path, "written"):
                 _settle(file.fileno())
         with _naming(path, "written"):
-            os.chmod(beside, usual)
-            os.replace(beside, target)
+            os.chmod(temporary, mode_bits)
+            os.replace(temporary, target)
     except BaseException:
         with suppress(OSError):
-            os.unlink(beside)
+            os.unlink(temporary)
         raise
 
 
 def write_folder(folder: str, files: Mapping[str, bytes]) -> None:
-    """Write files, by their paths in a folder, which is made. Raises UserError."""
+    """Write files by their paths in a folder, creating folders as needed. Raises UserError."""
     for name, data in files.items():
         path = os.path.join(folder, name)
         with _naming(folder, "made"):
@@ -255,8 +256,8 @@ def write_folder(folder: str, files: Mapping[str, bytes]) -> None:
 
 
 def _target(path: str) -> tuple[str, int]:
-    """What ``path`` leads to, and the mode of a file there. Raises UserError for a folder and for
-    what may not be replaced."""
+    """Return the real path behind links, and the mode of the file there or of a new one. Raises
+    UserError for a folder and for a read-only file."""
     with _naming(path, "written"):
         try:
             target = os.path.realpath(path)
@@ -267,13 +268,14 @@ def _target(path: str) -> tuple[str, int]:
             return target, 0o666 & ~mask
     if os.path.isdir(target):
         raise UserError("is a folder; expected a file to write", path)
-    # a superuser may write anything, but a file without a bit for it is meant to stay
+    # root may write anything, but a file without write permission is meant to be kept
     if not mode & 0o222 or not os.access(target, os.W_OK):
         raise UserError("is read-only; expected a name that may be written", path)
     return target, mode & 0o7777
 
 
 def _settle(handle: int) -> None:
+    """Flush a file to the disk, where the file system supports it."""
     try:
         os.fsync(handle)
     except OSError as error:
@@ -282,10 +284,11 @@ def _settle(handle: int) -> None:
 
 
 def check_apart(inputs: Iterable[str], outputs: Mapping[str, str | None]) -> None:
-    """Raise UserError when a file to write is one that is read, or another one to write, links of
-    either kind included; or when a folder to write into holds a file that is read. ``inputs``:
-    paths; ``outputs``: what a message calls the place (an option) -> its path, None where there is
-    none. ``-`` is a standard stream."""
+    """Raise UserError if an output is also an input or another output, by hard or symbolic links,
+    too, or if an output folder contains an input.
+
+    ``inputs``: paths; ``outputs``: paths by the name of the option, None if it is not given. ``-``
+    is a standard stream."""
     inputs = list(inputs)
     places = {_place(path): "a file that is read" for path in inputs}
     for name, path in outputs.items():
@@ -305,20 +308,20 @@ def check_apart(inputs: Iterable[str], outputs: Mapping[str, str | None]) -> Non
 
 
 def _place(path: str) -> tuple[Any, ...] | None:
-    """What identifies a regular file, or one that is not there yet; None for anything else."""
+    """Return an identifier of a regular or not yet existing file; None for anything else."""
     from stat import S_ISREG
 
     try:
-        about = os.fstat(sys.stdin.fileno()) if path == "-" else os.stat(path)
+        stat = os.fstat(sys.stdin.fileno()) if path == "-" else os.stat(path)
     except FileNotFoundError:
         return (os.path.realpath(path),)
     except (OSError, ValueError, AttributeError):
         return None
-    return (about.st_dev, about.st_ino) if S_ISREG(about.st_mode) else None
+    return (stat.st_dev, stat.st_ino) if S_ISREG(stat.st_mode) else None
 
 
 def packaged_bytes(package: str, name: str) -> bytes:
-    """A data file that is installed with this project, such as legacy's listing."""
+    """Return the bytes of a data file installed with this package, such as legacy's listing."""
     from importlib import import_module  # pkgutil, which has this, takes 5 ms to import
 
     module: Any = import_module(package)
@@ -327,7 +330,7 @@ def packaged_bytes(package: str, name: str) -> bytes:
 
 
 def packaged_text(package: str, name: str) -> str:
-    """The text of a data file that is installed with this project."""
+    """Return the text of a data file installed with this package."""
     return decode(packaged_bytes(package, name), name)
 
 

@@ -1,11 +1,11 @@
-"""The one table of names: what each quantity is called, means and is measured in.
+"""The table of names: name, symbol, meaning and unit of each quantity.
 
-A scene's numbers carry the names the 1988 listing gives them, everywhere in this project. Every
-template, table heading, help text and error message takes symbol, meaning and unit from here.
+A scene's values have the names of the 1988 listing everywhere in this project. Every template,
+table heading, help text and error message takes symbol, meaning and unit from here.
 
-Units: the listing is "independent of units" (User's Information): any consistent set will do,
-except that angles are typed and printed in degrees and spins are always radians per unit of time.
-So a unit here is a rule ("mass·length²"), not a unit.
+The listing is "independent of units" (User's Information): any consistent set works, except that
+angles are typed and printed in degrees and spins are in radians per unit of time. So ``unit`` is a
+rule ("mass·length²"), not a unit.
 
 >>> impact88.names.SCENE["MU"].meaning
 'equivalent friction coefficient; -10 makes a pivot'
@@ -18,20 +18,36 @@ from .errors import UserError
 
 
 class Quantity(namedtuple("Quantity", "name symbol meaning unit line", defaults=(0,))):
-    """One row of the table. ``name``: the listing's variable, or this project's name for what the
-    listing leaves unnamed; ``symbol``: the chapter's symbol (List of Symbols); ``meaning``: in
-    words; ``unit``: the unit rule; ``line``: the listing line that sets or asks for it (scene) or
-    prints it (results; 0 when the listing has no such value)."""
+    """One row of the table.
+
+    Parameters
+    ----------
+    name : str
+        The listing's variable, or this project's name for a quantity the listing does not name.
+    symbol : str
+        The chapter's symbol (List of Symbols), "" without one.
+    meaning : str
+        The meaning in words.
+    unit : str
+        The unit rule, such as "length/time".
+    line : int, default 0
+        The line of the listing that sets or asks for the value (scene) or prints it (results); 0 if
+        the listing has no such value.
+    """
 
     __slots__ = ()
 
 
 def _table(*rows: tuple[str | int, ...]) -> dict[str, Quantity]:
+    """Return rows as quantities by name."""
     return {quantity.name: quantity for quantity in (Quantity(*row) for row in rows)}
 
 
-_LENGTH, _VELOCITY, _SPIN = "length", "length/time", "rad/time"
-_FORCE, _ENERGY = "mass·length/time²", "mass·length²/time²"
+_LENGTH = "length"
+_VELOCITY = "length/time"
+_SPIN = "rad/time"
+_FORCE = "mass·length/time²"
+_ENERGY = "mass·length²/time²"
 
 SCENE = _table(
     ("E", "e", "coefficient of restitution", "1", 280),
@@ -56,7 +72,7 @@ SCENE = _table(
     ("WB", "ω_b", "initial spin of B", _SPIN, 230),
     ("M", "M", "number of equations: 6, or 4 for point masses", "1", 350),
 )
-"""What a scene is made of, in the listing's order."""
+"""The values of a scene, in the listing's order."""
 
 RESULTS = _table(
     ("VAX", "V_ax", "final x velocity of A", _VELOCITY, 730),
@@ -93,7 +109,7 @@ RESULTS = _table(
     ("COND", "κ", "condition number of the equilibrated equations, estimated", "1"),
     ("STATUS", "", "sum of the warning bits, see impact88.status", "bits"),
 )
-"""What an impact yields, in this project's order: the six final velocities first."""
+"""The results of an impact, in this project's order: the six final velocities first."""
 
 CHAPTER = _table(
     ("CAX", "-d4", "x from A's center of gravity to the contact point", _LENGTH),
@@ -145,43 +161,41 @@ CHAPTER = _table(
     ("VBN", "V_bn", "final normal velocity of B", _VELOCITY),
     ("VBT", "V_bt", "final tangential velocity of B", _VELOCITY),
 )
-"""What the chapter's other problems add (Sections III, IV-C and VI), which the listing has no name
-for: contact point, direction and size of the force, velocities along n and t."""
+"""Quantities of the chapter's other problems (Sections III, IV-C and VI), which have no name in the
+listing: contact point, direction and size of the force, velocities along n and t, and others."""
 
 FINAL_VELOCITIES = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
 VELOCITIES = ("UX", "UY", "WA", "VX", "VY", "WB")
-"""The six values lines 210 and 230 ask for, in that order."""
+"""The six values that lines 210 and 230 ask for, in that order."""
 FINAL_STATE = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")
 """The final velocities in the order of `VELOCITIES`; `FINAL_VELOCITIES` is the listing's own."""
 IMPULSES = ("PN", "PT", "PM")
 COEFFICIENTS = ("E", "MUP", "EM")
-"""The coefficients as they may be asked for: friction as the signed P_t/P_n."""
+"""The coefficients as results: friction as the signed P_t/P_n."""
 
-PIVOT = -10.0
-"""MU that makes the contact point a pivot (lines 260, 390 and 510)."""
+PIVOT = -10.0  # the MU that makes the contact point a pivot (lines 260, 390 and 510)
 
-DEFAULT_M = "6"
-"""M where a scene does not give it: the published listing's line 350."""
+DEFAULT_M = "6"  # M of a scene without one, as in line 350 of the published listing
 
 
 def quantity(name: str) -> Quantity:
-    """Symbol, meaning and unit of a value of any table. Raises KeyError for no name of theirs."""
+    """Return the row of a name in any table. Raises KeyError for an unknown name."""
     return SCENE.get(name) or RESULTS.get(name) or CHAPTER[name]
 
 
 NO_AMOUNTS = ("title", "case", "correlations", "M")
-"""Entries of a scene file that are no amounts."""
+"""Entries of a scene file that are not amounts."""
 
 
-def listed(names: Sequence[str] | str) -> Sequence[str]:
-    """Names given one by one, or in one text between commas or blanks."""
+def split_names(names: Sequence[str] | str) -> Sequence[str]:
+    """Return names as a sequence; a text is split at commas and blanks."""
     return names.replace(",", " ").split() if isinstance(names, str) else names
 
 
 def check_names(
     names: Iterable[str], allowed: Collection[str], what: str, where: str | None = None
 ) -> None:
-    """Raises UserError, with a hint where one is near, for a name that is not ``allowed``."""
+    """Raise UserError, with the closest allowed name as a hint, for a name not in ``allowed``."""
     for name in names:
         if not isinstance(name, str):
             raise UserError(f"{name!r} is not a name; expected the text of a {what}", where)
@@ -191,18 +205,18 @@ def check_names(
 
 
 def did_you_mean(word: str, known: Collection[str]) -> str:
-    """A hint at the known word that ``word`` comes near to, or nothing."""
+    """Return a hint at the known word closest to ``word``, "" if none is close."""
     from difflib import get_close_matches
 
     in_any_case = {name.lower(): name for name in known}
-    # short names differ by one letter anyway
+    # short names differ by a single letter anyway
     likeness = 0.75 if len(word) > 3 else 1.0
-    near = get_close_matches(word.lower()[:80], in_any_case, 1, likeness)
-    return f"; did you mean {in_any_case[near[0]]}?" if near else ""
+    matches = get_close_matches(word.lower()[:80], in_any_case, 1, likeness)
+    return f"; did you mean {in_any_case[matches[0]]}?" if matches else ""
 
 
 def missing(names: Sequence[str]) -> str:
-    """Says that values are missing, the first three with their meaning."""
-    wanted = "; ".join(f"{name} ({quantity(name).meaning})" for name in names[:3])
-    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
-    return f"missing {wanted}{more}"
+    """Return the message that values are missing, the first three with their meaning."""
+    examples = "; ".join(f"{name} ({quantity(name).meaning})" for name in names[:3])
+    remainder = f" and {len(names) - 3} more" if len(names) > 3 else ""
+    return f"missing {examples}{remainder}"

@@ -1,12 +1,12 @@
-"""STATUS: what is unphysical or uncertain about an impact, one bit a reason.
+"""STATUS: reasons why an impact is unphysical or uncertain, one bit each.
 
-The bits stand beside a result and never change it. `WORDS` says each in a sentence a report can
-print, `sentences` all that are set. Mechanics: an approach has gn < 0, a push Pn > 0, with gn the
-normal relative velocity of the contact points before the impact, A minus B; friction can reduce
-the sliding at separation to 0 and no further, so P_t lies between 0 and MUC·Pn.
+The bits accompany a result and never change it. `WORDS` has a sentence for each, which a report can
+print; `sentences` returns those of the bits that are set. Mechanics: an approach has gn < 0, a push
+Pn > 0, with gn the normal relative velocity of the contact points before the impact, A minus B;
+friction can reduce the sliding at separation to 0 and no further, so P_t lies between 0 and MUC·Pn.
 
-A bit's number never changes its meaning. 16 stood for E, EM and MU together once; since EM and MU
-have numbers of their own it stands for E alone. `RETIRED` bits are not set any more.
+A bit's number never changes its meaning. 16 once meant E, EM and MU together; since EM and MU have
+bits of their own it means E alone. `RETIRED` bits are no longer set.
 
 >>> impact88.status.names(64)
 ['NOT_FINITE']
@@ -19,7 +19,7 @@ from typing import Any
 
 
 class Status(IntFlag):
-    """Bits of STATUS; 0 is an impact with nothing to remark."""
+    """Bits of STATUS; 0 is an impact without remarks."""
 
     SEPARATING = 1
     PULLING = 2
@@ -79,7 +79,7 @@ _BOTH_SIDES = (
 
 
 def names(status: int) -> list[str]:
-    """The names of the bits set in ``status``, lowest first."""
+    """Return the names of the bits set in ``status``, lowest first."""
     return [bit.name or "" for bit in Status if status & bit]
 
 

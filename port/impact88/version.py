@@ -1,12 +1,11 @@
-"""The package's version and, where it is known, the commit it was made from: every record names
-both."""
+"""The package's version and, if known, its commit: every record contains both."""
 
 import os
 
 __version__ = "0.3.0.dev0"
 
 COMMIT_FILE = "commit.txt"
-"""Written beside this module when a distribution is built from a checkout."""
+"""The file next to this module with the commit of a distribution built from a checkout."""
 
 
 def commit() -> str | None:
@@ -15,8 +14,8 @@ def commit() -> str | None:
     Returns
     -------
     str or None
-        The commit's hash: of a distribution, that of the checkout it was built from; in a checkout,
-        its own, with ``-dirty`` where files have been changed since. None where neither is known.
+        The commit's hash: in a distribution, that of the checkout it was built from; in a checkout,
+        its own, with ``-dirty`` if files have changed since. None if neither is known.
     """
     folder = os.path.dirname(os.path.abspath(__file__))
     try:
@@ -27,18 +26,18 @@ def commit() -> str | None:
     root = os.path.dirname(os.path.dirname(folder))
     if not os.path.exists(os.path.join(root, ".git")):
         return None
-    import subprocess  # a checkout's only
+    import subprocess  # needed in a checkout only
 
     describe = ["git", "-C", root, "describe", "--always", "--exclude=*", "--abbrev=12", "--dirty"]
     try:
-        asked = subprocess.run(describe, capture_output=True, text=True, timeout=10, check=False)
+        process = subprocess.run(describe, capture_output=True, text=True, timeout=10, check=False)
     except (OSError, subprocess.TimeoutExpired):
         return None
-    return asked.stdout.strip() or None
+    return process.stdout.strip() or None
 
 
 def full_version() -> str:
-    """Return the version, and the commit where it is known, as a record shows them.
+    """Return the version and, if known, the commit, as shown in a record.
 
     Examples
     --------
@@ -46,5 +45,5 @@ def full_version() -> str:
     >>> full_version().startswith(__version__)
     True
     """
-    known = commit()
-    return f"{__version__} (commit {known})" if known else __version__
+    commit_id = commit()
+    return f"{__version__} (commit {commit_id})" if commit_id else __version__

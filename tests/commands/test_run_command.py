@@ -7,7 +7,7 @@ import json
 import pytest
 from installed import impact88
 
-from impact88.applesoft.console import Console, keyed
+from impact88.applesoft.console import Console, keyboard_codes
 from impact88.errors import UserError
 from impact88.program import emulated
 from impact88.program.arithmetics import APPLESOFT
@@ -210,7 +210,7 @@ def test_a_character_the_keyboard_has_no_key_for_is_no_part_of_a_number(typed):
 
 
 def test_a_reply_in_apple_text_with_its_high_bits():
-    assert keyed("\udcb1\udcac\udcad2") == "1,-2"
+    assert keyboard_codes("\udcb1\udcac\udcad2") == "1,-2"
 
 
 def test_what_a_refused_reply_has_made():

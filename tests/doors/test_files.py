@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from installed import COMMAND, impact88
 
-from impact88.errors import LONGEST_MESSAGE, UserError, quoted, shown
+from impact88.errors import LONGEST_MESSAGE, UserError, one_line, quoted
 from impact88.files import check_apart, read_bytes, replacing
 from impact88.names import SCENE
 from impact88.program.scene import sample
@@ -37,18 +37,18 @@ def names(folder: Path) -> set[str]:
 
 def test_a_message_is_one_bounded_line_that_a_terminal_does_not_act_on() -> None:
     text = "\x1b[2J\r\n\x9b\u202e" + "x" * 10_000 + "\ud800 expected a number"
-    line = shown(text)
+    line = one_line(text)
     assert line.isprintable()
     assert len(line) <= LONGEST_MESSAGE
     assert line.startswith(r"\x1b[2J\r\n\x9b\u202e")
     assert line.endswith("expected a number")
-    assert shown("plain é µ") == "plain é µ"
+    assert one_line("plain é µ") == "plain é µ"
     assert len(quoted("9" * 10_000_000)) <= 60
     assert str(UserError("is \a", "\x1b.csv")) == r"\x1b.csv: is \x07"
 
 
 def test_many_escapes_do_not_outgrow_the_bound() -> None:
-    assert len(shown("\x1b" * 499)) <= LONGEST_MESSAGE
+    assert len(one_line("\x1b" * 499)) <= LONGEST_MESSAGE
 
 
 # --- one file under two names --------------------------------------------------------------------

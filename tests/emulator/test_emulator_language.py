@@ -12,7 +12,7 @@ from impact88.applesoft.console import EndOfInput
 from impact88.applesoft.errorcodes import ApplesoftError
 from impact88.emulator.emulator import Applesoft
 from impact88.emulator.faults import TooManyStatements
-from impact88.emulator.tokens import KEYWORDS, TOKENS, split_number, tokenise, untokenised
+from impact88.emulator.tokens import KEYWORDS, TOKENS, detokenise, split_number, tokenise
 from impact88.qualification.captured import session
 
 BEL = "\a"
@@ -44,7 +44,7 @@ def displayed(program: str, keys: str = "") -> str:
 )
 def test_tokens(text, tokens):
     assert tokenise(text) == tokens
-    assert tokenise(untokenised(tokens)) == tokens
+    assert tokenise(detokenise(tokens)) == tokens
 
 
 @pytest.mark.parametrize(
@@ -261,7 +261,7 @@ def test_disk_commands_are_named_once_and_passed_over():
     )
     machine.run()
     assert machine.take_output() == "RESULT\nX\x04CLOSE\n"
-    assert machine.machine.passed_over == [
+    assert machine.machine.ignored == [
         "the disk command OPEN was passed over: there is no disk",
         "the disk command WRITE was passed over: there is no disk",
     ]
@@ -282,10 +282,10 @@ def test_disk_commands_are_named_once_and_passed_over():
 )
 def test_peeks_at_what_is_not_modelled_are_named(program, named):
     machine, _ = session(program)
-    assert machine.machine.passed_over[:8] == [
+    assert machine.machine.ignored[:8] == [
         f"PEEK ({address}) gave 0: that byte is not modelled" for address in named
     ]
-    assert len(machine.machine.passed_over) <= 9
+    assert len(machine.machine.ignored) <= 9
 
 
 def test_a_program_that_waits_for_a_key_in_vain():

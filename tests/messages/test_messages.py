@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import impact88
-from impact88.messages.argumentkinds import described, fits
+from impact88.messages.argumentkinds import describe, fits
 from impact88.messages.arguments import explains_arguments
 
 SCENE = impact88.sample(1)
@@ -110,7 +110,7 @@ def test_an_error_that_no_argument_explains_stays_what_it_is() -> None:
 def test_annotations(hint: Any, good: list[Any], bad: list[Any], words: str) -> None:
     assert [value for value in good if not fits(value, hint)] == []
     assert [value for value in bad if fits(value, hint)] == []
-    assert described(hint) == words
+    assert describe(hint) == words
 
 
 def test_a_seed_below_zero_and_a_callback_of_other_values_are_user_errors() -> None:

@@ -1,4 +1,4 @@
-"""Arrays of numbers: subscripts from 0, checked as the ROM checks them."""
+"""Arrays of numbers with subscripts from 0, checked like in the ROM."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def subscript(x: Any) -> int:
-    """A subscript as the machine takes it: rounded down, 0 ... 32767. Raises ILLEGAL QUANTITY."""
+    """Return a subscript, rounded down, 0 ... 32767. Raises ILLEGAL QUANTITY."""
     if x.__class__ is Real:
         e, m, s = x.number
         if s or e > 143:
@@ -25,9 +25,10 @@ def subscript(x: Any) -> int:
 
 
 class Array:
-    """``DIM NAME(m, n)``, or of one dimension: elements from (0, 0), all zero to begin with.
-    ``store`` is what happens to a value that is stored; ``data`` holds the elements, the first
-    subscript fastest; ``sizes`` counts them per dimension. Raises BAD SUBSCRIPT."""
+    """``DIM NAME(m, n)`` or ``DIM NAME(m)``: elements from (0, 0), initially zero.
+
+    ``store``: the function that rounds a stored value; ``data``: the elements, first subscript
+    fastest; ``sizes``: their number per dimension. Raises BAD SUBSCRIPT."""
 
     def __init__(self, sizes: Sequence[Any], store: Any, zero: Any) -> None:
         self.sizes = [subscript(last) + 1 for last in sizes]
@@ -36,6 +37,7 @@ class Array:
         self.data = [zero] * (self._rows * self._columns)
 
     def _at(self, place: tuple[Any, Any]) -> int:
+        """Return the index of an element in ``data``. Raises BAD SUBSCRIPT."""
         i, j = place
         i = i if i.__class__ is int else subscript(i)
         j = j if j.__class__ is int else subscript(j)

@@ -1,8 +1,9 @@
-"""Keyboard and screen: the character stream, INPUT's manners, the disk system and the printer.
+"""Keyboard and screen: the character stream, INPUT, the disk system and the printer.
 
-Characters go out with the high bit dropped and RETURN as newline. A line that starts with control-D
-is a command to the disk system, not shown; ``PR#n`` among them switches the output to slot n, 0
-being the screen. A keyboard is a function that returns the next line typed (None at the end).
+Characters are sent without the high bit and with RETURN as newline. A line that starts with
+control-D is a command to the disk system and is not shown; of these ``PR#n`` switches the output to
+slot n, 0 being the screen. A keyboard is a function that returns the next line typed, None at the
+end.
 """
 
 from __future__ import annotations
@@ -15,18 +16,25 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-CONTROL_C, CONTROL_D, CONTROL_H, CONTROL_U, CONTROL_X = "\x03\x04\x08\x15\x18"
-ESCAPE, BELL, RETURN = "\x1b\a\r"
-PROMPT = "\0"
-"""The prompt character Applesoft gives the monitor's line reader: it is sent, and shows nothing."""
-LINE_LIMIT, WARNING, BUFFER = 239, 248, 256
-"""What INPUT keeps of a line; where the bell begins; where a line is abandoned: the ROM's."""
-PRINTER_SLOT = 1
-"""Where a printer's card is by custom; the listing's line 180 says so."""
-_ESCAPED = range(0xDC80, 0xDD00)
-"""What Python makes of the bytes from 80 on that it cannot decode."""
-_MOVES = {"I": "D", "J": "B", "K": "A", "M": "C"}
-"""Keys after ESC that may be repeated, and what they do once."""
+CONTROL_C = "\x03"
+CONTROL_D = "\x04"
+CONTROL_H = "\x08"
+CONTROL_U = "\x15"
+CONTROL_X = "\x18"
+ESCAPE = "\x1b"
+BELL = "\a"
+RETURN = "\r"
+PROMPT = "\0"  # passed by Applesoft to the monitor's line reader; sent, but not visible
+
+# lengths of an input line, as in the ROM
+MAX_INPUT = 239  # characters that INPUT keeps
+BELL_LENGTH = 248  # from here on each key rings the bell
+BUFFER_LENGTH = 256  # a line of this length is abandoned
+
+PRINTER_SLOT = 1  # the usual slot of a printer, also according to line 180 of the listing
+_SURROGATES = range(0xDC80, 0xDD00)  # undecodable bytes, as Python's "surrogateescape" has them
+_CURSOR_KEYS = {"I": "D", "J": "B", "K": "A", "M": "C"}
+"""Keys after ESC that may be repeated -> the key with the same effect that ends the sequence."""
 
 Keyboard = Callable[[], "str | None"]
 Device = Callable[[str], object]
@@ -34,44 +42,44 @@ Read = Callable[[str, int], "tuple[Any, int]"]
 
 _SLOT_COMMAND = r" *[Pp][Rr] *# *([0-7])"
 _COMMAND_WORD = r" *([A-Za-z]+#?)"
-_END = ("", ":")
-"""Of a reply: a colon ends it as it ends a statement."""
+_REPLY_ENDS = ("", ":")  # a colon ends a reply as it ends a statement
 
 
 class Keys(str):
-    """Keys with no RETURN after them: what a keyboard may return for GET to read."""
+    """Keys without RETURN, which a keyboard may return for GET."""
 
     __slots__ = ()
 
 
 class EndOfInput(Exception):
-    """The keyboard has no more lines and the program asks for one."""
+    """The program asks for input, and the keyboard has no more lines."""
 
 
 class Editor:
-    """What typing a line asks of a screen; this one is of a console that has none."""
+    """The screen's part in typing a line; this one is for a console without a screen."""
 
     def under_cursor(self) -> str:
-        """The character that control-U takes."""
+        """Return the character under the cursor, which control-U enters."""
         return " "
 
     def escape(self, key: str) -> None:
-        """ESC and this key: the monitor's movements of the cursor."""
+        """Move the cursor or clear text, as the monitor does for ESC and ``key``."""
 
     def end_line(self, shown: bool) -> None:
-        """RETURN: what stands behind the cursor is cleared. ``shown``: a terminal has shown it."""
+        """Clear the rest of the line at RETURN. ``shown``: a terminal has already moved on."""
 
     def echo(self, keys: str, put: Device) -> None:
-        """Show keys, which are never inverse."""
+        """Show typed keys, which are never inverse."""
         put(keys)
 
 
 class Console:
-    """A screen, a keyboard, and what stands between them and a program. ``dos``: whether a disk
-    system takes its commands; ``echo``: whether typed lines go into the output; ``editor``: the
-    screen's side of typing; ``reply``: the last one that INPUT got; ``ready``: whether the keyboard
-    has a line now, for a program that looks at it without waiting; ``passed_over``: is told the
-    word of each disk command that is not done."""
+    """A screen and a keyboard, connected to a program.
+
+    ``dos``: True if a disk system handles lines that begin with control-D; ``echo``: True if typed
+    lines are part of the output; ``editor``: the screen's part in typing; ``reply``: the last reply
+    to INPUT; ``ready``: returns True if the keyboard has a line now, for programs that poll it;
+    ``on_ignored_command``: called with the word of each disk command that has no effect."""
 
     def __init__(
         self,
@@ -94,12 +102,12 @@ class Console:
         self._code = ord(RETURN)
         self._pressed = False
         self.ready: Callable[[], bool] = lambda: True
-        self.passed_over: Callable[[str], object] = lambda word: None
+        self.on_ignored_command: Callable[[str], object] = lambda word: None
         self.editor = Editor()
         self.reply: Reply | None = None
 
     def put(self, text: str) -> None:
-        """Send characters on their way: to the disk system, or to the selected slot's device."""
+        """Send characters to the disk system, or to the device in the selected slot."""
         if not self.dos:
             self._show(text)
             return
@@ -111,15 +119,15 @@ class Console:
                 self._show(piece)
                 continue
             self._command += piece
-            if self._line_begins:  # of a disk's commands only PR# concerns a program's output
+            if self._line_begins:  # of the disk's commands only PR# affects a program's output
                 if match := re.match(_SLOT_COMMAND, self._command):
                     self.select(int(match[1]))
                 elif match := re.match(_COMMAND_WORD, self._command):
-                    self.passed_over(match[1].upper())
+                    self.on_ignored_command(match[1].upper())
                 self._command = None
 
     def select(self, slot: int) -> None:
-        """PR#: output goes to a slot from now on."""
+        """PR#: send further output to a slot."""
         self.slot = slot & 7
 
     def _show(self, text: str) -> None:
@@ -128,7 +136,7 @@ class Console:
             device(text)
 
     def read_key(self) -> str:
-        """One key, as GET reads it: not shown, not made upper case; RETURN after a line's last.
+        """Return one key for GET: not echoed, not converted to upper case; RETURN after each line.
         Raises EndOfInput."""
         if not (self._keys or self._take_keys()):
             raise EndOfInput
@@ -140,13 +148,17 @@ class Console:
         """Take the keyboard's next line as keys; False if there is none."""
         typed = self.keyboard()
         if typed is not None:
-            self._keys = keyed(typed) if isinstance(typed, Keys) else keyed(typed) + RETURN
+            self._keys = (
+                keyboard_codes(typed) if isinstance(typed, Keys) else keyboard_codes(typed) + RETURN
+            )
         return typed is not None
 
     def key_code(self, *, wait: bool = False) -> int:
-        """The byte at $C000: the code of the key pressed last, with its top bit until that key is
-        read or cleared. One that waits is pressed now. ``wait``: for one that does not yet. Raises
-        EndOfInput, if it is to wait."""
+        """Return the byte at $C000: the code of the last key, its top bit set until it is read or
+        cleared.
+
+        A key that the keyboard has ready counts as pressed now. ``wait``: wait for one, and raise
+        EndOfInput if there is none."""
         if not self._pressed:
             waiting = self._keys or ((wait or self.ready()) and self._take_keys())
             if wait and not waiting:
@@ -156,13 +168,13 @@ class Console:
         return self._code | 0x80 if self._pressed else self._code
 
     def clear_key(self) -> None:
-        """$C010: the key that $C000 shows is done with."""
+        """$C010: clear the key that $C000 shows."""
         if self._pressed:
             self._keys = self._keys[1:]
             self._pressed = False
 
     def _typed_line(self) -> str:
-        """What is left of a line that GET began, or the next one."""
+        """Return the rest of a line that GET began, or the next one. Raises EndOfInput."""
         self._code, self._pressed = ord(RETURN), False
         if self._keys:
             typed, self._keys = self._keys.rstrip(RETURN), ""
@@ -173,31 +185,33 @@ class Console:
         return line
 
     def read_line(self, prompt: str = PROMPT) -> str:
-        """One line from the keyboard as Applesoft takes it from the monitor. Raises EndOfInput."""
+        """Read a line from the keyboard, cut to the length that INPUT keeps. Raises EndOfInput."""
         self.put(prompt)
-        return "".join(self.line_buffer(prompt))[:LINE_LIMIT]
+        return "".join(self.line_buffer(prompt))[:MAX_INPUT]
 
     def line_buffer(self, prompt: str, start: int = 0) -> list[str]:
-        """GETLN1: a line from the keyboard, upper case, edited, echoed, as the characters of the
-        monitor's buffer; those before ``start`` are passed over, and empty here. ``prompt``: what
-        an abandoned line begins anew with. Raises EndOfInput."""
+        """GETLN1: read a line, convert it to upper case, edit and echo it, and return the monitor's
+        buffer, one character an element; those before ``start`` are "". ``prompt``: shown again
+        after an abandoned line. Raises EndOfInput."""
         typed = capitals(self._typed_line())
-        if typed.isprintable() and start + len(typed) <= WARNING:
+        if typed.isprintable() and start + len(typed) <= BELL_LENGTH:
             self.editor.echo(typed, self._echo)
-            kept = [""] * start + [*typed]
+            buffer = [""] * start + [*typed]
         else:
-            kept = self._edited(prompt, typed, start)
+            buffer = self._edit_line(prompt, typed, start)
         self.editor.end_line(not self.echo)
         self._echo("\n")
         self._line_begins = True
-        return kept
+        return buffer
 
-    def _edited(self, prompt: str, typed: str, start: int) -> list[str]:
-        """The line that the keys make. Control-H takes back a character, control-X the line,
-        control-U takes the character under the cursor, ESC and a key move the cursor. The bell
-        rings when the line is nearly full; a full one is abandoned, as if by control-X."""
+    def _edit_line(self, prompt: str, typed: str, start: int) -> list[str]:
+        """Return the buffer after the keys ``typed``.
+
+        Control-H deletes a character, control-X the line, control-U enters the character under the
+        cursor, ESC and a key move the cursor. The bell rings when the line is nearly full; a full
+        line is abandoned, as by control-X."""
         keys = deque(typed)
-        kept = [""] * start
+        buffer = [""] * start
         while keys:
             key = keys.popleft()
             if key == ESCAPE:
@@ -207,40 +221,40 @@ class Console:
                 key = self.editor.under_cursor()
             self.editor.echo(key, self._echo)
             if key == CONTROL_H:
-                if not kept:
+                if not buffer:
                     self._echo("\n" + prompt)
-                del kept[-1:]
+                del buffer[-1:]
                 continue
             if key != CONTROL_X:
-                if len(kept) >= WARNING:
+                if len(buffer) >= BELL_LENGTH:
                     self._echo(BELL)
-                kept.append(key)
-            if key == CONTROL_X or len(kept) == BUFFER:
-                kept.clear()
+                buffer.append(key)
+            if key == CONTROL_X or len(buffer) == BUFFER_LENGTH:
+                buffer.clear()
                 self._echo("\\\n" + prompt)
-        return kept
+        return buffer
 
     def _escape(self, keys: deque[str]) -> None:
-        """ESC: the keys I, J, K and M move the cursor and wait for more, any other is the last."""
+        """ESC: the keys I, J, K and M move the cursor and wait for another; any other key ends
+        it."""
         key = "I"
-        while key in _MOVES:
-            if not keys:  # RETURN ends it, and the line goes on with the next one
+        while key in _CURSOR_KEYS:
+            if not keys:  # RETURN ends it, and input continues with the next line
                 keys.extend(capitals(self._typed_line()))
                 return
             key = keys.popleft()
-            self.editor.escape(_MOVES.get(key, key))
+            self.editor.escape(_CURSOR_KEYS.get(key, key))
 
     def _echo(self, text: str) -> None:
         if self.echo:
             self.put(text)
 
     def input(self, read: Read, zero: Any) -> Iterator[Reply]:
-        """INPUT of numbers: one Reply per attempt, to be called once for each variable.
+        """INPUT of numbers: yield a Reply for each attempt, to be called once for each variable.
 
-        Too few values are asked for with ``??``, what is not a number with ``?REENTER``; values
-        stored before a bad one stay stored, as in the ROM. Raises EndOfInput, and KeyboardInterrupt
-        for control-C at the start of a reply.
-        """
+        Missing values are requested with ``??``; after text that is not a number comes
+        ``?REENTER``, and values before it stay stored, as in the ROM. Raises EndOfInput, and
+        KeyboardInterrupt for control-C at the start of a reply."""
         while True:
             self.put("?")
             line = self.read_line()
@@ -257,8 +271,10 @@ class Console:
 
 
 class Reply:
-    """The values of one reply to INPUT, one a call. ``begun`` counts the values looked for: the ROM
-    has made so many variables."""
+    """The values of one reply to INPUT, one per call.
+
+    ``begun``: the number of values requested so far, which is the number of variables that the ROM
+    has created; ``refused``: True after text that is not a number."""
 
     def __init__(self, console: Console, read: Read, zero: Any, line: str) -> None:
         self._console = console
@@ -270,12 +286,13 @@ class Reply:
         self.refused = False
 
     def __call__(self, old: Any) -> Any:
-        """The next value; ``old``, the variable's value so far, once this reply has been refused.
-        A text that only begins as a number is refused after its beginning has been stored, an empty
-        line before. Raises ApplesoftError OVERFLOW and EndOfInput."""
+        """Return the next value, or ``old``, the variable's present value, if the reply is refused.
+
+        A text that only begins with a number is refused after that number has been stored; an empty
+        line is refused before. Raises ApplesoftError OVERFLOW and EndOfInput."""
         if not self.refused:
             self.begun += 1
-            if self.begun > 1 and self.left[:1] not in _END:
+            if self.begun > 1 and self.left[:1] not in _REPLY_ENDS:
                 self._position += 1  # the comma
             elif self.begun > 1:
                 self._console.put("??")
@@ -286,23 +303,24 @@ class Reply:
         value, self._position = self._read(self._line, self._position)
         while self._line.startswith(" ", self._position):
             self._position += 1
-        self.refused = self.left[:1] not in (*_END, ",")
+        self.refused = self.left[:1] not in (*_REPLY_ENDS, ",")
         return value
 
     @property
     def left(self) -> str:
-        """What was typed beyond the values read."""
+        """The text after the values read so far."""
         return self._line[self._position :]
 
 
-def keyed(text: str) -> str:
-    """A text in the codes of the Apple's keyboard, which has seven bits. A byte that is not text
-    counts for its seven bits; for other characters ``?`` stands, so that a typographic minus is
-    refused where a number is expected."""
+def keyboard_codes(text: str) -> str:
+    """Return a text in the seven-bit codes of the Apple's keyboard.
+
+    An undecodable byte keeps its low seven bits; other characters become ``?``, so that a
+    typographic minus is refused where a number is expected."""
     codes = map(ord, text)
-    return "".join(chr(n & 0x7F) if n < 0x80 or n in _ESCAPED else "?" for n in codes)
+    return "".join(chr(n & 0x7F) if n < 0x80 or n in _SURROGATES else "?" for n in codes)
 
 
 def capitals(typed: str) -> str:
-    """What the monitor makes of the codes above capital letters: those, and ``{`` becomes ``[``."""
-    return "".join(chr(n & 0x5F) if n >= 0x60 else chr(n) for n in map(ord, keyed(typed)))
+    """Return a text in capital letters, as the monitor converts it: ``{`` becomes ``[``."""
+    return "".join(chr(n & 0x5F) if n >= 0x60 else chr(n) for n in map(ord, keyboard_codes(typed)))

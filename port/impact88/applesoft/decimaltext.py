@@ -1,8 +1,8 @@
-"""Decimal text to real and back, as Applesoft reads constants, INPUT and VAL, and writes PRINT.
+"""Decimal text to real and back, as Applesoft reads constants, INPUT and VAL, and writes for PRINT.
 
-Reading works digit by digit in the machine's own arithmetic, so the digits typed matter beyond
-their value: 90315.8817 and 90315.88170 differ in their last bit. Writing looks at the extension of
-a value in flight, so PRINT can show more than the variable would hold.
+Reading proceeds digit by digit in the machine's own arithmetic, so the digits typed matter beyond
+their value: 90315.8817 and 90315.88170 differ in their last bit. Writing includes the extension of
+an unstored value, so PRINT can show more than a variable holds.
 """
 
 import re
@@ -16,13 +16,13 @@ TEN = real.integer(10)
 HALF = real.from_stored("8000000000")
 BILLION = real.from_stored("9E6E6B2800")
 NINE_DIGITS = real.from_stored("9E6E6B27FD")
-"""999,999,999: above it a number has to be divided by ten before its nine digits are taken."""
+"""999,999,999: a larger number is divided by ten before its nine digits are taken."""
 EIGHT_DIGITS = real.from_stored("9B3EBC1FFD")
-"""99,999,999.9: not above it, a number has to be multiplied by ten."""
+"""99,999,999.9: a number not above it is multiplied by ten."""
 
 
 def times_ten(x: Number) -> Number:
-    """MUL10: x rounded, as (4x + x) doubled. Raises OVERFLOW."""
+    """Return 10 x of x rounded: MUL10, (4x + x) doubled. Raises OVERFLOW."""
     e, m, s = real.rounded(x)
     if not e:
         return ZERO
@@ -35,33 +35,34 @@ def times_ten(x: Number) -> Number:
 
 
 def over_ten(x: Number) -> Number:
-    """DIV10: |x| rounded, divided by ten."""
+    """Return |x| / 10 of x rounded: DIV10."""
     return real.divide(real.absolute(x), TEN)
 
 
 Numeral = tuple[str, str, str, str, str, int]
-"""The parts of a number's text, blanks taken out: sign, digits before and after the point, sign and
-digits of the exponent; and where it ends."""
+"""The parts of a number's text without blanks: sign, digits before and after the point, sign and
+digits of the exponent; and the index after it."""
 NUMERAL = re.compile(r" *([+-]?)([0-9 ]*)(?:\.([0-9 ]*))?(?:E *([+-]?)([0-9 ]*))?")
 
 
 def scan(text: str, start: int = 0) -> Numeral:
-    """The parts of the number that begins at ``start``; no number at all has empty parts."""
+    """Return the parts of the number that begins at ``start``, empty if there is none."""
     match = NUMERAL.match(text, start)
-    assert match is not None  # there may be nothing in it
+    assert match is not None  # the pattern also matches nothing
     sign, *numbers = (part.replace(" ", "") for part in match.groups(""))
-    whole, decimals, exponent_sign, exponent = numbers
-    return sign, whole, decimals, exponent_sign, exponent, start + len(match[0].rstrip(" "))
+    integer, decimals, exponent_sign, exponent = numbers
+    return sign, integer, decimals, exponent_sign, exponent, start + len(match[0].rstrip(" "))
 
 
 @lru_cache(maxsize=512)  # scenes and programs repeat their numbers
 def read(text: str, start: int = 0) -> tuple[Number, int]:
-    """The number that begins at ``start``, and where it ends; no number at all reads as zero. The
-    power of ten, exponent less decimals, is kept in one byte, and wraps. Raises OVERFLOW, for an
-    exponent of three digits, too, whatever the number."""
-    sign, whole, decimals, exponent_sign, exponent, end = scan(text, start)
+    """Return the number that begins at ``start``, zero if there is none, and the index after it.
+
+    The power of ten, exponent minus decimals, is kept in one signed byte and wraps. Raises
+    OVERFLOW, also for any exponent of three digits, whatever the number."""
+    sign, integer, decimals, exponent_sign, exponent, end = scan(text, start)
     value = ZERO
-    for digit in whole + decimals:
+    for digit in integer + decimals:
         value = real.add(times_ten(value), real.integer(int(digit)))
     power = int(exponent.lstrip("0")[:3] or "0")
     if power >= 100:
@@ -78,20 +79,20 @@ def read(text: str, start: int = 0) -> tuple[Number, int]:
 
 
 def is_number(text: str) -> bool:
-    """Whether INPUT takes the whole of ``text`` for one number."""
+    """Return True if INPUT reads the whole of ``text`` as one number."""
     text = text.rstrip(" ")
     return bool(text) and scan(text)[-1] == len(text)
 
 
 def number(text: str) -> Number:
-    """The real that the whole of ``text`` is. Raises ValueError if it is not one number."""
+    """Return the real of ``text``. Raises ValueError if it is not one number."""
     if not is_number(text):
         raise ValueError(f"{text!r} is not a number that Applesoft reads")
     return read(text)[0]
 
 
 def write(x: Number) -> str:
-    """The characters PRINT and STR$ make of ``x``: at most nine digits, extension counted."""
+    """Return the text of ``x`` as PRINT and STR$ write it: at most nine digits, with extension."""
     if not x[0]:
         return "0"
     sign, x, d = "-" if x[2] else "", real.absolute(x), 0
@@ -110,8 +111,8 @@ def write(x: Number) -> str:
 
 
 def lay_out(sign: str, text: str, d: int) -> str:
-    """Nine digits times ten to the d, as PRINT sets them: no leading zero before the point, no
-    trailing zeros after it, an exponent below .01 and from 1E+09 on."""
+    """Return nine digits times ten to the power d in PRINT's layout: no leading zero before the
+    point, no trailing zeros after it, with exponent below .01 and from 1E+09 on."""
     if 0 <= d + 10 < 11:
         point = d + 9
         text = text[:point] + "." + text[point:] if point >= 0 else ".0" + text

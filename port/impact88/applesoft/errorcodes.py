@@ -1,4 +1,4 @@
-"""Applesoft's seventeen error messages, with the codes ONERR finds in location 222."""
+"""Applesoft's seventeen error messages, with the codes that ONERR stores in location 222."""
 
 from functools import partial
 
@@ -25,9 +25,10 @@ CODES: dict[str, int] = {
 
 
 class ApplesoftError(Exception):
-    """An error the ROM reports: ``kind``, a key of `CODES`; ``code``, what ``PEEK (222)`` shows
-    after ONERR; the BASIC line it happened in, set by whoever runs the program (None: no program
-    line, so no `` IN n``)."""
+    """An error of the ROM.
+
+    ``kind``: a key of `CODES`; ``code``: the value of ``PEEK (222)`` after ONERR; ``line``: the
+    BASIC line, set by the code that runs the program, None outside a program line."""
 
     def __init__(self, kind: str, line: int | None = None) -> None:
         super().__init__(kind)

@@ -1,7 +1,10 @@
-"""Applesoft's functions, each by the ROM's own reduction and polynomial, on plain triples (`real`).
+"""Applesoft's functions by the ROM's own reductions and polynomials, on plain triples (`real`).
 
-Arguments may carry an extension (it is not rounded away, except where the rule says so); so do
-results. Coefficients are stored reals in hexadecimal."""
+Arguments and results may have an extension, which is rounded away only where the ROM does it.
+Coefficients are stored reals in hexadecimal.
+
+Functions named ``..._and_byte`` also return the low byte that INT, called on the way, leaves in
+memory: the power of a negative number reads it, see `power_and_byte`."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -11,11 +14,11 @@ from .errorcodes import illegal_quantity, overflow
 from .real import BIAS, ZERO, Number
 
 IntAndByte = tuple[Number, int]
-"""A result, and the low byte of what INT, which was taken on the way, found last."""
+"""A result, and the low byte of the last result of INT in its computation."""
 
 
 def stored_reals(text: str) -> tuple[Number, ...]:
-    """Constants from their hexadecimal bytes, separated by blanks."""
+    """Return constants from their hexadecimal bytes, separated by blanks."""
     return tuple(real.from_stored(word) for word in text.split())
 
 
@@ -28,20 +31,24 @@ ATN_COEFFICIENTS = stored_reals(
     "76B383BDD3 791EF4A6F5 7B83FCB010 7C0C1F67CA 7CDE53CBC1 7D1464704C"
     " 7DB7EA517A 7D6330887E 7E9244993A 7E4CCC91C7 7FAAAAAA13 8100000000"
 )
-SQRT_HALF, SQRT_TWO, MINUS_HALF, LN_TWO, LOG2_E = stored_reals(
-    "803504F334 813504F334 8080000000 80317217F8 8138AA3B29"
-)
-TWO_PI, HALF_PI, QUARTER, HALF = stored_reals("83490FDAA2 81490FDAA2 7F00000000 8000000000")
-RND_FACTOR, RND_ADDEND = stored_reals("9835447A68 6828B14620")
-FIRST_SEED = real.from_stored("804FC75258")
-"""RND's seed after the machine is switched on."""
+SQRT_HALF = real.from_stored("803504F334")
+SQRT_TWO = real.from_stored("813504F334")
+MINUS_HALF = real.from_stored("8080000000")
+LN_TWO = real.from_stored("80317217F8")
+LOG2_E = real.from_stored("8138AA3B29")
+TWO_PI = real.from_stored("83490FDAA2")
+HALF_PI = real.from_stored("81490FDAA2")
+QUARTER = real.from_stored("7F00000000")
+HALF = real.from_stored("8000000000")
+RND_FACTOR = real.from_stored("9835447A68")
+RND_ADDEND = real.from_stored("6828B14620")
+FIRST_SEED = real.from_stored("804FC75258")  # RND's seed after power-on
 ONE = real.integer(1)
-EXP_ROUNDING = 0x50
-"""What EXP adds to the extension of x / ln 2 before it takes that apart."""
+EXP_ROUNDING = 0x50  # added by EXP to the extension of x / ln 2 before splitting it
 
 
 def polynomial(coefficients: Sequence[Number], x: Number) -> Number:
-    """c0 x^n + ... + cn by Horner's rule; x is rounded, the running value keeps its extension."""
+    """Return c0 x^n + ... + cn by Horner's rule; x is rounded, the sum keeps its extension."""
     x = real.rounded(x)
     r = real.multiply(coefficients[0], x)
     for c in coefficients[1:-1]:
@@ -50,7 +57,7 @@ def polynomial(coefficients: Sequence[Number], x: Number) -> Number:
 
 
 def odd_polynomial(coefficients: Sequence[Number], x: Number) -> Number:
-    """x times the polynomial in x squared."""
+    """Return x p(x^2), p being the polynomial of ``coefficients``."""
     x = real.rounded(x)
     return real.multiply(x, polynomial(coefficients, real.multiply(x, x)))
 
@@ -73,20 +80,20 @@ def logarithm(x: Number) -> Number:
 
 
 def integer_part(x: Number, left: int = 0) -> IntAndByte:
-    """INT, and the low byte of the result, which the ROM leaves in memory. It does not look for the
-    byte of a number of 32 bits or more before the point, and what was ``left`` before stays."""
+    """INT, and the low byte of the result, which the ROM leaves in memory; for a number of 32 or
+    more bits before the point the ROM does not compute it, and the byte ``left`` there earlier
+    stays."""
     integral = real.floor(x)
     return integral, (real.to_integer(integral) & 0xFF if x[0] < real.INTEGER_EXPONENT else left)
 
 
 def exponential(x: Number) -> Number:
-    """EXP: e to the x. Raises OVERFLOW; underflows to zero."""
+    """EXP: e to the power x. Raises OVERFLOW; underflows to zero."""
     return exponential_and_byte(x)[0]
 
 
 def exponential_and_byte(x: Number, left: int = 0) -> IntAndByte:
-    """EXP, and the byte of INT. It takes x apart with INT, unless that is out of range at first
-    sight."""
+    """EXP, and the byte of INT, which splits x / ln 2 unless its exponent shows it out of range."""
     e, m, s = turns = _over_ln_two(x)
     if e < BIAS + 8:
         doublings = real.to_integer((e, m & ~0xFF, s))
@@ -104,27 +111,30 @@ def exponential_and_byte(x: Number, left: int = 0) -> IntAndByte:
 
 
 def _over_ln_two(x: Number) -> Number:
-    """x / ln 2 as EXP takes it apart, its extension raised."""
+    """Return x / ln 2 with `EXP_ROUNDING` added to its extension."""
     e, m, s = real.multiply(LOG2_E, x)
     if e:
         m += EXP_ROUNDING
         if m >= real.LIMIT:
-            # the 32-bit mantissa overflows to 80000000; the extension's sum is kept as it is
+            # the 32-bit mantissa overflows to 80000000, and the extension keeps its sum
             m = real.TOP | m & 0xFF
             e += 1
     return e, m, s
 
 
 def power(left: Number, right: Number) -> Number:
-    """left ^ right = EXP (right * LOG (left)), so X ^ 2 is not X * X. Raises ILLEGAL QUANTITY for a
-    negative left with a right that is not whole, OVERFLOW. A negative left to a power of 2^31 or
-    more is positive, as where nothing has taken INT before."""
+    """left ^ right = EXP (right * LOG (left)), so X ^ 2 is not X * X.
+
+    Raises OVERFLOW, and ILLEGAL QUANTITY for a negative left with a fractional right. A negative
+    left to a power of 2^31 or more is positive, as if INT had not been used before."""
     return power_and_byte(left, right)[0]
 
 
 def power_and_byte(left: Number, right: Number, byte: int = 0) -> IntAndByte:
-    """left ^ right, and the byte of INT. Of a negative left the byte that INT of right leaves tells
-    whether that is odd: from 2^31 on an older number's."""
+    """left ^ right, and the byte of INT.
+
+    For a negative left, the byte that INT (right) leaves decides if right is odd; from 2^31 on it
+    is the byte of an earlier INT."""
     if not right[0]:
         return exponential_and_byte(ZERO)
     left = real.rounded(left)
@@ -152,10 +162,10 @@ def square_root_and_byte(x: Number, left: int = 0) -> IntAndByte:
     return power_and_byte(x, HALF, left)
 
 
-@lru_cache(maxsize=64)  # a program asks for the sine of the same few angles over and over
+@lru_cache(maxsize=64)  # programs use the sine of the same few angles repeatedly
 def _sine(x: Number) -> tuple[Number, bool, Number, Number]:
-    """The sine, and what TAN needs: the quadrant flag, and the reduced argument, a fraction of a
-    turn in -1/4 ... 1/4, rounded; then what INT is taken of, the argument in turns."""
+    """Return the sine, two values for TAN (the quadrant flag, and the reduced argument, a fraction
+    of a turn in -1/4 ... 1/4, rounded), and the argument of INT, x in turns."""
     turns = f = real.rounded(real.divide(x, TWO_PI))
     f = real.subtract(QUARTER, real.subtract(f, real.floor(f)))
     beyond_first_quarter = f[2]
@@ -180,12 +190,12 @@ def sine(x: Number) -> Number:
 
 
 def cosine(x: Number) -> Number:
-    """COS of x radians, as SIN (pi/2 + x)."""
+    """COS of x radians, computed as SIN (pi/2 + x)."""
     return _sine(real.add(HALF_PI, x))[0]
 
 
 def tangent(x: Number) -> Number:
-    """TAN of x radians: the sine over a cosine folded from the same reduced argument."""
+    """TAN of x radians: the sine divided by the cosine of the same reduced argument."""
     of_sine, flag, reduced, _ = _sine(real.rounded(x))
     f = real.add(QUARTER, real.negate(real.absolute(reduced)))
     if flag:
@@ -212,18 +222,19 @@ def tangent_and_byte(x: Number, left: int = 0) -> IntAndByte:
 def arc_tangent(x: Number) -> Number:
     """ATN in radians, -pi/2 ... pi/2."""
     f = real.absolute(x)
-    inverted = f[0] > BIAS
-    if inverted:
+    is_inverted = f[0] > BIAS
+    if is_inverted:
         f = real.divide(ONE, f)
     f = odd_polynomial(ATN_COEFFICIENTS, f)
-    if inverted:
+    if is_inverted:
         f = real.subtract(HALF_PI, f)
     return real.negate(f) if x[2] else f
 
 
 def random(x: Number, seed: Number) -> Number:
-    """RND: the next random number, to be stored as the new seed; the seed itself for x = 0. A
-    negative x starts a sequence. The bytes are shuffled and the exponent thrown away."""
+    """RND: the next random number, to be stored as the new seed; the seed itself for x = 0.
+
+    A negative x starts a sequence. The bytes are shuffled and the exponent discarded."""
     if not x[0]:
         return seed
     e, m, _ = x if x[2] else real.add(RND_ADDEND, real.multiply(RND_FACTOR, seed))

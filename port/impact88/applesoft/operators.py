@@ -1,7 +1,7 @@
-"""Python's operators on Applesoft's reals: an expression computes what Applesoft's would.
+"""Python's operators on Applesoft's reals: an expression has the same result as in Applesoft.
 
-A binary operator rounds its left operand, which was set aside, and keeps the extension of the right
-one, still in the accumulator. Storing in a variable is explicit: `Real.rounded`."""
+A binary operator rounds its left operand, which the ROM stores, and keeps the extension of the
+right one, which is in the accumulator. Assignment to a variable is explicit: `Real.rounded`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .real import BIAS, Number, compare, from_stored, integer, rounded, to_store
 
 
 def _binary(rule: Callable[[Number, Number], Number]) -> tuple[Callable[..., Real], ...]:
-    """An operator, and what it is with a whole number on the left."""
+    """Return the methods of an operator, normal and reflected (a whole number on the left)."""
 
     def forward(left: Real, right: Real | int) -> Real:
         return Real(rule(left.number, right.number if right.__class__ is Real else _number(right)))
@@ -26,19 +26,23 @@ def _binary(rule: Callable[[Number, Number], Number]) -> tuple[Callable[..., Rea
 
 
 def _comparison(holds: Callable[[int, int], bool]) -> Callable[[Real, object], bool]:
-    def compared(left: Real, right: object) -> bool:
+    """Return the method of a comparison."""
+
+    def method(left: Real, right: object) -> bool:
         if right.__class__ is not Real:
             raise TypeError(f"a real compares with reals only, not with {right!r}")
-        stored = left.number
-        return holds(0, compare(rounded(stored) if stored[1] & 0xFF else stored, right.number))
+        number = left.number
+        return holds(0, compare(rounded(number) if number[1] & 0xFF else number, right.number))
 
-    return compared
+    return method
 
 
 class Real:
-    """A number in Python's operators. Integers are taken for constants; floats are refused, because
-    they would smuggle in digits not typed. ``==`` and its kin are the ROM's comparison, so reals
-    are not hashable and compare with reals only. Raises ApplesoftError."""
+    """A number for Python's operators.
+
+    Integers are constants; floats are refused, because they would add digits that were not typed.
+    Comparisons are the ROM's, so reals are not hashable and compare with reals only. Raises
+    ApplesoftError."""
 
     __slots__ = ("number",)
 
@@ -55,17 +59,17 @@ class Real:
         return to_stored(self.number)
 
     def rounded(self) -> Real:
-        """The value as it is stored; see `rounded`."""
+        """Return the value as a variable stores it, see `real.rounded`."""
         number = self.number
         return Real(rounded(number)) if number[1] & 0xFF else self
 
     @property
     def extension(self) -> int:
-        """The eight bits below the mantissa that storing would round away."""
+        """The eight bits below the mantissa, which storing rounds away."""
         return self.number[1] & 0xFF
 
     def __float__(self) -> float:
-        """The exact value: 40 bits and this exponent range fit a double."""
+        """Return the exact value: 40 bits and this exponent range fit a double."""
         e, m, s = self.number
         size = float(m) * 2.0 ** (e - BIAS - 40)
         return -size if s else size
@@ -88,6 +92,7 @@ class Real:
 
 
 def _number(operand: Real | int) -> Number:
+    """Return the number of a real or whole number. Raises TypeError."""
     if operand.__class__ is int:
         return integer(operand)
     if isinstance(operand, Real):

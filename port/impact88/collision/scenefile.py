@@ -10,7 +10,7 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 
 from ..errors import UserError, quoted
-from ..files import called, read_text
+from ..files import display_name, read_text
 from ..names import DEFAULT_M, SCENE, quantity
 from .case import ABOUT, OWN_AXES, SOURCE, Case
 from .doubles import is_number
@@ -31,12 +31,12 @@ def case_in(
     if not isinstance(path, str | os.PathLike):
         raise UserError(f"{quoted(path)} is not the name of a file")
     path = os.fspath(path)
-    return Case(toml_file(path), called(path), units, axes, headings)
+    return Case(toml_file(path), display_name(path), units, axes, headings)
 
 
 def toml_file(path: str) -> dict[str, str]:
     """Return the entries of a flat TOML file (``-``: standard input), see `toml_texts`."""
-    return toml_texts(read_text(path, MAX_TOML_BYTES), called(path))
+    return toml_texts(read_text(path, MAX_TOML_BYTES), display_name(path))
 
 
 def toml_texts(text: str, source: str) -> dict[str, str]:

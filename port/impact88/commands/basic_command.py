@@ -29,7 +29,7 @@ from ..emulator.emulator import Applesoft
 from ..emulator.faults import TooManyStatements
 from ..emulator.programfile import read_program
 from ..errors import UserError, note
-from ..files import called, packaged_bytes, read_bytes, replacing, typed_line
+from ..files import display_name, packaged_bytes, read_bytes, replacing, typed_line
 from ..program.run import page
 from . import options
 from .run_command import MACHINE, check_slot
@@ -106,7 +106,7 @@ class Terminal:
         except EOFError:
             return None
         except UnicodeDecodeError:
-            raise UserError("contains bytes that are not text", called("-")) from None
+            raise UserError("contains bytes that are not text", display_name("-")) from None
 
     def end_row(self) -> None:
         """Begin a new row, unless that is done."""
@@ -159,7 +159,7 @@ def main(args: options.Args) -> int:
 def _say_what_was_not_done(machine: Applesoft) -> None:
     for what in machine.machine.refused:
         note("basic", f"{what} is not supported: text only, no machine code")
-    for sentence in machine.machine.passed_over:
+    for sentence in machine.machine.ignored:
         note("basic", sentence)
 
 
@@ -168,7 +168,7 @@ def load_program(machine: Applesoft, path: str | None) -> None:
     if path is None:
         data, where = packaged_bytes("impact88.legacy", LISTING), LISTING
     else:
-        data, where = read_bytes(path, limit=PROGRAM_LIMIT), called(path)
+        data, where = read_bytes(path, limit=PROGRAM_LIMIT), display_name(path)
     try:
         program = read_program(data)
         machine.machine.load(program.lines)

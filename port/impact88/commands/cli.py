@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from importlib import import_module
 
-from ..errors import UserError, note, shown
+from ..errors import UserError, note, one_line
 from ..files import ESCAPED
 from ..names import did_you_mean
 from ..version import __version__
@@ -179,7 +179,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except BrokenPipeError:
             status = BROKEN_PIPE
         except OSError as error:  # a full disk, most likely
-            place = shown(str(error.filename)) if error.filename else "standard output"
+            place = one_line(str(error.filename)) if error.filename else "standard output"
             note(called, f"{place}: {error.strerror or error}")
             status = UNUSABLE
         except Exception as error:
@@ -219,6 +219,6 @@ def _report_bug(called: str | None, error: Exception, debug: bool) -> None:
     while step is not None:
         place = f" at {os.path.basename(step.tb_frame.f_code.co_filename)}:{step.tb_lineno}"
         step = step.tb_next
-    what = shown(f"{type(error).__name__}{f': {error}' if str(error) else ''}", 200)
+    what = one_line(f"{type(error).__name__}{f': {error}' if str(error) else ''}", 200)
     advice = "" if debug else " (IMPACT88_DEBUG=1 prints the traceback)"
     note(called, f"a bug of impact88, not of your input: {what}{place}{advice}")

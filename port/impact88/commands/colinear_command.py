@@ -18,7 +18,7 @@ from ..chapter.colinear import colinear, colinear_inverse
 from ..collision.units import display_values
 from ..errors import UserError
 from ..mechanics.outcome import forces
-from ..messages.plaintable import decimals_for, fixed, paragraph, quantities, table
+from ..messages.plaintable import decimals_for, format_fixed, paragraph, quantities, table
 from ..names import quantity
 from ..status import sentences
 from . import options
@@ -63,7 +63,7 @@ def main(args: options.Args) -> None:
         decimals = decimals_for([values[name] for name in KNOWABLE[4:]])
         rows = []
         for label, names in (("n", ("UN", "VAN", "VN", "VBN")), ("t", ("UT", "VAT", "VT", "VBT"))):
-            cells = [f"{fixed(values[n], decimals)}{' *'[n in solved_for]}" for n in names]
+            cells = [f"{format_fixed(values[n], decimals)}{' *'[n in solved_for]}" for n in names]
             rows.append([label, *cells, units["UN"]])
         heading = ["velocity", "A before ", "A after ", "B before ", "B after ", "unit"]
         yield from (*table(rows, heading, left=(0, 5)), "* solved for", "")

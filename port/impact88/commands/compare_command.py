@@ -35,7 +35,7 @@ from collections.abc import Iterator
 
 from ..comparison.agreement import EQUATIONS
 from ..comparison.compare import HARMLESS, Comparison, compare, write_junit
-from ..errors import UserError, note, shown
+from ..errors import UserError, note, one_line
 from ..mechanics.accuracy.errorbound import DOUBLE
 from ..tables.table import format_of
 from . import options
@@ -132,7 +132,7 @@ def _conformance_lines(done: Conformance) -> Iterator[str]:
         yield f"\n{failed} vectors: {REASONS[reason]}"
         for verdict in [v for v in done.failures if v.reason == reason][:FIRST]:
             place = f"row {verdict.row}" if verdict.row else "no row"
-            detail = f": {shown(verdict.detail, 100)}" if verdict.detail else ""
+            detail = f": {one_line(verdict.detail, 100)}" if verdict.detail else ""
             yield f"  {verdict.vector.id} ({verdict.vector.label}), {place}{detail}"
     if done.strays:
         yield f"\n{len(done.strays)} rows are no vector's"
@@ -214,10 +214,10 @@ def _lines(comparison: Comparison) -> Iterator[str]:
         yield "\nworst first:"
         for cell in comparison.worst:
             place = f"row {cell.row}" + (f" (line {cell.line})" if cell.line else "")
-            name = f", id {shown(cell.id, 40)}" if cell.id else ""
+            name = f", id {one_line(cell.id, 40)}" if cell.id else ""
             yield (
-                f"  {place}{name}: {cell.result} {shown(cell.theirs, 40)}, here {cell.ours:.12g}, "
-                f"off by {cell.relative:.2g}; {cell.cause}"
+                f"  {place}{name}: {cell.result} {one_line(cell.theirs, 40)}, "
+                f"here {cell.ours:.12g}, off by {cell.relative:.2g}; {cell.cause}"
             )
     for reason, skipped in comparison.not_compared.items():
         yield f"\n{skipped.rows} rows not compared: {reason}"

@@ -12,7 +12,7 @@ exit status: 0 all printed numbers reproduced; 1 not all
 from dataclasses import asdict
 
 from ..chapter.example import steps
-from ..messages.plaintable import fixed, paragraph, table
+from ..messages.plaintable import format_fixed, paragraph, table
 from . import options
 
 ARGUMENTS = (options.JSON, options.OUTPUT)
@@ -34,7 +34,7 @@ def _lines() -> list[str]:
     for at, step in enumerate(steps()):
         rows = [
             [
-                *("  " + n.name.split()[0], fixed(n.value, 3), n.unit, n.printed or ""),
+                *("  " + n.name.split()[0], format_fixed(n.value, 3), n.unit, n.printed or ""),
                 *(verdicts[n.agrees], n.meaning),
             ]
             for n in step.numbers

@@ -24,7 +24,7 @@ from ..collision.case import (
 from ..collision.doubles import double
 from ..collision.scenefile import case_in
 from ..errors import UserError, note, quoted
-from ..files import called, check_apart
+from ..files import check_apart, display_name
 from ..names import SCENE, check_names
 from ..program.scene import SAMPLES, Scene, sample
 
@@ -262,9 +262,9 @@ def print_json(form: str, found: Mapping[str, Any], indent: int | None = None) -
     import json
 
     from ..messages.plaintable import plain
-    from ..messages.schemas import stamped
+    from ..messages.schemas import with_schema
 
-    record = stamped(form, plain(found))
+    record = with_schema(form, plain(found))
     print(json.dumps(record, ensure_ascii=False, allow_nan=False, indent=indent), flush=True)
 
 
@@ -330,7 +330,7 @@ def source_of(args: Args) -> str | None:
     number = getattr(args, "sample", None)
     if args.scene and number:
         raise UserError(f"a file and --sample {number} are both given; expected one scene")
-    return called(args.scene) if args.scene else f"sample {number}" if number else None
+    return display_name(args.scene) if args.scene else f"sample {number}" if number else None
 
 
 def case_given(args: Args) -> Case:

@@ -35,7 +35,7 @@ from typing import Any
 from ..comparison import kit, vectors
 from ..comparison.oracle import BATCH, answer, published_tests
 from ..errors import UserError
-from ..files import LONGEST_LINE, called, encoding_of, open_bytes
+from ..files import LONGEST_LINE, display_name, encoding_of, open_bytes
 from . import options
 
 ARGUMENTS = (
@@ -132,7 +132,7 @@ def _batches(path: str) -> Iterator[list[tuple[int, str]]]:
                 raise UserError(
                     f"line {number + len(lines) + 1} is longer than {LONGEST_LINE:,} "
                     "characters; expected one JSON object a line",
-                    called(path),
+                    display_name(path),
                 )
             numbered = enumerate(map(str.strip, lines), number + 1)
             batch = [(at, text) for at, text in numbered if text]

@@ -17,7 +17,7 @@ from ..collision.fields import ZERO_DETERMINANT
 from ..collision.scenefile import case_in
 from ..collision.units import Convention, convention_named
 from ..errors import UserError, note, quoted
-from ..files import called, replacing
+from ..files import display_name, replacing
 from ..mechanics.closedform.columns import INERTIAS, UNUSED_BY_POINTS, examine, refusals
 from ..mechanics.closedform.share import resolved, share_of
 from ..mechanics.closedform.solve import share_typed, solve
@@ -71,7 +71,7 @@ def solve_table(args: options.Args) -> int:
         beside = case if one_scene else _filling(args) if args.scene else None
         system = beside.units if beside else args.units
         units = TableUnits(
-            source.names, system or args.units, first, where=called(path or "--sample")
+            source.names, system or args.units, first, where=display_name(path or "--sample")
         )
         units.convention = _convention(args, beside)
         given: dict[str, str] = {}
@@ -178,7 +178,7 @@ def _filling(args: options.Args) -> Case:
     """Return the case that fills the columns that the table lacks."""
     case = case_in(args.scene, args.units, args.axes, args.headings)
     options.note_remarks(case.at_nominal())
-    check_names(case.at_nominal().values, SCENE, "value of a scene", called(args.scene))
+    check_names(case.at_nominal().values, SCENE, "value of a scene", display_name(args.scene))
     return case
 
 

@@ -34,7 +34,7 @@ from ..chapter import staged, validation
 from ..collision.geometry import GEOMETRY, Geometry, within_doubles
 from ..collision.units import base_of
 from ..errors import BEYOND_DOUBLES, UserError
-from ..messages.plaintable import fixed, paragraph, table
+from ..messages.plaintable import format_fixed, paragraph, table
 from ..names import FINAL_STATE, VELOCITIES, missing
 from ..reconstruction.unknowns import check_physical
 from . import options
@@ -109,9 +109,9 @@ def _fitted(
         **{"spin_weight": weight, "em_range": (low, high), "base_units": units},
     }
     rows = [
-        ["E", fixed(found.E, 4), "e" + (", at its bound" if "E" in found.at_bound else "")],
-        ["MUP", fixed(found.MUP, 4), "mu, signed P_t/P_n"],
-        ["EM", fixed(found.EM, 4), f"e_m; about as good: {low:.2f} ... {high:.2f}"],
+        ["E", format_fixed(found.E, 4), "e" + (", at its bound" if "E" in found.at_bound else "")],
+        ["MUP", format_fixed(found.MUP, 4), "mu, signed P_t/P_n"],
+        ["EM", format_fixed(found.EM, 4), f"e_m; about as good: {low:.2f} ... {high:.2f}"],
     ]
     text = (
         f"Least squares over the six velocities after, a squared spin weighing {weight:.4g}: sum "
@@ -156,7 +156,7 @@ def _validation() -> list[str]:
         rows: dict[str, list[str]] = {}
         for check in own:
             digits = {"1": 3, "°/s": 0, "mph": 1, "ft/s": 1}[check.unit]
-            pair = f"{fixed(check.reported, digits)} {fixed(check.computed, digits)}"
+            pair = f"{format_fixed(check.reported, digits)} {format_fixed(check.computed, digits)}"
             rows.setdefault(check.test, [check.test]).append(pair)
         lines += [*paragraph(f"{words[0].upper()}{words[1:]}: {own[0].kind}, computed"), ""]
         names = [f"{name}" + (f", {unit}" if unit != "1" else "") for name, unit in quantities]
@@ -164,7 +164,7 @@ def _validation() -> list[str]:
     rows_of_medians = [
         [source, quantity, "" if unit == "1" else unit, kind, str(count), *figures]
         for source, quantity, unit, kind, count, *sizes in validation.medians(found)
-        for figures in [[fixed(size, 3 if unit == "1" else 2) for size in sizes]]
+        for figures in [[format_fixed(size, 3 if unit == "1" else 2) for size in sizes]]
     ]
     heading = ["sizes of the differences", "", "", "from", "numbers", "median", "largest"]
     return [
@@ -187,10 +187,10 @@ def _closures(
 ) -> list[str]:
     rows = []
     for number, loss, *changes in (closure.values() for closure in closures):
-        row = [fixed(loss, 1)]
+        row = [format_fixed(loss, 1)]
         if calculated:
-            row = [str(number), row[0] or "lost", fixed(calculated[int(number)], 1)]
-        rows.append([*row, *(fixed(x, 0) or "lost" for x in changes)])
+            row = [str(number), row[0] or "lost", format_fixed(calculated[int(number)], 1)]
+        rows.append([*row, *(format_fixed(x, 0) or "lost" for x in changes)])
     heading = ["no.", "loss %, measured", "calculated"] if calculated else ["loss %, measured"]
     sides = [f"{what}, {vehicle}" for what in ("x", "y", "M") for vehicle in "AB"]
     return table(rows, [*heading, *sides], left=())
@@ -201,7 +201,7 @@ def _comparison() -> list[str]:
     compared = staged.comparison()
     rows: dict[int, list[str]] = {}
     for cell in compared:
-        text = f"{cell.printed:.1f} {fixed(cell.value, 2) or 'lost':>5}{'! '[cell.agrees]}"
+        text = f"{cell.printed:.1f} {format_fixed(cell.value, 2) or 'lost':>5}{'! '[cell.agrees]}"
         rows.setdefault(cell.collision, [str(cell.collision)]).append(text)
     agree = sum(cell.agrees for cell in compared)
     lines = [
@@ -231,9 +231,11 @@ def _fits() -> list[str]:
         if collision.number != 8:
             errors.append((held.E - printed["e"], held.MUP - printed["mu"]))
         values = (printed["e"], printed["em"], printed["mu"], held.E, held.MUP)
-        cells = [fixed(value, 3) for value in (*values, free.E, free.EM, free.MUP)]
+        cells = [format_fixed(value, 3) for value in (*values, free.E, free.EM, free.MUP)]
         rows.append([label, *cells, " ".join(free.at_bound), f"{low:.2f} ... {high:.2f}"])
-        sums.append([label, *(fixed(f.sum_of_squares, 1) for f in staged.profile(collision))])
+        sums.append(
+            [label, *(format_fixed(f.sum_of_squares, 1) for f in staged.profile(collision))]
+        )
     heading = ["no.", "e", "e_m", "mu", "e", "mu", "e", "e_m", "mu", "at bound", "e_m +0.1 ft/s"]
     rms_e, rms_mu = (sqrt(sum(x * x for x in xs) / len(xs)) for xs in zip(*errors, strict=True))
     return [

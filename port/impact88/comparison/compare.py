@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..collision.doubles import double
 from ..collision.mappings import texts
 from ..errors import UserError, quoted
-from ..files import called
+from ..files import display_name
 from ..messages.arguments import explains_arguments
 from ..messages.plaintable import plain
 from ..messages.progress import progress
@@ -296,7 +296,7 @@ def _opened(table: Any, form: str | None, encoding: str | None) -> Iterator[tupl
     if isinstance(table, str | os.PathLike):
         path = os.fspath(table)
         with open_reader(path, format_of(path, form), encoding, True) as reader:
-            yield reader, called(path)
+            yield reader, display_name(path)
         return
     from ..tables.frames import read_frame
 

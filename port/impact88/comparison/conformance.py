@@ -24,8 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..collision.doubles import doubles_of
-from ..errors import UserError, quoted, shown
-from ..files import called, open_bytes, read_bytes
+from ..errors import UserError, one_line, quoted
+from ..files import display_name, open_bytes, read_bytes
 from ..messages.plaintable import plain
 from ..messages.schemas import NUMBERS
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE
@@ -210,7 +210,7 @@ def read_kit(place: str) -> Kit:
     about = _parsed(place, _kit_file(place, ABOUT))
     mine = f"vectors/{NUMBERS['vectors']}"
     if about.get("kit") != mine:
-        says = f"is of {shown(str(about.get('kit')), 40)}, and this version judges {mine}"
+        says = f"is of {one_line(str(about.get('kit')), 40)}, and this version judges {mine}"
         raise UserError(f"{says}; expected a kit of impact88 oracle --kit", _in(place, ABOUT))
     seed, count = about.get("seed"), about.get("vectors")
     if type(seed) is not int or type(count) is not int or not 0 < count <= MOST_VECTORS:
@@ -315,7 +315,7 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
     whole = read_kit(kit)
     with _on_disk(theirs) as path, open_reader(path, form, encoding, True) as reader:
         results = [n for n in reader.names if n in RESULTS and n not in NOT_COMPARED]
-        where = called(theirs)
+        where = display_name(theirs)
         if "id" not in reader.names:
             raise UserError("no column id; expected the kit's ids, one a row", where)
         if missing := [name for name in FINAL_VELOCITIES if name not in results]:

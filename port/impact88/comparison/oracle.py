@@ -22,7 +22,7 @@ from ..mechanics.accuracy import errorbound
 from ..mechanics.closedform.solve import solve
 from ..messages.arguments import explains_arguments
 from ..messages.plaintable import plain
-from ..messages.schemas import stamped
+from ..messages.schemas import with_schema
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..program.run import run
 from ..program.scene import Scene
@@ -57,7 +57,7 @@ def answer(
                 whole["units"] = base_of(system_of(scene.units))
             if remarks := [*scene.remarks.values()]:
                 whole["remarks"] = remarks
-        yield stamped("oracle", whole)
+        yield with_schema("oracle", whole)
 
 
 def published_tests(reference: bool = True) -> Iterator[dict[str, Any]]:
@@ -76,7 +76,7 @@ def published_tests(reference: bool = True) -> Iterator[dict[str, Any]]:
         given = _scene_of({"M": float(DEFAULT_M), **scene})
         source = next(text for kind, text in validation.SOURCES.items() if name.startswith(kind))
         head = {"id": name, "source": source, "reported": checks[name]}
-        yield stamped("oracle", {**head, "scene": {n: given[n] for n in SCENE}, **whole})
+        yield with_schema("oracle", {**head, "scene": {n: given[n] for n in SCENE}, **whole})
 
 
 def _asked(text: str, head: dict[str, Any], units: str | None) -> Scene:

@@ -16,7 +16,7 @@ import numpy as np
 from ..collision.doubles import doubles_of
 from ..files import packaged_bytes
 from ..mechanics.closedform.solve import solve
-from ..messages.schemas import stamped
+from ..messages.schemas import with_schema
 from ..names import FINAL_VELOCITIES, SCENE
 from .oracle import BATCH, oracle
 
@@ -51,7 +51,7 @@ def vectors(
                 "comment": f"{label}; the 1988 program {ends}",
                 "scene": scene,
             }
-            yield stamped("vectors", head | found)
+            yield with_schema("vectors", head | found)
 
 
 def expectation(kind: str, scene: Mapping[str, str]) -> str:

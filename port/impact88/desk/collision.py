@@ -18,7 +18,7 @@ from ..collision.units import RULES, System
 from ..emulator.screen import shown_character
 from ..errors import UserError
 from ..messages.plaintable import number
-from ..messages.schemas import stamped
+from ..messages.schemas import with_schema
 from ..names import FINAL_VELOCITIES, RESULTS, SCENE, quantity
 from ..program.scene import Scene, sample
 from .forms import entries, spoken_direction, units_shown, without_rounding
@@ -133,7 +133,7 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
         exact = {n: row["double"] for n, row in results.items() if row["double"] is not None}
         run_machine(machine)
         found |= {
-            "oracle": stamped("oracle", {"id": None, "scene": dict(scene), **known}),
+            "oracle": with_schema("oracle", {"id": None, "scene": dict(scene), **known}),
             "answer": _answer(scene, exact, system),
             "page": page(known["printout"]),
             "screen": [screen_runs(row) for row in machine.screen_rows()],
@@ -216,7 +216,7 @@ def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
         raise UserError("there are no ranges to explore")
     inputs = read_inputs(form.case)
     answered = bounds(inputs.values, correlations=inputs.correlations, samples=DRAWS)
-    return stamped("bounds", as_json(in_units(answered, form.system)))
+    return with_schema("bounds", as_json(in_units(answered, form.system)))
 
 
 def scene_file(values: Mapping[str, str], title: str, units: str = "") -> str:

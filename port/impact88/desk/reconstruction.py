@@ -13,7 +13,7 @@ from ..collision.units import RULES
 from ..errors import UserError
 from ..mechanics.state import KNOWABLE
 from ..messages.plaintable import number
-from ..messages.schemas import stamped
+from ..messages.schemas import with_schema
 from ..names import FINAL_STATE, SCENE, VELOCITIES, check_names, quantity
 from ..program.scene import sample
 from .forms import digits, entries, spoken_direction, units_shown, without_rounding
@@ -77,7 +77,7 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
         ]
     except UserError as error:
         return {**answered, "waiting": str(error)}
-    answered["object"] = stamped(
+    answered["object"] = with_schema(
         "reconstruct", {"solutions": [numbers for numbers, *_ in solutions]}
     )
     answered["solutions"] = [_solution(case, known, *solution) for solution in solutions]

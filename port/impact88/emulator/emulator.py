@@ -6,7 +6,7 @@ from functools import partial
 from math import prod
 from typing import Any
 
-from ..applesoft.console import Device, EndOfInput, Keyboard, Keys, capitals, keyed
+from ..applesoft.console import Device, EndOfInput, Keyboard, Keys, capitals, keyboard_codes
 from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import to_stored
 from .faults import Fault, Restart
@@ -14,7 +14,7 @@ from .machine import Machine
 from .memory import AFTER_TYPING, INPUT_BUFFER, INTEGER, MARKS, STRING
 from .memory import PROMPT as PROMPT_BYTE
 from .programfile import read_program
-from .tokens import LINE_LIMIT, split_number, tokenise, untokenised
+from .tokens import MAX_INPUT, detokenise, split_number, tokenise
 
 PROMPT = "]"
 AT_PROMPT = ord(PROMPT) | 0x80
@@ -23,21 +23,21 @@ AT_PROMPT = ord(PROMPT) | 0x80
 class Applesoft:
     """An Apple II Plus at the ``]`` prompt.
 
-    ``after_line``, ``statements_left`` and ``interrupted`` of its ``machine`` are there to be set.
+    The attributes ``after_line``, ``statements_left`` and ``interrupted`` of its ``machine`` may be
+    set.
 
     Parameters
     ----------
     keyboard : callable, optional
-        Returns a line when what `feed` queued is used up, None at the end.
+        Returns the next line after those queued by `feed`, None at the end.
     screen, printer : callable, optional
-        Take what is sent to them; `take_output` collects what is sent to the screen where none is
-        given.
+        Called with the characters sent to them. Without a screen, `take_output` returns them.
     dos : bool, default False
-        True where a disk system takes lines that begin with control-D.
+        True if a disk system handles lines that begin with control-D.
     echo : bool, default True
-        True where typed lines are part of the output.
+        True if typed lines are part of the output.
     blanks : bool, default True
-        True where skipped columns come out as blanks.
+        True if skipped columns are sent as blanks.
 
     Examples
     --------
@@ -73,52 +73,53 @@ class Applesoft:
         return self._keyboard() if self._keyboard else None
 
     def feed(self, *lines: str) -> None:
-        """Lines to be typed, for INPUT, GET or the prompt."""
+        """Queue lines to be typed, for INPUT, GET or the prompt."""
         self._queue.extend(lines)
 
     def feed_keys(self, text: str) -> None:
-        """Queue keys, a newline for RETURN; after the last there need not be one."""
-        *lines, rest = text.split("\n")
-        self.feed(*lines, *([Keys(rest)] if rest else []))
+        """Queue keys, a newline for RETURN; the last line may end without one."""
+        *lines, last = text.split("\n")
+        self.feed(*lines, *([Keys(last)] if last else []))
 
     def take_output(self) -> str:
-        """What was sent since the last call: RETURN as newline, control characters kept."""
+        """Return the output since the last call: RETURN as newline, control characters kept."""
         text = "".join(self._output)
         self._output.clear()
         return text
 
     def screen_rows(self) -> list[bytes]:
-        """The 24 rows of the text screen, 40 bytes each, as they lie in the machine's memory."""
+        """Return the 24 rows of the text screen, 40 bytes each, as in the machine's memory."""
         return self.machine.screen.rows()
 
     def screen_text(self) -> str:
+        """Return the 24 rows of the text screen as text, without blanks at their ends."""
         return self.machine.screen.text()
 
     def load(self, program: str | bytes) -> None:
-        """Load a program in place of the one there is.
+        """Load a program in place of the present one.
 
         Parameters
         ----------
         program : str or bytes
-            Numbered lines, or the bytes of a file: a text as it is typed or as LIST prints it, or a
+            Numbered lines, or the bytes of a file: a text as typed or as printed by LIST, or a
             tokenised program (see `programfile.read_program`).
 
         Raises
         ------
         UserError
-            For what is no program; names the row. The program that was there stays.
+            If it is not a program; names the row. The present program is kept.
         ApplesoftError
-            OUT OF MEMORY; the program that was there stays.
+            OUT OF MEMORY; the present program is kept.
         """
         self.machine.load(read_program(program).lines)
 
     def type_line(self, text: str) -> ApplesoftError | None:
-        """What the machine does with a line typed at the prompt, small letters as capitals. Returns
-        the error it ended in."""
-        return self.enter(capitals(text)[:LINE_LIMIT])
+        """Enter a line typed at the prompt, small letters as capitals. Return the error that ended
+        it, or None."""
+        return self.enter(capitals(text)[:MAX_INPUT])
 
     def enter(self, text: str) -> ApplesoftError | None:
-        """The same for a line as it is."""
+        """Enter a line as it is. Return the error that ended it, or None."""
         self.machine.errflg >>= 1
         self.machine.error = None
         if text.strip(" "):
@@ -128,17 +129,18 @@ class Applesoft:
         return self.machine.error
 
     def _take(self, text: str) -> None:
-        """PARSE: on page 2 a line's tokens come in its place. Under LOCK every line is RUN."""
+        """PARSE: replace a line on page 2 by its tokens, then store or execute it. Under LOCK any
+        line means RUN."""
         machine = self.machine
         try:
-            number, rest = split_number(text) or (None, text)
+            number, statements = split_number(text) or (None, text)
         except ValueError:
             raise Fault("SYNTAX", machine.sp) from None
         if machine.lock & 0x80:
             machine.set_pointers()
             return machine.next_statements()
-        tokens = tokenise(rest)
-        for line in (keyed(text).encode("ascii"), tokens):
+        tokens = tokenise(statements)
+        for line in (keyboard_codes(text).encode("ascii"), tokens):
             machine.ram[INPUT_BUFFER : INPUT_BUFFER + len(line) + 1] = line + b"\0"
         machine.ram[INPUT_BUFFER + len(tokens) + 2] = 0
         machine.txtptr = INPUT_BUFFER
@@ -149,17 +151,17 @@ class Applesoft:
         raise Restart
 
     def source(self) -> str:
-        """The program as text that `load` takes, a line a row: what SAVE writes."""
-        return "".join(f"{number} {untokenised(line)}\n" for number, line in self.machine.lines())
+        """Return the program as text for `load`, one line a row, as SAVE writes it."""
+        return "".join(f"{number} {detokenise(line)}\n" for number, line in self.machine.lines())
 
     def run(self) -> ApplesoftError | None:
-        """RUN. Returns the error that ended the program, or None. Raises `console.EndOfInput` when
-        it asks for more than was fed, and `faults.TooManyStatements`."""
+        """RUN the program. Return the error that ended it, or None. Raises `console.EndOfInput` if
+        it asks for more input than was queued, and `faults.TooManyStatements`."""
         return self.enter("RUN")
 
     def prompt(self, handle: Callable[[str], bool] | None = None) -> None:
-        """Read and do lines at the ``]`` prompt until the keyboard ends. ``handle`` may take one
-        for itself by returning True (the disk system's commands)."""
+        """Read and execute lines at the ``]`` prompt until the keyboard ends. ``handle``: called
+        first; returns True for lines it has handled (commands of the disk system)."""
         while True:
             self.machine.console.put("\n")
             try:
@@ -172,33 +174,34 @@ class Applesoft:
                 self.machine.console.put("\n")
 
     def value(self, name: str) -> Any:
-        """A simple variable, named as in BASIC: stored bytes in hexadecimal, text for a string,
-        None if it was never assigned."""
+        """Return the value of a simple variable, named as in BASIC: stored bytes in hexadecimal,
+        text for a string, None if it was never assigned."""
         key = _key(name)
         address = self.machine.simple.get(key)
-        return None if address is None else self._shown(key, address)
+        return None if address is None else self._value_text(key, address)
 
     def reals(self) -> dict[str, str]:
-        """Every real variable that exists, oldest first: five stored bytes in hexadecimal."""
+        """Return all real variables, oldest first: five stored bytes in hexadecimal."""
         return {
-            key.to_bytes(2, "big").rstrip(b"\0").decode(): self._shown(key, address)
+            key.to_bytes(2, "big").rstrip(b"\0").decode(): self._value_text(key, address)
             for key, address in self.machine.simple.items()
             if not key & INTEGER
         }
 
     def array(self, name: str) -> dict[str, Any] | None:
-        """An array: ``dims`` (sizes) and ``data``, first subscript fastest. None without one."""
+        """Return an array: ``dims`` (sizes) and ``data``, first subscript fastest; None if there is
+        no such array."""
         key = _key(name)
         array = self.machine.arrays.get(key)
         if array is None:
             return None
         start = self.machine.arytab + array.first
         places = range(start, start + prod(array.sizes) * array.element, array.element)
-        data = [self._shown(key, place) for place in places]
+        data = [self._value_text(key, place) for place in places]
         return {"dims": list(reversed(array.sizes)), "data": data}
 
-    def _shown(self, key: int, place: int) -> Any:
-        """A value as text: a string's characters, a number's stored bytes."""
+    def _value_text(self, key: int, place: int) -> Any:
+        """Return a value as text: a string's characters, a number's stored bytes."""
         machine = self.machine
         kind = key & INTEGER
         if kind == STRING:
@@ -209,6 +212,7 @@ class Applesoft:
 
 
 def _key(name: str) -> int:
+    """Return the two bytes of a variable's name in memory, with the marks of its type."""
     letters = name.rstrip("%$").encode("ascii")
     two = letters[:2].ljust(2, b"\0")
     return int.from_bytes(two, "big") | MARKS[name.encode()[len(letters) :]]

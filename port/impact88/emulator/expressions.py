@@ -1,37 +1,55 @@
-"""Formulas: FRMEVL, its operators and elements, and the functions that are built in.
+"""Formulas: FRMEVL, its operators and elements, and the built-in functions.
 
-The ROM reads and computes in one go, and so does this: the order of events is the same, errors
-included, and the 6502's stack pointer at a routine's entry, ``sp``. A value is what the accumulator
-holds, a triple of `real`. Where the ROM takes a string for a number, so does this: most functions
-are computed before it sees what the argument was; CHR$, PEEK, FRE and POS never look.
-"""
+Like the ROM, this module reads and computes in one pass, with the same order of events and errors,
+and with the 6502's stack pointer at a routine's entry, ``sp``. A value is the content of the
+accumulator, a triple of `real`. Where the ROM takes a string for a number, so does this module:
+most functions are computed before the type of the argument is checked; CHR$, PEEK, FRE and POS
+never check it."""
 
 from collections.abc import Callable
 
 from ..applesoft import decimaltext, functions, real
 from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
 from ..applesoft.real import INTEGER_EXPONENT, ZERO, Number, compare, integer, rounded, to_integer
-from .faults import Fault, fault_if, located, placed
+from .faults import Fault, call_at, fault_if, with_stack
 from .memory import EMPTY, FUNCTION, INTEGER, MINUS, PLUS, STRING, SUBFLG_SIMPLE
 from .tokens import BLANK, CLOSE, COMMA, OPEN, QUOTE, TOKENS
 from .variables import IS_STRING, LARGEST_INTEGER, LONGEST, Variables, descriptor, stored_at
 
-ROOM, PENDING, DIGITS_COUNTED, LARGEST_ADDRESS = 59, 12, 36, 0x90
-"""Of the ROM: where CHKMEM wants the stack pointer to be at least; bytes on the stack for an
-operator that waits for its right operand; what FOUT leaves in VARPNT; GETADR's largest exponent."""
-POINT, DIGIT_0, DIGIT_9, LETTER_A, LETTER_Z = map(ord, ".09AZ")
-FN, NOT_TOKEN, OR_TOKEN, GREATER, LESS, SGN = (TOKENS[word] for word in "FN NOT OR > < SGN".split())
-BLANK_OR_PLUS, MINUS_OR_NOT = (BLANK, PLUS), (MINUS, NOT_TOKEN)
-POWER, AND, OR, NEGATE, NOT, RELATION, NONE = range(4, 11)
-PRECEDENCES = (0x79, 0x79, 0x7B, 0x7B, 0x7D, 0x50, 0x46, 0x7F, 0x7F, 0x64, 0)
-"""Operators by their place in MATHTBL, after + - * and /, none at the end; what stands there."""
-RELATIONAL, ONE = PRECEDENCES[RELATION], integer(1)
+MIN_STACK = 59  # CHKMEM: the lowest stack pointer for a formula
+PENDING = 12  # bytes on the stack for an operator that waits for its right operand
+DIGITS_COUNTED = 36  # the byte that FOUT leaves in VARPNT
+LARGEST_ADDRESS = 0x90  # GETADR: the largest exponent of an address
+POINT = ord(".")
+DIGIT_0 = ord("0")
+DIGIT_9 = ord("9")
+LETTER_A = ord("A")
+LETTER_Z = ord("Z")
+FN = TOKENS["FN"]
+NOT_TOKEN = TOKENS["NOT"]
+OR_TOKEN = TOKENS["OR"]
+GREATER = TOKENS[">"]
+LESS = TOKENS["<"]
+SGN = TOKENS["SGN"]
+BLANK_OR_PLUS = (BLANK, PLUS)
+MINUS_OR_NOT = (MINUS, NOT_TOKEN)
+# operators by their place in MATHTBL, after + - * and / (0 to 3); no operator at the end
+POWER = 4
+AND = 5
+OR = 6
+NEGATE = 7
+NOT = 8
+RELATION = 9
+NONE = 10
+PRECEDENCES = (0x79, 0x79, 0x7B, 0x7B, 0x7D, 0x50, 0x46, 0x7F, 0x7F, 0x64, 0)  # of MATHTBL
+RELATIONAL = PRECEDENCES[RELATION]
+ONE = integer(1)
 ARITHMETIC: tuple[Callable[[Number, Number], Number], ...]
 ARITHMETIC = (real.add, real.subtract, real.multiply, real.divide)
 ERROR_DEPTHS = (3, 3, 5, 3, 6)
-"""How far below a level's entry + - * / and ^ find their errors."""
-SIGNS, TRUTHS = (1, 2, 4), {1: 4, 0: 2, -1: 1}
-"""CPRTYP's bits for >, = and <; CPRMASK's by what `compare` says of the right operand."""
+"""Bytes below a level's entry at which + - * / and ^ detect their errors."""
+SIGNS = (1, 2, 4)  # CPRTYP's bits for >, = and <
+TRUTHS = {1: 4, 0: 2, -1: 1}  # CPRMASK's bits by the result of `compare` for the right operand
 
 NUMERIC: dict[str, Callable[[Number], Number]] = {
     "SGN": functions.sign,
@@ -47,21 +65,21 @@ TAKING_INT: dict[str, Callable[[Number, int], functions.IntAndByte]] = {
     "SIN": functions.sine_and_byte,
     "TAN": functions.tangent_and_byte,
 }
-"""INT, and functions that take it on their way: what they leave in CHARAC counts for ^."""
+"""INT, and functions that use it: the byte they leave in CHARAC affects a later ^."""
 FUNCTION_DEPTHS = {"SQR": 8, "EXP": 7}
-"""How far below a formula's entry they find their errors; others 5."""
+"""Bytes below a formula's entry at which functions detect their errors, if not 5."""
 WORDS = {token: word for word, token in TOKENS.items()}
 
 
 def address_of(x: Number, sp: int) -> int:
-    """GETADR: an address, from the top if negative. Raises ILLEGAL QUANTITY past 65535."""
+    """GETADR: return an address, modulo 65536 if negative. Raises ILLEGAL QUANTITY past 65535."""
     if x[0] > LARGEST_ADDRESS:
         raise Fault("ILLEGAL QUANTITY", sp)
     return to_integer(x) & 0xFFFF
 
 
 def byte_of(x: Number, sp: int) -> int:
-    """CONINT: a number from 0 to 255, rounded down. Raises ILLEGAL QUANTITY."""
+    """CONINT: return a number from 0 to 255, rounded down. Raises ILLEGAL QUANTITY."""
     e, m, s = x
     n = m >> 168 - e if e <= LARGEST_INTEGER else LONGEST + 1
     if s or n > LONGEST:
@@ -70,32 +88,37 @@ def byte_of(x: Number, sp: int) -> int:
 
 
 def shifted_out(x: Number) -> int:
-    """The accumulator's extension after CONINT: the bits shifted out last, a byte at a time."""
-    moved = (INTEGER_EXPONENT - x[0]) // 8 if x[0] else 0
-    return x[1] >> 8 * min(moved, 4) & 0xFF
+    """Return the accumulator's extension after CONINT: the last byte shifted out."""
+    shifts = (INTEGER_EXPONENT - x[0]) // 8 if x[0] else 0
+    return x[1] >> 8 * min(shifts, 4) & 0xFF
 
 
 class Expressions(Variables):
+    """Evaluation of formulas."""
+
     def number(self, sp: int) -> Number:
-        """FRMNUM: a formula that must be a number. Raises TYPE MISMATCH."""
+        """FRMNUM: return the value of a numeric formula. Raises TYPE MISMATCH for a string."""
         fac = self.formula(sp - 2)
         if self.valtyp & 0x80:
             raise Fault("TYPE MISMATCH", sp)
         return fac
 
     def formula(self, sp: int) -> Number:
-        """FRMEVL: the value of the formula at TXTPTR. ``pending`` is what lies on the stack: for
-        each operator that waits the precedence before it, the left operand, the relation."""
+        """FRMEVL: return the value of the formula at TXTPTR.
+
+        ``pending`` holds the content of the stack, for each operator that waits for its right
+        operand: the precedence before it, the operator, its left operand, its relation. Operators
+        are applied as soon as one of no higher precedence follows."""
         ram, atoms = self.ram, self.atoms
         pos = self.txtptr
         pending: list[tuple[int, int, Number, int]] = []
         last = 0
         while True:
-            if sp < ROOM and (sp & 0xFF) - 3 & 0xFF < ROOM - 3:
+            if sp < MIN_STACK and (sp & 0xFF) - 3 & 0xFF < MIN_STACK - 3:
                 raise Fault("OUT OF MEMORY", sp - 3)
-            known = atoms.get(pos)
-            if known:
-                pos, name, constant = known
+            atom = atoms.get(pos)
+            if atom:
+                pos, name, constant = atom
                 valtyp = cprtyp = 0
                 if constant:
                     fac = constant
@@ -134,12 +157,12 @@ class Expressions(Variables):
                     if operator or not valtyp:
                         pos += 1
                         break
-                    # CAT: left + the next element, whatever operator stands before
+                    # CAT: left + the next element, whatever operator precedes
                     self.txtptr, self.fac, self.cprtyp = pos + 1, fac, 0
                     right = self.element(sp - 2)
                     if not self.valtyp & 0x80:
                         raise Fault("TYPE MISMATCH", sp - 5)
-                    fac = located(sp - 1, self.joined, descriptor(fac), descriptor(right))
+                    fac = call_at(sp - 1, self.concatenate, descriptor(fac), descriptor(right))
                     pos, cprtyp = self.txtptr, self.cprtyp
                 elif GREATER <= byte <= LESS:
                     signs = SIGNS[byte - GREATER] ^ cprtyp
@@ -159,35 +182,35 @@ class Expressions(Variables):
             if valtyp & 0x80 and (waits or last != RELATIONAL) and (operator != NONE or last):
                 raise Fault("TYPE MISMATCH", sp - 2)
             while not waits and pending:
-                last, doing, left, relation = pending.pop()
+                last, waiting, left, relation = pending.pop()
                 sp += PENDING
                 try:
-                    if doing < POWER:
-                        fac = ARITHMETIC[doing](left, fac)
-                    elif doing == RELATION:
+                    if waiting < POWER:
+                        fac = ARITHMETIC[waiting](left, fac)
+                    elif waiting == RELATION:
                         if relation & 1 or valtyp & 0x80:
                             if relation & 1 != valtyp >> 7:
                                 raise Fault("TYPE MISMATCH", sp - 5)
-                            right_text = self.used(descriptor(fac))  # STRCMP
-                            left_text = self.used(descriptor(left))
+                            right_text = self.release_text(descriptor(fac))  # STRCMP
+                            left_text = self.release_text(descriptor(left))
                             order = (left_text < right_text) - (left_text > right_text)
                             valtyp = 0
                             cprtyp = cprtyp - 1 & 0xFF
                         else:
                             order = compare(left, fac)
                         fac = ONE if relation >> 1 & TRUTHS[order] else ZERO
-                    elif doing == POWER:
+                    elif waiting == POWER:
                         fac, self.charac = functions.power_and_byte(left, fac, self.charac)
-                    elif doing == NEGATE:
+                    elif waiting == NEGATE:
                         fac = real.negate(fac)
-                    elif doing == NOT:
+                    elif waiting == NOT:
                         fac = ZERO if fac[0] else ONE
-                    elif doing == OR:
+                    elif waiting == OR:
                         fac = ONE if left[0] or fac[0] else ZERO
                     else:
                         fac = ONE if left[0] and fac[0] else ZERO
                 except ApplesoftError as error:
-                    raise placed(error, sp - ERROR_DEPTHS[min(doing, POWER)]) from None
+                    raise with_stack(error, sp - ERROR_DEPTHS[min(waiting, POWER)]) from None
                 waits = last < PRECEDENCES[operator]
             if not waits:
                 self.txtptr = pos
@@ -203,7 +226,8 @@ class Expressions(Variables):
             sp -= PENDING
 
     def element(self, sp: int) -> Number:
-        """FRM_ELEMENT: a constant, a variable, a string, a function or a parenthesis."""
+        """FRM_ELEMENT: return the value of a constant, variable, string, function or
+        parenthesis."""
         ram = self.ram
         pos = self.txtptr
         byte = ram[pos]
@@ -225,22 +249,22 @@ class Expressions(Variables):
             if byte >= SGN:
                 self.txtptr += 1
                 return self.function(byte, sp)
-            if byte in MINUS_OR_NOT:  # behind a string's +; the ROM goes astray
+            if byte in MINUS_OR_NOT:  # after a string's +: the ROM jumps to a formula
                 self.txtptr += 1
                 return self.formula(sp - PENDING)
             return self.parenthesis(sp - 3)
         except ApplesoftError as error:
-            raise placed(error, sp - 5) from None
+            raise with_stack(error, sp - 5) from None
 
     def parenthesis(self, sp: int) -> Number:
-        """PARCHK: a formula in parentheses. Raises SYNTAX."""
+        """PARCHK: return the value of a formula in parentheses. Raises SYNTAX."""
         self.expect(OPEN, sp - 2)
         fac = self.formula(sp - 2)
         self.expect(CLOSE, sp)
         return fac
 
     def _variable(self, sp: int, name: int, subscripts: bool) -> Number:
-        """FRM_VARIABLE: the value of a variable or an element."""
+        """FRM_VARIABLE: return the value of a variable or an array element."""
         kind = name & INTEGER
         self.inttyp = kind == INTEGER
         if subscripts and not self.subflg:
@@ -260,8 +284,8 @@ class Expressions(Variables):
         return self.integer_value(address) if kind else self.value(address)
 
     def function_name(self, sp: int) -> int:
-        """FNC: the address of the function named after FN, which is made if there is none. With a
-        string's mark and a function's in its name a variable is an integer; it is made, too."""
+        """FNC: return the address of the function named after FN, created if necessary. A name with
+        the marks of a string and a function counts as an integer variable, and is created, too."""
         self.expect(FN, sp - 2)
         self.subflg = SUBFLG_SIMPLE
         address = self.variable(sp - 2, mark=FUNCTION)
@@ -269,7 +293,8 @@ class Expressions(Variables):
         return address
 
     def _function_call(self, sp: int) -> Number:
-        """FUNCT: the formula of DEF FN, its variable set to the argument (an error leaves it)."""
+        """FUNCT: return the value of a DEF FN, whose variable is set meanwhile (and after an
+        error)."""
         ram = self.ram
         place = self.function_name(sp - 5)
         argument = self.parenthesis(sp - 7)
@@ -286,7 +311,7 @@ class Expressions(Variables):
         return fac
 
     def function(self, token: int, sp: int) -> Number:
-        """UNARY: a function in a formula with this ``sp``."""
+        """UNARY: return the value of a function in a formula with this ``sp``."""
         if token >= TOKENS["LEFT$"]:
             return self._slice(token, sp)
         if token == TOKENS["SCRN("]:
@@ -301,7 +326,7 @@ class Expressions(Variables):
             else:  # the method named for the function
                 result = getattr(self, f"_{word.rstrip('$').lower()}")(fac, sp - 5)
         except ApplesoftError as error:
-            raise placed(error, sp - FUNCTION_DEPTHS.get(word, 5)) from None
+            raise with_stack(error, sp - FUNCTION_DEPTHS.get(word, 5)) from None
         if self.valtyp and word not in ("CHR$", "STR$"):
             raise Fault("TYPE MISMATCH", sp - 3)
         return result
@@ -311,13 +336,13 @@ class Expressions(Variables):
         return self.seed
 
     def _usr(self, fac: Number, sp: int) -> Number:
-        """USR: what switching on puts there refuses every argument."""
+        """USR: the routine there after power-on refuses every argument."""
         raise illegal_quantity()
 
     def _fre(self, fac: Number, sp: int) -> Number:
-        """FRE: the room left, past 32767 as a negative number."""
+        """FRE: return the free bytes, past 32767 as a negative number."""
         if self.valtyp:
-            self.used(descriptor(fac))
+            self.release_text(descriptor(fac))
         self.collect_garbage()
         self.valtyp = 0
         return integer((self.fretop - self.strend + 0x8000 & 0xFFFF) - 0x8000)
@@ -336,10 +361,10 @@ class Expressions(Variables):
         return ZERO
 
     def _text(self, fac: Number, sp: int) -> bytes:
-        """GETSTR. Raises TYPE MISMATCH."""
+        """GETSTR: return a string argument. Raises TYPE MISMATCH for a number."""
         fault_if(not self.valtyp, "TYPE MISMATCH", sp - 6)
         self.valtyp = 0
-        return self.used(descriptor(fac))
+        return self.release_text(descriptor(fac))
 
     def _len(self, fac: Number, sp: int) -> Number:
         return integer(len(self._text(fac, sp)))
@@ -350,7 +375,7 @@ class Expressions(Variables):
         return integer(text[0])
 
     def _val(self, fac: Number, sp: int) -> Number:
-        """VAL. OVERFLOW leaves behind the string the zero that is put there to end it."""
+        """VAL: return the number of a string. After OVERFLOW the zero written behind it stays."""
         address = self.word(descriptor(fac) + 1) if self.valtyp else 0
         text = self._text(fac, sp)
         if not text:
@@ -370,7 +395,7 @@ class Expressions(Variables):
         return result
 
     def digits(self, x: Number) -> bytes:
-        """FOUT: the characters of a number. Counting digits it leaves a byte in VARPNT."""
+        """FOUT: return the characters of a number; the count of digits leaves a byte in VARPNT."""
         if x[0]:
             self.varpnt = self.varpnt & 0xFF00 | DIGITS_COUNTED
         return decimaltext.write(x).encode("ascii")
@@ -379,14 +404,15 @@ class Expressions(Variables):
         fault_if(self.valtyp, "TYPE MISMATCH", sp - 2)
         text = self.digits(fac)
         self.charac = 0
-        return self.made(text)
+        return self.new_string(text)
 
     def _chr(self, fac: Number, sp: int) -> Number:
         code = byte_of(fac, sp - 2)
-        return self.made(bytes((code,)), shifted_out(fac))
+        return self.new_string(bytes((code,)), shifted_out(fac))
 
     def _slice(self, token: int, sp: int) -> Number:
-        """LEFT$, RIGHT$ and MID$. Raises ILLEGAL QUANTITY for a first number of 0."""
+        """LEFT$, RIGHT$ and MID$: return part of a string. Raises ILLEGAL QUANTITY for a first
+        0."""
         self.expect(OPEN, sp - 6)
         string = self.formula(sp - 6)
         self.expect(COMMA, sp - 6)
@@ -408,7 +434,7 @@ class Expressions(Variables):
         else:
             length = min(first, size)
             start = 0 if word == "LEFT$" else size - length
-        address = self.room(length)
-        _, source = self.freed(place)
+        address = self.allocate(length)
+        _, source = self.free_string(place)
         self.move(source + start, address, length)
         return self.temporary(length, address, shifted_out(last))

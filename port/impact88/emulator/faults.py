@@ -1,4 +1,4 @@
-"""Errors as the ROM finds them: with the 6502's stack pointer, which ONERR leaves where it is."""
+"""Errors with the 6502's stack pointer at which the ROM detects them, where ONERR leaves it."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -9,8 +9,8 @@ T = TypeVar("T")
 
 
 class Fault(ApplesoftError):
-    """An error of a program. ``stack``: the stack pointer where the ROM jumps to ERROR; ``code``:
-    where it is not the kind's."""
+    """An error of a program. ``stack``: the stack pointer at the ROM's jump to ERROR; ``code``: for
+    ONERR, by default that of the kind."""
 
     def __init__(self, kind: str, stack: int, code: int = 0) -> None:
         super().__init__(kind)
@@ -19,26 +19,26 @@ class Fault(ApplesoftError):
 
 
 def fault_if(wrong: object, kind: str, stack: int, code: int = 0) -> None:
-    """Raises the `Fault` if something is wrong."""
+    """Raise a `Fault` if ``wrong``."""
     if wrong:
         raise Fault(kind, stack, code)
 
 
-def placed(error: ApplesoftError, stack: int) -> Fault:
-    """The error with a stack pointer, unless it has one already."""
+def with_stack(error: ApplesoftError, stack: int) -> Fault:
+    """Return the error with a stack pointer; a `Fault` keeps its own."""
     return error if isinstance(error, Fault) else Fault(error.kind, stack)
 
 
-def located(stack: int, does: Callable[..., T], *arguments: Any) -> T:
-    """What a routine returns; its errors are `placed`."""
+def call_at(stack: int, does: Callable[..., T], *arguments: Any) -> T:
+    """Call a routine and return its result; errors get the stack pointer ``stack``."""
     try:
         return does(*arguments)
     except ApplesoftError as error:
-        raise placed(error, stack) from None
+        raise with_stack(error, stack) from None
 
 
 class TooManyStatements(Exception):
-    """The program has done as many statements as it was allowed."""
+    """The program reached its limit of statements."""
 
 
 class Restart(Exception):

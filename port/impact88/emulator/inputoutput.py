@@ -1,45 +1,49 @@
 """PRINT, LIST and the messages; READ, INPUT and GET.
 
-READ, INPUT and GET take values by the same routine: TXTPTR changes places between the variables and
-the values. Each variable is found, its value read and stored, then what follows the value judged:
-values before a bad one stay. Only a comma, a colon or the end may follow.
+READ, INPUT and GET share a routine, in which TXTPTR alternates between variables and values. Each
+variable is found, its value read and stored, and only then the character after the value checked: a
+comma, a colon or the end. So values before a bad one stay.
 """
 
 from ..applesoft.console import CONTROL_C, RETURN
 from ..applesoft.real import Number, integer
 from .expressions import Expressions, byte_of
-from .faults import Fault, fault_if, located
+from .faults import Fault, call_at, fault_if
 from .memory import ADDRESSES, DIGITS, DIRECT, HEADER, INPUT_BUFFER, MINUS, PROMPT
 from .programfile import INDENT, WRAP_COLUMN
 from .screen import HEIGHT, WIDTH
-from .tokens import CLOSE, COLON, COMMA, DATA, FIRST, QUOTE, SEMICOLON, TOKENS, listed
+from .tokens import CLOSE, COLON, COMMA, DATA, FIRST, QUOTE, SEMICOLON, TOKENS, list_text
 from .variables import IS_STRING, descriptor
 
-TAB, SPC = TOKENS["TAB("], TOKENS["SPC("]
-ZONE = 16
-"""Columns from one of a comma's zones to the next."""
-LAST_ZONE_FROM = 24
-"""The column from which on a comma begins a new row."""
-LAST_NUMBER = 0xFFFF
-"""The last line that LIST looks for."""
-NUMBER_AT = 0x100
-"""Where FOUT puts the digits of a number."""
-FROM_REPLY, FROM_KEY, FROM_DATA, BAD_REPLY, BREAK_CODE, AFTER_GET = 0, 0x40, 0x98, 254, 255, 0xFF40
-"""INPFLG; codes of ONERR; what a bad GET puts in place of the line number: the machine believes it
-is at the prompt."""
-NO_PROMPT = 0x80
-"""The prompt while INPUT reads, which shows nothing."""
-REENTER, EXTRA_IGNORED = b"?REENTER\r", b"?EXTRA IGNORED\r"
-ERROR, IN, BREAK = b" ERROR\a", b" IN ", b"\rBREAK\a"
+TAB = TOKENS["TAB("]
+SPC = TOKENS["SPC("]
+ZONE_WIDTH = 16  # columns of a comma's zone
+LAST_ZONE_COLUMN = 24  # from this column on a comma begins a new row
+LAST_NUMBER = 0xFFFF  # the last line number that LIST searches for
+DIGITS_ADDRESS = 0x100  # where FOUT puts the digits of a number
+# INPFLG
+FROM_REPLY = 0
+FROM_KEY = 0x40
+FROM_DATA = 0x98
+# codes of ONERR
+BAD_REPLY = 254
+BREAK_CODE = 255
+AFTER_GET = 0xFF40  # CURLIN after a bad GET: the machine seems to be at the prompt
+NO_PROMPT = 0x80  # the invisible prompt of INPUT
+REENTER = b"?REENTER\r"
+EXTRA_IGNORED = b"?EXTRA IGNORED\r"
+ERROR = b" ERROR\a"
+IN = b" IN "
+BREAK = b"\rBREAK\a"
 MESSAGES_AT = {ERROR: 0xD350, IN: 0xD358, BREAK: 0xD35D, REENTER: 0xDCEF, EXTRA_IGNORED: 0xDCDF}
-"""Where the ROM's messages stand: a temporary string's descriptor shows it."""
+"""Addresses of the ROM's messages, which appear in a temporary string's descriptor."""
 
 
 class InputOutput(Expressions):
-    """Output and input. ``flash`` is set in every printing character sent."""
+    """Output and input. The bits of ``flash`` are set in every printing character sent."""
 
     def put(self, text: str) -> None:
-        """OUTDO: characters, high bit dropped, RETURN as newline."""
+        """OUTDO: send characters, without the high bit and with RETURN as newline."""
         if self.flash or not text.isascii() or "\r" in text:
             bit = self.flash & 0x7F
             codes = (ord(character) & 0x7F for character in text)
@@ -47,27 +51,27 @@ class InputOutput(Expressions):
         self.console.put(text)
 
     def show(self, text: bytes) -> None:
-        """STRPRT: a string's characters. A line feed moves down and leaves the column as it is."""
-        first, *others = text.decode("latin-1").split("\n")
+        """STRPRT: send a string's characters. A line feed moves down and keeps the column."""
+        first, *more = text.decode("latin-1").split("\n")
         self.put(first)
-        for other in others:
+        for text_part in more:
             column = self.screen.column
             self.put("\n")
             self.screen.stay_at(column)
-            self.put(other)
+            self.put(text_part)
 
     def show_message(self, text: bytes, address: int = 0) -> None:
-        """STROUT: a text that is no variable's, as a temporary string: a message of the ROM, or
-        what stands at an address."""
+        """STROUT: send a text by way of a temporary string: a message of the ROM, or the text at an
+        address."""
         address = address or MESSAGES_AT[text]
-        self.used(descriptor(self.temporary(len(text), address, address >> 8)))
+        self.release_text(descriptor(self.temporary(len(text), address, address >> 8)))
         self.fac = len(text), self.fac[1], 0
         self.show(text)
 
     def show_number(self, x: Number) -> None:
-        """FOUT and STROUT. Raises FORMULA TOO COMPLEX."""
+        """FOUT and STROUT: send a number. Raises FORMULA TOO COMPLEX."""
         self.charac = 0
-        self.show_message(self.digits(x), NUMBER_AT)
+        self.show_message(self.digits(x), DIGITS_ADDRESS)
 
     def print_(self) -> None:
         sp, newline = self.sp - 2, True
@@ -75,15 +79,15 @@ class InputOutput(Expressions):
             if newline := byte not in (TAB, SPC, COMMA, SEMICOLON):
                 fac = self.formula(sp - 2)
                 if self.valtyp:
-                    self.show(self.used(descriptor(fac)))
+                    self.show(self.release_text(descriptor(fac)))
                 else:
                     self.show_number(fac)
                 continue
             self.txtptr += 1
-            if byte == COMMA and self.screen.column >= LAST_ZONE_FROM:
+            if byte == COMMA and self.screen.column >= LAST_ZONE_COLUMN:
                 self.put("\n")
             elif byte == COMMA:
-                self.screen.column = self.screen.column + ZONE & 0xF0
+                self.screen.column = self.screen.column + ZONE_WIDTH & 0xF0
             elif byte != SEMICOLON:  # TAB counts from 1, 0 is 256
                 columns = self.byte(sp - 3)
                 fault_if(self.character() != CLOSE, "SYNTAX", sp - 1)
@@ -140,7 +144,9 @@ class InputOutput(Expressions):
             for place, byte in enumerate(ram[line + HEADER : ram.index(0, line + HEADER)], HEADER):
                 if byte >= FIRST:
                     self._keep_place(place)
-                self.put(listed(byte) if self.screen.shows else self._masked(listed(byte)))
+                self.put(
+                    list_text(byte) if self.screen.shows else self._apply_mask(list_text(byte))
+                )
                 if self.screen.column >= WRAP_COLUMN:
                     self.put("\n")
                     self.screen.column = INDENT
@@ -148,19 +154,19 @@ class InputOutput(Expressions):
         self.put("\n")
 
     def _keep_place(self, place: int) -> None:
-        """LIST keeps its place in a line in the low byte of FORPNT."""
+        """Store LIST's place in a line in the low byte of FORPNT, as the ROM does."""
         self.forpnt = self.forpnt & 0xFF00 | place & 0xFF
 
-    def _masked(self, piece: str) -> str:
-        """What LIST sends of a piece under an unusual mask: a letter of which the mask leaves
-        nothing ends a keyword."""
+    def _apply_mask(self, piece: str) -> str:
+        """Return what LIST sends of a keyword under an unusual mask: a letter that the mask clears
+        ends it."""
         for place, letter in enumerate(piece[1:-1], 1):
             if not (ord(letter) | self.flash) & self.screen.mask & 0x7F:
                 return piece[: place + 1] + "\0 "
         return piece
 
     def refuse_direct(self, sp: int) -> None:
-        """ERRDIR. Raises ILLEGAL DIRECT at the prompt."""
+        """ERRDIR: raise ILLEGAL DIRECT at the prompt."""
         fault_if(self.curlin >= DIRECT, "ILLEGAL DIRECT", sp)
 
     def _put_in_buffer(self, text: str) -> None:
@@ -168,8 +174,8 @@ class InputOutput(Expressions):
         self.ram[INPUT_BUFFER : INPUT_BUFFER + len(data)] = data
 
     def get_line(self, start: int = 0, before: str | None = None) -> None:
-        """GETLN: a line into page 2, high bits set, from a place of it on; ``before``: what stands
-        before the prompt, if there is to be one."""
+        """GETLN: read a line into page 2, high bits set, from index ``start`` on; ``before``: text
+        before the prompt, None for no prompt."""
         prompt = chr(self.ram[PROMPT] & 0x7F)
         if before is not None:
             self.put(before + prompt)
@@ -185,7 +191,7 @@ class InputOutput(Expressions):
         if self.character() == QUOTE:
             prompt = self.literal(self.txtptr + 1)
             self.expect(SEMICOLON, sp - 2)
-            self.show(self.used(descriptor(prompt)))
+            self.show(self.release_text(descriptor(prompt)))
         else:
             self.put("?")
         self.refuse_direct(sp - 2)
@@ -206,7 +212,8 @@ class InputOutput(Expressions):
         self.take_items(FROM_KEY, INPUT_BUFFER + 1, self.sp - 4)
 
     def take_items(self, source: int, values: int, sp: int) -> None:
-        """PROCESS_INPUT_LIST: TXTPTR stands at the variables, ``values`` before the values."""
+        """PROCESS_INPUT_LIST: assign values. TXTPTR is at the variables; ``values``: address before
+        the values; ``source``: INPFLG."""
         ram = self.ram
         while True:
             self.forpnt = self.variable(sp - 2)
@@ -215,13 +222,13 @@ class InputOutput(Expressions):
                 self._more_values(source, sp)
             self.txtptr += 1
             self.character()
-            refused = located(sp - 4, self._take_item, source, sp)
+            refused = call_at(sp - 4, self._take_item, source, sp)
             if refused or not (self.at_end() or ram[self.txtptr] == COMMA):
                 if source != FROM_REPLY:
                     self.curlin = self.datlin if source == FROM_DATA else AFTER_GET
                     raise Fault("SYNTAX", sp)
                 fault_if(self.errflg & 0x80, "SYNTAX", sp, BAD_REPLY)
-                # asked again, from where the ROM noted last that a statement begins
+                # ask again, from the last statement whose start the ROM stored
                 self.show_message(REENTER)
                 self.txtptr = self.oldtext
                 return
@@ -235,8 +242,8 @@ class InputOutput(Expressions):
             self.show_message(EXTRA_IGNORED)
 
     def _more_values(self, source: int, sp: int) -> None:
-        """Where the values are used up: the next DATA's text, a key, or another reply. Raises OUT
-        OF DATA."""
+        """Move TXTPTR to further values: the next DATA, a key, or another reply. Raises OUT OF
+        DATA."""
         ram = self.ram
         while source == FROM_DATA:
             self.data_()
@@ -255,7 +262,7 @@ class InputOutput(Expressions):
         self.txtptr = INPUT_BUFFER - 1
 
     def _take_item(self, source: int, sp: int) -> bool:
-        """Read one value and store it; whether it is refused before it is read."""
+        """Read one value and store it. Return True if it is refused before it is read."""
         if not self.valtyp:
             if source == FROM_REPLY and not self.ram[INPUT_BUFFER]:
                 return True

@@ -1,13 +1,14 @@
-"""The machine that runs a program: NEWSTT, the statements, and the program as it is typed.
+"""The machine that runs a program: NEWSTT, the statements, and entering program lines.
 
-One method a routine of the ROM, its docstring beginning with its label in the published listings of
-the ROM; a statement's is named for its keyword, with an underscore. `memory`, `variables`,
-`expressions` and `inputoutput` hold the rest. FOR and GOSUB put 18 and 7 bytes on the 6502's stack,
-and are found only from the stack pointer on, frame upon frame: what an error that ONERR caught left
-there hides all below it. In memory a line is the address of the next one, its number, its tokens
-and a zero; an address of 0 ends the program. LIST and GOTO follow the addresses; a running program
-goes on with the bytes behind a line's zero.
-"""
+There is one method for each routine of the ROM, whose docstring begins with the routine's label in
+the published listings; a statement's method is named after its keyword, with an underscore.
+`memory`, `variables`, `expressions` and `inputoutput` contain the rest.
+
+FOR and GOSUB put 18 and 7 bytes on the 6502's stack. They are found only as consecutive frames from
+the stack pointer on, so that bytes left by an error that ONERR caught hide all frames below. In
+memory a line is the address of the next one, its number, its tokens and a zero; an address of 0
+ends the program. LIST and GOTO follow the addresses; a running program continues with the bytes
+after a line's zero."""
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
@@ -16,7 +17,7 @@ from typing import Any, NamedTuple
 from ..applesoft.errorcodes import ApplesoftError
 from ..applesoft.real import ZERO, Number, add, compare, integer, rounded
 from .expressions import ONE, address_of
-from .faults import Fault, Restart, fault_if, placed
+from .faults import Fault, Restart, fault_if, with_stack
 from .inputoutput import BREAK, BREAK_CODE, ERROR, FROM_DATA, IN, InputOutput
 from .memory import (
     DIGITS,
@@ -43,28 +44,38 @@ from .tokens import (
 )
 from .variables import store
 
-FOR_SIZE, FOR_ROOM, GOSUB_SIZE, GOSUB_ROOM, NO_VARIABLE = 18, 74, 7, 64, -1
-"""Bytes on the stack, and where the stack pointer has to be at least; a GOSUB's variable."""
+FOR_SIZE = 18  # bytes on the stack
+FOR_ROOM = 74  # the lowest stack pointer at FOR
+GOSUB_SIZE = 7
+GOSUB_ROOM = 64
+NO_VARIABLE = -1  # the variable of a GOSUB's frame
 AFTER_CALL = 0x9E
-"""The place of page 2 where keys come to lie by CALL -678, which goes on amid the monitor's reading
-of a line with what CALL has left in a register."""
+"""Index on page 2 at which CALL -678 stores keys: it enters the monitor's reading of a line in the
+middle, with a register as CALL left it."""
 END_MARK = b"\0\0"
-TO, THEN, STEP, GOSUB, GOTO, EQUAL = (TOKENS[word] for word in "TO THEN STEP GOSUB GOTO =".split())
+TO = TOKENS["TO"]
+THEN = TOKENS["THEN"]
+STEP = TOKENS["STEP"]
+GOSUB = TOKENS["GOSUB"]
+GOTO = TOKENS["GOTO"]
+EQUAL = TOKENS["="]
 EVERY_BYTE = bytes(range(256))
-KEPT = {
+STORED_BYTES = {
     "SPEED=": (0xF1, bytes(-n & 0xFF for n in EVERY_BYTE)),
     "COLOR=": (0x30, bytes((n & 15) * 17 for n in EVERY_BYTE)),
     "HCOLOR=": (0xE4, bytes.fromhex("00 2A 55 7F 80 AA D5 FF")),
     "ROT=": (0xF9, EVERY_BYTE),
     "SCALE=": (0xE7, EVERY_BYTE),
 }
-"""Statements that put a byte into memory for drawing, which is not done here, and for PEEK: where,
-and what for each number."""
+"""Statements that only store a byte for drawing, which is not implemented, and for PEEK: its
+address, and the byte for each number."""
 
 
 class Frame(NamedTuple):
-    """A loop or, without a variable, a subroutine: the stack pointer below it, the address of the
-    variable, where it goes back to; ``sign``: of the step."""
+    """A loop or, with `NO_VARIABLE`, a subroutine.
+
+    ``sp``: the stack pointer below it; ``variable``: the address of the loop's variable; ``line``,
+    ``text``: the place to return to; ``sign``: that of the step."""
 
     sp: int
     variable: int
@@ -79,10 +90,10 @@ NO_FRAME = Frame(-1, NO_VARIABLE, 0, 0)
 
 
 class Machine(InputOutput):
-    """An Apple II Plus with 48K as far as a BASIC program can tell.
+    """An Apple II Plus with 48K, as seen by a BASIC program.
 
-    ``after_line(number)`` is called each time the program leaves a line. Of the last program:
-    ``broken``, whether control-C ended it, and ``error``, in which.
+    ``after_line(number)`` is called each time the program leaves a line. ``broken``: True if
+    control-C ended the last program; ``error``: the error that ended it, or None.
     """
 
     def __init__(self, *devices: Any, **options: Any) -> None:
@@ -94,7 +105,7 @@ class Machine(InputOutput):
             for word in KEYWORDS[: LAST_STATEMENT - FIRST + 1]
         }
         statements |= {
-            **{word: partial(self.keep_byte, *where) for word, where in KEPT.items()},
+            **{word: partial(self.store_byte, *where) for word, where in STORED_BYTES.items()},
             "HOME": self.screen.home,
             "TEXT": self.screen.full_window,
             "NORMAL": partial(self.set_mode, NORMAL),
@@ -106,20 +117,27 @@ class Machine(InputOutput):
             "POKE": lambda: self.poke(*self._address_and_byte()),
             "READ": lambda: self.take_items(FROM_DATA, self.datptr, self.sp - 2),
             "PR#": lambda: self.console.select(self.byte(self.sp - 4)),
-            "IN#": lambda: self.byte(self.sp - 4),  # nothing but the keyboard is plugged in
+            "IN#": lambda: self.byte(self.sp - 4),  # there is no input but the keyboard
         }
-        alone: dict[str, Callable[[], object]] = {
-            **{"CLEAR": self.clear, "CONT": self.cont, "END": self.end, "NEW": self.new},
-            **{"POP": self.subroutine, "RETURN": self.return_, "STOP": partial(self.end, BREAK)},
+        without_operands: dict[str, Callable[[], object]] = {
+            "CLEAR": self.clear,
+            "CONT": self.cont,
+            "END": self.end,
+            "NEW": self.new,
+            "POP": self.subroutine,
+            "RETURN": self.return_,
+            "STOP": partial(self.end, BREAK),
         }
-        statements |= {word: partial(self._alone, does) for word, does in alone.items()}
+        statements |= {
+            word: partial(self._run_if_alone, routine) for word, routine in without_operands.items()
+        }
         self.statements = list(statements.values())
         self.clear_stack()
         self.text_changed()
         self.variables_changed()
 
     def go(self, step: Callable[[], None]) -> None:
-        """Do a ``step`` and whatever follows, until the machine is back at the prompt. Raises
+        """Run ``step`` and continue until the machine is back at the prompt. Raises
         TooManyStatements and `console.EndOfInput`."""
         self.curlin |= DIRECT
         self.error, self.broken = None, False
@@ -138,10 +156,11 @@ class Machine(InputOutput):
             self.after_line(self.curlin)
 
     def _handle(self, error: ApplesoftError) -> None:
-        """ERROR: a message and RESTART; under ONERR its line (HANDLERR), the stack left as it is.
-        Raises UNDEF'D STATEMENT there, where the ROM would loop."""
+        """ERROR: show a message and RESTART; under ONERR go to its line (HANDLERR) and leave the
+        stack as it is. Raises UNDEF'D STATEMENT if that line is missing, where the ROM would
+        loop."""
         if self.errflg & 0x80:
-            stack = placed(error, self.sp - 4).stack
+            stack = with_stack(error, self.sp - 4).stack
             self.errnum, self.errstk = error.code, self.remstk
             self.errlin, self.errpos = self.curlin, self.oldtext
             self.txtptr, self.curlin = self.txtpsv, self.cursv
@@ -161,7 +180,7 @@ class Machine(InputOutput):
         raise Restart
 
     def next_statements(self) -> None:
-        """NEWSTT: statement after statement. Raises Restart at the program's end."""
+        """NEWSTT: execute statements. Raises Restart at the program's end."""
         ram, statements = self.ram, self.statements
         line = self.curlin
         while True:
@@ -200,7 +219,7 @@ class Machine(InputOutput):
                 self.execute()
 
     def execute(self) -> None:
-        """EXECUTE_STATEMENT: the statement at TXTPTR. Raises SYNTAX."""
+        """EXECUTE_STATEMENT: execute the statement at TXTPTR. Raises SYNTAX."""
         ram, pos = self.ram, self.txtptr
         while (byte := ram[pos]) == BLANK:
             pos += 1
@@ -222,7 +241,7 @@ class Machine(InputOutput):
             self.expect(COMMA, self.sp - 4)
 
     def def_(self) -> None:
-        """DEF: where the formula stands, and the variable of the argument."""
+        """DEF: store the address of the formula and that of the argument's variable."""
         sp = self.sp - 4
         function = self.function_name(sp)
         self.refuse_direct(sp)
@@ -241,13 +260,13 @@ class Machine(InputOutput):
         return address_of(self.number(sp), sp)
 
     def _address_and_byte(self) -> tuple[int, int]:
-        """GTNUM: an address, a comma, a byte."""
+        """GTNUM: return an address and, after a comma, a byte."""
         place = self._address(self.sp - 6)
         self.expect(COMMA, self.sp - 6)
         return place, self.byte(self.sp - 4)
 
     def wait_(self) -> None:
-        """WAIT: until bits come up, which of a key's alone do here."""
+        """WAIT: wait for bits at an address; only those of a key change here."""
         (place, mask), flip = self._address_and_byte(), 0
         if not self.at_end():
             self.expect(COMMA, self.sp - 6)
@@ -258,13 +277,20 @@ class Machine(InputOutput):
             self.pause()
 
     def call_(self) -> None:
-        """CALL of a routine that is known, or of a bare RTS (0x60)."""
+        """CALL: run one of the routines implemented here, or a bare RTS (0x60)."""
         place = self._address(self.sp - 4)
         bell, normal = partial(self.put, "\a"), partial(self.set_mode, NORMAL)
         routines: dict[int, Callable[[], object]] = {
-            **{0xF328: self.forget_error, 0xD66C: self.clear, 0xD683: self.clear_stack},
-            **{0xFD8E: partial(self.put, "\n"), 0xFF3A: bell, 0xFBDD: bell, 0xFCA8: int},  # WAIT
-            **{0xFE80: partial(self.set_mode, INVERSE), 0xFE84: normal, 0xF273: normal},
+            0xF328: self.forget_error,
+            0xD66C: self.clear,
+            0xD683: self.clear_stack,
+            0xFD8E: partial(self.put, "\n"),
+            0xFF3A: bell,
+            0xFBDD: bell,
+            0xFCA8: int,  # WAIT, which only takes time
+            0xFE80: partial(self.set_mode, INVERSE),
+            0xFE84: normal,
+            0xF273: normal,
             0xFD0C: self.console.read_key,
             0xFD5A: partial(self.get_line, AFTER_CALL),
             0xFD67: partial(self.get_line, before="\n"),
@@ -287,12 +313,12 @@ class Machine(InputOutput):
         self.vartab = place
         self.clear()
 
-    def _alone(self, does: Callable[[], object]) -> None:
-        """A statement that takes nothing; where something follows it does nothing."""
+    def _run_if_alone(self, does: Callable[[], object]) -> None:
+        """Run a statement without operands; if anything follows it does nothing."""
         if self.at_end():
             does()
 
-    def keep_byte(self, place: int, table: bytes) -> None:
+    def store_byte(self, place: int, table: bytes) -> None:
         n = self.byte(self.sp - 4)
         fault_if(n >= len(table), "ILLEGAL QUANTITY", self.sp - 2)
         self.ram[place] = table[n]
@@ -301,13 +327,13 @@ class Machine(InputOutput):
         self.trcflg = self.trcflg >> 1 | bit
 
     def set_stack(self, sp: int) -> None:
-        """TXS: what lay below is gone."""
+        """TXS: set the stack pointer and drop the frames below it."""
         self.sp = sp
         while self.frames and self.frames[-1].sp < sp:
             self.frames.pop()
 
     def clear_stack(self) -> None:
-        """STKINI: nothing on the stack, no temporaries, nothing to continue."""
+        """STKINI: clear the stack, temporary strings and the place for CONT."""
         self.temppt = TEMPORARIES
         self.sp = STACK
         self.frames: list[Frame] = []
@@ -315,7 +341,7 @@ class Machine(InputOutput):
         self.subflg = 0
 
     def set_pointers(self) -> None:
-        """SETPTRS: TXTPTR before the program; and CLEARC: no variables, DATA from the beginning."""
+        """SETPTRS: set TXTPTR before the program; and CLEARC: clear variables and restore DATA."""
         self.txtptr = self.txttab - 1
         self.clear()
 
@@ -328,8 +354,8 @@ class Machine(InputOutput):
         self.clear_stack()
 
     def _find_loop(self) -> tuple[int, int]:
-        """GTFORPNT: the loop with FORPNT's variable, or the innermost one if FORPNT's high byte is
-        0, or -1; where the stack pointer came to in looking."""
+        """GTFORPNT: return the index of the loop with FORPNT's variable (the innermost one if
+        FORPNT's high byte is 0), -1 if there is none, and the stack pointer after the search."""
         sp, frames = self.sp, self.frames
         for n in range(len(frames) - 1, -1, -1):
             frame = frames[n]
@@ -343,11 +369,11 @@ class Machine(InputOutput):
         return -1, sp
 
     def let(self, sp: int) -> None:
-        known = self.atoms.get(self.txtptr)
-        if known and known[1] in self.simple and self.ram[known[0]] == EQUAL:
-            self.forpnt = self.varpnt = target = self.simple[known[1]]
+        atom = self.atoms.get(self.txtptr)
+        if atom and atom[1] in self.simple and self.ram[atom[0]] == EQUAL:
+            self.forpnt = self.varpnt = target = self.simple[atom[1]]
             of_integer = of_string = self.subflg = 0
-            self.txtptr = known[0] + 1
+            self.txtptr = atom[0] + 1
         else:
             self.forpnt = target = self.variable(sp - 2)
             of_integer, of_string = self.inttyp, self.valtyp
@@ -364,7 +390,7 @@ class Machine(InputOutput):
             store(self.ram, target, e, m >> 8 & 0x7FFFFFFF | s << 31)
 
     def for_(self) -> None:
-        """FOR. The ROM goes on with whatever stands behind it."""
+        """FOR: push a loop. Like the ROM, continue with whatever follows the statement."""
         self.subflg = SUBFLG_SIMPLE
         self.let(self.sp - 4)
         n, sp = self._find_loop()
@@ -387,7 +413,7 @@ class Machine(InputOutput):
         self.frames.append(Frame(self.sp, self.forpnt, self.curlin, back, limit, step, sign))
 
     def next_(self) -> None:
-        """NEXT. Raises NEXT WITHOUT FOR."""
+        """NEXT: increment the variable and repeat the loop or end it. Raises NEXT WITHOUT FOR."""
         frames = self.frames
         if self.at_end():
             self.forpnt &= 0xFF
@@ -413,16 +439,16 @@ class Machine(InputOutput):
             self.forpnt = self.variable(self.sp - 4)
 
     def goto_(self, sp: int = 0) -> None:
-        """GOTO. Raises SYNTAX and UNDEF'D STATEMENT."""
+        """GOTO: continue at a line. Raises SYNTAX and UNDEF'D STATEMENT."""
         start = self.txtptr
         target = self.targets.get(start)
         if target is None:
             sp = sp or self.sp - 2
             number = self.line_number(sp - 2)
             self.rem_()
-            beyond = self.txtptr + 1 if number >> 8 > self.curlin >> 8 else self.txttab
-            found, address = self.find_line(number, beyond)
-            fault_if(not found, "UNDEF'D STATEMENT", sp)
+            search_start = self.txtptr + 1 if number >> 8 > self.curlin >> 8 else self.txttab
+            exists, address = self.find_line(number, search_start)
+            fault_if(not exists, "UNDEF'D STATEMENT", sp)
             target = address - 1
             if self.txttab <= start < self.prgend:
                 self.targets[start] = target
@@ -443,8 +469,10 @@ class Machine(InputOutput):
         self.data_()
 
     def subroutine(self) -> Frame:
-        """The innermost GOSUB, which is over then. The ROM looks for a loop whose variable lies at
-        $xxFF, xx being left over from the last assignment, and fails if there is one."""
+        """Pop the innermost GOSUB and return its frame.
+
+        Loops inside it are dropped: the ROM searches for a loop whose variable is at $xxFF, xx
+        being left from the last assignment, and fails if there is one."""
         self.forpnt |= 0xFF
         n, sp = self._find_loop()
         if n < 0 or sp != self.sp:
@@ -470,7 +498,7 @@ class Machine(InputOutput):
                 return
 
     def if_(self) -> None:
-        """IF. Of a string the ROM sees the number that stands in the accumulator."""
+        """IF: for a string the condition is the number in the accumulator, as in the ROM."""
         sp = self.sp - 2
         fac = self.formula(sp - 2)
         if self.ram[self.txtptr] != THEN and self.character() == GOTO:
@@ -492,17 +520,17 @@ class Machine(InputOutput):
         self.rem_()
 
     def resume_(self) -> None:
-        """RESUME. Where there was no error the ROM goes on at address 0."""
+        """RESUME: continue at the error, or, as in the ROM, at address 0 if there was none."""
         self.curlin, self.txtptr = self.errlin, self.errpos
         self.forget_error()
 
     def forget_error(self) -> None:
-        """CALL -3288: the stack as it was before the error."""
+        """CALL -3288: restore the stack pointer of before the error."""
         self.set_stack(self.errstk)
 
     def run_(self) -> None:
-        """RUN. To say that a program runs now the machine takes 256 from the line number, also
-        from that of a line that runs already."""
+        """RUN: to mark a running program the ROM subtracts 256 from the line number, also in a
+        program that already runs."""
         self.curlin = self.curlin - 0x100 & 0xFFFF
         if self.at_end():
             self.set_pointers()
@@ -511,7 +539,8 @@ class Machine(InputOutput):
             self.goto_()
 
     def end(self, message: bytes = b"") -> None:
-        """END, or STOP with a message; CONT goes on here, unless at the prompt."""
+        """END, or STOP with a message: end the program; CONT continues here, unless at the
+        prompt."""
         if self.curlin < DIRECT:
             self.oldtext, self.oldlin = self.txtptr, self.curlin
         if message:
@@ -519,13 +548,13 @@ class Machine(InputOutput):
         raise Restart
 
     def break_(self) -> None:
-        """Control-C: an error under ONERR, else as STOP."""
+        """Control-C: an error under ONERR, otherwise like STOP."""
         fault_if(self.errflg & 0x80, "SYNTAX", self.sp - 4, BREAK_CODE)
         self.broken = True
         self.end(BREAK)
 
     def message(self, text: bytes) -> None:
-        """A message, and the line if there is one."""
+        """Show a message, and the line number in a program."""
         self.show_message(text)
         if self.curlin < DIRECT:
             self.show_message(IN)
@@ -536,29 +565,29 @@ class Machine(InputOutput):
         self.txtptr, self.curlin = self.oldtext, self.oldlin
 
     def lines(self) -> Iterator[tuple[int, bytes]]:
-        """Numbers and tokens, as the addresses lead."""
+        """Yield number and tokens of each line, following the addresses."""
         ram, address = self.ram, self.txttab
-        passed: set[int] = set()
-        while ram[address + 1] and address not in passed and address < ROM:
-            passed.add(address)
+        addresses: set[int] = set()
+        while ram[address + 1] and address not in addresses and address < ROM:
+            addresses.add(address)
             yield self.word(address + 2), bytes(ram[address + 4 : ram.index(0, address + 4)])
             address = self.word(address)
 
     def load(self, lines: Iterable[tuple[int, bytes]]) -> None:
-        """Put lines, in their order, in place of the program. Raises OUT OF MEMORY, and changes
-        nothing then."""
-        image = b"".join(_linked(*line) for line in lines) + END_MARK
+        """Replace the program by lines, in their order. Raises OUT OF MEMORY without changing
+        anything."""
+        image = b"".join(_line_bytes(*line) for line in lines) + END_MARK
         fault_if(self.txttab + len(image) >= self.memsiz, "OUT OF MEMORY", self.sp)
         self.ram[self.txttab : self.txttab + len(image)] = image
         self.vartab = self.txttab + len(image)
         self.fix_links()
 
     def store_line(self, number: int, tokens: bytes) -> None:
-        """A line typed with a number: put in, or taken out if it has no tokens."""
+        """Insert or replace a line typed with a number, or delete it if it has no tokens."""
         ram = self.ram
         self.vartab = self.prgend
-        known, line = self.find_line(number, self.txttab)
-        if known:
+        exists, line = self.find_line(number, self.txttab)
+        if exists:
             self._close(line, self.word(line))
         if tokens:
             size = HEADER + len(tokens) + 1
@@ -567,16 +596,17 @@ class Machine(InputOutput):
             fault_if(self.vartab + size >= self.fretop, "OUT OF MEMORY", self.sp)
             ram[line + size : self.vartab + size] = ram[line : self.vartab]
             self.vartab += size
-            ram[line : line + size] = _linked(number, tokens)
+            ram[line : line + size] = _line_bytes(number, tokens)
         self.fix_links()
 
     def _close(self, start: int, end: int) -> None:
+        """Delete the program's bytes from ``start`` to ``end``."""
         if start <= end <= self.vartab:
             self.ram[start : start + self.vartab - end] = self.ram[end : self.vartab]
             self.vartab -= end - start
 
     def fix_links(self) -> None:
-        """FIX_LINKS: each line the address of the next one; no variables."""
+        """FIX_LINKS: set the address of the next line in each line, and clear the variables."""
         self.text_changed()
         self.set_pointers()
         ram, address = self.ram, self.txttab
@@ -587,16 +617,16 @@ class Machine(InputOutput):
         self.prgend = self.vartab
 
     def new(self) -> None:
-        """NEW. A program that does it comes to its end, from where CONT can go on."""
+        """NEW: clear the program. If a program does it, it ends, and CONT continues there."""
         self.lock = 0
         self.ram[self.txttab : self.txttab + 2] = END_MARK
-        # the carry is set here, so that there is one byte more than the program takes
+        # the ROM adds with the carry set, which makes one byte more than the program takes
         self.vartab = self.prgend = self.txttab + 3
         self.text_changed()
         self.set_pointers()
 
     def del_(self) -> None:
-        """DEL. The program ends, unless the range lies before its own beginning."""
+        """DEL: delete lines and end the program, unless the range is in reverse order."""
         sp = self.sp - 2
         fault_if(self.character() not in DIGITS, "SYNTAX", sp)
         self.vartab = self.prgend
@@ -612,5 +642,6 @@ class Machine(InputOutput):
         raise Restart
 
 
-def _linked(number: int, tokens: bytes) -> bytes:
+def _line_bytes(number: int, tokens: bytes) -> bytes:
+    """Return a line as stored in memory, its link not yet set."""
     return b"\1\1" + number.to_bytes(2, "little") + tokens + b"\0"

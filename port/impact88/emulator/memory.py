@@ -1,9 +1,9 @@
 """The machine's memory: 64K of bytes, page 0 by name, PEEK and POKE, and the program's text.
 
-All that a program can look at lies in ``ram`` where the ROM puts it. The pointers of page 0 are
-attributes, by the names of the ROM's listing in small letters (`POINTERS`); there is no ROM to
-read. What has been read at an address of the program (a name, a constant, a line number) is
-remembered until a byte of the program changes; page 2 is read anew each time.
+All that a program can inspect is in ``ram`` at the ROM's addresses. The pointers of page 0 are
+attributes, named as in the ROM's listing in small letters (`POINTERS`); the ROM itself is not
+readable. Names, constants and line numbers read in the program are cached by address until a byte
+of the program changes; page 2 is never cached.
 """
 
 import re
@@ -16,34 +16,36 @@ from .faults import Fault, TooManyStatements
 from .screen import BASE, END, Screen
 from .tokens import BLANK, COLON, OPEN, QUOTE, TOKENS
 
-TEXT_START, ROM, STACK, DIRECT = 0x801, 0xC000, 0xF8, 0xFF00
-"""The machine's TXTTAB and, without a disk system, HIMEM; the stack pointer when nothing is on the
-stack; CURLIN from here on: typed without a line number."""
-INPUT_BUFFER, BUFFER_END = 0x200, 0x300
-"""Page 2, where typed lines are read in and their tokens put in their place."""
-TEMPORARIES, TEMPORARIES_END, EMPTY = 0x55, 0x5E, 0xE09A
-"""TEMPST: the descriptors of three temporary strings; a zero in ROM, where a variable is found
-that was never made."""
+TEXT_START = 0x801  # TXTTAB
+ROM = 0xC000  # HIMEM without a disk system
+STACK = 0xF8  # the stack pointer of an empty stack
+DIRECT = 0xFF00  # CURLIN from here on means a line typed without a number
+INPUT_BUFFER = 0x200  # page 2, where typed lines are read and replaced by their tokens
+BUFFER_END = 0x300
+TEMPORARIES = 0x55  # TEMPST, the descriptors of three temporary strings
+TEMPORARIES_END = 0x5E
+EMPTY = 0xE09A  # a zero in ROM, the value of a variable never assigned
 APPLE_II_PLUS = {0xFBB3: 0xEA}
-"""The byte of the monitor by which programs identify the model."""
+"""The byte of the monitor that identifies the model."""
 PAGE_ZERO = bytes.fromhex("4C3CD4 4C3ADB 000000 00 4C99E1")
-"""The jumps with which switching on begins page 0: to the prompt, to print a text, and USR's."""
+"""Start of page 0 after power-on: jumps to the prompt, to print a text, and USR's."""
 FIRST_SEED = from_stored("804FC75200")
-"""RND's seed after switching on: of the ROM's five bytes, which end in 58, four are copied."""
+"""RND's seed after power-on: of the ROM's five bytes, which end in 58, four are copied."""
 AFTER_TYPING = (0xD0, 0xD0 << 32, 0)
-"""What the ROM's parser leaves in the accumulator: an address."""
-SEED, SCREEN, ADDRESSES = range(201, 206), range(BASE, END), 0x10000
-REFUSALS, MORE_REFUSED = 8, "more of the kind"
-"""How many different requests for what is not done here are remembered; a program makes few."""
-_BEYOND = 0x200
-"""Zeros behind the last address, so that text that runs on to the end of memory ends there."""
+"""The accumulator after the ROM's parser: an address."""
+SEED = range(201, 206)  # addresses of RND's seed
+SCREEN = range(BASE, END)
+ADDRESSES = 0x10000
+MAX_NOTES = 8  # different requests for missing features that are noted
+MORE_NOTES = "more of the kind"
+_PADDING = 0x200  # zeros after the last address, where text running to the end of memory stops
 
 _PAGE_ZERO = """14 subflg 52 temppt 53 lastpt 67 txttab+ 69 vartab+ 6B arytab+ 6D strend+ 6F fretop+
 73 memsiz+ 75 curlin+ 77 oldlin+ 79 oldtext+ 7B datlin+ 7D datptr+ 83 varpnt+ 85 forpnt+ AF prgend+
 B8 txtptr+ D6 lock D8 errflg DA errlin+ DC errpos+ DE errnum DF errstk F2 trcflg F3 flash
 F4 txtpsv+ F6 cursv+ F8 remstk"""
 POINTERS: dict[int, tuple[str, int, int]] = {}
-"""By address of page 0: an attribute, its shift, and the bits of it that stand elsewhere."""
+"""Address on page 0 -> attribute, shift of its byte, and mask of its other byte."""
 for _address, _name, _word in re.findall(r"(\w+) (\w+)(\+?)", _PAGE_ZERO):
     POINTERS[int(_address, 16)] = _name, 0, 0xFF00 if _word else 0
     if _word:
@@ -59,27 +61,27 @@ OF_SCREEN = {
     41: ("address", 8, 0x00FF),
     50: ("mask", 0, 0),
 }
-"""The same for what `Screen` keeps."""
-KEYBOARD = range(0xC000, 0xC010)
-STROBE = range(0xC010, 0xC020)
-"""Where the last key is read, and cleared."""
-PROMPT = 0x33
-"""Where the monitor keeps the prompt that it shows when a line is read."""
+"""`POINTERS` for the attributes of `Screen`."""
+KEYBOARD = range(0xC000, 0xC010)  # addresses at which the last key is read
+STROBE = range(0xC010, 0xC020)  # and cleared
+PROMPT = 0x33  # address of the prompt that the monitor shows
 KEPT_IN_RAM = {*range(6), 10, 11, 12, PROMPT, *range(TEMPORARIES, TEMPORARIES_END)}
 KEPT_IN_RAM |= {0x30, 0xE4, 0xE7, 0xF1, 0xF9}
-"""Bytes of page 0 that are in ``ram`` as the ROM has them: with COLOR=, HCOLOR=, SCALE=, SPEED= and
-ROT=."""
+"""Bytes of page 0 that ``ram`` holds like the machine, those of COLOR=, HCOLOR=, SCALE=, SPEED= and
+ROT= included."""
 UNKEPT = range(0x200)
-"""Pages 0 and 1, of which most bytes are the ROM's own and are not kept here."""
+"""Pages 0 and 1, most of whose bytes are internal to the ROM and not modelled."""
 
-PLUS, MINUS = TOKENS["+"], TOKENS["-"]
-SUBFLG_SIMPLE = 0x80
-"""SUBFLG: no array and no integer may come, because of FOR or DEF FN."""
-DIGITS, HEADER, LINE_LIMIT = range(48, 58), 4, 0x19
-"""Characters; a line's bytes before its text: the next line's address and the number; the number's
-high byte from which LINGET refuses a further digit: past 63999."""
-INTEGER, STRING, FUNCTION = 0x8080, 0x0080, 0x8000
-"""Top bits of a name's two bytes in memory: its kind; a real has none."""
+PLUS = TOKENS["+"]
+MINUS = TOKENS["-"]
+SUBFLG_SIMPLE = 0x80  # SUBFLG in FOR and DEF FN: neither arrays nor integers are allowed
+DIGITS = range(48, 58)  # the codes of digits
+HEADER = 4  # bytes of a line before its tokens: the next line's address and the number
+MAX_LINE_HIGH_BYTE = 0x19  # from this high byte on LINGET refuses a further digit: past 63999
+# top bits of a name's two bytes in memory mark its type; a real has none
+INTEGER = 0x8080
+STRING = 0x0080
+FUNCTION = 0x8000
 
 _NUMERAL = re.compile(rb" *[-+]?[ 0-9]*(?:\.[ 0-9]*)?(?:E *[-+%c%c]?[ 0-9]*)?" % (PLUS, MINUS))
 _NAME = re.compile(rb"([A-Z]) *([A-Z0-9]?)[A-Z0-9 ]*([$%]?) *")
@@ -87,33 +89,32 @@ MARKS = {b"": 0, b"$": STRING, b"%": INTEGER}
 _SIGNS = bytes.maketrans(bytes((PLUS, MINUS)), b"+-")
 
 Name = tuple[int, int, bool]
-"""A name's two bytes as a number, the address behind it, and whether subscripts follow."""
+"""A name's two bytes as a number, the address after it, and True if subscripts follow."""
 
 
-def _remember(things: list[str], thing: str) -> None:
-    """Add what is not there yet, up to a number of things."""
-    if thing not in things and len(things) <= REFUSALS:
-        things.append(thing if len(things) < REFUSALS else MORE_REFUSED)
+def _add_note(notes: list[str], note: str) -> None:
+    """Add a new note, up to `MAX_NOTES`."""
+    if note not in notes and len(notes) <= MAX_NOTES:
+        notes.append(note if len(notes) < MAX_NOTES else MORE_NOTES)
 
 
 class Memory:
     """``ram``, the pointers, the devices, and the program's bytes from ``txtptr`` on.
 
     ``statements_left`` limits what a program may do; ``interrupted`` is control-C; ``refused``:
-    what was asked for and is not done here (drawing, tape, machine code); ``passed_over``: what is
-    not done either, and ended in no error (a sentence each); ``poked``: addresses of pages 0 and 1
-    that the program has filled itself; ``fac``: what the
-    accumulator held last, ``valtyp``: `IS_STRING` when it is a string; ``cprtyp``: what a formula
-    left of its last relation, which the next string's + takes for a relation's signs; ``charac``:
-    CHARAC, in which INT leaves a byte, too.
-    """
+    missing features that were used and ended in an error (drawing, tape, machine code);
+    ``ignored``: what is not done either, and ended in no error (a sentence each); ``poked``:
+    addresses of pages 0 and 1 that the program has filled itself; ``fac``: what the accumulator
+    held last, ``valtyp``: `IS_STRING` when it is a string; ``cprtyp``: what a formula left of its
+    last relation, which the next string's + takes for a relation's signs; ``charac``: CHARAC, in
+    which INT leaves a byte, too."""
 
     variables_changed: Callable[[], None]
 
     def __init__(
         self, keyboard: Keyboard, screen: Device, printer: Device | None, blanks: bool, **dos: bool
     ) -> None:
-        self.ram = bytearray(ADDRESSES + _BEYOND)
+        self.ram = bytearray(ADDRESSES + _PADDING)
         self.ram[: len(PAGE_ZERO)] = PAGE_ZERO
         self.ram[0xF1] = 1  # SPEED= 255
         self.screen = Screen(self.ram, screen, blanks)
@@ -134,12 +135,12 @@ class Memory:
         self.interrupted = self.inttyp = self.broken = False
         self.statements_left: int | None = None
         self.refused: list[str] = []
-        self.passed_over: list[str] = []
+        self.ignored: list[str] = []
         self.poked: set[int] = set()
-        self.console.passed_over = self._pass_over_command
+        self.console.on_ignored_command = self._pass_over_command
 
     def pause(self) -> None:
-        """ISCNTC. Raises KeyboardInterrupt and TooManyStatements."""
+        """ISCNTC: raise KeyboardInterrupt after control-C; or TooManyStatements."""
         if self.interrupted:
             raise KeyboardInterrupt
         if self.statements_left is not None:
@@ -148,14 +149,15 @@ class Memory:
             self.statements_left -= 1
 
     def refuse(self, what: str) -> None:
-        _remember(self.refused, what)
+        """Note the use of a missing feature and raise SYNTAX."""
+        _add_note(self.refused, what)
         raise Fault("SYNTAX", self.sp - 4)
 
     def _pass_over_command(self, word: str) -> None:
-        _remember(self.passed_over, f"the disk command {word} was passed over: there is no disk")
+        _add_note(self.ignored, f"the disk command {word} was passed over: there is no disk")
 
     def peek(self, address: int) -> int:
-        """The byte at an address."""
+        """Return the byte at an address."""
         if address in POINTERS:
             name, shift, _ = POINTERS[address]
             return int(getattr(self, name)) >> shift & 0xFF
@@ -173,30 +175,30 @@ class Memory:
             return APPLE_II_PLUS[address]
         unkept = address in UNKEPT and address not in self.poked and address not in KEPT_IN_RAM
         if unkept or address >= ROM:
-            _remember(self.passed_over, f"PEEK ({address}) gave 0: that byte is not modelled")
+            _add_note(self.ignored, f"PEEK ({address}) gave 0: that byte is not modelled")
         return 0 if address >= ROM else self.ram[address]
 
     def poke(self, address: int, value: int) -> None:
-        """Put a byte at an address. A pointer poked may move the program or its variables."""
+        """Store a byte at an address. A new pointer may move the program or its variables."""
         if address in POINTERS:
-            name, shift, kept = POINTERS[address]
-            setattr(self, name, getattr(self, name) & kept | value << shift)
-            if kept:
+            name, shift, other_byte = POINTERS[address]
+            setattr(self, name, getattr(self, name) & other_byte | value << shift)
+            if other_byte:
                 self.text_changed()
                 self.variables_changed()
         elif address in OF_SCREEN:
-            name, shift, kept = OF_SCREEN[address]
-            setattr(self.screen, name, getattr(self.screen, name) & kept | value << shift)
+            name, shift, other_byte = OF_SCREEN[address]
+            setattr(self.screen, name, getattr(self.screen, name) & other_byte | value << shift)
         elif address in SEED:
-            stored = bytearray(to_stored(self.seed))
-            stored[address - SEED.start] = value
-            self.seed = from_stored(bytes(stored))
+            seed_bytes = bytearray(to_stored(self.seed))
+            seed_bytes[address - SEED.start] = value
+            self.seed = from_stored(bytes(seed_bytes))
         elif address < ROM:
-            changed = self.ram[address] != value
+            differs = self.ram[address] != value
             self.ram[address] = value
-            if changed and 0xFF < address < self.vartab and address not in SCREEN:
+            if differs and 0xFF < address < self.vartab and address not in SCREEN:
                 self.text_changed()
-            elif changed and self.vartab <= address < self.strend:
+            elif differs and self.vartab <= address < self.strend:
                 self.variables_changed()
             if address in UNKEPT:
                 self.poked.add(address)
@@ -211,14 +213,14 @@ class Memory:
         self.ram[address + 1] = value >> 8 & 0xFF
 
     def text_changed(self) -> None:
-        """Forget what stands at addresses of the program: names; reals and constants, each with
-        the address behind it and its name or value; where GOTO leads."""
+        """Clear the caches of the program's text: ``names``; ``atoms``, simple reals and constants
+        as (address after it, name, value); ``targets`` of GOTO."""
         self.names: dict[int, Name] = {}
         self.atoms: dict[int, tuple[int, int, Number | None]] = {}
         self.targets: dict[int, int] = {}
 
     def character(self) -> int:
-        """CHRGOT: the byte at TXTPTR, or the next one that is no blank."""
+        """CHRGOT: skip blanks and return the byte at TXTPTR."""
         ram = self.ram
         while (byte := ram[self.txtptr]) == BLANK:
             self.txtptr += 1
@@ -228,7 +230,7 @@ class Memory:
         return self.character() in (0, COLON)
 
     def expect(self, byte: int, sp: int) -> int:
-        """SYNCHR: past a byte that has to come next; the one after it. Raises SYNTAX."""
+        """SYNCHR: skip a required byte and return the next one. Raises SYNTAX."""
         ram = self.ram
         if ram[self.txtptr] != byte and self.character() != byte:
             raise Fault("SYNTAX", sp)
@@ -237,10 +239,10 @@ class Memory:
         return following if following != BLANK else self.character()
 
     def data_(self) -> None:
-        """DATA: to the next colon outside quotes, or the line's end."""
-        ram, pos, quoted = self.ram, self.txtptr, False
-        while (byte := ram[pos]) and (quoted or byte != COLON):
-            quoted ^= byte == QUOTE
+        """DATA: skip to the next colon outside quotes, or to the line's end."""
+        ram, pos, in_quotes = self.ram, self.txtptr, False
+        while (byte := ram[pos]) and (in_quotes or byte != COLON):
+            in_quotes ^= byte == QUOTE
             pos += 1
         self.txtptr = pos
         self.charac = 0
@@ -250,7 +252,7 @@ class Memory:
         self.charac = 0
 
     def name_at(self, pos: int) -> Name:
-        """The name that begins with the letter at an address: two characters count."""
+        """Return the name that begins at an address: two characters are significant."""
         match = _NAME.match(self.ram, pos)
         assert match is not None
         first, second, mark = match.groups()
@@ -264,16 +266,16 @@ class Memory:
         return key, end, subscripts
 
     def numeral(self) -> Number:
-        """FIN: the number that begins at TXTPTR, and past it; zero if none does. Tokens stand for
-        the signs behind an E. Raises OVERFLOW."""
+        """FIN: read the number at TXTPTR, zero if there is none. After an E the signs are tokens.
+        Raises OVERFLOW."""
         match = _NUMERAL.match(self.ram, self.txtptr)
-        assert match is not None  # it matches nothing, too
+        assert match is not None  # the pattern also matches nothing
         self.txtptr = match.end()
         text = match[0].translate(_SIGNS, b" ").decode("ascii")
         return decimaltext.read(text)[0]
 
     def constant(self) -> Number:
-        """FIN on a number in the program. Raises OVERFLOW."""
+        """FIN: read a number in the program and cache it. Raises OVERFLOW."""
         pos = self.txtptr
         value = self.numeral()
         if BUFFER_END <= pos < self.prgend:
@@ -281,10 +283,10 @@ class Memory:
         return value
 
     def line_number(self, sp: int) -> int:
-        """LINGET: the digits that come next; 0 if there are none. Raises SYNTAX."""
+        """LINGET: read a line number, 0 without digits. Raises SYNTAX."""
         number = 0
         while (byte := self.character()) in DIGITS:
-            if number >> 8 >= LINE_LIMIT:
+            if number >> 8 >= MAX_LINE_HIGH_BYTE:
                 raise Fault("SYNTAX", sp)
             self.charac = byte - 48
             number = 10 * number + byte - 48
@@ -292,14 +294,14 @@ class Memory:
         return number
 
     def find_line(self, number: int, address: int) -> tuple[bool, int]:
-        """FNDLIN: whether a line has this number, from an address on; where it lies, or the next
-        larger one, or the end."""
+        """FNDLIN: search a line from an address on. Return True if it exists, and its address, else
+        that of the next larger one or the program's end."""
         ram = self.ram
-        for _ in range(ADDRESSES):  # addresses poked may lead in a circle, where the ROM stays
+        for _ in range(ADDRESSES):  # after POKEs links may form a circle, in which the ROM hangs
             if not ram[address + 1]:
                 return False, address
-            found = ram[address + 2] | ram[address + 3] << 8
-            if found >= number:
-                return found == number, address
+            line = ram[address + 2] | ram[address + 3] << 8
+            if line >= number:
+                return line == number, address
             address = ram[address] | ram[address + 1] << 8
         return False, address

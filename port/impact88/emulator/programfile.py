@@ -1,9 +1,9 @@
-"""Programs as paper and disks hold them: text as it is typed, what LIST prints, tokenised files.
+"""Programs from paper and disks: text as typed, LIST's output, tokenised files.
 
-LIST ends rows where a printer or a screen ends them, and its blanks are not those that were typed:
-behind REM and DATA one is LIST's own. A text is LIST's output if LIST prints the same rows again
-for the program that they decode to (`Layout`); any other text is taken as typed. A row that could
-be a line of its own or the rest of the line before is refused.
+Rows of LIST end where a printer or a screen ends them, and its blanks are not those typed: it adds
+one after REM and DATA. A text is LIST's output if LIST would print the same rows for the decoded
+program (`Layout`); any other text is read as typed. A row that could be either a new line or the
+continuation of the previous one is refused.
 """
 
 import re
@@ -19,33 +19,26 @@ from .tokens import (
     FIRST,
     LAST_LINE,
     LAST_STATEMENT,
-    LINE_LIMIT,
+    MAX_INPUT,
     QUOTE,
     REM,
     TOKENS,
-    listed,
+    detokenise,
+    list_text,
     split_number,
     tokenise,
-    untokenised,
 )
 
-WRAP_COLUMN = 33
-"""From this column on LIST goes on in the next row after a character or a keyword."""
-INDENT = 5
-"""Columns by which LIST indents a row that continues a line."""
+WRAP_COLUMN = 33  # LIST continues in the next row after a character or keyword past this column
+INDENT = 5  # columns by which LIST indents a continued line
 SCREEN_WIDTH = 40
 WIDTHS = (WRAP_COLUMN, SCREEN_WIDTH, 80)
-"""Columns at which rows usually end where LIST does not end them: POKE 33,33, screen, printer."""
-LOST_BLANKS = 2
-"""Blanks that may be lost at the end of a full row: two keywords leave so many."""
-LONGEST_LISTED = 255
-"""Tokens of the longest line that LIST's output is searched for; none so long can be typed."""
-PARTIAL_KEYWORD = 12
-"""Characters at the end of a text in which a keyword may be cut off."""
-LINE_HEADER = 4
-"""Bytes of a line in memory before its text: the next line's address, and its number."""
-LENGTH_HEADER = 2
-"""Bytes in front of a program on a DOS 3.3 disk: its length."""
+"""Usual row lengths if LIST does not wrap lines: POKE 33,33, screen, printer."""
+MAX_LOST_BLANKS = 2  # at the end of a full row; two keywords leave so many
+MAX_LISTED_TOKENS = 255  # in a line of LIST's output; no line so long can be typed
+MAX_KEYWORD_PIECE = 12  # characters at the end of a text in which a keyword may be cut off
+LINE_HEADER = 4  # bytes of a line before its tokens: the next line's address, and its number
+LENGTH_HEADER = 2  # bytes before a program on a DOS 3.3 disk: its length
 
 _PROMPT = re.compile(r"\] *(?:LIST[-, 0-9]*)?$", re.I)
 """Rows of a session around a listing."""
@@ -56,12 +49,11 @@ _TEXT = bytes((*range(0x20, 0x7F), *b"\t\n\f\r"))
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 Line = tuple[int, bytes]
-"""A line's number and tokens."""
+"""Number and tokens of a line."""
 
 
 class Program(NamedTuple):
-    """The lines of a program in the order in which they lie in memory, and what a user should
-    know of how they were read, a sentence each."""
+    """A program: its lines in memory order, and remarks for the user on how it was read."""
 
     lines: list[Line]
     remarks: list[str]
@@ -80,17 +72,22 @@ def read_program(program: object) -> Program:
     Parameters
     ----------
     program : str or bytes
-        Numbered lines as they are typed, small letters as capitals outside quotes and remarks; what
-        LIST prints, its rows ended by LIST itself or at the edge of a screen or a printer; or the
-        bytes of such a text, in ASCII or with Apple's high bits, or of a tokenised program as disk
-        tools extract it, with or without the length that DOS 3.3 puts in front.
+        Numbered lines as typed, small letters outside quotes and remarks as capitals; LIST's
+        output, its rows wrapped by LIST itself or at the edge of a screen or printer; or the bytes
+        of such a text, in ASCII or with Apple's high bits, or of a tokenised program as disk tools
+        extract it, with or without the length that DOS 3.3 puts in front.
+
+    Returns
+    -------
+    Program
+        Lines and remarks.
 
     Raises
     ------
     UserError
-        For a row that is no line and continues none, one that may be either, a line number past
-        63999, a line longer than can be typed, a tab, or a character that no key of an Apple types;
-        names the row, and where it can the column.
+        For a row that is not a line and continues none, a row that may be either, a line number
+        past 63999, a line longer than can be typed, a tab, or a character not on an Apple's
+        keyboard; names the row and, if possible, the column.
     """
     if isinstance(program, bytes):
         body = program.rstrip(b"\0")
@@ -112,7 +109,7 @@ def read_program(program: object) -> Program:
 
 
 def _rows(text: str) -> list[Row]:
-    """The rows that are not blank, without the prompts around them and a common indentation."""
+    """Return the rows that are not blank, without surrounding prompts and common indentation."""
     texts = text.replace("\r\n", "\n").replace("\r", "\n").rstrip("\x1a").split("\n")
     rows = []
     for number, row in enumerate(texts, 1):
@@ -128,7 +125,7 @@ def _rows(text: str) -> list[Row]:
         rows.pop(0)
     while rows and _PROMPT.match(rows[-1].text):
         rows.pop()
-    if {len(row.text) for row in rows} == {SCREEN_WIDTH}:  # filled up, as screens are saved
+    if {len(row.text) for row in rows} == {SCREEN_WIDTH}:  # padded, as screens are saved
         rows = [Row(row.number, row.text.rstrip(" ")) for row in rows]
     edge = min((_indentation(row.text) for row in rows), default=0)
     return [Row(row.number, row.text[edge:]) for row in rows]
@@ -139,29 +136,31 @@ def _indentation(text: str) -> int:
 
 
 def _code(character: str) -> str:
-    """A character as a message names it; a byte that is no text by its number."""
+    """Return a character for a message; an undecodable byte by its number."""
     code = ord(character)
     if 0xDC80 <= code < 0xDD00:
         return f"${code & 0xFF:02X}"
     return repr(character) if character.isprintable() else f"${code:02X}"
 
 
-# --- what LIST prints -------------------------------------------------------------------------
+# --- LIST's output ----------------------------------------------------------------------------
 
 
 class Layout(NamedTuple):
-    """How the rows of a listing end: at ``width`` columns (0: nowhere), and, if LIST ``breaks``
-    lines itself, from column 33 on, where it goes on with an indentation. ``silent``: nothing is
-    sent at ``width`` columns, only the cursor goes on in the next row of the screen."""
+    """The line breaks of a listing.
+
+    ``width``: columns of a row, 0 for no limit; ``breaks``: LIST itself breaks lines from column 33
+    on and indents the next row; ``silent``: at ``width`` columns only the cursor moves to the next
+    row, and no newline is sent."""
 
     width: int
     breaks: bool
     silent: bool = False
 
     def rows(self, number: int, tokens: bytes) -> list[str]:
-        """The rows that LIST prints for a line, without blanks at their ends."""
+        """Return the rows that LIST prints for a line, without blanks at their ends."""
         rows, row, column = [], "", 0
-        for piece in (str(number), " ", *map(listed, tokens)):
+        for piece in (str(number), " ", *map(list_text, tokens)):
             for character in piece:
                 row += character
                 column += 1
@@ -175,46 +174,44 @@ class Layout(NamedTuple):
                 row, column = " " * INDENT, INDENT
         return [text for row in (*rows, row) if (text := row.rstrip(" "))]
 
-    def appended(self, text: str, row: str, following: str) -> str | None:
-        """The text of a line so far, which ends with ``row``, and its next row: LIST's own break
-        stands in it as a newline, and blanks lost at the end of a row are put back. None if no line
-        goes on like this."""
+    def append_row(self, text: str, row: str, following: str) -> str | None:
+        """Return the ``text`` of a line, which ends with ``row``, with its next row ``following``.
+
+        LIST's own break becomes a newline, and blanks lost at the end of a row are restored. None
+        if no line continues like this."""
         if self.breaks and following.startswith(" " * INDENT):
             column = len(row) % self.width if self.silent and self.width else len(row)
             return text + " " * (WRAP_COLUMN - column) + "\n" + following[INDENT:]
         if self.silent or len(row) > self.width:
             return None
-        if len(row) < self.width - LOST_BLANKS and _beginning_line(following) is not None:
+        if len(row) < self.width - MAX_LOST_BLANKS and _beginning_line(following) is not None:
             return None
         return text + " " * (self.width - len(row)) + following
 
 
-WHOLE = Layout(0, breaks=False, silent=True)
-"""A line a row."""
-SENT = Layout(SCREEN_WIDTH, breaks=True, silent=True)
-"""What LIST sends to a file while the screen has its usual width."""
-PRINTED = Layout(0, breaks=True, silent=True)
-"""What it sends to a printer wider than its lines."""
+UNBROKEN = Layout(0, breaks=False, silent=True)  # one line a row
+TO_FILE = Layout(SCREEN_WIDTH, breaks=True, silent=True)  # the screen having its usual width
+TO_PRINTER = Layout(0, breaks=True, silent=True)  # a printer wider than the lines
 
 
-def _decoded(text: str) -> tuple[bytes | None, int]:
-    """The tokens of a line's text as LIST prints it, and how far it was read; None for the tokens
-    where it is not LIST's."""
+def _decode(text: str) -> tuple[bytes | None, int]:
+    """Return the tokens of a line's text in LIST's output, None if it is not, and the index up to
+    which it was read."""
     tokens = bytearray()
-    quoted = in_remark = in_data = False
+    in_quotes = in_remark = in_data = False
     place = 0
     while place < len(text):
         character = text[place]
         if character == "\n":
             place += 1
-        elif character != " " or quoted or in_remark or in_data:
+        elif character != " " or in_quotes or in_remark or in_data:
             tokens.append(ord(character))
             place += 1
             if in_remark:
                 continue
             if character == '"':
-                quoted = not quoted
-            elif character == ":" and not quoted:
+                in_quotes = not in_quotes
+            elif character == ":" and not in_quotes:
                 in_data = False
         elif match := _KEYWORD.match(text, place):
             token = TOKENS[match[1]]
@@ -229,26 +226,26 @@ def _decoded(text: str) -> tuple[bytes | None, int]:
 
 
 def _listed_lines(rows: Sequence[Row]) -> list[Line] | None:
-    """The program that LIST prints as these rows; None if there is none. Raises UserError where
+    """Return the program that LIST prints as these rows, None if there is none. Raises UserError if
     there are two."""
     numbers = [number for row in rows if (number := _beginning_line(row.text)) is not None]
-    every = len(numbers) == len(rows)
-    whole = _lines_by(WHOLE, rows)
-    if whole or (every and all(a < b for a, b in pairwise(numbers))):
-        return whole
+    all_numbered = len(numbers) == len(rows)
+    unbroken = _lines_by(UNBROKEN, rows)
+    if unbroken or (all_numbered and all(a < b for a, b in pairwise(numbers))):
+        return unbroken
     longest = max(len(row.text.rstrip(" ")) for row in rows)
-    usual = [SENT, PRINTED, Layout(SCREEN_WIDTH, breaks=True)]
-    usual += [
-        Layout(width, breaks=False) for width in WIDTHS if 0 <= width - longest <= LOST_BLANKS
+    usual_layouts = [TO_FILE, TO_PRINTER, Layout(SCREEN_WIDTH, breaks=True)]
+    usual_layouts += [
+        Layout(width, breaks=False) for width in WIDTHS if 0 <= width - longest <= MAX_LOST_BLANKS
     ]
-    for layout in usual:
+    for layout in usual_layouts:
         if lines := _lines_by(layout, rows):
             return lines
-    if longest < WRAP_COLUMN:  # no screen or printer has rows so short: these are typed lines
+    if longest < WRAP_COLUMN:  # too short for a screen or printer: typed lines
         return None
-    others = [Layout(longest + blanks, breaks=False) for blanks in range(LOST_BLANKS + 1)]
-    programs = [lines for layout in others if (lines := _lines_by(layout, rows))]
-    if programs and (every or any(program != programs[0] for program in programs)):
+    layouts = [Layout(longest + blanks, breaks=False) for blanks in range(MAX_LOST_BLANKS + 1)]
+    programs = [lines for layout in layouts if (lines := _lines_by(layout, rows))]
+    if programs and (all_numbered or any(program != programs[0] for program in programs)):
         raise UserError(
             f"rows end at {longest} columns or a little later, and where lines begin and how many "
             "blanks stood there cannot be seen; expected every line in one row"
@@ -257,13 +254,13 @@ def _listed_lines(rows: Sequence[Row]) -> list[Line] | None:
 
 
 def _beginning_line(text: str) -> int | None:
-    """The number of the line that a row may begin, None where it cannot."""
+    """Return the number of the line that a row may begin, None if it cannot."""
     match = _LINE_START.match(text)
     return int(match[1]) if match and _begins_line(tokenise(match[2], folded=True)) else None
 
 
 def _begins_line(tokens: bytes) -> bool:
-    """Return whether a statement may begin with these tokens."""
+    """Return True if a statement may begin with these tokens."""
     if not tokens:
         return False
     first = tokens[0]
@@ -271,8 +268,11 @@ def _begins_line(tokens: bytes) -> bool:
 
 
 class _Reading(NamedTuple):
-    """A way to read the rows from one on: its doubts, less its lines; the row behind the first
-    line, the line, and a row at which another way, as good, begins a line."""
+    """A reading of the rows from one on.
+
+    ``doubts``: oddities, see `_doubts`; ``fewer``: minus the number of lines; ``following``: the
+    row after the first line; ``line``: that line; ``rival``: a row at which an equally good reading
+    begins a line, 0 without one."""
 
     doubts: int
     fewer: int
@@ -282,21 +282,24 @@ class _Reading(NamedTuple):
 
 
 def _lines_by(layout: Layout, rows: Sequence[Row]) -> list[Line] | None:
-    """The program whose LIST in this layout is these rows: the way to read them with the fewest
-    doubts, then the most lines. Raises UserError where two are as good."""
+    """Return the program whose LIST in this layout is these rows, None without one: the reading
+    with the fewest doubts, then the most lines. Raises UserError if two are equally good.
+
+    Readings are found from the last row to the first, each from the best one of the rows after its
+    first line."""
     texts = [row.text.rstrip(" ") for row in rows]
     readings: list[_Reading | None] = [None] * len(rows)
     for start in range(len(rows) - 1, -1, -1):
         best = None
         for end, line in _lines_from(layout, rows, start):
-            rest = readings[end] if end < len(rows) else None
-            if end < len(rows) and (rest is None or rest.line[0] <= line[0]):
+            remainder = readings[end] if end < len(rows) else None
+            if end < len(rows) and (remainder is None or remainder.line[0] <= line[0]):
                 continue
             if layout.rows(*line) != texts[start:end]:
                 continue
             doubts, fewer = _doubts(line[1]), -1
-            if rest:
-                doubts, fewer = doubts + rest.doubts, fewer + rest.fewer
+            if remainder:
+                doubts, fewer = doubts + remainder.doubts, fewer + remainder.fewer
             if best is None or (doubts, fewer) < best[:2]:
                 best = _Reading(doubts, fewer, end, line, 0)
             elif (doubts, fewer) == best[:2]:
@@ -319,7 +322,7 @@ def _lines_by(layout: Layout, rows: Sequence[Row]) -> list[Line] | None:
 
 
 def _lines_from(layout: Layout, rows: Sequence[Row], start: int) -> Iterator[tuple[int, Line]]:
-    """The lines that may begin in a row, each with the row behind it."""
+    """Yield the lines that may begin in a row, each with the index of the row after it."""
     match = _NUMBER.match(rows[start].text)
     if not match or int(match[1]) > LAST_LINE:
         return
@@ -328,41 +331,41 @@ def _lines_from(layout: Layout, rows: Sequence[Row], start: int) -> Iterator[tup
         if text is None:
             return
         place = match.end()
-        tokens, reached = _decoded(text[place:])
-        if tokens is None and reached < len(text) - place - PARTIAL_KEYWORD:
+        tokens, end_read = _decode(text[place:])
+        if tokens is None and end_read < len(text) - place - MAX_KEYWORD_PIECE:
             return
-        if tokens and len(tokens) > LONGEST_LISTED:
+        if tokens and len(tokens) > MAX_LISTED_TOKENS:
             return
-        if tokens and tokenise(untokenised(tokens), folded=True) == tokens:
+        if tokens and tokenise(detokenise(tokens), folded=True) == tokens:
             yield end, (int(match[1]), tokens)
         if end < len(rows):
-            text = layout.appended(text, rows[end - 1].text, rows[end].text)
+            text = layout.append_row(text, rows[end - 1].text, rows[end].text)
 
 
 def _doubts(tokens: bytes) -> int:
-    """Count what is odd about a line: that it ends within quotes, that no statement begins it."""
+    """Return the number of oddities of a line: it ends within quotes, no statement begins it."""
     return _ends_in_text(tokens, data=False) + (not _begins_line(tokens))
 
 
 def _ends_in_text(tokens: bytes, *, data: bool = True) -> bool:
-    """Return whether a line ends within quotes or an item of DATA, where a blank counts."""
-    quoted = in_data = False
+    """Return True if a line ends within quotes or an item of DATA, where blanks matter."""
+    in_quotes = in_data = False
     for token in tokens:
-        if token == REM and not quoted and not in_data:
+        if token == REM and not in_quotes and not in_data:
             return False
         if token == QUOTE:
-            quoted = not quoted
-        elif not quoted and token in (DATA, COLON):
+            in_quotes = not in_quotes
+        elif not in_quotes and token in (DATA, COLON):
             in_data = token == DATA
-    return quoted or (data and in_data and tokens[-1] != COMMA)
+    return in_quotes or (data and in_data and tokens[-1] != COMMA)
 
 
-# --- what is typed ----------------------------------------------------------------------------
+# --- typed text -------------------------------------------------------------------------------
 
 
 def _typed_lines(rows: Sequence[Row]) -> list[Line]:
-    """The lines of a text as it is typed, in the order of their numbers, the last of equal ones; an
-    indented row without a number continues the line before. Raises UserError."""
+    """Return the lines of a typed text by number; of lines with the same number the last counts. An
+    indented row without a number continues the previous line. Raises UserError."""
     lines: dict[int, bytes] = {}
     number, text, first_row = -1, "", 0
     for row in rows:
@@ -399,10 +402,10 @@ def _typed_lines(rows: Sequence[Row]) -> list[Line]:
         else:
             text += " " + row.text.lstrip(" ")
         tokens = tokenise(text, folded=True)
-        if len(tokens) > LINE_LIMIT:
+        if len(tokens) > MAX_INPUT:
             raise UserError(
                 f"row {first_row} has {len(tokens)} characters and keywords; "
-                f"a line that can be typed has {LINE_LIMIT}"
+                f"a line that can be typed has {MAX_INPUT}"
             )
         lines[number] = tokens
     return sorted((number, tokens) for number, tokens in lines.items() if tokens)
@@ -412,7 +415,7 @@ def _typed_lines(rows: Sequence[Row]) -> list[Line]:
 
 
 def _read_image(data: bytes) -> Program | None:
-    """The program in a tokenised file, None if that is something else."""
+    """Return the program in a tokenised file, None for any other file."""
     length = int.from_bytes(data[:LENGTH_HEADER], "little")
     images = [data]
     if LENGTH_HEADER <= length <= len(data) - LENGTH_HEADER:
@@ -431,13 +434,13 @@ def _read_image(data: bytes) -> Program | None:
                 )
             )
             end = close + 1
-        # an address less its place in the file is where the program was when it was saved
+        # all links minus their places in the file give the program's address when it was saved
         if lines and image[end : end + 2] == b"\0\0" and len(set(links)) == 1:
-            left = image[end + 2 :].strip(b"\0")
+            extra = image[end + 2 :].strip(b"\0")
             remarks = []
-            if left:
+            if extra:
                 remarks.append(
-                    f"{len(left)} bytes behind the program's last line, such as machine code, "
+                    f"{len(extra)} bytes behind the program's last line, such as machine code, "
                     "are left out"
                 )
             return Program(lines, remarks)

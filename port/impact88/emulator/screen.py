@@ -1,9 +1,9 @@
 """The text screen: 40 columns and 24 rows in memory, the cursor, and the text window.
 
-Characters arrive with their high bit dropped and go on to a device; columns that the cursor skipped
-(comma zones, HTAB) may be passed on as blanks when a character follows on the line, and rows have
-no newline at column 40. The monitor computes a row's address when the cursor enters it, for any row
-number and left edge: a change of the window takes effect only then, perhaps outside the rows.
+Characters arrive without their high bit and are passed to a device. Columns that the cursor skipped
+(comma zones, HTAB) may be passed as blanks if a character follows on the line; there is no newline
+at column 40. The monitor computes a row's address when the cursor enters it, for any row number and
+left edge: a change of the window takes effect only then, and may point outside the rows.
 """
 
 import re
@@ -13,34 +13,48 @@ from itertools import pairwise
 
 from ..applesoft.console import Editor
 
-WIDTH, HEIGHT, BASE, END, NORMAL, INVERSE, FLASHING = 40, 24, 0x400, 0x800, 0xFF, 0x3F, 0x7F
-"""Of the monitor: the screen, where it lies, and its masks."""
-_BLANK, _SMALL_LETTERS = 0xA0, 0xE0  # codes on the screen
-_CONTROLS, _LINE_FEED = range(0x80, 0xA0), 0x8A
-"""Codes that show nothing; of them the screen obeys RETURN, control-J and control-H."""
+WIDTH = 40
+HEIGHT = 24
+BASE = 0x400  # addresses of the screen
+END = 0x800
+# masks of the monitor
+NORMAL = 0xFF
+INVERSE = 0x3F
+FLASHING = 0x7F
+# codes on the screen
+_BLANK = 0xA0
+_SMALL_LETTERS = 0xE0
+_CONTROLS = range(0x80, 0xA0)  # not shown; RETURN, control-J and control-H move the cursor
+_LINE_FEED = 0x8A
 _USUAL_MASKS = (NORMAL, INVERSE, FLASHING)
 _SHOWS = re.compile("[^\0-\x09\x0b-\x1f]")
-"""A character that shows, or the end of the line."""
-_TITLE, _TITLE_COLUMN = bytes(code | 0x80 for code in b"APPLE ]["), 15
-"""What switching on shows in the first row."""
+"""A visible character, or the end of the line."""
+_TITLE = bytes(code | 0x80 for code in b"APPLE ][")  # in the first row after power-on
+_TITLE_COLUMN = 15
 _ESCAPES = {
-    **{"@": 0xFC58, "A": 0xFBF4, "B": 0xFC10, "C": 0xFC66},
-    **{"D": 0xFC1A, "E": 0xFC9C, "F": 0xFC42},
+    "@": 0xFC58,
+    "A": 0xFBF4,
+    "B": 0xFC10,
+    "C": 0xFC66,
+    "D": 0xFC1A,
+    "E": 0xFC9C,
+    "F": 0xFC42,
 }
-"""Keys after ESC, and the routines of the monitor that they call."""
+"""Keys after ESC, and the addresses of the monitor's routines that they call."""
 
 
 @lru_cache
 def _codes(mask: int) -> bytes:
-    """The screen codes of all characters under an inverse mask, which spares small codes."""
+    """Return the screen codes of all characters under a mask, which does not affect controls."""
     codes = (code | 0x80 for code in range(256))
     return bytes(code & mask if code >= _BLANK else code for code in codes)
 
 
 class Screen(Editor):
-    """Where characters appear, in ``ram``, and where the next one will: ``column`` and ``row`` from
-    0, in a window with ``left``, ``width``, ``top`` and ``bottom``. ``blanks``: whether skipped
-    columns are passed on as blanks; the machine sends none."""
+    """The text screen in ``ram``.
+
+    ``column``, ``row``: the cursor, from 0; ``left``, ``width``, ``top``, ``bottom``: the window;
+    ``blanks``: pass skipped columns to the device as blanks, which the real machine does not."""
 
     def __init__(self, ram: bytearray, device: Callable[[str], object], blanks: bool) -> None:
         self._ram, self._device, self._blanks = ram, device, blanks
@@ -53,7 +67,7 @@ class Screen(Editor):
 
     @property
     def shows(self) -> bool:
-        """Whether all characters show, as they do under the masks that the ROM sets."""
+        """True if all characters are visible, as under the masks that the ROM sets."""
         return self.mask in _USUAL_MASKS
 
     def write(self, text: str) -> None:
@@ -78,7 +92,7 @@ class Screen(Editor):
                 code = character.encode("latin-1").translate(_codes(self.mask))
                 if code[0] == _LINE_FEED:
                     self._line_feed()
-                elif code[0] in _CONTROLS:  # a mask such as 128 leaves no more of it
+                elif code[0] in _CONTROLS:  # what a mask such as 128 leaves of a character
                     character = chr(code[0] & 0x7F)
                 else:
                     self._fill(self.address + self.column, code)
@@ -92,7 +106,7 @@ class Screen(Editor):
                 self._step_back()
 
     def _fill(self, address: int, codes: bytes | bytearray) -> None:
-        """Bytes from an address on, none behind the screen, where the program is."""
+        """Store bytes from an address on, but none after the screen, where the program is."""
         codes = codes[: max(END - address, 0)]
         self._ram[address : address + len(codes)] = codes
 
@@ -116,7 +130,7 @@ class Screen(Editor):
         self.move_to_row(self.row)
 
     def _clear_from(self, column: int) -> None:
-        """Blanks to the end of the window's row; one at least."""
+        """Clear to the end of the window's row, one column at least."""
         columns = max(self.width - column, 1)
         self._fill(self.address + column, bytes([_BLANK]) * columns)
 
@@ -131,7 +145,7 @@ class Screen(Editor):
         return [bytes(self._ram[start : start + WIDTH]) for start in starts]
 
     def text(self) -> str:
-        """The 24 rows as text, blanks at the end of each cut."""
+        """Return the 24 rows as text, without blanks at their ends."""
         return "".join("".join(map(shown_character, row)).rstrip(" ") + "\n" for row in self.rows())
 
     def home(self) -> None:
@@ -151,30 +165,37 @@ class Screen(Editor):
             self._line_feed()
 
     def call(self, address: int) -> bool:
-        """CALL of a routine of the monitor that moves or clears; whether it is one."""
+        """CALL a routine of the monitor that moves the cursor or clears; return False for
+        others."""
         routines: dict[int, Callable[[], None]] = {
-            **{0xFC58: self.home, 0xFC70: self._scroll, 0xFC66: self._line_feed},
-            **{0xFC1A: self._step_up, 0xFC10: self._step_back, 0xFBF4: self._advance},
+            0xFC58: self.home,
+            0xFC70: self._scroll,
+            0xFC66: self._line_feed,
+            0xFC1A: self._step_up,
+            0xFC10: self._step_back,
+            0xFBF4: self._advance,
             0xFC9C: lambda: self._clear_from(self.column),
             0xFC42: lambda: self._clear_rows(self.row, self.column),
-            **{0xFC62: lambda: self.write("\n"), 0xFB2F: self.full_window},
+            0xFC62: lambda: self.write("\n"),
+            0xFB2F: self.full_window,
         }
         if address in routines:
             routines[address]()
         return address in routines
 
     def full_window(self) -> None:
-        """TEXT: the whole screen, the cursor in the last row."""
+        """TEXT: set the window to the whole screen, the cursor to the last row."""
         self.left, self.width, self.top, self.bottom = 0, WIDTH, 0, HEIGHT
         self.move_to_row(HEIGHT - 1)
 
     def move_to_row(self, row: int) -> None:
-        """VTAB. A POKE of ``row`` alone does not move the cursor until it changes rows."""
+        """VTAB: move the cursor to a row. After a POKE of ``row`` alone it moves with the next
+        one."""
         self.row = row
         self.address = row_address(row, self.left)
 
     def stay_at(self, column: int) -> None:
-        """After a line feed: the column is unchanged, and nothing has been skipped."""
+        """Restore the column after a line feed, without skipped columns."""
         self.column = self._expected = column
 
     def under_cursor(self) -> str:
@@ -199,14 +220,14 @@ class Screen(Editor):
 
 
 def row_address(row: int, left: int) -> int:
-    """Where a row begins in a window with this left edge, be there such a row or not."""
+    """Return the address of a row in a window with this left edge; of any row number."""
     low = (row & 0x18) * 5 + (row & 1) * 0x80 + left
     return BASE + (row >> 1 & 3) * 0x100 + (low & 0xFF)
 
 
 @lru_cache(maxsize=64)
 def row_moves(top: int, bottom: int, left: int, width: int) -> list[tuple[slice, slice]]:
-    """Where scrolling copies each row of a window to, and from where."""
+    """Return target and source of each row that scrolling a window copies."""
     columns = width if 1 <= width <= 0x80 else 1  # the monitor counts down while they look positive
     first = width - columns & 0xFF
     starts = [row_address(row, left) + first for row in range(top, bottom)]
@@ -219,6 +240,6 @@ def row_moves(top: int, bottom: int, left: int, width: int) -> list[tuple[slice,
 
 
 def shown_character(code: int) -> str:
-    """The character a byte of the screen shows, inverse and flashing ones as normal ones."""
+    """Return the character of a screen byte, inverse and flashing ones as normal ones."""
     code &= 0x3F if 0x60 <= code < 0x80 else 0x7F
     return chr(code + 0x40 if code < 0x20 else code)

@@ -1,14 +1,13 @@
-"""Keywords and tokens: how a typed line becomes the bytes a program is made of.
+"""Keywords and tokens: conversion of a typed line to the bytes of a program, and back.
 
-A keyword is one byte from 0x80 on; all else stays as typed, without its blanks, and with them in
-strings, REM and DATA. Keywords are found anywhere, with or without blanks inside, the first in the
-table's order that fits: TOTAL begins with TO, SCORE holds OR. AT followed at once by N or O is not
-AT, so that ATN and A TO are found instead.
-"""
+A keyword becomes one byte from 0x80 on; everything else stays as typed, without blanks except in
+strings, REM and DATA. Keywords are found anywhere, with or without blanks inside, the first match
+in the order of the table: TOTAL begins with TO, SCORE contains OR. AT directly followed by N or O
+is not AT, so that ATN and A TO are found instead."""
 
 from functools import lru_cache
 
-from ..applesoft.console import keyed
+from ..applesoft.console import keyboard_codes
 from ..applesoft.errorcodes import CODES
 
 KEYWORDS = (
@@ -24,10 +23,20 @@ KEYWORDS = (
 FIRST = 0x80
 """The ROM's keywords in its order, and the token of the first."""
 TOKENS = {word: FIRST + n for n, word in enumerate(KEYWORDS)}
-DATA, REM, AT, PRINT, LAST_STATEMENT = (TOKENS[word] for word in "DATA REM AT PRINT NEW".split())
-BLANK, QUOTE, COLON, COMMA, SEMICOLON, OPEN, CLOSE = map(ord, ' ":,;()')
-LAST_LINE, LINE_LIMIT = 63999, 239
-"""The ROM's largest number of a line, and what the monitor hands over of one that is typed."""
+DATA = TOKENS["DATA"]
+REM = TOKENS["REM"]
+AT = TOKENS["AT"]
+PRINT = TOKENS["PRINT"]
+LAST_STATEMENT = TOKENS["NEW"]
+BLANK = ord(" ")
+QUOTE = ord('"')
+COLON = ord(":")
+COMMA = ord(",")
+SEMICOLON = ord(";")
+OPEN = ord("(")
+CLOSE = ord(")")
+LAST_LINE = 63999  # the ROM's largest line number
+MAX_INPUT = 239  # characters of a typed line that Applesoft keeps
 
 _LISTED = (*KEYWORDS, "", *[*CODES][1:], " ERROR\a")
 _BY_LETTER: dict[str, list[tuple[str, int]]] = {}
@@ -36,8 +45,8 @@ for _word, _token in TOKENS.items():
 
 
 def _keyword(text: str, start: int) -> tuple[int, int] | None:
-    """Token and end of the keyword at ``start``, blanks passed over, or None. (One regular
-    expression of all keywords takes three times as long.)"""
+    """Return token and end of the keyword at ``start``, ignoring blanks, or None. (A single regular
+    expression for all keywords takes three times as long.)"""
     for word, token in _BY_LETTER.get(text[start], ()):
         position = start
         for letter in word:
@@ -53,11 +62,11 @@ def _keyword(text: str, start: int) -> tuple[int, int] | None:
 
 
 @lru_cache(maxsize=4096)
-def tokenise(kept: str, *, folded: bool = False) -> bytes:
-    """The bytes of a line's statements as the ROM's parser leaves them, without the final zero.
-    ``folded``: small letters become capitals outside quotes and remarks."""
-    kept = keyed(kept)
-    text = kept.upper() if folded else kept
+def tokenise(line: str, *, folded: bool = False) -> bytes:
+    """Return the bytes of a line's statements as the ROM's parser makes them, without the final
+    zero. ``folded``: small letters outside quotes and remarks count as capitals."""
+    line = keyboard_codes(line)
+    text = line.upper() if folded else line
     out = bytearray()
     position = 0
     in_data = False
@@ -67,7 +76,7 @@ def tokenise(kept: str, *, folded: bool = False) -> bytes:
             position += 1
         elif character == '"':
             end = text.find('"', position + 1) + 1 or len(text)
-            out += kept[position:end].encode("ascii")
+            out += line[position:end].encode("ascii")
             position = end
         elif in_data or "0" <= character <= ";":
             out.append(ord(character))
@@ -82,7 +91,7 @@ def tokenise(kept: str, *, folded: bool = False) -> bytes:
             out.append(token)
             in_data = token == DATA
             if token == REM:
-                out += kept[position:].encode("ascii")
+                out += line[position:].encode("ascii")
                 break
         else:
             out.append(ord(character))
@@ -91,20 +100,22 @@ def tokenise(kept: str, *, folded: bool = False) -> bytes:
 
 
 def split_number(text: str) -> tuple[int, str] | None:
-    """The line number a typed line begins with and its rest; None if it begins with no digit.
-    Blanks before and within the number do not count. Raises ValueError past 63999."""
-    rest = text.lstrip(" 0123456789")
-    digits = text[: len(text) - len(rest)].replace(" ", "")
+    """Return the line number at the start of a typed line and the text after it; None without a
+    number. Blanks before and within the number are ignored. Raises ValueError past 63999."""
+    statements = text.lstrip(" 0123456789")
+    digits = text[: len(text) - len(statements)].replace(" ", "")
     if len(digits.lstrip("0")) > 5 or int(digits or 0) > LAST_LINE:
         raise ValueError("a line number goes up to 63999")
-    return (int(digits), rest) if digits else None
+    return (int(digits), statements) if digits else None
 
 
-def untokenised(tokens: bytes) -> str:
-    """Return statement text that tokenises into ``tokens``: blanks stand around keywords, except
-    after REM and DATA, whose text is kept. PRINT is written as a question mark where its letters
-    would make another word with those before: ``PO?``. Between a colon and REM or DATA stands no
-    blank, so that a line is not taken for LIST's, which puts one of its own before their text."""
+def detokenise(tokens: bytes) -> str:
+    """Return a text that tokenises into ``tokens``.
+
+    There are blanks around keywords, except after REM and DATA, whose text is kept, and between a
+    colon and REM or DATA, so that the line is not mistaken for LIST's, which adds a blank there.
+    PRINT is written as a question mark if its letters would form another word with the preceding
+    ones: ``PO?``."""
     for print_word in ("PRINT", "?"):
         text, keyword = "", False
         for place, byte in enumerate(tokens):
@@ -126,12 +137,12 @@ def untokenised(tokens: bytes) -> str:
 
 
 def spelling(token: int) -> str:
-    """What LIST writes for a token. Behind the keywords stand the error messages, the first one
-    after a zero that ends the table and the word."""
+    """Return LIST's text for a token. After the keywords the ROM's table continues with a zero,
+    which is an empty word, and the error messages."""
     index = token - FIRST
     return _LISTED[index] if index < len(_LISTED) else ""
 
 
-def listed(byte: int) -> str:
-    """What LIST writes for a byte of a line."""
+def list_text(byte: int) -> str:
+    """Return LIST's text for a byte of a line."""
     return chr(byte) if byte < FIRST else f" {spelling(byte)} "

@@ -1,12 +1,12 @@
 """Strings, variables and arrays in memory.
 
-A descriptor is three bytes, a length and an address: into the program's text, or the string area,
-which grows down from MEMSIZ to FRETOP. A string in the accumulator: the length of one just made for
-the exponent, its address in two bytes of the mantissa, in two more that of the descriptor, which is
-all that counts. A variable: two bytes of name, five of value. An array: two of name, two of length,
-the number of dimensions, their sizes, the last first and high byte first, the elements, the first
-subscript fastest. Where names lie is remembered while none is moved.
-"""
+A descriptor has three bytes, a length and an address: in the program's text, or in the string area,
+which grows down from MEMSIZ to FRETOP. A string in the accumulator has the length of a new string
+in place of the exponent, its address in two bytes of the mantissa and, in two more, the address of
+its descriptor, which alone is used. A variable has two bytes of name and five of value. An array
+has two bytes of name, two of length, the number of dimensions, their sizes (the last first, high
+byte first) and the elements, first subscript fastest. Addresses of names are cached while none is
+moved."""
 
 from collections.abc import Callable, Iterator
 from math import prod
@@ -15,31 +15,34 @@ from typing import NamedTuple
 
 from ..applesoft.errorcodes import ApplesoftError, illegal_quantity
 from ..applesoft.real import ZERO, Number, compare, from_stored, integer, rounded, to_integer
-from .faults import Fault, located, placed
+from .faults import Fault, call_at, with_stack
 from .memory import EMPTY, INTEGER, ROM, STRING, TEMPORARIES, TEMPORARIES_END, Memory
 from .tokens import CLOSE, COMMA, QUOTE
 
-DESCRIPTOR, IS_STRING, LONGEST, VARIABLE_SIZE, ARRAY_HEADER = 3, 0xFF, 255, 7, 5
-"""Of the ROM: bytes of a descriptor, VALTYP of a string, its longest, bytes of others."""
-AUTOMATIC, LARGEST_INTEGER, DEEPEST = 11, 143, 63
-"""Of the ROM: elements per dimension of an array that no DIM made; exponent of the largest number
-that MKINT takes; the stack pointer below which a subscript's formula fails."""
+DESCRIPTOR = 3  # bytes
+IS_STRING = 0xFF  # VALTYP of a string
+LONGEST = 255  # characters of a string
+VARIABLE_SIZE = 7  # bytes
+ARRAY_HEADER = 5  # bytes before the sizes
+AUTOMATIC = 11  # elements per dimension of an array without DIM
+LARGEST_INTEGER = 143  # exponent of the largest number that MKINT accepts
+DEEPEST = 63  # below this stack pointer a subscript's formula fails
 LOWEST = from_stored("9080000020")
-"""The one number below -32767.99 that the ROM lets through: a little less than -32768."""
+"""The only number below -32767.99 that the ROM accepts, slightly less than -32768."""
 AFTER_SUBSCRIPT = (COMMA, CLOSE)
 _STORED = Struct(">BI")
 stored_at, store = _STORED.unpack_from, _STORED.pack_into
 
 
 def descriptor(string: Number) -> int:
-    """The address of the descriptor of a string in the accumulator."""
+    """Return the address of the descriptor of a string in the accumulator."""
     mantissa = string[1]
     return mantissa >> 16 & 0xFF | mantissa & 0xFF00
 
 
 class Array(NamedTuple):
-    """Where an array's elements begin, from the first array on; its sizes, the last dimension's
-    first; the size of an element."""
+    """An array: ``first``, offset of its elements from ARYTAB; ``sizes``, the last dimension first;
+    ``element``, bytes of an element."""
 
     first: int
     sizes: tuple[int, ...]
@@ -47,11 +50,13 @@ class Array(NamedTuple):
 
 
 class Variables(Memory):
+    """Strings, variables and arrays."""
+
     formula: Callable[[int], Number]
 
     def collect_garbage(self) -> None:
-        """GARBAG: move the strings that variables hold together below MEMSIZ, the highest first.
-        Where that is a temporary, the ROM takes it for the end: it and all below stay."""
+        """GARBAG: move the strings in use together below MEMSIZ, the highest first. At a temporary
+        string the ROM stops: it and all below stay."""
         ram = self.ram
         self.fretop = self.memsiz
         places = [*range(TEMPORARIES, self.temppt, DESCRIPTOR)]
@@ -74,9 +79,9 @@ class Variables(Memory):
             self.move(address, self.fretop, length)
             self.put_word(place + 1, self.fretop)
 
-    def room(self, length: int) -> int:
-        """GETSPA: the address of new room for characters. Raises OUT OF MEMORY."""
-        self.reason(self.strend + length - 1)
+    def allocate(self, length: int) -> int:
+        """GETSPA: return the address of space for characters. Raises OUT OF MEMORY."""
+        self.require_room(self.strend + length - 1)
         self.fretop -= length
         return self.fretop
 
@@ -89,7 +94,7 @@ class Variables(Memory):
             ram[target : target + length] = ram[source : source + length]
 
     def temporary(self, length: int, address: int, extension: int = 0) -> Number:
-        """PUTNEW: a new temporary, in the accumulator. Raises FORMULA TOO COMPLEX."""
+        """PUTNEW: put a new temporary string in the accumulator. Raises FORMULA TOO COMPLEX."""
         place = self.temppt
         if place == TEMPORARIES_END:
             raise ApplesoftError("FORMULA TOO COMPLEX")
@@ -103,59 +108,59 @@ class Variables(Memory):
         return self.fac
 
     def literal(self, address: int, *ends: int) -> Number:
-        """STRLIT, STRLT2: the string from an address to a zero or one of ``ends``, a quote unless
-        given, and past it and its quote. What stands on page 0 or 2 is copied."""
+        """STRLIT, STRLT2: return the string from an address to a zero or one of ``ends``, by
+        default a quote, and move TXTPTR past it and its quote. Text on page 0 or 2 is copied."""
         ram = self.ram
         end = ram.index(0, address)
         for byte in ends or (QUOTE,):
-            found = ram.find(byte, address, end)
-            end = found if found >= 0 else end
+            place = ram.find(byte, address, end)
+            end = place if place >= 0 else end
         length = end - address & 0xFF
         self.charac = 0
         page = address >> 8
         if page in (0, 2):
-            copy = self.room(length)
+            copy = self.allocate(length)
             self.move(address, copy, length)
             address = copy
         string = self.temporary(length, address, page)
         self.txtptr = end + (ram[end] == QUOTE)
         return string
 
-    def made(self, text: bytes, extension: int = 0) -> Number:
-        """STRINI and PUTNEW: a temporary with characters."""
-        address = self.room(len(text))
+    def new_string(self, text: bytes, extension: int = 0) -> Number:
+        """STRINI and PUTNEW: return a temporary string with these characters."""
+        address = self.allocate(len(text))
         self.ram[address : address + len(text)] = text
         return self.temporary(len(text), address, extension)
 
     def release(self, place: int) -> bool:
-        """FRETMS: give back a temporary's place if it is the latest; whether it was."""
+        """FRETMS: free a temporary's descriptor. Return False if it is not the latest one."""
         if place != self.lastpt:
             return False
         self.temppt = place
         self.lastpt = place - DESCRIPTOR
         return True
 
-    def freed(self, place: int) -> tuple[int, int]:
-        """FRETMP: length and address of a string that has been used: a temporary gives back its
-        place, and its room if it is the lowest."""
-        released = self.release(place)
+    def free_string(self, place: int) -> tuple[int, int]:
+        """FRETMP: return length and address of a string after use; the latest temporary is freed,
+        with its characters if they are the lowest."""
+        was_latest = self.release(place)
         length, address = self.ram[place], self.word(place + 1)
-        if released and address == self.fretop:
+        if was_latest and address == self.fretop:
             self.fretop += length
         return length, address
 
-    def used(self, place: int) -> bytes:
-        """FRETMP: the characters of a string that has been used, by its descriptor."""
-        length, address = self.freed(place)
+    def release_text(self, place: int) -> bytes:
+        """FRETMP: free a string after use, by its descriptor, and return its characters."""
+        length, address = self.free_string(place)
         return bytes(self.ram[address : address + length])
 
     def assign_string(self, target: int, string: Number) -> None:
-        """PUTSTR: a variable takes the string in the accumulator, of another variable's a copy."""
+        """PUTSTR: assign the string in the accumulator to a variable, copied from another one's."""
         ram = self.ram
         place = descriptor(string)
         if self.word(place + 1) >= self.fretop and place >= self.vartab:
             length = ram[place]
-            address = self.room(length)
+            address = self.allocate(length)
             self.move(self.word(place + 1), address, length)
         else:
             self.release(place)
@@ -164,18 +169,18 @@ class Variables(Memory):
             ram[target] = length
             self.put_word(target + 1, address)
 
-    def joined(self, left: int, right: int) -> Number:
-        """CAT: left + right, by their descriptors. Raises STRING TOO LONG past 255 characters."""
+    def concatenate(self, left: int, right: int) -> Number:
+        """CAT: return left + right, by their descriptors. Raises STRING TOO LONG past 255."""
         ram = self.ram
         size = ram[left]
         length = size + ram[right]
         if length > LONGEST:
             raise ApplesoftError("STRING TOO LONG")
-        address = self.room(length)
+        address = self.allocate(length)
         self.move(self.word(left + 1), address, size)
-        more, source = self.freed(right)
-        self.move(source, address + size, more)
-        self.freed(left)
+        added, source = self.free_string(right)
+        self.move(source, address + size, added)
+        self.free_string(left)
         return self.temporary(length, address, left >> 8)
 
     def variables_changed(self) -> None:
@@ -201,22 +206,22 @@ class Variables(Memory):
         first = place - self.arytab + ARRAY_HEADER + 2 * len(sizes)
         return Array(first, sizes, element)
 
-    def reason(self, address: int) -> None:
-        """REASON: there must be room up to an address. Raises OUT OF MEMORY."""
+    def require_room(self, address: int) -> None:
+        """REASON: make sure that memory is free up to an address. Raises OUT OF MEMORY."""
         if address >= self.fretop:
             self.collect_garbage()
             if address >= self.fretop:
                 raise ApplesoftError("OUT OF MEMORY")
 
     def variable(self, sp: int, dimensions: int = 0, mark: int = 0) -> int:
-        """PTRGET: where the value of the variable that comes next lies; it is made if there is
-        none. ``dimensions``: for DIM, whose arrays must be new; ``mark``: the top bit for FN."""
-        known = self.names.get(self.txtptr)
-        if not known:
+        """PTRGET: read a variable's name and return the address of its value, created if necessary.
+        ``dimensions``: nonzero for DIM, whose arrays must be new; ``mark``: the top bit for FN."""
+        entry = self.names.get(self.txtptr)
+        if not entry:
             if not 65 <= self.character() <= 90:  # ISLETC: A to Z; a small letter begins no name
                 raise Fault("SYNTAX", sp)
-            known = self.name_at(self.txtptr)
-        name, self.txtptr, subscripts = known
+            entry = self.name_at(self.txtptr)
+        name, self.txtptr, subscripts = entry
         self.valtyp = IS_STRING if name & INTEGER == STRING else 0
         self.inttyp = name & INTEGER == INTEGER
         if self.inttyp and self.subflg:
@@ -227,14 +232,15 @@ class Variables(Memory):
         name |= mark
         address = self.simple.get(name)
         if address is None:
-            address = located(sp - 4, self._make, name)
+            address = call_at(sp - 4, self._make, name)
         self.varpnt = address
         return address
 
     def _make(self, name: int) -> int:
-        """MAKE NEW VARIABLE: zero or empty, the arrays moved up. Raises OUT OF MEMORY."""
+        """MAKE NEW VARIABLE: create it, zero or empty, and move the arrays up. Raises OUT OF
+        MEMORY."""
         ram = self.ram
-        self.reason(self.strend + VARIABLE_SIZE)
+        self.require_room(self.strend + VARIABLE_SIZE)
         place = self.arytab
         ram[place + VARIABLE_SIZE : self.strend + VARIABLE_SIZE] = ram[place : self.strend]
         self.arytab += VARIABLE_SIZE
@@ -244,15 +250,15 @@ class Variables(Memory):
         return place + 2
 
     def array_element(self, name: int, sp: int, dimensions: int = 0) -> int:
-        """ARRAY: the address of an element; its array is made if there is none."""
+        """ARRAY: return the address of an element; the array is created if necessary."""
         kind = self.valtyp, self.inttyp
-        found: list[int] = []
+        subscripts: list[int] = []
         depth = sp - 7
         ram = self.ram
         while True:
-            known = self.atoms.get(self.txtptr + 1)
-            if known and ram[known[0]] in AFTER_SUBSCRIPT and depth >= DEEPEST:
-                self.txtptr, simple, constant = known
+            atom = self.atoms.get(self.txtptr + 1)
+            if atom and ram[atom[0]] in AFTER_SUBSCRIPT and depth >= DEEPEST:
+                self.txtptr, simple, constant = atom
                 e, m, s = self.fac = constant or self.value(self.simple.get(simple, EMPTY))
             else:
                 self.txtptr += 1
@@ -261,7 +267,7 @@ class Variables(Memory):
                     raise Fault("TYPE MISMATCH", depth - 2)
             if s or e > LARGEST_INTEGER:
                 raise Fault("ILLEGAL QUANTITY", depth)
-            found.append(m >> 168 - e)
+            subscripts.append(m >> 168 - e)
             byte = ram[self.txtptr]
             if byte != COMMA and self.character() != COMMA:
                 break
@@ -271,11 +277,11 @@ class Variables(Memory):
         else:
             self.expect(CLOSE, depth + 1)
         self.valtyp, self.inttyp = kind
-        n = len(found)
+        n = len(subscripts)
         bottom = sp - 2 * n
         array = self.arrays.get(name)
         if array is None:
-            array = located(bottom - 2, self._make_array, name, found, dimensions)
+            array = call_at(bottom - 2, self._make_array, name, subscripts, dimensions)
             if dimensions:
                 return 0
         elif dimensions:
@@ -286,7 +292,7 @@ class Variables(Memory):
         index = 0
         for size in sizes:
             n -= 1
-            subscript = found[n]
+            subscript = subscripts[n]
             if subscript >= size:
                 raise Fault("BAD SUBSCRIPT", sp - 2 * n)
             index = index * size + subscript
@@ -296,7 +302,7 @@ class Variables(Memory):
     def _make_array(self, name: int, last: list[int], dimensions: int) -> Array:
         ram, place = self.ram, self.strend
         start = place + ARRAY_HEADER + 2 * len(last)
-        self.reason(start)
+        self.require_room(start)
         sizes = tuple(n + 1 for n in reversed(last)) if dimensions else (AUTOMATIC,) * len(last)
         header = bytes((name >> 8, name & 0xFF, 0, 0, len(last)))
         header += b"".join(size.to_bytes(2, "big") for size in sizes)
@@ -305,7 +311,7 @@ class Variables(Memory):
         end = start + array.element * prod(sizes)
         if end > 0xFFFF:
             raise ApplesoftError("OUT OF MEMORY")
-        self.reason(end)
+        self.require_room(end)
         ram[start:end] = bytes(end - start)
         self.put_word(place + 2, end - place)
         self.strend = end
@@ -313,7 +319,7 @@ class Variables(Memory):
         return array
 
     def value(self, address: int) -> Number:
-        """MOVFM: the real at an address."""
+        """MOVFM: return the real at an address."""
         e, m = stored_at(self.ram, address)
         return (e, (m | 0x80000000) << 8, m >> 31) if e else ZERO
 
@@ -322,20 +328,20 @@ class Variables(Memory):
         return integer(n - (n >> 15 << 16))
 
     def assign(self, address: int, x: Number) -> None:
-        """SETFOR: a real variable takes a number, rounded, which stays in the accumulator."""
+        """SETFOR: assign a number, rounded, to a real variable; it stays in the accumulator."""
         e, m, s = self.fac = rounded(x) if x[1] & 0xFF else x
         if address < ROM:
             store(self.ram, address, e, m >> 8 & 0x7FFFFFFF | s << 31)
 
     def assign_integer(self, address: int, x: Number, sp: int) -> None:
-        """AYINT: an integer variable takes a number, rounded. Raises ILLEGAL QUANTITY from 32768
-        and -32768 on; a bit too many in the ROM's constant lets -32768.0005 through, as 32767."""
+        """AYINT: assign a number, rounded, to an integer variable. Raises ILLEGAL QUANTITY from
+        32768 and -32768 on; a wrong bit in the ROM's constant admits -32768.0005, as 32767."""
         try:
             x = rounded(x)
             if x[0] >= 0x90 and compare(LOWEST, x):
                 raise illegal_quantity()
             n = to_integer(x) & 0xFFFF
         except ApplesoftError as error:
-            raise placed(error, sp) from None
+            raise with_stack(error, sp) from None
         if address < ROM:
             self.ram[address : address + 2] = n.to_bytes(2, "big")

@@ -1,4 +1,4 @@
-"""Arguments held against annotations: does a value fit one, and what one says in words."""
+"""Check arguments against annotations, and describe annotations in words."""
 
 from __future__ import annotations
 
@@ -13,15 +13,14 @@ from typing import Any
 
 from ..errors import quoted
 
-MAX_ITEMS = 1000
-"""Items of an argument that are looked at."""
+MAX_ITEMS = 1000  # items of an argument that are checked
 
 
 def misfit(
     function: Callable[..., Any], args: tuple[Any, ...], keywords: dict[str, Any]
 ) -> str | None:
-    """Say which argument does not fit its annotation, and what is expected; None where all fit, or
-    where the call itself is not one of the function's."""
+    """Return a message on the first argument that does not fit its annotation; None if all fit, or
+    if the call does not match the function's signature."""
     signature = inspect.signature(function)
     try:
         arguments = signature.bind(*args, **keywords).arguments
@@ -29,28 +28,28 @@ def misfit(
         return None
     for name, value in arguments.items():
         parameter = signature.parameters[name]
-        hint = _resolved(parameter.annotation, function)
+        hint = _resolve(parameter.annotation, function)
         if parameter.kind is parameter.VAR_POSITIONAL:
             pairs = [(name, item) for item in value]
         elif parameter.kind is parameter.VAR_KEYWORD:
             pairs = list(value.items())
         else:
             pairs = [(name, value)]
-        for called, item in pairs:
+        for label, item in pairs:
             if not fits(item, hint):
-                return f"{called} is {_shown(item)}; expected {described(hint)}"
+                return f"{label} is {_describe_value(item)}; expected {describe(hint)}"
     return None
 
 
-def _shown(value: object) -> str:
-    """A value in a message, or its kind where it is long."""
+def _describe_value(value: object) -> str:
+    """Return a value for a message, or its type if it is long."""
     text = quoted(value)
     plain = isinstance(value, str | bytes | numbers.Number | None)
     return text if plain or len(text) < 30 else f"of type {type(value).__name__}"
 
 
-def _resolved(annotation: object, function: Callable[..., Any]) -> Any:
-    """The type an annotation stands for; Any where it cannot be found."""
+def _resolve(annotation: object, function: Callable[..., Any]) -> Any:
+    """Return the type of an annotation; Any if it cannot be resolved."""
     if annotation is inspect.Parameter.empty:
         return typing.Any
     if not isinstance(annotation, str):
@@ -64,7 +63,7 @@ def _resolved(annotation: object, function: Callable[..., Any]) -> Any:
 
 
 def fits(value: object, hint: Any) -> bool:
-    """Return whether a value is of the kind that an annotation says; items of collections too."""
+    """Return True if a value, with the items of a collection, is of the annotation's type."""
     origin, args = typing.get_origin(hint), typing.get_args(hint)
     if hint is None or hint is type(None):
         return value is None
@@ -88,8 +87,8 @@ def fits(value: object, hint: Any) -> bool:
 
 
 def _takes(function: Callable[..., Any], args: tuple[Any, ...]) -> bool:
-    """Return whether a function takes as many values as ``Callable[args]`` says; those that do not
-    say what they take do."""
+    """Return True if a function accepts the number of arguments of ``Callable[args]``, or has no
+    signature."""
     if not args or not isinstance(args[0], list):
         return True
     try:
@@ -104,18 +103,18 @@ def _takes(function: Callable[..., Any], args: tuple[Any, ...]) -> bool:
 
 
 def _items_fit(value: Any, kind: type, args: tuple[Any, ...]) -> bool:
-    """Return whether the items of a collection are of the kinds that its annotation says."""
+    """Return True if the items of a collection are of the types in its annotation."""
     if issubclass(kind, Mapping):
-        some = list(value.items())[:MAX_ITEMS]
-        return all(fits(key, args[0]) and fits(item, args[-1]) for key, item in some)
+        items = list(value.items())[:MAX_ITEMS]
+        return all(fits(key, args[0]) and fits(item, args[-1]) for key, item in items)
     if issubclass(kind, tuple) and Ellipsis not in args:
         return len(value) == len(args) and all(map(fits, value, args))
     if issubclass(kind, abc.Iterable) and isinstance(value, abc.Collection):
-        if isinstance(value, str):  # letters are texts, but a text is no list of names
+        if isinstance(value, str):  # a text is a sequence of texts, but not a list of names
             return not issubclass(kind, abc.Sequence) and args[0] is str
-        some = [item for item, _ in zip(value, range(MAX_ITEMS), strict=False)]
-        return all(fits(item, args[0]) for item in some)
-    return True  # an iterator can be gone through once only
+        items = [item for item, _ in zip(value, range(MAX_ITEMS), strict=False)]
+        return all(fits(item, args[0]) for item in items)
+    return True  # an iterator can be consumed only once
 
 
 WORDS: dict[Any, str] = {
@@ -130,15 +129,15 @@ WORDS: dict[Any, str] = {
 }
 
 
-def described(hint: Any) -> str:
+def describe(hint: Any) -> str:
     """Return an annotation in words: ``str | Sequence[str]`` is "text or a sequence of text"."""
     origin, args = typing.get_origin(hint), typing.get_args(hint)
     if hint in WORDS:
         return WORDS[hint]
     if origin in (typing.Union, types.UnionType):
-        return _either(map(described, args))
+        return _join_choices(map(describe, args))
     if origin is typing.Literal:
-        return _either(map(repr, args))
+        return _join_choices(map(repr, args))
     if origin is abc.Callable or hint is abc.Callable:
         if not args or not isinstance(args[0], list):
             return "a function"
@@ -149,13 +148,14 @@ def described(hint: Any) -> str:
         return str(name)
     article = "an" if name[0] in "AEIOU" else "a"
     if issubclass(kind, Mapping) and len(args) == 2:
-        return f"a mapping of {described(args[0])} to {described(args[1])}"
+        return f"a mapping of {describe(args[0])} to {describe(args[1])}"
     if args and issubclass(kind, abc.Iterable):
-        items = [described(item) for item in args if item is not Ellipsis]
-        return f"{article} {name.lower()} of {_either(items)}"
+        items = [describe(item) for item in args if item is not Ellipsis]
+        return f"{article} {name.lower()} of {_join_choices(items)}"
     return f"{article} {name}"
 
 
-def _either(choices: Iterable[str]) -> str:
-    *others, last = dict.fromkeys(choices)
-    return f"{', '.join(others)} or {last}" if others else last
+def _join_choices(choices: Iterable[str]) -> str:
+    """Return choices in words: "a, b or c"."""
+    *first, last = dict.fromkeys(choices)
+    return f"{', '.join(first)} or {last}" if first else last

@@ -1,8 +1,8 @@
-"""What is said of an argument of another kind than a public function takes.
+"""Messages for arguments of a wrong type.
 
-Public functions read what they are given without asking first what it is, so that a good call pays
-nothing. Where one then fails, its arguments are held against its annotations: an argument that does
-not fit them is a UserError that names it; where all fit, the error is a bug and stays as it is.
+Public functions use their arguments without checking types first, so that valid calls cost nothing.
+If one fails, its arguments are checked against its annotations: one that does not fit becomes a
+UserError that names it; if all fit, the error is a bug and is raised unchanged.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     Function = TypeVar("Function", bound=Callable[..., Any])
 
 FAILURES = (TypeError, ValueError, AttributeError, LookupError, ArithmeticError)
-"""What Python and numpy raise for a value of another kind."""
+"""Exceptions of Python and numpy for a value of a wrong type."""
 
 
 def explains_arguments(function: Function) -> Function:
@@ -34,7 +34,7 @@ def explains_arguments(function: Function) -> Function:
     Returns
     -------
     callable
-        Calls ``function``; where that fails and an argument does not fit its annotation, raises
+        Calls ``function``; if that fails and an argument does not fit its annotation, raises
         UserError naming function and argument.
 
     Examples

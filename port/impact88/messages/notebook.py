@@ -1,8 +1,8 @@
-"""What a notebook is shown: texts as the command line prints them."""
+"""HTML for notebooks: texts as the command line prints them."""
 
 
-def preformatted(text: str) -> str:
-    """A text as a piece of HTML that shows it as it stands."""
+def preformatted_html(text: str) -> str:
+    """Return a text as preformatted HTML."""
     from html import escape
 
     return f'<pre style="font-family: monospace">{escape(text)}</pre>'

@@ -5,21 +5,20 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from textwrap import wrap
 from typing import Any
 
-WIDTH = 96
-"""Columns of a paragraph: those of the widest table."""
+WIDTH = 96  # columns of a paragraph, those of the widest table
 
 
 def number(value: Any, digits: int = 6) -> str:
-    """A number to ``digits`` significant digits; nothing where there is none."""
+    """Return a number with ``digits`` significant digits; "" for NaN."""
     value = float(value)
     if math.isnan(value):
         return ""
-    # 0 for -0 and for what the digits cannot show
+    # adding 0.0 turns -0 into 0
     return f"{value + 0.0:.{digits}g}"
 
 
-def fixed(value: Any, decimals: int) -> str:
-    """A number with a fixed count of decimals, never -0; nothing where there is none."""
+def format_fixed(value: Any, decimals: int) -> str:
+    """Return a number with ``decimals`` decimals, never -0; "" for NaN."""
     value = float(value)
     if math.isnan(value):
         return ""
@@ -28,7 +27,7 @@ def fixed(value: Any, decimals: int) -> str:
 
 
 def decimals_for(values: Sequence[float]) -> int:
-    """The decimals that show the largest of ``values`` to six significant digits."""
+    """Return the decimals that give the largest of ``values`` six significant digits."""
     largest = max((abs(v) for v in values if math.isfinite(v)), default=0.0)
     return max(0, 5 - math.floor(math.log10(largest))) if largest else 5
 
@@ -36,12 +35,12 @@ def decimals_for(values: Sequence[float]) -> int:
 def table(
     rows: Iterable[Sequence[str]], heading: Sequence[str] | None = None, left: Sequence[int] = (0,)
 ) -> list[str]:
-    """Lines of aligned columns, two blanks between; columns in ``left`` start at the left."""
+    """Return lines of aligned columns, two blanks between; those in ``left`` are left-aligned."""
     lines = [list(row) for row in ((heading,) if heading else ()) + tuple(rows)]
     count = max(map(len, lines), default=0)
     lines = [line + [""] * (count - len(line)) for line in lines]
     widths = [max(len(line[i]) for line in lines) for i in range(count)]
-    laid = [
+    text_lines = [
         "  ".join(
             text.ljust(width) if i in left else text.rjust(width)
             for i, (text, width) in enumerate(zip(line, widths, strict=True))
@@ -49,29 +48,29 @@ def table(
         for line in lines
     ]
     if heading:
-        laid.insert(1, "-" * max(map(len, laid)))
-    return laid
+        text_lines.insert(1, "-" * max(map(len, text_lines)))
+    return text_lines
 
 
 def quantities(
     values: Mapping[str, float], label: Callable[[str], str], meanings: Mapping[str, str]
 ) -> list[str]:
-    """Values of any table of names as lines: name, number, unit, meaning (of the table, unless
-    ``meanings`` has another). ``label``: the unit of a rule (`units.System.label`)."""
+    """Return values as table lines: name, number, unit, meaning (that of `names`, unless
+    ``meanings`` has another). ``label``: returns the unit of a rule (`units.System.label`)."""
     from ..names import quantity
 
-    meant = {name: quantity(name).meaning for name in values} | dict(meanings)
-    rows = [(n, number(x), label(quantity(n).unit), meant[n]) for n, x in values.items()]
+    all_meanings = {name: quantity(name).meaning for name in values} | dict(meanings)
+    rows = [(n, number(x), label(quantity(n).unit), all_meanings[n]) for n, x in values.items()]
     return table(rows, left=(0, 2, 3))
 
 
 def paragraph(text: str, indent: str = "") -> list[str]:
-    """A text in lines of at most `WIDTH`."""
+    """Return a text in lines of at most `WIDTH` columns."""
     return wrap(text, WIDTH, initial_indent=indent, subsequent_indent=indent)
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON takes it: numpy numbers and arrays unwrapped, not finite ones as null."""
+    """Return a value for JSON: numpy numbers and arrays as Python's, non-finite numbers as None."""
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, dict):

@@ -1,5 +1,5 @@
-"""Progress of long work, on a terminal only: tqdm's bar if installed (extra ``progress``), else one
-line that is written over."""
+"""Progress of long operations on a terminal: tqdm's bar if installed (extra ``progress``), else one
+line that is overwritten."""
 
 import math
 import sys
@@ -10,13 +10,12 @@ from typing import Any
 
 from ..errors import note
 
-SECONDS_BETWEEN_LINES = 2.0
-"""In a log: thirty lines a minute at most."""
+SECONDS_BETWEEN_LINES = 2.0  # in a log
 
 
 class _Lines:
-    """Progress on stderr: on a terminal a line that is written over; elsewhere nothing, or plain
-    lines now and then, for a log."""
+    """Progress on stderr: on a terminal a line that is overwritten; elsewhere nothing or, with
+    ``lines``, a plain line at intervals, for a log."""
 
     def __init__(self, total: int | None, what: str, terminal: bool, lines: bool) -> None:
         self.total, self.what, self.done = total, what, 0
@@ -25,6 +24,7 @@ class _Lines:
         self._last = 0.0 if terminal else time.monotonic()
 
     def update(self, n: int) -> None:
+        """Add ``n`` finished units and show the progress if it is time."""
         self.done += n
         now = time.monotonic()
         if now - self._last < self._wait:
@@ -39,14 +39,15 @@ class _Lines:
         self._width = len(text)
 
     def close(self) -> None:
+        """Clear the line on a terminal."""
         if self._width:
             print(f"\r{' ' * self._width}\r", end="", file=sys.stderr, flush=True)
 
 
 @contextmanager
 def progress(total: int | None, what: str, unit: str = "", lines: bool = False) -> Iterator[Any]:
-    """A meter for work of ``total`` units (None: unknown), whose ``update(n)`` says that ``n`` more
-    are done. Where stderr is not a terminal it is silent, or writes plain ``lines``."""
+    """Context of a progress meter for ``total`` units (None: unknown); call its ``update(n)`` after
+    ``n`` more. If stderr is not a terminal it is silent, or writes plain ``lines``."""
     terminal = sys.stderr.isatty()
     meter: Any = _Lines(total, what, terminal, lines)
     if terminal:

@@ -88,7 +88,7 @@ class ListingCopy:
 
     def __init__(self, path: str) -> None:
         data = files.read_bytes(path, MAX_COPY_BYTES)
-        self.file, self.sha256 = files.called(path), sha256(data).hexdigest()
+        self.file, self.sha256 = files.display_name(path), sha256(data).hexdigest()
         try:
             self._lines = _list_program(data)
         except (ValueError, ApplesoftError) as error:

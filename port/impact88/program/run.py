@@ -79,7 +79,7 @@ class Run(namedtuple("Run", "printout error line reals A zero_determinant")):
 
     def _repr_html_(self) -> str:
         """Return the printout as HTML for a notebook."""
-        return notebook.preformatted(self.page)
+        return notebook.preformatted_html(self.page)
 
 
 def page(text: str) -> str:

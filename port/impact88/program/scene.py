@@ -153,7 +153,7 @@ class Scene(Mapping[str, str]):
 
     def _repr_html_(self) -> str:
         """Return the scene file as HTML for a notebook."""
-        return notebook.preformatted(self.to_toml())
+        return notebook.preformatted_html(self.to_toml())
 
     def replaced(self, changes: Mapping[str, str]) -> Self:
         """Return this scene with some values changed, see `Case.replaced`; a percentage of the

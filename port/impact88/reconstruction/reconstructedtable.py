@@ -13,7 +13,7 @@ from ..collision.units import RULES, System, display_values
 from ..mechanics.state import COURSES, FORCES, SPEEDS
 from ..messages import notebook
 from ..messages.arguments import explains_arguments
-from ..messages.plaintable import fixed, number, paragraph, table
+from ..messages.plaintable import format_fixed, number, paragraph, table
 from ..names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..uncertainty.boundstable import unbounded
 from . import adjustment
@@ -300,7 +300,9 @@ class Measured(Impact):
             factor = units.factor(a.name)
             sizes = [(measured, 6), (half * factor, 3), (item.standard_deviation * factor, 3)]
             cells = [number(x, n) for x, n in (*sizes, (now, 6))]
-            rows.append([a.name, *cells, fixed(a.moved, 2), units.label(quantity(a.name).unit)])
+            rows.append(
+                [a.name, *cells, format_fixed(a.moved, 2), units.label(quantity(a.name).unit)]
+            )
         heading = ["known", "measured", "half-width", "sd", "adjusted", "moved, tolerances", "unit"]
         return [
             *table(rows, heading, left=(0, 6)),
@@ -414,7 +416,7 @@ class Reconstructions(list[Reconstruction]):
 
     def _repr_html_(self) -> str:
         """What `impact88 reconstruct --samples 0` prints, as a notebook shows it."""
-        return notebook.preformatted(in_turn([Measured(impact, 0) for impact in self]))
+        return notebook.preformatted_html(in_turn([Measured(impact, 0) for impact in self]))
 
 
 @explains_arguments

@@ -13,7 +13,7 @@ from ..collision.units import RULES, VELOCITY, System, display_values
 from ..errors import UserError
 from ..mechanics.outcome import IMPOSSIBLE, forces, moment_ratio, outcome
 from ..mechanics.state import CHANGES, COURSES, FORCES
-from ..messages.plaintable import decimals_for, fixed, number, paragraph, plain, table
+from ..messages.plaintable import decimals_for, format_fixed, number, paragraph, plain, table
 from ..names import CHAPTER, FINAL_STATE, PIVOT, RESULTS, SCENE, VELOCITIES, quantity
 from ..status import sentences
 from .unknowns import BADLY_CONDITIONED, Solution, solve_for
@@ -217,7 +217,7 @@ class Impact:
                 continue
             cells = []
             for name in names[:count]:
-                text = fixed(values[name], decimals[unit]) if name in values else "unknown"
+                text = format_fixed(values[name], decimals[unit]) if name in values else "unknown"
                 solved = name in values and name not in self.known and label in ("x", "y", "spin")
                 cells.append(f"{text}{'*' if solved else ' '}")
             rows.append([label, *cells, units.label(unit)])

@@ -37,12 +37,12 @@ def report(
     results = [result for file in examined for result in file.results]
     read: list[list[str]] = []
     for file in examined:
-        where = files.called(file.file)
+        where = files.display_name(file.file)
         read += [[where, "–", "NOT READ", file.error]] if file.error else []
         for result in file.results:
             what, title = f"{result.number} ({result.where})", TITLES[result.verdict]
             read.append([where, what, title, counts(result.fields)])
-    digests = [(files.called(file.file), file.sha256 or "not read") for file in examined]
+    digests = [(files.display_name(file.file), file.sha256 or "not read") for file in examined]
     return render(
         "verification.html",
         title=f"Verification of {len(results)} printout{'s' * (len(results) != 1)}",
@@ -71,7 +71,7 @@ def _printout(result: Verification) -> dict[str, Any]:
     inputs += [""] * (-len(inputs) % 8)
     return {
         "result": result,
-        "title": f"{files.called(result.file)}, printout {result.number} ({result.where})",
+        "title": f"{files.display_name(result.file)}, printout {result.number} ({result.where})",
         "summary": summary(result),
         "sections": sections(result),
         "drawing": _drawing(result),

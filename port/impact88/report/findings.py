@@ -17,7 +17,7 @@ from ..figures.canvas import svg
 from ..figures.sceneview import scene_drawing
 from ..files import replacing
 from ..mechanics.state import COURSES, KNOWABLE
-from ..messages.plaintable import fixed, number
+from ..messages.plaintable import format_fixed, number
 from ..names import DEFAULT_M, SCENE, check_names, quantity
 from ..reconstruction.solutiontable import without_noise
 from ..status import sentences
@@ -297,7 +297,7 @@ def _amount(name: str, value: float, units: System, like: float = math.nan) -> s
     if math.isinf(amount):
         return "unbounded"
     if like > 0 and math.isfinite(like):
-        return fixed(amount, max(0, 1 - math.floor(math.log10(like * units.factor(name)))))
+        return format_fixed(amount, max(0, 1 - math.floor(math.log10(like * units.factor(name)))))
     return f"{amount:,.0f}" if 1e4 <= abs(amount) < 1e12 else number(amount, 4)
 
 
@@ -488,7 +488,7 @@ def _details(found: Findings, case: Case, units: System) -> list[Table]:
                 quantity(item.name).meaning,
                 _amount(item.name, item.measured, units, item.tolerance),
                 _amount(item.name, item.adjusted, units, item.tolerance),
-                fixed(item.moved, 2),
+                format_fixed(item.moved, 2),
                 _unit(item.name, units),
             ]
             for item in found.adjusted

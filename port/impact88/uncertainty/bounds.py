@@ -33,7 +33,7 @@ from ..errors import UserError
 from ..mechanics.closedform.solve import quantities, share_typed
 from ..mechanics.outcome import forward_model, reconstruction_model
 from ..messages.arguments import explains_arguments
-from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, VELOCITIES, check_names, listed
+from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, VELOCITIES, check_names, split_names
 from ..optimization.extremes import CORNERS_IN_FULL, Extremes, Piece, merged
 from .boundstable import Bound, Bounds, Drive, Spread
 from .ranges import complete, read_correlations
@@ -240,7 +240,7 @@ class _Box:
         self.inputs = {name: item for name, item in given.items() if item.varies}
         self.known = {name: item.nominal for name, item in given.items() if not item.varies}
         usual, allowed = _outputs(problem, given["M"].nominal == 4)
-        self.outputs = tuple(dict.fromkeys(usual if outputs is None else listed(outputs)))
+        self.outputs = tuple(dict.fromkeys(usual if outputs is None else split_names(outputs)))
         check_names(self.outputs, allowed, "result")
         if not self.outputs:
             raise UserError(f"no result is asked for; expected some of {' '.join(allowed)}")

@@ -167,7 +167,7 @@ class Bounds:
 
     def _repr_html_(self) -> str:
         """What the command prints, as a notebook shows it."""
-        return notebook.preformatted(table(self))
+        return notebook.preformatted_html(table(self))
 
 
 def in_units(found: Bounds, system: System | str | None) -> Bounds:

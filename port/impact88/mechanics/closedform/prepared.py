@@ -13,7 +13,7 @@ from ...collision.mappings import in_base, in_doubles
 from ...collision.units import system_of
 from ...errors import UserError
 from ...messages.arguments import explains_arguments
-from ...names import RESULTS, SCENE, listed
+from ...names import RESULTS, SCENE, split_names
 from ...status import Status
 from .. import native
 from . import kernelcalls
@@ -78,9 +78,9 @@ def prepared(
     >>> loss([[0.5, 0.911, -10]])["LOSS"].round(2)
     array([44.43, 57.47, 57.56])
     """
-    chosen = listed(names) if isinstance(names, str) else tuple(names)
+    chosen = split_names(names) if isinstance(names, str) else tuple(names)
     wanted = ALL if outputs is None else outputs
-    wanted = listed(wanted) if isinstance(wanted, str) else tuple(wanted)
+    wanted = split_names(wanted) if isinstance(wanted, str) else tuple(wanted)
     rest = {} if scene is None else scene
     check_mapping(rest)
     _check_names(chosen, SCENE, "scene")

@@ -16,7 +16,7 @@ from ...collision.case import check_mapping
 from ...collision.mappings import in_base, in_doubles
 from ...errors import UserError
 from ...messages.arguments import explains_arguments
-from ...names import PIVOT, RESULTS, listed
+from ...names import PIVOT, RESULTS, split_names
 from ...status import Status
 from .. import native
 from ..native.processors import shared_out, workers
@@ -119,7 +119,7 @@ def solve(
     if outputs is None:
         outputs = ALL if out is None else tuple(out)
     elif isinstance(outputs, str):
-        outputs = listed(outputs)
+        outputs = split_names(outputs)
     wanted = _known(tuple(outputs))
     mu = columns.get("MU")
     if type(mu) in _CELLS or getattr(mu, "dtype", _FLOATS).kind in "OUS":

@@ -1,9 +1,8 @@
-"""The forms of what the commands print with --json: a JSON Schema each, with a number.
+"""The JSON forms of the commands' --json output: a JSON Schema and a version number for each.
 
-The rule for changes: a field that is added leaves the number as it is; one that is removed or
-renamed, that changes its type, unit or meaning, or may be null where it could not, raises the
-number by one, and so does a word added to an enumeration. Schema, number and output change in the
-same commit. Digits that become more accurate are no change of form.
+An added field does not change the number. A field that is removed or renamed, changes its type,
+unit or meaning, or may now be null raises it by one, as does a word added to an enumeration.
+Schema, number and output change in the same commit. More accurate digits are not a change of form.
 """
 
 from collections.abc import Mapping
@@ -23,20 +22,24 @@ NUMBERS = {
     "witness": 1,
     "bounds": 2,
     "reconstruct": 2,
-    **dict.fromkeys(("colinear", "delta-v", "example", "staged"), 1),
+    "colinear": 1,
+    "delta-v": 1,
+    "example": 1,
+    "staged": 1,
 }
-"""Name of a form -> its number. Names are those of the commands, the oracle's ``vectors``, and
-``conformance`` for compare --kit."""
+"""Name of a form -> its version number. Names are those of the commands, the oracle's ``vectors``,
+and ``conformance`` for compare --kit."""
 CONVENTIONS = "conventions"
 
 
-def stamped(name: str, found: Mapping[str, object]) -> dict[str, object]:
-    """An object as it is printed: with the name and number of its form, and the version."""
-    return {"schema": f"impact88/{name}/{NUMBERS[name]}", "version": __version__, **found}
+def with_schema(name: str, record: Mapping[str, object]) -> dict[str, object]:
+    """Return an object for printing: with name and number of its form, and the package version."""
+    return {"schema": f"impact88/{name}/{NUMBERS[name]}", "version": __version__, **record}
 
 
 def text(name: str) -> str:
-    """The schema of a form, or the conventions, as text. Raises UserError for another name."""
+    """Return the schema of a form, or the conventions, as text. Raises UserError for other
+    names."""
     if name not in (*NUMBERS, CONVENTIONS):
         raise UserError(
             f"there is no schema {name}; expected one of {' '.join(NUMBERS)}, or {CONVENTIONS}"

@@ -63,10 +63,14 @@ def examine(
         examined.sha256 = sha256(data).hexdigest()
         picture = data.startswith(PICTURE_STARTS)
         if picture and given:
-            raise UserError("a scene apart goes with text, not with a picture", files.called(path))
+            raise UserError(
+                "a scene apart goes with text, not with a picture", files.display_name(path)
+            )
         seeds = [text for text in ([seed] if isinstance(seed, str) else seed) if text]
         if seeds and copy:
-            raise UserError("other readings go without a copy of the listing", files.called(path))
+            raise UserError(
+                "other readings go without a copy of the listing", files.display_name(path)
+            )
         found = (
             _pictured(path, data, copy, seeds)
             if picture
@@ -87,7 +91,7 @@ def _pictured(
         from .scanned import verified
     except ImportError as error:
         said = f"pictures need {error.name}, which is not installed; pip install 'impact88[scan]'"
-        raise UserError(said, files.called(path)) from None
+        raise UserError(said, files.display_name(path)) from None
     if not copy:
         return map(completed, verified(path, data, seeds))
     from ..judging.copies import pages_of
@@ -104,7 +108,7 @@ def _printed(
     copy: ListingCopy | None,
     seeds: Sequence[str],
 ) -> Iterator[Verification]:
-    where = files.called(path)
+    where = files.display_name(path)
     if len(data) > LARGEST_FILE:
         raise UserError(f"is larger than {LARGEST_FILE:,} bytes of text", where)
     text = decoded(data, where)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...collision.fields import FIELDS, REPLIES
 from ...errors import UserError
-from ...files import called
+from ...files import display_name
 from ...messages.progress import progress
 from ...names import SCENE
 from ..judging.copies import CopyPages, as_printed, converted_inputs
@@ -65,8 +65,8 @@ def verified(
             meter.update(1)
     if not results:
         raise UserError(
-            f"{called(path)}: no printout was found in the picture; expected lines of fixed pitch, "
-            "10 pixels or more a character" + (f" ({causes})" if causes else "")
+            f"{display_name(path)}: no printout was found in the picture; expected lines of fixed "
+            "pitch, 10 pixels or more a character" + (f" ({causes})" if causes else "")
         )
     if without:
         pages = ", ".join(map(str, without))

@@ -11,11 +11,11 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from ...collision.fields import ANGLES, INPUTS, scene_name
-from ...errors import printable, shown
-from ...files import called
+from ...errors import one_line, printable
+from ...files import display_name
 from ...messages import notebook
 from ...messages.plaintable import table
-from ...messages.schemas import stamped
+from ...messages.schemas import with_schema
 from ..judging.judgement import FieldCheck, Judged, Status, Verdict
 from ..reading.fieldlabels import LabelCheck, LabelState
 from ..reading.numerals import Doubt, value_of
@@ -173,12 +173,13 @@ class Verification:
     def __repr__(self) -> str:
         exact = sum(check.same is True for check in self.fields)
         return (
-            f"<Verification of printout {self.number} ({self.where}) of {called(self.file)!r}: "
-            f"{self.verdict.name}, {exact} of {len(self.fields)} numbers read exactly so>"
+            f"<Verification of printout {self.number} ({self.where}) of "
+            f"{display_name(self.file)!r}: {self.verdict.name}, {exact} of {len(self.fields)} "
+            "numbers read exactly so>"
         )
 
     def _repr_html_(self) -> str:
-        return notebook.preformatted("\n".join(lines(self)))
+        return notebook.preformatted_html("\n".join(lines(self)))
 
     def as_json(self) -> dict[str, Any]:
         """The object `impact88 verify --json` prints."""
@@ -188,14 +189,14 @@ class Verification:
             described["listing"] = self.copy
         if self.cells:
             described |= {"cells": self.cells, "marks": self.marks, "basis": self.basis}
-        return stamped("verify", described)
+        return with_schema("verify", described)
 
 
 class Verifications(list[Verification]):
     """The verdicts on the printouts of one file, in their order; a notebook shows them whole."""
 
     def _repr_html_(self) -> str:
-        return notebook.preformatted("\n".join(line for one in self for line in lines(one)))
+        return notebook.preformatted_html("\n".join(line for one in self for line in lines(one)))
 
 
 _IN_JSON = (
@@ -227,7 +228,7 @@ class Examined:
         if self.error is None:
             return [result.as_json() for result in self.results]
         refused = {"file": self.file, "sha256": self.sha256, "error": self.error}
-        return [stamped("verify", refused)]
+        return [with_schema("verify", refused)]
 
 
 # --- in words -------------------------------------------------------------------------------------
@@ -581,7 +582,7 @@ def lines(result: Verification, brief: bool = False) -> Iterator[str]:
 
 
 def _lines(result: Verification, brief: bool) -> Iterator[str]:
-    where = f"{shown(called(result.file))}, printout {result.number} ({result.where})"
+    where = f"{one_line(display_name(result.file))}, printout {result.number} ({result.where})"
     yield f"{where}: {TITLES[result.verdict]}"
     parts = sections(result)
     doubtful, notes = parts.pop(DOUBTFUL, []), parts.pop(NOTES, [])

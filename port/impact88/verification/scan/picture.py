@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from PIL import ImageOps
 
 from ...errors import UserError
-from ...files import called
+from ...files import display_name
 from .pdfpages import MAX_PAGES, PdfError, render_pages
 
 Picture = NDArray[np.uint8]
@@ -35,9 +35,9 @@ class Page(NamedTuple):
 def pages_of(data: bytes, path: str) -> Iterator[Page]:
     """Yield the pages of a file. Raises UserError when it cannot be read."""
     if data.startswith(b"%PDF-"):
-        yield from _pdf(data, called(path))
+        yield from _pdf(data, display_name(path))
         return
-    where, number = called(path), 1
+    where, number = display_name(path), 1
     try:
         with PIL.Image.open(io.BytesIO(data)) as file:
             count = getattr(file, "n_frames", 1)
