@@ -179,8 +179,8 @@ def typed_line() -> str | None:
         try:
             line = sys.stdin.readline(LONGEST_LINE)
         except UnicodeDecodeError as error:
-            what = f"contains bytes that are not {error.encoding} text"
-            raise UserError(what, display_name("-")) from None
+            message = f"contains bytes that are not {error.encoding} text"
+            raise UserError(message, display_name("-")) from None
     if len(line) == LONGEST_LINE and not line.endswith("\n"):
         raise UserError(f"has a line longer than {LONGEST_LINE:,} characters", display_name("-"))
     return line.rstrip("\r\n") if line else None
@@ -206,10 +206,10 @@ def _sink(file: str, target: str, mode: str, private: bool) -> IO[Any]:
     with _naming(target, "written"):
         raw = _Sink(file, "w", opener=opener if private else None)
     raw.target = target
-    buffered = io.BufferedWriter(raw)
+    stream = io.BufferedWriter(raw)
     if "b" in mode:
-        return buffered
-    return io.TextIOWrapper(buffered, encoding="utf-8", errors=ESCAPED, newline="\n")
+        return stream
+    return io.TextIOWrapper(stream, encoding="utf-8", errors=ESCAPED, newline="\n")
 
 
 @contextmanager

@@ -84,28 +84,31 @@ def names(status: int) -> list[str]:
 
 
 def sentences(status: int, values: Mapping[str, Any] | None = None) -> list[str]:
-    """What the bits set in ``status`` say, lowest bit first; both vehicles on the wrong sides is
-    one fault, the contact plane's. Of friction that is not admissible follows what would be, where
-    the impact's ``values`` show it (see `admissible_friction`)."""
-    both = status & _SIDES == _SIDES
-    lines = [WORDS[bit] for bit in Status if status & bit and not (both and bit in _SIDES)]
-    return lines + [_BOTH_SIDES] * both + admissible_friction(status, values or {})
+    """Return a sentence for each bit set in ``status``, lowest first.
+
+    Both vehicles on the wrong side are one fault, that of the contact plane. If friction is not
+    admissible, the last sentence says what would be, as far as the impact's ``values`` show it (see
+    `admissible_friction`)."""
+    on_both_sides = status & _SIDES == _SIDES
+    lines = [WORDS[bit] for bit in Status if status & bit and not (on_both_sides and bit in _SIDES)]
+    return lines + [_BOTH_SIDES] * on_both_sides + admissible_friction(status, values or {})
 
 
 def admissible_friction(status: int, values: Mapping[str, Any]) -> list[str]:
-    """Which sign of MU is admissible and how large it may be, if ``status`` says that it is not,
-    and what is assumed for that. ``values``: MUC and MUP of the impact; the scene, PN and PM as far
-    as they are known."""
+    """Return a sentence on the admissible sign and size of MU, and the assumptions, or no sentence
+    if ``status`` has no fault of friction or ``values`` lacks MUC or MUP.
+
+    ``values``: MUC and MUP of the impact; the scene, PN and PM as far as they are known."""
     names = ("MUC", "MUP", "MU", "GA", "XA", "YA", "XB", "YB")
-    critical, used, typed, plane, xa, ya, xb, yb = (float(values.get(n, nan)) for n in names)
-    if not status & _FRICTION or not isfinite(critical) or not used:
+    critical, applied, given_mu, plane, xa, ya, xb, yb = (float(values.get(n, nan)) for n in names)
+    if not status & _FRICTION or not isfinite(critical) or not applied:
         return []
-    if critical * used > 0 and status & Status.FRICTION_WRONG_DIRECTION:
-        critical = -copysign(inf, used)  # the pivot pulls: nothing ends the sliding
+    if critical * applied > 0 and status & Status.FRICTION_WRONG_DIRECTION:
+        critical = -copysign(inf, applied)  # the pivot pulls: nothing ends the sliding
     back = _forth_and_back(values)
     text = f"admissible here: P_t/P_n {_up_to(critical, back)}"
-    if abs(typed) > 0:  # MU is known
-        turn = typed / used
+    if abs(given_mu) > 0:  # MU is known
+        turn = given_mu / applied
         text += f", that is MU {_up_to(critical * turn, back * turn)} as typed"
     if back:
         text += (
@@ -115,7 +118,7 @@ def admissible_friction(status: int, values: Mapping[str, Any]) -> list[str]:
     if values.get("M", 6) != 4 and values.get("EM", 0) != 1:
         text += "; assumed: the moment impulse grows in proportion to the normal impulse"
     sliding = (ya - yb) * cos(radians(plane)) - (xa - xb) * sin(radians(plane))
-    if typed == used and abs(sliding) <= 1e-12 * hypot(xa - xb, ya - yb):
+    if given_mu == applied and abs(sliding) <= 1e-12 * hypot(xa - xb, ya - yb):
         text += "; without sliding before the impact line 400 keeps the sign of MU"
     return [text]
 
@@ -125,9 +128,13 @@ _SLIDING = (*_BODIES, "UX", "UY", "VX", "VY", "PN", "PM")
 
 
 def _forth_and_back(values: Mapping[str, Any]) -> float:
-    """Return the P_t/P_n that friction makes at most against the sliding before the impact where
-    the normal impulse reverses it in between (see `closedform.statusbits.slides_forth_and_back`);
-    0 where that adds nothing, or is not known."""
+    """Return the largest P_t/P_n of friction against the initial sliding when the normal impulse
+    reverses the sliding during the impact; 0 if it does not, or values are missing.
+
+    With v the sliding velocity before, s the change of it by P_n and the moment impulse, and y the
+    sliding per unit of tangential impulse, |P_t| <= (sqrt(2 |v s|) - |s|)² / (|s| y), if v and s
+    have opposite signs and |s|/2 < |v| < 2 |s|; see
+    `closedform.statusbits.slides_forth_and_back`."""
     if values.get("M", 6) == 4 or not all(name in values for name in _SLIDING):
         return 0.0
     g = {name: float(values[name]) for name in _SLIDING}
@@ -142,11 +149,12 @@ def _forth_and_back(values: Mapping[str, Any]) -> float:
     size = abs(turning)
     if not (before * turning < 0 and 0.5 * size < abs(before) < 2 * size and g["PN"] > 0):
         return 0.0
-    most = (sqrt(2 * abs(before) * size) - size) ** 2 / (size * yielding)
-    return -copysign(most / g["PN"], before)
+    max_pt = (sqrt(2 * abs(before) * size) - size) ** 2 / (size * yielding)
+    return -copysign(max_pt / g["PN"], before)
 
 
 def _up_to(limit: float, back: float = 0.0) -> str:
+    """Return the interval from 0 to ``limit``, extended to ``back``, in words."""
     if isinf(limit):
         return "above 0" if limit > 0 else "below 0"
     low, high = min(limit, back, 0.0), max(limit, back, 0.0)

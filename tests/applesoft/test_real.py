@@ -39,7 +39,7 @@ def test_left_rounds_and_right_keeps_its_extension():
 def test_storing_rounds():
     third = of("1") / of("3")
     assert third.rounded().extension == 0
-    assert third.stored() == third.rounded().stored()
+    assert third.to_bytes() == third.rounded().to_bytes()
 
 
 def test_the_published_floor():
@@ -51,7 +51,7 @@ def test_the_published_floor():
 
 
 def test_the_digits_typed_matter():
-    assert of("90315.8817").stored() != of("90315.88170").stored()
+    assert of("90315.8817").to_bytes() != of("90315.88170").to_bytes()
 
 
 @pytest.mark.parametrize(

@@ -54,8 +54,8 @@ def port_reports(scene: Scene) -> tuple[list[Report], Any]:
     reports: list[Report] = []
 
     def after(line: int, variables: Any) -> None:
-        reals = {name: stored(x.stored().hex()) for name, x in variables.reals.items()}
-        data = variables.A and [stored(x.stored().hex()) for x in variables.A.data]
+        reals = {name: stored(x.to_bytes().hex()) for name, x in variables.reals.items()}
+        data = variables.A and [stored(x.to_bytes().hex()) for x in variables.A.data]
         reports.append((line, reals, data))
 
     return reports, run_port(scene, dos=False, after_line=after)

@@ -19,10 +19,10 @@ def _binary(rule: Callable[[Number, Number], Number]) -> tuple[Callable[..., Rea
     def forward(left: Real, right: Real | int) -> Real:
         return Real(rule(left.number, right.number if right.__class__ is Real else _number(right)))
 
-    def reflected(right: Real, left: int) -> Real:
+    def reverse(right: Real, left: int) -> Real:
         return Real(rule(_number(left), right.number))
 
-    return forward, reflected
+    return forward, reverse
 
 
 def _comparison(holds: Callable[[int, int], bool]) -> Callable[[Real, object], bool]:
@@ -51,11 +51,11 @@ class Real:
 
     @classmethod
     def from_stored(cls, stored: bytes | str) -> Real:
-        """See `from_stored`."""
+        """Return the real of five stored bytes, see `real.from_stored`."""
         return cls(from_stored(stored))
 
-    def stored(self) -> bytes:
-        """See `to_stored`."""
+    def to_bytes(self) -> bytes:
+        """Return the five bytes that a variable stores, see `real.to_stored`."""
         return to_stored(self.number)
 
     def rounded(self) -> Real:
@@ -75,7 +75,7 @@ class Real:
         return -size if s else size
 
     def __repr__(self) -> str:
-        return f"Real({float(self)!r}, {self.stored().hex()}:{self.extension:02x})"
+        return f"Real({float(self)!r}, {self.to_bytes().hex()}:{self.extension:02x})"
 
     def __neg__(self) -> Real:
         return Real(real.negate(self.number))

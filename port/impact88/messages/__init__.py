@@ -1,1 +1,1 @@
-"""What a user is told: arguments of a wrong kind, progress, tables to read, JSON forms."""
+"""Messages to users: arguments of a wrong type, progress, text tables, JSON forms."""

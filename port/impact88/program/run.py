@@ -183,5 +183,5 @@ def run(
 def _record_value(value: Any) -> Any:
     """Return a real's stored bytes in hexadecimal; a double unchanged, or as text if not finite."""
     if isinstance(value, Real):
-        return value.stored().hex()
+        return value.to_bytes().hex()
     return value if math.isfinite(value) else str(value)
