@@ -1,48 +1,70 @@
 """The commands, a module each: ``ARGUMENTS`` declares what it takes, ``main`` does it, and the
-module's docstring is the end of its help."""
+module's docstring is the end of its help. One row of `ROWS` registers a command."""
 
-COMMANDS = {
-    "verify": "check an old printout digit for digit, explain what differs",
-    "scene": "print a scene file to fill in, or a published run's",
-    "run": "run the 1988 program on its own data or on a scene",
-    "solve": "solve a table of scenes, in double precision or as the Apple",
-    "bounds": "bounds, quantiles and drivers from ranges of the inputs",
-    "reconstruct": "solve the equations for any unknowns, with tolerances",
-    "figure": "draw a scene, its bounds or a figure of the chapter",
-    "report": "a page for the case file: answer, drawing, inputs, method",
-    "oracle": "answer scenes with all that is known of them",
-    "compare": "say where another program's results differ, and why",
-    "selfcheck": "replay captures of a real Apple II Plus: pass or fail",
-    "witness": "let your own Apple II Plus ROM judge this project",
-    "basic": "the ] prompt with the listing, or any Applesoft program",
-    "desk": "a page in the browser, served by this machine to itself",
-    "colinear": "the direct colinear impact, Equations 1 to 12",
-    "barrier": "the impact of one vehicle on a rigid barrier",
-    "delta-v": "velocity changes from speeds, masses, energy loss: Equation 19",
-    "staged": "eleven staged collisions: Tables 1 and 2 recomputed and fitted",
-    "example": "Section VII's reconstruction, step by step",
-    "schema": "the forms of what --json prints, and the conventions",
-    "bench": "run time against error of every method, on this machine",
-    "completion": "a script that completes options in bash, zsh or tcsh",
-}
+from collections import namedtuple  # typing takes longer to import than a short run
+
+
+class Command(namedtuple("Command", ("name", "group", "summary"))):
+    """A command: its ``name`` on the command line, its ``group`` on the first page of the help, and
+    one line of help. Its module is named for it: ``delta-v`` is in ``delta_v_command.py``."""
+
+    __slots__ = ()
+
+
+_PRINTOUTS = "printouts"
+_COLLISIONS = "collisions"
+_PROGRAMS = "programs"
+_APPLE = "the Apple"
+_PAGE = "the page"
+_CHAPTER = "the chapter"  # its commands follow ``impact88 chapter``
+_BELOW = ""  # below a line, at the end of the page
+
+# in the order of the help: the rows of a group stand together
+ROWS = (
+    Command("verify", _PRINTOUTS, "check an old printout digit for digit, explain what differs"),
+    Command("scene", _COLLISIONS, "print a scene file to fill in, or a published run's"),
+    Command("run", _COLLISIONS, "run the 1988 program on its own data or on a scene"),
+    Command("solve", _COLLISIONS, "solve a table of scenes, in double precision or as the Apple"),
+    Command("bounds", _COLLISIONS, "bounds, quantiles and drivers from ranges of the inputs"),
+    Command("reconstruct", _COLLISIONS, "solve the equations for any unknowns, with tolerances"),
+    Command("figure", _COLLISIONS, "draw a scene, its bounds or a figure of the chapter"),
+    Command("report", _COLLISIONS, "a page for the case file: answer, drawing, inputs, method"),
+    Command("oracle", _PROGRAMS, "answer scenes with all that is known of them"),
+    Command("compare", _PROGRAMS, "say where another program's results differ, and why"),
+    Command("selfcheck", _PROGRAMS, "replay captures of a real Apple II Plus: pass or fail"),
+    Command("witness", _PROGRAMS, "let your own Apple II Plus ROM judge this project"),
+    Command("basic", _APPLE, "the ] prompt with the listing, or any Applesoft program"),
+    Command("desk", _PAGE, "a page in the browser, served by this machine to itself"),
+    Command("colinear", _CHAPTER, "the direct colinear impact, Equations 1 to 12"),
+    Command("barrier", _CHAPTER, "the impact of one vehicle on a rigid barrier"),
+    Command("delta-v", _CHAPTER, "velocity changes from speeds, masses, energy loss: Equation 19"),
+    Command("staged", _CHAPTER, "eleven staged collisions: Tables 1 and 2 recomputed and fitted"),
+    Command("example", _CHAPTER, "Section VII's reconstruction, step by step"),
+    Command("schema", _BELOW, "the forms of what --json prints, and the conventions"),
+    Command("bench", _BELOW, "run time against error of every method, on this machine"),
+    Command("completion", _BELOW, "a script that completes options in bash, zsh or tcsh"),
+)
+COMMANDS = {command.name: command.summary for command in ROWS}
 """Command -> one line of help."""
-
-CHAPTER = ("colinear", "barrier", "delta-v", "staged", "example")
+CHAPTER = tuple(command.name for command in ROWS if command.group == _CHAPTER)
 """What follows ``impact88 chapter``; version 0.3 takes these words alone, too."""
-CHAPTER_MEANING = "colinear, barrier, delta-v, staged or example: its other problems"
+CHAPTER_MEANING = f"{', '.join(CHAPTER[:-1])} or {CHAPTER[-1]}: its other problems"
 
-GROUPS = {
-    "printouts": ("verify",),
-    "collisions": ("scene", "run", "solve", "bounds", "reconstruct", "figure", "report"),
-    "programs": ("oracle", "compare", "selfcheck", "witness"),
-    "the Apple": ("basic",),
-    "the page": ("desk",),
-    "the chapter": ("chapter",),
-    "": ("schema", "bench", "completion"),
-}
-"""The first page of the help; the last group stands below a line."""
+
+def _grouped() -> dict[str, tuple[str, ...]]:
+    groups: dict[str, tuple[str, ...]] = {}
+    for command in ROWS:
+        shown = "chapter" if command.group == _CHAPTER else command.name
+        listed = groups.setdefault(command.group, ())
+        if shown not in listed:
+            groups[command.group] = (*listed, shown)
+    return groups
+
+
+GROUPS = _grouped()
+"""Group -> its commands, as the first page of the help shows them; "" is below a line."""
 
 
 def module_of(command: str) -> str:
-    """The name of a command's module."""
+    """Return the name of a command's module."""
     return f"{__name__}.{command.replace('-', '_')}_command"

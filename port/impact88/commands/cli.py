@@ -65,7 +65,7 @@ def _dispatch(arguments: Sequence[str]) -> int:
         known = [*CHAPTER]
         page = "chapter_overview" if name in ("-h", "--help") else ""
     if page:
-        print(getattr(import_module(".commands.helptext", __package__), page)())
+        print(getattr(import_module(".helptext", __package__), page)())
     elif name in ("-V", "--version"):
         print(f"impact88 {__version__}")
     elif name in known:

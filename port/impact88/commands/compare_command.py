@@ -51,9 +51,7 @@ FIRST = 5
 
 ARGUMENTS = (
     options.reads("theirs", "THEIRS", "the table (- is standard input, CSV)"),
-    options.choice(
-        "--from", options.FORMATS, "the format, if its name does not show it", dest="form"
-    ),
+    options.format_option("--from", "the format, if its name does not show it", dest="form"),
     options.setting("a value of the scene for all rows, where the table has no such column"),
     options.value(
         "--rtol",

@@ -37,9 +37,6 @@ if TYPE_CHECKING:
     from ..reconstruction.solutiontable import Impact
     from ..uncertainty.boundstable import Bounds
 
-FORMATS = ("csv", "jsonl", "npz", "parquet", "feather", "xlsx")
-"""What ``--from`` and ``--to`` take."""
-
 
 class InputPath(str):
     """The type of an argument that names a file or folder to read; ``-`` is standard input."""
@@ -92,6 +89,13 @@ def _reader(read: Callable[[str], float], expected: str) -> Callable[[str], floa
             raise argparse.ArgumentTypeError(f"{quoted(text)} is not {expected}") from None
 
     return read_or_refuse
+
+
+def format_option(names: str, meaning: str, **keywords: Any) -> Argument:
+    """Return an option that takes the name of a table format."""
+    from ..tables.formats import FORMATS
+
+    return choice(names, tuple(FORMATS), meaning, **keywords)
 
 
 def flag(name: str, meaning: str) -> Argument:

@@ -1,14 +1,15 @@
 """CASES is a table with a column for each of the scene's names (impact88 scene lists them; M may be
-missing and is 6 then): CSV (.csv .tsv .txt, also .csv.gz), JSON Lines (.jsonl .ndjson) or an array
-of objects (.json), in which the scene may be an object inside (inputs), .npz; with impact88[arrow]
-.parquet and .feather; with impact88[excel] .xlsx, the row with most of the names being the
-headings. Names in small letters, semicolons and decimal commas are understood, 1,234.5 too; a comma
-that may be either (1,234) is asked about. A unit behind a name (UX [mph], MA (lb)) or in a cell
-("-25 mph") is converted, and results come in the same system with headings that say so (DVA [mph]);
---units is for columns without any. All its columns are passed through, and the results follow. Rows
-are read and written in blocks: memory does not grow with the file (but with .npz and .xlsx that are
-written). A scene file (.toml) is a table of one row, or with --sweep of as many as the ranges
-LOW:HIGH:COUNT have combinations.
+missing and is 6 then). In JSON the scene may be an object inside (inputs); of a workbook the row
+with most of the names has the headings. Names in small letters, semicolons and decimal commas are
+understood, 1,234.5 too; a comma that may be either (1,234) is asked about. A unit behind a name (UX
+[mph], MA (lb)) or in a cell ("-25 mph") is converted, and results come in the same system with
+headings that say so (DVA [mph]); --units is for columns without any. All its columns are passed
+through, and the results follow. Rows are read and written in blocks: memory does not grow with the
+file (but with .npz and .xlsx that are written). A scene file (.toml) is a table of one row, or with
+--sweep of as many as the ranges LOW:HIGH:COUNT have combinations.
+
+Formats, by the ending of the file's name or by --from and --to:
+{formats}
 
 Results, all by default:
 {results}
@@ -34,10 +35,14 @@ exit status: 0 all rows solved; 1 some could not be, or ended with an Applesoft 
 """
 
 from ..names import RESULTS
+from ..tables.formats import FORMATS
 from . import options
 
 __doc__ = (__doc__ or "").format(
-    results="\n".join(f"  {q.name:<6}  {q.meaning} [{q.unit}]" for q in RESULTS.values())
+    formats="\n".join(
+        f"  {row.name:<8} {row.summary} ({' '.join(row.endings)})" for row in FORMATS.values()
+    ),
+    results="\n".join(f"  {q.name:<6}  {q.meaning} [{q.unit}]" for q in RESULTS.values()),
 )
 
 ARGUMENTS = (
@@ -58,8 +63,8 @@ ARGUMENTS = (
     options.reads("--scene", "FILE.toml", "a scene file for the columns the table lacks"),
     options.ENCODING,
     options.writes("--errors", "FILE", "write the bad rows here (CSV)"),
-    options.choice("--from", options.FORMATS, "the format of CASES", dest="form"),
-    options.choice("--to", options.FORMATS, "the format of RESULTS"),
+    options.format_option("--from", "the format of CASES", dest="form"),
+    options.format_option("--to", "the format of RESULTS"),
 )
 
 

@@ -22,8 +22,9 @@ from ..messages.plaintable import plain
 from ..messages.progress import progress
 from ..names import DEFAULT_M, RESULTS, SCENE
 from ..tables.cells import TableUnits, check_scene_columns, numbers
+from ..tables.formats import FORMATS
 from ..tables.rows import BadCell, Reader, Rows
-from ..tables.table import FORMATS, format_of, open_reader
+from ..tables.table import format_of, open_reader
 from . import agreement
 from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, Case
 from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, Diagnosis, Unexplained
@@ -240,9 +241,8 @@ def compare(
     if values is not None and not isinstance(values, Mapping):
         raise UserError(f"values is {quoted(values)}; expected a mapping of names to values")
     values = texts(values or {})
-    if form is not None and form not in FORMATS.values():
-        formats = " ".join(dict.fromkeys(FORMATS.values()))
-        raise UserError(f"form is {quoted(form)}; expected one of {formats}")
+    if form is not None and form not in FORMATS:
+        raise UserError(f"form is {quoted(form)}; expected one of {' '.join(FORMATS)}")
     if rtol is not None and not (isinstance(rtol, int | float) and 0 <= rtol < 1):
         raise UserError(f"rtol is {quoted(rtol)}; expected a share such as 1e-9")
     for name, text in (("encoding", encoding), ("units", units)):
