@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+from collections import Counter
 
 import numpy as np
 import pytest
 
 from impact88 import solve
 from impact88.collision.uncertain import read
-from impact88.collision.units import SYSTEMS, in_base, size_of
+from impact88.collision.units import SYSTEMS, UNITS, in_base, size_of
 from impact88.commands.cli import main
 from impact88.errors import UserError
 from impact88.program.scene import Scene, sample
@@ -23,6 +24,66 @@ RUN_1 = {name: float(text) for name, text in sample(1).items()}
 
 def based(**texts):
     return in_base(texts, "file")[0]
+
+
+DEGREE = math.pi / 180
+SIZES = {
+    "length": ("length", 1),
+    "mass": ("mass", 1),
+    "time": ("time", 1),
+    "ms": ("time", 1e-3),
+    "h": ("time", 3600),
+    "ft": ("length", 0.3048),
+    "in": ("length", 0.0254),
+    "yd": ("length", 0.9144),
+    "mi": ("length", 1609.344),
+    "m": ("length", 1),
+    "cm": ("length", 0.01),
+    "mm": ("length", 0.001),
+    "km": ("length", 1000),
+    "mph": ("length/time", 0.44704),
+    "fps": ("length/time", 0.3048),
+    "kph": ("length/time", 1 / 3.6),
+    "kn": ("length/time", 1852 / 3600),
+    "lb": ("mass", 0.45359237),
+    "lbf": ("mass·length/time²", 4.4482216152605),
+    "slug": ("mass", 14.593902937206365),
+    "oz": ("mass", 0.028349523125),
+    "kg": ("mass", 1),
+    "t": ("mass", 1000),
+    "n": ("mass·length/time²", 1),
+    "j": ("mass·length²/time²", 1),
+    "kj": ("mass·length²/time²", 1000),
+    "rad": ("degree", 1),
+    "deg": ("degree", DEGREE),
+    "rev": ("degree", 360 * DEGREE),
+    "rpm": ("rad/time", 6 * DEGREE),
+    "%": ("1", 0.01),
+}
+"""First symbol of a unit -> what it measures and its size in m, kg, s and radians, NIST SP 811."""
+
+
+@pytest.mark.parametrize("unit", UNITS, ids=[unit.symbols.split()[0] for unit in UNITS])
+def test_every_unit_has_the_size_of_its_definition(unit):
+    first = unit.symbols.split()[0]
+    assert first in SIZES, (
+        f"{first} has a row in UNITS of collision/units.py and none here; next step: what it "
+        "measures and its size, from its definition, in SIZES of tests/collision/test_units.py"
+    )
+    rule, size = SIZES[first]
+    for symbol in {*unit.symbols.split()} - {"percent"}:  # which names what results are in
+        known = size_of(symbol, rule)
+        assert known, f"{symbol} is no unit of {rule}; next step: its row in collision/units.py"
+        assert float(known[0]) == pytest.approx(size, rel=1e-15), (
+            f"{symbol} has another size than SIZES says; next step: its row in UNITS of "
+            "collision/units.py"
+        )
+
+
+def test_no_symbol_stands_for_two_units():
+    symbols = Counter(symbol for unit in UNITS for symbol in unit.symbols.split())
+    assert not [symbol for symbol, count in symbols.items() if count > 1]
+    assert not [symbol for symbol in symbols if symbol != symbol.lower()]
 
 
 class TestConversion:

@@ -9,14 +9,16 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 
 import pytest
+from captures import ROOT
 from installed import COMMAND, process
 from installed import impact88 as command
 
 import impact88
-from impact88.commands import CHAPTER, CHAPTER_MEANING, GROUPS
+from impact88.commands import CHAPTER, CHAPTER_MEANING, GROUPS, module_of
 from impact88.commands.cli import COMMANDS, main
 from impact88.program.scene import Scene, sample
 
@@ -37,6 +39,38 @@ def test_version() -> None:
         0,
         f"impact88 {impact88.__version__}\n",
         "",
+    )
+
+
+COMMANDS_FOLDER = Path(impact88.__file__).parent / "commands"
+MODULES = {path.stem for path in COMMANDS_FOLDER.glob("*_command.py")}
+
+
+def test_every_module_of_a_command_is_registered() -> None:
+    registered = {module_of(name).rpartition(".")[2] for name in COMMANDS}
+    for stem in sorted(MODULES - registered):
+        pytest.fail(
+            f"commands/{stem}.py is no command yet; next step: its row in ROWS of "
+            "commands/__init__.py (name, group, summary)"
+        )
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_registered_command_is_complete(name: str) -> None:
+    stem = module_of(name).rpartition(".")[2]
+    assert stem in MODULES, (
+        f"{name} has a row in ROWS of commands/__init__.py and no module; next step: "
+        f"commands/{stem}.py with ARGUMENTS and main"
+    )
+    module = import_module(module_of(name))
+    for part in ("ARGUMENTS", "main"):
+        assert hasattr(module, part), f"next step: {part} in commands/{stem}.py"
+    assert module.__doc__, f"next step: the end of the help, as docstring of commands/{stem}.py"
+    pages = [ROOT / "README.md", ROOT / "port" / "GUIDE.md"]
+    words = f"impact88 {'chapter ' if name in CHAPTER else ''}{name}"
+    assert any(words in page.read_text("utf-8") for page in pages), (
+        f"no page for users says {words}; next step: an example in port/GUIDE.md, which "
+        "tests/doors/test_readme.py runs"
     )
 
 

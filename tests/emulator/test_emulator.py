@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import os
+from functools import partial
 
 import captures
 import pytest
 from emulation import FUZZ, PROGRAMS
 
+from impact88.emulator.machine import Machine
+from impact88.emulator.programfile import read_program
+from impact88.emulator.tokens import FIRST, KEYWORDS, LAST_STATEMENT, TOKENS
 from impact88.program import emulated
 from impact88.qualification.captured import left_behind, session
 
@@ -15,6 +19,40 @@ SCENES = captures.scenes()[:: 1 if "IMPACT88_CAPTURES" in os.environ else 3]
 """The port replays the others, and is compared with the emulator line by line."""
 
 pytestmark = pytest.mark.captures
+
+
+STATEMENTS = KEYWORDS[: LAST_STATEMENT - FIRST + 1]
+TYPED_ONLY = {"CONT", "DEL", "LIST"}
+"""Statements of the prompt, which `test_emulator_language` types."""
+
+
+def test_every_statement_s_method_is_named_for_a_keyword():
+    named = {f"{word.lower().rstrip(':')}_" for word in STATEMENTS} | {"break_"}
+    methods = [name for name in dir(Machine) if name.endswith("_") and name[0] != "_"]
+    for name in methods:
+        assert name in named, (
+            f"{name} is called by no statement; next step: name the method for its keyword in "
+            "emulator/tokens.py, in small letters with an underscore behind it, or give the "
+            "keyword an entry in `statements` of `Machine.__init__` (emulator/machine.py)"
+        )
+
+
+def test_every_statement_that_is_done_stands_in_a_captured_program():
+    """What the machine does is compared with the ROM: no statement is there on trust."""
+    machine = session("", "")[0].machine
+    used = {
+        token
+        for path in PROGRAMS
+        for _, tokens in read_program(path.read_bytes()).lines
+        for token in tokens
+    }
+    for word, does in zip(STATEMENTS, machine.statements, strict=True):
+        refused = isinstance(does, partial) and does.func == machine.refuse
+        assert refused or word in TYPED_ONLY or TOKENS[word] in used, (
+            f"{word} is done, and no captured program has it; next step: a program with the ROM's "
+            "own output in golden/programs/, made by impact88 witness --rom FILE --programs "
+            "FOLDER --save FOLDER"
+        )
 
 
 @pytest.mark.parametrize("path", PROGRAMS, ids=[path.stem for path in PROGRAMS])

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import csv
 import gzip
+import inspect
 import io
 import json
 import math
@@ -12,6 +14,7 @@ import struct
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,8 +24,9 @@ from hypothesis import strategies as st
 from impact88.commands.cli import main
 from impact88.errors import UserError
 from impact88.names import SCENE
-from impact88.tables import csvtable
+from impact88.tables import csvtable, formats
 from impact88.tables.cells import TableUnits, check_scene_columns, numbers
+from impact88.tables.formats import ENDINGS, FORMATS
 from impact88.tables.rows import BLOCK_ROWS, BadCell, shortest
 from impact88.tables.table import format_of, open_reader, open_writer
 
@@ -301,7 +305,40 @@ def test_with_and_without_pyarrow_the_same_bytes(tmp_path, monkeypatch, capsys, 
     assert (said[0][0] == 0) == (names[text] not in unusable)
 
 
-@pytest.mark.parametrize("form", ["csv.gz", "parquet", "feather", "xlsx", "npz", "jsonl"])
+def test_every_module_that_reads_and_writes_tables_is_registered():
+    registered = {row.module for row in FORMATS.values()}
+    for path in sorted(Path(formats.__file__).parent.glob("*.py")):
+        tree = ast.parse(path.read_text("utf-8"))
+        functions = {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}
+        if {"read", "write"} <= functions and path.stem not in registered:
+            pytest.fail(
+                f"tables/{path.name} is of no format yet; next step: its row in ROWS of "
+                "tables/formats.py"
+            )
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_every_registered_format_is_complete(form):
+    row = FORMATS[form]
+    folder = Path(formats.__file__).parent
+    assert (folder / f"{row.module}.py").is_file(), (
+        f"{form} has a row in ROWS of tables/formats.py and no module; next step: "
+        f"tables/{row.module}.py with read and write"
+    )
+    for name, arguments in CALLS.items():
+        function = getattr(row.load(), name, None)
+        assert function, f"next step: {name}({arguments}) in tables/{row.module}.py"
+        taken = ", ".join(inspect.signature(function).parameters)
+        assert taken == arguments, f"next step: tables/{row.module}.py's {name}({arguments})"
+    for ending in row.endings:
+        assert ending.startswith(".")
+        assert ENDINGS[ending] == form, f"{ending} is {ENDINGS[ending]}'s ending, too"
+
+
+CALLS = {"read": "path, form, encoding, results", "write": "path, form, delimiter, headings"}
+
+
+@pytest.mark.parametrize("form", ["csv.gz", *FORMATS])
 def test_every_format_gives_the_same_bits(tmp_path, form):
     rng = np.random.default_rng(3)
     rows = [
@@ -311,7 +348,8 @@ def test_every_format_gives_the_same_bits(tmp_path, form):
     first = tmp_path / "a.csv"
     first.write_text(csv_text(rows), "utf-8")
     outputs = ["--outputs", "VAX,WBF,STATUS"]
-    there = tmp_path / f"b.{form}"
+    ending = FORMATS[form].endings[0] if form in FORMATS else f".{form}"
+    there = tmp_path / f"b{ending}"
     back = tmp_path / "c.csv"
     assert main(["solve", str(first), "-o", str(tmp_path / "d.csv"), *outputs]) == 0
     assert main(["solve", str(first), "-o", str(there), *outputs]) == 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import zip_longest
 
 import captures
@@ -12,6 +13,7 @@ from printouts import SAMPLE
 import impact88
 from impact88.collision.fields import ANGLES, FIELDS
 from impact88.errors import UserError
+from impact88.verification.reading import glyphs
 from impact88.verification.reading.numerals import candidates
 from impact88.verification.reading.printout import read_printouts
 
@@ -68,6 +70,53 @@ def test_blanks_and_line_breaks_do_not_matter(how: str) -> None:
 def test_letters_stand_for_digits_only_where_a_number_must_stand() -> None:
     found = texts(SAMPLE.replace("143.5", "l43.5").replace("60", "6O").replace("IA=", "lA="))
     assert (found["MA"], found["TB"], found["IA"]) == ("143.5", "60", "3728")
+
+
+FIGURES = "0123456789"
+SHAPES = {}
+"""Look-alike -> the glyphs of numbers that it may stand for."""
+for _printed, *_shapes in glyphs._CHANNEL["number shapes"]:
+    for _shape in "".join(_shapes):
+        SHAPES.setdefault(_shape, []).append(_printed)
+
+
+def pages_with(look_alike: str) -> Iterator[tuple[str, str, str]]:
+    """A field, its text, and the page on which the look-alike stands in the field's place for a
+    glyph that it may stand for."""
+    plain = texts(SAMPLE)
+    for printed in SHAPES[look_alike]:
+        for name, text in plain.items():
+            at = text.find(printed, 0 if printed in "-." else 1)
+            damaged = f"{name}= {text[:at]}{look_alike}{text[at + 1 :]}"
+            if at >= 0 and f"{name}= {text}" in SAMPLE:
+                yield name, text, SAMPLE.replace(f"{name}= {text}", damaged)
+
+
+@pytest.mark.parametrize("look_alike", SHAPES)
+def test_every_look_alike_is_read_for_a_glyph_that_it_stands_for(look_alike: str) -> None:
+    for name, text, page in pages_with(look_alike):
+        (shown,) = read_printouts(page)
+        if name in shown.fields:
+            readings = candidates(shown.fields[name].region, 6)
+            if text in [reading for reading, _ in readings]:
+                return
+    pytest.fail(
+        f"{look_alike} stands for {' '.join(SHAPES[look_alike])} in [number shapes] of "
+        "verification/reading/channel.txt, and is read for none of them; next step: `candidates` "
+        "in verification/reading/numerals.py"
+    )
+
+
+def test_no_figure_is_a_look_alike_of_another() -> None:
+    """A figure read for a figure contradicts the page: no table excuses it."""
+    for section in ("numbers", "number shapes"):
+        for printed, *readings in glyphs._CHANNEL[section]:
+            shapes = "".join(readings) if "shapes" in section else [r[0] for r in readings[1:]]
+            for figure in FIGURES:
+                assert figure not in shapes, (
+                    f"a {figure} read for {printed} contradicts the page; next step: take it out "
+                    f"of [{section}] in verification/reading/channel.txt"
+                )
 
 
 def test_every_kind_of_minus_and_a_leading_zero() -> None:

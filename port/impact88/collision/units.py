@@ -63,42 +63,55 @@ _ENERGY = (2, 1, -2, 0)
 _US = "us"
 _SI = "metric"
 
-SYMBOLS: dict[str, tuple[Dimension, Fraction, str]] = {
-    name: (dimension, size, system)
-    for names, dimension, size, system in (
-        ("length", _LENGTH, Fraction(1), ""),
-        ("mass", _MASS, Fraction(1), ""),
-        ("time s sec secs second seconds", _TIME, Fraction(1), ""),
-        ("ms", _TIME, Fraction(1, 1000), ""),
-        ("h hr hour hours", _TIME, Fraction(3600), ""),
-        ("ft foot feet '", _LENGTH, _FOOT, _US),
-        ("in inch inches \" ''", _LENGTH, _FOOT / 12, _US),
-        ("yd yard yards", _LENGTH, 3 * _FOOT, _US),
-        ("mi mile miles", _LENGTH, 5280 * _FOOT, _US),
-        ("m meter meters metre metres", _LENGTH, Fraction(1), _SI),
-        ("cm", _LENGTH, Fraction(1, 100), _SI),
-        ("mm", _LENGTH, Fraction(1, 1000), _SI),
-        ("km kilometer kilometers kilometre kilometres", _LENGTH, Fraction(1000), _SI),
-        ("mph", _SPEED, 5280 * _FOOT / 3600, _US),
-        ("fps", _SPEED, _FOOT, _US),
-        ("kph kmh", _SPEED, Fraction(1000, 3600), _SI),
-        ("kn kt knot knots", _SPEED, Fraction(1852, 3600), _US),
-        ("lb lbs pound pounds lbm", _MASS, _POUND, _US),
-        ("lbf", _FORCE, _POUND * _GRAVITY, _US),
-        ("slug slugs", _MASS, _SLUG, _US),
-        ("oz ounce ounces", _MASS, _POUND / 16, _US),
-        ("kg kgs kilogram kilograms", _MASS, Fraction(1), _SI),
-        ("t tonne tonnes", _MASS, Fraction(1000), _SI),
-        ("n", _FORCE, Fraction(1), _SI),
-        ("j", _ENERGY, Fraction(1), _SI),
-        ("kj", _ENERGY, Fraction(1000), _SI),
-        ("rad radian radians", _ANGLE, Fraction(1), ""),
-        ("deg degree degrees °", _ANGLE, _DEGREE, ""),
-        ("rev", _ANGLE, 360 * _DEGREE, ""),
-        ("rpm", _RATE, 6 * _DEGREE, ""),
-        ("% percent", (0, 0, 0, 0), Fraction(1, 100), ""),
-    )
-    for name in names.split()
+
+class Unit(NamedTuple):
+    """A unit that amounts may have: the ``symbols`` that stand for it, between blanks and in small
+    letters; its dimension; its size in m, kg, s and radians; and the side it is of, `_US` or `_SI`
+    ("" of both): units of two sides do not stand in one amount."""
+
+    symbols: str
+    dimension: Dimension
+    size: Fraction
+    side: str
+
+
+UNITS = (
+    Unit("length", _LENGTH, Fraction(1), ""),
+    Unit("mass", _MASS, Fraction(1), ""),
+    Unit("time s sec secs second seconds", _TIME, Fraction(1), ""),
+    Unit("ms", _TIME, Fraction(1, 1000), ""),
+    Unit("h hr hour hours", _TIME, Fraction(3600), ""),
+    Unit("ft foot feet '", _LENGTH, _FOOT, _US),
+    Unit("in inch inches \" ''", _LENGTH, _FOOT / 12, _US),
+    Unit("yd yard yards", _LENGTH, 3 * _FOOT, _US),
+    Unit("mi mile miles", _LENGTH, 5280 * _FOOT, _US),
+    Unit("m meter meters metre metres", _LENGTH, Fraction(1), _SI),
+    Unit("cm", _LENGTH, Fraction(1, 100), _SI),
+    Unit("mm", _LENGTH, Fraction(1, 1000), _SI),
+    Unit("km kilometer kilometers kilometre kilometres", _LENGTH, Fraction(1000), _SI),
+    Unit("mph", _SPEED, 5280 * _FOOT / 3600, _US),
+    Unit("fps", _SPEED, _FOOT, _US),
+    Unit("kph kmh", _SPEED, Fraction(1000, 3600), _SI),
+    Unit("kn kt knot knots", _SPEED, Fraction(1852, 3600), _US),
+    Unit("lb lbs pound pounds lbm", _MASS, _POUND, _US),
+    Unit("lbf", _FORCE, _POUND * _GRAVITY, _US),
+    Unit("slug slugs", _MASS, _SLUG, _US),
+    Unit("oz ounce ounces", _MASS, _POUND / 16, _US),
+    Unit("kg kgs kilogram kilograms", _MASS, Fraction(1), _SI),
+    Unit("t tonne tonnes", _MASS, Fraction(1000), _SI),
+    Unit("n", _FORCE, Fraction(1), _SI),
+    Unit("j", _ENERGY, Fraction(1), _SI),
+    Unit("kj", _ENERGY, Fraction(1000), _SI),
+    Unit("rad radian radians", _ANGLE, Fraction(1), ""),
+    Unit("deg degree degrees °", _ANGLE, _DEGREE, ""),
+    Unit("rev", _ANGLE, 360 * _DEGREE, ""),
+    Unit("rpm", _RATE, 6 * _DEGREE, ""),
+    Unit("% percent", (0, 0, 0, 0), Fraction(1, 100), ""),
+)
+SYMBOLS = {
+    symbol: (unit.dimension, unit.size, unit.side)
+    for unit in UNITS
+    for symbol in unit.symbols.split()
 }
 """Symbol -> dimension, size in m, kg, s and radians, and system ("" if both systems use it)."""
 _ARC = {"'": _DEGREE / 60, "min": _DEGREE / 60, '"': _DEGREE / 3600, "''": _DEGREE / 3600}

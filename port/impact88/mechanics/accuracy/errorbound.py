@@ -97,17 +97,21 @@ def scales(scene: Mapping[str, Any], solved: Mapping[str, Any]) -> dict[str, Flo
         inertia = np.fmax(_finite(scene["IA"]), _finite(scene["IB"]))
         energy = np.fmax(np.abs(solved["KI"]), np.abs(solved["KF"]))
         normal = solve({**scene, "MU": PIVOT}, ["PN"])["PN"]
-        size = {
-            **dict.fromkeys(RESULTS, speed),
-            **dict.fromkeys(_SPINS, spin),
-            **dict.fromkeys(("KI", "KF", "ELN", "ELT", "ELM"), 2 * energy),
-            "LOSS": 200 * energy / np.abs(solved["KI"]),
-            **dict.fromkeys(("PN", "PT"), 2 * mass * speed),
-            "PM": 2 * np.fmax(inertia * spin, mass * speed * arm),
-            # a ratio of two impulses: its errors are theirs, divided by the pivot's normal one
-            "MUC": 2 * mass * speed * (1 + np.abs(solved["MUC"])) / np.abs(normal),
-            **{name: np.abs(solved[name]) for name in ("MUP", "COND")},
+        by_unit = {
+            "length/time": speed,
+            "rad/time": spin,
+            "mass·length/time": 2 * mass * speed,
+            "mass·length²/time": 2 * np.fmax(inertia * spin, mass * speed * arm),
+            "mass·length²/time²": 2 * energy,
+            "percent": 200 * energy / np.abs(solved["KI"]),  # of the energy before
+            "bits": speed,  # never asked for
         }
+        size = {"WA": spin, "WB": spin}
+        for name, row in RESULTS.items():
+            # the error of a mere number is relative to itself
+            size[name] = by_unit[row.unit] if row.unit in by_unit else np.abs(solved[name])
+        # a ratio of two impulses: its errors are theirs, divided by the pivot's normal one
+        size["MUC"] = 2 * mass * speed * (1 + np.abs(solved["MUC"])) / np.abs(normal)
         return {name: np.nan_to_num(column) for name, column in size.items()}
 
 

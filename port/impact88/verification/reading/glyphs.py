@@ -143,8 +143,19 @@ def _counted(kind: str) -> dict[str, tuple[int, dict[str, int]]]:
     """By printed glyph: how often it was printed, and how often it was read as what."""
     counts = {}
     for printed, total, *readings in _CHANNEL[f"{kind}s"]:
+        uncounted = [reading for reading in readings if not reading[1:].isdecimal()]
+        if uncounted:
+            raise ValueError(
+                f"channel.txt, [{kind}s], {printed}: {uncounted[0]} has no count; expected the "
+                "glyph that was read and how often, such as €3"
+            )
         counts[printed] = (int(total), {reading[0]: int(reading[1:]) for reading in readings})
     for printed, *shapes in _CHANNEL[f"{kind} shapes"]:
+        if printed not in counts:
+            raise ValueError(
+                f"channel.txt, [{kind} shapes]: {printed} is no row of [{kind}s]; expected a "
+                "glyph that the program prints, and then those that stand for it"
+            )
         seen = counts[printed][1]
         seen.update({read: seen.get(read, 0) + _TYPED for read in "".join(shapes)})
     return counts
