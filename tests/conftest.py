@@ -29,6 +29,7 @@ LONGEST = (
     "desk",
     "scan_pages",
     "installed",
+    "extension_points",
     "fuzz",
     "figures",
     "verification",

@@ -53,6 +53,8 @@ def test_every_package_folder_is_listed(project: dict[str, Any]) -> None:
     folders = {".".join(p.parent.parts) for p in kept(ROOT / "port") if p.suffix == ".py"}
     elsewhere = {name: folder for name, folder in setuptools["package-dir"].items() if name}
     listed = set(setuptools["packages"])
+    for name in sorted(listed - folders - set(elsewhere)):
+        pytest.fail(f"next step: port/{name.replace('.', '/')}/__init__.py, or not to list {name}")
     for name in sorted(folders - listed):
         pytest.fail(f"next step: {name!r} in the list `packages` of pyproject.toml")
     assert listed == folders | set(elsewhere)
@@ -61,7 +63,7 @@ def test_every_package_folder_is_listed(project: dict[str, Any]) -> None:
     guide = (ROOT / "port" / "README.md").read_text(encoding="utf-8")
     for name in sorted(folders - {"impact88"}):
         room = name.removeprefix("impact88.").replace(".", "/")
-        assert f"`{room}/`" in guide, f"next step: a row for `{room}/` in port/README.md's rooms"
+        assert f"`{room}/" in guide, f"next step: a row for `{room}/` in port/README.md's rooms"
     for folder in elsewhere.values():
         assert (ROOT / folder / "__init__.py").is_file()
 
