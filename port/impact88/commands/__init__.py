@@ -47,21 +47,21 @@ ROWS = (
 COMMANDS = {command.name: command.summary for command in ROWS}
 """Command -> one line of help."""
 CHAPTER = tuple(command.name for command in ROWS if command.group == _CHAPTER)
-"""What follows ``impact88 chapter``; version 0.3 takes these words alone, too."""
+"""The words behind ``impact88 chapter``; version 0.3 takes them alone, too."""
 CHAPTER_MEANING = f"{', '.join(CHAPTER[:-1])} or {CHAPTER[-1]}: its other problems"
 
 
-def _grouped() -> dict[str, tuple[str, ...]]:
+def _group_commands() -> dict[str, tuple[str, ...]]:
     groups: dict[str, tuple[str, ...]] = {}
     for command in ROWS:
-        shown = "chapter" if command.group == _CHAPTER else command.name
-        listed = groups.setdefault(command.group, ())
-        if shown not in listed:
-            groups[command.group] = (*listed, shown)
+        name = "chapter" if command.group == _CHAPTER else command.name
+        members = groups.setdefault(command.group, ())
+        if name not in members:
+            groups[command.group] = (*members, name)
     return groups
 
 
-GROUPS = _grouped()
+GROUPS = _group_commands()
 """Group -> its commands, as the first page of the help shows them; "" is below a line."""
 
 

@@ -30,21 +30,36 @@ from ..reconstruction.solutiontable import Exact
 from . import options
 
 KNOWABLE = (
-    *("E", "MU", "MUP", "EM", "DA", "GA", "PA", "TA", "MA", "IA", "M"),
-    *("UX", "UY", "WA", "VAX", "VAY", "WAF"),
+    "E",
+    "MU",
+    "MUP",
+    "EM",
+    "DA",
+    "GA",
+    "PA",
+    "TA",
+    "MA",
+    "IA",
+    "M",
+    "UX",
+    "UY",
+    "WA",
+    "VAX",
+    "VAY",
+    "WAF",
 )
 
 ARGUMENTS = (*options.SOLUTION, options.sample_option("vehicle A of a published run"))
 
 
 def main(args: options.Args) -> None:
-    given, units = options.known_within_limits(args, KNOWABLE, single=True)
-    barrier = BARRIER if "UX" in given else BARRIER | BARRIER_AFTER
-    known, friction = share_resolved(
-        given | {n: fixed_value(value) for n, value in barrier.items()}
+    values, units = options.known_within_limits(args, KNOWABLE, single=True)
+    barrier = BARRIER if "UX" in values else BARRIER | BARRIER_AFTER
+    inputs, friction = share_resolved(
+        values | {n: fixed_value(value) for n, value in barrier.items()}
     )
     if friction:
         note(None, friction)
-    everything = {name: item.nominal for name, item in known.items()} | BARRIER_AFTER
-    found = Exact.all_of(everything, None, args.contact_time, options.source_of(args))
-    options.show_impacts(args, found, units)
+    numbers = {name: item.nominal for name, item in inputs.items()} | BARRIER_AFTER
+    solutions = Exact.all_of(numbers, None, args.contact_time, options.source_of(args))
+    options.show_impacts(args, solutions, units)

@@ -86,8 +86,10 @@ class Terminal:
         return line
 
     def ready(self) -> bool:
-        """Whether a program that looks for a key finds one: a file or a pipe has them waiting, a
-        terminal what has been typed with RETURN."""
+        """Return whether a program that looks for a key finds one.
+
+        A file or a pipe has them waiting, a terminal what has been typed with RETURN.
+        """
         if not self.typing:
             return True
         with suppress(OSError, ValueError):  # no file that can be waited for
@@ -157,8 +159,8 @@ def main(args: options.Args) -> int:
 
 
 def _say_what_was_not_done(machine: Applesoft) -> None:
-    for what in machine.machine.refused:
-        note("basic", f"{what} is not supported: text only, no machine code")
+    for feature in machine.machine.refused:
+        note("basic", f"{feature} is not supported: text only, no machine code")
     for sentence in machine.machine.ignored:
         note("basic", sentence)
 
@@ -166,18 +168,18 @@ def _say_what_was_not_done(machine: Applesoft) -> None:
 def load_program(machine: Applesoft, path: str | None) -> None:
     """Load a file, or the restored listing. Raises UserError."""
     if path is None:
-        data, where = packaged_bytes("impact88.legacy", LISTING), LISTING
+        data, source = packaged_bytes("impact88.legacy", LISTING), LISTING
     else:
-        data, where = read_bytes(path, limit=PROGRAM_LIMIT), display_name(path)
+        data, source = read_bytes(path, limit=PROGRAM_LIMIT), display_name(path)
     try:
         program = read_program(data)
         machine.machine.load(program.lines)
     except UserError as error:
-        raise UserError(f"{error}; expected a program, one numbered line a row", where) from None
+        raise UserError(f"{error}; expected a program, one numbered line a row", source) from None
     except ApplesoftError:
-        raise UserError("does not fit into 48K", where) from None
+        raise UserError("does not fit into 48K", source) from None
     for remark in program.remarks:
-        note("basic", f"{where}: {remark}")
+        note("basic", f"{source}: {remark}")
 
 
 def _same_file(path: str, stream: IO[str]) -> bool:
@@ -204,9 +206,9 @@ def save_program(machine: Applesoft, path: str, printer: str | None) -> None:
     except UserError as error:
         note("basic", f"{path}: text cannot hold this program: {error}")
         return
-    held = [line for line in machine.machine.lines() if line not in lines]
-    if held:
-        note("basic", f"{path}: text cannot hold line {held[0][0]} as it is; LOAD makes another")
+    unsaved = [line for line in machine.machine.lines() if line not in lines]
+    if unsaved:
+        note("basic", f"{path}: text cannot hold line {unsaved[0][0]} as it is; LOAD makes another")
 
 
 def _run_file(machine: Applesoft, terminal: Terminal, *, stay: bool) -> int:

@@ -35,9 +35,11 @@ QUICK = 0.05
 """The share of the scenes that --quick times; twice as many take twice as long."""
 QUICK_POPULATIONS = ("casework", "heavy")
 """One that is easy, and one on which elimination loses its digits."""
-ERROR_SCENES, QUICK_ERROR_SCENES = 2000, 300
-"""Scenes of a population whose errors are taken: 5 ms each for 50 digits."""
-REPEATS, QUICK_REPEATS = 5, 3
+# scenes of a population whose errors are taken: 50 digits take 5 ms each
+ERROR_SCENES = 2000
+QUICK_ERROR_SCENES = 300
+REPEATS = 5
+QUICK_REPEATS = 3
 COMPONENT_SCENES = 300
 """Scenes of which every result is compared with 50 digits, 5 ms each; with twice as many the worst
 of casework and heavy is worth 2.7 roundings and not 3.2: the seed's scenes, not the count."""
@@ -60,7 +62,7 @@ ARGUMENTS = (
         "--repeats",
         1,
         1000,
-        f"times are medians of so many ({REPEATS}; with --quick {QUICK_REPEATS})",
+        f"timing repeats; the median is reported ({REPEATS}; with --quick {QUICK_REPEATS})",
     ),
     options.flag("--quick", "one screen: fewer scenes, a twentieth of them timed"),
     options.flag("--components", "the errors of each result by itself, too"),
@@ -86,14 +88,14 @@ def main(args: options.Args) -> None:
         sizes = measure.sizes(SIZES, args.repeats)
         record, texts = {"machine": machine, "sizes": sizes}, [tables.listing(sizes)]
     else:
-        record, texts = _measured(args, machine)
+        record, texts = _measure(args, machine)
     if args.json:
         print(json.dumps(plain(record), indent=1))
     else:
         print("\n\n".join([tables.machine(machine), *texts]))
 
 
-def _measured(args: options.Args, machine: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
+def _measure(args: options.Args, machine: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
     library("mpmath", "bench", "the reference")
     finite = [name for name in POPULATIONS if name != "barriers"]
     populations = options.names_given(args.populations, finite, "--populations", "population")
@@ -109,7 +111,7 @@ def _measured(args: options.Args, machine: dict[str, Any]) -> tuple[dict[str, An
     record = {"machine": machine, "seed": args.seed, "results": measure.as_json(rows)}
     texts = [tables.summary(rows) if args.quick else tables.results(rows)]
     if args.components:
-        few = min(args.scenes, COMPONENT_SCENES)
-        record["components"] = measure.components(populations, few, args.seed)
+        scene_count = min(args.scenes, COMPONENT_SCENES)
+        record["components"] = measure.components(populations, scene_count, args.seed)
         texts.append(tables.components(record["components"]))
     return record, [*texts, tables.ratios(rows)]

@@ -42,5 +42,5 @@ ARGUMENTS = (
 def main(args: options.Args) -> None:
     from ..uncertainty.boundstable import as_json, table
 
-    found = options.explored(args, args.outputs)
-    options.show(args, "bounds", lambda: as_json(found), lambda: [table(found)])
+    result = options.explore(args, args.outputs)
+    options.show(args, "bounds", lambda: as_json(result), lambda: [table(result)])

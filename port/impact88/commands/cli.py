@@ -39,12 +39,12 @@ class _Parser(argparse.ArgumentParser):
     """argparse's errors in this project's form: one line, status 2."""
 
     def error(self, message: str) -> None:  # type: ignore[override]
-        hint, known = "", list(self._option_string_actions)
+        hint, choices = "", list(self._option_string_actions)
         word = re.search(r"unrecognized arguments: (-[^\s=]+)", message)
         if word is None and (word := re.search(r"invalid choice: '([^']*)'", message)):
-            known = [c for a in self._actions for c in a.choices or () if isinstance(c, str)]
+            choices = [c for a in self._actions for c in a.choices or () if isinstance(c, str)]
         if word:
-            hint = did_you_mean(word[1], known)
+            hint = did_you_mean(word[1], choices)
         raise UserError(f"{message}{hint} (see {self.prog} --help)")
 
     def print_help(self, file: object = None) -> None:
@@ -55,24 +55,24 @@ class _Parser(argparse.ArgumentParser):
 def _dispatch(arguments: Sequence[str]) -> int:
     if not arguments:
         raise UserError("no command given (see impact88 --help)")
-    name, *rest = arguments
-    if name == "help" and rest:  # help COMMAND is COMMAND --help
-        name, *rest = [*rest, "--help"]
-    known = [*COMMANDS, "chapter"]
+    name, *arguments_left = arguments
+    if name == "help" and arguments_left:  # help COMMAND is COMMAND --help
+        name, *arguments_left = [*arguments_left, "--help"]
+    commands = [*COMMANDS, "chapter"]
     page = "overview" if name in ("-h", "--help", "help") else ""
     if name == "chapter":
-        name, *rest = rest or ["--help"]
-        known = [*CHAPTER]
+        name, *arguments_left = arguments_left or ["--help"]
+        commands = [*CHAPTER]
         page = "chapter_overview" if name in ("-h", "--help") else ""
     if page:
         print(getattr(import_module(".helptext", __package__), page)())
     elif name in ("-V", "--version"):
         print(f"impact88 {__version__}")
-    elif name in known:
-        return _run(name, rest)
+    elif name in commands:
+        return _run(name, arguments_left)
     else:
-        hint = did_you_mean(name, known)
-        raise UserError(f"{name!r} is not a command{hint} (expected one of: {' '.join(known)})")
+        hint = did_you_mean(name, commands)
+        raise UserError(f"{name!r} is not a command{hint} (expected one of: {' '.join(commands)})")
     return 0
 
 
@@ -108,11 +108,11 @@ def _prepare_streams() -> None:
     result is UTF-8 whatever the locale, so that a file made by ``>`` is one this project reads; and
     no character is an error on a terminal that lacks it. Raises UserError when standard output is
     closed: the result would be lost without a word."""
-    closed = sys.stdout is None
+    is_closed = sys.stdout is None
     sys.stdin = sys.stdin or open(os.devnull)  # noqa: SIM115
     sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115
     sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: SIM115
-    if closed:
+    if is_closed:
         raise UserError("standard output is closed; expected somewhere to print the result")
     if hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(encoding="utf-8", errors=ESCAPED)
@@ -133,23 +133,23 @@ def _orderly() -> Iterator[None]:
     thread, where Python takes no handlers, nothing changes."""
     usual = {"SIGINT": signal.default_int_handler, "SIGTERM": signal.SIG_DFL}
     usual["SIGHUP"] = signal.SIG_DFL  # none on Windows
-    taken = {}
+    replaced = {}
     with suppress(ValueError):  # not the main thread
         for name, handler in usual.items():
             number = getattr(signal, name, None)
             if number is not None and signal.getsignal(number) == handler:
-                taken[number] = signal.signal(number, _leave)
+                replaced[number] = signal.signal(number, _leave)
     try:
         yield
     finally:
-        for number, handler in taken.items():
+        for number, handler in replaced.items():
             signal.signal(number, handler)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit status."""
     arguments = sys.argv[1:] if arguments is None else arguments
-    called = next((word for word in arguments[:2] if word in COMMANDS), None)
+    command = next((word for word in arguments[:2] if word in COMMANDS), None)
     debug = os.environ.get("IMPACT88_DEBUG") == "1"
     # numpy's BLAS starts a thread for every processor as it is loaded: 10 ms, and of no use to
     # systems of 6 by 6
@@ -165,7 +165,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             except Exception as error:
                 if not (reason := _reason(error)):
                     raise
-                note(called, reason)
+                note(command, reason)
                 status = UNUSABLE
             sys.stdout.flush()
             return status
@@ -180,10 +180,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
             status = BROKEN_PIPE
         except OSError as error:  # a full disk, most likely
             place = one_line(str(error.filename)) if error.filename else "standard output"
-            note(called, f"{place}: {error.strerror or error}")
+            note(command, f"{place}: {error.strerror or error}")
             status = UNUSABLE
         except Exception as error:
-            _report_bug(called, error, debug)
+            _report_bug(command, error, debug)
             return BUG
         with suppress(OSError, ValueError):
             # on its way out the interpreter would flush, and complain, again
@@ -192,7 +192,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _reason(error: Exception) -> str | None:
-    """What is said of an error that is the input's fault, or the machine's."""
+    """Return the message for an error that the input or the machine caused; None for a bug."""
     if isinstance(error, UserError):
         return str(error)
     if isinstance(error, ModuleNotFoundError):
@@ -219,6 +219,6 @@ def _report_bug(called: str | None, error: Exception, debug: bool) -> None:
     while step is not None:
         place = f" at {os.path.basename(step.tb_frame.f_code.co_filename)}:{step.tb_lineno}"
         step = step.tb_next
-    what = one_line(f"{type(error).__name__}{f': {error}' if str(error) else ''}", 200)
+    description = one_line(f"{type(error).__name__}{f': {error}' if str(error) else ''}", 200)
     advice = "" if debug else " (IMPACT88_DEBUG=1 prints the traceback)"
-    note(called, f"a bug of impact88, not of your input: {what}{place}{advice}")
+    note(called, f"a bug of impact88, not of your input: {description}{place}{advice}")

@@ -32,23 +32,23 @@ ARGUMENTS = options.SOLUTION
 
 
 def main(args: options.Args) -> None:
-    known, system = options.known_values(args, KNOWABLE)
-    before, after = ([n for n in names if n in known] for names in (BEFORE, AFTER))
+    numbers, system = options.known_values(args, KNOWABLE)
+    before, after = ([n for n in names if n in numbers] for names in (BEFORE, AFTER))
     if before and after:
         raise UserError(
             f"velocities before ({' '.join(before)}) and after ({' '.join(after)}) are both given; "
             "expected the four before or the four after",
             args.scene,
         )
-    missing = [name for name in (*COMMON, *(AFTER if after else BEFORE)) if name not in known]
+    missing = [name for name in (*COMMON, *(AFTER if after else BEFORE)) if name not in numbers]
     if missing:
         raise UserError(f"missing {' '.join(missing)}", args.scene)
     for name in ("MA", "MB"):
-        if not known[name] > 0:
+        if not numbers[name] > 0:
             raise UserError(f"{name} is not positive; expected a mass", args.scene)
     solve = colinear_inverse if after else colinear
-    values = {name: float(value) for name, value in solve(known).items()}
-    values = {"MA": known["MA"], "MB": known["MB"], "E": known["E"], **values}
+    values = {name: float(value) for name, value in solve(numbers).items()}
+    values = {"MA": numbers["MA"], "MB": numbers["MB"], "E": numbers["E"], **values}
     if args.contact_time is not None:
         values["P"] = math.hypot(values["PN"], values["PT"])
         values["TF"] = args.contact_time
@@ -67,10 +67,10 @@ def main(args: options.Args) -> None:
             rows.append([label, *cells, units["UN"]])
         heading = ["velocity", "A before ", "A after ", "B before ", "B after ", "unit"]
         yield from (*table(rows, heading, left=(0, 5)), "* solved for", "")
-        others = {
+        results = {
             n: v for n, v in values.items() if n not in (*BEFORE, *AFTER) and math.isfinite(v)
         }
-        yield from quantities(others, system.label, {"MUP": "signed P_t/P_n, as given"})
+        yield from quantities(results, system.label, {"MUP": "signed P_t/P_n, as given"})
         for warning in warnings:
             yield from paragraph(f"! {warning}")
 

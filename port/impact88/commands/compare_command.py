@@ -44,10 +44,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from ..comparison.conformance import Conformance
 
-SHOWN = 20
-"""Unreadable rows listed on stderr: a screen, and twice as many are two."""
-FIRST = 5
-"""Vectors shown for each reason why some do not pass."""
+MAX_BAD_ROWS_LISTED = 20  # one screenful
+MAX_VECTORS_LISTED = 5  # for each reason why some do not pass
 
 ARGUMENTS = (
     options.reads("theirs", "THEIRS", "the table (- is standard input, CSV)"),
@@ -56,8 +54,8 @@ ARGUMENTS = (
     options.value(
         "--rtol",
         "SHARE",
-        "the difference that agrees, as a share of the scene's largest velocity, spin or "
-        "energy; default: what rounding in double precision allows in that scene",
+        "relative tolerance, as a fraction of the scene's largest velocity, spin or energy "
+        "(default: what rounding in double precision allows in that scene)",
         type=float,
     ),
     options.flag("--strict", "rows, cells and columns that were not compared are failures"),
@@ -72,7 +70,7 @@ ARGUMENTS = (
 
 
 def main(args: options.Args) -> int:
-    given = options.settings(args.set, units=args.units)
+    values = options.settings(args.set, units=args.units)
     if args.rtol is not None and not 0 <= args.rtol < 1:
         raise UserError(f"--rtol is {args.rtol}; expected a share such as 1e-9")
     if args.kit is not None:
@@ -80,7 +78,7 @@ def main(args: options.Args) -> int:
     comparison = compare(
         args.theirs,
         format_of(args.theirs, args.form),
-        given,
+        values,
         args.rtol,
         args.encoding,
         args.units,
@@ -102,15 +100,20 @@ def _conformance(args: options.Args) -> int:
         if value:
             raise UserError(f"{option}: a kit's inputs and tolerances are its own; expected none")
     form = format_of(args.theirs, args.form)
-    done = conformance.check_conformance(args.kit, args.theirs, form, args.encoding)
+    conformance_result = conformance.check_conformance(args.kit, args.theirs, form, args.encoding)
     if args.junit:
-        conformance.write_junit(args.junit, done)
-    options.show(args, "conformance", done.as_json, lambda: _conformance_lines(done))
-    for remark in done.remarks:
+        conformance.write_junit(args.junit, conformance_result)
+    options.show(
+        args,
+        "conformance",
+        conformance_result.as_json,
+        lambda: _conformance_lines(conformance_result),
+    )
+    for remark in conformance_result.remarks:
         note("compare", remark)
-    for name in done.unknown[:SHOWN]:
+    for name in conformance_result.unknown[:MAX_BAD_ROWS_LISTED]:
         note("compare", f"column {name} is not recognised")
-    return int(not done.conforms)
+    return int(not conformance_result.conforms)
 
 
 def _conformance_lines(done: Conformance) -> Iterator[str]:
@@ -126,35 +129,38 @@ def _conformance_lines(done: Conformance) -> Iterator[str]:
             if count["failed"]:
                 yield f"{name:<30}  {count['passed']:>6}  {count['failed']:>6}"
     reasons = Counter(verdict.reason for verdict in done.failures)
-    for reason, failed in reasons.most_common():
-        yield f"\n{failed} vectors: {REASONS[reason]}"
-        for verdict in [v for v in done.failures if v.reason == reason][:FIRST]:
+    for reason, failures in reasons.most_common():
+        yield f"\n{failures} vectors: {REASONS[reason]}"
+        for verdict in [v for v in done.failures if v.reason == reason][:MAX_VECTORS_LISTED]:
             place = f"row {verdict.row}" if verdict.row else "no row"
             detail = f": {one_line(verdict.detail, 100)}" if verdict.detail else ""
             yield f"  {verdict.vector.id} ({verdict.vector.label}), {place}{detail}"
     if done.strays:
         yield f"\n{len(done.strays)} rows are no vector's"
-        yield from (f"  {stray}" for stray in done.strays[:FIRST])
+        yield from (f"  {stray}" for stray in done.strays[:MAX_VECTORS_LISTED])
     if done.failures:
         yield "\nimpact88 compare without --kit looks for the cause"
     yield f"\n{done.badge}"
 
 
 def _notes(comparison: Comparison) -> Iterator[str]:
-    """What is said on stderr: how the table was read, what could not be or was not compared."""
+    """Yield the notes for stderr: how the table was read, what could not be or was not compared."""
     yield from comparison.remarks
-    yield from map(str, comparison.bad[:SHOWN])
-    if len(comparison.bad) > SHOWN:
-        yield f"and {len(comparison.bad) - SHOWN} more"
-    for name, meant in list(comparison.unknown.items())[:SHOWN]:
-        hint = f"; did you mean {meant}? (a unit stands in brackets: {meant} [mph])" * bool(meant)
+    yield from map(str, comparison.bad[:MAX_BAD_ROWS_LISTED])
+    if len(comparison.bad) > MAX_BAD_ROWS_LISTED:
+        yield f"and {len(comparison.bad) - MAX_BAD_ROWS_LISTED} more"
+    for name, suggestion in list(comparison.unknown.items())[:MAX_BAD_ROWS_LISTED]:
+        hint = (
+            f"; did you mean {suggestion}? (a unit stands in brackets: {suggestion} [mph])"
+            * bool(suggestion)
+        )
         yield f"column {name} is not recognised{hint}"
-    if len(comparison.unknown) > SHOWN:
-        yield f"and {len(comparison.unknown) - SHOWN} more columns are not recognised"
-    for reason, skipped in comparison.not_compared.items():
+    if len(comparison.unknown) > MAX_BAD_ROWS_LISTED:
+        yield f"and {len(comparison.unknown) - MAX_BAD_ROWS_LISTED} more columns are not recognised"
+    for reason, count in comparison.not_compared.items():
         if reason not in HARMLESS:
-            first = ", ".join(map(str, skipped.first[:5])) + (", ..." if skipped.rows > 5 else "")
-            yield f"{skipped.rows} rows not compared ({first}): {reason}"
+            first = ", ".join(map(str, count.first[:5])) + (", ..." if count.rows > 5 else "")
+            yield f"{count.rows} rows not compared ({first}): {reason}"
     for name, tally in comparison.tallies.items():
         if tally.missing:
             yield f"{tally.missing} cells of {name} are empty where there is a result"
@@ -184,28 +190,28 @@ def _lines(comparison: Comparison) -> Iterator[str]:
         yield "\nrows that disagree, by likely cause:"
         for cause, count in comparison.causes.most_common():
             yield f"  {count:>7}  {cause}"
-        for named in comparison.evidence:
+        for candidate in comparison.evidence:
             yield (
-                f"\n{named.says}: explains {named.explains} of {named.disagreeing} rows that "
-                f"disagree, gives {named.fits} of {named.agreeing} that agree (of the rows "
-                "examined)"
+                f"\n{candidate.says}: explains {candidate.explains} of "
+                f"{candidate.disagreeing} rows that disagree, gives {candidate.fits} of "
+                f"{candidate.agreeing} that agree (of the rows examined)"
             )
-            for says, row in named.parts.items():
+            for says, row in candidate.parts.items():
                 yield f"  row {row} shows: {says}"
-            for other in named.equivalents:
-                yield f"  or, the same in this table: {other}"
+            for equivalent in candidate.equivalents:
+                yield f"  or, the same in this table: {equivalent}"
         if comparison.unexplained:
             yield "\nrows without a cause, by kind of scene:"
             for name, kind in comparison.unexplained.items():
-                which = ", ".join(kind.violated)
-                says = f"; Equations {which} violated" if which else ""
+                laws = ", ".join(kind.violated)
+                says = f"; Equations {laws} violated" if laws else ""
                 yield f"  {name}: {kind.unexplained} of {kind.rows}{says}"
         broken = {number: tally for number, tally in comparison.equations.items() if tally[1]}
         if broken:
             yield "\nequations that their final velocities violate:"
-            for number, (checked, violated) in broken.items():
-                where = f"in {violated} of {checked} rows that disagree"
-                yield f"  {number} ({EQUATIONS[number]}): {where}"
+            for number, (row_count, violations) in broken.items():
+                share = f"in {violations} of {row_count} rows that disagree"
+                yield f"  {number} ({EQUATIONS[number]}): {share}"
         elif comparison.equations:
             yield "\ntheir final velocities violate none of Equations 13 to 18"
     if comparison.differing:
@@ -217,5 +223,5 @@ def _lines(comparison: Comparison) -> Iterator[str]:
                 f"  {place}{name}: {cell.result} {one_line(cell.theirs, 40)}, "
                 f"here {cell.ours:.12g}, off by {cell.relative:.2g}; {cell.cause}"
             )
-    for reason, skipped in comparison.not_compared.items():
-        yield f"\n{skipped.rows} rows not compared: {reason}"
+    for reason, skipped_count in comparison.not_compared.items():
+        yield f"\n{skipped_count.rows} rows not compared: {reason}"

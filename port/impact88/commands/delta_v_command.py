@@ -50,19 +50,19 @@ ARGUMENTS = (
 
 
 Answer = tuple[dict[str, Any], list[str]]
-"""What ``--json`` prints, and the lines for people."""
+"""Return the record that ``--json`` prints, and the lines for people."""
 
 
 def main(args: options.Args) -> None:
-    known, units = options.known_values(args, KNOWABLE)
+    values, units = options.known_values(args, KNOWABLE)
     factor = deltav.AS_PRINTED if args.as_printed else deltav.AS_USED
     try:
-        found, lines = _answer(known, args.like, factor, units)
+        answer, lines = _answer(values, args.like, factor, units)
     except UserError as error:
         raise UserError(str(error), args.scene) from None
     equation = deltav.described(factor)
     caution = f"An estimate: {deltav.ERROR};\nuntested elsewhere (Section VI)."
-    record = {"equation": equation, **found}
+    record = {"equation": equation, **answer}
     options.show(args, "delta-v", lambda: record, lambda: [*lines, equation, caution])
 
 
@@ -100,10 +100,10 @@ def _answer(known: dict[str, float], like: str | None, factor: float, units: Sys
 def _speeds_before(
     known: dict[str, float], like: str | None, factor: float, units: System
 ) -> Answer:
-    """From final velocities and the loss, as in Section VII."""
+    """Return the speeds before impact from final velocities and the loss, as in Section VII."""
     losses, source = _losses(known, like)
     taken = "SA and SB as given" if {"SA", "SB"} <= set(known) else "those of Equations 13 and 14"
-    found: list[dict[str, Any]] = []
+    records: list[dict[str, Any]] = []
     for loss in losses:
         for repeat, speeds in ((False, taken), (True, "those found, until they stay")):
             try:
@@ -112,29 +112,29 @@ def _speeds_before(
                 if not repeat:
                     raise
                 row = dict.fromkeys(("UX", "VY", "DVA", "DVB"), nan)
-            found.append({"LOSS": loss, **display_values(row, units), "speeds": speeds})
+            records.append({"LOSS": loss, **display_values(row, units), "speeds": speeds})
     labels = _labels(("LOSS", "UX", "VY", "DVA", "DVB"), units)
     heading = [f"{name} [{'%' if name == 'LOSS' else unit}]" for name, unit in labels.items()]
-    rows = [[number(row[n]) or "none" for n in labels] + [row["speeds"]] for row in found]
+    rows = [[number(row[n]) or "none" for n in labels] + [row["speeds"]] for row in records]
     came = f"A came along x, B along y (UY = VX = 0). loss: {source}. Equations 20 and 21."
     lines = [*table(rows, [*heading, "speeds in Equation 19"], left=(5,)), "", came]
-    return {"loss_from": source, "estimates": found, "units": labels}, lines
+    return {"loss_from": source, "estimates": records, "units": labels}, lines
 
 
 def _loss(known: dict[str, float], like: str | None, factor: float, units: System) -> Answer:
     if like or {"LOSS", "DT", "EL"} & set(known):
         raise UserError("both a loss and a velocity change are given; expected one")
-    given = {name: known[name] for name in GIVEN}
+    base_values = {name: known[name] for name in GIVEN}
     changes = {name: value for name, value in known.items() if name in ("DVA", "DVB")}
-    found = {n: deltav.loss_of({**given, n: x}, factor) for n, x in changes.items()}
-    _check_finite(found.values())
-    displayed = display_values(changes, units)
-    rows = [[name, number(displayed[name]), number(loss)] for name, loss in found.items()]
+    losses = {n: deltav.loss_of({**base_values, n: x}, factor) for n, x in changes.items()}
+    _check_finite(losses.values())
+    shown_changes = display_values(changes, units)
+    rows = [[name, number(shown_changes[name]), number(loss)] for name, loss in losses.items()]
     heading = ["from", f"velocity change [{units.label('length/time')}]", "loss [percent]"]
     record = {
-        "given": display_values(given, units),
-        "LOSS_from": found,
-        "units": _labels(given, units),
+        "given": display_values(base_values, units),
+        "LOSS_from": losses,
+        "units": _labels(base_values, units),
     }
     return record, [*table(rows, heading), ""]
 
@@ -155,11 +155,11 @@ def _speed(known: Mapping[str, float], speed: str, x: str, y: str) -> float:
 
 
 def _losses(known: Mapping[str, float], like: str | None) -> tuple[list[float], str]:
-    """The losses to take, in percent, and where they come from."""
-    given = [name for name in ("EL", "DT", "LOSS") if name in known]
-    if len(given) + bool(like) > 1:
+    """Return the losses to take, in percent, and their source."""
+    loss_names = [name for name in ("EL", "DT", "LOSS") if name in known]
+    if len(loss_names) + bool(like) > 1:
         raise UserError(
-            f"{' and '.join([*given, *['--like'] * bool(like)])} are both given; expected one"
+            f"{' and '.join([*loss_names, *['--like'] * bool(like)])} are both given; expected one"
         )
     if like:
         from ..chapter.staged import collisions
@@ -169,21 +169,21 @@ def _losses(known: Mapping[str, float], like: str | None) -> tuple[list[float], 
         losses = sorted(c.table2["loss"] for c in alike)
         numbers = ", ".join(str(c.number) for c in alike)
         return [losses[0], losses[-1]], f"Table 2, {category} (collisions {numbers})"
-    if not given:
+    if not loss_names:
         raise UserError("LOSS is missing (percent of kinetic energy); expected it, DT or --like")
-    if given == ["EL"]:
+    if loss_names == ["EL"]:
         if not {"SA", "SB"} <= set(known):
             raise UserError("EL needs the speeds before; expected SA and SB, or LOSS or DT")
         loss = deltav.loss_of_energy(known)
         if not 0 <= loss <= 100:
             raise UserError(f"EL is {loss:.4g} percent of the initial kinetic energy")
         return [loss], "the energy EL"
-    loss, most, what = known.get("LOSS", 0.0), 100, "percent of the initial kinetic energy"
-    if given == ["DT"]:
-        loss, most, what = known["DT"], 1, "a fraction of the kinetic energy"
-    if not 0 <= loss <= most:
-        raise UserError(f"{given[0]} is outside 0 ... {most}; expected {what}")
-    if given == ["DT"]:
+    loss, limit, meaning = known.get("LOSS", 0.0), 100, "percent of the initial kinetic energy"
+    if loss_names == ["DT"]:
+        loss, limit, meaning = known["DT"], 1, "a fraction of the kinetic energy"
+    if not 0 <= loss <= limit:
+        raise UserError(f"{loss_names[0]} is outside 0 ... {limit}; expected {meaning}")
+    if loss_names == ["DT"]:
         return [100 * loss], "given"
     if 0 < loss < 1:
         raise UserError(

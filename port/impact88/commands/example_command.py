@@ -20,11 +20,11 @@ ARGUMENTS = (options.JSON, options.OUTPUT)
 
 def main(args: options.Args) -> int:
     numbers = [number for step in steps() for number in step.numbers]
-    described = [
+    rows = [
         {**asdict(step), "numbers": [asdict(n) | {"agrees": n.agrees} for n in step.numbers]}
         for step in steps()
     ]
-    options.show(args, "example", lambda: {"steps": described}, _lines)
+    options.show(args, "example", lambda: {"steps": rows}, _lines)
     return int(any(number.agrees is False for number in numbers))
 
 
@@ -34,8 +34,12 @@ def _lines() -> list[str]:
     for at, step in enumerate(steps()):
         rows = [
             [
-                *("  " + n.name.split()[0], format_fixed(n.value, 3), n.unit, n.printed or ""),
-                *(verdicts[n.agrees], n.meaning),
+                "  " + n.name.split()[0],
+                format_fixed(n.value, 3),
+                n.unit,
+                n.printed or "",
+                verdicts[n.agrees],
+                n.meaning,
             ]
             for n in step.numbers
         ]

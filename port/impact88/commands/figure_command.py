@@ -71,16 +71,16 @@ ARGUMENTS = (
 
 def main(args: options.Args) -> None:
     check_ending(args.output)
-    drawn = _drawn(args)
+    picture = _draw(args)
     if args.width:
-        drawn.enlarged = args.width / drawn.width
-    save(drawn, args.output)
+        picture.enlarged = args.width / picture.width
+    save(picture, args.output)
 
 
-def _drawn(args: options.Args) -> Drawing:
-    kind, given = args.kind, args.scene or args.sample or args.set
+def _draw(args: options.Args) -> Drawing:
+    kind, scene_source = args.kind, args.scene or args.sample or args.set
     if kind in OF_NOTHING:
-        if given or args.ranges:
+        if scene_source or args.ranges:
             raise UserError(f"{kind} is drawn from the chapter alone and takes no scene")
         return OF_NOTHING[kind]()
     if kind in OF_RANGES:
@@ -88,7 +88,7 @@ def _drawn(args: options.Args) -> Drawing:
         outputs = args.outputs
         if kind == "tornado" and not outputs:
             outputs = ["SA", "SB", "LOSS"] if args.reconstruct else ["DVA", "DVB", "LOSS"]
-        return draw(options.explored(args, outputs, keep=kind == "histogram"))
+        return draw(options.explore(args, outputs, keep=kind == "histogram"))
     if kind == "sweep":
         return _swept(args)
     if args.ranges or args.outputs:
@@ -98,7 +98,7 @@ def _drawn(args: options.Args) -> Drawing:
         )
     if kind == "barrier":
         return _barrier(args)
-    if kind == "planar" and not given:
+    if kind == "planar" and not scene_source:
         return planar(None)
     scene = options.one_scene(args)
     if kind == "planar":
@@ -114,15 +114,15 @@ def _barrier(args: options.Args) -> Drawing:
     """A vehicle against a barrier, its approach and its rebound."""
     names = (*VEHICLE, "M")
     case = options.known_case(args, names, single=True)
-    known = {name: item.nominal for name, item in options.read_known(case, names).items()}
-    if absent := [name for name in VEHICLE if name not in known]:
+    values = {name: item.nominal for name, item in options.read_known(case, names).items()}
+    if absent := [name for name in VEHICLE if name not in values]:
         raise UserError(missing(absent), args.scene)
-    found = barrier(known, ("VAX", "VAY", "WAF", "STATUS"))
-    result = {name: value.item() for name, value in found.items()}
+    outcome = barrier(values, ("VAX", "VAY", "WAF", "STATUS"))
+    result = {name: value.item() for name, value in outcome.items()}
     # as heavy as a drawing needs it: an infinite mass has no outline
-    wall = {"MB": 1e9 * known["MA"], "IB": 1e9 * known["IA"]}
+    wall = {"MB": 1e9 * values["MA"], "IB": 1e9 * values["IA"]}
     return scene_drawing(
-        {**BARRIER, **known, **wall},
+        {**BARRIER, **values, **wall},
         {**result, "VBX": 0.0, "VBY": 0.0, "WBF": 0.0},
         title="Barrier",
         units=case.system,

@@ -9,8 +9,8 @@ from itertools import groupby
 
 from . import CHAPTER, CHAPTER_MEANING, COMMANDS, GROUPS
 
-NARROWEST, WIDEST = 40, 100
-"""Columns: below, words stand alone; above, lines are too long to read."""
+MIN_WIDTH = 40  # columns; below, words stand alone
+MAX_WIDTH = 100  # columns; above, lines are too long to read
 
 
 class Formatter(argparse.HelpFormatter):
@@ -21,7 +21,7 @@ class Formatter(argparse.HelpFormatter):
         super().__init__(prog, width=80)
 
     def format_help(self) -> str:
-        """The whole help."""
+        """Return the whole help."""
         self._width = width = terminal_width()
         # argparse leaves a group of options on one line
         return "\n".join(
@@ -29,21 +29,21 @@ class Formatter(argparse.HelpFormatter):
         )
 
     def _fill_text(self, text: str, width: int, indent: str) -> str:
-        return fitted(text, width)
+        return wrap_text(text, width)
 
 
 def terminal_width() -> int:
     """Columns of the terminal, 80 when unknown."""
     from shutil import get_terminal_size
 
-    return min(max(get_terminal_size((80, 24)).columns, NARROWEST), WIDEST)
+    return min(max(get_terminal_size((80, 24)).columns, MIN_WIDTH), MAX_WIDTH)
 
 
-def fitted(text: str, width: int) -> str:
-    """A docstring in so many columns."""
+def wrap_text(text: str, width: int) -> str:
+    """Return a docstring wrapped to a number of columns."""
     lines: list[str] = []
-    stripped = text.strip("\n").splitlines()
-    for is_paragraph, block in groupby(stripped, lambda line: bool(line[:1].strip())):
+    lines_of_text = text.strip("\n").splitlines()
+    for is_paragraph, block in groupby(lines_of_text, lambda line: bool(line[:1].strip())):
         if is_paragraph:
             lines += textwrap.wrap(" ".join(block), width, break_on_hyphens=False)
         else:
@@ -52,25 +52,27 @@ def fitted(text: str, width: int) -> str:
 
 
 def _hanging(line: str, width: int) -> list[str]:
-    """A line, or several below its last column that leaves room for them."""
+    """Return a line, or wrap it below the last of its columns that leaves room."""
     if len(line) <= width:
         return [line]
     if re.match(r" *impact88 (?!.*\S  )", line):  # a command alone stays one for the shell
-        *begun, last = _wrapped(line, width - 2, 6)
-        return [*(f"{part} \\" for part in begun), last]
+        *first_parts, last = _wrap(line, width - 2, 6)
+        return [*(f"{part} \\" for part in first_parts), last]
     columns = [m.end() for m in re.finditer(r"\S {2,}", line[: width * 3 // 4])]
-    return _wrapped(line, width, columns[-1] if columns else len(line) - len(line.lstrip()) + 4)
+    return _wrap(line, width, columns[-1] if columns else len(line) - len(line.lstrip()) + 4)
 
 
-def _wrapped(line: str, width: int, indent: int) -> list[str]:
+def _wrap(line: str, width: int, indent: int) -> list[str]:
     return textwrap.wrap(
         line, width, subsequent_indent=" " * indent, break_on_hyphens=False, break_long_words=False
     )
 
 
 def overview() -> str:
-    """The first page: every command in its group."""
-    groups = "\n\n".join(f"{group or '-' * 11}\n{_listed(GROUPS[group])}" for group in GROUPS)
+    """Return the first page: every command in its group."""
+    groups = "\n\n".join(
+        f"{group or '-' * 11}\n{_command_lines(GROUPS[group])}" for group in GROUPS
+    )
     text = (
         "usage: impact88 COMMAND [options]\n\nR. M. Brach's 1988 program for the planar impact of "
         "two vehicles, digit for digit, and the same mechanics for today's work.\n\n"
@@ -78,14 +80,14 @@ def overview() -> str:
     )
     status = "exit status: 0 done, 1 adverse result, 2 unusable input, 3 a bug of impact88"
     width = terminal_width()
-    return f"{fitted(text, width)}\n{fitted(status, width)}"
+    return f"{wrap_text(text, width)}\n{wrap_text(status, width)}"
 
 
 def chapter_overview() -> str:
-    """What follows ``impact88 chapter``."""
-    text = f"usage: impact88 chapter PROBLEM [options]\n\n{_listed(CHAPTER)}\n\n"
-    return fitted(f"{text}impact88 help chapter PROBLEM lists its options.", terminal_width())
+    """Return the page of ``impact88 chapter``: its problems."""
+    text = f"usage: impact88 chapter PROBLEM [options]\n\n{_command_lines(CHAPTER)}\n\n"
+    return wrap_text(f"{text}impact88 help chapter PROBLEM lists its options.", terminal_width())
 
 
-def _listed(names: Iterable[str]) -> str:
+def _command_lines(names: Iterable[str]) -> str:
     return "\n".join(f"  {name:<13}{COMMANDS.get(name, CHAPTER_MEANING)}" for name in names)

@@ -47,9 +47,9 @@ class OutputPath(str):
 
 
 Args = argparse.Namespace
-"""What a command line says."""
+"""A parsed command line."""
 Argument = tuple[tuple[str, ...], dict[str, "Any"]]
-"""What argparse's ``add_argument`` takes: names and keywords."""
+"""Names and keywords for argparse's ``add_argument``."""
 
 
 def value(names: str, metavar: str | None, meaning: str, **keywords: Any) -> Argument:
@@ -122,7 +122,7 @@ def draws(default: int, meaning: str = "random draws") -> tuple[Argument, Argume
     return count("--samples", 0, 10**8, meaning, default=default), seed()
 
 
-def seed(meaning: str = "which random draws", default: int = 0) -> Argument:
+def seed(meaning: str = "random seed", default: int = 0) -> Argument:
     text = f"{meaning} (default: %(default)s)"
     return count("--seed", 0, 2**63, text, default=default, metavar="S")
 
@@ -130,7 +130,7 @@ def seed(meaning: str = "which random draws", default: int = 0) -> Argument:
 JSON = flag("--json", "print one JSON object")
 SAMPLE = sample_option("the scene of a published run")
 OUTPUT = writes("-o --output", "FILE", "write here (default: stdout)")
-"""Of a command whose result is what it prints; others write files of their own."""
+"""Option of a command whose result is what it prints; others write files of their own."""
 UNITS = value(
     "--units",
     "SYSTEM",
@@ -152,7 +152,7 @@ CONVENTION = (
         "(clockwise from north, which is y, or x of the sae axes)",
     ),
 )
-"""What the numbers of a file are in."""
+"""Options for the units and directions of a file's numbers."""
 ENCODING = value("--encoding", "NAME", "encoding of a text that is not UTF-8, such as cp1252")
 SWEEP = repeatable(
     "--sweep", "NAME=LOW:HIGH:COUNT", "run a value of a scene file through COUNT values"
@@ -174,7 +174,7 @@ KNOWN = (
     setting("give or change a value; an empty one makes it unknown"),
     *CONVENTION,
 )
-"""What is known of a problem."""
+"""Options that give the known values of a problem."""
 SOLUTION = (
     *KNOWN,
     value(
@@ -190,7 +190,7 @@ SOLUTION = (
     JSON,
     OUTPUT,
 )
-"""Of the commands that solve for what is not known and print the solution."""
+"""Options of the commands that solve for unknowns and print the solution."""
 
 
 def declare(
@@ -275,35 +275,35 @@ def print_json(form: str, found: Mapping[str, Any], indent: int | None = None) -
 def pairs(texts: Sequence[str], option: str, example: str) -> dict[str, str]:
     """Name -> text of a repeatable ``option`` that takes NAME=TEXT, names in either case. Raises
     UserError for a text without ``=`` and for a name given twice."""
-    given: dict[str, str] = {}
+    entries: dict[str, str] = {}
     for text in texts:
         name, equals, value = text.partition("=")
         name = name.strip().upper()
         if not equals or not name:
             raise UserError(f"{option} {text}: expected {example}")
-        if name in given:
+        if name in entries:
             raise UserError(f"{option}: {name} is given twice")
-        given[name] = value.strip()
-    return given
+        entries[name] = value.strip()
+    return entries
 
 
 def set_pairs(texts: Sequence[str], allowed: Collection[str] | None = None) -> dict[str, str]:
     """Name -> text of ``--set``. Raises UserError for a name that is not ``allowed``."""
-    given = pairs(texts, "--set", "NAME=VALUE, such as --set MU=.5")
-    check_names(given, given if allowed is None else allowed, "name used here", "--set")
-    return given
+    changes = pairs(texts, "--set", "NAME=VALUE, such as --set MU=.5")
+    check_names(changes, changes if allowed is None else allowed, "name used here", "--set")
+    return changes
 
 
 def settings(texts: Sequence[str], units: str | None = None) -> dict[str, str]:
     """Return what ``--set`` gives for all rows of a table: the text of a number for each name, in
     base units; ``units``: the system of bare numbers. Raises UserError."""
     changes = set_pairs(texts, tuple(SCENE))
-    case = changed(Case({}, "--set", units), changes, "--set").at_nominal()
-    given = {name: case.values[name] for name in changes if name in case.given}
-    for name, text in given.items():
+    case = change_case(Case({}, "--set", units), changes, "--set").at_nominal()
+    numbers = {name: case.values[name] for name in changes if name in case.given}
+    for name, text in numbers.items():
         if not (name == "MU" and is_share(text)):
             check_value(name, text, "--set")
-    return given
+    return numbers
 
 
 def sweeps(texts: Sequence[str]) -> dict[str, str]:
@@ -314,8 +314,8 @@ def sweeps(texts: Sequence[str]) -> dict[str, str]:
 def names_given(
     texts: Sequence[str], known: Collection[str], option: str, what: str = "result"
 ) -> list[str]:
-    """The names an option lists, in either case, each once. Raises UserError for a name that is not
-    ``known`` and for an option without a name."""
+    """Return the names that an option lists, in either case, each once. Raises UserError for a name
+    that is not ``known`` and for an option without a name."""
     in_any_case = {name.lower(): name for name in known}
     words = [word for text in texts for word in text.replace(",", " ").split()]
     names = [in_any_case.get(word.lower(), word) for word in words]
@@ -329,8 +329,8 @@ ONE_EXPECTED = "expected one scene: a file, or --sample 1, 2 or 3"
 
 
 def source_of(args: Args) -> str | None:
-    """What messages call the scene or the file given; None where there is none. Raises UserError
-    where both a file and ``--sample`` are."""
+    """Return the name of the given scene or file for messages; None where there is none. Raises
+    UserError where both a file and ``--sample`` are given."""
     number = getattr(args, "sample", None)
     if args.scene and number:
         raise UserError(f"a file and --sample {number} are both given; expected one scene")
@@ -349,10 +349,10 @@ def case_given(args: Args) -> Case:
         case = case_in(args.scene, *chosen)
     else:
         case = sample(args.sample).case.shown_in(*chosen)
-    return changed(case, set_pairs(args.set, None), "--set")
+    return change_case(case, set_pairs(args.set, None), "--set")
 
 
-def changed(case: Case, changes: Mapping[str, str], option: str) -> Case:
+def change_case(case: Case, changes: Mapping[str, str], option: str) -> Case:
     """Return the case with what an option changes. Raises UserError."""
     return case.replaced(changes, option) if changes else case
 
@@ -392,8 +392,8 @@ def known_case(args: Args, allowed: Collection[str], single: bool = False) -> Ca
                 f"number, or limits for D{name[1]} and P{name[1]}",
                 source,
             )
-        named = [name for name in case.values if name != "M" or "M" in case.given]
-        check_names(named, allowed, "name used here", source)
+        given_names = [name for name in case.values if name != "M" or "M" in case.given]
+        check_names(given_names, allowed, "name used here", source)
         if case.correlations:
             check_names(["correlations"], allowed, "name used here", source)
     note_remarks(case)
@@ -452,12 +452,12 @@ def scene_given(args: Args, based: str = "") -> Scene | None:
     moves = Case({"CX": parts[0], "CY": parts[1]}, "--move-contact", case.units).values
     numbers = [double(check_value(name, moves[name], "--move-contact")) for name in ("CX", "CY")]
     texts = case.display_texts(moved_texts(scene, *numbers))
-    nothing = {name: "" for pair in OWN_AXES.values() for name in pair if name in case.texts}
-    return Scene.of(case.replaced({**nothing, **texts}, "--move-contact"))
+    cleared = {name: "" for pair in OWN_AXES.values() for name in pair if name in case.texts}
+    return Scene.of(case.replaced({**cleared, **texts}, "--move-contact"))
 
 
 def one_scene(args: Args) -> Scene:
-    """The same. Raises UserError where neither is given."""
+    """Return `scene_given`'s scene. Raises UserError where neither file nor sample is given."""
     if (scene := scene_given(args)) is None:
         raise UserError(ONE_EXPECTED)
     return scene
@@ -476,16 +476,16 @@ EXPLORED = (
     value(
         "--sigmas",
         "K",
-        "where a normal without limits ends for the bounds (default: %(default)s)",
+        "cut-off for unbounded normal inputs, in standard deviations (default: %(default)s)",
         default=3.0,
         type=float,
     ),
 )
-"""What is uncertain, and how it is explored."""
+"""Options for the uncertain inputs, and for exploring them."""
 
 
-def explored(args: Args, outputs: list[str], keep: bool = False) -> Bounds:
-    """The bounds the options ask for, in the units of the inputs. Raises UserError."""
+def explore(args: Args, outputs: list[str], keep: bool = False) -> Bounds:
+    """Return the bounds that the options ask for, in the units of the inputs. Raises UserError."""
     from ..messages.progress import progress
     from ..uncertainty.bounds import bounds
     from ..uncertainty.boundstable import in_units
@@ -494,7 +494,7 @@ def explored(args: Args, outputs: list[str], keep: bool = False) -> Bounds:
     if source_of(args) is None:
         raise UserError(ONE_EXPECTED)
     changes = pairs([*args.set, *args.ranges], "--range", "NAME=RANGE, such as MU='.7 .. .9'")
-    case = case_given(argparse.Namespace(**{**vars(args), "set": []}))
+    case = case_given(argparse.Namespace(**(vars(args) | {"set": []})))
     problem = "reconstruction" if args.reconstruct else "forward"
     inputs = read_inputs(case, changes, problem)
     note_remarks(inputs.case)
@@ -512,7 +512,7 @@ def explored(args: Args, outputs: list[str], keep: bool = False) -> Bounds:
         note(None, f"from the forward solution: {' '.join(inputs.derived)}")
     words = [name.upper() for text in outputs for name in text.replace(",", " ").split()]
     with progress(args.samples, "draws") as meter:
-        found = bounds(
+        result = bounds(
             inputs.values,
             words or None,
             problem=problem,
@@ -524,4 +524,4 @@ def explored(args: Args, outputs: list[str], keep: bool = False) -> Bounds:
             keep_draws=keep,
             progress=meter.update,
         )
-    return in_units(found, inputs.case.system)
+    return in_units(result, inputs.case.system)

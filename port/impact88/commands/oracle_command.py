@@ -71,15 +71,15 @@ ARGUMENTS = (
 
 
 def main(args: options.Args) -> int:
-    wanted = args.vectors is not None
-    if args.validation and (wanted or args.published or args.only or args.seed or args.kit):
+    makes_vectors = args.vectors is not None
+    if args.validation and (makes_vectors or args.published or args.only or args.seed or args.kit):
         raise UserError("--validation are published tests; expected no vectors beside it")
-    if (wanted or args.published or args.validation) and args.scenes != "-":
+    if (makes_vectors or args.published or args.validation) and args.scenes != "-":
         raise UserError("vectors have their own scenes; expected no file beside them")
-    if args.published and (wanted or args.only or args.seed):
+    if args.published and (makes_vectors or args.only or args.seed):
         raise UserError("--published are vectors already made; expected nothing beside it")
-    for option, given in (("--class", args.only), ("--to", args.to)):
-        if given and not wanted:
+    for option, value in (("--class", args.only), ("--to", args.to)):
+        if value and not makes_vectors:
             raise UserError(f"{option} is for test vectors; expected --vectors N with it")
     if args.kit is not None:
         count = args.vectors or vectors.PUBLISHED
@@ -92,52 +92,54 @@ def main(args: options.Args) -> int:
         return 0
     reference = not args.no_reference
     to = args.to or ("csv" if (args.output or "").lower().endswith(".csv") else "jsonl")
-    if wanted and to == "csv":
-        made = vectors.vectors(args.vectors, args.seed, False, args.only)
-        sys.stdout.writelines(kit.flat(made))
+    if makes_vectors and to == "csv":
+        kit_vectors = vectors.vectors(args.vectors, args.seed, False, args.only)
+        sys.stdout.writelines(kit.flat(kit_vectors))
         return 0
     batches: Iterable[Iterator[dict[str, Any]]]
     if args.validation:
         batches = [published_tests(reference)]
-    elif wanted:
+    elif makes_vectors:
         batches = [vectors.vectors(args.vectors, args.seed, reference, args.only)]
     else:
         batches = (answer(batch, reference, args.units) for batch in _batches(args.scenes))
-    total = refused = 0
-    for found in batches:
-        for line in found:
+    total = refusals = 0
+    for answers in batches:
+        for line in answers:
             total += 1
-            refused += "error" in line
+            refusals += "error" in line
             print(json.dumps(line, ensure_ascii=False))
         sys.stdout.flush()
-    if refused == total:
-        nothing = 'nothing to answer; expected lines such as {"id": 1, "scene": {...}}'
-        raise UserError(f"no line could be used ({refused} refused)" if refused else nothing)
-    return int(refused > 0)
+    if refusals == total:
+        empty_message = 'nothing to answer; expected lines such as {"id": 1, "scene": {...}}'
+        raise UserError(
+            f"no line could be used ({refusals} refused)" if refusals else empty_message
+        )
+    return int(refusals > 0)
 
 
 def _batches(path: str) -> Iterator[list[tuple[int, str]]]:
     """The lines that have arrived, some at a time: a program that asks line by line over a pipe
     is answered line by line, a file in larger batches."""
-    number, rest = 0, ""
+    number, partial_line = 0, ""
     with open_bytes(path) as source:
         encoding = encoding_of(source.peek(3)[:3])
         name = "utf-8-sig" if encoding == "utf-8" else encoding
         decoder = codecs.getincrementaldecoder(name)("replace")
         while True:
-            arrived = source.read1(1 << 16)
-            lines = (rest + decoder.decode(arrived, not arrived)).split("\n")
-            rest = lines.pop() if arrived else ""
-            if len(rest) > LONGEST_LINE:
+            data = source.read1(1 << 16)
+            lines = (partial_line + decoder.decode(data, not data)).split("\n")
+            partial_line = lines.pop() if data else ""
+            if len(partial_line) > LONGEST_LINE:
                 raise UserError(
                     f"line {number + len(lines) + 1} is longer than {LONGEST_LINE:,} "
                     "characters; expected one JSON object a line",
                     display_name(path),
                 )
-            numbered = enumerate(map(str.strip, lines), number + 1)
-            batch = [(at, text) for at, text in numbered if text]
+            numbered_lines = enumerate(map(str.strip, lines), number + 1)
+            batch = [(at, text) for at, text in numbered_lines if text]
             number += len(lines)
             for at in range(0, len(batch), BATCH):
                 yield batch[at : at + BATCH]
-            if not arrived:
+            if not data:
                 return

@@ -89,22 +89,22 @@ ARGUMENTS = (
 def main(args: options.Args) -> None:
     if args.old:
         raise UserError("--scene is not an option here; expected --write-scene FILE")
-    wanted = options.names_given(args.outputs, QUANTITIES, "--outputs") or None
+    output_names = options.names_given(args.outputs, QUANTITIES, "--outputs") or None
     case = options.known_case(args, KNOWABLE)
-    known, units = options.read_known(case, KNOWABLE), case.system
-    known, friction = share_resolved(known)
+    values, units = options.read_known(case, KNOWABLE), case.system
+    values, friction = share_resolved(values)
     if friction:
         note(None, friction)
-    found: Sequence[Impact]
-    if args.write_scene or needs_adjustment(known, wanted):
-        found = _reconstructed(known, wanted, args, case)
+    solutions: Sequence[Impact]
+    if args.write_scene or needs_adjustment(values, output_names):
+        solutions = _reconstruct(values, output_names, args, case)
     else:
-        numbers = {name: item.nominal for name, item in known.items()}
-        found = Exact.all_of(numbers, wanted, args.contact_time, options.source_of(args))
-    options.show_impacts(args, found, units)
+        numbers = {name: item.nominal for name, item in values.items()}
+        solutions = Exact.all_of(numbers, output_names, args.contact_time, options.source_of(args))
+    options.show_impacts(args, solutions, units)
 
 
-def _reconstructed(
+def _reconstruct(
     known: dict[str, Uncertain], wanted: list[str] | None, args: options.Args, case: Case
 ) -> list[Measured]:
     try:
@@ -117,13 +117,13 @@ def _reconstructed(
             raise UserError(f"{name} is not determined by what is known", options.source_of(args))
     if args.write_scene:
         _write_scene(solutions, args, case)
-    found: list[Measured] = []
+    measured: list[Measured] = []
     for solution in solutions:
         with progress(None, "reconstruct", "impacts") as meter:
-            given = (args.samples, args.seed, wanted, args.contact_time)
-            like = found[0] if found else None
-            found.append(Measured(solution, *given, meter.update, like))
-    return found
+            options_of_all = (args.samples, args.seed, wanted, args.contact_time)
+            like = measured[0] if measured else None
+            measured.append(Measured(solution, *options_of_all, meter.update, like))
+    return measured
 
 
 def _write_scene(solutions: list[Reconstruction], args: options.Args, case: Case) -> None:
@@ -131,17 +131,19 @@ def _write_scene(solutions: list[Reconstruction], args: options.Args, case: Case
     if len(solutions) > 1:
         raise UserError(f"{len(solutions)} impacts agree with what is known; expected one")
     values = solutions[0].scene()
-    adjusted = {
+    adjustable = {
         item.name
         for item in solutions[0].adjusted
         if not isclose(item.adjusted, item.measured, rel_tol=1e-9)
     }
-    kept = {n for n in case.given if n in (*SCENE, *OWN_NAMES) and n not in adjusted}
-    own = {kind + v for v, axes in OWN_AXES.items() if axes[0] in case.given for kind in "DP"}
-    found = {n: value for n, value in values.items() if n not in kept | own and n != "M"}
-    notes = {n: t for n, t in case.texts.items() if n.removesuffix(SOURCE) in kept}
+    fixed_names = {n for n in case.given if n in (*SCENE, *OWN_NAMES) and n not in adjustable}
+    own_axes = {kind + v for v, axes in OWN_AXES.items() if axes[0] in case.given for kind in "DP"}
+    initial = {
+        n: value for n, value in values.items() if n not in fixed_names | own_axes and n != "M"
+    }
+    notes = {n: t for n, t in case.texts.items() if n.removesuffix(SOURCE) in fixed_names}
     title = f"Reconstructed from {options.source_of(args) or '--set'}"
-    texts = {**case.about, "title": title, **notes, **case.display_texts(found)}
+    texts = {**case.about, "title": title, **notes, **case.display_texts(initial)}
     texts.setdefault("M", "4" if values["M"] == 4 else "6")
     with replacing(args.write_scene) as file:
         file.write(template(Case(texts, args.write_scene)))

@@ -65,12 +65,12 @@ def main(args: options.Args) -> None:
         data = read_bytes(args.scene, MAX_TOML_BYTES)
         case = Case(toml_texts(decode(data, source), source), source, *chosen)
     changes = options.set_pairs(args.set)
-    case = options.changed(case, changes, "--set")
+    case = options.change_case(case, changes, "--set")
     case = case.with_sources({n: "changed with --set" for n in changes if n in case.given})
     options.note_remarks(case)
-    asked = {n: getattr(args, n) for n in ("samples", "seed", "title", "paper")}
-    asked["number"] = args.case
-    page, tables = report(case, source, data, **asked)
+    keywords = {n: getattr(args, n) for n in ("samples", "seed", "title", "paper")}
+    keywords["number"] = args.case
+    page, tables = report(case, source, data, **keywords)
     with replacing(args.output) as out:
         out.write(page)
     if args.csv:

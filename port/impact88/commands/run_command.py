@@ -47,7 +47,7 @@ MACHINE = (
         "--raw", "every character as the Apple sends it: form feed, bells, NULs and control-D too"
     ),
 )
-"""What is plugged into the machine."""
+"""Options for the devices plugged into the machine."""
 
 ARGUMENTS = (
     *options.ONE_SCENE,
@@ -78,20 +78,20 @@ def check_slot(args: options.Args) -> None:
 def main(args: options.Args) -> int:
     check_slot(args)
     scene = options.scene_given(args, "the program's page")
-    data = dict(scene or _published(args))
-    given = [name for name in VELOCITIES if name in data]
-    if given and len(given) < len(VELOCITIES):
+    data = dict(scene or _published_data(args))
+    velocities = [name for name in VELOCITIES if name in data]
+    if velocities and len(velocities) < len(VELOCITIES):
         missing = " ".join(name for name in VELOCITIES if name not in data)
         raise UserError(
-            f"--set gives {' '.join(given)} but not {missing}; expected all six velocities, "
+            f"--set gives {' '.join(velocities)} but not {missing}; expected all six velocities, "
             "or none of them to be asked for, or a scene"
         )
     complete = scene or Scene(dict.fromkeys(VELOCITIES, "0") | data, source="--set")
     if args.listing:
-        run = _run_of_copy(args, complete if given else None)
+        run = _run_of_copy(args, complete if velocities else None)
     else:
         complete.check_typed()
-        run = _run(args, data, complete.keyboard() if given else None)
+        run = _run(args, data, complete.keyboard() if velocities else None)
     if args.json:
         options.print_json("run", {**run._asdict(), "floats": run.floats})
     elif args.listing:
@@ -101,11 +101,11 @@ def main(args: options.Args) -> int:
     return int(bool(run.error))
 
 
-def _published(args: options.Args) -> dict[str, str]:
+def _published_data(args: options.Args) -> dict[str, str]:
     """Return the listing's own data, with what ``--set`` changes or adds."""
     data = Case({**published_data(), "units": "chapter"}, "the listing").shown_in(args.units)
     changes = options.set_pairs(args.set, (*SCENE, *OWN_NAMES))
-    case = options.changed(data, changes, "--set").at_nominal()
+    case = options.change_case(data, changes, "--set").at_nominal()
     options.note_remarks(case, "the program's page" if args.set else "")
     return {n: check_value(n, text, "--set") for n, text in case.values.items() if n in SCENE}
 

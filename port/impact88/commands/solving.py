@@ -24,17 +24,23 @@ from ..mechanics.closedform.solve import share_typed, solve
 from ..messages.progress import progress
 from ..names import DEFAULT_M, RESULTS, SCENE, check_names
 from ..status import Status
-from ..tables.cells import Share, TableUnits, check_scene_columns, filled, numbers, point_masses
+from ..tables.cells import (
+    Share,
+    TableUnits,
+    check_scene_columns,
+    fill_blanks,
+    numbers,
+    point_masses,
+)
 from ..tables.remarks import Remark, remarks
 from ..tables.rows import BadCell, Rows, shortest
 from ..tables.sweep import estimates, read_ranges, read_sweep
-from ..tables.table import ahead, behind, format_of, may_wait, open_reader, open_writer
+from ..tables.table import format_of, may_wait, open_reader, open_writer, read_ahead, write_behind
 from . import options
 
 Results = dict[str, NDArray[Any]]
 
-SHOWN = 20
-"""Bad rows listed on stderr when no file takes them all: a screen, and twice as many are two."""
+MAX_BAD_ROWS_LISTED = 20  # on stderr, when no file takes them all: one screenful
 
 
 def solve_table(args: options.Args) -> int:
@@ -48,16 +54,19 @@ def solve_table(args: options.Args) -> int:
     source_format = "csv" if one_scene else format_of(path, args.form)
     to = args.to or (source_format if args.output == "-" else None)
     result_format = format_of(args.output, to)
-    arithmetic, known = _float64, [*RESULTS]
+    arithmetic, result_names = _float64, [*RESULTS]
     if args.arithmetic == "applesoft":
-        arithmetic, known = _applesoft, [n for n, q in RESULTS.items() if q.line or n == "KF"]
-    what = f"result of --arithmetic {args.arithmetic}"
-    wanted = options.names_given(args.outputs, known, "--outputs", what) or known
+        arithmetic, result_names = (
+            _applesoft,
+            [n for n, q in RESULTS.items() if q.line or n == "KF"],
+        )
+    kind = f"result of --arithmetic {args.arithmetic}"
+    outputs = options.names_given(args.outputs, result_names, "--outputs", kind) or result_names
     with ExitStack() as stack:
         swept: dict[str, Any] = {}
         if one_scene:
             options.set_pairs(args.set, (*SCENE, *OWN_NAMES))
-            case = options.case_given(argparse.Namespace(**{**vars(args), "scene": path}))
+            case = options.case_given(argparse.Namespace(**(vars(args) | {"scene": path})))
             options.note_remarks(case.at_nominal())
             swept = read_ranges(options.sweeps(args.sweep), case)
             source = stack.enter_context(read_sweep(case, swept))
@@ -68,68 +77,70 @@ def solve_table(args: options.Args) -> int:
         blocks = iter(source)
         first = next(blocks, None)
         blocks = chain([] if first is None else [first], blocks)
-        beside = case if one_scene else _filling(args) if args.scene else None
-        system = beside.units if beside else args.units
+        extra_case = case if one_scene else _filling(args) if args.scene else None
+        system = extra_case.units if extra_case else args.units
         units = TableUnits(
             source.names, system or args.units, first, where=display_name(path or "--sample")
         )
-        units.convention = _convention(args, beside)
-        given: dict[str, str] = {}
+        units.convention = _convention(args, extra_case)
+        constants: dict[str, str] = {}
         inertias: dict[str, Callable[[Rows], list[str | None]]] = {}
         if not one_scene:
             changes = options.set_pairs(args.set, (*SCENE, *OWN_NAMES))
-            if beside is None:
+            if extra_case is None:
                 chosen = (units.system.name or None, args.axes, args.headings)
-                beside = Case({}, "--set", *chosen)
-            elif not beside.units and not units.system.is_bare:
-                _refuse_bare(beside, units)
-            beside = options.changed(beside, changes, "--set").at_nominal()
-            given = _given(beside, changes, source.names)
+                extra_case = Case({}, "--set", *chosen)
+            elif not extra_case.units and not units.system.is_bare:
+                _refuse_bare(extra_case, units)
+            extra_case = options.change_case(extra_case, changes, "--set").at_nominal()
+            constants = _constants_given(extra_case, changes, source.names)
             inertias = {
-                name: partial(_estimated, units=units, name=name, estimate=estimate, case=beside)
-                for name, estimate in estimates(beside).items()
-                if name in given and f"M{name[1]}" in source.names
+                name: partial(
+                    _estimate_inertias, units=units, name=name, estimate=estimate, case=extra_case
+                )
+                for name, estimate in estimates(extra_case).items()
+                if name in constants and f"M{name[1]}" in source.names
             }
-        points = given.get("M", "4" if "M" in source.names else "6") == "4"
-        check_scene_columns({*source.names, *given}, points)
+        points = constants.get("M", "4" if "M" in source.names else "6") == "4"
+        check_scene_columns({*source.names, *constants}, points)
         if swept:  # the rest is the same in every row
             source.names = [name for name in source.names if name in swept]
         elif units.strict:
             source.names = units.headings(source.names)
-        added = ["ERROR", "LINE"] if arithmetic is _applesoft else []
-        headings = units.headings([*wanted, *added])
+        extra_columns = ["ERROR", "LINE"] if arithmetic is _applesoft else []
+        headings = units.headings([*outputs, *extra_columns])
         scene_too = bool(swept) or not args.results_only
         writer = open_writer(args.output, result_format, source, headings, scene_too)
         write = stack.enter_context(writer)
         complain = stack.enter_context(_complaints(args.errors))
         meter = stack.enter_context(progress(source.total, "solve", "B"))
         if not may_wait(args.output):
-            write = stack.enter_context(behind(write))
+            write = stack.enter_context(write_behind(write))
         if not may_wait(path or ""):
-            blocks = stack.enter_context(ahead(blocks))
-        units.based = given
-        told = [*case.at_nominal().remarks] if one_scene else []
-        if args.scene and beside is not None:
-            told = [name for name in beside.remarks if name not in source.names]
-        said = _Remarks(told, given, beside)
-        stack.callback(said.say)
+            blocks = stack.enter_context(read_ahead(blocks))
+        units.based = constants
+        noted_names = [*case.at_nominal().remarks] if one_scene else []
+        if args.scene and extra_case is not None:
+            noted_names = [name for name in extra_case.remarks if name not in source.names]
+        remarks = _Remarks(noted_names, constants, extra_case)
+        stack.callback(remarks.say)
         adverse = place = 0
         for rows in blocks:
-            for name, text in given.items():
+            for name, text in constants.items():
                 rows.columns.pop(name, None)  # and with it the heading of another unit
                 rows.columns[name] = [text] * rows.count
             for name, estimate in inertias.items():
                 rows.columns[name] = estimate(rows)
             # a name without a column has empty cells: a complaint where a row looks at them
-            nothing = [None] * rows.count
-            rows.columns |= {name: nothing for name in SCENE if name not in rows.columns}
-            rows.columns["M"] = filled(rows.columns["M"], DEFAULT_M)
-            results = arithmetic(rows, units, wanted, said)
+            blanks = [None] * rows.count
+            rows.columns |= {name: blanks for name in SCENE if name not in rows.columns}
+            rows.columns["M"] = fill_blanks(rows.columns["M"], DEFAULT_M)
+            results = arithmetic(rows, units, outputs, remarks)
             write(rows, units.shown(results))
             adverse += complain(rows.complaints())
             if "ERROR" in results:
-                ended = results["ERROR"]
-                adverse += int(np.count_nonzero((ended != "") & (ended != ZERO_DETERMINANT)))
+                errors = results["ERROR"]
+                adverse += int(np.count_nonzero((errors != "") & (errors != ZERO_DETERMINANT)))
             meter.update(rows.place - place)
             place = rows.place
     return int(adverse > 0)
@@ -201,18 +212,20 @@ def _refuse_bare(case: Case, units: TableUnits) -> None:
             )
 
 
-def _given(case: Case, changes: Collection[str], columns: Collection[str]) -> dict[str, str]:
+def _constants_given(
+    case: Case, changes: Collection[str], columns: Collection[str]
+) -> dict[str, str]:
     """Return what takes the place of a table's columns, or stands for those it lacks: texts in base
     units."""
-    given = {n: t for n, t in case.values.items() if n in case.given or n not in (*columns, "M")}
-    given = {n: t for n, t in given.items() if n in changes or n not in columns}
-    for name, text in given.items():
+    texts = {n: t for n, t in case.values.items() if n in case.given or n not in (*columns, "M")}
+    texts = {n: t for n, t in texts.items() if n in changes or n not in columns}
+    for name, text in texts.items():
         if text != "inf" and not (name == "MU" and is_share(text)):
             check_value(name, text, case.source)
-    return given
+    return texts
 
 
-def _estimated(
+def _estimate_inertias(
     rows: Rows, units: TableUnits, name: str, estimate: Callable[[str], str], case: Case
 ) -> list[str | None]:
     """Return a column of inertias estimated from each row's own mass; nothing for a mass that is
@@ -221,8 +234,8 @@ def _estimated(
     for cell in rows.columns.get(f"M{name[1]}") or [None] * rows.count:
         try:
             mass = cell if isinstance(cell, str) else repr(float(cell)).upper()
-            based = units.cell(f"M{name[1]}", mass)
-            texts.append(estimate(case.display_texts({f"M{name[1]}": based})[f"M{name[1]}"]))
+            mass_text = units.cell(f"M{name[1]}", mass)
+            texts.append(estimate(case.display_texts({f"M{name[1]}": mass_text})[f"M{name[1]}"]))
         except (UserError, TypeError, ValueError):
             texts.append(None)
     return texts
@@ -234,21 +247,21 @@ def _float64(rows: Rows, units: TableUnits, wanted: Sequence[str], said: _Remark
     _read_shares(rows, columns)
     said.look(rows, units, columns)
     unread = {index for index, *_ in rows.bad}
-    refused = rows.count > 0 and examine(columns).refused is not None
-    for refusal in refusals(columns) if refused else ():
+    any_refused = rows.count > 0 and examine(columns).refused is not None
+    for refusal in refusals(columns) if any_refused else ():
         values = np.broadcast_to(columns[refusal.column], rows.count)
-        found = np.flatnonzero(np.broadcast_to(refusal.where, rows.count)).tolist()
-        for index in sorted({*found} - unread):
+        rows_refused = np.flatnonzero(np.broadcast_to(refusal.where, rows.count)).tolist()
+        for index in sorted({*rows_refused} - unread):
             unread.add(index)
             rows.bad.append((index, refusal.column, f"{float(values[index])!r} {refusal.reason}"))
-    return _blanked(solve(columns, wanted), unread)
+    return _blank_rows(solve(columns, wanted), unread)
 
 
-def _blanked(results: Results, unread: set[int]) -> Results:
+def _blank_rows(results: Results, unread: set[int]) -> Results:
     """The results, none for the rows ``unread``."""
-    nothing = {"STATUS": Status.NOT_FINITE, "ERROR": "", "LINE": 0}
+    placeholders = {"STATUS": Status.NOT_FINITE, "ERROR": "", "LINE": 0}
     for name, result in results.items():
-        result[sorted(unread)] = nothing.get(name, np.nan)
+        result[sorted(unread)] = placeholders.get(name, np.nan)
     return results
 
 
@@ -257,17 +270,17 @@ def _read_shares(rows: Rows, columns: dict[str, NDArray[np.float64]]) -> None:
     about them."""
     places = [index for index, column, _ in rows.bad if column == "MU"]
     cells = {at: share_of(rows.columns["MU"][at]) for at in places}
-    found = {at: share for at, share in cells.items() if share is not None}
-    if found:
-        at = list(found)
-        shared = {n: np.broadcast_to(x, (rows.count,))[at] for n, x in columns.items()}
+    fractions = {at: share for at, share in cells.items() if share is not None}
+    if fractions:
+        at = list(fractions)
+        scene_columns = {n: np.broadcast_to(x, (rows.count,))[at] for n, x in columns.items()}
         columns["MU"] = columns["MU"].copy()
-        columns["MU"][at] = share_typed(shared, list(found.values()))
+        columns["MU"][at] = share_typed(scene_columns, list(fractions.values()))
         cells_kept = list(rows.columns["MU"])
         for index in at:  # a typed table holds the number
             cells_kept[index] = Share(cells_kept[index], float(columns["MU"][index]))
         rows.columns["MU"] = cells_kept
-        rows.bad = [bad for bad in rows.bad if bad[1] != "MU" or bad[0] not in found]
+        rows.bad = [bad for bad in rows.bad if bad[1] != "MU" or bad[0] not in fractions]
 
 
 def _applesoft(rows: Rows, units: TableUnits, wanted: Sequence[str], said: _Remarks) -> Results:
@@ -292,18 +305,18 @@ def _applesoft(rows: Rows, units: TableUnits, wanted: Sequence[str], said: _Rema
     unread = {index for index, *_ in rows.bad}
     try:
         # nearly always all cells can be read, and looking at each takes as long as solving
-        replayed = None if unread else replay(columns)
+        outcome = None if unread else replay(columns)
     except (ValueError, TypeError):  # UserError, or cells of several types
-        replayed = None
-    if replayed is None:
+        outcome = None
+    if outcome is None:
         _complain(rows, columns, unread)
         for column in columns.values():
             for index in unread:
                 column[index] = "6"
-        replayed = replay(columns)
-    results: Results = {name: replayed.floats(name) for name in wanted}
-    error = np.where(replayed.zero_determinant, ZERO_DETERMINANT, replayed.error)
-    return _blanked({**results, "ERROR": error, "LINE": replayed.line}, unread)
+        outcome = replay(columns)
+    results: Results = {name: outcome.floats(name) for name in wanted}
+    error = np.where(outcome.zero_determinant, ZERO_DETERMINANT, outcome.error)
+    return _blank_rows({**results, "ERROR": error, "LINE": outcome.line}, unread)
 
 
 def _texts(name: str, column: Any, units: TableUnits) -> list[Any]:
@@ -353,13 +366,13 @@ def _complaints(path: str | None) -> Iterator[Callable[[Sequence[BadCell]], int]
             if rows:
                 rows.writerows(sorted(cells))
             else:
-                for cell in sorted(cells)[: max(0, SHOWN - count)]:
+                for cell in sorted(cells)[: max(0, MAX_BAD_ROWS_LISTED - count)]:
                     note("solve", str(cell))
             count += len(cells)
             return len(cells)
 
         yield take
-    if (path and count) or count > SHOWN:
-        where = f": see {path}" if path else "; --errors FILE lists all of them"
-        unsolved = f"{count:,} row{'s' if count > 1 else ''} could not be solved"
-        note("solve", f"{unsolved}{where}")
+    if (path and count) or count > MAX_BAD_ROWS_LISTED:
+        advice = f": see {path}" if path else "; --errors FILE lists all of them"
+        summary = f"{count:,} row{'s' if count > 1 else ''} could not be solved"
+        note("solve", f"{summary}{advice}")

@@ -57,37 +57,41 @@ ARGUMENTS = (
 
 def main(args: options.Args) -> int:
     views: dict[str, Callable[[], list[str]]] = {
-        **{"fit": _fits, "measured": _measured, "claims": _claims, "cells": _cells},
-        **{"validation": _validation, "table": lambda: _table(args.table)},
+        "fit": _fits,
+        "measured": _measured_lines,
+        "claims": _claims,
+        "cells": _cells,
+        "validation": _validation,
+        "table": lambda: _table(args.table),
     }
     view = next((name for name in views if getattr(args, name)), None)
     if args.scene is not None or args.set:
         if view:
             raise UserError(f"--{view} shows the chapter's collisions; expected no file beside it")
-        return _own(args)
+        return _fit_own(args)
     if args.spin_weight is not None:
         raise UserError("--spin-weight is for a collision in a file; expected FILE.toml")
     options.show(args, "staged", _everything, views[view] if view else _comparison)
     return int(any(not c.agrees and c.explanation == "not explained" for c in staged.comparison()))
 
 
-def _own(args: options.Args) -> int:
+def _fit_own(args: options.Args) -> int:
     """Fit the collision of a file."""
     if args.spin_weight is not None and not 0 <= args.spin_weight < float("inf"):
         raise UserError(f"--spin-weight {args.spin_weight:g}: expected a number, 0 or more")
     names = (*GEOMETRY, *VELOCITIES, *FINAL_STATE)
-    known, units = options.known_values(args, names)
-    if absent := [name for name in names if name not in known]:
+    values, units = options.known_values(args, names)
+    if absent := [name for name in names if name not in values]:
         raise UserError(missing(absent), args.scene)
     try:
-        record, lines = within_doubles(_fitted)(known, args.spin_weight, base_of(units))
+        record, lines = within_doubles(_fit_collision)(values, args.spin_weight, base_of(units))
     except UserError as error:
         raise UserError(str(error), args.scene) from None
     options.show(args, "staged", lambda: record, lambda: lines)
     return 0
 
 
-def _fitted(
+def _fit_collision(
     known: dict[str, float], weight: float | None, units: str
 ) -> tuple[dict[str, Any], list[str]]:
     """The fit of one collision, as JSON and as lines."""
@@ -98,34 +102,38 @@ def _fitted(
         raise UserError("the contact points do not approach one another; no e can be fitted")
     if weight is None:
         weight = float(here.inverse_mass / here.inverse_spin_inertia)
-    own = staged.Collision(0, "own", scene, {name: known[name] for name in FINAL_STATE}, {})
-    found = staged.fit(own, spin_weight=weight)
-    if not isfinite(found.sum_of_squares):
+    collision = staged.Collision(0, "own", scene, {name: known[name] for name in FINAL_STATE}, {})
+    fit = staged.fit(collision, spin_weight=weight)
+    if not isfinite(fit.sum_of_squares):
         raise UserError(BEYOND_DOUBLES)
-    low, high = staged.undetermined_range(own, spin_weight=weight)
-    measured = staged.closure(own)
+    low, high = staged.undetermined_range(collision, spin_weight=weight)
+    closure = staged.closure(collision)
     record = {
-        **{"fit": asdict(found), "closure": measured},
-        **{"spin_weight": weight, "em_range": (low, high), "base_units": units},
+        "fit": asdict(fit),
+        "closure": closure,
+        "spin_weight": weight,
+        "em_range": (low, high),
+        "base_units": units,
     }
     rows = [
-        ["E", format_fixed(found.E, 4), "e" + (", at its bound" if "E" in found.at_bound else "")],
-        ["MUP", format_fixed(found.MUP, 4), "mu, signed P_t/P_n"],
-        ["EM", format_fixed(found.EM, 4), f"e_m; about as good: {low:.2f} ... {high:.2f}"],
+        ["E", format_fixed(fit.E, 4), "e" + (", at its bound" if "E" in fit.at_bound else "")],
+        ["MUP", format_fixed(fit.MUP, 4), "mu, signed P_t/P_n"],
+        ["EM", format_fixed(fit.EM, 4), f"e_m; about as good: {low:.2f} ... {high:.2f}"],
     ]
     text = (
         f"Least squares over the six velocities after, a squared spin weighing {weight:.4g}: sum "
-        f"of squares {found.sum_of_squares:.4g}. 0 <= e <= 1, -1 <= e_m <= 0. Squares and "
+        f"of squares {fit.sum_of_squares:.4g}. 0 <= e <= 1, -1 <= e_m <= 0. Squares and "
         f"momentum in base units: {units}."
     )
-    return record, [*table(rows, left=(0, 2)), "", *paragraph(text), "", *_closures([measured])]
+    return record, [*table(rows, left=(0, 2)), "", *paragraph(text), "", *_closures([closure])]
 
 
-def _measured() -> list[str]:
-    calculated = {c.number: float(staged.forward(c)["LOSS"]) for c in staged.collisions()}
+def _measured_lines() -> list[str]:
+    losses = {c.number: float(staged.forward(c)["LOSS"]) for c in staged.collisions()}
     return [
-        *("Energy and momentum of the measured velocities (Table 1), nothing fitted", ""),
-        *_closures([staged.closure(c) for c in staged.collisions()], calculated),
+        "Energy and momentum of the measured velocities (Table 1), nothing fitted",
+        "",
+        *_closures([staged.closure(c) for c in staged.collisions()], losses),
         "",
         *paragraph(
             "Momentum: what A gains and what B loses, equal where the measured velocities "
@@ -148,22 +156,25 @@ def _claims() -> list[str]:
 
 
 def _validation() -> list[str]:
-    found = validation.checks()
+    checks = validation.checks()
     lines = ["Crash tests published since the chapter, and what is computed for them", ""]
     for source, words in validation.SOURCES.items():
-        own = [check for check in found if check.source == source]
-        quantities = list(dict.fromkeys((check.quantity, check.unit) for check in own))
+        source_checks = [check for check in checks if check.source == source]
+        quantities = list(dict.fromkeys((check.quantity, check.unit) for check in source_checks))
         rows: dict[str, list[str]] = {}
-        for check in own:
+        for check in source_checks:
             digits = {"1": 3, "°/s": 0, "mph": 1, "ft/s": 1}[check.unit]
             pair = f"{format_fixed(check.reported, digits)} {format_fixed(check.computed, digits)}"
             rows.setdefault(check.test, [check.test]).append(pair)
-        lines += [*paragraph(f"{words[0].upper()}{words[1:]}: {own[0].kind}, computed"), ""]
+        lines += [
+            *paragraph(f"{words[0].upper()}{words[1:]}: {source_checks[0].kind}, computed"),
+            "",
+        ]
         names = [f"{name}" + (f", {unit}" if unit != "1" else "") for name, unit in quantities]
         lines += [*table(rows.values(), ["test", *names]), ""]
     rows_of_medians = [
         [source, quantity, "" if unit == "1" else unit, kind, str(count), *figures]
-        for source, quantity, unit, kind, count, *sizes in validation.medians(found)
+        for source, quantity, unit, kind, count, *sizes in validation.medians(checks)
         for figures in [[format_fixed(size, 3 if unit == "1" else 2) for size in sizes]]
     ]
     heading = ["sizes of the differences", "", "", "from", "numbers", "median", "largest"]
@@ -192,18 +203,18 @@ def _closures(
             row = [str(number), row[0] or "lost", format_fixed(calculated[int(number)], 1)]
         rows.append([*row, *(format_fixed(x, 0) or "lost" for x in changes)])
     heading = ["no.", "loss %, measured", "calculated"] if calculated else ["loss %, measured"]
-    sides = [f"{what}, {vehicle}" for what in ("x", "y", "M") for vehicle in "AB"]
+    sides = [f"{axis}, {vehicle}" for axis in ("x", "y", "M") for vehicle in "AB"]
     return table(rows, [*heading, *sides], left=())
 
 
 def _comparison() -> list[str]:
     columns = [c for c in staged.COLUMNS_2 if c not in ("e", "em", "mu")]
-    compared = staged.comparison()
+    comparisons = staged.comparison()
     rows: dict[int, list[str]] = {}
-    for cell in compared:
+    for cell in comparisons:
         text = f"{cell.printed:.1f} {format_fixed(cell.value, 2) or 'lost':>5}{'! '[cell.agrees]}"
         rows.setdefault(cell.collision, [str(cell.collision)]).append(text)
-    agree = sum(cell.agrees for cell in compared)
+    agree = sum(cell.agrees for cell in comparisons)
     lines = [
         "Table 2 beside its recomputation: printed value, recomputed value (! differs).",
         "loss in percent; velocity changes dV of vehicles a and b in ft/s:",
@@ -212,9 +223,10 @@ def _comparison() -> list[str]:
         "",
         *table(rows.values(), ["no.", *(f"{column} " for column in columns)]),
         "",
-        f"{agree} of {len(compared)} agree within what the rounding of the printed numbers allows.",
+        f"{agree} of {len(comparisons)} agree within what the rounding of the printed numbers "
+        "allows.",
     ]
-    for cell in compared:
+    for cell in comparisons:
         if not cell.agrees:
             lines += paragraph(f"! {cell.collision}, {cell.column}: {cell.explanation}")
     return lines
@@ -222,17 +234,19 @@ def _comparison() -> list[str]:
 
 def _fits() -> list[str]:
     rows, sums, errors = [], [], []
-    labelled = [(str(c.number), c) for c in staged.collisions()]
-    labelled.append(("8*", staged.with_8a_reconstructed()))
-    for label, collision in labelled:
-        printed = collision.table2
-        held, free = staged.fit(collision, printed["em"]), staged.fit(collision)
+    rows_by_label = [(str(c.number), c) for c in staged.collisions()]
+    rows_by_label.append(("8*", staged.with_8a_reconstructed()))
+    for label, collision in rows_by_label:
+        table2 = collision.table2
+        held_fit, free_fit = staged.fit(collision, table2["em"]), staged.fit(collision)
         low, high = staged.undetermined_range(collision)
         if collision.number != 8:
-            errors.append((held.E - printed["e"], held.MUP - printed["mu"]))
-        values = (printed["e"], printed["em"], printed["mu"], held.E, held.MUP)
-        cells = [format_fixed(value, 3) for value in (*values, free.E, free.EM, free.MUP)]
-        rows.append([label, *cells, " ".join(free.at_bound), f"{low:.2f} ... {high:.2f}"])
+            errors.append((held_fit.E - table2["e"], held_fit.MUP - table2["mu"]))
+        values = (table2["e"], table2["em"], table2["mu"], held_fit.E, held_fit.MUP)
+        cells = [
+            format_fixed(value, 3) for value in (*values, free_fit.E, free_fit.EM, free_fit.MUP)
+        ]
+        rows.append([label, *cells, " ".join(free_fit.at_bound), f"{low:.2f} ... {high:.2f}"])
         sums.append(
             [label, *(format_fixed(f.sum_of_squares, 1) for f in staged.profile(collision))]
         )
@@ -269,11 +283,11 @@ def _fits() -> list[str]:
 def _cells() -> list[str]:
     lines = ["What is emended, moved, lost or doubtful in Tables 1 and 2 as printed", ""]
     for e in staged.emendations():
-        where = f"Table {e.table}, {e.row}, {'the row' if e.column == '*' else e.column}"
+        place = f"Table {e.table}, {e.row}, {'the row' if e.column == '*' else e.column}"
         change = e.printed if e.printed == e.emended else f"{e.printed or 'blank'} -> {e.emended}"
         if e.kind == "lost" and not e.emended:
             change = "no value"
-        lines += [f"{where}: {e.kind}: {change}", *paragraph(e.evidence, "    ")]
+        lines += [f"{place}: {e.kind}: {change}", *paragraph(e.evidence, "    ")]
     return lines
 
 
@@ -294,7 +308,8 @@ def _table(number: int) -> list[str]:
         2: "loss percent, dV ft/s; mu is the signed P_t/P_n",
     }
     return [
-        *(f"Table {number}, emended ({units[number]})", ""),
+        f"Table {number}, emended ({units[number]})",
+        "",
         *table(rows.values(), ["no.", *(f"{c} " for c in columns)]),
         "",
         *(f"{category}: {' '.join(numbers)}" for category, numbers in categories.items()),

@@ -71,8 +71,8 @@ def main(args: options.Args) -> int:
         from ..report.frame import check_page_name
 
         check_page_name(args.report)
-    asked = args.scene or args.sample or args.set
-    given = dict(options.one_scene(args)) if asked else None
+    has_inputs = args.scene or args.sample or args.set
+    inputs = dict(options.one_scene(args)) if has_inputs else None
     copy = None
     if args.listing:
         from ..program.emulated import ListingCopy
@@ -80,17 +80,17 @@ def main(args: options.Args) -> int:
         copy = ListingCopy(args.listing)
     readings = [decoded(files.read_bytes(path, LARGEST_FILE), path) for path in args.text_from]
     status = 0
-    examined = []
+    files_examined = []
     for path in args.printouts:
-        file = examine(path, given, copy, readings)
-        examined.append(file)
+        file = examine(path, inputs, copy, readings)
+        files_examined.append(file)
         _show(file, args)
         adverse = any(result.verdict is not Verdict.IDENTICAL for result in file.results)
         status = max(status, 2 if file.error else int(adverse))
-    if args.report and any(file.results for file in examined):
+    if args.report and any(file.results for file in files_examined):
         from ..report.casefile import report
 
-        page = report(examined, **{name: getattr(args, name) for name in _ON_REPORT})
+        page = report(files_examined, **{name: getattr(args, name) for name in _ON_REPORT})
         with files.replacing(args.report) as out:
             out.write(page)
     return status
@@ -100,8 +100,8 @@ def _show(file: Examined, args: options.Args) -> None:
     if file.error:
         note("verify", file.error)
     if args.json:
-        for described in file.as_json():
-            options.print_json("verify", described)
+        for record in file.as_json():
+            options.print_json("verify", record)
     else:
         for result in file.results:
             print("\n".join(lines(result, args.brief)))

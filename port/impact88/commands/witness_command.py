@@ -1,4 +1,4 @@
-"""Runs an Apple II Plus ROM, your own, on a 6502 that others wrote (py65; extra: witness): the
+"""Runs an Apple II Plus ROM, your own, on py65, an independent 6502 emulator (extra: witness): the
 restored listing is typed in at the ROM's prompt, a scene's lines are retyped, RUN. What the ROM
 displays, every variable and the array are held against port, emulator and replay; a capture is
 held against the ROM too. The ROM is a file of 12,288 bytes, $D000 to $FFFF; this project has none
@@ -32,8 +32,8 @@ from . import options
 
 Job = Callable[[Session], hearing.Heard]
 
-SHOWN, SHOWN_LINES = 10, 24
-"""Cases with differences that are shown, and lines of each, an Apple's screen."""
+MAX_CASES_SHOWN = 10  # cases with differences
+MAX_LINES_SHOWN = 24  # lines of each: an Apple's screen
 
 ARGUMENTS = (
     options.reads("scenes", "SCENE.toml", "scenes to run", nargs="*"),
@@ -48,7 +48,7 @@ ARGUMENTS = (
         "every .bas of a folder, its replies in a .in beside it, on the ROM and the emulator",
     ),
     options.count("--random", 0, 10**7, "N random scenes", default=0),
-    options.seed("of what is random"),
+    options.seed(),
     options.flag("--any-rom", "accept a ROM that is not known, too"),
     options.writes("--save", "DIR", "write what the ROM did as captures"),
     options.flag("--json", "print the record as one JSON object"),
@@ -74,14 +74,14 @@ def main(args: options.Args) -> int:
 
 
 def _jobs(args: options.Args) -> list[Job]:
-    """What is to be done; all input is read before the machine is started."""
+    """Return the jobs to run; all input is read before the machine is started."""
     jobs: list[Job] = []
     changes = options.set_pairs(args.set, (*SCENE, *OWN_NAMES))
-    asked = args.scenes or args.captures is not None or args.random or args.programs
-    for number in [args.sample] if args.sample else () if asked else SAMPLES:
-        scene = Scene.of(options.changed(sample(number).case, changes, "--set"))
-        changed = partial(hearing.hear_scene, name=f"sample {number}", scene=scene)
-        jobs.append(changed if changes else partial(hearing.hear_sample, number=number))
+    is_anything_asked = args.scenes or args.captures is not None or args.random or args.programs
+    for number in [args.sample] if args.sample else () if is_anything_asked else SAMPLES:
+        scene = Scene.of(options.change_case(sample(number).case, changes, "--set"))
+        job = partial(hearing.hear_scene, name=f"sample {number}", scene=scene)
+        jobs.append(job if changes else partial(hearing.hear_sample, number=number))
     for path in args.scenes:
         scene = Scene.from_toml(path, args.units).replaced(changes)
         options.note_remarks(scene)
@@ -103,12 +103,16 @@ def _jobs(args: options.Args) -> list[Job]:
 
 def _report(image: Image, heard: list[hearing.Heard], record: dict[str, Any]) -> Iterator[str]:
     wrong = [case for case in heard if case.differences]
-    for case in wrong[:SHOWN]:
+    for case in wrong[:MAX_CASES_SHOWN]:
         lines = [line for difference in case.differences for line in difference.lines()]
-        yield "\n  ".join([f"{case.kind}: {case.name}", *lines[:SHOWN_LINES]])
-        yield f"  and {len(lines) - SHOWN_LINES} lines more\n" if len(lines) > SHOWN_LINES else ""
-    if len(wrong) > SHOWN:
-        yield f"and {len(wrong) - SHOWN} cases more with differences\n"
+        yield "\n  ".join([f"{case.kind}: {case.name}", *lines[:MAX_LINES_SHOWN]])
+        yield (
+            f"  and {len(lines) - MAX_LINES_SHOWN} lines more\n"
+            if len(lines) > MAX_LINES_SHOWN
+            else ""
+        )
+    if len(wrong) > MAX_CASES_SHOWN:
+        yield f"and {len(wrong) - MAX_CASES_SHOWN} cases more with differences\n"
     width = max(map(len, record["comparisons"]))
     for name, tally in record["comparisons"].items():
         yield f"{name:<{width}}  {tally['right']:>6} of {tally['total']:>6} without a difference"

@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import UserError, library
 from ..files import ESCAPED, decoding, replacing
 from ..names import SCENE
-from .cells import typed
+from .cells import typed_cells
 from .rows import (
     BLOCK_ROWS,
     ArrowColumn,
@@ -75,7 +75,7 @@ def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[
                 headings, count = file.schema.names, None
                 batches = _slices(file)
         names = scene_names(headings, path, results)
-        yield Reader(names, _blocks(pa, names, _validated(batches, path), path), count)
+        yield Reader(names, _blocks(pa, names, _validate_each(batches, path), path), count)
 
 
 def _slices(file: Any) -> Iterator[Any]:
@@ -86,7 +86,7 @@ def _slices(file: Any) -> Iterator[Any]:
             yield batch.slice(first, BLOCK_ROWS)
 
 
-def _validated(batches: Iterable[Any], path: str) -> Iterator[Any]:
+def _validate_each(batches: Iterable[Any], path: str) -> Iterator[Any]:
     """Yield the batches, each checked whole. Raises UserError for what the library refuses."""
     batches = iter(batches)
     while True:
@@ -110,12 +110,12 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
     from pyarrow import parquet
 
     headings = list(map(_encodable, headings))
-    opened: list[Any] = []
+    writer_and_schema: list[Any] = []
 
     def array(name: str, column: Column) -> Any:
         if isinstance(column, ArrowColumn) and (type(column) is ArrowColumn or name not in SCENE):
             return column.array
-        cells = typed(name, column)
+        cells = typed_cells(name, column)
         if not isinstance(cells, np.ndarray):
             cells = list(map(_encodable, cells))
         # whole numbers too: where one is missing, a later block of them is of doubles
@@ -130,12 +130,12 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
 
     def put(columns: Named) -> None:
         table = pa.table([array(*column) for column in columns], headings)
-        if not opened:
-            opened.extend((writer(table.schema), table.schema))
-        opened[0].write_table(table.cast(opened[1]))
+        if not writer_and_schema:
+            writer_and_schema.extend((writer(table.schema), table.schema))
+        writer_and_schema[0].write_table(table.cast(writer_and_schema[1]))
 
     with replacing(path, "wb") as file:
         yield put
-        if not opened:  # no row at all
-            opened.append(writer(pa.schema([(name, pa.float64()) for name in headings])))
-        opened[0].close()
+        if not writer_and_schema:  # no row at all
+            writer_and_schema.append(writer(pa.schema([(name, pa.float64()) for name in headings])))
+        writer_and_schema[0].close()

@@ -32,14 +32,14 @@ from ..names import RESULTS, SCENE, quantity
 from .rows import ArrowTexts, Column, Heading, Rows, heading
 
 _MEASURING = ("length", "length/time", "mass", "mass·length²", "mass·length²/time²")
-"""What a bare column beside others with units leaves open."""
+"""Quantities whose bare column leaves its unit open beside columns with units."""
 _NUMBERS = re.compile(r"(?<![a-zA-Z^])(?:[0-9][0-9,]*\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _WRITTEN = re.compile(r"[+-]?[0-9]*(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?")
 _RATIOS = ("1", "-", "–", "—", "")
 
 
 class TableUnits:
-    """What the columns of one table are in. ``system``: what results are shown in, `RULES` where
+    """Units of the columns of one table. ``system``: what results are shown in, `RULES` where
     nothing names a unit; ``based``: columns that are replaced by base units. Raises UserError for a
     heading whose unit does not measure its quantity, and for bare columns beside such with units
     where ``given`` names no system."""
@@ -84,44 +84,44 @@ class TableUnits:
                 )
 
     def leaves_open(self, name: str) -> bool:
-        """Whether a column's bare numbers may be in several units."""
+        """Return whether a column's bare numbers may be in several units."""
         return name not in self.units and quantity(name).unit in _MEASURING
 
     def _unit(self, name: str) -> str:
         return self.units.get(name) or self.system.usual.get(quantity(name).unit, "")
 
     def factor(self, name: str) -> float:
-        """What a column's bare numbers are multiplied with to be in base units."""
+        """Factor that brings a column's bare numbers to base units."""
         rule, unit = quantity(name).unit, self._unit(name)
         size = size_of(unit, rule) if unit and name not in self.based else None
         return float(size[0] / self.system.scale(rule)) if size else 1.0
 
     def converts(self, name: str) -> bool:
-        """Whether a column's texts have to be looked at."""
+        """Return whether a column's texts need conversion to base units."""
         return name not in self.based and (not self.system.is_bare or name in self.units)
 
     def cell(self, name: str, text: str) -> str:
         """One cell in base units, exactly. Raises UserError for what is not an amount."""
         unit = self._unit(name)
         usual = {quantity(name).unit: unit} if unit else {}
-        if self.system.is_bare and not (found := system_using(units_in(name, text), "")).is_bare:
+        if self.system.is_bare and not (system := system_using(units_in(name, text), "")).is_bare:
             raise UserError(
-                f"{quoted(text)}: expected its unit in the heading, or --units {found.name}"
+                f"{quoted(text)}: expected its unit in the heading, or --units {system.name}"
             )
-        based = text_in_base(name, text, System("", self.system.base, usual))
+        value = text_in_base(name, text, System("", self.system.base, usual))
         turn = self.convention.sign_and_offset(name) if self.convention else None
-        return reorient_text(name, based, *turn) if turn and is_number(based) else based
+        return reorient_text(name, value, *turn) if turn and is_number(value) else value
 
     def result(self, name: str, text: str) -> tuple[float, float]:
         """A cell of a result in base units, and the size of the last digit it is written with (0
         where that is not plain to see). Raises UserError for what is not an amount."""
-        based = doubles.double(self.cell(name, text))
+        value = doubles.double(self.cell(name, text))
         amounts = _NUMBERS.findall(text)
         if len(amounts) != 1:
-            return based, 0.0
+            return value, 0.0
         number = amounts[0].replace(",", "")
-        size, written = last_digit(number), abs(doubles.double(number))
-        return based, size * abs(based) / written if written else size * self.factor(name)
+        size, magnitude = last_digit(number), abs(doubles.double(number))
+        return value, size * abs(value) / magnitude if magnitude else size * self.factor(name)
 
     def turned(self, name: str, values: Any) -> Any:
         """Return numbers in base units in the listing's axes."""
@@ -130,8 +130,8 @@ class TableUnits:
 
     def headings(self, results: Sequence[str]) -> list[str]:
         """Names with the headings they have here: ``DVA [mph]``."""
-        known = (*SCENE, *RESULTS)
-        return [Heading(n, self.system.heading(n)) if n in known else n for n in results]
+        comparable = (*SCENE, *RESULTS)
+        return [Heading(n, self.system.heading(n)) if n in comparable else n for n in results]
 
     def shown(self, results: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
         """Results in base units as they are shown."""
@@ -155,22 +155,22 @@ def last_digit(text: str) -> float:
 
 
 def _units_in_cells(rows: Rows) -> list[tuple[str, str]]:
-    found: set[tuple[str, str]] = set()
+    pairs: set[tuple[str, str]] = set()
     for name, column in rows.scene().items():
         if not isinstance(column, np.ndarray):
             # "lb" and "45 deg", but not 1E5, 1,234.5 or inf
             worth = (c for c in column if isinstance(c, str) and c.strip("0123456789+-.,eE \t"))
             for text in worth:
-                found.update(units_in(name, text))
-    return list(found)
+                pairs.update(units_in(name, text))
+    return list(pairs)
 
 
 def check_scene_columns(
     names: Collection[str], points: bool = False, advice: str = "--set NAME=VALUE"
 ) -> None:
     """Raise UserError unless ``names`` are a scene; ``points``: of point masses only."""
-    unneeded = ("M", *(UNUSED_BY_POINTS if points else ()))
-    missing = [name for name in SCENE if name not in names and name not in unneeded]
+    optional = ("M", *(UNUSED_BY_POINTS if points else ()))
+    missing = [name for name in SCENE if name not in names and name not in optional]
     if missing:
         raise UserError(
             f"no column {' '.join(missing)}; expected columns named {' '.join(SCENE)} "
@@ -178,7 +178,7 @@ def check_scene_columns(
         )
 
 
-def filled(column: Column, text: str) -> Column:
+def fill_blanks(column: Column, text: str) -> Column:
     """A column with ``text`` where it has nothing."""
     if isinstance(column, np.ndarray):
         return column
@@ -187,15 +187,15 @@ def filled(column: Column, text: str) -> Column:
     return [text if cell in (None, "") else cell for cell in column]
 
 
-def typed(name: str, column: Column) -> NDArray[Any] | list[str]:
+def typed_cells(name: str, column: Column) -> NDArray[Any] | list[str]:
     """A column as a typed table holds it: doubles for a scene's name, NaN where a cell is no
     number; otherwise what the array has, or texts."""
     if isinstance(column, np.ndarray):
         return column
     if name not in SCENE:
         return [plain(cell) for cell in column]
-    if isinstance(column, ArrowTexts) and (found := column.doubles()) is not None:
-        return found
+    if isinstance(column, ArrowTexts) and (doubles := column.doubles()) is not None:
+        return doubles
     return np.array([np.nan if isinstance(n := _number(c), str) else n for c in column], float)
 
 
@@ -203,20 +203,22 @@ def numbers(rows: Rows, units: TableUnits) -> dict[str, NDArray[np.float64]]:
     """The scene columns of ``rows`` as doubles in base units. A cell that is not a number is NaN,
     and a complaint is added to ``rows.bad`` (unless its row has one already, or is a point mass
     that does not look at the cell)."""
-    asked, every = ~point_masses(rows), np.ones(rows.count, np.bool_)
+    expected, all_rows = ~point_masses(rows), np.ones(rows.count, np.bool_)
     return {
-        name: _numbers(rows, name, column, units, asked if name in UNUSED_BY_POINTS else every)
+        name: _numbers(
+            rows, name, column, units, expected if name in UNUSED_BY_POINTS else all_rows
+        )
         for name, column in rows.scene().items()
     }
 
 
 def point_masses(rows: Rows) -> NDArray[np.bool_]:
     """Which rows have M = 4. Complaints about cells that these do not look at are withdrawn."""
-    every = np.ones(rows.count, np.bool_)
+    all_rows = np.ones(rows.count, np.bool_)
     if "M" not in rows.columns:
-        return ~every
-    is_four = _numbers(rows, "M", rows.columns["M"], TableUnits(), every) == 4
-    points = np.broadcast_to(is_four, every.shape)
+        return ~all_rows
+    is_four = _numbers(rows, "M", rows.columns["M"], TableUnits(), all_rows) == 4
+    points = np.broadcast_to(is_four, all_rows.shape)
     rows.bad = [bad for bad in rows.bad if bad[1] not in UNUSED_BY_POINTS or not points[bad[0]]]
     return points
 
@@ -228,8 +230,8 @@ def _numbers(
     bare_refused = units.strict and units.converts(name) and units.leaves_open(name)
     values = None if bare_refused else _plain_numbers(column)
     if values is not None:
-        scaled = values if factor == 1 else values * factor
-        return np.asarray(units.turned(name, scaled))
+        products = values if factor == 1 else values * factor
+        return np.asarray(units.turned(name, products))
     values = np.full(rows.count, np.nan)
     cells = list(column)
     already = {index for index, *_ in rows.bad}
@@ -266,7 +268,7 @@ def _plain_numbers(column: Column) -> NDArray[np.float64] | None:
 
 
 def _number(cell: object) -> float | str:
-    """The double that a cell is, or why it is none."""
+    """Return the double that a cell is, or why it is none."""
     if cell is None or (isinstance(cell, str) and not cell.strip()):
         return "is empty; expected a number"
     if isinstance(cell, Share):
@@ -280,7 +282,7 @@ def _number(cell: object) -> float | str:
 
 
 def is_infinite(text: str) -> bool:
-    """Whether a cell says inf, the mass and the inertia of a barrier; INPUT has no such number."""
+    """Return whether a cell says inf, as of a barrier's mass; INPUT has no such number."""
     return text.strip().lower() == "inf"
 
 

@@ -36,8 +36,9 @@ from .rows import (
     shortest,
 )
 
-_POINT_FROM, _POINT_TO = 1e-3, 1e10
-"""Between these every version of it writes a number without an exponent, as Python does."""
+# between these every version of pyarrow writes a number without an exponent, as Python does
+_MIN_WITHOUT_EXPONENT = 1e-3
+_MAX_WITHOUT_EXPONENT = 1e10
 BLOCK_BYTES = 1 << 22
 """A pass over a block of 4 MB takes some milliseconds; blocks of 1 and of 16 MB take as long."""
 
@@ -45,11 +46,11 @@ WORTH_ARROW = 1 << 20
 """Bytes from which pyarrow pays: importing it, and pandas where it is installed, takes as long as a
 megabyte takes without it."""
 WORTH_ARROW_CELLS = WORTH_ARROW >> 4
-"""The same for writing: numbers of sixteen digits or so."""
+"""Cells, numbers of some sixteen digits, from which pyarrow pays for writing."""
 
 
 def arrow_available() -> bool:
-    """Whether pyarrow is installed."""
+    """Return whether pyarrow is installed."""
     return find_spec("pyarrow") is not None
 
 
@@ -66,7 +67,7 @@ def _whole_records(stream: Any, size: int) -> bytes:
     return data if parts[-1] or not data or data.endswith(b"\n") else data + b"\n"
 
 
-def _parsed(
+def _parse_plain(
     data: bytes, delimiter: str, width: int
 ) -> tuple[list[ArrowTexts], NDArray[np.int64]] | None:
     """The fields of plain records, and the line in which each record ends; None of others."""
@@ -129,11 +130,11 @@ def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[
                 if bare and not bare.startswith(b"sep=") and head.count(b'"') % 2 == 0:
                     break
         lines.go_on(head, 0)
-        filled = (line for line in lines if line.strip())
-        header = next(filled, "")
+        nonblank_lines = (line for line in lines if line.strip())
+        header = next(nonblank_lines, "")
         separator = re.fullmatch(r"sep=([,;|\t])", header.strip("\r\n \ufeff"), re.IGNORECASE)
         if separator:  # as Excel reads and writes it
-            header = next(filled, "")
+            header = next(nonblank_lines, "")
         if not header:
             raise UserError(
                 "is empty; expected a header with the names of the columns", lines.where
@@ -154,7 +155,9 @@ def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[
         plain_ends = head.count(b"\r") == head.count(b"\r\n")
         in_blocks = lines.number == head.count(b"\n") > 0 and plain_ends
         blocks = (
-            Rows(len(numbers), _named(fields, numbers, names, delimiter, lines), numbers, bad)
+            Rows(
+                len(numbers), _name_columns(fields, numbers, names, delimiter, lines), numbers, bad
+            )
             for fields, numbers, bad in _blocks(lines, records, delimiter, width, in_blocks)
         )
         yield Reader(names, blocks, *lines.source.extent, delimiter)
@@ -173,13 +176,13 @@ def _blocks(
         data = _whole_records(lines.binary, BLOCK_BYTES)
         small = first and len(data) < WORTH_ARROW and "pyarrow" not in sys.modules
         first = False
-        if small or (found := _parsed(data, delimiter, width)) is None:
+        if small or (block := _parse_plain(data, delimiter, width)) is None:
             lines.encoding = "utf-8"
             lines.go_on(data, number)
             records, in_blocks = _records(lines, lines, delimiter), False
         else:
-            numbers = (found[1] + number).tolist()
-            yield found[0], numbers, []
+            numbers = (block[1] + number).tolist()
+            yield block[0], numbers, []
             number = numbers[-1]
     while True:
         rows: dict[int, list[str]] = {}  # by the line in which each ends
@@ -201,7 +204,7 @@ def _blocks(
         yield list(zip(*rows.values(), strict=True)), list(rows), bad
 
 
-def _named(
+def _name_columns(
     fields: Sequence[Column], numbers: list[int], names: list[str], delimiter: str, lines: Lines
 ) -> dict[str, Column]:
     for column in fields[len(names) :]:
@@ -212,11 +215,11 @@ def _named(
                 "name",
                 lines.where,
             )
-    named = dict(zip(names, fields, strict=False))
+    columns = dict(zip(names, fields, strict=False))
     for name in names if delimiter != "," else ():
         if name in SCENE or name in RESULTS:
-            named[name] = _with_points(named[name])
-    return named
+            columns[name] = _with_points(columns[name])
+    return columns
 
 
 def _with_points(column: Column) -> Column:
@@ -248,12 +251,18 @@ def texts_of(values: NDArray[Any]) -> Any:
     texts = array.cast(pa.string())
     size = np.abs(values)
     # pyarrow has the same digits, but another idea of when to use an exponent, and writes 1 for 1.0
-    other = (size < _POINT_FROM) | (size >= _POINT_TO) | (values == np.rint(values))
-    if other.any():
+    differing = (
+        (size < _MIN_WITHOUT_EXPONENT)
+        | (size >= _MAX_WITHOUT_EXPONENT)
+        | (values == np.rint(values))
+    )
+    if differing.any():
         # by their bits: 0.0 equals -0.0
-        different, where = np.unique(values[other].view(np.int64), return_inverse=True)
-        written = pa.array(list(map(repr, different.view(np.float64).tolist())))
-        texts = compute.replace_with_mask(texts, pa.array(other), written.take(pa.array(where)))
+        distinct_bits, places = np.unique(values[differing].view(np.int64), return_inverse=True)
+        python_texts = pa.array(list(map(repr, distinct_bits.view(np.float64).tolist())))
+        texts = compute.replace_with_mask(
+            texts, pa.array(differing), python_texts.take(pa.array(places))
+        )
     return texts
 
 
@@ -266,23 +275,23 @@ def _in_arrow(column: Column) -> Any:
     return texts_of(column) if column.dtype.char == "d" or column.dtype.kind in "iuU" else None
 
 
-def _joined(arrays: Sequence[Any], delimiter: str, ends: str) -> Any:
+def _row_bytes(arrays: Sequence[Any], delimiter: str, ends: str) -> Any:
     """The bytes of rows, those texts in quotes that hold what ends a field or a line."""
     import pyarrow as pa
     from pyarrow import compute
 
-    def joined(*parts: Any, by: str = "") -> Any:
+    def join_columns(*parts: Any, by: str = "") -> Any:
         texts = (pa.scalar(part) if isinstance(part, str) else part for part in (*parts, by))
         return compute.binary_join_element_wise(*texts)
 
     fields = []
     for array in arrays:
-        held = bytes(array.buffers()[2] or b"")  # a search of a regex in every text takes longer
-        if any(mark.encode() in held for mark in (delimiter, '"', "\r", "\n")):
-            doubled = joined('"', compute.replace_substring(array, '"', '""'), '"')
-            array = compute.if_else(compute.match_substring_regex(array, ends), doubled, array)
+        content = bytes(array.buffers()[2] or b"")  # a search of a regex in every text takes longer
+        if any(mark.encode() in content for mark in (delimiter, '"', "\r", "\n")):
+            quoted_texts = join_columns('"', compute.replace_substring(array, '"', '""'), '"')
+            array = compute.if_else(compute.match_substring_regex(array, ends), quoted_texts, array)
         fields.append(array)
-    return joined(joined(*fields, by=delimiter), "\n").buffers()[2]
+    return join_columns(join_columns(*fields, by=delimiter), "\n").buffers()[2]
 
 
 @contextmanager
@@ -298,13 +307,13 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
         return ['"{}"'.format(t.replace('"', '""')) if re.search(ends, t) else t for t in texts]
 
     def put(columns: Named) -> None:
-        many = sum(len(column) for _, column in columns)
-        worth = through_arrow and (many >= WORTH_ARROW_CELLS or "pyarrow" in sys.modules)
-        found = (_in_arrow(column) for _, column in columns if worth)
-        arrays = list(takewhile(lambda array: array is not None, found))
+        cell_count = sum(len(column) for _, column in columns)
+        worth = through_arrow and (cell_count >= WORTH_ARROW_CELLS or "pyarrow" in sys.modules)
+        candidates = (_in_arrow(column) for _, column in columns if worth)
+        arrays = list(takewhile(lambda array: array is not None, candidates))
         if len(arrays) == len(columns):
             file.flush()
-            file.buffer.write(_joined(arrays, delimiter, ends))  # type: ignore[attr-defined]
+            file.buffer.write(_row_bytes(arrays, delimiter, ends))  # type: ignore[attr-defined]
         else:
             rows = zip(*(fields(column) for _, column in columns), strict=True)
             file.writelines([f"{row}\n" for row in map(delimiter.join, rows)])

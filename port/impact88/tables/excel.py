@@ -20,7 +20,7 @@ import numpy as np
 from ..errors import UserError, library, quoted
 from ..files import decoding, replacing
 from ..names import SCENE
-from .cells import plain, typed
+from .cells import plain, typed_cells
 from .npztable import check_unpacked
 from .rows import (
     BLOCK_ROWS,
@@ -33,10 +33,9 @@ from .rows import (
     scene_names,
 )
 
-MOST_ABOVE, MOST_SHEETS = 50, 100
-"""Rows among which the header is sought, and sheets: titles and remarks are some lines."""
-SHOWN = 5
-"""Sheets that are told, of those that are not read."""
+MAX_HEADER_ROW = 50  # the header is sought among these; titles and remarks are some lines
+MAX_SHEETS = 100  # those in which a table is sought
+MAX_SHEETS_LISTED = 5  # of those that are not read
 LONGEST_CELL = 32_767
 """Characters that Excel has in a cell."""
 WRITTEN = datetime.datetime(1988, 1, 1)
@@ -46,7 +45,7 @@ _Lines = Generator[tuple[int, tuple[Any, ...]], None, None]
 
 
 class _Header(NamedTuple):
-    """Where a table begins: the sheet's place and title, the header's row and its texts;
+    """Place where a table begins: the sheet's place and title, the header's row and its texts;
     ``others``: titles of further sheets that hold anything."""
 
     place: int
@@ -57,7 +56,7 @@ class _Header(NamedTuple):
 
 
 @contextmanager
-def _opened(path: str) -> Iterator[Any]:
+def _open_workbook(path: str) -> Iterator[Any]:
     """The workbook, its formulas by their values. Raises UserError."""
     openpyxl = library("openpyxl", "excel", "an .xlsx")
     with ExitStack() as stack:
@@ -85,32 +84,32 @@ def _lines(sheet: Any, path: str, first: int = 1) -> _Lines:
 def _header(book: Any, path: str, results: bool) -> _Header:
     """Find the header. Raises UserError for a book that holds nothing."""
     best: _Header | None = None
-    most, others = -1, []
-    for place, sheet in enumerate(book.worksheets[:MOST_SHEETS]):
+    max_count, other_sheets = -1, []
+    for place, sheet in enumerate(book.worksheets[:MAX_SHEETS]):
         with closing(_lines(sheet, path)) as lines:
-            rows = list(islice(lines, MOST_ABOVE))
-        others += [sheet.title] if rows else []
+            rows = list(islice(lines, MAX_HEADER_ROW))
+        other_sheets += [sheet.title] if rows else []
         for number, row in rows:
             texts = [_text(cell).strip() for cell in row]
             while texts and not texts[-1]:
                 texts.pop()
             count = names_among(texts, results)
-            if count > most:
-                most, best = count, _Header(place, sheet.title, number, texts, [])
+            if count > max_count:
+                max_count, best = count, _Header(place, sheet.title, number, texts, [])
     if best is None:
         raise UserError("holds nothing; expected a header of names", path)
-    return best._replace(others=[title for title in others if title != best.title])
+    return best._replace(others=[title for title in other_sheets if title != best.title])
 
 
 def _blocks(names: list[str], lines: _Lines, where: str, header: _Header) -> Iterator[Rows]:
-    width, trusted = len(names), False
+    width, is_trusted = len(names), False
     while block := list(islice(lines, BLOCK_ROWS)):
         for number, row in block:
             if any(cell is not None for cell in row[width:]):
                 raise UserError(f"row {number} has a cell in a column that has no name", where)
-        if not trusted and any(None in row for _, row in block):
+        if not is_trusted and any(None in row for _, row in block):
             _check_computed(where, header)
-            trusted = True
+            is_trusted = True
         full = ((*row[:width], *[None] * (width - len(row))) for _, row in block)
         columns: dict[str, Column] = {}
         for name, cells in zip(names, zip(*full, strict=True), strict=True):
@@ -124,12 +123,12 @@ def _check_computed(path: str, header: _Header) -> None:
     compute them when they save."""
     load = library("openpyxl", "excel", "an .xlsx").load_workbook
     with (
-        closing(load(path, read_only=True, data_only=True)) as computed,
-        closing(load(path, read_only=True)) as written,
+        closing(load(path, read_only=True, data_only=True)) as values_book,
+        closing(load(path, read_only=True)) as formulas_book,
     ):
         sheets = (
             book.worksheets[header.place].iter_rows(min_row=header.row, max_col=len(header.names))
-            for book in (computed, written)
+            for book in (values_book, formulas_book)
         )
         for value, formula in chain.from_iterable(map(zip, *sheets)):
             if value.value is None and formula.data_type == "f":
@@ -147,7 +146,7 @@ def _text(cell: Any) -> str:
 @contextmanager
 def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[Reader]:
     """Open a workbook. Raises UserError if it is not one, or unpacks to more than it may."""
-    with _opened(path) as book:
+    with _open_workbook(path) as book:
         header = _header(book, path, results)
         names = scene_names(header.names, path, results)
         sheet = book.worksheets[header.place]
@@ -156,9 +155,9 @@ def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[
             reader.place = {"sheet": header.title, "row": header.row}
             if header.place or header.row > 1 or header.others:
                 read = f"sheet {quoted(header.title)} is read, its headings in row {header.row}"
-                others = ", ".join(map(quoted, header.others[:SHOWN]))
-                more = ", ..." if len(header.others) > SHOWN else ""
-                reader.remarks.append(read + (f"; not read: {others}{more}" if others else ""))
+                titles = ", ".join(map(quoted, header.others[:MAX_SHEETS_LISTED]))
+                ellipsis = ", ..." if len(header.others) > MAX_SHEETS_LISTED else ""
+                reader.remarks.append(read + (f"; not read: {titles}{ellipsis}" if titles else ""))
             yield reader
 
 
@@ -216,7 +215,7 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
 
     def put(columns: Named) -> None:
         nonlocal count
-        cells = (typed(*column) for column in columns)
+        cells = (typed_cells(*column) for column in columns)
         rows = list(
             zip(*(c.tolist() if isinstance(c, np.ndarray) else c for c in cells), strict=True)
         )
@@ -227,13 +226,13 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
             sheet.append([cell(value) for value in row])
 
     with replacing(path, "wb") as file:
-        packed = io.BytesIO()  # a zip file that cannot be finished complains on stderr
+        archive = io.BytesIO()  # a zip file that cannot be finished complains on stderr
         try:
             try:
                 yield put
             finally:  # and so does a sheet left open
                 sheet.close()
-            openpyxl.writer.excel.ExcelWriter(book, _Archive(packed, "w")).save()
+            openpyxl.writer.excel.ExcelWriter(book, _Archive(archive, "w")).save()
         except OSError as error:  # openpyxl's own temporary files have no name of the user's
             raise UserError(f"cannot be written: {error.strerror or error}", path) from None
-        file.write(packed.getbuffer())
+        file.write(archive.getbuffer())

@@ -96,15 +96,15 @@ def solve_frame(
     def solved(names: Sequence[str], column: Callable[[str], Any]) -> dict[str, Array]:
         """The results of a frame's columns, by heading."""
         # pandas names columns by numbers, too
-        found = [name for name in scene_names(list(map(str, names))) if name in SCENE]
-        given = {name: column(heading(name)) for name in found}
-        arrays = {n: np.asanyarray(c) for n, c in given.items()}
+        scene_headings = [name for name in scene_names(list(map(str, names))) if name in SCENE]
+        scene_columns = {name: column(heading(name)) for name in scene_headings}
+        arrays = {n: np.asanyarray(c) for n, c in scene_columns.items()}
         texts: dict[str, Column]
         texts = {n: list(np.ravel(a)) for n, a in arrays.items() if a.dtype.kind not in "fiu"}
-        table = TableUnits(found, units or getattr(scene, "units", None), Rows(0, texts))
+        table = TableUnits(scene_headings, units or getattr(scene, "units", None), Rows(0, texts))
         if table.strict:
-            _check_units(found, given, scene or {}, table)
-        columns = {n: _numbers(n, values, table) for n, values in given.items()}
+            _check_units(scene_headings, scene_columns, scene or {}, table)
+        columns = {n: _numbers(n, values, table) for n, values in scene_columns.items()}
         table.based = SCENE
         for name, value in (scene or {}).items():
             if name in SCENE:
@@ -112,13 +112,15 @@ def solve_frame(
         all_points = "M" in columns and bool(np.all(np.asarray(columns["M"]) == 4))
         check_scene_columns(columns, all_points, "scene=")
         results = table.shown(solve(columns, outputs, threads=threads))
-        amiss.extend(remarks(columns, table.system, partial(_cell, given, scene), False).values())
+        amiss.extend(
+            remarks(columns, table.system, partial(_cell, scene_columns, scene), False).values()
+        )
         return {heading(name): results[name] for name in table.headings(list(results))}
 
     is_dataset = type(frame).__module__.partition(".")[0] == "xarray"
     result: Any
     if isinstance(frame, np.ndarray):
-        result = _structured(frame, solved)
+        result = _extend_structured(frame, solved)
     elif isinstance(frame, Mapping) and not is_dataset:
         result = {**frame, **solved(list(frame), lambda name: frame[name])}
     elif isinstance(frame, list | tuple):
@@ -150,9 +152,9 @@ def _check_units(
 ) -> None:
     """Raise UserError for the first bare number that measures something, where cells have units and
     nothing says what bare numbers are in."""
-    beside = {name: [value] for name, value in scene.items() if name in SCENE}
+    scene_columns = {name: [value] for name, value in scene.items() if name in SCENE}
     columns: dict[str, Any] = {
-        **beside,
+        **scene_columns,
         **{str(name): np.ravel(given[heading(name)]) for name in names},
     }
     for name, cells in columns.items():
@@ -183,12 +185,12 @@ def _numbers(name: str, values: Any, units: TableUnits) -> Array:
     return numbers(Rows(array.size, {name: column}), units)[name].reshape(array.shape)
 
 
-def _structured(frame: Array, solved: Solver) -> Array:
+def _extend_structured(frame: Array, solved: Solver) -> Array:
     names = _names_of(frame)
     columns = {n: frame[n] for n in names}
-    extended = columns | solved(names, lambda name: columns[name])
-    result = np.empty(frame.shape, [(name, column.dtype) for name, column in extended.items()])
-    for name, column in extended.items():
+    all_columns = columns | solved(names, lambda name: columns[name])
+    result = np.empty(frame.shape, [(name, column.dtype) for name, column in all_columns.items()])
+    for name, column in all_columns.items():
         result[name] = column
     return result
 
@@ -203,7 +205,7 @@ def _names_of(frame: Array) -> tuple[str, ...]:
     return names
 
 
-def _checked(rows: Sequence[Any]) -> Sequence[Any]:
+def _check_dicts(rows: Sequence[Any]) -> Sequence[Any]:
     """Return rows that are dicts. Raises UserError for others."""
     if not all(isinstance(row, Mapping) for row in rows):
         raise UserError("expected a list of dicts, one for each scene")
@@ -211,11 +213,11 @@ def _checked(rows: Sequence[Any]) -> Sequence[Any]:
 
 
 def _dicts(rows: Sequence[Any], solved: Solver) -> list[dict[str, Any]]:
-    if not _checked(rows):
+    if not _check_dicts(rows):
         return []
     names = list(dict.fromkeys(name for row in rows for name in row))
-    found = solved(names, lambda name: [row.get(name) for row in rows])
-    results = {name: column.tolist() for name, column in found.items()}
+    named_columns = solved(names, lambda name: [row.get(name) for row in rows])
+    results = {name: column.tolist() for name, column in named_columns.items()}
     return [{**row, **{n: c[at] for n, c in results.items()}} for at, row in enumerate(rows)]
 
 
@@ -271,28 +273,28 @@ def read_frame(frame: Any) -> Iterator[Reader]:
     polars, a pyarrow Table, a structured array, a list of dicts or a dict of columns. Numbers are
     taken as they are held, texts as they are written. Raises UserError for a frame of another
     kind."""
-    found: dict[Any, Any]
+    columns: dict[Any, Any]
     if isinstance(frame, np.ndarray):
-        found = {n: frame[n].reshape(-1) for n in _names_of(frame)}
+        columns = {n: frame[n].reshape(-1) for n in _names_of(frame)}
     elif isinstance(frame, Mapping) and not hasattr(frame, "data_vars"):
-        found = {n: _column(n, cells) for n, cells in frame.items()}
+        columns = {n: _column(n, cells) for n, cells in frame.items()}
     elif isinstance(frame, list | tuple):
-        rows = _checked(frame)
+        rows = _check_dicts(frame)
         keys = dict.fromkeys(name for row in rows for name in row)
-        found = {n: _column(n, [row.get(n) for row in rows]) for n in keys}
+        columns = {n: _column(n, [row.get(n) for row in rows]) for n in keys}
     elif hasattr(frame, "data_vars"):
         raise UserError("is an xarray Dataset; expected frame.to_dataframe().reset_index()")
     else:
         _, table = _table(frame)
-        found = {name: _cells(table, name) for name in table.columns}
-    headings = list(map(str, found))
+        columns = {name: _cells(table, name) for name in table.columns}
+    headings = list(map(str, columns))
     names = scene_names(headings, "the frame", True)
-    sizes = {name: len(column) for name, column in zip(names, found.values(), strict=True)}
+    sizes = {name: len(column) for name, column in zip(names, columns.values(), strict=True)}
     count = max(sizes.values(), default=0)
     for name, size in sizes.items():
         if size not in (1, count):
             raise UserError(f"column {quoted(heading(name))} has {size} cells, others have {count}")
-    spread = [np.broadcast_to(column, (count,)) for column in found.values()]
+    spread = [np.broadcast_to(column, (count,)) for column in columns.values()]
     reader = Reader(names, _frame_blocks(names, spread, count), count)
     reader.remarks += heading_remarks(names, True)
     yield reader
@@ -323,9 +325,9 @@ def _column(name: Any, cells: Any) -> Array:
         cells = np.ma.filled(cells.astype(np.float64), np.nan)
     array = np.asarray(cells) if isinstance(cells, np.ndarray | int | float) else None
     if array is None or array.dtype.kind not in "fiub":
-        listed = [cells] if isinstance(cells, str) or not hasattr(cells, "__len__") else list(cells)
-        array = np.empty(len(listed), object)
-        array[:] = listed
+        items = [cells] if isinstance(cells, str) or not hasattr(cells, "__len__") else list(cells)
+        array = np.empty(len(items), object)
+        array[:] = items
     if array.ndim > 1:
         shape = " by ".join(map(str, array.shape))
         raise UserError(

@@ -80,7 +80,7 @@ def _elements(lines: Lines) -> Iterator[tuple[int, Any, str]]:
     """Yield the elements of an array, each with the line in which it begins. Raises UserError for
     what is no array."""
     text, at, line = "", 0, 1
-    wanted = "["
+    delimiters = "["
 
     def fill() -> bool:
         nonlocal text, at
@@ -92,20 +92,22 @@ def _elements(lines: Lines) -> Iterator[tuple[int, Any, str]]:
         """The next character that is no space; nothing at the end."""
         nonlocal at, line
         while True:
-            rest = text[at:].lstrip(_SPACE) if at < len(text) and text[at] in _SPACE else text[at:]
-            place = len(text) - len(rest)
+            remainder = (
+                text[at:].lstrip(_SPACE) if at < len(text) and text[at] in _SPACE else text[at:]
+            )
+            place = len(text) - len(remainder)
             line += text.count("\n", at, place)
             at = place
-            if rest or not fill():
-                return rest[:1]
+            if remainder or not fill():
+                return remainder[:1]
 
     def refuse(says: str) -> NoReturn:
         raise UserError(f"line {line} {says}", lines.where)
 
     while True:
         mark = following()
-        if not mark or mark not in wanted:
-            expected = " or ".join(map(quoted, wanted))
+        if not mark or mark not in delimiters:
+            expected = " or ".join(map(quoted, delimiters))
             refuse(
                 f"has {quoted(mark)} where {expected} is expected"
                 if mark
@@ -134,20 +136,20 @@ def _elements(lines: Lines) -> Iterator[tuple[int, Any, str]]:
                 if reason:
                     refuse(reason)
                 break
-        written = text[at:end]
-        deep = written.count("[") + written.count("{") > DEEPEST and _depth(value) > DEEPEST
-        lines.taken += len(written)
+        value_text = text[at:end]
+        deep = value_text.count("[") + value_text.count("{") > DEEPEST and _depth(value) > DEEPEST
+        lines.taken += len(value_text)
         yield line, value, f"is nested deeper than {DEEPEST} levels" if deep else ""
-        line += written.count("\n")
-        at, wanted = end, ",]"
+        line += value_text.count("\n")
+        at, delimiters = end, ",]"
     if following():
         refuse("has text after the array's end; expected one array, or an object a line")
 
 
-def _lifted(row: dict[str, Any], results: bool) -> dict[str, Any]:
+def _flatten(row: dict[str, Any], results: bool) -> dict[str, Any]:
     """The row with what its objects hold that is its own. Raises ValueError for a name with two
     values."""
-    lifted = dict(row)
+    flat = dict(row)
     holders: dict[str, str] = {}
     for key, inner in row.items():
         if not isinstance(inner, dict):
@@ -155,21 +157,21 @@ def _lifted(row: dict[str, Any], results: bool) -> dict[str, Any]:
         names = scene_names(list(inner), None, results)
         if not any(name in SCENE or (results and name in RESULTS) for name in names):
             continue
-        del lifted[key]
+        del flat[key]
         for name, cell in inner.items():
             # the kit's vectors have each result in several forms
             value = cell.get("double", cell) if isinstance(cell, dict) else cell
-            if name not in lifted:
-                lifted[name], holders[name] = value, f"in {quoted(key)}"
-            elif lifted[name] != value:
+            if name not in flat:
+                flat[name], holders[name] = value, f"in {quoted(key)}"
+            elif flat[name] != value:
                 first = holders.get(name, "beside it")
                 raise ValueError(f"has two values of {quoted(name)}, in {quoted(key)} and {first}")
-    return lifted
+    return flat
 
 
 def _blocks(lines: Lines, values: Iterator[tuple[int, Any, str]], results: bool) -> Iterator[Rows]:
-    matched: dict[str, str] = {}  # key -> the column's name
-    known: set[str] | None = None  # the first block's columns
+    column_names: dict[str, str] = {}  # key -> the column's name
+    first_columns: set[str] | None = None  # the first block's columns
     while True:
         objects: list[dict[str, Any]] = []
         numbers: list[int] = []
@@ -187,7 +189,7 @@ def _blocks(lines: Lines, values: Iterator[tuple[int, Any, str]], results: bool)
                 reason = "is not a JSON object"
             elif not reason and dict in map(type, value.values()):
                 try:
-                    value = _lifted(value, results)
+                    value = _flatten(value, results)
                 except ValueError as error:
                     reason = str(error)
             if reason:
@@ -199,16 +201,16 @@ def _blocks(lines: Lines, values: Iterator[tuple[int, Any, str]], results: bool)
             objects.append(value)
         if not objects:
             return
-        new = [key for key in keys if key not in matched]
-        every = scene_names([*matched.values(), *new], None, results)
-        matched |= zip(new, every[len(matched) :], strict=True)
+        new = [key for key in keys if key not in column_names]
+        all_names = scene_names([*column_names.values(), *new], None, results)
+        column_names |= zip(new, all_names[len(column_names) :], strict=True)
         columns: dict[str, Column] = {}
         for key in keys:
             cells = [value.get(key, ABSENT) for value in objects]
-            name = matched[key]
+            name = column_names[key]
             columns[name] = list(map(_text, cells)) if name in SCENE else cells
-        known = set(columns) if known is None else known
-        late = {name: keys[key] for key in keys if (name := matched[key]) not in known}
+        first_columns = set(columns) if first_columns is None else first_columns
+        late = {name: keys[key] for key in keys if (name := column_names[key]) not in first_columns}
         yield Rows(len(objects), columns, numbers, bad, late)
 
 
@@ -239,9 +241,9 @@ def _double(cell: Any) -> str:
         return cell if match[1] or match[2] else cell + ".0"
     if not doubles.is_number(cell):
         return json_number(math.inf) if is_infinite(cell) else "null"
-    sign, whole, decimals, exponent_sign, exponent, _ = scan(cell.upper())
+    sign, integer_digits, decimals, exponent_sign, exponent, _ = scan(cell.upper())
     power = f"E{exponent_sign}{exponent}" if exponent else ""
-    return f"{sign.strip('+')}{whole.lstrip('0') or '0'}.{decimals or '0'}{power}"
+    return f"{sign.strip('+')}{integer_digits.lstrip('0') or '0'}.{decimals or '0'}{power}"
 
 
 def _cells(name: str, column: Column) -> list[str]:

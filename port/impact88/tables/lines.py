@@ -29,10 +29,10 @@ class Lines:
     def go_on(self, data: bytes, number: int) -> None:
         """Have ``data`` read before what is left of the file; ``number``: of the line before."""
         self.number = number
-        self._text = self._opened(io.BytesIO(data))
+        self._text = self._text_of(io.BytesIO(data))
         self._left = [self.binary]  # closed with what reads it: opened when its turn comes
 
-    def _opened(self, binary: Any) -> io.TextIOWrapper:
+    def _text_of(self, binary: Any) -> io.TextIOWrapper:
         return io.TextIOWrapper(binary, self.encoding, newline="")
 
     def __iter__(self) -> Iterator[str]:
@@ -46,28 +46,30 @@ class Lines:
 
     def read(self, size: int) -> str:
         """The next ``size`` characters, fewer at the end only."""
-        return self._taken(lambda text: text.read(size))
+        return self._take(lambda text: text.read(size))
 
-    def _taken(self, take: Callable[[io.TextIOWrapper], str]) -> str:
-        """What ``take`` takes of the text. Raises UserError where it cannot be read."""
+    def _take(self, take: Callable[[io.TextIOWrapper], str]) -> str:
+        """Return what ``take`` takes of the text. Raises UserError where it cannot be read."""
         try:
             line = take(self._text)
             if not line and self._left:
-                self._text = self._opened(self._left.pop())
+                self._text = self._text_of(self._left.pop())
                 line = take(self._text)
             return line
         except UnicodeError:
-            what = f"contains bytes that are not {self.encoding.removesuffix('-sig').upper()} text"
+            problem = (
+                f"contains bytes that are not {self.encoding.removesuffix('-sig').upper()} text"
+            )
             raise UserError(
-                f"{what}, in line {self.number + 1} or after it; expected UTF-8, or the encoding "
-                "named, such as --encoding cp1252 for older Excel",
+                f"{problem}, in line {self.number + 1} or after it; expected UTF-8, or the "
+                "encoding named, such as --encoding cp1252 for older Excel",
                 self.where,
             ) from None
         except (EOFError, zlib.error, OSError) as error:
             raise self._error(f"cannot be unpacked: {error}") from None
 
     def __next__(self) -> str:
-        line = self._taken(lambda text: text.readline(LONGEST_LINE))
+        line = self._take(lambda text: text.readline(LONGEST_LINE))
         if not line:
             raise StopIteration
         if len(line) >= LONGEST_LINE:
@@ -120,13 +122,13 @@ def writing(path: str) -> Iterator[IO[str]]:
     if path == "-":
         yield cast(IO[str], _Terminal()) if sys.stdout.isatty() else sys.stdout
         return
-    packed = path.lower().endswith(".gz")
-    with replacing(path, "wb" if packed else "w") as file:
-        if packed:
+    is_packed = path.lower().endswith(".gz")
+    with replacing(path, "wb" if is_packed else "w") as file:
+        if is_packed:
             import gzip
 
-            zipped: Any = gzip.GzipFile("", "wb", 6, file, mtime=0)
-            with io.TextIOWrapper(zipped, "utf-8", ESCAPED, newline="\n") as text:
+            gzip_file: Any = gzip.GzipFile("", "wb", 6, file, mtime=0)
+            with io.TextIOWrapper(gzip_file, "utf-8", ESCAPED, newline="\n") as text:
                 yield text
         else:
             yield file

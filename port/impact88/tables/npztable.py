@@ -21,16 +21,17 @@ from numpy.typing import NDArray
 from ..errors import UserError, quoted
 from ..files import ESCAPED, decoding, replacing
 from ..names import SCENE
-from .cells import typed
+from .cells import typed_cells
 from .rows import BLOCK_CHARACTERS, BLOCK_ROWS, Column, Put, Reader, Rows, scene_names
 
 MOST_ARRAYS = 10_000
 """A table has some fifty columns."""
 _HEADER = 1 << 17
 """Bytes in which an array's header ends: numpy reads one of 10,000 characters, and its length."""
-UNPACKED, RATIO = 256_000_000, 20
-"""Bytes that a small file may unpack to; a larger one so many times its own. Doubles pack to a
-third; with twice as much a file of 100 MB may take 4 GB of memory."""
+MAX_UNPACKED = 256_000_000  # bytes that any file may unpack to
+# a larger one may unpack to this many times its size: doubles pack to a third, and with twice as
+# much a file of 100 MB may take 4 GB of memory
+MAX_UNPACKED_RATIO = 20
 _PACKED = "cannot be unpacked"
 
 
@@ -58,11 +59,11 @@ def _members(path: str) -> Iterator[dict[str, "_Member"]]:
 
 def check_unpacked(members: list[zipfile.ZipInfo], size: int, path: str) -> None:
     """Raise UserError when an archive of ``size`` bytes unpacks to more than is read."""
-    unpacked = sum(member.file_size for member in members)
-    limit = max(UNPACKED, RATIO * size)
-    if unpacked > limit:
+    unpacked_size = sum(member.file_size for member in members)
+    limit = max(MAX_UNPACKED, MAX_UNPACKED_RATIO * size)
+    if unpacked_size > limit:
         raise UserError(
-            f"has {size:,} bytes that unpack to {unpacked:,}; at most {limit:,} are read "
+            f"has {size:,} bytes that unpack to {unpacked_size:,}; at most {limit:,} are read "
             "(numpy.savez writes arrays unpacked)",
             path,
         )
@@ -140,15 +141,15 @@ def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[
 def _blocks(columns: dict[str, _Member], count: int) -> Iterator[Rows]:
     """Yield the rows; arrays that have no element for each as they are, the same every time."""
     running = {n: column for n, column in columns.items() if column.shape == (count,) != (1,)}
-    whole = {n: column.whole() for n, column in columns.items() if n not in running}
+    whole_arrays = {n: column.whole() for n, column in columns.items() if n not in running}
     characters = sum(c.dtype.itemsize // 4 for c in running.values() if c.dtype.kind in "US")
-    most = max(1, min(BLOCK_ROWS, BLOCK_CHARACTERS // max(characters, 1)))
-    held = {name for name, array in whole.items() if array.size != 1}
-    for first in range(0, count, most) if count else (0,):
-        size = min(most, count - first)
-        rows = Rows(size, {}, whole=held)
+    max_rows = max(1, min(BLOCK_ROWS, BLOCK_CHARACTERS // max(characters, 1)))
+    whole_names = {name for name, array in whole_arrays.items() if array.size != 1}
+    for first in range(0, count, max_rows) if count else (0,):
+        size = min(max_rows, count - first)
+        rows = Rows(size, {}, whole=whole_names)
         for name in columns:
-            array = running[name].take(size) if name in running else whole[name]
+            array = running[name].take(size) if name in running else whole_arrays[name]
             if name in SCENE:
                 array = np.broadcast_to(array.reshape(-1), (size,))
             is_text = name in SCENE and array.dtype.kind == "U"
@@ -157,7 +158,7 @@ def _blocks(columns: dict[str, _Member], count: int) -> Iterator[Rows]:
 
 
 def _array(name: str, column: Column) -> NDArray[Any]:
-    cells = typed(name, column)
+    cells = typed_cells(name, column)
     if isinstance(cells, np.ndarray):
         return cells
     longest = max(map(len, cells), default=0)
@@ -180,8 +181,8 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
     ):
         for name, column in zip(headings, zip(*parts, strict=True), strict=bool(parts)):
             # a fixed date: the same arrays give the same bytes
-            escaped = f"{name}.npy".encode("utf-8", ESCAPED).decode()
-            with archive.open(zipfile.ZipInfo(escaped), "w", force_zip64=True) as out:
+            member_name = f"{name}.npy".encode("utf-8", ESCAPED).decode()
+            with archive.open(zipfile.ZipInfo(member_name), "w", force_zip64=True) as out:
                 same = all(part is column[0] for part in column)
                 array = column[0] if same else np.concatenate(column)
                 np.lib.format.write_array(out, np.asanyarray(array), allow_pickle=False)

@@ -1,5 +1,5 @@
-"""What is hardly meant in a table (`collision.plausibility`), by columns: a remark a rule, with the
-number of rows it is about and the first of them."""
+"""Remarks on what is hardly meant in a table (`collision.plausibility`), by columns: a remark a
+rule, with the number of rows it is about and the first of them."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -47,9 +47,9 @@ class Remark:
 
     @property
     def more(self) -> str:
-        """How many rows there are beside the first."""
-        others = self.rows - 1
-        return f" and {others:,} more row{'s' * (others > 1)}" if others else ""
+        """Number of rows beside the first."""
+        other_rows = self.rows - 1
+        return f" and {other_rows:,} more row{'s' * (other_rows > 1)}" if other_rows else ""
 
 
 def remarks(
@@ -78,8 +78,8 @@ def remarks(
         names += [name for name in flat if rule_of_name(name) in MEASURES or name in _SIZED]
     limits = dict(zip(names, limits_of([flat[name] for name in names]), strict=True))
     table = _Table(flat, limits, system, cells, count)
-    found = {} if system.is_bare else dict(table.sizes())
-    return {**found, **dict(table.sideways(every)), **dict(table.one_spin())}
+    sizes = {} if system.is_bare else dict(table.sizes())
+    return {**sizes, **dict(table.sideways(every)), **dict(table.one_spin())}
 
 
 @dataclass
@@ -93,7 +93,7 @@ class _Table:
     count: int
 
     def _bodies(self) -> Where | bool:
-        """Where vehicles have a size: M is not 4."""
+        """Mask of the rows whose vehicles have a size: M is not 4."""
         M = self.columns.get("M")
         return True if M is None or self.limits["M"] == (6.0, 6.0) else M != 4
 
@@ -106,7 +106,7 @@ class _Table:
 
     def sizes(self) -> Iterator[tuple[str, Remark]]:
         """Remarks on masses, speeds, arms and inertias."""
-        for name, (least, most) in self.limits.items():
+        for name, (least, highest) in self.limits.items():
             rule, values = rule_of_name(name), self.columns[name]
             arm = name in ("DA", "DB")
             if rule in MEASURES:
@@ -117,13 +117,13 @@ class _Table:
                 low, scale, words = -high, float(self.system.scale("length")), BEYOND_ARM
             else:
                 continue
-            if low <= least * scale and most * scale <= high:
+            if low <= least * scale and highest * scale <= high:
                 continue
             sizes = values * scale
-            where = np.isfinite(sizes) & ~((low <= sizes) & (sizes <= high))
+            outliers = np.isfinite(sizes) & ~((low <= sizes) & (sizes <= high))
             if rule == "mass":
-                where &= sizes > 0  # others are refused, or end the program
-            yield from self._remark(name, where & self._bodies() if arm else where, words)
+                outliers &= sizes > 0  # others are refused, or end the program
+            yield from self._remark(name, outliers & self._bodies() if arm else outliers, words)
         for vehicle in "AB":
             yield from self._inertias(vehicle)
 
@@ -132,17 +132,17 @@ class _Table:
         name, mass = f"I{vehicle}", f"M{vehicle}"
         if not {name, mass} <= self.limits.keys():
             return
-        (least, most), (lightest, heaviest) = self.limits[name], self.limits[mass]
+        (least, highest), (lightest, heaviest) = self.limits[name], self.limits[mass]
         low, high = INERTIA_RATIO
         smallest = weight_line(lightest, self.system)[1] if lightest > 0 else 0.0
         largest = weight_line(heaviest, self.system)[1]
-        if low * largest <= least and most <= high * smallest:
+        if low * largest <= least and highest <= high * smallest:
             return
         masses, inertias = self.columns[mass], self.columns[name]
-        parts = [_ratios(some, self.system) for some in _strips(masses, inertias)]
+        parts = [_ratios(strip, self.system) for strip in _strips(masses, inertias)]
         ratios = np.concatenate(parts)
-        where = ~((low <= ratios) & (ratios <= high)) & ~np.isnan(ratios) & self._bodies()
-        for _, remark in self._remark(name, where, ""):
+        outliers = ~((low <= ratios) & (ratios <= high)) & ~np.isnan(ratios) & self._bodies()
+        for _, remark in self._remark(name, outliers, ""):
             ratio = float(ratios[remark.first % len(ratios)])
             remark.text = inertia_words(name, self.cells(name, remark.first), ratio)
             yield name, remark
@@ -158,21 +158,21 @@ class _Table:
             rows = max(map(len, columns))
             if not every and rows > COURSES:
                 evenly = np.linspace(0, rows - 1, COURSES).astype(np.int64)
-                some = [column if len(column) == 1 else column[evenly] for column in columns]
-                if not is_sideways(_off_course(some, turn)).any():
+                strip = [column if len(column) == 1 else column[evenly] for column in columns]
+                if not is_sideways(_off_course(strip, turn)).any():
                     continue
-            apart = np.concatenate([_off_course(some, turn) for some in _strips(*columns)])
-            where = is_sideways(apart) & self._bodies()
-            for _, remark in self._remark(name, where, ""):
+            apart = np.concatenate([_off_course(strip, turn) for strip in _strips(*columns)])
+            is_off = is_sideways(apart) & self._bodies()
+            for _, remark in self._remark(name, is_off, ""):
                 remark.text = sideways_words(vehicle, float(apart[remark.first % len(apart)]))
                 yield name, remark
 
     def one_spin(self) -> Iterator[tuple[str, Remark]]:
         """A remark on EM = 0."""
-        least, most = self.limits.get("EM", (1.0, 1.0))
-        if not (least > 0 or most < 0):  # NaN where there is one
-            where = (self.columns["EM"] == 0) & self._bodies()
-            yield from self._remark("EM", where, ONE_SPIN)
+        least, highest = self.limits.get("EM", (1.0, 1.0))
+        if not (least > 0 or highest < 0):  # NaN where there is one
+            is_zero = (self.columns["EM"] == 0) & self._bodies()
+            yield from self._remark("EM", is_zero, ONE_SPIN)
 
 
 def _strips(*columns: Floats) -> Iterator[list[Floats]]:
@@ -183,11 +183,13 @@ def _strips(*columns: Floats) -> Iterator[list[Floats]]:
 
 @np.errstate(all="ignore")
 def _ratios(columns: Sequence[Floats], system: System) -> Floats:
-    """How many times the rule's each inertia is; NaN where there is no rule or no inertia."""
+    """Ratio of each inertia to the rule's; NaN where there is no rule or no inertia."""
     masses, inertias = columns
     weights, usual = weight_line(masses, system)
-    ruled = (CARS[0] <= weights) & (weights <= CARS[1]) & (inertias > 0) & (inertias < math.inf)
-    return np.where(ruled, inertias / usual, np.nan)
+    within_rule = (
+        (CARS[0] <= weights) & (weights <= CARS[1]) & (inertias > 0) & (inertias < math.inf)
+    )
+    return np.where(within_rule, inertias / usual, np.nan)
 
 
 @np.errstate(all="ignore")

@@ -32,7 +32,7 @@ BLOCK_CELLS = 2_000_000
 
 
 class _Absent(str):
-    """What a row holds for a key it does not have; an empty text to everybody else."""
+    """Cell of a row that lacks the key; an empty text to everybody else."""
 
     __slots__ = ()
 
@@ -146,7 +146,7 @@ class Rows:
         return column
 
     def complaints(self) -> list[BadCell]:
-        """What is bad, by the rows' numbers and lines."""
+        """Return the bad cells, by the rows' numbers and lines."""
         lines = self.lines
         return [BadCell(self.first + at, lines[at] if lines else 0, *why) for at, *why in self.bad]
 
@@ -189,7 +189,7 @@ class Heading(str):
 
 
 def heading(name: str) -> str:
-    """What is written over a column."""
+    """Return the heading written over a column."""
     return getattr(name, "written", name)
 
 
@@ -209,48 +209,48 @@ def scene_names(names: Sequence[str], where: str | None = None, results: bool = 
     (``pm``). Raises UserError for two columns that would be one, and, where the table has a name
     (``where``), for two of the same heading."""
     present = set(names)
-    matched: list[str] = []
-    seen: dict[str, str] = {}
+    columns: list[str] = []
+    sources: dict[str, str] = {}
     for name in names:
         text, unit = _taken_apart(name)
         bare = text.upper()
-        taken = bare in present or not (
+        is_kept = bare in present or not (
             bare in SCENE or (bare in RESULTS and (results or bool(unit)))
         )
-        if bare in seen and bare not in present and (bare in SCENE or results):
-            first = heading(seen[bare])
+        if bare in sources and bare not in present and (bare in SCENE or results):
+            first = heading(sources[bare])
             says = f"columns {quoted(first)} and {quoted(name)} are both {bare}; expected one"
             raise UserError(says, where or "")
-        taken = taken or bare in seen
-        matched.append(name if taken else Heading(bare, name, unit))
-        seen.setdefault(matched[-1], matched[-1])
-    twice = next((name for name, count in Counter(matched).items() if count > 1), None)
+        is_kept = is_kept or bare in sources
+        columns.append(name if is_kept else Heading(bare, name, unit))
+        sources.setdefault(columns[-1], columns[-1])
+    twice = next((name for name, count in Counter(columns).items() if count > 1), None)
     if where is not None and twice is not None:
         raise UserError(f"has two columns named {quoted(twice)}", where)
-    return matched
+    return columns
 
 
 def names_among(texts: Sequence[str], results: bool = False) -> int:
-    """How many of some texts are headings of a scene's columns, or of results', where these are
+    """Count the texts that are headings of a scene's columns, or of results', where these are
     read."""
-    known = {_taken_apart(text)[0].upper() for text in texts}
-    return len(known & ({*SCENE, *RESULTS} if results else {*SCENE}))
+    bare_names = {_taken_apart(text)[0].upper() for text in texts}
+    return len(bare_names & ({*SCENE, *RESULTS} if results else {*SCENE}))
 
 
 def heading_remarks(names: Sequence[str], results: bool = False) -> list[str]:
-    """What a reader should know of how headings were understood: which are names in other letters,
+    """Return remarks on how headings were understood: which are names in other letters,
     and which stand beside the column that is read."""
-    said: list[str] = []
+    remarks: list[str] = []
     present = set(names)
-    other = [name for name in names if _taken_apart(heading(name))[0] != name.strip()]
-    other = [name for name in other if isinstance(name, Heading)]
-    if other:
-        said.append(f"columns {' '.join(map(heading, other))} are read as {' '.join(other)}")
+    renamed = [name for name in names if _taken_apart(heading(name))[0] != name.strip()]
+    renamed = [name for name in renamed if isinstance(name, Heading)]
+    if renamed:
+        remarks.append(f"columns {' '.join(map(heading, renamed))} are read as {' '.join(renamed)}")
     for name in names:
         bare = _taken_apart(name)[0].upper()
         if bare != name and bare in present and (bare in SCENE or (results and bare in RESULTS)):
-            said.append(f"column {quoted(name)} is not read: there is {bare}, too")
-    return said
+            remarks.append(f"column {quoted(name)} is not read: there is {bare}, too")
+    return remarks
 
 
 def shortest(values: NDArray[Any]) -> list[str]:

@@ -14,8 +14,7 @@ from ..errors import UserError, quoted
 from ..names import SCENE, check_names
 from .rows import BLOCK_ROWS, Column, Heading, Reader, Rows
 
-MOST = 10_000_000
-"""Scenes of one sweep: a bound on time and room; twice as many take twice as much."""
+MAX_SCENES = 10_000_000  # of one sweep; time and memory grow with them
 
 
 class Range(NamedTuple):
@@ -54,11 +53,11 @@ def read_ranges(texts: Mapping[str, str], case: Case) -> dict[str, Range]:
         if not all(map(is_number, ends)):
             raise UserError(f"--sweep {name}: {quoted(text)} is not LOW:HIGH:COUNT, such as 0:1:51")
         low, high, count = double(ends[0]), double(ends[1]), int(parts[2])
-        if not (isfinite(low) and isfinite(high)) or not 1 <= count <= MOST:
+        if not (isfinite(low) and isfinite(high)) or not 1 <= count <= MAX_SCENES:
             raise UserError(f"--sweep {name}: {quoted(text)} is out of range")
         ranges[name] = Range(low, high, count)
-    if prod(r.steps for r in ranges.values()) > MOST:
-        raise UserError(f"--sweep: more than {MOST:,} scenes; expected fewer")
+    if prod(r.steps for r in ranges.values()) > MAX_SCENES:
+        raise UserError(f"--sweep: more than {MAX_SCENES:,} scenes; expected fewer")
     return ranges
 
 
@@ -81,8 +80,8 @@ def estimates(case: Case) -> dict[str, Callable[[str], str]]:
     def estimate_of(name: str) -> Callable[[str], str]:
         @lru_cache(maxsize=4096)
         def estimate(mass: str) -> str:
-            changed = case.replaced({f"M{name[1]}": mass}).at_nominal()
-            return changed.display_texts({name: changed.values[name]})[name]
+            new_case = case.replaced({f"M{name[1]}": mass}).at_nominal()
+            return new_case.display_texts({name: new_case.values[name]})[name]
 
         return estimate
 
@@ -113,10 +112,10 @@ def read_sweep(case: Case, ranges: Mapping[str, Range]) -> Iterator[Reader]:
     system = case.system
     values = case.at_nominal().values
     scene = {name: values[name] for name in SCENE if name in values}
-    headed = {n: Heading(n, system.heading(n), system.unit(n)) for n in scene}
-    texts: dict[str, str] = {headed[n]: t for n, t in case.display_texts(scene).items()}
+    headings = {n: Heading(n, system.heading(n), system.unit(n)) for n in scene}
+    texts: dict[str, str] = {headings[n]: t for n, t in case.display_texts(scene).items()}
     swept: dict[str, Range] = {}
     for n, run in ranges.items():
         low, high = (system.display(n, limit) for limit in run[:2])
-        swept[headed[n]] = Range(low, high, run.steps)
+        swept[headings[n]] = Range(low, high, run.steps)
     yield Reader(list(texts), _blocks(case, texts, swept), prod(r.steps for r in ranges.values()))

@@ -40,12 +40,12 @@ def open_reader(
     ``encoding``: of a text that is not UTF-8. ``results``: read columns of results, too, whatever
     the case of their headings.
     """
-    known = FORMATS[form]
-    if encoding is not None and not known.is_text:
+    row = FORMATS[form]
+    if encoding is not None and not row.is_text:
         raise UserError(f"--encoding is for text; {form} has its own")
-    if path == "-" and not known.is_text:
+    if path == "-" and not row.is_text:
         raise UserError(f"{form} cannot be read from standard input; expected a file")
-    with known.load().read(path, form, encoding, results) as reader:
+    with row.load().read(path, form, encoding, results) as reader:
         reader.remarks += heading_remarks(reader.names, results)
         yield reader
 
@@ -60,61 +60,69 @@ def open_writer(
     ``scene_too``; a column named like a result gives way to it. The file appears under its name
     when all is written.
     """
-    known = FORMATS[form]
-    if path == "-" and not known.is_text and (not known.pipes_out or sys.stdout.isatty()):
-        place = "a terminal" if known.pipes_out else "standard output"
-        raise UserError(f"{form} is not for {place}; expected -o FILE{known.endings[0]}")
-    dropped = {*results, *(() if scene_too else SCENE)}
-    kept = [name for name in source.names if name not in dropped]
-    headings = [heading(name) for name in (*kept, *results)]
-    with known.load().write(path, form, source.delimiter, headings) as put:
+    row = FORMATS[form]
+    if path == "-" and not row.is_text and (not row.pipes_out or sys.stdout.isatty()):
+        place = "a terminal" if row.pipes_out else "standard output"
+        raise UserError(f"{form} is not for {place}; expected -o FILE{row.endings[0]}")
+    omitted = {*results, *(() if scene_too else SCENE)}
+    source_names = [name for name in source.names if name not in omitted]
+    headings = [heading(name) for name in (*source_names, *results)]
+    with row.load().write(path, form, source.delimiter, headings) as put:
 
         def write(rows: Rows, solved: Mapping[str, NDArray[Any]]) -> None:
-            late = [name for name in rows.late if name not in dropped]
-            if late and not known.rows_vary:
+            late = [name for name in rows.late if name not in omitted]
+            if late and not row.rows_vary:
                 raise UserError(
                     f"line {rows.late[late[0]]} has the key {quoted(late[0])}, which no row before "
-                    f"it has, and {known.noun} begins with its columns; expected to write "
+                    f"it has, and {row.noun} begins with its columns; expected to write "
                     "JSON Lines, or the key in the first row too"
                 )
-            names = [*kept, *late]
-            if known.rows_vary:
+            names = [*source_names, *late]
+            if row.rows_vary:
                 names = [name for name in names if name in rows.columns]
-            column_of = rows.columns.__getitem__ if known.keeps_arrays else rows.one_per_row
-            passed = [(name, column_of(name)) for name in names]
-            put([*passed, *((name, solved[name]) for name in results)])
+            column_of = rows.columns.__getitem__ if row.keeps_arrays else rows.one_per_row
+            passed_columns = [(name, column_of(name)) for name in names]
+            put([*passed_columns, *((name, solved[name]) for name in results)])
 
         yield write
 
 
 def may_wait(path: str) -> bool:
-    """Whether reading or writing ``path`` can take for ever: standard input or output, a pipe. A
-    thread that waits there would keep a terminated command from ending."""
+    """Return whether reading or writing ``path`` can block: standard input or output, a pipe.
+
+    A thread that waits there would keep a terminated command from ending.
+    """
     return path == "-" or (os.path.exists(path) and not os.path.isfile(path))
 
 
 @contextmanager
-def ahead(blocks: Iterable[Any]) -> Iterator[Iterator[Any]]:
-    """The blocks, each read while the one before it is in use; what reading raises, they raise.
-    pyarrow and numpy let go of the interpreter's lock: two processors are of use."""
+def read_ahead(blocks: Iterable[Any]) -> Iterator[Iterator[Any]]:
+    """Yield the blocks, each read by a thread while the one before it is in use.
+
+    An error of reading is raised when its block is asked for. pyarrow and numpy release the GIL, so
+    that a second processor is of use.
+    """
     from concurrent.futures import ThreadPoolExecutor  # 8 ms, which a short table is spared
 
     iterator = iter(blocks)
     with ThreadPoolExecutor(1, "read") as pool:
 
-        def taken() -> Iterator[Any]:
+        def read_blocks() -> Iterator[Any]:
             waiting = pool.submit(next, iterator, None)
             while (block := waiting.result()) is not None:
                 waiting = pool.submit(next, iterator, None)
                 yield block
 
-        yield taken()
+        yield read_blocks()
 
 
 @contextmanager
-def behind(write: Callable[..., object]) -> Iterator[Callable[..., None]]:
-    """A function that has ``write`` done in order, later (more than one call that waits gains
-    nothing); what it raises is raised by the next call, or at the end."""
+def write_behind(write: Callable[..., object]) -> Iterator[Callable[..., None]]:
+    """Yield a function that queues one call of ``write`` for a thread.
+
+    Calls keep their order; more than one that waits gains nothing. An error of one is raised by the
+    next call, or at the end.
+    """
     from concurrent.futures import Future, ThreadPoolExecutor
 
     with ThreadPoolExecutor(1, "write") as pool:

@@ -85,7 +85,8 @@ BODIES: dict[str, Kinds] = {
 }
 """Name -> kinds of what the machine has as a whole, made by `kernels.py` of the tests. The first
 four are every scene there is; of the others all scenes of a call have to be; the hurried leave what
-STATUS takes the final velocities for undecided (`statusbits.undecided`), and the machine looks again."""
+STATUS takes the final velocities for undecided (`statusbits.undecided`), and the machine looks
+again."""
 HURRIED = {"friction": "friction_hurried", "pivot": "pivot_hurried"}
 _MOTION = ("VC", "VS", "XA", "YA", "XB", "YB", "KI", "MUP")
 _IMPULSES = ("PN", "PT", "PM", "MUP", "DVA", "DVB", "VC", "VS")
