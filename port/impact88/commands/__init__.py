@@ -34,7 +34,7 @@ ROWS = (
     Command("selfcheck", _PROGRAMS, "replay captures of a real Apple II Plus: pass or fail"),
     Command("witness", _PROGRAMS, "let your own Apple II Plus ROM judge this project"),
     Command("basic", _APPLE, "the ] prompt with the listing, or any Applesoft program"),
-    Command("desk", _PAGE, "a page in the browser, served by this machine to itself"),
+    Command("desk", _PAGE, "a local web interface, reachable from this computer only"),
     Command("colinear", _CHAPTER, "the direct colinear impact, Equations 1 to 12"),
     Command("barrier", _CHAPTER, "the impact of one vehicle on a rigid barrier"),
     Command("delta-v", _CHAPTER, "velocity changes from speeds, masses, energy loss: Equation 19"),

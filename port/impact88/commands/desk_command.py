@@ -1,7 +1,8 @@
-"""A page opens in your browser, served by this machine to itself; nothing leaves it, and nothing is
-kept when it ends. Paper: printouts judged as by impact88 verify, with the text to correct beside
-the scan. Collision: a scene as a form, answered while you type. Reconstruction: what is known,
-ticked. Control-C ends it. The address holds a random word: who does not have it gets nothing.
+"""A local web interface opens in your browser, reachable from this computer only; nothing leaves
+it, and nothing is kept when it ends. Paper: printouts judged as by impact88 verify, with the text
+to correct beside the scan. Collision: a scene as a form, answered while you type. Reconstruction:
+what is known, ticked. Control-C ends it. The address contains a random token; requests without it
+are refused.
 
 Needs pip install 'impact88[desk]'.
 

@@ -36,7 +36,7 @@ from .rows import (
     shortest,
 )
 
-# between these every version of pyarrow writes a number without an exponent, as Python does
+# between these every version of pyarrow writes numbers as Python does, without an exponent
 _MIN_WITHOUT_EXPONENT = 1e-3
 _MAX_WITHOUT_EXPONENT = 1e10
 BLOCK_BYTES = 1 << 22
