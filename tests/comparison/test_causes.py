@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 
 from impact88.comparison.compare import Comparison, compare
-from impact88.comparison.constants import KNOWN, fitted
+from impact88.comparison.constants import KNOWN, fit_constants
 from impact88.comparison.diagnosis import OTHER_ROWS
-from impact88.comparison.equations.edits import edits_on, variants
+from impact88.comparison.equations.edits import node_edits, variants
 from impact88.comparison.equations.evaluation import Run
 from impact88.comparison.equations.spelling import spellings
 from impact88.comparison.trials import Judge, Program
@@ -88,8 +88,8 @@ def test_a_constant_is_fitted(kind: str) -> None:
     theirs = {name: np.array([row[name] for row in answers], float) for name in FINAL_VELOCITIES}
     limit = {name: 1e-9 * (1 + np.abs(column)) for name, column in theirs.items()}
     judge = Judge(scene, theirs, limit, np.zeros(len(rows), bool))
-    judge = judge._replace(wrong=~judge.near(Program().results(scene)))
-    said = [program.says for program in fitted(judge)]
+    judge = judge._replace(wrong=~judge.matches(Program().results(scene)))
+    said = [program.description for program in fit_constants(judge)]
     assert said, "nothing fits"
     assert re.search(says, said[0]), said
 
@@ -132,11 +132,13 @@ def test_every_edit_of_every_model_can_be_computed() -> None:
     a model changes; of all else they are the spelling's own, which every search computes."""
     scene = {name: np.array([float(row[name]) for row in ROWS[:3]]) for name in SCENE}
     for model in variants():
-        spelling = spellings()[model.title].edited(model.sides)
+        spelling = spellings()[model.title].with_edits(model.sides)
         edits = [
-            edit for edit in edits_on(spelling) if SWEEP or edit.sides.keys() <= model.sides.keys()
+            edit
+            for edit in node_edits(spelling)
+            if SWEEP or edit.sides.keys() <= model.sides.keys()
         ]
         assert edits or not model.sides
         run = Run(spelling, scene)
         with np.errstate(all="ignore"):
-            run.distinct([edit.sides for edit in edits])
+            run.distinct_edits([edit.sides for edit in edits])

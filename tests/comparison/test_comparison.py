@@ -175,7 +175,7 @@ def test_a_mistake_is_named_in_other_tables(tmp_path, what: str) -> None:
 def test_two_mistakes_in_one_table_are_both_named(tmp_path, monkeypatch) -> None:
     """Rows from one program, then rows from another."""
     if not SWEEP:  # no pair explains them, and to find that out takes long
-        monkeypatch.setattr(diagnosis, "pairs", lambda *_: iter(()))
+        monkeypatch.setattr(diagnosis, "find_pairs", lambda *_: iter(()))
     one, other = MISTAKES["e squared"], MISTAKES["MA and MB"]
     half = len(ROWS) // 2
     first, second = answered(one[0]), answered(other[0])
@@ -355,7 +355,7 @@ def test_noise_is_given_no_cause(tmp_path) -> None:
 
 def test_point_masses_need_no_inertias_to_be_explained(tmp_path, monkeypatch) -> None:
     """The 1988 program cannot be run on such rows, to see whether the numbers are its own."""
-    monkeypatch.setattr(diagnosis.Diagnosis, "_by_search", lambda _: None)
+    monkeypatch.setattr(diagnosis.Diagnosis, "_explain_by_search", lambda _: None)
     light = {"M": "4", "DA": "0", "DB": "0", "IA": "", "IB": ""}
     done = compared(tmp_path, {"VAX": ["1", "2"]}, [{**scene, **light} for scene in ROWS[:2]])
     assert (done.differing, done.bad) == (2, [])

@@ -58,7 +58,7 @@ def converted(scene: Mapping[str, np.ndarray], system: str) -> dict[str, np.ndar
 
 def judged(scene: dict[str, np.ndarray], theirs: Mapping[str, np.ndarray]) -> agreement.Case:
     exact = {name: (column, np.zeros(column.size)) for name, column in theirs.items()}
-    return agreement.case_of(scene, exact)
+    return agreement.make_case(scene, exact)
 
 
 def populated() -> dict[str, list[dict[str, str]]]:
@@ -90,7 +90,7 @@ def test_no_correct_program_is_called_wrong(program: str) -> None:
             name: np.array([np.nan if row[name] is None else row[name] for row in answers], float)
             for name in answers[0]
         }
-        grades, _ = judged(columns(rows), theirs).judged()
+        grades, _ = judged(columns(rows), theirs).grade()
         wrong += (grades == DIFFER).any(0).sum()
         count += len(rows)
     assert wrong <= count // 800
@@ -121,9 +121,9 @@ def test_a_small_error_is_found_in_any_units(system: str) -> None:
     scene = converted(columns([dict(sample(1)), *rows]), system)
     ours = {name: solve(scene)[name] for name in FINAL_VELOCITIES}
     for name in FINAL_VELOCITIES:
-        grades, _ = judged(scene, {**ours, name: ours[name] * (1 + 1e-9)}).judged()
+        grades, _ = judged(scene, {**ours, name: ours[name] * (1 + 1e-9)}).grade()
         assert (grades == DIFFER).any(0).mean() > 0.9
-        grades, _ = judged(scene, {**ours, name: ours[name] * 1.03}).judged()
+        grades, _ = judged(scene, {**ours, name: ours[name] * 1.03}).grade()
         assert (grades == DIFFER).any(0).all()
 
 
@@ -133,7 +133,7 @@ def test_no_vector_takes_any_number() -> None:
     ours = solve(scene)
     for name in FINAL_VELOCITIES:
         case = judged(scene, {name: np.full(len(ours[name]), 123456.789)})
-        assert (case.judged()[0][0] == DIFFER)[np.isfinite(ours[name])].all()
+        assert (case.grade()[0][0] == DIFFER)[np.isfinite(ours[name])].all()
 
 
 def test_the_bound_is_one_of_the_exact_result() -> None:
@@ -173,7 +173,7 @@ def test_digits_that_tell_nothing_are_not_agreement() -> None:
     """1E5 for -13.3 is within the last digit written, and says nothing."""
     scene = columns([dict(sample(1))])
     theirs = {"VAX": (np.array([0.0]), np.array([1e5])), "VAY": (np.array([1e9]), np.array([0.0]))}
-    grades, _ = agreement.case_of(scene, theirs).judged()
+    grades, _ = agreement.make_case(scene, theirs).grade()
     assert grades[0, 0] == LOST
     assert grades[1, 0] == DIFFER
     sizes = scales(scene, {name: column.astype(float) for name, column in solve(scene).items()})

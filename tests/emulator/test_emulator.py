@@ -13,7 +13,7 @@ from impact88.emulator.machine import Machine
 from impact88.emulator.programfile import read_program
 from impact88.emulator.tokens import FIRST, KEYWORDS, LAST_STATEMENT, TOKENS
 from impact88.program import emulated
-from impact88.qualification.captured import left_behind, session
+from impact88.qualification.captured import memory_contents, session
 
 SCENES = captures.scenes()[:: 1 if "IMPACT88_CAPTURES" in os.environ else 3]
 """The port replays the others, and is compared with the emulator line by line."""
@@ -86,7 +86,7 @@ def test_captured_random_program(case):
 def test_captured_scene(case):
     run = emulated.run(case["scene"], dos=False)
     assert run.printout == case["printout"]
-    assert left_behind(run.reals, run.A) == left_behind(case["reals"], case["A"])
+    assert memory_contents(run.reals, run.A) == memory_contents(case["reals"], case["A"])
 
 
 def test_the_scene_types_what_the_captures_typed():
@@ -101,4 +101,4 @@ def test_a_changed_bit_in_a_capture_is_seen():
     run = emulated.run(case["scene"], dos=False)
     name, value = next((n, v) for n, v in case["reals"].items() if not v.startswith("00"))
     changed = {**case["reals"], name: f"{int(value, 16) ^ 1:010x}"}
-    assert left_behind(run.reals, run.A) != left_behind(changed, case["A"])
+    assert memory_contents(run.reals, run.A) != memory_contents(changed, case["A"])

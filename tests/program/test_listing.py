@@ -20,7 +20,7 @@ from impact88.program import arithmetics
 from impact88.program import linetable as lines
 from impact88.program.run import run
 from impact88.program.scene import Scene, sample
-from impact88.qualification.captured import left_behind
+from impact88.qualification.captured import memory_contents
 
 CASES = captures.scenes()
 OVERFLOWS = {"UX": 210, "VY": 230, "EM": 280, "TB": 290, "IA": 310, "M": 350}
@@ -51,7 +51,7 @@ def test_the_line_table_is_the_one_of_the_comments():
 def test_captured_run(case):
     result = run(case["scene"], dos=False)
     assert result.printout == case["printout"]
-    assert left_behind(result.reals, result.A) == left_behind(case["reals"], case["A"])
+    assert memory_contents(result.reals, result.A) == memory_contents(case["reals"], case["A"])
 
 
 @pytest.mark.captures
@@ -60,7 +60,7 @@ def test_a_changed_bit_is_seen():
     result = run(case["scene"], dos=False)
     name, value = next((n, v) for n, v in case["reals"].items() if not v.startswith("00"))
     changed = {**case["reals"], name: f"{int(value, 16) ^ 1:010x}"}
-    assert left_behind(result.reals, result.A) != left_behind(changed, case["A"])
+    assert memory_contents(result.reals, result.A) != memory_contents(changed, case["A"])
 
 
 @pytest.mark.parametrize(
@@ -202,13 +202,14 @@ import gzip, json, sys
 sys.path[:0] = sys.argv[1:2]
 import impact88
 assert impact88.__file__.startswith(sys.argv[1]) and impact88.__file__.endswith(".pyc")
-from impact88.qualification.captured import left_behind
+from impact88.qualification.captured import memory_contents
 from impact88.program.run import run
 cases = [json.loads(line) for line in gzip.open(sys.argv[2], "rt")]
 for case in cases[:: int(sys.argv[3])]:
     result = run(case["scene"], dos=False)
     assert result.printout == case["printout"], case["id"]
-    assert left_behind(result.reals, result.A) == left_behind(case["reals"], case["A"]), case["id"]
+    contents = memory_contents(result.reals, result.A)
+    assert contents == memory_contents(case["reals"], case["A"]), case["id"]
 seen = []
 run(cases[0]["scene"], after_line=lambda line, left: seen.append(line))
 assert len(seen) > 50

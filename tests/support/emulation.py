@@ -9,7 +9,7 @@ import captures
 from impact88.program import emulated
 from impact88.program.run import run as run_port
 from impact88.program.scene import Scene
-from impact88.qualification.captured import left_behind, stored
+from impact88.qualification.captured import memory_contents, normalize_zero
 
 NOT_FOLLOWED = {
     "fresh_list_451": "graphics",
@@ -54,8 +54,8 @@ def port_reports(scene: Scene) -> tuple[list[Report], Any]:
     reports: list[Report] = []
 
     def after(line: int, variables: Any) -> None:
-        reals = {name: stored(x.to_bytes().hex()) for name, x in variables.reals.items()}
-        data = variables.A and [stored(x.to_bytes().hex()) for x in variables.A.data]
+        reals = {name: normalize_zero(x.to_bytes().hex()) for name, x in variables.reals.items()}
+        data = variables.A and [normalize_zero(x.to_bytes().hex()) for x in variables.A.data]
         reports.append((line, reals, data))
 
     return reports, run_port(scene, dos=False, after_line=after)
@@ -69,8 +69,8 @@ def emulator_reports(scene: Scene, text: str | None = None) -> tuple[list[Report
 
     def after(line: int) -> None:
         a = machine.array("A")
-        reals = {name: stored(value) for name, value in machine.reals().items()}
-        reports.append((line, reals, a and [stored(value) for value in a["data"]]))
+        reals = {name: normalize_zero(value) for name, value in machine.reals().items()}
+        reports.append((line, reals, a and [normalize_zero(value) for value in a["data"]]))
 
     machine.machine.after_line = after
     return reports, emulated.run_machine(machine)
@@ -90,9 +90,9 @@ def first_difference(scene: Scene, text: str | None = None) -> Any:
             return one, other
     if len(mine) != len(theirs):
         return len(mine), len(theirs)
-    whole = (port_run._replace(reals={}, A=None), left_behind(port_run.reals, port_run.A))
+    whole = (port_run._replace(reals={}, A=None), memory_contents(port_run.reals, port_run.A))
     other = (
         emulator_run._replace(reals={}, A=None),
-        left_behind(emulator_run.reals, emulator_run.A),
+        memory_contents(emulator_run.reals, emulator_run.A),
     )
     return None if whole == other else (whole, other)

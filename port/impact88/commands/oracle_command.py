@@ -94,7 +94,7 @@ def main(args: options.Args) -> int:
     to = args.to or ("csv" if (args.output or "").lower().endswith(".csv") else "jsonl")
     if makes_vectors and to == "csv":
         kit_vectors = vectors.vectors(args.vectors, args.seed, False, args.only)
-        sys.stdout.writelines(kit.flat(kit_vectors))
+        sys.stdout.writelines(kit.csv_lines(kit_vectors))
         return 0
     batches: Iterable[Iterator[dict[str, Any]]]
     if args.validation:

@@ -30,7 +30,7 @@ from ..qualification.witness.apple import Image, read_image
 from ..qualification.witness.session import Session
 from . import options
 
-Job = Callable[[Session], hearing.Heard]
+Job = Callable[[Session], hearing.Outcome]
 
 MAX_CASES_SHOWN = 10  # cases with differences
 MAX_LINES_SHOWN = 24  # lines of each: an Apple's screen
@@ -101,7 +101,7 @@ def _jobs(args: options.Args) -> list[Job]:
     return jobs
 
 
-def _report(image: Image, heard: list[hearing.Heard], record: dict[str, Any]) -> Iterator[str]:
+def _report(image: Image, heard: list[hearing.Outcome], record: dict[str, Any]) -> Iterator[str]:
     wrong = [case for case in heard if case.differences]
     for case in wrong[:MAX_CASES_SHOWN]:
         lines = [line for difference in case.differences for line in difference.lines()]

@@ -1,6 +1,8 @@
-"""Comparing another implementation's results with this one's, row by row by the scene's condition
-(`agreement`), and saying why they differ (`diagnosis`). What could not be compared is counted, and
-why."""
+"""Compare another implementation's results with ours, row by row, and explain the differences.
+
+`agreement` grades each result by the scene's condition; `diagnosis` finds causes. Rows that could
+not be compared are counted by reason.
+"""
 
 import os
 import re
@@ -31,11 +33,10 @@ from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, Diagnosis, Unexplained
 from .trials import Program
 from .vectors import FAILURE
 
-WORST = 20
-"""Rows that are shown of those that disagree most, and of those not compared."""
-NOT_COMPARED = ("STATUS", "COND")
+MAX_ROWS_LISTED = 20  # of those that disagree most, and of those not compared for each reason
+NOT_COMPARED = ("STATUS", "COND")  # result columns
 CARRIED = ("id", "class", "label", "expect", "flags", "comment")
-"""Columns of test vectors that say which row it is."""
+"""Columns of test vectors that identify the row."""
 
 NO_RESULT = "no result on either side: theirs refuses, and so does the mathematics"
 NOTHING_HERE = "theirs gives numbers where the equations have no solution"
@@ -45,11 +46,12 @@ UNREADABLE = "the row could not be read"
 NO_DIGIT = "a number shares no digit with ours, where rounding or the digits written leave none"
 REASONS = (UNREADABLE, NO_RESULT, NOTHING_HERE, REFUSED, NO_DIGIT, NOTHING_THERE)
 HARMLESS = (NO_RESULT, REFUSED)
-"""Reasons that no program is to be blamed for."""
+"""Reasons that are no fault of the program."""
 
 
 class Row(NamedTuple):
-    """A row that disagrees: where it stands, its worst result, how far off, the likely cause."""
+    """A row that disagrees: its place in the table, its worst result, the relative difference, and
+    the likely cause."""
 
     row: int
     line: int
@@ -63,8 +65,8 @@ class Row(NamedTuple):
 
 @dataclass
 class Tally:
-    """For one result: how many agree in which way, how many are missing on their side, and the
-    largest relative difference."""
+    """Counts for one result: rows by grade of agreement, rows missing in the other program's
+    table, and the largest relative difference."""
 
     compared: int = 0
     double: int = 0
@@ -89,7 +91,7 @@ class Tally:
 
 @dataclass
 class Elimination:
-    """Rows that agree only as closely as elimination can: how many, and the worst of them."""
+    """Rows that agree only as closely as elimination can: their number, and the worst of them."""
 
     rows: int = 0
     worst_row: int = 0
@@ -99,7 +101,7 @@ class Elimination:
 
 @dataclass
 class Skipped:
-    """Rows not compared for one reason: how many, and the first of them."""
+    """Rows not compared for one reason: their number, and the first of them."""
 
     rows: int = 0
     first: list[int] = field(default_factory=list)
@@ -109,12 +111,13 @@ class Skipped:
 class Comparison:
     """The result of `compare`.
 
-    ``causes``: likely cause -> rows it explains; ``evidence`` and ``programs``: what bears out each
-    cause that is a program, and the program; ``unexplained``: by kind of scene, of the rows that
-    were looked into; ``differences``: every row that disagrees;
-    ``not_compared``: by reason; ``unknown``: columns that were not recognised -> the name that was
-    meant, or ""; ``place``: where in a workbook the table stands (sheet and row of its headings);
-    ``remarks``: how its headings were understood.
+    ``causes``: likely cause -> number of rows it explains; ``evidence`` and ``programs``: for each
+    cause that is a program, the rows that support it, and the program; ``equations``: number ->
+    rows in which it was checked, and in which it is violated; ``unexplained``: rows without a
+    cause, by kind of scene; ``differences``: every row that disagrees; ``not_compared``: by reason;
+    ``unknown``: columns not recognised -> the name that was probably meant, or ""; ``place``: the
+    table's sheet in a workbook and the row of its headings; ``remarks``: how its headings were
+    understood.
     """
 
     rows: int = 0
@@ -137,23 +140,26 @@ class Comparison:
     @property
     def worst(self) -> list[Row]:
         """The rows that disagree most."""
-        return sorted(self.differences, key=lambda row: -row.relative)[:WORST]
+        return sorted(self.differences, key=lambda row: -row.relative)[:MAX_ROWS_LISTED]
 
     @property
     def silent(self) -> list[str]:
-        """What would pass without a word: columns, rows and cells that were not compared."""
-        said = [f"column {name} not recognised" for name in self.unknown]
+        """Messages about columns, rows and cells that were not compared, which a count of
+        differences alone would pass over."""
+        messages = [f"column {name} not recognised" for name in self.unknown]
         for reason, skipped in self.not_compared.items():
             if reason not in HARMLESS:
-                said.append(f"{skipped.rows} rows not compared: {reason}")
+                messages.append(f"{skipped.rows} rows not compared: {reason}")
         for name, tally in self.tallies.items():
             if tally.missing:
-                said.append(f"{tally.missing} cells of {name} are empty where there is a result")
-        return said
+                messages.append(
+                    f"{tally.missing} cells of {name} are empty where there is a result"
+                )
+        return messages
 
     @property
     def summary(self) -> str:
-        """One line."""
+        """The counts and the commonest cause, in one line."""
         rows = f"{self.rows} row{'s' if self.rows != 1 else ''}"
         line = f"{rows}: {self.agreeing} agree, {self.differing} disagree"
         if skipped := sum(group.rows for group in self.not_compared.values()):
@@ -163,13 +169,15 @@ class Comparison:
         return line
 
     def as_json(self) -> dict[str, Any]:
-        """The object `impact88 compare --json` prints."""
+        """Return the object that `impact88 compare --json` prints."""
         equations = {
             number: {"checked": checked, "violated": violated}
             for number, (checked, violated) in self.equations.items()
         }
-        found = [{"row": row.row, "id": row.id, "cause": row.cause} for row in self.differences]
-        whole: dict[str, Any] = {
+        differences = [
+            {"row": row.row, "id": row.id, "cause": row.cause} for row in self.differences
+        ]
+        fields: dict[str, Any] = {
             "summary": self.summary,
             "rows": self.rows,
             "agreeing": self.agreeing,
@@ -180,7 +188,7 @@ class Comparison:
             "equations": equations,
             "unexplained": {name: kind._asdict() for name, kind in self.unexplained.items()},
             "worst": [row._asdict() for row in self.worst],
-            "differences": found,
+            "differences": differences,
             "elimination": vars(self.elimination),
             "not_compared": {name: vars(skipped) for name, skipped in self.not_compared.items()},
             "unknown_columns": self.unknown,
@@ -188,7 +196,7 @@ class Comparison:
             "table": self.place,
             "remarks": self.remarks,
         }
-        return {name: plain(value) for name, value in whole.items()}
+        return {name: plain(value) for name, value in fields.items()}
 
 
 @explains_arguments
@@ -213,13 +221,13 @@ def compare(
     values : mapping of str to str, optional
         Values, for all rows, of columns that the table lacks.
     rtol : float, optional
-        The difference that agrees, as a share of the scene's largest velocity, spin or energy, in
-        place of what rounding allows.
+        Relative tolerance, as a fraction of the scene's largest velocity, spin or energy. By
+        default, the error bound of rounding in each scene.
     encoding : str, optional
-        Of a CSV or of JSON Lines that are not UTF-8.
+        Encoding of a CSV or JSON Lines file that is not UTF-8.
     units : {"us", "chapter", "metric", "si"}, optional
-        The system of columns whose heading names no unit.
-    causes : bool
+        System of units of columns whose heading names no unit.
+    causes : bool, default True
         Look for causes where rows disagree.
 
     Returns
@@ -249,7 +257,7 @@ def compare(
         if text is not None and not isinstance(text, str):
             raise UserError(f"{name} is {quoted(text)}; expected a text")
     comparison = Comparison()
-    kept: list[Case] = []
+    cases: list[Case] = []
     with _opened(table, form, encoding) as (reader, where):
         comparison.place, comparison.remarks = reader.place, reader.remarks
         wanted = [name for name in reader.names if name in RESULTS and name not in NOT_COMPARED]
@@ -267,32 +275,41 @@ def compare(
             measured: TableUnits | None = None
             for rows in reader:
                 measured = measured or TableUnits(reader.names, units, rows, wanted, where)
-                enough = max(0, LOOKED_INTO - comparison.agreeing)
-                kept.append(_compare_block(rows, values, comparison, rtol, measured, enough))
+                max_agreeing = max(0, LOOKED_INTO - comparison.agreeing)
+                case = _compare_block(rows, values, comparison, rtol, measured, max_agreeing)
+                cases.append(case)
                 meter.update(rows.place - before)
                 before = rows.place
     if not any(tally.compared for tally in comparison.tallies.values()):
         raise UserError("no result could be compared", where)
     if causes and comparison.differing:
-        case = agreement.joined(kept)
-        right = np.flatnonzero(~case.wrong)[:LOOKED_INTO]
-        found = Diagnosis(case.part(np.concatenate([np.flatnonzero(case.wrong), right])))
-        rows_wrong = comparison.differences
-        comparison.equations, comparison.programs = found.equations, found.programs
-        comparison.unexplained = found.unexplained
-        comparison.evidence = [
-            cause._replace(parts={says: rows_wrong[at].row for says, at in cause.parts.items()})
-            for cause in found.evidence
-        ]
-        both = zip(rows_wrong, found.causes, strict=True)
-        comparison.differences = [row._replace(cause=cause) for row, cause in both]
-        comparison.causes.update(found.causes)
+        _add_causes(comparison, agreement.concatenate_cases(cases))
     return comparison
+
+
+def _add_causes(comparison: Comparison, case: Case) -> None:
+    """Look for the causes of the differences, and add them to the comparison."""
+    agreeing = np.flatnonzero(~case.wrong)[:LOOKED_INTO]
+    places = np.concatenate([np.flatnonzero(case.wrong), agreeing])
+    diagnosis = Diagnosis(case.select_rows(places))
+    differences = comparison.differences
+    comparison.equations = diagnosis.equations
+    comparison.programs = diagnosis.programs
+    comparison.unexplained = diagnosis.unexplained
+    comparison.evidence = [
+        cause._replace(parts={says: differences[at].row for says, at in cause.parts.items()})
+        for cause in diagnosis.evidence
+    ]
+    comparison.differences = [
+        row._replace(cause=cause) for row, cause in zip(differences, diagnosis.causes, strict=True)
+    ]
+    comparison.causes.update(diagnosis.causes)
 
 
 @contextmanager
 def _opened(table: Any, form: str | None, encoding: str | None) -> Iterator[tuple[Reader, str]]:
-    """Open a table's file or a frame, with what messages call it. Raises UserError."""
+    """Open a table's file or a data frame; yields the reader, and the table's name in messages.
+    Raises UserError."""
     if isinstance(table, str | os.PathLike):
         path = os.fspath(table)
         with open_reader(path, format_of(path, form), encoding, True) as reader:
@@ -307,16 +324,16 @@ def _opened(table: Any, form: str | None, encoding: str | None) -> Iterator[tupl
 
 
 def _meant(name: str) -> str:
-    """The result or scene column that a name stands for: in other letters, with something behind
-    it, or nearly."""
-    known = (*RESULTS, *SCENE)
-    whole = name.strip().upper()
-    for text in (whole, re.split(r"[^A-Z]", whole)[0]):
-        if text in known:
+    """Return the result or scene column that a name probably stands for, "" if none: the same in
+    upper case, before the first character that is no letter, or nearly the same."""
+    columns = (*RESULTS, *SCENE)
+    upper = name.strip().upper()
+    for text in (upper, re.split(r"[^A-Z]", upper)[0]):
+        if text in columns:
             return text
-    from difflib import get_close_matches  # rarely wanted
+    from difflib import get_close_matches  # rarely needed
 
-    return next(iter(get_close_matches(whole, known, 1, 0.75)), "")
+    return next(iter(get_close_matches(upper, columns, 1, 0.75)), "")
 
 
 @np.errstate(all="ignore")
@@ -326,20 +343,25 @@ def _compare_block(
     comparison: Comparison,
     rtol: float | None,
     units: TableUnits,
-    enough: int,
+    max_agreeing: int,
 ) -> Case:
-    """Count a block; the rows that may be looked into are returned, of those that agree no more
-    than are ``enough``."""
-    whole = {"M": DEFAULT_M, **values}
-    scene = {name: np.full(rows.count, double(whole[name])) for name in whole if name in SCENE}
+    """Compare a block of rows and add it to the comparison.
+
+    Returns the rows in which causes are looked for: those that disagree, and at most
+    ``max_agreeing`` that agree.
+    """
+    constants = {"M": DEFAULT_M, **values}
+    scene = {
+        name: np.full(rows.count, double(text)) for name, text in constants.items() if name in SCENE
+    }
     scene |= numbers(rows, units)
     theirs = {name: agreement.read_theirs(rows, name, units) for name in comparison.tallies}
     readable = np.ones(rows.count, bool)
     readable[[index for index, *_ in rows.bad]] = False
-    for given, _ in theirs.values():
-        given[~readable] = np.nan
-    case = agreement.case_of(scene, theirs, rtol)
-    grades, relative = case.judged()
+    for column, _ in theirs.values():
+        column[~readable] = np.nan
+    case = agreement.make_case(scene, theirs, rtol)
+    grades, relative = case.grade()
     wrong, lost = (grades == DIFFER).any(0), (grades == LOST).any(0)
     compared = ((grades > ABSENT) & (grades < LOST)).any(0) & (wrong | ~lost)
     solved = (grades > ABSENT).any(0) & np.isfinite(case.ours)
@@ -356,40 +378,42 @@ def _compare_block(
     conditions = (~readable, ~solvable & ~answered, ~solvable, refused, lost)
     reasons = np.select(conditions, REASONS[:-1], REASONS[-1])
     for reason in REASONS:
-        if found := (rows.first + np.flatnonzero(~compared & (reasons == reason))).tolist():
+        if row_numbers := (rows.first + np.flatnonzero(~compared & (reasons == reason))).tolist():
             skipped = comparison.not_compared.setdefault(reason, Skipped())
-            skipped.rows += len(found)
-            skipped.first = (skipped.first + found)[:WORST]
-    loosely = ~wrong & (grades == ELIMINATION)
-    by_row = np.where(loosely, relative, 0.0).max(0)
-    loose = comparison.elimination
-    loose.rows += int(loosely.any(0).sum())
-    if (largest := float(by_row.max(initial=0.0))) > loose.worst_relative:
-        worst = int(by_row.argmax())
-        loose.worst_row, loose.worst_relative = rows.first + worst, largest
-        loose.worst_condition = float(case.condition[worst])
-    off = np.where(grades == DIFFER, relative, -1.0).argmax(0)
-    comparison.differences += _differing(rows, np.flatnonzero(wrong), off, relative, case)
-    right = np.flatnonzero(compared & ~wrong)[:enough]
-    return case.part(np.concatenate([np.flatnonzero(wrong), right]))
+            skipped.rows += len(row_numbers)
+            skipped.first = (skipped.first + row_numbers)[:MAX_ROWS_LISTED]
+    by_elimination = ~wrong & (grades == ELIMINATION)
+    largest_by_row = np.where(by_elimination, relative, 0.0).max(0)
+    elimination = comparison.elimination
+    elimination.rows += int(by_elimination.any(0).sum())
+    if (largest := float(largest_by_row.max(initial=0.0))) > elimination.worst_relative:
+        worst = int(largest_by_row.argmax())
+        elimination.worst_row, elimination.worst_relative = rows.first + worst, largest
+        elimination.worst_condition = float(case.condition[worst])
+    worst_results = np.where(grades == DIFFER, relative, -1.0).argmax(0)
+    places = np.flatnonzero(wrong)
+    comparison.differences += _rows_of(rows, places, worst_results, relative, case)
+    agreeing = np.flatnonzero(compared & ~wrong)[:max_agreeing]
+    return case.select_rows(np.concatenate([places, agreeing]))
 
 
-def _differing(
+def _rows_of(
     rows: Rows, places: NDArray[np.intp], worst: Any, relative: Any, case: Case
 ) -> Iterator[Row]:
+    """Yield the rows that disagree, without a cause yet; ``worst``: index of each row's result."""
     ids = rows.one_per_row("id") if "id" in rows.columns else None
     written = [rows.one_per_row(name) for name in case.names]
     for index in places.tolist():
-        place = int(worst[index])
+        result = int(worst[index])
         yield Row(
-            rows.first + index,
-            rows.lines[index] if rows.lines else 0,
-            str(ids[index]) if ids is not None else "",
-            case.names[place],
-            str(written[place][index]),
-            float(case.ours[place, index]),
-            float(relative[place, index]),
-            UNKNOWN,
+            row=rows.first + index,
+            line=rows.lines[index] if rows.lines else 0,
+            id=str(ids[index]) if ids is not None else "",
+            result=case.names[result],
+            theirs=str(written[result][index]),
+            ours=float(case.ours[result, index]),
+            relative=float(relative[result, index]),
+            cause=UNKNOWN,
         )
 
 
@@ -403,12 +427,12 @@ def write_junit(path: str, name: str, comparison: Comparison, strict: bool) -> N
     suite.test(f"{comparison.agreeing} of {comparison.rows} rows agree")
     for row in comparison.differences:
         place = f"row {row.row}" + (f", id {row.id}" if row.id else "")
-        said = f"{row.result} {row.theirs}, here {row.ours:.12g}, off by {row.relative:.2g}"
-        suite.test(place, "failure", f"{said}; {row.cause}")
+        difference = f"{row.result} {row.theirs}, here {row.ours:.12g}, off by {row.relative:.2g}"
+        suite.test(place, "failure", f"{difference}; {row.cause}")
     for bad in comparison.bad:
         suite.test(f"row {bad.row}", "error", str(bad))
-    for said in comparison.silent:
-        suite.test(said, "failure" if strict else "skipped", said)
+    for message in comparison.silent:
+        suite.test(message, "failure" if strict else "skipped", message)
     for reason, skipped in comparison.not_compared.items():
         if reason in HARMLESS:
             suite.test(f"{skipped.rows} rows: {reason}", "skipped", reason)

@@ -1,8 +1,8 @@
-"""Conformance: whether a program answers the kit's vectors as it must, each of them, by name.
+"""Check the conformance of a program: its answer to every vector of the kit, by id.
 
-The vectors are those that the kit's seed makes; a kit that holds other ones is refused. Every id
-comes once, its inputs are the vector's own doubles, and what is asked of it is enforced: an answer
-where one is due, no number where there is none. Nothing that is missing is passed over.
+The vectors are those generated from the kit's seed; a kit with other vectors is refused. Every id
+must occur once, its inputs must be the vector's doubles, and its expectation is enforced: an answer
+where one is due, no number where there is none. Missing rows and cells count as failures.
 """
 
 import hashlib
@@ -40,8 +40,8 @@ from .vectors import ANSWER, EITHER, REFUSE, expectation, scenes
 NOT_COMPARED = ("STATUS", "COND")
 ABOUT = "KIT.json"
 SCENES = "vectors.csv"
-MOST_VECTORS = 10**7
-MOST_STRAYS = 1000  # rows of no vector that are listed
+MAX_VECTORS = 10**7
+MAX_STRAYS = 1000  # rows without a vector that are listed
 REASONS = {
     "missing": "no row has this id",
     "repeated": "the id comes more than once",
@@ -53,12 +53,13 @@ REASONS = {
     "no digit": "a number shares no digit with ours",
     "differs": "a number differs",
 }
-"""Why a vector fails, in the order in which it is said."""
+"""Reason for which a vector fails -> message."""
 _INFINITE = re.compile(r"[+-]?(inf|infinity)", re.IGNORECASE)
 
 
 class Vector(NamedTuple):
-    """A vector of the kit: what it is called, what is asked, the scene's texts."""
+    """A vector of the kit: id, class (``kind``), label, the expected behaviour, the scene's
+    texts."""
 
     id: str
     kind: str
@@ -68,8 +69,8 @@ class Vector(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """What became of a vector: ``reason`` is a key of `REASONS`, "" where it passes; ``row``: of
-    the table, from 1, 0 where it has none."""
+    """Verdict on a vector. ``reason``: key of `REASONS`, "" where it passes; ``row``: of the table,
+    counted from 1; 0 where it has none."""
 
     vector: Vector
     reason: str
@@ -79,7 +80,7 @@ class Verdict(NamedTuple):
 
 @dataclass
 class Kit:
-    """A kit: where it is, its vectors, and what it says of itself."""
+    """A kit: its place, its seed, the hash of its vectors, and the vectors."""
 
     place: str
     seed: int
@@ -97,21 +98,21 @@ class Conformance:
     table : str
         Name of the table of answers.
     sha256 : str
-        Of the table's bytes.
+        Hash of the table's bytes.
     results : list of str
-        The results that it has.
+        Result columns of the table.
     verdicts : list of Verdict
-        One a vector, in the kit's order.
+        One for each vector, in the kit's order.
     strays : list of str
-        Rows that are no vector's: unknown ids, and none.
+        Rows without a vector: an unknown id, or none.
     unknown : list of str
         Columns that were not recognised.
     refused : int
-        How many vectors that pass have no answer, as they may.
+        Number of vectors that pass without an answer, which their class permits.
     place : dict
-        Where in a workbook the table stands: its sheet, and the row of its headings.
+        The table's sheet in a workbook, and the row of its headings.
     remarks : list of str
-        How the table was read.
+        Remarks on how the table was read.
     """
 
     kit: Kit
@@ -132,29 +133,30 @@ class Conformance:
 
     @property
     def passed(self) -> int:
-        """How many vectors pass."""
+        """Number of vectors that pass."""
         return len(self.verdicts) - len(self.failures)
 
     @property
     def conforms(self) -> bool:
-        """Whether every vector passes, and no row is anything else."""
+        """True if every vector passes and there are no strays."""
         return not self.failures and not self.strays
 
     @property
     def badge(self) -> str:
-        """One line: which vectors, how many of them pass, and of which table."""
+        """Summary in one line: the vectors, how many pass, and the hashes of table and kit."""
         state = "conforms" if self.conforms else "does not conform"
         count = f"{self.passed} of {len(self.verdicts)}"
         which = f"impact88 vectors/{NUMBERS['vectors']} seed {self.kit.seed}"
         return f"{which}: {state}, {count} (table {self.sha256[:12]}, kit {self.kit.sha256[:12]})"
 
-    def counts(self, what: str) -> dict[str, dict[str, int]]:
-        """How many pass and fail by class ("kind") or by "label"."""
-        every: dict[str, dict[str, int]] = {}
+    def counts(self, attribute: str) -> dict[str, dict[str, int]]:
+        """Return the numbers that pass and fail by an attribute of the vectors: kind or label."""
+        groups: dict[str, dict[str, int]] = {}
         for verdict in self.verdicts:
-            group = every.setdefault(getattr(verdict.vector, what), {"passed": 0, "failed": 0})
+            key = getattr(verdict.vector, attribute)
+            group = groups.setdefault(key, {"passed": 0, "failed": 0})
             group["failed" if verdict.reason else "passed"] += 1
-        return every
+        return groups
 
     def as_json(self) -> dict[str, Any]:
         """Return the object that `impact88 compare --kit DIR --json` prints."""
@@ -199,7 +201,7 @@ class Conformance:
 
 
 def read_kit(place: str) -> Kit:
-    """Return the kit in a folder or an archive (.zip), its vectors made anew from its seed.
+    """Return the kit in a folder or an archive (.zip), with its vectors regenerated from its seed.
 
     Raises
     ------
@@ -213,24 +215,24 @@ def read_kit(place: str) -> Kit:
         says = f"is of {one_line(str(about.get('kit')), 40)}, and this version judges {mine}"
         raise UserError(f"{says}; expected a kit of impact88 oracle --kit", _in(place, ABOUT))
     seed, count = about.get("seed"), about.get("vectors")
-    if type(seed) is not int or type(count) is not int or not 0 < count <= MOST_VECTORS:
+    if type(seed) is not int or type(count) is not int or not 0 < count <= MAX_VECTORS:
         raise UserError("has no seed and count of vectors", _in(place, ABOUT))
     data = _kit_file(place, SCENES)
     digest = hashlib.sha256(data).hexdigest()
     hashes = about.get("sha256")
     if not isinstance(hashes, dict) or hashes.get(SCENES) != digest:
         raise UserError(f"is not the file that {ABOUT} has the hash of", _in(place, SCENES))
-    made = list(_vectors(count, seed))
+    expected = list(_vectors(count, seed))
     lines = data.decode("utf-8", "replace").splitlines()[1:]
     if len(lines) != count:
         raise UserError(f"has {len(lines)} vectors, not {count}", _in(place, SCENES))
-    for number, (line, vector) in enumerate(zip(lines, made, strict=True), 2):
+    for number, (line, vector) in enumerate(zip(lines, expected, strict=True), 2):
         head = [vector.id, vector.kind, vector.expect]
         cells = line.split(",")
         if cells[:3] != head or cells[4 : 4 + len(SCENE)] != list(vector.scene.values()):
             where = f"{_in(place, SCENES)}, line {number}"
             raise UserError(f"is not the vector {vector.id} of seed {seed}", where)
-    return Kit(place, seed, digest, made)
+    return Kit(place, seed, digest, expected)
 
 
 def _in(place: str, name: str) -> str:
@@ -265,7 +267,7 @@ def _parsed(place: str, data: bytes) -> dict[str, Any]:
 
 
 def _vectors(count: int, seed: int) -> Iterator[Vector]:
-    """Yield the vectors of a seed, with what is asked of a program by each."""
+    """Yield the vectors of a seed, with the behaviour expected for each."""
     rows = list(scenes(count, seed))
     for index, (kind, label, scene) in enumerate(rows):
         yield Vector(f"{seed}-{index:06d}", kind, label, expectation(kind, scene), scene)
@@ -273,7 +275,7 @@ def _vectors(count: int, seed: int) -> Iterator[Vector]:
 
 class _Cell(NamedTuple):
     """A result as written: its value (NaN where there is none), the unit of its last digit, and
-    what is wrong with it, "" if nothing."""
+    its ``fault``: malformed, infinite, or ""."""
 
     value: float
     unit: float
@@ -285,8 +287,8 @@ _EMPTY = _Cell(math.nan, 0.0, "")
 
 @dataclass
 class _Table:
-    """The rows of a table that are a vector's: place of the vector -> its rows in the table, and of
-    the first of them the inputs and the results."""
+    """Answers by place of the vector: the numbers of its ``rows`` in the table, and the inputs
+    (``scenes``) and results (``cells``) of the first of them."""
 
     rows: dict[int, list[int]] = field(default_factory=dict)
     scenes: dict[int, dict[str, float]] = field(default_factory=dict)
@@ -305,7 +307,7 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
     form : str
         Its format: csv, jsonl, npz, parquet, feather or xlsx.
     encoding : str, optional
-        Of a CSV or of JSON Lines that are not UTF-8.
+        Encoding of a CSV or JSON Lines file that is not UTF-8.
 
     Raises
     ------
@@ -332,14 +334,15 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
         units: TableUnits | None = None
         for rows in reader:
             units = units or TableUnits(reader.names, None, rows, results, where)
-            _take(rows, results, units, places, table, done)
+            _add_answers(rows, results, units, places, table, done)
     _judge(whole, results, table, done)
     return done
 
 
 @contextmanager
 def _on_disk(path: str) -> Iterator[str]:
-    """The table's file; standard input is written to one, so that its bytes have a hash."""
+    """Yield the path of the table's file; standard input is copied to a temporary one, so that its
+    bytes can be hashed."""
     if path != "-":
         yield path
         return
@@ -358,7 +361,7 @@ def _digest(path: str) -> str:
     return digest.hexdigest()
 
 
-def _take(
+def _add_answers(
     rows: Rows,
     results: Sequence[str],
     units: TableUnits,
@@ -366,7 +369,7 @@ def _take(
     table: _Table,
     done: Conformance,
 ) -> None:
-    """Keep a block's rows by vector."""
+    """Add a block's rows to ``table`` by vector; rows without a vector to the strays."""
     ids = [str(cell) for cell in rows.one_per_row("id")]
     written = {name: list(rows.one_per_row(name)) for name in results}
     scene = numbers(rows, units)
@@ -380,7 +383,7 @@ def _take(
         row = rows.first + index
         place = places.get(name)
         if place is None:
-            if len(done.strays) < MOST_STRAYS:
+            if len(done.strays) < MAX_STRAYS:
                 says = f"id {quoted(name)} is no vector's" if name else "no id"
                 done.strays.append(f"row {row}: {wrong.get(index, says)}")
             continue
@@ -396,7 +399,7 @@ def _take(
 
 
 def _judge(kit: Kit, results: Sequence[str], table: _Table, done: Conformance) -> None:
-    """Judge every vector."""
+    """Add a verdict on every vector."""
     count = len(kit.vectors)
     texts = [vector.scene for vector in kit.vectors]
     scene = {name: np.array([doubles_of(text)[name] for text in texts]) for name in SCENE}
@@ -407,14 +410,14 @@ def _judge(kit: Kit, results: Sequence[str], table: _Table, done: Conformance) -
             np.array([cell.value for cell in cells]),
             np.array([cell.unit for cell in cells]),
         )
-    case = agreement.case_of(scene, theirs)
-    grades, _ = case.judged()
+    case = agreement.make_case(scene, theirs)
+    grades, _ = case.grade()
     for place, vector in enumerate(kit.vectors):
         rows = table.rows.get(place, [])
         reason, detail = _verdict(vector, place, rows, table, case, grades)
         done.verdicts.append(Verdict(vector, reason, detail, rows[0] if rows else 0))
-        nothing = not np.isfinite(case.values[:, place]).any()
-        done.refused += int(nothing and not reason)
+        is_empty = not np.isfinite(case.values[:, place]).any()
+        done.refused += int(is_empty and not reason)
 
 
 def _verdict(
@@ -425,7 +428,7 @@ def _verdict(
     case: Case,
     grades: NDArray[np.intp],
 ) -> tuple[str, str]:
-    """Return why a vector fails, and what exactly; nothing where it passes."""
+    """Return the reason for which a vector fails and its details; two empty texts if it passes."""
     if not rows:
         return "missing", ""
     if len(rows) > 1:
@@ -440,17 +443,17 @@ def _verdict(
         says = "is infinite; a refusal leaves the cells empty"
         reason = "no answer" if vector.expect == ANSWER else "no solution"
         return reason, f"{' '.join(infinite)} {says}"
-    given, ours = np.isfinite(case.values[:, place]), np.isfinite(case.ours[:, place])
+    theirs, ours = np.isfinite(case.values[:, place]), np.isfinite(case.ours[:, place])
     names = np.array(case.names)
     if vector.expect == REFUSE:
-        return ("no solution", " ".join(names[given])) if given.any() else ("", "")
-    if vector.expect == EITHER and not given.any():
+        return ("no solution", " ".join(names[theirs])) if theirs.any() else ("", "")
+    if vector.expect == EITHER and not theirs.any():
         return "", ""
-    if (given & ~ours).any():
-        return "no solution", " ".join(names[given & ~ours])
-    if (ours & ~given).any():
-        reason = "partial" if given.any() else "no answer"
-        return reason, f"{' '.join(names[ours & ~given])} missing"
+    if (theirs & ~ours).any():
+        return "no solution", " ".join(names[theirs & ~ours])
+    if (ours & ~theirs).any():
+        reason = "partial" if theirs.any() else "no answer"
+        return reason, f"{' '.join(names[ours & ~theirs])} missing"
     for grade, reason in ((DIFFER, "differs"), (LOST, "no digit")):
         for at in np.flatnonzero(grades[:, place] == grade)[:1]:
             value, mine = case.values[at, place], case.ours[at, place]
@@ -459,12 +462,12 @@ def _verdict(
 
 
 def write_junit(path: str, done: Conformance) -> None:
-    """Write a JUnit report: a test a vector, its class the vector's; one for each row that is no
-    vector's. Raises UserError when the place cannot be written to."""
+    """Write a JUnit report: a test for each vector, with the vector's class, and one for each
+    stray row. Raises UserError when the place cannot be written to."""
     suite = Suite(f"impact88 compare --kit, {done.table}")
-    suite.tell("kit.sha256", done.kit.sha256)
-    suite.tell("table.sha256", done.sha256)
-    suite.tell("kit.vectors", f"vectors/{NUMBERS['vectors']} seed {done.kit.seed}")
+    suite.add_property("kit.sha256", done.kit.sha256)
+    suite.add_property("table.sha256", done.sha256)
+    suite.add_property("kit.vectors", f"vectors/{NUMBERS['vectors']} seed {done.kit.seed}")
     for verdict in done.verdicts:
         vector = verdict.vector
         message = f"{REASONS[verdict.reason]}; {verdict.detail}" if verdict.reason else ""

@@ -1,5 +1,7 @@
-"""A constant that is wrong by any amount: one free factor, or offset, on one input, statement or
-result, fitted to all rows and told as a number, with what it is near to."""
+"""Fit a constant that has a wrong value: one factor or offset, of one input, statement or result.
+
+It is fitted to all rows and reported as a number, with the known constant that it is near to.
+"""
 
 from collections.abc import Iterator
 from math import pi
@@ -8,20 +10,20 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..names import FINAL_VELOCITIES, SCENE
-from .equations.edits import RARE_CONVENTION, Edit
+from ..names import SCENE
+from .equations.edits import BOOLEAN_NAMES, RARE_CONVENTION, Edit
 from .equations.evaluation import Run
 from .equations.spelling import IMPULSES, LISTING, SHOWN, TYPED, Expression, Sides, spellings
-from .trials import BORNE_OUT, Judge, Program, run
+from .trials import MIN_FIT, Judge, Program, try_program
 
 Floats = NDArray[np.float64]
 
-FACTOR, OFFSET = "*", "+"
-_ITERATIONS = 12
-_NEARLY = 10.0
-"""Times what is allowed: a fit that is farther off is none; what is allowed is asked after it."""
-_STEP = 1e-6
-"""Relative step of the differences by which a constant is improved."""
+# operations by which a constant enters
+FACTOR = "*"
+OFFSET = "+"
+_MAX_ITERATIONS = 12
+_MAX_MISFIT = 10.0  # in units of the limits; a fit farther off is not run
+_STEP = 1e-6  # relative step of the difference quotients
 _GROUPS = (
     ("GA", "PA", "PB", "TA", "TB"),
     ("PA", "PB"),
@@ -36,7 +38,7 @@ _GROUPS = (
     ("VX", "VY"),
     ("WA", "WB"),
 )
-"""Inputs that have a constant in common."""
+"""Inputs that may share a constant."""
 _SHOWN_GROUPS = (
     ("VAX", "VAY", "VBX", "VBY"),
     ("VAX", "VBX"),
@@ -48,9 +50,9 @@ _SHOWN_GROUPS = (
     ("DVA", "DVB"),
     ("PN", "PT"),
 )
-"""Results that have."""
+"""Results that may share a constant."""
 _BOTH = ((("UX", "UY", "VX", "VY"), _SHOWN_GROUPS[0]), (("WA", "WB"), ("WAF", "WBF")))
-"""Inputs that are read with a factor, and results that are shown with its inverse."""
+"""Inputs that may be read with a factor, and the results then shown with its inverse."""
 KNOWN = {
     "1.467 for 22/15": 1.467 * 15 / 22,
     "1.4667 for 22/15": 1.4667 * 15 / 22,
@@ -89,142 +91,141 @@ KNOWN = {
     "1000": 1000.0,
     "the square root of 2": 2**0.5,
 }
-"""What a factor, or its inverse, may be near to."""
-_NEAR = 1e-6
+"""Description -> value of known factors; a constant may be near to one or to its inverse."""
+_FACTOR_RTOL = 1e-6
 
 
 class _Target(NamedTuple):
-    """What may have a constant: how it is called, the spelling's title, what is multiplied (or
-    added to) by it, and by its inverse."""
+    """A place for a constant. ``direct`` and ``inverse``: statements (key -> side) that the
+    constant, or its inverse, is multiplied by or added to."""
 
-    says: str
+    description: str
     title: str
-    how: str
-    by: dict[str, Expression]
+    operation: str
+    direct: dict[str, Expression]
     inverse: dict[str, Expression]
 
+    @property
+    def neutral(self) -> float:
+        """The constant that changes nothing."""
+        return 1.0 if self.operation == FACTOR else 0.0
+
     def sides(self, constant: float) -> dict[str, Sides]:
-        """The statements with a constant."""
-        other = 1 / constant if self.how == FACTOR else -constant
-        made: dict[str, Sides] = {}
-        for key, side in self.by.items():
-            made[key] = ((self.how, side, constant),)
+        """Return the statements with the constant."""
+        inverse = 1 / constant if self.operation == FACTOR else -constant
+        sides: dict[str, Sides] = {}
+        for key, side in self.direct.items():
+            sides[key] = ((self.operation, side, constant),)
         for key, side in self.inverse.items():
-            made[key] = ((self.how, side, other),)
-        return made
+            sides[key] = ((self.operation, side, inverse),)
+        return sides
 
 
-def _targets(title: str, names: Any) -> Iterator[_Target]:
-    """Yield all that may have a constant in a spelling."""
+def _targets(title: str, results: Any) -> Iterator[_Target]:
+    """Yield every place for a constant in a spelling: its own statements, and for the listing
+    inputs and shown ``results``, alone and in groups."""
     spelling = spellings()[title]
     if title == LISTING:
         inputs = [(name,) for name in SCENE if name != "M"]
-        for how in (FACTOR, OFFSET):
+        for operation in (FACTOR, OFFSET):
             for group in (*_GROUPS, *inputs):
-                if how == FACTOR or len(group) == 1:
-                    by: dict[str, Expression] = {name: f"{TYPED}{name}" for name in group}
-                    yield _Target(", ".join(group), "", how, by, {})
-            shown = [(name,) for name in names]
-            for group in (*_SHOWN_GROUPS, *shown):
-                if set(group) <= set(names):
-                    yield _Target(
-                        f"{', '.join(group)} as shown",
-                        "",
-                        how,
-                        {f"{SHOWN}{name}": name for name in group},
-                        {},
-                    )
-        for group, results in _BOTH:
-            if set(results) <= set(names):
+                if operation == FACTOR or len(group) == 1:
+                    sides: dict[str, Expression] = {name: f"{TYPED}{name}" for name in group}
+                    yield _Target(", ".join(group), "", operation, sides, {})
+            for group in (*_SHOWN_GROUPS, *((name,) for name in results)):
+                if set(group) <= set(results):
+                    sides = {f"{SHOWN}{name}": name for name in group}
+                    yield _Target(f"{', '.join(group)} as shown", "", operation, sides, {})
+        for group, shown in _BOTH:
+            if set(shown) <= set(results):
                 yield _Target(
                     f"{', '.join(group)}, and the results by its inverse",
                     "",
                     FACTOR,
                     {name: f"{TYPED}{name}" for name in group},
-                    {f"{SHOWN}{name}": name for name in results},
+                    {f"{SHOWN}{name}": name for name in shown},
                 )
     for index, line in enumerate(spelling.statements):
-        usable = line.target and line.target not in SCENE and not line.target.startswith(SHOWN)
-        is_truth = line.target in ("point", "pivot", "stick")
-        if usable and not is_truth and (index >= spelling.own or title == LISTING):
-            for how in (FACTOR, OFFSET):
+        is_computed = line.target not in ("", *SCENE) and not line.target.startswith(SHOWN)
+        is_own = index >= spelling.own_start or title == LISTING
+        if is_computed and is_own and line.target not in BOOLEAN_NAMES:
+            for operation in (FACTOR, OFFSET):
                 place = f"{line.place}, {line.target} ({line.subject})"
-                yield _Target(place, title, how, {line.target: line.sides[0]}, {})
+                yield _Target(place, title, operation, {line.target: line.sides[0]}, {})
 
 
 @np.errstate(all="ignore")
-def fitted(judge: Judge) -> list[Program]:
-    """Return programs with one free constant that explain nearly all rows of a small judge, those
-    with a known constant first."""
-    found: list[tuple[bool, bool, int, Program]] = []
+def fit_constants(judge: Judge) -> list[Program]:
+    """Return programs with one fitted constant that explain nearly all rows of a small judge; those
+    with a known constant come first."""
+    programs: list[tuple[bool, bool, int, Program]] = []
     for title in (LISTING, IMPULSES):
-        whole = Run(spellings()[title], judge.scene)
-        shown = [name for name in judge.theirs if SHOWN + name in whole.names]
-        if not shown:  # nothing that this spelling computes
+        run = Run(spellings()[title], judge.scene)
+        results = [name for name in judge.theirs if SHOWN + name in run.names]
+        if not results:
             continue
-        targets = list(_targets(title, shown))
-        constants = np.array([1.0 if target.how == FACTOR else 0.0 for target in targets])
-        for _ in range(_ITERATIONS):
-            constants = _improved(whole, targets, constants, judge)
-        # a program with each is run only where the fit comes near in as many rows
-        off = _off(whole, targets, constants, judge).reshape(len(targets), -1, judge.wrong.size)
-        near = (~(np.abs(off) > _NEARLY)).all(1) & judge.wrong
-        fits = near.sum(1) >= BORNE_OUT * judge.wrong.sum()
+        targets = list(_targets(title, results))
+        constants = np.array([target.neutral for target in targets])
+        for _ in range(_MAX_ITERATIONS):
+            constants = _gauss_newton_step(run, targets, constants, judge)
+        # a program takes longer to run: only where the fit is near in enough rows (NaN is near)
+        misfits = _misfits(run, targets, constants, judge)
+        misfits = misfits.reshape(len(targets), -1, judge.wrong.size)
+        near = (~(np.abs(misfits) > _MAX_MISFIT)).all(1) & judge.wrong
+        fits = near.sum(1) >= MIN_FIT * judge.wrong.sum()
         for target, constant, fit in zip(targets, constants.tolist(), fits, strict=True):
-            moved = constant != (1.0 if target.how == FACTOR else 0.0)
-            if fit and moved and np.isfinite(constant):
+            if fit and constant != target.neutral and np.isfinite(constant):
                 program = Program((_edit(target, constant),))
-                trial = run(program, judge)
-                if trial.stands and trial.explains >= BORNE_OUT * judge.wrong.sum():
-                    found.append((not _near(constant), target.how != FACTOR, len(found), program))
-    return [program for *_, program in sorted(found, key=lambda x: x[:3])]
+                trial = try_program(program, judge)
+                if trial.is_supported and trial.explained_count >= MIN_FIT * judge.wrong.sum():
+                    is_unknown, is_offset = not _nearest_known(constant), target.operation == OFFSET
+                    programs.append((is_unknown, is_offset, len(programs), program))
+    return [program for *_, program in sorted(programs, key=lambda x: x[:3])]
 
 
-def _improved(whole: Run, targets: list[_Target], constants: Floats, judge: Judge) -> Floats:
-    """Return the constants after a step of Gauss and Newton, each by itself."""
+def _gauss_newton_step(run: Run, targets: list[_Target], constants: Floats, judge: Judge) -> Floats:
+    """Return the constants after one step of Gauss-Newton, each fitted by itself."""
     steps = _STEP * np.maximum(np.abs(constants), 1e-3)
-    here = _off(whole, targets, constants, judge)
-    there = _off(whole, targets, constants + steps, judge)
-    slopes = (there - here) / steps[:, None]
-    usable = np.isfinite(slopes) & np.isfinite(here)
-    slopes, here = np.where(usable, slopes, 0.0), np.where(usable, here, 0.0)
-    # rows far off the rest, where the constant turns a branch, count less
-    size = np.abs(here)
+    misfits = _misfits(run, targets, constants, judge)
+    slopes = (_misfits(run, targets, constants + steps, judge) - misfits) / steps[:, None]
+    usable = np.isfinite(slopes) & np.isfinite(misfits)
+    slopes, misfits = np.where(usable, slopes, 0.0), np.where(usable, misfits, 0.0)
+    # outliers, in which the constant changes a branch, count less
+    size = np.abs(misfits)
     weights = 1 / np.maximum(size, np.median(size, 1, keepdims=True) + 1e-300)
-    change = (weights * slopes * here).sum(1) / (weights * slopes * slopes).sum(1)
-    made = constants - change
-    return np.where(np.isfinite(made) & (change != 0), made, constants)
+    change = (weights * slopes * misfits).sum(1) / (weights * slopes * slopes).sum(1)
+    improved = constants - change
+    return np.where(np.isfinite(improved) & (change != 0), improved, constants)
 
 
-def _off(whole: Run, targets: list[_Target], constants: Floats, judge: Judge) -> Floats:
-    """Return how far results are off, by their limits, (targets, results times rows)."""
-    several = [
+def _misfits(run: Run, targets: list[_Target], constants: Floats, judge: Judge) -> Floats:
+    """Return the misfits of results in units of their limits, (targets, results times rows)."""
+    edits = [
         target.sides(constant) for target, constant in zip(targets, constants.tolist(), strict=True)
     ]
-    made = {**whole.names, **whole.edited(several)}
+    names = {**run.names, **run.run_edits(edits)}
     shape = (len(targets), judge.wrong.size)
     parts = [
-        np.broadcast_to((made[SHOWN + name] - theirs) / judge.limit[name], shape)
+        np.broadcast_to((names[SHOWN + name] - theirs) / judge.limit[name], shape)
         for name, theirs in judge.theirs.items()
-        if SHOWN + name in made
+        if SHOWN + name in names
     ]
     return np.concatenate(parts, 1)
 
 
-def _near(constant: float) -> str:
-    """What a factor is near to; "" if nothing known."""
-    for says, value in KNOWN.items():
-        for factor, how in ((value, says), (1 / value, f"the inverse of {says}")):
-            if abs(constant / factor - 1) < _NEAR:
-                return how
+def _nearest_known(constant: float) -> str:
+    """Return the description of the known factor that a constant is near to, "" if none."""
+    for description, value in KNOWN.items():
+        if abs(constant / value - 1) < _FACTOR_RTOL:
+            return description
+        if abs(constant / (1 / value) - 1) < _FACTOR_RTOL:
+            return f"the inverse of {description}"
     return ""
 
 
 def _edit(target: _Target, constant: float) -> Edit:
-    sign = "×" if target.how == FACTOR else "+"
-    near = _near(constant) if target.how == FACTOR else ""
-    says = f"{target.says} {sign} {constant:.7g}" + (f": {near}" if near else "")
-    return Edit(target.title, target.sides(constant), RARE_CONVENTION, says)
-
-
-assert set(_BOTH[1][1]) < set(FINAL_VELOCITIES)
+    """Return the edit that puts a constant in, described with its value."""
+    sign = "×" if target.operation == FACTOR else "+"
+    known = _nearest_known(constant) if target.operation == FACTOR else ""
+    text = f"{target.description} {sign} {constant:.7g}" + (f": {known}" if known else "")
+    return Edit(target.title, target.sides(constant), RARE_CONVENTION, text)

@@ -1,10 +1,10 @@
-"""Why another program's results differ: one cause for a table where one explains it.
+"""Explain why another program's results differ: one cause for the whole table, where one fits.
 
-Looked for in turn: right numbers written otherwise; one mistake, then two (`trials`), and what they
-leave; rows of several programs; coarser arithmetic. Scenes as casework and its limits have them
-come first, then what those beyond (no mass, MU of another pivot, overflow) show besides. Rows that
-agree must bear a cause out, and the bits that it gets right must be many more than choosing among
-so many programs yields by chance.
+Tried in turn: correct numbers written differently (floored, cut off); one mistake, then two
+(`trials`), and further ones in the rows left over; rows from several programs; coarser arithmetic.
+Ordinary scenes and their limiting cases come first, then what only scenes beyond them show (no
+mass, another MU for the pivot, overflow). A cause must also fit the rows that agree, and must get
+right many more bits than a choice among so many programs does by chance.
 """
 
 import math
@@ -20,12 +20,22 @@ from ..mechanics.accuracy import errorbound
 from ..messages.progress import progress
 from ..names import FINAL_VELOCITIES, PIVOT, SCENE
 from ..program.vectorized import replay
-from .agreement import HALF, Bools, Case, Floats, violated
-from .constants import fitted
+from .agreement import HALF, Bools, Case, Floats, violated_equations
+from .constants import fit_constants
 from .equations.edits import RARE_CONVENTION, readings, variants
 from .equations.evaluation import Run
 from .equations.spelling import LISTING, spellings
-from .trials import BORNE_OUT, Found, Judge, Program, pairs, ranked, run, singles, spread
+from .trials import (
+    MIN_FIT,
+    Judge,
+    Program,
+    Trial,
+    find_pairs,
+    find_single_edits,
+    pick_evenly,
+    rank_programs,
+    try_program,
+)
 
 PRINTED = "digits of the 1988 printout, which floors"
 FLOORED = "floored to the digits given, not rounded"
@@ -34,51 +44,54 @@ APPLESOFT = "rounding in 32 bits, as Applesoft's"
 SINGLE = "rounding in single precision"
 OTHER_ROWS = "results of other rows: the order of the rows, or of the results, is another"
 UNKNOWN = "unexplained"
-IN_THESE_ROWS = ", in these rows only"
-"""Behind a cause that rows that agree refute."""
+IN_THESE_ROWS = ", in these rows only"  # appended to a cause that agreeing rows contradict
 
 # Doubled on ten tables (seven mistakes, a bug, two pairs), here and in `trials`: all sizes together
 # change no cause and take 1.4 times as long; all tolerances together change no cause.
-_WRONG_SAMPLE, _RIGHT_SAMPLE = 45, 30
-"""Rows that the search looks at: of ten kinds of scene some three each."""
-_DEEPER, _MOST = 2, 0.5
-"""Mistakes that are looked for in what others leave (pycrash has three in all), and the share of it
-that one explains; one row is enough for a known convention."""
-_SEVERAL, _EQUIVALENTS = 3, 4
-"""Causes that a table of several programs' rows may have; other ways to say one that are listed."""
-_NEEDED_ROWS, _TIES = 3, 4
-"""Rows that must have others' results, so that none does by chance; rows alike in one result that
-are tried."""
-_LARGE = 1e-5
-"""Differences below this share of their size are no pair of mistakes, but coarse arithmetic."""
-_NEED, _NEED_NAMED, _NEED_PAIR = 22.0, 10.0, 32.0
-"""Bits that a cause must get right: some ten more than one of 30,000 edits, one less than one of
-500 known alternatives, and as many as one pair of 30,000 edits in different equations."""
-_BITS_A_ROW = 40.0
-"""What one row counts for at most: more than any need, so that two rows of doubles are enough."""
-_CLOSE, _EXPLAINED = 1e-9, 0.1
-"""Results this close, as a share of their size, are the same program's: more than another way to
-compute them rounds, no more than 3.14159265 for pi does; and at most this share of a difference."""
-_WIDESPREAD, _TYPICAL = 0.5, 1 / 64
-"""The share of the rows that could show coarser arithmetic that it spoils; its error, as a share of
-the bound."""
+_MAX_DISAGREEING = 45  # rows that the search looks at: three each of some ten kinds of scene
+_MAX_AGREEING = 30
+_MAX_FURTHER_EDITS = 2  # looked for in the rows that others leave; pycrash has three in all
+_MIN_FRACTION_OF_REST = 0.5
+"""Fraction of the rows left over that a further edit must explain. One row is enough for a known
+convention."""
+_MAX_MIXED_PROGRAMS = 3  # causes of a table whose rows come from several programs
+_MAX_EQUIVALENTS = 4  # other programs with the same results that are listed
+_MIN_REORDERED_ROWS = 3  # so that no row has another's results by chance
+_MAX_TIES = 4  # rows with equal results that are tried
+_MIN_PAIR_DIFFERENCE = 1e-5
+"""Relative difference below which no pair of mistakes is looked for, only coarser arithmetic."""
+# bits that a cause must get right
+_MIN_BITS = 22.0  # ten more than choosing one of 30,000 edits takes
+_MIN_BITS_NAMED = 10.0  # one more than choosing one of 500 known alternatives
+_MIN_BITS_PAIR = 32.0  # as many as choosing a pair of 30,000 edits in different equations
+_MAX_BITS_PER_ROW = 40.0  # more than any of these, so that two rows of doubles are enough
+_SAME_RTOL = 1e-9
+"""Relative difference of results of the same program: more than the rounding of another way to
+compute them, no more than the effect of 3.14159265 for pi."""
+_MAX_FRACTION_LEFT = 0.1  # of a difference, in a row that is explained
+_MIN_AFFECTED = 0.5  # fraction of the rows able to show coarser arithmetic that it must affect
+_TYPICAL_FRACTION_OF_BOUND = 1 / 64  # error of coarser arithmetic, relative to its bound
 _WIDTHS = {SINGLE: (24, 27.0, 33.5), APPLESOFT: (32, 34.0, 40.0)}
-"""Cause -> bits of the arithmetic, and the range in which the bits measured against the bound lie:
-rounding spoils a few bits less than the bound allows."""
+"""Cause -> bits of the arithmetic, and lowest and highest number of bits measured against the
+bound: a typical error is some bits smaller than the bound."""
 _INVERTED = "MU's sign rule inverted"
-_ALIKE = (_INVERTED, "Γ half a turn on: the normal the other way round")
-"""Two mistakes that give the same final velocities."""
-_BRANCHES = (_INVERTED, "the critical ratio used in place of MU")
-"""Models that take the other branch, of friction's sign or of the pivot, in every row."""
+_SAME_VELOCITIES = (_INVERTED, "Γ half a turn on: the normal the other way round")
+"""Descriptions of two edits that give the same final velocities."""
+_OTHER_BRANCHES = (_INVERTED, "the critical ratio used in place of MU")
+"""Descriptions of the models that take the other branch, of friction's sign or of the pivot, in
+every row."""
 LOOKED_INTO = 4000
-"""Rows that agree, and must bear a cause out, and rows that the 1988 program is run on: they bound
-time and memory of large tables."""
+"""Maximum number of agreeing rows that a cause must fit, and of rows replayed by the 1988 program;
+bounds the time and memory for large tables."""
 
 
 class Cause(NamedTuple):
-    """A cause: what is said of it, how many of the rows that disagree it explains and of those that
-    agree it fits, of how many each, and what would do the same; where it is several mistakes, each,
-    and the first row that shows it."""
+    """A cause that is a program.
+
+    ``says``: its description; ``explains`` of the ``disagreeing`` rows, and the number of
+    ``agreeing`` ones that it ``fits``; ``equivalents``: descriptions of programs with the same
+    results; ``parts``: for a program with several mistakes, each with the first row that shows it.
+    """
 
     says: str
     explains: int
@@ -90,8 +103,8 @@ class Cause(NamedTuple):
 
 
 class Unexplained(NamedTuple):
-    """Rows of one kind of scene: how many there are, how many of them disagree without a cause, and
-    in how many of these each equation is violated."""
+    """Numbers of rows of one kind of scene: all, those that disagree without a cause, and of these
+    those that violate each equation."""
 
     rows: int
     unexplained: int
@@ -99,9 +112,12 @@ class Unexplained(NamedTuple):
 
 
 class Diagnosis:
-    """Why rows of a case disagree: ``causes`` of each that does, in order; the ``evidence`` for
-    each, and the ``programs``; ``equations``: in how many of the rows each could be checked, and is
-    violated; ``unexplained``: by kind of scene, where rows are left without a cause."""
+    """Causes of the differences in a case.
+
+    ``causes``: one for each row that disagrees, in order; ``evidence`` and ``programs``: of each
+    cause that is a program; ``equations``: number -> rows in which it was checked, and in which it
+    is violated; ``unexplained``: rows without a cause by kind of scene, {} where there are none.
+    """
 
     @np.errstate(all="ignore")
     def __init__(self, case: Case) -> None:
@@ -109,57 +125,62 @@ class Diagnosis:
         self._causes = np.where(wrong, UNKNOWN, "").astype(object)
         self.evidence: list[Cause] = []
         self.programs: list[Program] = []
-        violations = violated(case)
+        violations = violated_equations(case)
         self.equations = {
-            number: (int(wrong.sum()), int((off & wrong).sum()))
-            for number, off in violations.items()
+            number: (int(wrong.sum()), int((rows & wrong).sum()))
+            for number, rows in violations.items()
         }
-        # how far off the results are, and how near a program must come to explain them
+        self._measure_differences()
+        if not self._explain_by_digits():
+            self._explain_by_search()
+            if self._open.sum() > (1 - MIN_FIT) * wrong.sum():
+                self._explain_by_order()
+            if self._open.sum() > (1 - MIN_FIT) * wrong.sum():
+                self._explain_by_precision()
+        self.unexplained = self._count_unexplained(violations) if self._open.any() else {}
+        self._describe_unexplained(violations)
+
+    def _measure_differences(self) -> None:
+        """Set each row's largest relative difference beyond the digits written, the part of it that
+        digits and rounding leave open, and the limits within which a program explains a result."""
+        case, wrong = self._case, self._wrong
         off, sizes, written = np.abs(case.values - case.ours), case.sizes, case.units * HALF
         beyond = np.maximum(off - written, 0.0)
-        share = np.where(sizes > 0, beyond / sizes, beyond != 0)
-        share = np.where(np.isfinite(off), share, 0.0)
-        worst = share.argmax(0), np.arange(wrong.size)
-        self._off = share[worst]
+        relative = np.where(sizes > 0, beyond / sizes, beyond != 0)
+        relative = np.where(np.isfinite(off), relative, 0.0)
+        worst = relative.argmax(0), np.arange(wrong.size)
+        self._differences = relative[worst]
         digits = np.where(np.isfinite(off) & (sizes > 0), written / sizes, 0.0)
         loose = np.where(sizes > 0, case.loose / sizes, 0.0)
-        self._room = np.fmax(digits[worst], loose[worst])
-        near = np.fmin(np.fmax(4 * loose, _CLOSE), _EXPLAINED * self._off)
-        # another program rounds what it has, which may be larger than anything in the scene
+        self._resolutions = np.fmax(digits[worst], loose[worst])
+        near = np.fmin(np.fmax(4 * loose, _SAME_RTOL), _MAX_FRACTION_LEFT * self._differences)
+        # another program rounds its own numbers, which may be larger than anything in the scene
         theirs = np.where(wrong & np.isfinite(case.values), np.abs(case.values), 0.0)
         measure = np.fmax(sizes, theirs)
-        self._limits = np.where(wrong, near, np.fmax(loose, _CLOSE)) * measure + written
-        if not self._by_digits():
-            self._by_search()
-            if self._open.sum() > (1 - BORNE_OUT) * wrong.sum():
-                self._by_order()
-            if self._open.sum() > (1 - BORNE_OUT) * wrong.sum():
-                self._by_precision()
-        self.unexplained = self._by_kind(violations) if self._open.any() else {}
-        self._by_residuals(violations)
+        self._limits = np.where(wrong, near, np.fmax(loose, _SAME_RTOL)) * measure + written
 
-    def _by_kind(self, violations: Mapping[str, Bools]) -> dict[str, Unexplained]:
-        """Return what is left without a cause, by kind of scene; each row is of the first kind that
-        it fits."""
+    def _count_unexplained(self, violations: Mapping[str, Bools]) -> dict[str, Unexplained]:
+        """Return the rows without a cause by kind of scene; a row counts for the first kind that it
+        fits."""
         g = self._case.columns
         kinds = {
-            **_strata(g),
+            **_unusual_strata(g),
             "point masses": g["M"] == 4,
             "the pivot (MU = -10)": g["MU"] == PIVOT,
             "no friction (MU = 0)": g["MU"] == 0,
             "no moment (EM = 1)": g["EM"] == 1,
             "all other scenes": np.ones(self._wrong.size, bool),
         }
-        left = np.ones(self._wrong.size, bool)
-        counted: dict[str, Unexplained] = {}
+        remaining = np.ones(self._wrong.size, bool)
+        counts: dict[str, Unexplained] = {}
         for name, rows in kinds.items():
-            rows, left = rows & left, left & ~rows
+            rows, remaining = rows & remaining, remaining & ~rows
             open_rows = rows & self._open
             if rows.any():
-                violated = {n: int((off & open_rows).sum()) for n, off in violations.items()}
+                violated = {n: int((broken & open_rows).sum()) for n, broken in violations.items()}
                 violated = {number: count for number, count in violated.items() if count}
-                counted[name] = Unexplained(int(rows.sum()), int(open_rows.sum()), violated)
-        return counted
+                counts[name] = Unexplained(int(rows.sum()), int(open_rows.sum()), violated)
+        return counts
 
     @property
     def causes(self) -> list[str]:
@@ -168,206 +189,244 @@ class Diagnosis:
 
     @property
     def _open(self) -> Bools:
+        """The rows that disagree and have no cause yet."""
         return np.asarray(self._causes == UNKNOWN)
 
-    def _by_search(self) -> None:
+    def _explain_by_search(self) -> None:
+        """Look for programs that give the other program's results, and assign them to rows."""
         case = self._case
         theirs, limits, ours = (
             {n: row for n, row in zip(case.names, rows, strict=True) if n != "MUC"}
             for rows in (case.values, self._limits, case.ours)
         )
-        whole = Judge(case.columns, theirs, limits, self._wrong)
-        # rows that the equations as they stand do not give: near-singular, or decided by rounding
-        clear = whole._replace(theirs=ours).near(Program().results(case.columns))
-        # rows that are wrong in what no spelling computes
-        clear &= ~(whole.wrong & run(Program(), whole).rows)
-        strata = _strata(case.columns)
+        judge = Judge(case.columns, theirs, limits, self._wrong)
+        # leave out near-singular rows and others in which the spelling differs from our results
+        clear = judge._replace(theirs=ours).matches(Program().results(case.columns))
+        # leave out rows that are wrong only in results that no spelling computes
+        clear &= ~(judge.wrong & try_program(Program(), judge).rows)
+        strata = _unusual_strata(case.columns)
         usual = ~np.any([*strata.values()], axis=0)
-        bits, choices = self._bits(whole)
-        # casework and its limits first; then what only scenes beyond them show
-        if (whole.wrong & clear & usual).any():
-            self._by_sample(whole, clear & usual, clear, bits, choices)
+        bits, branch_rows = self._evidence_bits(judge)
+        if (judge.wrong & clear & usual).any():
+            self._explain_by_sample(judge, clear & usual, clear, bits, branch_rows)
         else:
-            self._by_sample(whole, clear, clear, bits, choices)
+            self._explain_by_sample(judge, clear, clear, bits, branch_rows)
         for name, rows in strata.items():
-            self._by_stratum(name, whole, clear & rows, bits, choices)
+            self._explain_stratum(name, judge, clear & rows, bits, branch_rows)
         if not self.programs:
-            self._by_constant(whole, clear & usual, bits)
+            self._explain_by_constant(judge, clear & usual, bits)
 
-    def _by_sample(
-        self, whole: Judge, searched: Bools, clear: Bools, bits: Floats, choices: Bools
+    def _explain_by_sample(
+        self, judge: Judge, searched: Bools, clear: Bools, bits: Floats, branch_rows: Bools
     ) -> None:
-        """Name what explains a table, looked for in a sample of the rows ``searched``."""
-        rows = _sample(whole, searched)
-        sample = whole.part(rows)
+        """Look for programs in a sample of the rows ``searched``; assign them to all that they
+        explain, if the evidence of the ``clear`` rows suffices."""
+        rows = _sample_rows(judge, searched)
+        sample = judge.select_rows(rows)
         if not sample.wrong.any():
             return
-        whole = whole.of(_telling(sample))
-        right = clear & ~whole.wrong
-        ours = Program().results(whole.scene)
-        amiss = [n for n in whole.theirs if (whole.wrong & ~whole.of([n]).near(ours)).any()]
-        coarse = bool(np.median(self._off[rows][sample.wrong]) > _LARGE)
-        for several in _explanations(sample, coarse):
-            for program, others, names in several:
-                part = whole.narrowed(names)
-                fits = run(program, part).rows
+        judge = judge.select_results(_independent_results(sample))
+        agreeing = clear & ~judge.wrong
+        ours = Program().results(judge.scene)
+        wrong_results = [
+            name
+            for name in judge.theirs
+            if (judge.wrong & ~judge.select_results([name]).matches(ours)).any()
+        ]
+        is_large = bool(np.median(self._differences[rows][sample.wrong]) > _MIN_PAIR_DIFFERENCE)
+        for explanation in _explanations(sample, is_large):
+            for program, equivalents, names in explanation:
+                part = judge.narrow_to(names)
+                fits = try_program(program, part).rows
                 explained = fits & part.wrong & self._open
-                if not _earned(program, explained & clear, bits, choices & clear):
+                if not _has_enough_bits(program, explained & clear, bits, branch_rows & clear):
                     continue
-                stands = (fits & right).sum() >= BORNE_OUT * right.sum()
-                says = self._in_both_words(program.says, whole) + ("" if stands else IN_THESE_ROWS)
-                # a result that is right needs no cause, whatever the program makes of it
-                if unexplained := [name for name in amiss if name not in names]:
+                says = self._name_both(program.description, judge) + _limitation(fits, agreeing)
+                # a result that is right needs no cause, though the program gives another
+                if unexplained := [name for name in wrong_results if name not in names]:
                     says += f"; {', '.join(unexplained)} {UNKNOWN}"
-                self._causes[explained] = says
-                same = [other.program.says for other in others[:_EQUIVALENTS]]
-                a, b, c, d = (int(x.sum()) for x in (explained, part.wrong, fits & right, right))
-                parts = _parts(program, part, explained)
-                self.evidence.append(Cause(says, a, b, c, d, same, parts))
-                self.programs.append(program)
+                same = [trial.program.description for trial in equivalents[:_MAX_EQUIVALENTS]]
+                parts = _first_rows_of_edits(program, part, explained)
+                rows_of = (explained, part.wrong, fits & agreeing, agreeing)
+                self._assign(program, says, rows_of, same, parts)
             if self.evidence:
                 return
 
-    def _in_both_words(self, says: str, judge: Judge) -> str:
-        """What is said of a program; where it is one of two that hardly a row tells apart, both.
-        The normal's direction matters to the rule of MU's sign alone, but for results along it."""
-        parts = says.split("; and ")
-        if not set(parts) & set(_ALIKE):
-            return says
-        edits = {edit.says: edit for edit in (*variants(), *readings()) if edit.says in _ALIKE}
-        inverted, turned = (Program((edits[name],)).results(judge.scene) for name in _ALIKE)
-        alike = judge._replace(theirs={n: inverted[n] for n in judge.theirs if n in inverted})
-        if (~alike.near(turned) & judge.wrong).sum() > (1 - BORNE_OUT) * judge.wrong.sum():
-            return says
-        return "; and ".join(", or ".join(_ALIKE) if part in _ALIKE else part for part in parts)
+    def _assign(
+        self,
+        program: Program,
+        says: str,
+        rows: tuple[Bools, Bools, Bools, Bools],
+        equivalents: list[str],
+        parts: dict[str, int],
+    ) -> None:
+        """Make a program the cause of the rows that it explains, and record the evidence.
 
-    def _by_constant(self, judge: Judge, clear: Bools, bits: Floats) -> None:
-        """Name a constant that is wrong: any number that explains nearly all rows."""
-        rows = _sample(judge, clear)
-        sample = judge.part(rows)
+        ``rows``: those it explains, those that disagree, those agreeing that it fits, those that
+        agree.
+        """
+        self._causes[rows[0]] = says
+        explains, disagreeing, fits, agreeing = (int(x.sum()) for x in rows)
+        cause = Cause(says, explains, disagreeing, fits, agreeing, equivalents, parts)
+        self.evidence.append(cause)
+        self.programs.append(program)
+
+    def _name_both(self, description: str, judge: Judge) -> str:
+        """Return a description, with both names of a mistake that is one of `_SAME_VELOCITIES` and
+        that the judge's results do not distinguish from the other.
+
+        Turning the normal round affects only the rule of MU's sign, and results along the normal.
+        """
+        parts = description.split("; and ")
+        if not set(parts) & set(_SAME_VELOCITIES):
+            return description
+        edits = {edit.description: edit for edit in (*variants(), *readings())}
+        inverted, turned = (
+            Program((edits[name],)).results(judge.scene) for name in _SAME_VELOCITIES
+        )
+        pair = judge._replace(theirs={n: inverted[n] for n in judge.theirs if n in inverted})
+        if (~pair.matches(turned) & judge.wrong).sum() > (1 - MIN_FIT) * judge.wrong.sum():
+            return description
+        both = ", or ".join(_SAME_VELOCITIES)
+        return "; and ".join(both if part in _SAME_VELOCITIES else part for part in parts)
+
+    def _explain_by_constant(self, judge: Judge, clear: Bools, bits: Floats) -> None:
+        """Look for a constant with a wrong value, any number, that explains nearly all rows."""
+        rows = _sample_rows(judge, clear)
+        sample = judge.select_rows(rows)
         if not sample.wrong.any():
             return
-        judge = judge.of(_telling(sample))
-        for program in fitted(judge.part(rows)):
-            fits = run(program, judge).rows
+        judge = judge.select_results(_independent_results(sample))
+        for program in fit_constants(judge.select_rows(rows)):
+            fits = try_program(program, judge).rows
             explained = fits & judge.wrong & self._open
-            # a number has been chosen, too
-            if bits[explained & clear].sum() < _NEED_NAMED + _BITS_A_ROW:
+            # the fitted number itself uses up the bits of one row
+            if bits[explained & clear].sum() < _MIN_BITS_NAMED + _MAX_BITS_PER_ROW:
                 continue
-            right = clear & ~judge.wrong
-            if (fits & right).sum() < BORNE_OUT * right.sum():
+            agreeing = clear & ~judge.wrong
+            if (fits & agreeing).sum() < MIN_FIT * agreeing.sum():
                 continue
-            self._causes[explained] = program.says
-            a, b, c, d = (int(x.sum()) for x in (explained, judge.wrong, fits & right, right))
-            self.evidence.append(Cause(program.says, a, b, c, d, [], {}))
-            self.programs.append(program)
+            rows_of = (explained, judge.wrong, fits & agreeing, agreeing)
+            self._assign(program, program.description, rows_of, [], {})
             return
 
-    def _by_order(self) -> bool:
-        """Name results that are ours of other rows; whether that is all."""
+    def _explain_by_order(self) -> None:
+        """Recognise results that are those of other rows."""
         case, wrong = self._case, self._wrong
         usable = np.isfinite(case.ours).any(1)
-        if wrong.sum() < _NEEDED_ROWS or not usable.any():
-            return False
+        if wrong.sum() < _MIN_REORDERED_ROWS or not usable.any():
+            return
+        # rows that may belong together are found by the first result, then compared in all
         first = int(np.argmax(usable))
         order = np.argsort(case.ours[first])
-        limits = case.units * HALF + np.fmax(case.loose, _CLOSE * case.sizes)
+        limits = case.units * HALF + np.fmax(case.loose, _SAME_RTOL * case.sizes)
         lowest = np.searchsorted(case.ours[first, order], case.values[first] - limits[first])
         matched = np.zeros(wrong.size, bool)
-        for step in range(_TIES):
+        for step in range(_MAX_TIES):
             place = order[np.minimum(lowest + step, wrong.size - 1)]
             near = np.abs(case.values - case.ours[:, place]) <= limits
             near |= ~(np.isfinite(case.values) & np.isfinite(case.ours[:, place]))
             matched |= near.all(0)
-        if (matched & wrong).sum() < BORNE_OUT * wrong.sum():
-            return False
-        self._causes[matched & wrong] = OTHER_ROWS
-        return True
+        if (matched & wrong).sum() >= MIN_FIT * wrong.sum():
+            self._causes[matched & wrong] = OTHER_ROWS
 
-    def _by_stratum(
-        self, name: str, judge: Judge, rows: Bools, bits: Floats, choices: Bools
+    def _explain_stratum(
+        self, name: str, judge: Judge, rows: Bools, bits: Floats, branch_rows: Bools
     ) -> None:
-        """Name what the rows of one kind that are still open show, alone or on top of what explains
-        the rest."""
-        left = judge.wrong & self._open & rows
-        if not left.any():
+        """Look for an edit that explains the rows of one kind without a cause, alone or on top of
+        the first program that explains the rest."""
+        unexplained = judge.wrong & self._open & rows
+        if not unexplained.any():
             return
-        places = np.concatenate([spread(np.flatnonzero(x), _WRONG_SAMPLE) for x in (left, rows)])
-        few = judge.part(np.unique(places))
-        few = few._replace(wrong=left[np.unique(places)])
+        places = np.unique(
+            np.concatenate(
+                [pick_evenly(np.flatnonzero(x), _MAX_DISAGREEING) for x in (unexplained, rows)]
+            )
+        )
+        few = judge.select_rows(places)._replace(wrong=unexplained[places])
         for base in (*self.programs[:1], Program()):
-            trial = next(iter(singles(few, few.wrong, base)), None)
-            if trial is None or not trial.explains >= _MOST * few.wrong.sum():
+            trial = next(iter(find_single_edits(few, few.wrong, base)), None)
+            if trial is None or trial.explained_count < _MIN_FRACTION_OF_REST * few.wrong.sum():
                 continue
             new = Program(trial.program.edits[len(base.edits) :])
-            fits = run(trial.program, judge).rows
-            explained = fits & left
-            if not _earned(new, explained, bits, choices & rows):
+            fits = try_program(trial.program, judge).rows
+            explained = fits & unexplained
+            if not _has_enough_bits(new, explained, bits, branch_rows & rows):
                 continue
-            right = rows & ~judge.wrong
-            stands = (fits & right).sum() >= BORNE_OUT * right.sum()
-            says = f"{name}: {trial.program.says}" + ("" if stands else IN_THESE_ROWS)
-            self._causes[explained] = says
-            a, b, c, d = (int(x.sum()) for x in (explained, left, fits & right, right))
-            parts = _parts(trial.program, judge, explained)
-            self.evidence.append(Cause(says, a, b, c, d, [], parts))
-            self.programs.append(trial.program)
+            agreeing = rows & ~judge.wrong
+            says = f"{name}: {trial.program.description}" + _limitation(fits, agreeing)
+            parts = _first_rows_of_edits(trial.program, judge, explained)
+            rows_of = (explained, unexplained, fits & agreeing, agreeing)
+            self._assign(trial.program, says, rows_of, [], parts)
             return
 
-    def _bits(self, judge: Judge) -> tuple[Floats, Bools]:
-        """What a cause that explains a row has got right by it; and the rows that show nothing but
-        which branch is taken, of friction's sign or of the pivot."""
-        bits = np.clip(np.log2(self._off / np.fmax(self._room, 1e-12)), 0.0, _BITS_A_ROW)
-        others = [Program((edit,)) for edit in variants() if edit.says in _BRANCHES]
-        choices = judge.wrong & np.any([run(other, judge).rows for other in others], axis=0)
-        if choices.any():
-            choices |= ~judge.wrong & (judge.scene["MU"] != 0) & (judge.scene["MU"] != -10)
-        return np.where(judge.wrong, bits, 0.0), choices
+    def _evidence_bits(self, judge: Judge) -> tuple[Floats, Bools]:
+        """Return the bits that a cause gets right by explaining each row, 0 where it agrees; and
+        the rows that show only which branch is taken, of friction's sign or of the pivot."""
+        ratios = self._differences / np.fmax(self._resolutions, 1e-12)
+        bits = np.clip(np.log2(ratios), 0.0, _MAX_BITS_PER_ROW)
+        models = [Program((edit,)) for edit in variants() if edit.description in _OTHER_BRANCHES]
+        fits = [try_program(model, judge).rows for model in models]
+        branch_rows = judge.wrong & np.any(fits, axis=0)
+        if branch_rows.any():
+            branch_rows |= ~judge.wrong & (judge.scene["MU"] != 0) & (judge.scene["MU"] != PIVOT)
+        return np.where(judge.wrong, bits, 0.0), branch_rows
 
-    def _by_digits(self) -> bool:
-        """Name the way right numbers are written, as the 1988 program does, floored or cut off,
-        where that is all; whether it is."""
+    def _explain_by_digits(self) -> bool:
+        """Recognise correct numbers written as the 1988 program prints them, floored or cut off.
+
+        Returns whether nearly all rows are explained so; if not, no cause is assigned.
+        """
         case, wrong = self._case, self._wrong
-        fits = {PRINTED: _as_printed(case, wrong)}
-        fits |= {FLOORED: _are_cut(case, np.floor), TRUNCATED: _are_cut(case, np.trunc)}
+        fits = {
+            PRINTED: _match_printout(case, wrong),
+            FLOORED: _match_cut(case, np.floor),
+            TRUNCATED: _match_cut(case, np.trunc),
+        }
         best = max(fits, key=lambda says: int((fits[says] & wrong).sum()))
-        if (fits[best] & wrong).sum() < BORNE_OUT * wrong.sum():
+        if (fits[best] & wrong).sum() < MIN_FIT * wrong.sum():
             return False
         for says in (best, *fits):
             self._causes[self._open & fits[says]] = says
         return True
 
-    def _by_precision(self) -> None:
-        """Name coarser arithmetic where it is the whole table's: most rows in which it could be
-        seen suffer from it, and hardly a row more than it explains."""
+    def _explain_by_precision(self) -> None:
+        """Recognise coarser arithmetic, if it affects the whole table: most of the rows in which it
+        would be visible, and few that it does not explain."""
         wrong, condition = self._wrong, self._case.condition
-        best = self._off / errorbound.relative_bounds(condition, 1.0)
-        bits = -math.log2(max(float(np.median(best[wrong])), 1e-300))
+        units = self._differences / errorbound.relative_bounds(condition, 1.0)
+        bits = -math.log2(max(float(np.median(units[wrong])), 1e-300))
         for says, (width, low, high) in _WIDTHS.items():
-            seen = errorbound.relative_bounds(condition, 2.0**-width) * _TYPICAL > self._room
-            explained = wrong & (self._off / self._case.per_unit <= 2.0**-width)
-            whole = explained.sum() >= BORNE_OUT * wrong.sum()
-            if low <= bits < high and whole and (wrong & seen).sum() >= _WIDESPREAD * seen.sum():
+            bounds = errorbound.relative_bounds(condition, 2.0**-width)
+            visible = bounds * _TYPICAL_FRACTION_OF_BOUND > self._resolutions
+            explained = wrong & (self._differences / self._case.per_unit <= 2.0**-width)
+            affected = (wrong & visible).sum() >= _MIN_AFFECTED * visible.sum()
+            if low <= bits < high and explained.sum() >= MIN_FIT * wrong.sum() and affected:
                 self._causes[explained & self._open] = says
                 return
 
-    def _by_residuals(self, violations: Mapping[str, Bools]) -> None:
-        """For rows without a cause: how closely they agree, or which equations they violate."""
+    def _describe_unexplained(self, violations: Mapping[str, Bools]) -> None:
+        """Say of each row without a cause how closely it agrees, or which equations it violates."""
         for row in np.flatnonzero(self._open).tolist():
-            broken = [number for number, off in violations.items() if off[row]]
+            broken = [number for number, rows in violations.items() if rows[row]]
             if broken and len(broken) < len(violations):
                 which = f"Equations {', '.join(broken[:-1])} and {broken[-1]} are"
                 which = which if len(broken) > 1 else f"Equation {broken[0]} is"
                 self._causes[row] = f"{UNKNOWN}, but only {which} violated"
-            elif 0 < self._off[row] < 1e-2:
-                digits = int(-math.log10(self._off[row]))
+            elif 0 < self._differences[row] < 1e-2:
+                digits = int(-math.log10(self._differences[row]))
                 self._causes[row] = f"{UNKNOWN}, but agrees to about {digits} digits"
             elif violations and not broken:
                 self._causes[row] = f"{UNKNOWN}; no equation is violated by the final velocities"
 
 
-def _strata(g: Mapping[str, Floats]) -> dict[str, Bools]:
-    """Return the rows beyond casework and its limits, by what is unusual about them."""
+def _limitation(fits: Bools, agreeing: Bools) -> str:
+    """Return `IN_THESE_ROWS` for a cause that does not fit nearly all agreeing rows, else ""."""
+    return "" if (fits & agreeing).sum() >= MIN_FIT * agreeing.sum() else IN_THESE_ROWS
+
+
+def _unusual_strata(g: Mapping[str, Floats]) -> dict[str, Bools]:
+    """Return the rows beyond ordinary scenes and their limiting cases, by what is unusual."""
     bodies = np.fmin(g["MA"], g["MB"]) <= 0
     bodies |= (g["M"] != 4) & (np.fmin(g["IA"], g["IB"]) <= 0)
     speeds = np.max([np.abs(g[name]) for name in ("UX", "UY", "VX", "VY")], 0)
@@ -380,19 +439,26 @@ def _strata(g: Mapping[str, Floats]) -> dict[str, Bools]:
     }
 
 
-def _are_cut(case: Case, cut: Callable[[Floats], Floats]) -> Bools:
-    """Rows whose results are ours cut at the last digit written (a hair of rounding allowed)."""
+def _match_cut(case: Case, cut: Callable[[Floats], Floats]) -> Bools:
+    """Return the rows whose results are ours cut at the last digit written.
+
+    ``cut``: `numpy.floor` or `numpy.trunc`. Rounding may move a number across the step: 1e-9.
+    """
     unit = np.where(case.units > 0, case.units, np.nan)
-    steps, near = case.values / unit, case.ours / unit
-    hair = 1e-9 * np.maximum(np.abs(near), 1.0)
-    fits = (np.abs(steps - cut(near - hair)) < 1e-6) | (np.abs(steps - cut(near + hair)) < 1e-6)
+    steps, ours = case.values / unit, case.ours / unit
+    tolerance = 1e-9 * np.maximum(np.abs(ours), 1.0)
+    below, above = cut(ours - tolerance), cut(ours + tolerance)
+    fits = (np.abs(steps - below) < 1e-6) | (np.abs(steps - above) < 1e-6)
     return np.asarray((fits | ~np.isfinite(case.values)).all(0))
 
 
-def _as_printed(case: Case, wrong: Bools) -> Bools:
-    """Rows that are the 1988 program's own digits; beyond so many, where those are, floored."""
+def _match_printout(case: Case, wrong: Bools) -> Bools:
+    """Return the rows whose results are the 1988 program's own digits.
+
+    At most `LOOKED_INTO` rows are replayed; where these fit, the others need only be floored.
+    """
     rows = np.zeros(wrong.size, bool)
-    places, more = np.split(np.flatnonzero(wrong), [LOOKED_INTO])
+    places, others = np.split(np.flatnonzero(wrong), [LOOKED_INTO])
     if not all(name in FIELDS for name in case.names):
         return rows
     columns = zip(SCENE, case.scene[:, places].tolist(), strict=False)
@@ -405,134 +471,159 @@ def _as_printed(case: Case, wrong: Bools) -> Bools:
         printed = replayed.printed(name).tolist()
         values = np.array([float(text) if text else np.nan for text in printed])
         rows[places] &= ~np.isfinite(column) | (values == column)
-    rows[more] = (rows[places].mean() >= BORNE_OUT) & _are_cut(case, np.floor)[more]
+    rows[others] = (rows[places].mean() >= MIN_FIT) & _match_cut(case, np.floor)[others]
     return rows
 
 
-def _parts(program: Program, judge: Judge, explained: Bools) -> dict[str, int]:
-    """What is wrong with a program in several ways: each, and the first row that shows it."""
-    parts = {}
+def _first_rows_of_edits(program: Program, judge: Judge, explained: Bools) -> dict[str, int]:
+    """Return each mistake of a program with several, and the first row that it takes to explain."""
+    first_rows = {}
     for edit in program.edits if len(program.edits) > 1 else ():
-        without = Program(tuple(other for other in program.edits if other is not edit))
-        shows = explained & ~run(without, judge).rows
-        if shows.any():
-            parts[edit.text] = int(np.argmax(shows))
-    return parts
+        without = Program(tuple(x for x in program.edits if x is not edit))
+        needs_edit = explained & ~try_program(without, judge).rows
+        if needs_edit.any():
+            first_rows[edit.text] = int(np.argmax(needs_edit))
+    return first_rows
 
 
-def _earned(program: Program, explained: Bools, bits: Floats, choices: Bools) -> bool:
-    """Whether a cause has got right the bits that it must: of a branch taken one a row, and which
-    rows they are of those that would show it."""
-    taken, possible = int((explained & choices).sum()), int(choices.sum())
-    right = float(bits[explained & ~choices].sum()) + taken
-    need = _NEED_NAMED if program.edits[0].rank <= RARE_CONVENTION else _NEED
-    need = _NEED_PAIR if len(program.edits) > 1 else need
-    return right + math.log2(math.comb(possible, taken)) >= need
+def _has_enough_bits(program: Program, explained: Bools, bits: Floats, branch_rows: Bools) -> bool:
+    """Return whether a cause gets right the bits that it must.
+
+    A branch taken counts for one bit a row, and the choice of its rows for log2 of the number of
+    choices: of k rows among n that would show it, log2(n over k).
+    """
+    count, possible = int((explained & branch_rows).sum()), int(branch_rows.sum())
+    earned = float(bits[explained & ~branch_rows].sum()) + count
+    needed = _MIN_BITS_NAMED if program.edits[0].rank <= RARE_CONVENTION else _MIN_BITS
+    needed = _MIN_BITS_PAIR if len(program.edits) > 1 else needed
+    return earned + math.log2(math.comb(possible, count)) >= needed
 
 
-def _sample(judge: Judge, clear: Bools) -> NDArray[np.intp]:
-    """Rows that disagree, then some that agree, by kind of scene: of every kind its first and last
-    at least."""
+def _sample_rows(judge: Judge, clear: Bools) -> NDArray[np.intp]:
+    """Return rows that disagree, then some that agree, evenly by kind of scene: the first and the
+    last of every kind at least."""
     g = judge.scene
-    kinds = (
-        *(g["MU"] == -10, g["M"] == 4, g["MU"] == 0, (g["WA"] == 0) & (g["WB"] == 0)),
-        *(Program().results(g)["MUP"] == g["MU"], (g["DA"] == 0) & (g["DB"] == 0)),
+    conditions = (
+        g["MU"] == PIVOT,
+        g["M"] == 4,
+        g["MU"] == 0,
+        (g["WA"] == 0) & (g["WB"] == 0),
+        Program().results(g)["MUP"] == g["MU"],
+        (g["DA"] == 0) & (g["DB"] == 0),
     )
-    kind = np.sum([of_it << place for place, of_it in enumerate(kinds)], 0)
+    kind = np.sum([condition << place for place, condition in enumerate(conditions)], 0)
     chosen = []
-    for rows, count in ((judge.wrong, _WRONG_SAMPLE), (~judge.wrong, _RIGHT_SAMPLE)):
+    for rows, count in ((judge.wrong, _MAX_DISAGREEING), (~judge.wrong, _MAX_AGREEING)):
         places = np.flatnonzero(rows & clear)
         places = places[np.argsort(kind[places], kind="stable")]
-        _, first, many = np.unique(kind[places], return_index=True, return_counts=True)
-        evenly = spread(np.arange(places.size), count)
-        chosen.append(places[np.unique(np.concatenate([evenly, first, first + many - 1]))])
+        _, first, counts = np.unique(kind[places], return_index=True, return_counts=True)
+        evenly = pick_evenly(np.arange(places.size), count)
+        chosen.append(places[np.unique(np.concatenate([evenly, first, first + counts - 1]))])
     return np.concatenate(chosen)
 
 
-_Chosen = tuple[Program, Sequence[Found], Sequence[str]]
+_Explanation = tuple[Program, Sequence[Trial], Sequence[str]]
 """A program that explains rows, others that explain the same, and the results that it gives."""
 
 
-def _explanations(judge: Judge, coarse: bool) -> Iterator[list[_Chosen]]:
-    """Lists of programs that together explain a table, the simplest first; ``coarse``: the rows are
-    so far off that two mistakes are looked for."""
+def _explanations(judge: Judge, is_large: bool) -> Iterator[list[_Explanation]]:
+    """Yield lists of programs that together explain a table, the simplest first.
+
+    ``is_large``: differences are so large that two mistakes are looked for.
+    """
     with progress(20, "look for the cause") as meter:
         meter.update(0)
-        groups = judge.of(_telling(judge)).groups()
-        first = judge.narrowed(groups[0])
-        alone = singles(first, first.wrong)
-        found = [trial for trial in alone if trial.whole]
-        stages = pairs(first, alone) if coarse else iter(())
-        while not found and (programs := next(stages, None)) is not None:
+        groups = judge.select_results(_independent_results(judge)).wrong_groups()
+        first = judge.narrow_to(groups[0])
+        singles = find_single_edits(first, first.wrong)
+        complete = [trial for trial in singles if trial.is_complete]
+        stages = find_pairs(first, singles) if is_large else iter(())
+        while not complete and (programs := next(stages, None)) is not None:
             meter.update(1)
-            found = [trial for trial in ranked(programs, first) if trial.whole]
-        if found:
+            complete = [trial for trial in rank_programs(programs, first) if trial.is_complete]
+        if complete:
             wrong = {name for group in groups[1:] for name in group}
-            rest = judge.narrowed([name for name in judge.theirs if name not in wrong])
-            yield [_completed(_deepened(found, rest), groups, judge)]
-        yield _several(alone, first, judge)
+            rest = judge.narrow_to([name for name in judge.theirs if name not in wrong])
+            yield [_extend_to_groups(_add_edits(complete, rest), groups, judge)]
+        yield _mixed_programs(singles, first, judge)
 
 
-def _completed(found: Sequence[Found], groups: Sequence[list[str]], judge: Judge) -> _Chosen:
-    """Of programs that explain the first group of results alike, the one that all bear out, or the
-    likeliest; with what explains the other groups besides."""
-    alike = [trial for trial in found if np.array_equal(trial.rows, found[0].rows)]
-    alike.sort(key=lambda trial: (-int(run(trial.program, judge).rows.sum()), trial.rank))
-    program = alike[0].program
+def _extend_to_groups(
+    trials: Sequence[Trial], groups: Sequence[list[str]], judge: Judge
+) -> _Explanation:
+    """Choose one of the programs that explain the first group of results, and extend it to others.
+
+    Of programs equal on that group, the one that fits most rows in all results is chosen, or the
+    likeliest. Where it does not explain another group, an edit is added that does.
+    """
+    equals = [trial for trial in trials if np.array_equal(trial.rows, trials[0].rows)]
+    equals.sort(key=lambda trial: (-int(try_program(trial.program, judge).rows.sum()), trial.rank))
+    program = equals[0].program
     wrong = [name for group in groups for name in group]
     names = [name for name in judge.theirs if name in groups[0] or name not in wrong]
-    for more in (wrong, *groups[1:3]) if len(groups) > 1 else ():
-        part = judge.narrowed([*names, *more])
-        trial = run(program, part)
-        if not trial.whole:
-            trial = next(iter(singles(part, part.wrong & ~trial.rows, program)), trial)
-        if trial.whole:
-            program, names = trial.program, [*names, *more]
+    for group in (wrong, *groups[1:3]) if len(groups) > 1 else ():
+        part = judge.narrow_to([*names, *group])
+        trial = try_program(program, part)
+        if not trial.is_complete:
+            trial = next(iter(find_single_edits(part, part.wrong & ~trial.rows, program)), trial)
+        if trial.is_complete:
+            program, names = trial.program, [*names, *group]
         if set(wrong) <= set(names):
             break
-    return program, alike[1:] if program is alike[0].program else (), names
+    return program, equals[1:] if program is equals[0].program else (), names
 
 
-def _deepened(found: Sequence[Found], judge: Judge) -> Sequence[Found]:
-    """With what the best leaves looked into: another mistake's, of a branch that few rows take."""
-    for _ in range(_DEEPER):
-        left = judge.wrong & ~found[0].rows
-        more = []
-        for trial in singles(judge, left, found[0].program) if left.any() else ():
-            explains = (trial.rows & left).sum()
-            known = trial.program.edits[-1].rank <= RARE_CONVENTION
-            if trial.whole and explains >= _MOST * left.sum() and (explains > 1 or known):
-                more.append(trial)
-        if not more:
+def _add_edits(trials: Sequence[Trial], judge: Judge) -> Sequence[Trial]:
+    """Add edits to the best program while they explain most of the rows that it leaves: mistakes in
+    a branch that few rows take. Returns ``trials`` themselves where there are none."""
+    for _ in range(_MAX_FURTHER_EDITS):
+        rest = judge.wrong & ~trials[0].rows
+        better = []
+        for trial in find_single_edits(judge, rest, trials[0].program) if rest.any() else ():
+            count = (trial.rows & rest).sum()
+            is_convention = trial.program.edits[-1].rank <= RARE_CONVENTION
+            is_enough = count >= _MIN_FRACTION_OF_REST * rest.sum()
+            if trial.is_complete and is_enough and (count > 1 or is_convention):
+                better.append(trial)
+        if not better:
             break
-        found = more
-    return found
+        trials = better
+    return trials
 
 
-def _telling(judge: Judge) -> list[str]:
-    """The final velocities, and what does not follow from theirs as it should: what does says
-    nothing more."""
+def _independent_results(judge: Judge) -> list[str]:
+    """Return the final velocities and the results that do not follow from theirs correctly.
+
+    A result computed correctly from wrong velocities adds no information.
+    """
     if not judge.has_velocities:
         return list(judge.theirs)
     theirs = {name: judge.theirs[name] for name in FINAL_VELOCITIES}
-    follows = Run(spellings()[LISTING], judge.scene, theirs).names
-    known = {*follows} - {*FINAL_VELOCITIES}
-    alone = {name: judge.of([name]).near(follows).mean() for name in judge.theirs if name in known}
-    return [name for name in judge.theirs if alone.get(name, 0.0) < BORNE_OUT]
+    implied = Run(spellings()[LISTING], judge.scene, theirs).names
+    fractions = {
+        name: judge.select_results([name]).matches(implied).mean()
+        for name in judge.theirs
+        if name in implied and name not in FINAL_VELOCITIES
+    }
+    return [name for name in judge.theirs if fractions.get(name, 0.0) < MIN_FIT]
 
 
-def _several(alone: Sequence[Found], part: Judge, judge: Judge) -> list[_Chosen]:
-    """Few programs that explain nearly all rows, each some, by some results or by all: a table of
-    several programs' rows."""
-    left = part.wrong.copy()
-    chosen: list[_Chosen] = []
-    while alone and left.any() and len(chosen) < _SEVERAL:
-        best = max(alone, key=lambda trial: ((trial.rows & left).sum(), -trial.rank))
-        new = best.rows & left
-        if not new.any():
+def _mixed_programs(singles: Sequence[Trial], part: Judge, judge: Judge) -> list[_Explanation]:
+    """Return a few programs that together explain nearly all rows of ``part``, each some of them;
+    none where they do not. The table then has rows of several programs.
+
+    A program gives all results of ``judge`` where its rows fit in all, else those of ``part``.
+    """
+    rest = part.wrong.copy()
+    chosen: list[_Explanation] = []
+    while singles and rest.any() and len(chosen) < _MAX_MIXED_PROGRAMS:
+        best = max(singles, key=lambda trial: ((trial.rows & rest).sum(), -trial.rank))
+        explained = best.rows & rest
+        if not explained.any():
             break
-        gives_all = (run(best.program, judge).rows & new).sum() >= BORNE_OUT * new.sum()
+        fits_all = (try_program(best.program, judge).rows & explained).sum()
+        gives_all = fits_all >= MIN_FIT * explained.sum()
         chosen.append((best.program, (), [*(judge if gives_all else part).theirs]))
-        left &= ~best.rows
-    explained = part.wrong.sum() - left.sum()
-    return chosen if explained >= BORNE_OUT * part.wrong.sum() else []
+        rest &= ~best.rows
+    count = part.wrong.sum() - rest.sum()
+    return chosen if count >= MIN_FIT * part.wrong.sum() else []

@@ -1,8 +1,9 @@
 """The oracle: everything this project knows about a scene, for checking other programs.
 
-What the 1988 program prints; each result as Applesoft has it (text, the five bytes stored, their
-exact decimal value), in doubles by the closed form, to 30 digits; its condition; how far rounding
-may take final velocities and spins, relative to `errorbound.scales`; what is unphysical about it.
+The 1988 program's printout; each result as Applesoft has it (text, the five bytes stored, their
+exact decimal value), in double precision by the closed form, and to 30 digits; the scene's
+condition; error bounds of final velocities and spins, relative to `errorbound.scales`; and
+everything unphysical about it.
 """
 
 import json
@@ -28,29 +29,31 @@ from ..program.run import run
 from ..program.scene import Scene
 from ..program.vectorized import replay
 
-BATCH = 256
-"""Scenes computed together: enough that reading and replaying them costs little a scene."""
+BATCH = 256  # scenes computed together, enough to make the overhead per scene small
 
-_NO_NUMBERS = ("COND", "STATUS")
+_NOT_ANSWERED = ("COND", "STATUS")  # given under names of their own
 _decode = json.JSONDecoder(parse_float=str, parse_int=str).decode
 
 
 def answer(
     lines: Iterable[tuple[int, str]], reference: bool = True, units: str | None = None
 ) -> Iterator[dict[str, Any]]:
-    """The answers to lines of JSON with their numbers; one that cannot be used gives
-    ``{"id", "error": {"line", "message"}}``. ``reference``: give 30 digits too; ``units``: of bare
-    numbers where a scene names none."""
-    asked: list[tuple[dict[str, Any], Scene | None]] = []
+    """Yield the answers to numbered lines of JSON.
+
+    A line that cannot be used gives ``{"id", "error": {"line", "message"}}``. ``reference``:
+    compute 30 digits, too; ``units``: system of units of bare numbers where a scene names none.
+    """
+    questions: list[tuple[dict[str, Any], Scene | None]] = []
     for line, text in lines:
         head: dict[str, Any] = {"id": None}
         try:
-            asked.append((head, _asked(text, head, units)))
+            questions.append((head, _parse_question(text, head, units)))
         except (UserError, ValueError, RecursionError) as error:
             message = str(error) or type(error).__name__
-            asked.append(({"id": head["id"], "error": {"line": line, "message": message}}, None))
-    answers = iter(oracle([scene for _, scene in asked if scene is not None], reference))
-    for whole, scene in asked:
+            failure = {"id": head["id"], "error": {"line": line, "message": message}}
+            questions.append((failure, None))
+    answers = iter(oracle([scene for _, scene in questions if scene is not None], reference))
+    for whole, scene in questions:
         if scene is not None:
             whole |= {"scene": {name: scene[name] for name in SCENE}, **next(answers)}
             if scene.units:
@@ -61,26 +64,26 @@ def answer(
 
 
 def published_tests(reference: bool = True) -> Iterator[dict[str, Any]]:
-    """Yield the answer to each published crash test: with its ``source``, and each number that was
-    ``reported`` there beside the one computed here."""
+    """Yield the answer for each published crash test, with its ``source``, and with each number
+    ``reported`` there and the one computed here."""
     checks: dict[str, list[dict[str, Any]]] = {}
     for check in validation.checks():
-        own = check._asdict()
-        name = f"{own.pop('source')} {own.pop('test')}"
-        checks.setdefault(name, []).append(own)
+        fields = check._asdict()
+        name = f"{fields.pop('source')} {fields.pop('test')}"
+        checks.setdefault(name, []).append(fields)
     tests = validation.program_scenes()
     answers = oracle(
         [_scene_of({"M": float(DEFAULT_M), **scene}) for scene in tests.values()], reference
     )
     for (name, scene), whole in zip(tests.items(), answers, strict=True):
-        given = _scene_of({"M": float(DEFAULT_M), **scene})
+        texts = _scene_of({"M": float(DEFAULT_M), **scene})
         source = next(text for kind, text in validation.SOURCES.items() if name.startswith(kind))
         head = {"id": name, "source": source, "reported": checks[name]}
-        yield with_schema("oracle", {**head, "scene": {n: given[n] for n in SCENE}, **whole})
+        yield with_schema("oracle", {**head, "scene": {n: texts[n] for n in SCENE}, **whole})
 
 
-def _asked(text: str, head: dict[str, Any], units: str | None) -> Scene:
-    """The scene of a line; ``id``, ``class`` and ``label`` as given go to ``head``."""
+def _parse_question(text: str, head: dict[str, Any], units: str | None) -> Scene:
+    """Return the scene of a line; put its ``id``, ``class`` and ``label`` into ``head``."""
     try:
         # ids keep their type; the scene's numbers keep their digits
         whole, digits = json.loads(text), _decode(text)
@@ -95,18 +98,19 @@ def _asked(text: str, head: dict[str, Any], units: str | None) -> Scene:
     for name, value in values.items():
         if not isinstance(value, str):
             raise ValueError(f"{name} is not a number; expected a number or its decimal text")
-    return _checked(Scene.from_mapping({"M": DEFAULT_M, **values}, "scene", units))
+    return _check_m(Scene.from_mapping({"M": DEFAULT_M, **values}, "scene", units))
 
 
 def _scene_of(values: Mapping[str, Any]) -> Scene:
-    """Return the scene of texts and numbers, these by their shortest digits. Raises UserError."""
+    """Return the scene of texts, or of numbers by their shortest digits. Raises UserError."""
     if isinstance(values, Scene):
         return values
     check_mapping(values)
     return Scene({n: v if isinstance(v, str) else shortest_text(n, v) for n, v in values.items()})
 
 
-def _checked(scene: Scene) -> Scene:
+def _check_m(scene: Scene) -> Scene:
+    """Return the scene. Raises UserError where M is neither 4 nor 6."""
     if doubles.double(scene["M"]) not in (4, 6):
         raise UserError(f"M is {scene['M']}; expected 6 or 4")
     return scene
@@ -116,7 +120,7 @@ def _checked(scene: Scene) -> Scene:
 def oracle(
     scenes: Mapping[str, Any] | Iterable[Mapping[str, Any]], reference: bool = True
 ) -> list[dict[str, Any]]:
-    """Return all that is known of each scene, to check another program with.
+    """Return everything known about each scene, for checking another program.
 
     Parameters
     ----------
@@ -146,7 +150,7 @@ def oracle(
     """
     if isinstance(scenes, Mapping) or not isinstance(scenes, Iterable):
         scenes = [scenes]
-    scenes = [_checked(_scene_of(scene)) for scene in scenes]
+    scenes = [_check_m(_scene_of(scene)) for scene in scenes]
     if not scenes:
         return []
     if reference:
@@ -154,8 +158,8 @@ def oracle(
 
     texts = {name: [scene[name] for scene in scenes] for name in SCENE}
     numbers = {name: doubles.doubles(column) for name, column in texts.items()}
-    found = solve(numbers)
-    solved = {name: column.tolist() for name, column in found.items()}
+    solution = solve(numbers)
+    solved = {name: column.tolist() for name, column in solution.items()}
     replayed = replay(texts)
     applesoft = {
         name: (
@@ -166,15 +170,15 @@ def oracle(
         for name in RESULTS
         if name in replayed.names
     }
-    double, listing = errorbound.oracle_bounds(scenes, numbers, found)
-    nothing = ([False] * len(scenes),) * 3
+    double, listing = errorbound.oracle_bounds(scenes, numbers, solution)
+    absent = ([False] * len(scenes),) * 3
     out = []
     for index, scene in enumerate(scenes):
         ported = run(scene)
         digits = thirty_digits(scene) if reference else {}
         results: dict[str, dict[str, Any]] = {}
-        for name in [name for name in RESULTS if name not in _NO_NUMBERS]:
-            present, text, real = (column[index] for column in applesoft.get(name, nothing))
+        for name in [name for name in RESULTS if name not in _NOT_ANSWERED]:
+            present, text, real = (column[index] for column in applesoft.get(name, absent))
             # line 690 prints LOSS without storing it
             stored = f"{real:010x}" if present and name != "LOSS" else None
             results[name] = {
@@ -197,5 +201,6 @@ def oracle(
 
 
 def exact_decimal(stored: str) -> str:
-    """The value of five stored bytes, which a double holds, as an exact decimal, all its digits."""
+    """Return the value of five stored bytes (hexadecimal) as an exact decimal with all its digits;
+    a double holds it exactly."""
     return f"{Decimal(float(Real.from_stored(stored))):f}"

@@ -1,11 +1,12 @@
-"""How far rounding may take another program's results from ours: a proved bound, row by row.
+"""Bound, row by row, the difference that rounding can make between a correct program's results and
+ours.
 
-A program is right as long as its results are no farther off than rounding may take a correct
-program, by any of the nine spellings of the mechanics: a running error bound of its statements, and
-of eliminating its equations with that row's own factors (`equations.roundoff`); along any axes, and
-with B's velocity from A's change, or A's from B's. No bound takes a norm over unlike quantities, so
-that none depends on the units of length and mass beyond what elimination does. What ours are off
-comes on top.
+A program counts as correct if its results lie within the rounding errors of any of the nine
+spellings of the mechanics: a running error bound of their statements, and of eliminating their
+equations with the row's own factors (`equations.roundoff`); along any axes, and with B's velocity
+computed from A's change, or A's from B's. No bound takes a norm over quantities of different kinds,
+so none depends on the units of length and mass any more than elimination does. The errors of our
+own results are added.
 """
 
 from collections.abc import Collection, Mapping
@@ -15,23 +16,30 @@ from numpy.typing import NDArray
 
 from ..mechanics.accuracy import errorbound
 from ..names import FINAL_VELOCITIES, PIVOT, RESULTS
-from .equations.evaluation import value
+from .equations.evaluation import evaluate
 from .equations.roundoff import Bounded, running_errors
-from .equations.spelling import A_IMPULSE, IMPULSES, LISTING, expression, spelling_of, spellings
+from .equations.spelling import (
+    A_IMPULSE,
+    IMPULSES,
+    LISTING,
+    parse_expression,
+    spelling_of,
+    spellings,
+)
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Columns = Mapping[str, Floats]
 
-_ELSEWHERE = {"VC": "gn", "VS": "gn"}
-"""Results that contact impulses have under another name, or a share of it (VS is E times VC)."""
+_SPELLED = {"VC": "gn", "VS": "gn"}
+"""Result -> name with the same bound in the contact impulses (VS is E times VC)."""
 _BY_MOMENTUM = {
     "VAX": ("UX", "MB/MA", "VBX", "VX"),
     "VAY": ("UY", "MB/MA", "VBY", "VY"),
     "VBX": ("VX", "MA/MB", "VAX", "UX"),
     "VBY": ("VY", "MA/MB", "VAY", "UY"),
 }
-"""A final velocity: the initial one, less a ratio of masses times the other's change."""
+"""Final velocity = initial one - ratio of masses * (other body's final - initial one)."""
 _VECTORS = (
     ("VAX", "VAY"),
     ("VBX", "VBY"),
@@ -40,77 +48,87 @@ _VECTORS = (
     ("PN", "PT"),
 )
 """Components of one vector: a program may have computed it along other axes."""
-_RATIO_ROUNDINGS = 4.0
-"""What a ratio of masses times a difference of velocities rounds, in units of each of these."""
+_RATIO_ROUNDINGS = (
+    4.0  # of a ratio of masses times a difference of velocities, in units of roundoff
+)
 
 
-def of_the_best(scene: Columns, ours: Columns, sizes: Columns) -> tuple[dict[str, Floats], Bools]:
-    """Return how far results by contact impulses in closed form may be from ours, name by name;
-    and the rows in which rounding decides which way the contact slides."""
+def best_error_bounds(
+    scene: Columns, ours: Columns, sizes: Columns
+) -> tuple[dict[str, Floats], Bools]:
+    """Return the largest differences from ours of results by contact impulses in closed form, by
+    name; and the rows in which rounding decides which way the contact slides."""
     errors = running_errors(spelling_of(IMPULSES), scene)
-    least = _by_name(scene, errors)
-    least = {name: 2 * bound + 2 * np.spacing(np.abs(ours[name])) for name, bound in least.items()}
-    # where a mass is infinite, this form of the equations has no number
-    shares = errorbound.relative_bounds(ours["COND"])
-    for name, bound in least.items():
-        least[name] = np.where(np.isnan(bound), shares * sizes[name], bound)
-    sliding, off = errors["gt"]
-    undecided = np.abs(sliding) <= off * errorbound.DOUBLE
-    return least, undecided & (scene["MU"] != PIVOT) & (scene["MU"] != 0)
+    bounds = {
+        name: 2 * bound + 2 * np.spacing(np.abs(ours[name]))
+        for name, bound in _result_bounds(scene, errors).items()
+    }
+    # this form of the equations gives NaN where a mass is infinite
+    relative = errorbound.relative_bounds(ours["COND"])
+    for name, bound in bounds.items():
+        bounds[name] = np.where(np.isnan(bound), relative * sizes[name], bound)
+    sliding, error = errors["gt"]
+    undecided = np.abs(sliding) <= error * errorbound.DOUBLE
+    return bounds, undecided & (scene["MU"] != PIVOT) & (scene["MU"] != 0)
 
 
-def of_any(
-    scene: Columns, ours: Columns, sizes: Columns, least: Columns, wanted: Collection[str]
+def largest_error_bounds(
+    scene: Columns, ours: Columns, sizes: Columns, best: Columns, wanted: Collection[str]
 ) -> dict[str, Floats]:
-    """Return how far results by the spelling that rounding takes farthest may be from ours, name by
-    name of those ``wanted``; ``least``: by the best, as `of_the_best` gives it."""
-    most = {name: bound / 2 for name, bound in least.items()}
+    """Return the largest differences from ours of results by any spelling, by name.
+
+    ``best``: the bounds of `best_error_bounds`; ``wanted``: results; the final velocities are
+    always among those returned.
+    """
+    bounds = {name: bound / 2 for name, bound in best.items()}
     for spelling in spellings().values():
         if spelling.title != IMPULSES:
-            own = _by_name(scene, running_errors(spelling, scene))
-            most = {name: np.fmax(bound, own[name]) for name, bound in most.items()}
+            own = _result_bounds(scene, running_errors(spelling, scene))
+            bounds = {name: np.fmax(bound, own[name]) for name, bound in bounds.items()}
     if "MUC" in wanted:
-        most["MUC"] = np.fmax(most["MUC"], _critical(scene))
+        bounds["MUC"] = np.fmax(bounds["MUC"], _critical_friction_bounds(scene))
     for pair in _VECTORS:
-        most |= dict.fromkeys(pair, np.fmax(*(most[name] for name in pair)))
-    moved = {name: most[name] + _by_momentum(name, scene, ours, most) for name in _BY_MOMENTUM}
-    most |= {name: np.fmax(most[name], bound) for name, bound in moved.items()}
-    # the other results, by what the velocities may be off altogether
-    given = {name: (ours[name], most[name] / errorbound.DOUBLE) for name in FINAL_VELOCITIES}
-    own = _by_name(scene, running_errors(spelling_of(IMPULSES), scene, given))
-    most = {name: np.fmax(bound, own[name]) for name, bound in most.items()}
-    if unsaid := [name for name in wanted if np.isnan(own[name]).all()]:
-        shares = [most[name] / sizes[name] for name in FINAL_VELOCITIES]
-        share = np.max(np.where(np.isfinite(shares), shares, 0.0), 0)
-        most |= {name: np.fmax(most[name], share * sizes[name]) for name in unsaid}
-    return {name: most[name] + least[name] / 2 for name in {*wanted, *FINAL_VELOCITIES}}
+        bounds |= dict.fromkeys(pair, np.fmax(*(bounds[name] for name in pair)))
+    by_momentum = {
+        name: bounds[name] + _momentum_bounds(name, scene, ours, bounds) for name in _BY_MOMENTUM
+    }
+    bounds |= {name: np.fmax(bounds[name], bound) for name, bound in by_momentum.items()}
+    # the other results follow from velocities with these errors
+    known = {name: (ours[name], bounds[name] / errorbound.DOUBLE) for name in FINAL_VELOCITIES}
+    own = _result_bounds(scene, running_errors(spelling_of(IMPULSES), scene, known))
+    bounds = {name: np.fmax(bound, own[name]) for name, bound in bounds.items()}
+    if missing := [name for name in wanted if np.isnan(own[name]).all()]:
+        relative = [bounds[name] / sizes[name] for name in FINAL_VELOCITIES]
+        largest = np.max(np.where(np.isfinite(relative), relative, 0.0), 0)
+        bounds |= {name: np.fmax(bounds[name], largest * sizes[name]) for name in missing}
+    return {name: bounds[name] + best[name] / 2 for name in {*wanted, *FINAL_VELOCITIES}}
 
 
-def _by_name(scene: Columns, errors: Mapping[str, Bounded]) -> dict[str, Floats]:
-    """Return the bounds of results; of those that a spelling does not compute, NaN."""
+def _result_bounds(scene: Columns, errors: Mapping[str, Bounded]) -> dict[str, Floats]:
+    """Return the error bounds of results, NaN for those that a spelling does not compute."""
     count = len(next(iter(scene.values())))
     bounds = {}
     for name in RESULTS:
-        _, off = errors.get(_ELSEWHERE.get(name, name), (0.0, np.nan))
-        bounds[name] = np.broadcast_to(off, (count,)) * errorbound.DOUBLE
+        _, error = errors.get(_SPELLED.get(name, name), (0.0, np.nan))
+        bounds[name] = np.broadcast_to(error, (count,)) * errorbound.DOUBLE
     return bounds
 
 
-def _critical(scene: Columns) -> Floats:
-    """Return what the critical friction is off by where the pivot's equations are eliminated."""
+def _critical_friction_bounds(scene: Columns) -> Floats:
+    """Return the error bound of PT/PN where the pivot's equations are solved by elimination."""
     pivots = {**scene, "MU": np.full_like(scene["MU"], PIVOT)}
     bounds = []
     for title in (LISTING, A_IMPULSE):
         errors = running_errors(spelling_of(title), pivots)
-        (normal, off_normal), (across, off_across) = errors["PN"], errors["PT"]
-        bounds.append((off_across + np.abs(across / normal) * off_normal) / np.abs(normal))
+        (pn, pn_error), (pt, pt_error) = errors["PN"], errors["PT"]
+        bounds.append((pt_error + np.abs(pt / pn) * pn_error) / np.abs(pn))
     return np.asarray(np.fmax(*bounds) * errorbound.DOUBLE)
 
 
-def _by_momentum(name: str, scene: Columns, ours: Columns, bounds: Columns) -> Floats:
-    """Return what the other body's change of velocity, times the ratio of masses, is off by."""
-    before, ratio, other, start = _BY_MOMENTUM[name]
-    times = np.asarray(value(expression(ratio), scene))
-    rounded = np.abs(ours[other]) + np.abs(scene[start])
-    whole = times * (bounds[other] + _RATIO_ROUNDINGS * errorbound.DOUBLE * rounded)
-    return whole + _RATIO_ROUNDINGS * errorbound.DOUBLE * np.abs(scene[before])
+def _momentum_bounds(name: str, scene: Columns, ours: Columns, bounds: Columns) -> Floats:
+    """Return the error bound of a final velocity computed from the other body's change."""
+    initial, ratio, other_final, other_initial = _BY_MOMENTUM[name]
+    masses = np.asarray(evaluate(parse_expression(ratio), scene))
+    size = np.abs(ours[other_final]) + np.abs(scene[other_initial])
+    unit = _RATIO_ROUNDINGS * errorbound.DOUBLE
+    return masses * (bounds[other_final] + unit * size) + unit * np.abs(scene[initial])

@@ -1,5 +1,6 @@
-"""Checking an installation: what the captures of the real machine say, replayed here and now, and
-counted: with hashes and versions the record a laboratory files when it qualifies an installation.
+"""Check an installation: repeat the captures of the real machine here, and count agreements.
+
+With hashes and versions, the result is the record a laboratory files to qualify an installation.
 """
 
 import time
@@ -19,8 +20,8 @@ GOLDEN_RUNS = {1: "run1", 2: "run2", 3: "table3"}
 
 
 class Check(NamedTuple):
-    """One check: its name, what it compared, how many of how many came out right, how long it took,
-    and the first that did not."""
+    """Result of one check: its name, what it ``compared``, the ``total`` number of cases and how
+    many were ``right``, the seconds it took, and the first case that was wrong, "" if none."""
 
     name: str
     compared: str
@@ -31,16 +32,16 @@ class Check(NamedTuple):
 
     @property
     def passed(self) -> bool:
-        """Whether there was something to compare and all of it came out right."""
+        """True if there was at least one case and all were right."""
         return self.right == self.total > 0
 
 
 Counted = Iterator[tuple[str, bool]]
-"""What was compared, and whether it was right."""
+"""Name of each case compared, and whether it was right."""
 
 
 def checks(folder: Any = None) -> Iterator[Check]:
-    """All checks, one after the other. ``folder``: a path to other captures than the packaged."""
+    """Run all checks, one after the other. ``folder``: path of captures other than the packaged."""
     golden = folder or captured.golden()
     for name, (compared, cases) in CHECKS.items():
         start = time.perf_counter()
@@ -57,7 +58,7 @@ def checks(folder: Any = None) -> Iterator[Check]:
 
 
 def record(checks: list[Check]) -> dict[str, Any]:
-    """The record as one object: versions, hashes, checks, verdict."""
+    """Return the record as one object: verdict, versions, hashes, checks."""
     return {
         "passed": all(check.passed for check in checks),
         "versions": frame.versions(),
@@ -68,8 +69,8 @@ def record(checks: list[Check]) -> dict[str, Any]:
 
 
 def _arithmetic(golden: Any) -> Counted:
-    for several in captured.calls(golden).values():
-        for row in several:
+    for rows in captured.calls(golden).values():
+        for row in rows:
             yield "\t".join(row), captured.call(*row[:4]) == captured.result(row[4])
 
 
@@ -77,8 +78,8 @@ def _port(golden: Any) -> Counted:
     for row in captured.rows(golden, captured.SCENES):
         ported = run(row["scene"], dos=False)
         same = ported.printout == row["printout"]
-        variables = captured.left_behind(ported.reals, ported.A)
-        yield row["id"], same and variables == captured.left_behind(row["reals"], row["A"])
+        variables = captured.memory_contents(ported.reals, ported.A)
+        yield row["id"], same and variables == captured.memory_contents(row["reals"], row["A"])
 
 
 def _replay(golden: Any) -> Counted:
@@ -106,7 +107,8 @@ def _published(golden: Any) -> Counted:
 
 
 def _published_elsewhere(golden: Any) -> Counted:
-    """The numbers of a magazine's table, which an Apple II printed, by its loop in the emulator."""
+    """Compare the numbers of a magazine's table, printed by an Apple II, with its program's output
+    in the emulator."""
     printouts = golden.joinpath("printouts")
     program, printed = (
         printouts.joinpath(f"compute1980.{ending}").read_bytes().decode()
@@ -115,13 +117,13 @@ def _published_elsewhere(golden: Any) -> Counted:
     _, displayed = captured.session(program)
     rows = zip_longest(printed.split(), displayed.split(), fillvalue="")
     for place, (expected, number) in enumerate(rows, 1):
-        # the magazine has zeros before the point and at the end, which Applesoft has not
+        # the magazine adds zeros before the point and at the end
         same = expected and number and Decimal(expected) == Decimal(number)
         yield f"number {place} of Table 5", bool(same)
 
 
 def _closed_form(golden: Any) -> Counted:
-    """Momentum, linear and angular (Equations 13, 14, 17), by the closed form in doubles."""
+    """Check that the closed form conserves linear and angular momentum (Equations 13, 14, 17)."""
     import numpy as np
 
     from ..comparison import agreement
@@ -131,7 +133,7 @@ def _closed_form(golden: Any) -> Counted:
     scenes = {name: np.array([float(row["scene"][name]) for row in rows]) for name in SCENE}
     solved = solve(scenes)
     finals = {name: (solved[name], np.zeros(len(rows))) for name in FINAL_VELOCITIES}
-    violated = agreement.violated(agreement.case_of(scenes, finals))
+    violated = agreement.violated_equations(agreement.make_case(scenes, finals))
     broken = violated["13"] | violated["14"] | violated["17"]
     usable = np.all([np.isfinite(solved[name]) for name in FINAL_VELOCITIES], axis=0)
     for index in np.flatnonzero(usable).tolist():
@@ -147,4 +149,4 @@ CHECKS: dict[str, tuple[str, Callable[[Any], Counted]]] = {
     "published 1980": ("numbers of COMPUTE!'s Table 5: every digit", _published_elsewhere),
     "closed form": ("scenes in double precision: momentum conserved", _closed_form),
 }
-"""Name of a check -> what it compares, and the check."""
+"""Name of a check -> what it compares, and its function."""

@@ -1,2 +1,2 @@
-"""The mechanics as data: statements in several spellings, everything that may be written wrong in
-one, and what the programs that come of it compute."""
+"""The mechanics as data: statements in several spellings, the mistakes that may be made in each,
+and what the resulting programs compute."""

@@ -1,6 +1,9 @@
-"""What may be wrong in a program: a statement written otherwise (``rules.txt``, at every node), the
-same throughout one equation, columns read or shown otherwise (``readings.txt``), and other models
-(``variants.txt``)."""
+"""Mistakes that a program may contain, as edits of a spelling.
+
+An edit rewrites one statement at one node (``rules.txt``), makes the same change throughout one
+equation, reads or shows a column differently (``readings.txt``), or is another model
+(``variants.txt``).
+"""
 
 import re
 from collections import Counter
@@ -9,7 +12,7 @@ from functools import cache
 from typing import NamedTuple
 
 from ...names import SCENE
-from .evaluation import BESIDE
+from .evaluation import NEIGHBOUR_SHIFTS
 from .spelling import (
     COMPARISONS,
     IMPULSES,
@@ -21,264 +24,304 @@ from .spelling import (
     Kin,
     Sides,
     Spelling,
-    expression,
+    format_statement,
     nodes,
     operands,
-    renamed,
+    parse_expression,
+    read_table,
     spellings,
-    table,
-    written,
+    substitute,
 )
 
-MODEL, CONVENTION, RARE_CONVENTION, LIKELY, LESS, RARE = range(6)
-"""How likely an edit is: of those that compute the same, the likeliest is named."""
-CONDITIONS = ("point", "pivot", "stick")
-"""Names that are true or false."""
-TRUTHS = (*COMPARISONS, "either")
-"""Operations that are: they have no sign and no size."""
-_SECTIONS = {"[likely]": LIKELY, "[less likely]": LESS, "[rare]": RARE}
+# Rank of an edit, the likeliest first: of edits that compute the same, the likeliest is reported.
+MODEL = 0
+CONVENTION = 1
+RARE_CONVENTION = 2
+LIKELY = 3
+LESS_LIKELY = 4
+RARE = 5
+
+BOOLEAN_NAMES = ("point", "pivot", "stick")
+BOOLEAN_OPERATIONS = (*COMPARISONS, "either")  # no sign or size to change
+_SECTIONS = {"[likely]": LIKELY, "[less likely]": LESS_LIKELY, "[rare]": RARE}
 
 
 class Edit(NamedTuple):
-    """Statements written otherwise: key -> sides; how likely that is; what is said of it where the
-    statements do not say enough. ``title``: the spelling that it is of, "" if of any."""
+    """Statements rewritten: key -> new sides.
+
+    ``title``: the spelling it belongs to, "" if any; ``rank``: how likely it is (the lower, the
+    likelier); ``description``: shown in place of the statements, where they do not say enough.
+    """
 
     title: str
     sides: Mapping[str, Sides]
     rank: int = LIKELY
-    says: str = ""
+    description: str = ""
 
     @property
-    def shows(self) -> bool:
-        """Whether results are shown otherwise."""
+    def changes_output(self) -> bool:
+        """Whether results are shown differently, not just computed."""
         return any(key.startswith(SHOWN) for key in self.sides)
 
     @property
     def text(self) -> str:
-        """Place, what is written, what should be, and what it is about."""
-        if self.says:
-            return self.says
-        said = []
-        right = spellings()[self.title]
+        """The description, or for each statement its place, what is written there, what should be,
+        and its subject."""
+        if self.description:
+            return self.description
+        parts = []
+        spelling = spellings()[self.title]
         for key, sides in self.sides.items():
-            statement = right.statements[right.where[key]]
-            now = written(statement.target, sides)
-            should = statement.text.removeprefix(f"{statement.target} = ")
-            said.append(f"{statement.place}: {now}, should be {should}; {statement.subject}")
-        return "; and ".join(said)
+            statement = spelling.statements[spelling.index_of[key]]
+            actual = format_statement(statement.target, sides)
+            correct = statement.text.removeprefix(f"{statement.target} = ")
+            parts.append(f"{statement.place}: {actual}, should be {correct}; {statement.subject}")
+        return "; and ".join(parts)
 
 
 def _node_edits(spelling: Spelling, places: range) -> Iterator[Edit]:
-    """Every edit of one node of statements, of each statement the likeliest first: of those that
-    compute the same it stays."""
+    """Yield every edit of one node of these statements; for each statement the likeliest first,
+    because the first of those that compute the same is kept."""
     for index in places:
         line, kin = spelling.statements[index], spelling.kin_at(index)
-        found = [
-            Edit(spelling.title, {line.key: (*line.sides[:at], other, *line.sides[at + 1 :])}, rank)
+        edits = [
+            Edit(
+                spelling.title,
+                {line.key: (*line.sides[:at], variation, *line.sides[at + 1 :])},
+                rank,
+            )
             for at, side in enumerate(line.sides)
-            for rank, other in _variations(side, kin)
+            for rank, variation in _variations(side, kin)
         ]
-        yield from sorted(found, key=lambda edit: edit.rank)
+        yield from sorted(edits, key=lambda edit: edit.rank)
 
 
-def _variations(node: Expression, kin: Kin, whole: bool = True) -> Iterator[tuple[int, Expression]]:
-    """An expression with one of its nodes edited, and how likely that is; ``whole``: it is all of
-    its side."""
-    rules, kind = _rules(), _kind(node)
-    for rank, pattern, alternatives in rules.get(kind, ()):
-        bound: dict[str, Expression] = {}
-        if _matches(pattern, node, bound):
-            yield from ((rank, _filled(made, bound)) for made in alternatives)
-    if node in CONDITIONS:
+def _variations(
+    node: Expression, kin: Kin, is_whole_side: bool = True
+) -> Iterator[tuple[int, Expression]]:
+    """Yield an expression with one of its nodes edited, and the edit's rank.
+
+    ``is_whole_side``: the expression is a whole side of its statement (rules for ``whole`` apply).
+    """
+    rules, head = _rules(), _head(node)
+    for rank, pattern, templates in rules.get(head, ()):
+        bindings: dict[str, Expression] = {}
+        if _matches(pattern, node, bindings):
+            yield from ((rank, _fill_template(template, bindings)) for template in templates)
+    if node in BOOLEAN_NAMES:
         yield LIKELY, False
         yield LIKELY, True
         return
     is_name = isinstance(node, str)
     if is_name:
         yield from ((LIKELY, twin) for twin in kin.get(node, ()))
-        yield LESS, 0
-    for pattern in ("any", "whole") if whole or is_name else ("any",):
-        for rank, _, alternatives in rules[pattern]:
-            if kind not in TRUTHS and (rank == LIKELY or isinstance(node, str | tuple)):
-                yield from ((rank, _filled(made, {pattern: node})) for made in alternatives)
+        yield LESS_LIKELY, 0
+    for pattern in ("any", "whole") if is_whole_side or is_name else ("any",):
+        for rank, _, templates in rules[pattern]:
+            if head not in BOOLEAN_OPERATIONS and (rank == LIKELY or isinstance(node, str | tuple)):
+                yield from ((rank, _fill_template(t, {pattern: node})) for t in templates)
     for place, part in enumerate(operands(node), 1):
-        for rank, other in _variations(part, kin, False):
-            yield rank, (*node[:place], other, *node[place + 1 :])
+        for rank, variation in _variations(part, kin, False):
+            yield rank, (*node[:place], variation, *node[place + 1 :])
 
 
 @cache
 def _rules() -> dict[object, list[tuple[int, Expression, list[Expression]]]]:
+    """Return the rules of ``rules.txt`` by the head of their pattern: rank, pattern, templates."""
     rules: dict[object, list[tuple[int, Expression, list[Expression]]]] = {}
     rank = LIKELY
-    for line in table("rules.txt"):
+    for line in read_table("rules.txt"):
         if line in _SECTIONS:
             rank = _SECTIONS[line]
             continue
-        pattern, made = line.split("->")
-        node, others = expression(pattern), list(map(expression, made.split(";")))
-        rules.setdefault(_kind(node), []).append((rank, node, others))
+        left, right = line.split("->")
+        pattern = parse_expression(left)
+        templates = list(map(parse_expression, right.split(";")))
+        rules.setdefault(_head(pattern), []).append((rank, pattern, templates))
     return rules
 
 
-def _kind(node: Expression) -> object:
-    """What a node has in common with the patterns that may match it."""
+def _head(node: Expression) -> object:
+    """Return the operation, or the name or number itself: patterns that match a node share it."""
     return node[0] if isinstance(node, tuple) else node
 
 
-def _matches(pattern: Expression, node: Expression, bound: dict[str, Expression]) -> bool:
-    """Whether a node is of a pattern; what its letters stand for goes to ``bound``."""
+def _matches(pattern: Expression, node: Expression, bindings: dict[str, Expression]) -> bool:
+    """Return whether a node has a pattern's form; bind the pattern's letters in ``bindings``."""
     if isinstance(pattern, str) and len(pattern) == 1:
-        bound[pattern] = node
+        bindings[pattern] = node
         return True
-    return _kind(pattern) == _kind(node) and all(
-        _matches(wanted, other, bound)
-        for wanted, other in zip(operands(pattern), operands(node), strict=True)
+    return _head(pattern) == _head(node) and all(
+        _matches(subpattern, subnode, bindings)
+        for subpattern, subnode in zip(operands(pattern), operands(node), strict=True)
     )
 
 
-def _filled(made: Expression, bound: Mapping[str, Expression]) -> Expression:
-    """A template with its letters replaced; minus minus is nothing."""
-    if _kind(made) == NEGATIVE and _kind(inner := bound[made[1]]) == NEGATIVE:
+def _fill_template(template: Expression, bindings: Mapping[str, Expression]) -> Expression:
+    """Return a template with its letters replaced; a double minus is dropped."""
+    if _head(template) == NEGATIVE and _head(inner := bindings[template[1]]) == NEGATIVE:
         return inner[1]
-    return renamed(made, bound)
+    return substitute(template, bindings)
 
 
 def _equation_edits(spelling: Spelling) -> Iterator[Edit]:
-    """The same edit throughout one statement, or all that share a subject up to a comma."""
+    """Yield edits that change a name throughout one statement, or throughout all statements whose
+    subjects agree up to a comma."""
+    for subject, places in _subject_groups(spelling).items():
+        sides = (side for index in places for side in spelling.statements[index].sides)
+        names = Counter(x for side in sides for x in nodes(side) if isinstance(x, str))
+        kin = spelling.kin_at(places[0])
+        for name in names:
+            if name in (*BOOLEAN_NAMES, "pi", *spelling.unknown):
+                continue
+            for description, changes in _substitutions(name, kin.get(name, ()), names):
+                lines = [
+                    spelling.statements[index]
+                    for index in places
+                    if not changes.keys().isdisjoint(spelling.reads[index])
+                ]
+                new_sides = {
+                    line.key: tuple(substitute(x, changes) for x in line.sides) for line in lines
+                }
+                where = ", ".join(dict.fromkeys(line.place for line in lines))
+                text = f"{where}: {description} in {subject}"
+                yield Edit(spelling.title, new_sides, LESS_LIKELY, text)
+
+
+def _subject_groups(spelling: Spelling) -> dict[str, list[int]]:
+    """Return the statements of an equation by what they are called: each alone ("text; subject"),
+    and those that share a subject up to a comma, where there are several."""
     groups: dict[str, list[int]] = {}
-    for index in range(spelling.own, spelling.results):
+    for index in range(spelling.own_start, spelling.results_start):
         statement = spelling.statements[index]
         subjects = statement.subject.split(", ")
         for count in range(1, len(subjects) + 1):
             groups.setdefault(", ".join(subjects[:count]), []).append(index)
         groups[f"{statement.text}; {statement.subject}"] = [index]
-    for subject, places in groups.items():
-        if len(places) == 1 and ";" not in subject:
-            continue
-        sides = (side for index in places for side in spelling.statements[index].sides)
-        names = Counter(x for side in sides for x in nodes(side) if isinstance(x, str))
-        kin = spelling.kin_at(places[0])
-        for name in [word for word in names if word not in (*CONDITIONS, "pi", *spelling.unknown)]:
-            for says, changes in _throughout(name, kin.get(name, ()), names):
-                touched = [
-                    spelling.statements[index]
-                    for index in places
-                    if not changes.keys().isdisjoint(spelling.reads[index])
-                ]
-                made = {
-                    line.key: tuple(renamed(x, changes) for x in line.sides) for line in touched
-                }
-                where = ", ".join(dict.fromkeys(line.place for line in touched))
-                yield Edit(spelling.title, made, LESS, f"{where}: {says} in {subject}")
+    return {
+        subject: places for subject, places in groups.items() if len(places) > 1 or ";" in subject
+    }
 
 
-def _throughout(
+def _substitutions(
     name: str, kin: Sequence[str], names: Counter[str]
 ) -> Iterator[tuple[str, dict[str, Expression]]]:
-    """What may be done to a name, or to two of one kind, wherever they stand."""
-    for other in kin:
-        if other > name and other in names:
-            both = (name, other)
-            yield f"{name} and {other} exchanged", {name: other, other: name}
-            yield f"{name} and {other} left out", dict.fromkeys(both, 0)
-            yield f"{name} and {other} with the wrong sign", {n: (NEGATIVE, n) for n in both}
+    """Yield substitutions of a name, or of it and one of its kin, with what they are called."""
+    for twin in kin:
+        if twin > name and twin in names:
+            pair = (name, twin)
+            yield f"{name} and {twin} exchanged", {name: twin, twin: name}
+            yield f"{name} and {twin} left out", dict.fromkeys(pair, 0)
+            yield f"{name} and {twin} with the wrong sign", {n: (NEGATIVE, n) for n in pair}
     if names[name] > 1:
         yield f"{name} with the wrong sign", {name: (NEGATIVE, name)}
         yield f"{name} left out", {name: 0}
         yield f"{name} halved", {name: ("/", name, 2)}
-        for other in kin:
-            yield f"{other} for {name}", {name: other}
+        for twin in kin:
+            yield f"{twin} for {name}", {name: twin}
 
 
 @cache
-def edits_of(title: str) -> tuple[Edit, ...]:
-    """The edits of a spelling as it stands; what all share is edited in the listing's alone."""
+def spelling_edits(title: str) -> tuple[Edit, ...]:
+    """Return the edits of a spelling as it stands. Statements that all spellings share are edited
+    in the listing's only."""
     spelling = spellings()[title]
-    own = _node_edits(spelling, range(spelling.own, spelling.results))
-    return (*(edits_on(spelling) if title == LISTING else own), *_equation_edits(spelling))
+    own = _node_edits(spelling, range(spelling.own_start, spelling.results_start))
+    return (*(node_edits(spelling) if title == LISTING else own), *_equation_edits(spelling))
 
 
-def edits_on(spelling: Spelling) -> Iterator[Edit]:
-    """The edits of one node of a spelling, edited or not, its input and output apart."""
+def node_edits(spelling: Spelling) -> Iterator[Edit]:
+    """Yield every edit of one node of a spelling, which may be edited already; its input and output
+    statements are left alone."""
     results = sum(statement.target.startswith(SHOWN) for statement in spelling.statements)
     return _node_edits(spelling, range(len(SCENE), len(spelling.statements) - results))
 
 
-_OF_A = frozenset("DA PA TA MA IA UX UY WA VAX VAY WAF XA YA XAF YAF DVA".split())
+_COLUMNS_OF_A = frozenset("DA PA TA MA IA UX UY WA VAX VAY WAF XA YA XAF YAF DVA".split())
 
 
 @cache
 def readings() -> tuple[Edit, ...]:
-    """Columns read or shown otherwise, of ``readings.txt``, for both vehicles, then for one."""
-    every = [_reading(line) for line in written_out(table("readings.txt"))]
-    for both in every[:]:
-        a = {key for key in both.sides if key.removeprefix(SHOWN) in _OF_A}
-        b = both.sides.keys() - a
+    """Return the edits of ``readings.txt`` (columns read or shown differently): for both vehicles,
+    then for one alone."""
+    edits = [_parse_reading(line) for line in expand_lines(read_table("readings.txt"))]
+    for edit in edits[:]:
+        a = {key for key in edit.sides if key.removeprefix(SHOWN) in _COLUMNS_OF_A}
+        b = edit.sides.keys() - a
         for vehicle, keys in (("A's", a), ("B's", b)) if len(a) == len(b) else ():
-            sides = {key: made for key, made in both.sides.items() if key in keys}
-            every.append(Edit("", sides, RARE_CONVENTION, f"{both.says}, {vehicle} only"))
-    return tuple(every)
+            sides = {key: expressions for key, expressions in edit.sides.items() if key in keys}
+            text = f"{edit.description}, {vehicle} only"
+            edits.append(Edit("", sides, RARE_CONVENTION, text))
+    return tuple(edits)
 
 
-def written_out(lines: Iterable[str]) -> Iterator[str]:
-    """The lines of a table of readings, each for every entry of the table it names."""
+def expand_lines(lines: Iterable[str]) -> Iterator[str]:
+    """Yield a line of readings for every entry of the table it names; other lines as they are."""
     tables: dict[str, list[tuple[str, str]]] = {}
     for line in lines:
         if line.startswith("table "):
             name, entries = line.removeprefix("table ").split(":", 1)
             pairs = (entry.rsplit("=", 1) for entry in entries.split(", "))
-            tables[name] = [(says.strip(), factor.strip()) for says, factor in pairs]
+            tables[name] = [(label.strip(), factor.strip()) for label, factor in pairs]
             continue
         word = re.search(r"\{(?!factor)(\w+)\}", line)
-        for says, factor in tables[word[1]] if word else [("", "")]:
-            filled = line.replace("{factor}", factor)
-            yield filled.replace(word[0], says) if word else filled
+        for label, factor in tables[word[1]] if word else [("", "")]:
+            text = line.replace("{factor}", factor)
+            yield text.replace(word[0], label) if word else text
 
 
-def _reading(line: str) -> Edit:
-    says, rest = line.split(" | ", 1)
-    scene, _, results = rest.partition(";;")
+def _parse_reading(line: str) -> Edit:
+    """Parse ``description | columns = expression; ... ;; results = expression; ...``."""
+    description, columns = line.split(" | ", 1)
+    scene, _, results = columns.partition(";;")
     typed: dict[str, Expression] = {name: f"{TYPED}{name}" for name in SCENE}
     sides: dict[str, Sides] = {}
-    for name, made in assigned(scene):
-        beside = {row: f"{TYPED}{row}_{name}" for row in BESIDE}
-        sides[name] = (renamed(made, {**typed, **beside, "x": typed[name]}),)
-    for name, made in assigned(results):
-        sides[f"{SHOWN}{name}"] = (renamed(made, {"x": name}),)
-    rank = RARE_CONVENTION if says.startswith("~") else CONVENTION
-    return Edit("", sides, rank, says.lstrip("~ "))
+    for name, expression in parse_assignments(scene):
+        neighbours = {row: f"{TYPED}{row}_{name}" for row in NEIGHBOUR_SHIFTS}
+        sides[name] = (substitute(expression, {**typed, **neighbours, "x": typed[name]}),)
+    for name, expression in parse_assignments(results):
+        sides[f"{SHOWN}{name}"] = (substitute(expression, {"x": name}),)
+    rank = RARE_CONVENTION if description.startswith("~") else CONVENTION
+    return Edit("", sides, rank, description.lstrip("~ "))
 
 
-def assigned(text: str) -> Iterator[tuple[str, Expression]]:
-    """Each column of ``A B = expression; C = expression``, with its expression."""
+def parse_assignments(text: str) -> Iterator[tuple[str, Expression]]:
+    """Yield each column of ``A B = expression; C = expression`` with its expression."""
     for part in filter(str.strip, text.split(";")):
-        names, made = part.split("=", 1)
+        names, expression = part.split("=", 1)
         for name in names.split():
-            yield name, expression(made)
+            yield name, parse_expression(expression)
 
 
 @cache
 def variants() -> tuple[Edit, ...]:
-    """Other models, of ``variants.txt``."""
-    found = []
+    """Return the edits of ``variants.txt``: other models."""
+    edits = []
     spelling = spellings()[IMPULSES]
-    for line in table("variants.txt"):
+    for line in read_table("variants.txt"):
         if line.startswith("["):
             spelling = spellings()[line.strip("[]")]
+        else:
+            edits.append(_parse_variant(line, spelling))
+    return tuple(edits)
+
+
+def _parse_variant(line: str, spelling: Spelling) -> Edit:
+    """Parse ``description | statement; statement ...``. An equation ends in ``@ subject``; names
+    that the spelling lacks are definitions, substituted in the statements after them."""
+    description, statements = line.split(" | ", 1)
+    sides: dict[str, Sides] = {}
+    definitions: dict[str, Expression] = {}
+    for text, _, subject in (part.partition("@") for part in statements.split(";")):
+        if subject:
+            start = f"== {subject.strip()}"
+            key = next(key for key in spelling.index_of if key.startswith(start))
+            sides[key] = tuple(map(parse_expression, text.split("==")))
             continue
-        says, rest = line.split(" | ", 1)
-        sides: dict[str, Sides] = {}
-        new: dict[str, Expression] = {}
-        for text, _, subject in (part.partition("@") for part in rest.split(";")):
-            if subject:
-                key = next(key for key in spelling.where if key.startswith(f"== {subject.strip()}"))
-                sides[key] = tuple(map(expression, text.split("==")))
-                continue
-            target, made = (part.strip() for part in text.split(" = ", 1))
-            whole = renamed(expression(made), new)
-            if target in spelling.where:
-                sides[target] = (whole,)
-            else:
-                new[target] = whole
-        found.append(Edit(spelling.title, sides, MODEL, says))
-    return tuple(found)
+        target, right = (part.strip() for part in text.split(" = ", 1))
+        expression = substitute(parse_expression(right), definitions)
+        if target in spelling.index_of:
+            sides[target] = (expression,)
+        else:
+            definitions[target] = expression
+    return Edit(spelling.title, sides, MODEL, description)

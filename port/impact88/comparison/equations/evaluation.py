@@ -1,6 +1,7 @@
-"""What a spelling computes for many scenes, as it stands and with statements written otherwise.
+"""Evaluate a spelling of the mechanics on many scenes, as it stands and with statements edited.
 
-Arrays have the scenes last, edits before them: (K, n), or (1, n) of what edits do not change.
+Arrays have the scenes last and the edits before them: (K, n), or (1, n) where no edit changes the
+value.
 """
 
 from collections import ChainMap
@@ -12,168 +13,230 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...names import SCENE
-from .spelling import NEGATIVE, TYPED, Expression, Spelling, nodes
+from .spelling import NEGATIVE, TYPED, Expression, Spelling, Statement, nodes
 
 Floats = NDArray[np.float64]
 Columns = Mapping[str, Any]
 Changes = Mapping[str, Sequence[Any]]
-"""Key of a statement -> its sides, written otherwise or as values."""
+"""An edit: key of a statement -> its new sides, as expressions or as values."""
 
-BESIDE = {"before": 1, "after": -1}
-"""Rows whose columns a program may take for its own, and how far columns are rolled for them."""
-AT_ONCE = 60_000
-"""Scenes times edits that are computed together, to bound the memory."""
+NEIGHBOUR_SHIFTS = {"before": 1, "after": -1}
+"""Neighbouring row -> how far `numpy.roll` shifts a column to get it. A program may read from the
+wrong row of its table."""
+MAX_VALUES_PER_CHUNK = 60_000
+"""Scenes times edits computed together; bounds the memory."""
 
 _OPERATIONS: dict[str, Callable[..., Any]] = {
-    **{"+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide, NEGATIVE: np.negative},
-    **{"**": lambda x, k: np.square(x) if isinstance(k, int) and k == 2 else x**k},
-    **{"<": np.less, "<=": np.less_equal, ">": np.greater, ">=": np.greater_equal, "==": np.equal},
-    **{"single": lambda x: np.float64(np.float32(x)), "either": np.logical_or},
+    "+": np.add,
+    "-": np.subtract,
+    "*": np.multiply,
+    "/": np.divide,
+    NEGATIVE: np.negative,
+    "**": lambda x, k: np.square(x) if isinstance(k, int) and k == 2 else x**k,
+    "<": np.less,
+    "<=": np.less_equal,
+    ">": np.greater,
+    ">=": np.greater_equal,
+    "==": np.equal,
+    "single": lambda x: np.float64(np.float32(x)),
+    "either": np.logical_or,
 }
 
 
-def value(node: Expression, names: Columns, known: Mapping[int, Any] = MappingProxyType({})) -> Any:
-    """The value of an expression, or what is a value already. ``known``: values of nodes by id."""
+def evaluate(
+    node: Expression, names: Columns, cache: Mapping[int, Any] = MappingProxyType({})
+) -> Any:
+    """Return the value of an expression; a number or an array is returned as it is.
+
+    ``cache``: values of subexpressions already computed, by the `id` of the node.
+    """
     if isinstance(node, tuple):
-        if id(node) in known:
-            return known[id(node)]
+        if id(node) in cache:
+            return cache[id(node)]
         function = _OPERATIONS.get(node[0]) or getattr(np, node[0])
-        return function(*[value(part, names, known) for part in node[1:]])
+        return function(*[evaluate(part, names, cache) for part in node[1:]])
     if isinstance(node, str):
         return np.pi if node == "pi" else names[node]
     return node
 
 
 RESIDUAL = "off_"
-"""Before a statement's key: what is left of it in a clamped run."""
+"""Prefix of a statement's key: the name of its residual in a clamped run."""
 
 
 class Run:
-    """A spelling run on scenes (columns of n), as it stands: ``names``, (1, n). Columns of the rows
-    beside (``before_UX``) are those of the scenes beside where none are given.
+    """A spelling evaluated on scenes (columns of n). ``names``: every value it computes, (1, n).
 
-    ``clamped``: name -> values to go on with in place of what is computed; the difference of the
-    two is a residual, one of ``names``, and so is that of an equation's sides.
+    The columns of neighbouring rows (``before_UX``, ``after_UX``) may be given; by default they are
+    those of the neighbouring scenes.
+
+    ``clamped``: name -> values that replace the computed ones downstream. The computed value minus
+    the clamped one is the statement's residual, and is one of ``names``; so is the left side minus
+    the right of each equation, which is then evaluated and not solved.
     """
 
     def __init__(self, spelling: Spelling, scene: Columns, clamped: Columns | None = None) -> None:
         self.spelling = spelling
         self.clamped = {name: np.atleast_2d(column) for name, column in (clamped or {}).items()}
         columns = {name: np.atleast_2d(np.asarray(column, float)) for name, column in scene.items()}
-        for row, step in BESIDE.items():
-            beside = {f"{row}_{name}": np.roll(columns[name], step, -1) for name in SCENE}
-            columns = beside | columns
+        for row, shift in NEIGHBOUR_SHIFTS.items():
+            neighbours = {f"{row}_{name}": np.roll(columns[name], shift, -1) for name in SCENE}
+            columns = neighbours | columns
         self.names: dict[str, Any] = {f"{TYPED}{name}": c for name, c in columns.items()}
         self.size = max(column.shape[-1] for column in columns.values())
-        self._own: list[Any] = [None] * len(spelling.statements)
+        # sides of each statement as it stands, filled by the first run
+        self._base_sides: list[Any] = [None] * len(spelling.statements)
+        # an equation is linear in the unknowns: its sides are evaluated with all of them 0 and with
+        # each of them 1, along a leading axis
         basis = np.eye(len(spelling.unknown) + 1)[1:, :, None, None]
         self._unknown = dict(zip(spelling.unknown, basis, strict=True))
         if clamped is not None:
             self._unknown = {name: self.clamped[name] for name in spelling.unknown}
             self.names |= self._unknown
         with np.errstate(all="ignore"):
-            self.names |= self.edited([{}])
+            self.names |= self.run_edits([{}])
 
-    def edited(self, several: Sequence[Changes]) -> dict[str, Any]:
-        """What edits of the program change, (K, n); at first, all that it computes."""
-        made: dict[str, Any] = {}
-        names = ChainMap(made, self.names)
+    def run_edits(self, edits: Sequence[Changes]) -> dict[str, Any]:
+        """Return the values of every name that an edit affects, (K, n): row k is by edit k.
+
+        Statements that are neither edited nor depend on one that is are not evaluated again.
+        """
+        computed: dict[str, Any] = {}
+        names = ChainMap(computed, self.names)
         changed: set[str] = set()
         equations: dict[int, Any] = {}
-        edits: dict[str, list[tuple[int, Sequence[Any]]]] = {}
-        for k, changes in enumerate(several):
+        edits_by_key: dict[str, list[tuple[int, Sequence[Any]]]] = {}
+        for k, changes in enumerate(edits):
             for key, sides in changes.items():
-                edits.setdefault(key, []).append((k, sides))
+                edits_by_key.setdefault(key, []).append((k, sides))
         for index, statement in enumerate(self.spelling.statements):
-            here, own = edits.get(statement.key, []), self._own[index]
-            fresh = own is None or not changed.isdisjoint(self.spelling.reads[index])
-            if here or fresh:
-                seen = names if statement.target else names.new_child(self._unknown)
-                found = [value(side, seen) for side in statement.sides] if fresh else own
-                self._own[index] = found if own is None else own
-                if here:
-                    found = self._rows(found, here, len(several), seen)
-                if not statement.target and not self.clamped:
-                    equations[index] = found
-                elif not statement.target:
-                    made[RESIDUAL + statement.key] = np.subtract(*found)
-                elif statement.target in self.clamped:
-                    made[statement.target] = self.clamped[statement.target]
-                    made[RESIDUAL + statement.key] = found[0] - made[statement.target]
+            replacements, base = edits_by_key.get(statement.key, []), self._base_sides[index]
+            is_stale = base is None or not changed.isdisjoint(self.spelling.reads[index])
+            if replacements or is_stale:
+                visible = names if statement.target else names.new_child(self._unknown)
+                values = base
+                if is_stale:
+                    values = [evaluate(side, visible) for side in statement.sides]
+                if base is None:
+                    self._base_sides[index] = values
+                if replacements:
+                    values = self._replace_rows(values, replacements, len(edits), visible)
+                if statement.target or self.clamped:
+                    self._store(statement, values, computed, changed)
                 else:
-                    made[statement.target] = np.atleast_2d(found[0])
-                    changed.add(statement.target)
+                    equations[index] = values
             if equations and index == self.spelling.equations[-1]:
-                solved = np.moveaxis(_solutions(*self.system(equations)), -1, 0)
-                made |= zip(self.spelling.unknown, solved, strict=True)
+                solution = np.moveaxis(_solve_systems(*self.linear_systems(equations)), -1, 0)
+                computed |= zip(self.spelling.unknown, solution, strict=True)
                 changed.update(self.spelling.unknown)
-        return made
+        return computed
 
-    def _rows(
-        self, own: Sequence[Any], here: Sequence[tuple[int, Sequence[Any]]], count: int, seen: Any
+    def _store(
+        self,
+        statement: Statement,
+        sides: Sequence[Any],
+        computed: dict[str, Any],
+        changed: set[str],
+    ) -> None:
+        """Add a statement's value, or in a clamped run its residual, to ``computed``."""
+        if not statement.target:
+            computed[RESIDUAL + statement.key] = np.subtract(*sides)
+        elif statement.target in self.clamped:
+            computed[statement.target] = self.clamped[statement.target]
+            computed[RESIDUAL + statement.key] = sides[0] - computed[statement.target]
+        else:
+            computed[statement.target] = np.atleast_2d(sides[0])
+            changed.add(statement.target)
+
+    def _replace_rows(
+        self,
+        base: Sequence[Any],
+        replacements: Sequence[tuple[int, Sequence[Any]]],
+        count: int,
+        names: Any,
     ) -> list[Any]:
-        """A statement's sides, row by row as edits have them, and its own in all others."""
-        unknown = len(self.spelling.unknown) + 1
-        lead = () if self.clamped or len(own) == 1 else (unknown,)
+        """Return a statement's sides, (K, n): edited ones in the rows of their edits, ``base`` in
+        all others."""
+        is_number = self.clamped or len(base) == 1
+        lead = () if is_number else (len(self.spelling.unknown) + 1,)
         shape = (*lead, count, self.size)
-        found = []
-        for side in own:
+        sides = []
+        for side in base:
             kind = bool if np.result_type(side) == np.bool_ else float
-            found.append(np.array(np.broadcast_to(side, shape), kind))
-        for k, sides in here:
-            row = _Row(seen, k)
-            for column, side in zip(found, sides, strict=True):
-                made = value(side, row)
-                column[..., k, :] = made[..., 0, :] if np.ndim(made) > 1 else made
-        return found
+            sides.append(np.array(np.broadcast_to(side, shape), kind))
+        for k, new_sides in replacements:
+            row = _Row(names, k)
+            for column, side in zip(sides, new_sides, strict=True):
+                result = evaluate(side, row)
+                column[..., k, :] = result[..., 0, :] if np.ndim(result) > 1 else result
+        return sides
 
-    def system(self, equations: Mapping[int, Any]) -> tuple[Floats, Floats]:
-        """Matrices (K, n, m, m) and right-hand sides (K, n, m); those that are not given are the
-        program's own. Sides are evaluated for no unknown, then for each alone."""
-        sides = [equations.get(index, self._own[index]) for index in self.spelling.equations]
+    def linear_systems(self, equations: Mapping[int, Any]) -> tuple[Floats, Floats]:
+        """Return matrices (K, n, m, m) and right-hand sides (K, n, m) of the equations.
+
+        ``equations``: index of a statement -> values of its sides; the base sides are taken for
+        equations that are not given. A side has its value with all unknowns 0, then with each 1.
+        """
+        sides = [equations.get(index, self._base_sides[index]) for index in self.spelling.equations]
         count = len(sides)
-        shapes = [np.shape(side)[-2:] for both in sides for side in both]
+        shapes = [np.shape(side)[-2:] for pair in sides for side in pair]
         lead = np.broadcast_shapes((1, self.size), *shapes)
-        matrix, rest = np.zeros((*lead, count, count)), np.empty((*lead, count))
+        matrix, constants = np.zeros((*lead, count, count)), np.empty((*lead, count))
         for row, (left, right) in enumerate(sides):
             for side, sign in ((left, 1.0), (right, -1.0)):
                 if np.ndim(side) > 2:
                     matrix[..., row, :] += sign * np.moveaxis(side[1:] - side[0], 0, -1)
             left, right = (side[0] if np.ndim(side) > 2 else side for side in (left, right))
-            rest[..., row] = np.subtract(right, left)
-        return matrix, rest
+            constants[..., row] = np.subtract(right, left)
+        return matrix, constants
 
-    def distinct(self, edits: Sequence[Changes]) -> list[tuple[int, Changes]]:
-        """The edits that change something, by place; of those of one statement that compute the
-        same the first. They have the values, then."""
+    def distinct_edits(self, edits: Sequence[Changes]) -> list[tuple[int, Changes]]:
+        """Return the edits that change a value, each with its position in ``edits``.
+
+        Of edits of the same statement that compute the same, the first is returned, with its
+        values in place of its expressions. Edits of several statements are all returned.
+        """
         groups: dict[str, list[int]] = {}
         for place, changes in enumerate(edits):
             groups.setdefault("" if len(changes) > 1 else next(iter(changes)), []).append(place)
-        found: list[tuple[int, Changes]] = [(place, edits[place]) for place in groups.pop("", [])]
+        distinct: list[tuple[int, Changes]] = [
+            (place, edits[place]) for place in groups.pop("", [])
+        ]
         for key, places in groups.items():
-            index = self.spelling.where[key]
-            line, own = self.spelling.statements[index], self._own[index]
-            seen = self.names if line.target else {**self.names, **self._unknown}
-            known: dict[int, Any] = {}
-            for node in reversed([node for side in line.sides for node in nodes(side)]):
-                if isinstance(node, tuple):
-                    known[id(node)] = value(node, seen, known)
-            values = [[value(side, seen, known) for side in edits[place][key]] for place in places]
-            wholes = [sides[0] if line.target else np.subtract(*sides) for sides in (own, *values)]
-            shape = np.broadcast_shapes((1, self.size), *map(np.shape, wholes))
-            met = set[bytes]()
-            for place, sides, whole in zip((-1, *places), (own, *values), wholes, strict=True):
-                numbers = np.empty(shape)
-                numbers[...] = whole
-                # those that differ in their last bits only are alike: the same in another order
-                digits = ((numbers + 0.0).view(np.int64) + (1 << 18) >> 19).tobytes()
-                if digits not in met and place >= 0:
-                    found.append((place, {key: sides}))
-                met.add(digits)
-        return found
+            distinct += self._distinct_edits_of(key, places, edits)
+        return distinct
+
+    def _distinct_edits_of(
+        self, key: str, places: Sequence[int], edits: Sequence[Changes]
+    ) -> Iterator[tuple[int, Changes]]:
+        """Yield those edits of one statement that differ from it and from each other."""
+        index = self.spelling.index_of[key]
+        statement, base = self.spelling.statements[index], self._base_sides[index]
+        names = self.names if statement.target else {**self.names, **self._unknown}
+        cache: dict[int, Any] = {}
+        for node in reversed([node for side in statement.sides for node in nodes(side)]):
+            if isinstance(node, tuple):
+                cache[id(node)] = evaluate(node, names, cache)
+        values = [[evaluate(side, names, cache) for side in edits[place][key]] for place in places]
+        results = [
+            sides[0] if statement.target else np.subtract(*sides) for sides in (base, *values)
+        ]
+        shape = np.broadcast_shapes((1, self.size), *map(np.shape, results))
+        seen = set[bytes]()
+        for place, sides, result in zip((-1, *places), (base, *values), results, strict=True):
+            numbers = np.empty(shape)
+            numbers[...] = result
+            # compare 33 bits of the mantissa: terms added in another order differ in the last ones;
+            # adding 0.0 makes -0 a 0
+            digits = ((numbers + 0.0).view(np.int64) + (1 << 18) >> 19).tobytes()
+            if digits not in seen and place >= 0:
+                yield place, {key: sides}
+            seen.add(digits)
 
 
 class _Row(dict[str, Any]):
+    """Mapping of names to the values by edit k alone."""
+
     def __init__(self, names: Columns, k: int) -> None:
         super().__init__()
         self._names, self._k = names, k
@@ -183,27 +246,30 @@ class _Row(dict[str, Any]):
         return column if column.shape[-2] == 1 else column[..., self._k : self._k + 1, :]
 
 
-def _solutions(matrix: Floats, rest: Floats) -> Floats:
-    """Solutions of systems (..., m, m); NaN where there is none. Rows are scaled, so that a small
-    row is no singular one."""
+def _solve_systems(matrix: Floats, right: Floats) -> Floats:
+    """Return the solutions of systems (..., m, m), NaN where a system has none.
+
+    Rows are scaled by their largest entries, so that small coefficients alone do not make a system
+    singular.
+    """
     size = np.abs(matrix).max(-1)
-    usable = np.asarray(np.isfinite(matrix.sum((-1, -2)) + rest.sum(-1)) & (size > 0).all(-1))
-    size[~usable] = 1.0
-    matrix, rest = matrix / size[..., None], rest / size
-    matrix[~usable] = np.eye(matrix.shape[-1])
+    solvable = np.asarray(np.isfinite(matrix.sum((-1, -2)) + right.sum(-1)) & (size > 0).all(-1))
+    size[~solvable] = 1.0
+    matrix, right = matrix / size[..., None], right / size
+    matrix[~solvable] = np.eye(matrix.shape[-1])
     try:
-        found = np.linalg.solve(matrix, rest[..., None])[..., 0]
+        solution = np.linalg.solve(matrix, right[..., None])[..., 0]
     except np.linalg.LinAlgError:
         signs, _ = np.linalg.slogdet(matrix)
-        usable &= signs != 0
-        matrix[~usable] = np.eye(matrix.shape[-1])
-        found = np.linalg.solve(matrix, rest[..., None])[..., 0]
-    found[~usable] = np.nan
-    return np.asarray(found)
+        solvable &= signs != 0
+        matrix[~solvable] = np.eye(matrix.shape[-1])
+        solution = np.linalg.solve(matrix, right[..., None])[..., 0]
+    solution[~solvable] = np.nan
+    return np.asarray(solution)
 
 
 def chunks(count: int, scenes: int) -> Iterator[slice]:
-    """Slices of ``count`` edits that are computed together."""
-    step = max(1, AT_ONCE // max(scenes, 1))
+    """Yield slices of ``count`` edits that are computed together on so many scenes."""
+    step = max(1, MAX_VALUES_PER_CHUNK // max(scenes, 1))
     for start in range(0, count, step):
         yield slice(start, start + step)

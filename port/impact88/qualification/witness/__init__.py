@@ -1,1 +1,1 @@
-"""The user's own Apple II Plus ROM as a witness, on a 6502 that others wrote (extra: witness)."""
+"""The user's own Apple II Plus ROM as a witness, on py65, an independent 6502 emulator."""

@@ -1,8 +1,9 @@
-"""A ROM image, and the smallest Apple II Plus that it will run on: RAM, a keyboard, an ear at COUT.
+"""Run a ROM image on a minimal Apple II Plus: RAM, a keyboard, and the output captured at COUT.
 
-The processor is py65's. What is displayed is taken where the monitor's character output is called;
-the ROM draws its text screen besides, in RAM. A key is pressed when the ROM waits for one: when it
-reads the keyboard several times in a few cycles each. Nothing of Applesoft is known here.
+The processor is py65's. Output is captured where the monitor's character output routine is called;
+the ROM also draws its text screen in RAM. A key is pressed when the ROM waits for one, that is,
+when it polls the keyboard several times at intervals of a few cycles. Nothing here is specific to
+Applesoft.
 """
 
 import hashlib
@@ -14,8 +15,7 @@ from ...emulator.screen import BASE, HEIGHT, WIDTH, shown_character
 from ...errors import UserError, library
 from ...files import read_bytes
 
-START = 0xD000
-"""Where the ROM begins, of the Apple II Plus as of all before it."""
+START = 0xD000  # address of the ROM in the Apple II Plus and all earlier models
 SIZE = 0x10000 - START
 APPLE_II_PLUS = "33a24f5489ba9195b44be77d9afb2252594cb5c7"
 """SHA-1 of the Apple II Plus set: Applesoft in ROM and the autostart monitor."""
@@ -29,7 +29,7 @@ _OTHER_SIZES = {
 
 
 class Image(NamedTuple):
-    """A ROM image: its bytes from $D000 on, their SHA-1, and whether that is the known one."""
+    """A ROM image: its bytes from $D000 on, their SHA-1, and whether that is Apple's."""
 
     data: bytes
     sha1: str
@@ -37,8 +37,10 @@ class Image(NamedTuple):
 
 
 def read_image(path: str, any_rom: bool = False) -> Image:
-    """The image in a file. ``any_rom``: take one that is not known, too. Raises UserError for a
-    file that cannot be read, of another size, or not known."""
+    """Read an image from a file. ``any_rom``: accept unknown images, too.
+
+    Raises UserError for a file that cannot be read, has another size, or is not known.
+    """
     data = read_bytes(path, limit=1_000_000)
     if len(data) != SIZE:
         hint = _OTHER_SIZES.get(len(data))
@@ -58,31 +60,34 @@ def read_image(path: str, any_rom: bool = False) -> Image:
     return Image(data, sha1, known)
 
 
-IO_START, KEYBOARD, STROBE = 0xC000, range(0xC000, 0xC010), range(0xC010, 0xC020)
-"""Addresses of what is no memory, of the keyboard, and of what clears it."""
-COUT, CURSOR_COLUMN = 0xFDED, 0x24
-"""The monitor's character output: every character displayed goes through it, in the accumulator;
-and where the monitor keeps the cursor's column."""
+IO_START = 0xC000  # no memory from here to the ROM
+KEYBOARD = range(0xC000, 0xC010)  # reads the key
+STROBE = range(0xC010, 0xC020)  # clears the key
+COUT = 0xFDED
+"""The monitor's character output; every character displayed passes through it, in the
+accumulator."""
+CURSOR_COLUMN = 0x24  # address of the cursor's column
 RETURN = "\r"
-_WAITING_POLLS, _POLL_CYCLES = 4, 60
-"""Polls in a row, and cycles between two at most, while the ROM waits: the monitor asks every 16
-cycles or so, a running program at most once a statement."""
+# The ROM waits for a key if it polls so many times in a row, at most so many cycles apart: the
+# monitor polls about every 16 cycles, a running program at most once a statement.
+_MIN_POLLS = 4
+_MAX_POLL_CYCLES = 60
 _NOT_WAITING = "the machine does not wait for a key"
-PLENTY, BOOT_PLENTY = 80_000_000, 4_000_000
-"""Instructions that nothing captured needs, and that switching on does not need."""
+MAX_INSTRUCTIONS = 80_000_000  # more than any capture needs
+MAX_BOOT_INSTRUCTIONS = 4_000_000  # more than switching on needs
 
 
 class Lost(UserError):
-    """The machine does not come to wait for a key: it loops, or has run off into the wild."""
+    """The machine does not come to wait for a key: it loops, or has run off the program."""
 
 
 State = tuple[bytes, dict[str, int], int]
-"""All of a machine at rest: its memory, the processor's registers, the cursor's column."""
+"""State of a machine waiting for a key: memory, the processor's registers, the cursor's column."""
 _REGISTERS = ("pc", "a", "x", "y", "sp", "p")
 
 
 class Memory(bytearray):
-    """64K: RAM, the keyboard's two addresses, and the ROM. ``cpu``: what reads it."""
+    """64K of memory: RAM, the keyboard's addresses, and the ROM. ``cpu``: its processor."""
 
     cpu: Any
 
@@ -110,9 +115,9 @@ class Memory(bytearray):
         if address not in KEYBOARD:
             return 0
         now = self.cpu.processorCycles
-        self._polls = self._polls + 1 if now - self._last_poll < _POLL_CYCLES else 0
+        self._polls = self._polls + 1 if now - self._last_poll < _MAX_POLL_CYCLES else 0
         self._last_poll = now
-        if self._polls >= _WAITING_POLLS and self.key < 0x80:
+        if self._polls >= _MIN_POLLS and self.key < 0x80:
             self._polls = 0
             self.waiting = not self.keys
             self.key = self.keys.popleft() | 0x80 if self.keys else self.key
@@ -120,9 +125,11 @@ class Memory(bytearray):
 
 
 class Apple:
-    """An Apple II Plus with a ROM in it, switched off. ``instructions`` counts what the processor
-    has done. ``blanks``: whether columns skipped on a line come out as blanks when a character
-    follows. Raises UserError when py65 is missing."""
+    """An Apple II Plus with a ROM, switched off at first.
+
+    ``instructions``: number executed so far; ``blanks``: columns skipped on a line are output as
+    blanks when a character follows. Raises UserError when py65 is missing.
+    """
 
     def __init__(self, rom: bytes) -> None:
         processor = library("py65.devices.mpu6502", "witness", "the witness")
@@ -133,23 +140,23 @@ class Apple:
         self._output: list[str] = []
         self._column = 0
 
-    def boot(self, limit: int = BOOT_PLENTY) -> str:
-        """Switch on, and wait until the ROM waits for a key. Returns what was displayed."""
+    def boot(self, limit: int = MAX_BOOT_INSTRUCTIONS) -> str:
+        """Switch on, and run until the ROM waits for a key. Returns the output."""
         self.cpu.reset()
         self._column = 0
         self._wait(limit)
         return self.take_output()
 
     def type_keys(self, keys: str) -> None:
-        """Type, newlines as RETURN, and wait until the machine waits for more."""
+        """Type keys, newlines as RETURN, and run until the machine waits for more."""
         self.memory.keys.extend(ord(key) & 0x7F for key in keys.replace("\n", RETURN))
-        self._wait(PLENTY)
+        self._wait(MAX_INSTRUCTIONS)
 
     def call(self, address: int, stops: tuple[int, ...]) -> int:
-        """Run from an address until the processor comes to one of ``stops``; returns which one."""
+        """Run from an address until the processor reaches one of ``stops``; return which one."""
         cpu, says = self.cpu, f"the routine at ${address:04X} does not return"
         cpu.pc = address
-        self._step(lambda: cpu.pc in stops, PLENTY, says)
+        self._step(lambda: cpu.pc in stops, MAX_INSTRUCTIONS, says)
         return int(cpu.pc)
 
     def _wait(self, limit: int) -> None:
@@ -159,14 +166,15 @@ class Apple:
         while not memory.waiting:
             if cpu.pc == COUT:
                 self._display(last - self.instructions)
-            left = last - self.instructions
-            self._step(lambda: memory.waiting or cpu.pc == COUT, left, _NOT_WAITING)
+            remaining = last - self.instructions
+            self._step(lambda: memory.waiting or cpu.pc == COUT, remaining, _NOT_WAITING)
 
-    def _step(self, done: Callable[[], bool], limit: int, says: str) -> None:
-        """Run until something is so. Raises Lost, with what is not so, and off the memory's end."""
+    def _step(self, condition: Callable[[], bool], limit: int, says: str) -> None:
+        """Run until a condition holds. Raises Lost, with ``says``, after ``limit`` instructions,
+        and off the end of memory."""
         cpu, count = self.cpu, 0
         try:
-            while not done():
+            while not condition():
                 cpu.step()
                 count += 1
                 if count > limit:
@@ -177,7 +185,7 @@ class Apple:
         self.instructions += count
 
     def _display(self, limit: int) -> None:
-        """Let the monitor display a character and take it."""
+        """Run the monitor's output routine and record its character."""
         cpu, memory = self.cpu, self.memory
         character = chr(cpu.a & 0x7F)
         gap = max(memory[CURSOR_COLUMN] - self._column, 0)
@@ -190,28 +198,28 @@ class Apple:
         self._column = 0 if character == RETURN else memory[CURSOR_COLUMN] - gap
 
     def take_output(self) -> str:
-        """What was displayed since the last call: high bit dropped, RETURN as newline."""
+        """Return the output since the last call, without high bits and with RETURN as newline."""
         text = "".join(self._output)
         self._output.clear()
         return text
 
     def word(self, address: int) -> int:
-        """Two bytes, the low one first."""
+        """Return the 16-bit number at an address, low byte first."""
         return int(self.memory[address] + 256 * self.memory[address + 1])
 
     def screen_text(self) -> str:
-        """The 24 rows of the text screen, blanks at the ends of rows left out."""
+        """Return the 24 rows of the text screen, without blanks at their ends."""
         starts = (BASE + row % 8 * 0x80 + row // 8 * WIDTH for row in range(HEIGHT))
         rows = (self.memory[start : start + WIDTH] for start in starts)
         return "".join("".join(map(shown_character, row)).rstrip(" ") + "\n" for row in rows)
 
     def state(self) -> State:
-        """The machine as it stands; it must be waiting for a key."""
+        """Return the machine's state; it must be waiting for a key."""
         registers = {name: getattr(self.cpu, name) for name in _REGISTERS}
         return bytes(self.memory), registers, self._column
 
     def restore(self, state: State) -> None:
-        """Make the machine what it was, with no keys typed and nothing displayed."""
+        """Restore a state, with no keys typed and no output."""
         memory, registers, self._column = state
         bytearray.__setitem__(self.memory, slice(0, 0x10000), memory)
         vars(self.cpu).update(registers)

@@ -1,8 +1,10 @@
-"""Sessions at the ROM's own prompt: the restored listing on a scene, any program, one calculation.
+"""Sessions at the ROM's own prompt: run the restored listing on a scene, or any program, or make
+one calculation.
 
-All is done with the keys a user would press; small letters are POKEd into the listing, as was done
-in the days. What is left is found by the reference manual's appendix "Applesoft in memory";
-calculations enter by John Crossley, "Applesoft Internal Entry Points" (Apple Orchard, March 1980).
+Everything is typed with the keys a user would press; lower-case letters are POKEd into the listing,
+as was usual in 1988. Variables are read from memory by the reference manual's appendix "Applesoft
+in memory"; calculations use the entry points of John Crossley, "Applesoft Internal Entry Points"
+(Apple Orchard, March 1980).
 """
 
 import re
@@ -21,8 +23,7 @@ _OTHER_PROMPTS = {
     "*": "the monitor's prompt *: an older monitor, or no Applesoft in this ROM",
     ">": "the prompt > of Integer BASIC; the listing is Applesoft",
 }
-LONGEST_TYPED = 239
-"""Characters of the longest line the monitor's line reader keeps; Apple's documents say so."""
+LONGEST_TYPED = 239  # characters that the monitor's line reader keeps, by Apple's documents
 
 
 class Session:
@@ -54,9 +55,12 @@ class Session:
         return self.apple.state()
 
     def run_scene(self, scene: Scene) -> dict[str, Any]:
-        """RUN the listing, typed once, on a scene: in the captures' form the ``printout`` after the
-        echo of RUN, the ``reals``, and the array ``A``. Raises UserError for a line too long to be
-        typed and a program that does not come to an end."""
+        """RUN the listing, typed once, on a scene.
+
+        Returns, in the captures' form, the ``printout`` after the echo of RUN, the ``reals``, and
+        the array ``A``. Raises UserError for a line too long to be typed, and for a program that
+        does not end.
+        """
         self.apple.restore(self._with_listing)
         self.apple.blanks = False
         for line in scene.typed_lines():
@@ -65,7 +69,7 @@ class Session:
         return {"printout": printout, "reals": _reals(self.apple), "A": _array_a(self.apple)}
 
     def run_program(self, program: str, keys: str = "", *, blanks: bool = True) -> str:
-        """Type a program in, RUN, then the keys: what is displayed, without the prompts' NULs."""
+        """Type a program, RUN and keys; return the output without the prompts' NULs."""
         self.apple.restore(self._fresh)
         self.apple.blanks = blanks
         for line in filter(None, program.split("\n")):
@@ -73,8 +77,8 @@ class Session:
         return self._run(keys).replace("\0", "")
 
     def calculate(self, operation: str, first: str, second: str, extension: str) -> str:
-        """One call of the ROM's arithmetic, asked and answered in the captures' form: a number is
-        ``stored:raw:extension``, an error ``E`` and its code."""
+        """Call one routine of the ROM's arithmetic; arguments and result in the captures' form: a
+        number is ``stored:raw:extension``, an error ``E`` and its code."""
         apple = self.apple
         apple.restore(self._fresh)
         operand = [_LDA, _OPERAND & 0xFF, _LDY, _OPERAND >> 8]
@@ -115,30 +119,34 @@ class Session:
         self.apple.type_keys(f"{line}\n")
 
     def _run(self, keys: str) -> str:
-        """RUN and the keys: what is displayed after the echo of RUN up to the final prompt."""
+        """Type RUN and the keys; return the output from the echo of RUN to the final prompt."""
         self.apple.take_output()
         self.apple.type_keys(f"RUN\n{keys}")
         return self.apple.take_output().partition("RUN\n")[2].removesuffix(f"\n{PROMPT}")
 
 
-PROGRAM, VARIABLES, ARRAYS, ARRAYS_END = 0x67, 0x69, 0x6B, 0x6D
-"""Zero-page pointers to where each begins; what is in between belongs to the one before."""
-_ENTRY, _NUMBER = 7, 5
-"""Bytes of a simple variable, two of them its name, and of a number; the ROM's."""
-_SPOKEN = re.compile(r'"[^"\n]*"?|\bREM\b(.*)')
-"""The parts of a program that Applesoft keeps as they are typed."""
+# zero-page pointers to the start of each area, which extends to the next one
+PROGRAM = 0x67
+VARIABLES = 0x69
+ARRAYS = 0x6B
+ARRAYS_END = 0x6D
+_ENTRY_SIZE = 7  # bytes of a simple variable, two of them its name
+_NUMBER_SIZE = 5  # bytes of a stored number
+_VERBATIM = re.compile(r'"[^"\n]*"?|\bREM\b(.*)')
+"""Parts of a program that Applesoft keeps as they are typed: strings and remarks."""
 
 
 def _reals(apple: Apple) -> dict[str, str]:
-    """Every real variable by name, oldest first: five stored bytes in hexadecimal."""
-    entries = range(apple.word(VARIABLES), apple.word(ARRAYS), _ENTRY)
-    memory = (bytes(apple.memory[place : place + _ENTRY]) for place in entries)
+    """Return every real variable by name, oldest first: five stored bytes in hexadecimal."""
+    entries = range(apple.word(VARIABLES), apple.word(ARRAYS), _ENTRY_SIZE)
+    memory = (bytes(apple.memory[place : place + _ENTRY_SIZE]) for place in entries)
     # strings, integers and functions have a high bit in their names
     return {_name(entry): entry[2:].hex() for entry in memory if entry[:2].isascii()}
 
 
 def _array_a(apple: Apple) -> dict[str, Any] | None:
-    """The array of reals A: ``dims`` (sizes) and ``data``, first subscript fastest; or None."""
+    """Return the array of reals A: ``dims`` (sizes) and ``data``, first subscript fastest; None if
+    there is none."""
     memory = apple.memory
     place, end = apple.word(ARRAYS), apple.word(ARRAYS_END)
     while place < end and (size := apple.word(place + 2)):
@@ -147,7 +155,8 @@ def _array_a(apple: Apple) -> dict[str, Any] | None:
             # the last subscript's size stands first, the high byte before the low
             sizes = [256 * memory[at] + memory[at + 1] for at in range(start - 2, place + 4, -2)]
             data = bytes(memory[start : place + size])
-            cells = [data[at : at + _NUMBER].hex() for at in range(0, len(data), _NUMBER)]
+            starts = range(0, len(data), _NUMBER_SIZE)
+            cells = [data[at : at + _NUMBER_SIZE].hex() for at in starts]
             return {"dims": sizes, "data": cells}
         place += size
     return None
@@ -158,41 +167,67 @@ def _name(entry: bytes | bytearray) -> str:
 
 
 def small_letters(apple: Apple, program: str) -> list[str]:
-    """The POKEs, as commands for the prompt, that put small letters, which no key of an Apple II
-    Plus types, into a program's texts in quotes and remarks. Raises ValueError when the program in
-    memory is another."""
+    """Return the POKE commands that put lower-case letters into a program's strings and remarks; an
+    Apple II Plus has no keys for them. Raises ValueError when another program is in memory."""
     place = apple.word(PROGRAM)
     commands = []
-    spoken_texts = (match[1] or match[0] for match in _SPOKEN.finditer(program))
-    for spoken in filter(re.compile("[a-z]").search, spoken_texts):
-        text = spoken.upper().encode("ascii")
+    verbatim_texts = (match[1] or match[0] for match in _VERBATIM.finditer(program))
+    for verbatim in filter(re.compile("[a-z]").search, verbatim_texts):
+        text = verbatim.upper().encode("ascii")
         place = apple.memory.find(text, place)
         if place < 0:
-            raise ValueError(f"the program in memory does not hold {spoken!r}")
-        letters = enumerate(spoken, place)
+            raise ValueError(f"the program in memory does not hold {verbatim!r}")
+        letters = enumerate(verbatim, place)
         commands += [f"POKE {at},{ord(letter)}" for at, letter in letters if letter.islower()]
         place += len(text)
     return commands
 
 
-FAC, FAC_SIGN, FAC_EXTENSION = 0x9D, 0xA2, 0xAC
-"""The accumulator: exponent, four mantissa bytes; its sign byte; the eight bits below."""
-TEXT_POINTER, CHRGOT, LOAD_ARGUMENT, STORE_ROUNDED = 0xB8, 0xB7, 0xE9E3, 0xEB2B
-"""The ROM's pointer to the text it reads, and three of its routines."""
-ERROR = 0xD412
-"""Where every error goes, with its code in X."""
+# the floating-point accumulator in page 0
+FAC = 0x9D  # exponent, then four mantissa bytes
+FAC_SIGN = 0xA2
+FAC_EXTENSION = 0xAC  # the eight bits below the mantissa
+
+TEXT_POINTER = 0xB8  # address of the text that the ROM reads
+
+# routines of the ROM
+CHRGOT = 0xB7
+LOAD_ARGUMENT = 0xE9E3
+STORE_ROUNDED = 0xEB2B
+POWER = 0xEE97  # argument to the power of the accumulator
+READ_NUMBER = 0xEC4A  # reads the number at the text pointer
+ERROR = 0xD412  # every error comes here, with its code in X
 WITH_MEMORY = {"add": 0xE7BE, "sub": 0xE7A7, "mul": 0xE97F, "div": 0xEA66, "cmp": 0xEBB2}
-"""Memory and accumulator: the first operand is the one in memory."""
+"""Routines of two operands: the first in memory, the second in the accumulator."""
 OF_ACCUMULATOR = {
-    **{"neg": 0xEED0, "abs": 0xEBAF, "sgn": 0xEB90, "int": 0xEC23, "sqr": 0xEE8D, "exp": 0xEF09},
-    **{"log": 0xE941, "sin": 0xEFF1, "cos": 0xEFEA, "tan": 0xF03A, "atn": 0xF09E, "fout": 0xED34},
+    "neg": 0xEED0,
+    "abs": 0xEBAF,
+    "sgn": 0xEB90,
+    "int": 0xEC23,
+    "sqr": 0xEE8D,
+    "exp": 0xEF09,
+    "log": 0xE941,
+    "sin": 0xEFF1,
+    "cos": 0xEFEA,
+    "tan": 0xF03A,
+    "atn": 0xF09E,
+    "fout": 0xED34,
 }
-POWER, READ_NUMBER = 0xEE97, 0xEC4A
-"""Argument to the power of the accumulator; the number at the text pointer."""
-_OPERAND, _STUB, _BACK, _BUFFER = 0x0300, 0x0310, 0x0340, 0x0200
-"""Page 3 is the user's; a number to be read stands in the input buffer."""
-_LDA, _LDY, _LDX, _LDA_ZERO, _JSR, _JMP = 0xA9, 0xA0, 0xA2, 0xA5, 0x20, 0x4C
-"""Opcodes; the first three take the number behind them."""
+"""Routines of one operand, in the accumulator."""
+
+# memory used here: page 3 is free for users
+_OPERAND = 0x0300
+_STUB = 0x0310
+_BACK = 0x0340
+_BUFFER = 0x0200  # the input buffer, for a number to be read
+
+# opcodes
+_LDA = 0xA9  # immediate, as the next two
+_LDY = 0xA0
+_LDX = 0xA2
+_LDA_ZERO = 0xA5
+_JSR = 0x20
+_JMP = 0x4C
 
 
 def _jsr(address: int) -> list[int]:
@@ -205,7 +240,7 @@ def _put(apple: Apple, address: int, data: bytes) -> None:
 
 
 def _execute(apple: Apple, code: list[int]) -> str:
-    """Run machine code; the error it ended in, in the captures' form."""
+    """Run machine code; return the error it ended in, in the captures' form, "" if none."""
     _put(apple, _STUB, bytes([*code, _JMP, _BACK & 0xFF, _BACK >> 8]))
     apple.cpu.sp = 0xF8
     return f"E{apple.cpu.x}" if apple.call(_STUB, (_BACK, ERROR)) == ERROR else ""

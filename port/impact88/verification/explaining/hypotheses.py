@@ -17,8 +17,14 @@ from numpy.typing import NDArray
 
 from ...collision.doubles import double, doubles_of
 from ...collision.fields import FIELDS, INPUTS, scene_name
-from ...comparison.equations.edits import Edit, assigned, edits_of, readings, written_out
-from ...comparison.equations.evaluation import Run, chunks, value
+from ...comparison.equations.edits import (
+    Edit,
+    expand_lines,
+    parse_assignments,
+    readings,
+    spelling_edits,
+)
+from ...comparison.equations.evaluation import Run, chunks, evaluate
 from ...comparison.equations.spelling import LISTING, NEGATIVE, SHOWN, Expression, spellings
 from ...files import packaged_text
 from ..reading import numerals
@@ -75,10 +81,16 @@ def table() -> tuple[Row, ...]:
         else:
             lines.append(line)
     rows: dict[str, Row] = {}
-    for line in written_out(lines):
+    for line in expand_lines(lines):
         kind, note, bits, edits = (part.strip() for part in line.split("|"))
         inputs, _, results = edits.partition(";;")
-        row = Row(kind, note, float(bits), dict(assigned(inputs)), dict(assigned(results)))
+        row = Row(
+            kind,
+            note,
+            float(bits),
+            dict(parse_assignments(inputs)),
+            dict(parse_assignments(results)),
+        )
         rows.setdefault(edits, row)
     return tuple(rows.values())
 
@@ -103,7 +115,7 @@ class Rows:
             names = {name: self._found[name][index] for name in self._found if case.row.results}
             for name, made in case.row.results.items():
                 if name in names:
-                    self._found[name][index] = value(made, {**names, "x": names[name]})
+                    self._found[name][index] = evaluate(made, {**names, "x": names[name]})
 
     def causes(self) -> Iterator[Cause]:
         """The rows of inputs that fit the page, and those of results that change what differs."""
@@ -154,7 +166,7 @@ class Rows:
                 typed[name] = self._scene[made]
                 continue
             x = self._values[name]
-            found = float(value(made, {**self._values, "x": x}))
+            found = float(evaluate(made, {**self._values, "x": x}))
             if not isfinite(found):
                 return
             typed[name] = in_full[name] = _short(found)
@@ -215,7 +227,7 @@ class Rows:
             for name, made in row.results.items():
                 if not isinstance(made, str):  # in another unit, to the page's decimals
                     if name in fields and name in values:
-                        found = float(value(made, {**values, "x": values[name]}))
+                        found = float(evaluate(made, {**values, "x": values[name]}))
                         places = self._page.decimals(name)
                         unit = 10.0 ** -max(places, FIELDS[name].places or places)
                         slack = 1.001 * unit + _ROUGH * abs(found)
@@ -282,10 +294,10 @@ def other_programs(page: PageEvidence) -> Iterator[Cause]:
 
     if not wrong({}, 1)[0]:
         return  # what differs is the arithmetic
-    edits = (*edits_of(LISTING), *readings())
+    edits = (*spelling_edits(LISTING), *readings())
     named: list[Edit] = []
     for part in chunks(len(edits), 1):
-        names = run.edited([edit.sides for edit in edits[part]])
+        names = run.run_edits([edit.sides for edit in edits[part]])
         alike = np.flatnonzero(wrong(names, len(edits[part])) == 0)
         named += [edits[part][k] for k in alike]
     if named:
