@@ -14,7 +14,7 @@ from fiftydigits import exact, relative_error
 from impact88.bench import figure, measure, plainc, tables
 from impact88.bench.measure import COMPONENTS
 from impact88.bench.methods import METHODS, reference, relative_errors
-from impact88.bench.populations import BENCHMARK, POPULATIONS, enlarged, scenes, texts
+from impact88.bench.populations import BENCHMARK, POPULATIONS, repeat_scenes, scenes, texts
 from impact88.commands.cli import main
 from impact88.figures import canvas
 from impact88.mechanics.closedform.solve import solve
@@ -187,7 +187,7 @@ def test_plain_c_knows_no_pivot():
 def test_sizes():
     grown = measure.sizes([1, 50_000], 1)
     assert all(row["nanoseconds"] > 0 < row["memory"] for row in grown)
-    columns = enlarged(scenes("casework", 100, 1), 50_000)
+    columns = repeat_scenes(scenes("casework", 100, 1), 50_000)
     room = {name: np.empty(50_000) for name in FINAL_VELOCITIES}
     tracemalloc.start()
     solve(columns, out=room, threads=1)

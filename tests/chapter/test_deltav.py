@@ -10,7 +10,7 @@ from impact88.chapter.deltav import (
     AS_PRINTED,
     AS_USED,
     delta_v,
-    described,
+    describe,
     initial_velocity,
     loss_of,
     speeds_before,
@@ -44,9 +44,9 @@ def test_as_printed_it_is_half_as_much_again_and_reproduces_nothing() -> None:
 
 def test_docstrings_and_output_say_which_it_is() -> None:
     assert "2/3" in str(delta_v.__doc__)
-    assert "without the factor 2/3" in described(AS_PRINTED)
-    assert "factor 2/3" in described(AS_USED)
-    assert "0.7" in described(0.7)
+    assert "without the factor 2/3" in describe(AS_PRINTED)
+    assert "factor 2/3" in describe(AS_USED)
+    assert "0.7" in describe(0.7)
     assert "with the factor 2/3*, which reproduces Table 2" in str(deltav.__doc__)
 
 

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import impact88
-from impact88.bench.populations import POPULATIONS, enlarged, scenes, texts
+from impact88.bench.populations import POPULATIONS, repeat_scenes, scenes, texts
 from impact88.mechanics import native
 from impact88.mechanics.closedform import kernelcalls
 from impact88.mechanics.closedform import solve as solving
@@ -49,7 +49,7 @@ def assert_same_bits(compiled, alone):
 @pytest.mark.parametrize("name", POPULATIONS)
 @pytest.mark.parametrize("count", [2, FEW, FEW + 1])
 def test_every_result_of_every_population(name, count):
-    assert_same_bits(*both(enlarged(scenes(name, min(count, 500), 11), count), threads=1))
+    assert_same_bits(*both(repeat_scenes(scenes(name, min(count, 500), 11), count), threads=1))
 
 
 def test_what_is_compiled_as_a_whole_is_what_the_formulas_say(file_regression, request):
@@ -79,7 +79,7 @@ def test_each_kernel_is_of_what_it_says():
 def odd(count: int, seed: int) -> dict[str, np.ndarray]:
     """Casework in which scenes are now and then of another kind, or cannot be used."""
     rng = np.random.default_rng(seed)
-    columns = enlarged(scenes("casework", min(count, 5000), seed), count)
+    columns = repeat_scenes(scenes("casework", min(count, 5000), seed), count)
     columns["M"] = np.full(count, 6.0)
 
     def some(share: float) -> np.ndarray:
@@ -110,7 +110,7 @@ def test_kinds_that_change_far_behind_what_was_looked_at():
     """The machine goes on over all scenes of one kind, and must notice where another begins."""
     count = 2 * TILE + 5000
     for name, value in {"MU": -10.0, "GA": 1e6, "IA": np.inf, "UX": np.nan, "M": 4.0}.items():
-        columns = enlarged(scenes("casework", 5000, 5), count)
+        columns = repeat_scenes(scenes("casework", 5000, 5), count)
         columns["M"] = np.full(count, 6.0)
         columns["EM"] = np.full(count, -0.5)
         columns[name][-5003] = value

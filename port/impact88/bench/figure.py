@@ -14,14 +14,13 @@ from .populations import POPULATIONS
 
 WIDTH = 174.0
 """Millimetres: two columns."""
-_ROW, _PANELS = 56.0, 3
-"""Millimetres from a row of panels to the next: the panels' 38, a title of three lines, numbers and
-axis below; panels that fit the width."""
-_TIMES, _ERRORS = (1e-9, 2e-2), (1e-17, 1e4)
-"""Ends of the axes: a nanosecond is a twentieth of what memory alone takes, 20 ms some ten times
-what 50 digits take; an error of 0 stands at the lower end."""
-_CONDITIONS, _SHARES = (1.0, 1e16), (1e-4, 1.0)
-"""No condition is below 1, and from 1e16 on no digit of a double is left; one scene of 10,000."""
+_ROW_HEIGHT = 56.0  # mm: 38 of panel, a title of three lines, numbers and axis below
+_PANELS_PER_ROW = 3
+# ends of the axes
+_TIMES = (1e-9, 2e-2)  # s a scene: 1/20 of memory alone, and ten times what 50 digits take
+_ERRORS = (1e-17, 1e4)  # an error of 0 is drawn at the lower end
+_CONDITIONS = (1.0, 1e16)  # no condition is below 1; at 1e16 no digit of a double is left
+_SHARES = (1e-4, 1.0)  # one scene of 10,000
 _LABEL = "relative error of the final velocities"
 _MARKS = {method.key: (method.mark, method.colour) for method in METHODS}
 SCATTERED = ("applesoft", "lapack-fill", "closed-form")
@@ -33,7 +32,7 @@ _Axis = tuple[tuple[float, float], str, Sequence[tuple[float, str]]]
 
 
 def _finish(drawing: Drawing, low: float, rows: Sequence[Row], note: str) -> Drawing:
-    """With a key from ``low`` on, and the rows in words."""
+    """Add a key from ``low`` on and a description of the rows, and set the height."""
     summaries = [
         f"{row['name']} on {row['population']}: {row['seconds']:.2g} s, median "
         f"{row['median']:.2g}, largest {row['largest']:.2g}"
@@ -48,7 +47,7 @@ def _finish(drawing: Drawing, low: float, rows: Sequence[Row], note: str) -> Dra
 
 
 def _panel(drawing: Drawing, box: Box, title: Sequence[str], x: _Axis, y: _Axis) -> Panel:
-    """With both axes logarithmic. Each axis: its ends, label and ticks."""
+    """Add a panel with two logarithmic axes, each given as its ends, label and ticks."""
     for count, line in enumerate(title[::-1]):
         at = complex(box.left, box.top + 5 + 2.8 * count)
         drawing.add(Text(at, line, 6, bold=line == title[0], role="panel title"))
@@ -58,10 +57,10 @@ def _panel(drawing: Drawing, box: Box, title: Sequence[str], x: _Axis, y: _Axis)
 
 def _mark(panel: Panel, x: float, error: float, method: str) -> None:
     shape, colour = _MARKS[method]
-    panel.mark(x, _shown(error), shape[0], colour, shape[-1] != " ", method)
+    panel.mark(x, _clip_error(error), shape[0], colour, shape[-1] != " ", method)
 
 
-def _shown(error: Any) -> Any:
+def _clip_error(error: Any) -> Any:
     return np.clip(error, *_ERRORS)
 
 
@@ -76,10 +75,11 @@ def work_precision(rows: Sequence[Row], roof: float) -> Drawing:
     top = drawing.heading() - 11
     names = list(dict.fromkeys(row["population"] for row in rows))
     for place, name in enumerate(names):
-        below, column = divmod(place, _PANELS)
-        left, upper = 12 + 56.0 * column, top - _ROW * below
+        below, column = divmod(place, _PANELS_PER_ROW)
+        left, upper = 12 + 56.0 * column, top - _ROW_HEIGHT * below
         panel = _panel(
-            *(drawing, Box(left, upper - 38, left + 44, upper)),
+            drawing,
+            Box(left, upper - 38, left + 44, upper),
             [name, *wrapped(POPULATIONS[name].meaning, 52, 6)],
             (_TIMES, "time per scene, s", powers(1e-9, 1e-2, 2)),
             (_ERRORS, "" if column else _LABEL, _ERROR_TICKS),
@@ -90,11 +90,11 @@ def work_precision(rows: Sequence[Row], roof: float) -> Drawing:
             if method not in _MARKS:
                 panel.rule(seconds, GREY, dash=(0.4, 0.6))
                 continue
-            colour, ends = _MARKS[method][1], _shown((row["median"], row["largest"]))
+            colour, ends = _MARKS[method][1], _clip_error((row["median"], row["largest"]))
             panel.line([seconds] * 2, ends, colour, 0.3)
             panel.mark(seconds, ends[1], "_", colour)
             _mark(panel, seconds, row["median"], method)
-    low = top - _ROW * -(-len(names) // _PANELS)
+    low = top - _ROW_HEIGHT * -(-len(names) // _PANELS_PER_ROW)
     note = "mark: median; end of line: largest; dashed: what memory alone takes"
     return _finish(drawing, low, rows, note)
 
@@ -110,27 +110,35 @@ def error_distribution(rows: Sequence[Row]) -> Drawing:
     for name in dict.fromkeys(row["population"] for row in rows):
         first = name == rows[0]["population"]
         errors = _panel(
-            *(drawing, Box(12, top - 38, 84, top), [name]),
+            drawing,
+            Box(12, top - 38, 84, top),
+            [name],
             (_CONDITIONS, "condition", powers(1, 1e16, 4)),
             (_ERRORS, "error by the scene's speeds and spins" if first else "", _ERROR_TICKS),
         )
         for unit, colour in ((DOUBLE, ORANGE), (APPLESOFT, VERMILION)):
-            line = _shown(relative_bounds(_CONDITIONS, unit))
+            line = _clip_error(relative_bounds(_CONDITIONS, unit))
             errors.line(_CONDITIONS, line, colour, 0.4, dash=(1.2, 0.6), role="bound")
         shares = _panel(
-            *(drawing, Box(98, top - 38, 170, top), []),
+            drawing,
+            Box(98, top - 38, 170, top),
+            [],
             (_ERRORS, "the same error", _ERROR_TICKS),
             (_SHARES, "share of scenes with a larger error" if first else "", powers(1e-4, 1, 1)),
         )
         for row in [row for row in rows if row["population"] == name]:
-            method, found = row["method"], row["errors"]
-            every = max(1, len(found) // MOST_MARKS)
-            for condition, error in zip(row["conditions"][::every], found[::every], strict=True):
+            method, scene_errors = row["method"], row["errors"]
+            stride = max(1, len(scene_errors) // MOST_MARKS)
+            for condition, error in zip(
+                row["conditions"][::stride], scene_errors[::stride], strict=True
+            ):
                 _mark(errors, float(np.clip(condition, *_CONDITIONS)), float(error), method)
-            share = 1 - np.arange(len(found)) / len(found)
+            share = 1 - np.arange(len(scene_errors)) / len(scene_errors)
             mark, colour = _MARKS[method]
             dash = (0.4, 0.6) if mark[-1] == " " else ()
-            shares.line(_shown(np.sort(found)), share, colour, 0.4, dash=dash, role=method)
-        top -= _ROW
+            shares.line(
+                _clip_error(np.sort(scene_errors)), share, colour, 0.4, dash=dash, role=method
+            )
+        top -= _ROW_HEIGHT
     note = "dashed: 16 × condition × unit roundoff, of double precision and of the 1988 program"
     return _finish(drawing, top, rows, note)

@@ -26,20 +26,20 @@ from ..names import FINAL_VELOCITIES, PIVOT, SCENE
 from ..version import __version__
 from . import plainc
 from .methods import METHODS, Method, reference, relative_errors
-from .populations import BENCHMARK, POPULATIONS, enlarged, scenes
+from .populations import BENCHMARK, POPULATIONS, repeat_scenes, scenes
 
 Row = dict[str, Any]
 ORDER = tuple(FINAL_VELOCITIES)
 ROOF_SCENES = 1_000_000
 """Scenes whose columns are too many for any cache."""
-AT_ONCE = 500
-"""Scenes in calls that are timed together, where a call has fewer."""
+MIN_SCENES_TIMED = 500  # calls with fewer scenes are timed several together
 COMPONENTS = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "PN", "PT", "PM", "LOSS", "DVA", "MUC")
 """Results whose errors are listed one by one."""
 
 
 def machine() -> Row:
-    """What the run ran on; ``load``: how many processes wanted a core in the minute before."""
+    """Return what the run ran on; ``load``: average number of processes ready to run in the minute
+    before."""
     name = platform.processor() or platform.machine()
     try:
         with open("/proc/cpuinfo", encoding="utf-8") as file:
@@ -68,8 +68,8 @@ def mover(columns: Mapping[str, Any], results: Mapping[str, Any]) -> Callable[[]
         return partial(plainc.move, plainc.prepare(columns), results)
     count = len(next(iter(results.values())))
     table = ExpressionTable()
-    first, *others = (table.column(name, varies=True) for name in columns)
-    program = Program(dict.fromkeys(results, sum(others, first)), ["RESULT"] * len(results))
+    first, *columns_left = (table.column(name, varies=True) for name in columns)
+    program = Program(dict.fromkeys(results, sum(columns_left, first)), ["RESULT"] * len(results))
     read = [columns[name] for name in program.columns]
     if native.library is None:
         return partial(Plan(program).run, read, results, {}, TILE)
@@ -88,12 +88,12 @@ def medians(works: Sequence[Callable[[], object]], repeats: int, calls: int = 1)
     one, so that all see the same machine."""
     times: list[list[float]] = [[] for _ in works]
     for _ in range(repeats):
-        for taken, work in zip(times, works, strict=True):
+        for durations, work in zip(times, works, strict=True):
             start = time.process_time()
             for _ in range(calls):
                 work()
-            taken.append(time.process_time() - start)
-    return [statistics.median(taken) for taken in times]
+            durations.append(time.process_time() - start)
+    return [statistics.median(durations) for durations in times]
 
 
 def applies(method: Method, population: str, columns: Mapping[str, Any]) -> bool:
@@ -104,7 +104,7 @@ def applies(method: Method, population: str, columns: Mapping[str, Any]) -> bool
 
 
 def steps(populations: Sequence[str], repeats: int) -> int:
-    """How often `measure` reports progress."""
+    """Return the number of times that `measure` reports progress."""
     return len(populations) * (1 + len(METHODS) * (1 + repeats))
 
 
@@ -147,17 +147,22 @@ def measure(
             answered, scaled = error[fine], relative_errors(found, hi, lo, sizes)[fine]
             condition = solved["COND"][fine]
             timed = max(10, round(effort * method.timed))
-            works.append((method, method.prepare(enlarged(columns, timed)), []))
+            works.append((method, method.prepare(repeat_scenes(columns, timed)), []))
             mine.append(
                 {
-                    **{"population": name, "method": method.key, "name": method.name},
-                    **{"scenes": count, "timed": timed, "unanswered": int(count - fine.sum())},
+                    "population": name,
+                    "method": method.key,
+                    "name": method.name,
+                    "scenes": count,
+                    "timed": timed,
+                    "unanswered": int(count - fine.sum()),
                     "median": float(np.median(answered)),
                     "per_mille": float(np.quantile(answered, 0.999)),
                     "largest": float(answered.max()),
                     "over_condition": float((scaled / condition).max() / method.roundoff),
                     "over_sensitivity": float((answered / sensitive[fine]).max() / method.roundoff),
-                    **{"errors": scaled, "conditions": condition},
+                    "errors": scaled,
+                    "conditions": condition,
                 }
             )
             progress(1)
@@ -212,12 +217,12 @@ def sizes(counts: Sequence[int], repeats: int) -> list[Row]:
     rows = []
     for count in counts:
         room = {name: np.zeros(count) for name in ORDER}
-        columns: Any = enlarged(scenes(BENCHMARK[0], 4096, 1), count)
+        columns: Any = repeat_scenes(scenes(BENCHMARK[0], 4096, 1), count)
         move = mover({name: columns[name] for name in SCENE if name != "M"}, room)
         if count == 1:
             columns = {name: float(values[0]) for name, values in columns.items()}
             room = {name: np.zeros(()) for name in ORDER}
-        calls = max(1, AT_ONCE // count)
+        calls = max(1, MIN_SCENES_TIMED // count)
         works = (
             partial(solve, columns, ORDER, threads=1),
             partial(solve, columns, out=room, threads=1),
@@ -225,8 +230,8 @@ def sizes(counts: Sequence[int], repeats: int) -> list[Row]:
         )
         times = medians(works, repeats, calls)
         row: Row = {"scenes": count, "seconds": times[0] / calls}
-        for key, taken in zip(("nanoseconds", "nanoseconds_out", "memory"), times, strict=True):
-            row[key] = 1e9 * taken / calls / count
+        for key, durations in zip(("nanoseconds", "nanoseconds_out", "memory"), times, strict=True):
+            row[key] = 1e9 * durations / calls / count
         rows.append(row)
     return rows
 

@@ -92,7 +92,7 @@ def _changes(columns: Columns) -> tuple[Floats, Floats, Floats]:
     return (A, *changes(columns, A))
 
 
-def _closed(columns: Columns) -> dict[str, Floats]:
+def _closed_form(columns: Columns) -> dict[str, Floats]:
     return solve(columns, ORDER, threads=1)
 
 
@@ -104,33 +104,68 @@ METHODS: Sequence[Method] = (
     Method("replay", "replay (Applesoft, arrays)", "s", VERMILION, 20_000, _replay, **_TEXTS),
     Method("float64", "port in float64", "o ", BLUE, 500, _float64, _scenes),
     Method(
-        *("elimination", "listing's elimination, pi exact", "v", BLUE, 2000),
-        *(_listing_elimination, fill),
+        "elimination",
+        "listing's elimination, pi exact",
+        "v",
+        BLUE,
+        2000,
+        _listing_elimination,
+        fill,
     ),
     Method(
-        *("lapack", "LAPACK, matrices ready", "^", GREY, 100_000, lambda m: lapack(*m), fill),
+        "lapack",
+        "LAPACK, matrices ready",
+        "^",
+        GREY,
+        100_000,
+        lambda m: lapack(*m),
+        fill,
     ),
     Method(
-        *("lapack-changes", "LAPACK, velocity changes", ">", GREY, 100_000),
-        *(lambda made: made[2] + lapack(*made[:2]), _changes),
+        "lapack-changes",
+        "LAPACK, velocity changes",
+        ">",
+        GREY,
+        100_000,
+        lambda made: made[2] + lapack(*made[:2]),
+        _changes,
     ),
     Method(
-        *("lapack-fill", "LAPACK, filled and solved", "^ ", GREY, 100_000),
+        "lapack-fill",
+        "LAPACK, filled and solved",
+        "^ ",
+        GREY,
+        100_000,
         lambda columns: lapack(*fill(columns)),
     ),
-    Method("closed-form", "closed form, one core", "D", ORANGE, 1_000_000, _closed),
+    Method("closed-form", "closed form, one core", "D", ORANGE, 1_000_000, _closed_form),
     Method(
-        *("closed-form-2", "closed form, two cores", "D ", BLACK, 1_000_000),
+        "closed-form-2",
+        "closed form, two cores",
+        "D ",
+        BLACK,
+        1_000_000,
         lambda columns: solve(columns, ORDER, threads=2),
         threads=2,
     ),
     Method(
-        *("closed-form-numpy", "closed form, numpy alone", "D ", ORANGE, 200_000, _closed),
+        "closed-form-numpy",
+        "closed form, numpy alone",
+        "D ",
+        ORANGE,
+        200_000,
+        _closed_form,
         compiled=False,
     ),
     *(
         Method(
-            *(key, name, mark, BLACK, 200_000, partial(plainc.solve, flags=flags), plainc.prepare),
+            key,
+            name,
+            mark,
+            BLACK,
+            200_000,
+            partial(plainc.solve, flags=flags),
+            plainc.prepare,
             plain=True,
         )
         for key, name, mark, flags in zip(
@@ -142,7 +177,12 @@ METHODS: Sequence[Method] = (
         )
     ),
     Method(
-        *("replay-numpy", "replay, numpy alone", "P ", VERMILION, 20_000, _replay),
+        "replay-numpy",
+        "replay, numpy alone",
+        "P ",
+        VERMILION,
+        20_000,
+        _replay,
         **_TEXTS,
         compiled=False,
     ),

@@ -24,32 +24,31 @@ from ..names import SCENE
 Floats = NDArray[np.float64]
 COMPILERS = ("cc", "gcc", "clang")
 FLAGS = ("-O3", "-O3 -march=native -ffast-math -fopenmp-simd")
-"""What a programmer gives who wants the code fast, and who wants it fastest and does not ask for
-each rounding; by the second, glibc's sine takes several angles at a time."""
+"""Sets of compiler flags: fast code, and the fastest without exact rounding. With the second,
+glibc's sine takes several angles at a time."""
 COLUMNS = tuple(name for name in SCENE if name != "M")
-SECONDS = 60
-"""The longest that a compiler may take."""
+TIMEOUT = 60  # seconds that a compiler may take
 
 
 @cache
 def compiler() -> str | None:
-    """The C compiler of this machine, or None."""
+    """Return the path of this machine's C compiler, or None."""
     return next(filter(None, map(shutil.which, COMPILERS)), None)
 
 
 @cache
 def version() -> str | None:
-    """What the compiler says that it is, or None where there is none."""
+    """Return the compiler's version line, or None where there is no compiler."""
     path = compiler()
     if path is None:
         return None
-    asked = subprocess.run([path, "--version"], capture_output=True, text=True, check=False)
-    return next(iter(asked.stdout.splitlines()), Path(path).name)
+    process = subprocess.run([path, "--version"], capture_output=True, text=True, check=False)
+    return next(iter(process.stdout.splitlines()), Path(path).name)
 
 
 @cache
 def library(flags: str) -> Any:
-    """The compiled functions, or None where they cannot be had."""
+    """Return the compiled functions, or None where they cannot be compiled."""
     path = compiler()
     if path is None:
         return None
@@ -63,7 +62,7 @@ def library(flags: str) -> Any:
         linking = [path, "-shared", "-o", str(built), str(object_file), "-lm"]
         try:
             for command in (compilation, linking):
-                subprocess.run(command, capture_output=True, check=True, timeout=SECONDS)
+                subprocess.run(command, capture_output=True, check=True, timeout=TIMEOUT)
             loaded = ctypes.CDLL(str(built))
         except (OSError, subprocess.SubprocessError):
             return None
@@ -84,12 +83,12 @@ def _call(function: Any, read: Sequence[Floats], results: Iterable[Floats]) -> N
 
 
 def prepare(columns: Mapping[str, Floats]) -> list[Floats]:
-    """The columns as C wants them: doubles without gaps, in the scene's order."""
+    """Return the columns as C needs them: contiguous doubles, in the scene's order."""
     return [np.ascontiguousarray(columns[name], np.float64) for name in COLUMNS]
 
 
 def solve(read: Sequence[Floats], flags: str) -> dict[str, Floats]:
-    """The six final velocities of what `prepare` gives."""
+    """Return the six final velocities for the columns of `prepare`."""
     results = {name: np.empty(len(read[0])) for name in ORDER}
     _call(library(flags).solve_plainly, read, results.values())
     return results

@@ -48,7 +48,7 @@ def _population(level: str, meaning: str, listing: bool = True) -> Callable[[Mak
 
 
 def texts(columns: Columns) -> dict[str, list[str]]:
-    """The decimal texts of the numbers, short enough to be typed."""
+    """Return the decimal texts of the numbers, short enough to be typed."""
     return {
         name: [repr(x).removesuffix(".0").upper() for x in values.tolist()]
         for name, values in columns.items()
@@ -56,12 +56,12 @@ def texts(columns: Columns) -> dict[str, list[str]]:
 
 
 def scenes(name: str, count: int, seed: int) -> Columns:
-    """``count`` scenes of a population; the same for the same seed."""
+    """Return ``count`` scenes of a population; the same for the same seed."""
     return POPULATIONS[name].make(np.random.default_rng([seed, *name.encode()]), count)
 
 
-def enlarged(columns: Columns, count: int) -> Columns:
-    """The scenes again and again until there are ``count``."""
+def repeat_scenes(columns: Columns, count: int) -> Columns:
+    """Return ``count`` scenes: these, repeated."""
     return {name: np.resize(values, count) for name, values in columns.items()}
 
 
@@ -72,11 +72,23 @@ def casework(rng: Generator, count: int) -> Columns:
         return result
 
     limits = {
-        **{"E": (0, 0.4), "MU": (-1, 1), "EM": (-1, 0), "DA": (0.5, 9), "DB": (0.5, 9)},
-        **{"GA": (-90, 90), **dict.fromkeys(("PA", "PB", "TA", "TB"), (-180, 180))},
-        **{"MA": (60, 200), "MB": (60, 200), "IA": (900, 5000), "IB": (900, 5000)},
-        **{"UX": (-90, 90), "UY": (-90, 90), "WA": (-2, 2)},
-        **{"VX": (-90, 90), "VY": (-90, 90), "WB": (-2, 2)},
+        "E": (0, 0.4),
+        "MU": (-1, 1),
+        "EM": (-1, 0),
+        "DA": (0.5, 9),
+        "DB": (0.5, 9),
+        "GA": (-90, 90),
+        **dict.fromkeys(("PA", "PB", "TA", "TB"), (-180, 180)),
+        "MA": (60, 200),
+        "MB": (60, 200),
+        "IA": (900, 5000),
+        "IB": (900, 5000),
+        "UX": (-90, 90),
+        "UY": (-90, 90),
+        "WA": (-2, 2),
+        "VX": (-90, 90),
+        "VY": (-90, 90),
+        "WB": (-2, 2),
     }
     g = {}
     for name, ends in limits.items():
@@ -191,7 +203,7 @@ def quarter_turns(rng: Generator, count: int) -> Columns:
 
 @_population("easy", "evolved to have large errors", listing=False)
 def evolved(rng: Generator, count: int) -> Columns:
-    """What tests/benchmarks/evolve.py found, in some order, again and again."""
+    """Scenes found by tests/benchmarks/evolve.py, in random order, repeated as often as needed."""
     text = resources.files(__package__).joinpath("evolved.csv").read_text("ascii")
     names, *rows = csv.reader(text.splitlines())
     order = np.resize(rng.permutation(len(rows)), count)

@@ -48,8 +48,14 @@ COLUMNS: dict[str, tuple[str, Callable[[Any], str]]] = {
 }
 """Key of a row -> heading and how its values are written."""
 _RESULTS = (
-    *("name", "per_second", "median", "per_mille", "largest"),
-    *("over_condition", "over_sensitivity", "unanswered"),
+    "name",
+    "per_second",
+    "median",
+    "per_mille",
+    "largest",
+    "over_condition",
+    "over_sensitivity",
+    "unanswered",
 )
 
 
@@ -64,11 +70,12 @@ def results(rows: Sequence[Row]) -> str:
     """One table for each population."""
     parts = []
     for name in dict.fromkeys(row["population"] for row in rows):
-        measured = [{**row, "per_second": 1 / row["seconds"]} for row in rows]
-        measured = [row for row in measured if row["population"] == name]
-        what = POPULATIONS[name]
-        parts.append(f"{name} ({what.level}): {what.meaning}; {measured[0]['scenes']:,} scenes")
-        parts.append(listing(measured, _RESULTS) + "\n")
+        measured_rows = [{**row, "per_second": 1 / row["seconds"]} for row in rows]
+        measured_rows = [row for row in measured_rows if row["population"] == name]
+        population = POPULATIONS[name]
+        count = measured_rows[0]["scenes"]
+        parts.append(f"{name} ({population.level}): {population.meaning}; {count:,} scenes")
+        parts.append(listing(measured_rows, _RESULTS) + "\n")
     parts.append(
         "relative error of the final velocities; cond: COND, sens: sensitivity to the scene's\n"
         "numbers, u: unit roundoff (2^-32 for Applesoft, 2^-53 for double), each for the worst\n"
@@ -92,8 +99,8 @@ def summary(rows: Sequence[Row]) -> str:
     for name in names:
         heading += [f"{name}: median", "largest"]
     sizes = f"{rows[0]['scenes']:,} scenes of each population"
-    what = f"relative error of the final velocities; {sizes}; times: {names[0]}"
-    return "\n".join([what, *table(lines, heading)])
+    caption = f"relative error of the final velocities; {sizes}; times: {names[0]}"
+    return "\n".join([caption, *table(lines, heading)])
 
 
 def components(rows: Sequence[Row]) -> str:
@@ -120,7 +127,7 @@ _RATIOS = (
 
 
 def ratios(rows: Sequence[Row]) -> str:
-    """What the aims are measured by: times, and largest errors on a population."""
+    """Return the ratios that the aims are stated in: times, and largest errors on a population."""
     by = {(row["population"], row["method"]): row for row in rows}
     lines = []
     for population, key, other, mine, words in _RATIOS:

@@ -19,8 +19,14 @@ from ..mechanics.closedform.solve import solve
 from ..messages.arguments import explains_arguments
 
 BARRIER = {
-    **{"MB": np.inf, "IB": np.inf, "VX": 0.0, "VY": 0.0, "WB": 0.0},
-    **{"DB": 0.0, "PB": 0.0, "TB": 0.0},
+    "MB": np.inf,
+    "IB": np.inf,
+    "VX": 0.0,
+    "VY": 0.0,
+    "WB": 0.0,
+    "DB": 0.0,
+    "PB": 0.0,
+    "TB": 0.0,
 }
 """The values of the scene that make B a barrier; where on it the vehicle hits is of no matter."""
 BARRIER_AFTER = {"VBX": 0.0, "VBY": 0.0, "WBF": 0.0}
@@ -28,8 +34,23 @@ BARRIER_AFTER = {"VBX": 0.0, "VBY": 0.0, "WBF": 0.0}
 VEHICLE = ("E", "MU", "EM", "DA", "GA", "PA", "TA", "MA", "IA", "UX", "UY", "WA")
 """The values of the scene that are the vehicle's and the contact's."""
 RESULTS = (
-    *("VAX", "VAY", "WAF", "XA", "YA", "XAF", "YAF", "KI", "KF", "LOSS"),
-    *("DVA", "PN", "PT", "PM", "MUP", "MUC", "STATUS"),
+    "VAX",
+    "VAY",
+    "WAF",
+    "XA",
+    "YA",
+    "XAF",
+    "YAF",
+    "KI",
+    "KF",
+    "LOSS",
+    "DVA",
+    "PN",
+    "PT",
+    "PM",
+    "MUP",
+    "MUC",
+    "STATUS",
 )
 """The results a barrier leaves: B's stay as they were."""
 

@@ -113,8 +113,8 @@ def _equations_9_to_12(
 def report(
     ma: Array, mb: Array, e: Array, mu: Array, initial: list[Array], final: list[Array]
 ) -> dict[str, Array]:
-    """The velocities by name, and PN PT (Equations 1 and 2), DVA DVB, KI KF, LOSS in percent, MUC,
-    the P_t/P_n that just ends the sliding, and STATUS."""
+    """Return the velocities by name, and PN PT (Equations 1 and 2), DVA DVB, KI KF, LOSS in
+    percent, MUP, MUC (the P_t/P_n that just ends the sliding), and STATUS."""
     van, vat, vbn, vbt = initial
     Van, Vat, Vbn, Vbt = final
     ki = 0.5 * (ma * (van**2 + vat**2) + mb * (vbn**2 + vbt**2))
@@ -122,19 +122,45 @@ def report(
     pn, critical = ma * (Van - van), (vat - vbt) / ((1 + e) * (van - vbn))
     change_a, change_b = np.hypot(Van - van, Vat - vat), np.hypot(Vbn - vbn, Vbt - vbt)
     values = (
-        *(*initial, *final, pn, ma * (Vat - vat), change_a, change_b),
-        *(ki, kf, 100 * (ki - kf) / ki, mu, critical),
+        *initial,
+        *final,
+        pn,
+        ma * (Vat - vat),
+        change_a,
+        change_b,
+        ki,
+        kf,
+        100 * (ki - kf) / ki,
+        mu,
+        critical,
     )
     names = (*INITIAL, *FINAL, "PN", "PT", "DVA", "DVB", "KI", "KF", "LOSS", "MUP", "MUC")
     shape = np.broadcast_shapes(*(np.shape(value) for value in values))
-    none, total = np.zeros(()), final[0] + final[1] + final[2] + final[3]
-    # no arms and no moment; mu is signed here, and -10 is no pivot
-    arms, pivot = (none, none, none, none), (pn, critical * pn)
-    lost = 2 * (ki - kf)
-    sliding = none, none, none  # without arms no normal impulse turns it round
-    found = findings(van - vbn, pn, *arms, lost, ki, e, none, mu, *pivot, *sliding, none, total)
-    named = dict(zip(names, values, strict=True)) | {"STATUS": bits(found)}
-    return {name: np.broadcast_to(value, shape) for name, value in named.items()}
+    zero, total = np.zeros(()), final[0] + final[1] + final[2] + final[3]
+    # no arms, no moment; mu is signed here, and -10 does not stand for the pivot
+    conditions = findings(
+        gn=van - vbn,
+        pn=pn,
+        arm_a=zero,
+        arm_b=zero,
+        da=zero,
+        db=zero,
+        twice_lost=2 * (ki - kf),
+        initial=ki,
+        e=e,
+        em=zero,
+        friction_mu=mu,
+        pivot_pn=pn,
+        pivot_pt=critical * pn,
+        # without arms the normal impulse does not reverse the sliding
+        gt=zero,
+        turning=zero,
+        yielding=zero,
+        condition=zero,
+        sum_of_velocities=total,
+    )
+    results = dict(zip(names, values, strict=True)) | {"STATUS": bits(conditions)}
+    return {name: np.broadcast_to(value, shape) for name, value in results.items()}
 
 
 def _floats(known: Mapping[str, Any], velocities: Sequence[str]) -> list[Array]:

@@ -26,11 +26,12 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-AS_USED, AS_PRINTED = 2 / 3, 1.0
-"""The factor with which the chapter computed Table 2 and Section VII, and Equation 19's own."""
+# factors of Equation 19
+AS_USED = 2 / 3  # in Table 2 and Section VII
+AS_PRINTED = 1.0
 
 GIVEN = ("MA", "MB", "SA", "SB", "LOSS")
-"""What Equation 19 asks for."""
+"""Names of the values that Equation 19 needs."""
 
 
 @explains_arguments
@@ -71,28 +72,28 @@ def delta_v(known: Mapping[str, Any], factor: float = AS_USED) -> dict[str, Arra
     absent = [name for name in GIVEN if name not in known]
     if absent:
         raise UserError(missing(absent))
-    given = [known[name] for name in GIVEN]
-    if all(type(x) is float and x > 0 for x in given):
-        return _changes(factor, math, *given)
+    values = [known[name] for name in GIVEN]
+    if all(type(x) is float and x > 0 for x in values):
+        return _changes(factor, math, *values)
     import numpy as np
 
-    with np.errstate(all="ignore"):  # what is not finite is said in words
-        return _changes(factor, np, *(np.asarray(x, np.float64) for x in given))
+    with np.errstate(all="ignore"):  # callers report what is not finite
+        return _changes(factor, np, *(np.asarray(x, np.float64) for x in values))
 
 
-def _changes(factor: float, by: Any, *given: Any) -> dict[str, Any]:
-    """Equation 19 of the values `GIVEN`, with the square roots of ``by``, math or numpy."""
-    a, b, speed_a, speed_b, loss = given
-    change = factor * by.sqrt(loss / 100) * by.hypot(a * speed_a, b * speed_b)
+def _changes(factor: float, module: Any, *values: Any) -> dict[str, Any]:
+    """Return DVA and DVB by Equation 19 from the values `GIVEN`; ``module``: math or numpy."""
+    a, b, speed_a, speed_b, loss = values
+    change = factor * module.sqrt(loss / 100) * module.hypot(a * speed_a, b * speed_b)
     return {"DVA": change / a, "DVB": change / b}
 
 
 ERROR = "rms 3.8, largest 8.2 ft/s over the 22 velocity changes of Table 2"
-"""How far Equation 19 is from the measured velocity changes; a test holds the numbers."""
+"""Error of Equation 19 against the measured velocity changes; a test checks the numbers."""
 
 
 def loss_of(known: Mapping[str, float], factor: float = AS_USED) -> float:
-    """Equation 19 the other way: LOSS in percent that a velocity change implies.
+    """Return the LOSS, in percent, that a velocity change implies (Equation 19 inverted).
 
     ``known``: MA MB SA SB and DVA or DVB. Raises UserError for a name that is missing.
     """
@@ -106,17 +107,20 @@ def loss_of(known: Mapping[str, float], factor: float = AS_USED) -> float:
 
 
 def loss_of_energy(known: Mapping[str, float]) -> float:
-    """LOSS in percent of the energy EL that crush (or whatever else) has taken: of the kinetic
-    energy of MA MB at SA SB, no spins."""
+    """Return LOSS in percent for an energy loss EL, through crush or otherwise: relative to the
+    kinetic energy of MA and MB at speeds SA and SB, without spins."""
     a, b = known["SA"], known["SB"]
     initial = (known["MA"] * a * a + known["MB"] * b * b) / 2
     return 100 * known["EL"] / initial if initial else math.inf
 
 
 def initial_velocity(change: float, along: float, across: float) -> float:
-    """Equations 20 and 21 solved for the initial velocity of a vehicle that did not swerve, the
-    faster of two roots, from the size of its velocity change and its final velocity along and
-    across the way it came. Raises UserError where that across is larger than the whole change."""
+    """Return the initial velocity of a vehicle that did not swerve, from the size of its velocity
+    change and its final velocity along and across its direction of approach.
+
+    Equations 20 and 21 have two roots; this is the faster. Raises UserError where the final
+    velocity across is larger than the velocity change.
+    """
     square = (change - across) * (change + across)
     if square < 0:
         raise UserError(
@@ -127,34 +131,38 @@ def initial_velocity(change: float, along: float, across: float) -> float:
     return max((along - root, along + root), key=abs)
 
 
+_MAX_ITERATIONS = 500
+_SPEED_RTOL = 1e-12
+
+
 def speeds_before(
     known: Mapping[str, float], loss: float, factor: float = AS_USED, repeat: bool = False
 ) -> dict[str, float]:
-    """Section VII: UX and VY of vehicles that came along x and along y, from their final velocities
-    and the loss in percent, by Equations 19 to 21; with the DVA and DVB they rest on.
+    """Return UX and VY of vehicles that approached along x and along y, with the DVA and DVB used,
+    from their final velocities and the loss in percent (Section VII; Equations 19 to 21).
 
-    ``known``: MA MB VAX VAY VBX VBY, and SA SB where they are known; else Equation 19 takes those
-    of Equations 13 and 14. ``repeat``: put the speeds found in again until they stay, which can
-    lead far away. Raises UserError where there are none.
+    ``known``: MA MB VAX VAY VBX VBY, and SA SB if known; by default Equations 13 and 14 give them.
+    ``repeat``: iterate with the new speeds to convergence, which can lead far away. Raises
+    UserError where there is no solution.
     """
     ratio = known["MB"] / known["MA"]
     speed_a = known.get("SA", abs(known["VAX"] + ratio * known["VBX"]))
     speed_b = known.get("SB", abs(known["VBY"] + known["VAY"] / ratio))
     masses = {"MA": known["MA"], "MB": known["MB"], "LOSS": loss}
-    for _ in range(500 if repeat else 1):
+    for _ in range(_MAX_ITERATIONS if repeat else 1):
         change = delta_v({**masses, "SA": speed_a, "SB": speed_b}, factor)
         a, b = float(change["DVA"]), float(change["DVB"])
         ux = initial_velocity(a, known["VAX"], known["VAY"])
         vy = initial_velocity(b, known["VBY"], known["VBX"])
-        moved = max(abs(abs(ux) - speed_a), abs(abs(vy) - speed_b))
+        step = max(abs(abs(ux) - speed_a), abs(abs(vy) - speed_b))
         speed_a, speed_b = abs(ux), abs(vy)
-        if not repeat or moved <= 1e-12 * max(speed_a, speed_b):
+        if not repeat or step <= _SPEED_RTOL * max(speed_a, speed_b):
             return {"UX": ux, "VY": vy, "DVA": a, "DVB": b}
     raise UserError(f"no speeds agree with a loss of {loss:g} percent and these final velocities")
 
 
-def described(factor: float) -> str:
-    """One line for printouts: which Equation 19 this is."""
+def describe(factor: float) -> str:
+    """Return one line for printouts that says which Equation 19 this is."""
     if factor == AS_PRINTED:
         return "Equation 19 as printed, without the factor 2/3 that Table 2 was computed with"
     if factor == AS_USED:

@@ -27,7 +27,7 @@ ESTIMATES = {"VAX": -10.0, "VAY": 20.0, "VBX": -20.0, "VBY": 45.0}
 BOTH_SPINS = {"WAF": -2.9, "WBF": -0.9}
 """Table 3's to one digit after the point."""
 TOLERANCES = {"velocity": 2.0, "spin": 0.3}
-"""Of the analyst's final velocities (ft/s) and spins (rad/s) where they are adjusted."""
+"""Tolerances of the analyst's final velocities (ft/s) and spins (rad/s) for the adjustment."""
 NO_SWERVING = {"UY": 0.0, "VX": 0.0}
 NO_TURNING = {"WA": 0.0, "WB": 0.0}
 STATED_LOSS = 40.0
@@ -49,7 +49,7 @@ class Number:
 
     @property
     def agrees(self) -> bool | None:
-        """Whether the value rounds to the printed digits; None where nothing is printed."""
+        """True if the value rounds to the printed digits; None where nothing is printed."""
         if self.printed is None:
             return None
         decimals = len(self.printed.partition(".")[2])
@@ -71,7 +71,7 @@ class Step:
 
 @cache
 def steps() -> tuple[Step, ...]:
-    """The steps of Section VII, in its order."""
+    """Return the steps of Section VII, in its order."""
     scene = {name: FLOAT64.number(text) for name, text in sample(3).items()}
     truth = {name: float(value) for name, value in solve(scene).items()}
     vehicles = {
@@ -100,7 +100,7 @@ def steps() -> tuple[Step, ...]:
 def _of_both(
     names: str, meaning: str, values: Sequence[float], printed: str = ""
 ) -> tuple[Number, ...]:
-    """Two velocities, of A and B."""
+    """Return the numbers for a velocity of A and one of B."""
     rows = zip(names.split(), "AB", values, printed.split() or (None, None), strict=True)
     return tuple(Number(n, f"{meaning} of {v}", value, "ft/s", p) for n, v, value, p in rows)
 
@@ -138,7 +138,8 @@ def _momentum(vehicles: dict[str, float]) -> Step:
 def _equation_19(
     scene: dict[str, float], truth: dict[str, float], initial: dict[str, float]
 ) -> tuple[Step, Step]:
-    """With what gives the printed numbers beside what the text says."""
+    """Return the steps by Equation 19: with the values that give the printed numbers, and beside
+    them with the values that the text states."""
 
     def changes(speeds: tuple[float, float], loss: float, factor: float) -> tuple[float, float]:
         speeds_of = dict(zip(("SA", "SB"), speeds, strict=True))
@@ -146,30 +147,38 @@ def _equation_19(
         return float(estimate["DVA"]), float(estimate["DVB"])
 
     true_speeds = (abs(scene["UX"]), abs(scene["VY"]))
-    estimated = (abs(initial["UX"]), abs(initial["VY"]))
-    used = changes(true_speeds, truth["LOSS"], AS_USED)
+    momentum_speeds = (abs(initial["UX"]), abs(initial["VY"]))
+    velocity_changes = changes(true_speeds, truth["LOSS"], AS_USED)
     variants = (
         ("stated", "loss 40 % as stated, true speeds", true_speeds, STATED_LOSS, AS_USED),
-        ("analyst", "loss 40 %, speeds from Equations 13-14", estimated, STATED_LOSS, AS_USED),
+        (
+            "analyst",
+            "loss 40 %, speeds from Equations 13-14",
+            momentum_speeds,
+            STATED_LOSS,
+            AS_USED,
+        ),
         ("printed", "as printed, no 2/3", true_speeds, truth["LOSS"], AS_PRINTED),
     )
-    others = [
-        Number(f"DV{vehicle} {key}", f"{vehicle}: {what}", value, "ft/s")
-        for key, what, speeds, loss, factor in variants
+    alternatives = [
+        Number(f"DV{vehicle} {key}", f"{vehicle}: {meaning}", value, "ft/s")
+        for key, meaning, speeds, loss, factor in variants
         for vehicle, value in zip("AB", changes(speeds, loss, factor), strict=True)
     ]
     estimate = Step(
         "Velocity changes without the impact equations",
         "Equation 19 with the factor 2/3",
-        (*_of_both("DVA DVB", "velocity change", used, "39.1 25.9"), *others),
+        (*_of_both("DVA DVB", "velocity change", velocity_changes, "39.1 25.9"), *alternatives),
         "The printed 39.1 and 25.9 need the factor 2/3 (which Equation 19 lacks as printed) and "
         "Table 3's own loss (ΔT = .374) and speeds; with the stated ΔT = 0.4 they would be "
         "larger (below). An analyst has only the last step's speeds.",
     )
 
-    a, b = (round(change, 1) for change in used)
+    a, b = (round(change, 1) for change in velocity_changes)
     ux = initial_velocity(a, ESTIMATES["VAX"], ESTIMATES["VAY"])
-    vy, unrounded = (initial_velocity(x, ESTIMATES["VBY"], ESTIMATES["VBX"]) for x in (b, used[1]))
+    vy, unrounded = (
+        initial_velocity(x, ESTIMATES["VBY"], ESTIMATES["VBX"]) for x in (b, velocity_changes[1])
+    )
     back = Step(
         "Initial velocities from those velocity changes and the estimated final velocities",
         "Equations 20 and 21, solved for v_ax and v_by",
@@ -205,7 +214,8 @@ def _coefficients(vehicles: dict[str, float]) -> Step:
 
 
 def _both_spins(vehicles: dict[str, float], initial: dict[str, float]) -> Step:
-    """Equations 15, 16 and 18 as the chapter means them, and the same with all laws kept."""
+    """Return the step that takes coefficients from both spins: by Equations 15, 16 and 18 alone, as
+    the chapter means it, and adjusted so that all equations hold."""
     scene, after = {**vehicles, **NO_SWERVING, **NO_TURNING, **initial}, {**ESTIMATES, **BOTH_SPINS}
     state = State.of_known({**scene, **after})
     here, e = state.here, float(state["E"])

@@ -38,10 +38,12 @@ Array = NDArray[np.float64]
 
 SPIN_WEIGHT = 25.0
 """Weight of a squared spin against a squared velocity, ft²."""
-E_BOUNDS, EM_BOUNDS = (0.0, 1.0), (-1.0, 0.0)
-"""Between which the coefficients are fitted: the chapter's own ranges."""
-_HALF_DIGIT_COEFFICIENT, _HALF_DIGIT = 0.0005, 0.05
-"""Half of the last digit that Table 2 prints of coefficients, and of loss and velocity changes."""
+# bounds of the fitted coefficients: the chapter's own ranges
+E_BOUNDS = (0.0, 1.0)
+EM_BOUNDS = (-1.0, 0.0)
+# half of the last digit that Table 2 prints
+_HALF_DIGIT_COEFFICIENT = 0.0005
+_HALF_DIGIT = 0.05  # of loss and velocity changes
 _GRIDS = (201, *[21] * 6)
 """Points of each grid in e_m, the next one around the best point of the last: to 5e-9 of e_m. The
 first one separates local minima; twice as many points move no fit of the eleven by 1e-7."""
@@ -77,8 +79,16 @@ class Cell:
 
 COLUMNS_1 = ("category", "m", "I", "d", "phi", "theta", "Gamma", "vx", "vy", "Omega", "Vx", "Vy")
 COLUMNS_2 = (
-    *("loss", "e", "em", "mu", "dVa_exp", "dVb_exp"),
-    *("dVa_comp", "dVb_comp", "dVa_pred", "dVb_pred"),
+    "loss",
+    "e",
+    "em",
+    "mu",
+    "dVa_exp",
+    "dVb_exp",
+    "dVa_comp",
+    "dVb_comp",
+    "dVa_pred",
+    "dVb_pred",
 )
 
 
@@ -88,13 +98,13 @@ def _rows(name: str) -> list[dict[str, str]]:
 
 @cache
 def emendations() -> tuple[Emendation, ...]:
-    """Every remark on a cell of Tables 1 and 2, with its evidence."""
+    """Return every remark on a cell of Tables 1 and 2, with its evidence."""
     return tuple(Emendation(table=int(row.pop("table")), **row) for row in _rows("emendations.csv"))
 
 
 @cache
 def cells() -> tuple[Cell, ...]:
-    """Tables 1 and 2, cell by cell: as printed, as emended, and the evidence."""
+    """Return Tables 1 and 2, cell by cell: as printed, as emended, and the evidence."""
     keys = {"loss": "loss_percent", "mu": "mu_signed_Pt_over_Pn"}
     keys |= {column: f"{column}_deg" for column in ("phi", "theta", "Gamma")}
     result = []
@@ -111,18 +121,18 @@ def cells() -> tuple[Cell, ...]:
 
 
 def _remark(table: int, row: str, column: str) -> Emendation | None:
-    """The remark on a cell, or else on its whole row."""
-    emended = {e.column: e for e in emendations() if (e.table, e.row) == (table, row)}
-    return emended.get(column) or emended.get("*")
+    """Return the remark on a cell, or else on its whole row; None if there is none."""
+    remarks = {e.column: e for e in emendations() if (e.table, e.row) == (table, row)}
+    return remarks.get(column) or remarks.get("*")
 
 
 def _printed_1(row: Mapping[str, str]) -> dict[str, str]:
-    """The printed cells by column; a row the scan moved as a whole is moved back."""
+    """Return the printed cells by column; a row that the scan shifted is shifted back."""
     texts = [row[f"printed_cell_{number}"] for number in range(2, 12)]
-    moved = _remark(1, row["row"], "*")
-    if moved and moved.printed == "one cell right":
+    shift = _remark(1, row["row"], "*")
+    if shift and shift.printed == "one cell right":
         texts = [*texts[1:], ""]
-    elif moved:
+    elif shift:
         texts = ["", *texts[:-1]]
     *first, before, spin, after = (text.replace("- ", "-") for text in texts)
     values = (*first, *before.split("/"), spin, *(after.split("/") if after else ("", "")))
@@ -148,15 +158,15 @@ class Collision:
 
 
 def with_8a_reconstructed() -> Collision:
-    """Collision 8 with A's lost final velocity filled in by the pair that Table 2 calls for: a
-    reconstruction (-10.2/10.6, each +-0.2), labelled as such wherever it is used; never data."""
+    """Return collision 8 with A's lost final velocity as Table 2 implies it, -10.2/10.6, each
+    +-0.2. It is a reconstruction, labelled as such wherever it is used, and never data."""
     collision = next(c for c in collisions() if c.number == 8)
     return replace(collision, measured=collision.measured | {"VAX": -10.2, "VAY": 10.6})
 
 
 @cache
 def collisions() -> tuple[Collision, ...]:
-    """The eleven staged collisions in Table 1's order."""
+    """Return the eleven staged collisions in Table 1's order."""
     rows: dict[str, dict[str, str]] = {}
     for cell in cells():
         # Table 2 is compared as it is printed
@@ -183,7 +193,7 @@ def collisions() -> tuple[Collision, ...]:
 
 
 def typed_friction(scene: Mapping[str, Any], signed: Any) -> Array:
-    """The MU to type so that line 400 leaves the signed P_t/P_n: it changes it where gt > 0."""
+    """Return the MU to type for a signed P_t/P_n: line 400 changes its sign where gt > 0."""
     state = State.of_known(scene)
     return typed(np.asarray(signed, np.float64), state.relative_before[1], state.before)
 
@@ -191,20 +201,23 @@ def typed_friction(scene: Mapping[str, Any], signed: Any) -> Array:
 def forward(
     collision: Collision, coefficients: Mapping[str, Any] | None = None
 ) -> dict[str, Array]:
-    """All results of `impact88.solve`, with Table 2's E, EM and MUP unless others are given."""
-    given = dict(collision.coefficients if coefficients is None else coefficients)
-    mu = typed_friction(collision.scene, given.pop("MUP"))
-    return solve({**collision.scene, **given, "MU": mu})
+    """Return all results of `impact88.solve` for a collision.
+
+    ``coefficients``: E, EM and MUP; by default Table 2's.
+    """
+    values = dict(collision.coefficients if coefficients is None else coefficients)
+    mu = typed_friction(collision.scene, values.pop("MUP"))
+    return solve({**collision.scene, **values, "MU": mu})
 
 
 def experimental(collision: Collision) -> dict[str, float]:
-    """ΔV from Table 1's measured velocities."""
+    """Return DVA and DVB from Table 1's measured velocities."""
     state = State.of_known(collision.scene | collision.measured)
     return {name: float(state[name]) for name in ("DVA", "DVB")}
 
 
 def predicted(collision: Collision, loss: Any = None) -> dict[str, Array]:
-    """ΔV by Equation 19 from the energy loss (percent), by default Table 2's printed one."""
+    """Return DVA and DVB by Equation 19 from the energy loss in percent, by default Table 2's."""
     scene = collision.scene
     speeds = {"SA": np.hypot(scene["UX"], scene["UY"]), "SB": np.hypot(scene["VX"], scene["VY"])}
     loss = collision.table2["loss"] if loss is None else loss
@@ -221,8 +234,12 @@ def closure(collision: Collision) -> dict[str, float]:
     here, (ax, ay, wa, bx, by, wb) = state.here, map(float, state.changes)
     ma, mb, ia, ib = (float(values[name]) for name in ("MA", "MB", "IA", "IB"))
     return {
-        **{"number": collision.number, "loss": float(state["LOSS"])},
-        **{"x_of_a": ma * ax, "x_of_b": -mb * bx, "y_of_a": ma * ay, "y_of_b": -mb * by},
+        "number": collision.number,
+        "loss": float(state["LOSS"]),
+        "x_of_a": ma * ax,
+        "x_of_b": -mb * bx,
+        "y_of_a": ma * ay,
+        "y_of_b": -mb * by,
         # the impulse acts at (-d4, -d3) from A's center: M = I ΔΩ - r x m ΔV, and on B the opposite
         "spin_of_a": float(ia * wa - ma * (-here.d4 * ay + here.d3 * ax)),
         "spin_of_b": float(-ib * wb + mb * (here.d2 * by - here.d1 * bx)),
@@ -244,42 +261,49 @@ class Fit:
 
 
 def fit(collision: Collision, em: float | None = None, spin_weight: float = SPIN_WEIGHT) -> Fit:
-    """The least-squares fit: E, MUP and EM, or E and MUP with EM held at ``em``. Velocities that
-    are lost are left out. Raises LinAlgError where doubles do not hold the equations."""
+    """Fit E, MUP and EM by least squares, or E and MUP with EM fixed at ``em``.
+
+    Lost velocities are left out. Raises LinAlgError where the equations overflow.
+    """
     best_at = _fitter(collision, spin_weight)
     if em is not None:
         return best_at(em)
     low, high = EM_BOUNDS
     for count in _GRIDS:
         fits = [best_at(x) for x in np.linspace(low, high, count).tolist()]
-        best = int(np.argmin([found.sum_of_squares for found in fits]))
+        best = int(np.argmin([candidate.sum_of_squares for candidate in fits]))
         low, high = fits[max(best - 1, 0)].EM, fits[min(best + 1, count - 1)].EM
     for bound in EM_BOUNDS:
         if abs(fits[best].EM - bound) < 1e-6:
-            found = best_at(bound)
-            return replace(found, at_bound=(*found.at_bound, "EM"))
+            bounded_fit = best_at(bound)
+            return replace(bounded_fit, at_bound=(*bounded_fit.at_bound, "EM"))
     return fits[best]
 
 
 def profile(collision: Collision, count: int = 11) -> list[Fit]:
-    """The best fits with EM held at ``count`` values from -1 to 0: the sum hardly changes."""
+    """Return the best fits with EM fixed at ``count`` values from -1 to 0; their sums of squares
+    hardly differ."""
     return [*map(_fitter(collision, SPIN_WEIGHT), np.linspace(*EM_BOUNDS, count).tolist())]
 
 
 def undetermined_range(
     collision: Collision, spin_weight: float = SPIN_WEIGHT
 ) -> tuple[float, float]:
-    """The values of EM whose best fit's root-mean-square misfit is within 0.1 ft/s of the least:
-    how little the data fix it."""
+    """Return the lowest and highest EM whose best fit has an rms misfit within 0.1 ft/s of the
+    least; the data do not determine it more closely."""
     best_at, grid = _fitter(collision, spin_weight), np.linspace(*EM_BOUNDS, 401)
-    measured = np.isfinite([*collision.measured.values()]).sum()
-    misfit = np.sqrt([best_at(em).sum_of_squares / measured for em in grid.tolist()])
+    count = np.isfinite([*collision.measured.values()]).sum()
+    misfit = np.sqrt([best_at(em).sum_of_squares / count for em in grid.tolist()])
     close = grid[misfit <= misfit.min() + 0.1]
     return float(close.min()), float(close.max())
 
 
 def _fitter(collision: Collision, spin_weight: float) -> Callable[[float], Fit]:
-    """The best fit for each EM. The final velocities are linear in the impulse p = (Pn, Pt, M)."""
+    """Return the function that gives the best fit for an EM.
+
+    For a given EM the final velocities are linear in the impulse p = (Pn, Pt, M), so that each fit
+    is a linear least-squares problem in Pn and Pt (M follows from Equation 18).
+    """
     geometry = Geometry(collision.scene)
     jacobian = np.array([geometry.changes(*unit) for unit in np.eye(3)], float).T
     directions = np.array(geometry.relative([*np.eye(6)]))
@@ -337,7 +361,7 @@ class Compared:
 
 
 def comparison() -> list[Compared]:
-    """Loss and the three pairs of ΔV of Table 2 beside their recomputation."""
+    """Compare loss and the three pairs of ΔV of Table 2 with their recomputation."""
     half, rows = _HALF_DIGIT_COEFFICIENT, []
     offsets = np.array([*product((-half, 0, half), repeat=3)]).T
     for collision in collisions():
@@ -361,8 +385,18 @@ def comparison() -> list[Compared]:
             agrees = low - _HALF_DIGIT - 1e-9 <= printed <= high + _HALF_DIGIT + 1e-9
             remark = _remark(2, str(collision.number), column)
             why = "" if agrees else remark.evidence if remark else "not explained"
-            own = (collision.number, column, printed, value, low, high)
-            rows.append(Compared(*own, bool(agrees), why))
+            rows.append(
+                Compared(
+                    collision=collision.number,
+                    column=column,
+                    printed=printed,
+                    value=value,
+                    low=low,
+                    high=high,
+                    agrees=bool(agrees),
+                    explanation=why,
+                )
+            )
     return rows
 
 
@@ -395,65 +429,89 @@ def _extent(rule: Callable[[Collision], Array], alike: list[Collision]) -> tuple
 
 @cache
 def claims() -> tuple[Claim, ...]:
-    """The claims, each with what the eleven collisions say."""
+    """Return the chapter's claims, each with the result for the eleven collisions."""
 
-    def changed(c: Collision, **changes: Any) -> dict[str, Array]:
-        """With Table 2's coefficients and some values changed; friction keeps the sign of Table 2,
-        whatever the sliding does."""
+    def solve_changed(c: Collision, changes: Mapping[str, Any]) -> dict[str, Array]:
+        """Solve with Table 2's coefficients and some values changed. Friction keeps the sign of
+        Table 2, whatever the sliding does."""
         scene = resolve_contact_point({**c.scene, **changes})
         em = np.asarray(scene.pop("EM", c.coefficients["EM"]))
         mu = typed_friction(scene, c.coefficients["MUP"])
         return solve({**scene, "E": c.coefficients["E"], "EM": em, "MU": mu}, ("DVA", "LOSS"))
 
-    def delta_v_changed(c: Collision, **changes: Any) -> Array:
-        """Percent, of both vehicles' ΔV alike: they stand in the ratio of the masses."""
-        return 100 * (changed(c, **changes)["DVA"] / forward(c)["DVA"] - 1)
+    def delta_v_change(c: Collision, changes: Mapping[str, Any]) -> Array:
+        """Return the change of ΔV in percent. It is the same for both vehicles, whose ΔV are in the
+        inverse ratio of their masses."""
+        return 100 * (solve_changed(c, changes)["DVA"] / forward(c)["DVA"] - 1)
 
-    def turned(c: Collision, degrees: float, *names: str) -> Array:
-        """By an angle turned either way; a vehicle's own contact point stays."""
-        both = np.array([-degrees, degrees])
-        return np.concatenate([delta_v_changed(c, **{n: c.scene[n] + both}) for n in names])
+    def delta_v_turned(c: Collision, degrees: float, *names: str) -> Array:
+        """Return the changes of ΔV, in percent, when each of the angles named is turned either way;
+        a contact point stays where it is on its vehicle."""
+        turns = np.array([-degrees, degrees])
+        return np.concatenate([delta_v_change(c, {n: c.scene[n] + turns}) for n in names])
 
     def force_over_weight(c: Collision) -> Array:
-        found = forward(c)
-        average = forces(np.hypot(found["PN"], found["PT"]), np.array(CONTACT_TIMES))["FA"]
+        """Return the average contact force over each vehicle's weight."""
+        results = forward(c)
+        average = forces(np.hypot(results["PN"], results["PT"]), np.array(CONTACT_TIMES))["FA"]
         return np.asarray(average[:, None] / (GRAVITY * np.array([c.scene["MA"], c.scene["MB"]])))
 
     sides = [c for c in collisions() if "SIDE" in c.category]
-    others = [c for c in collisions() if "SIDE" not in c.category]
+    rest = [c for c in collisions() if "SIDE" not in c.category]
     around = np.radians(np.arange(0, 360, 5.0))
     contact = {"CX": np.cos(around), "CY": np.sin(around)}
     moments = np.linspace(-1, 0, 21)
     rows: tuple[tuple[str, str, str, Callable[[Collision], Array], str, str], ...] = (
         (
-            *("IV-A", "results not critically sensitive to Γ", "Γ by 10 degrees either way"),
-            *(lambda c: turned(c, 10.0, "GA"), "% of ΔV", "false for the side impacts"),
+            "IV-A",
+            "results not critically sensitive to Γ",
+            "Γ by 10 degrees either way",
+            lambda c: delta_v_turned(c, 10.0, "GA"),
+            "% of ΔV",
+            "false for the side impacts",
         ),
         (
-            *("IV-A", "nor to the location of point C", "C by 1 ft in any direction"),
-            *(lambda c: delta_v_changed(c, **contact), "% of ΔV", "true of a foot"),
+            "IV-A",
+            "nor to the location of point C",
+            "C by 1 ft in any direction",
+            lambda c: delta_v_change(c, contact),
+            "% of ΔV",
+            "true of a foot",
         ),
         (
-            *("V", "ΔV not very sensitive to e_m", "e_m over its whole range, -1 to 0"),
-            *(lambda c: delta_v_changed(c, EM=moments), "% of ΔV", "true"),
+            "V",
+            "ΔV not very sensitive to e_m",
+            "e_m over its whole range, -1 to 0",
+            lambda c: delta_v_change(c, {"EM": moments}),
+            "% of ΔV",
+            "true",
         ),
         (
-            *("V", "nor is the energy loss", "e_m over its whole range, -1 to 0"),
-            lambda c: changed(c, EM=moments)["LOSS"] - forward(c)["LOSS"],
-            *("points of loss", "true"),
+            "V",
+            "nor is the energy loss",
+            "e_m over its whole range, -1 to 0",
+            lambda c: solve_changed(c, {"EM": moments})["LOSS"] - forward(c)["LOSS"],
+            "points of loss",
+            "true",
         ),
         (
-            *("IV-A", "turns during contact below 45 degrees matter little"),
+            "IV-A",
+            "turns during contact below 45 degrees matter little",
             "one vehicle's heading by 22.5 degrees, half the turn",
-            *(lambda c: turned(c, 22.5, "TA", "TB"), "% of ΔV"),
+            lambda c: delta_v_turned(c, 22.5, "TA", "TB"),
+            "% of ΔV",
             "they matter: up to a fifth of ΔV",
         ),
         (
-            *("III", "average force 5 to 10 times the weight", "contact time .1 to .2 s"),
-            *(force_over_weight, "weights", "the middle of a wider range"),
+            "III",
+            "average force 5 to 10 times the weight",
+            "contact time .1 to .2 s",
+            force_over_weight,
+            "weights",
+            "the middle of a wider range",
         ),
     )
     return tuple(
-        Claim(where, text, varied, _extent(rule, sides), _extent(rule, others), unit, verdict)
+        Claim(where, text, varied, _extent(rule, sides), _extent(rule, rest), unit, verdict)
         for where, text, varied, rule, unit, verdict in rows
     )

@@ -86,16 +86,16 @@ def program_scenes() -> dict[str, dict[str, float]]:
     barriers = {}
     for name, scene in scenes().items():
         if name.startswith(IIHS):
-            own = {"MB": BARRIER_TIMES * scene["MA"], "IB": BARRIER_TIMES * scene["IA"]}
-            barriers[name] = {**BARRIER, **own, **scene}
+            wall = {"MB": BARRIER_TIMES * scene["MA"], "IB": BARRIER_TIMES * scene["IA"]}
+            barriers[name] = {**BARRIER, **wall, **scene}
     return scenes() | barriers
 
 
-def medians(found: Sequence[Check]) -> list[tuple[str, str, str, str, int, float, float]]:
+def medians(checks: Sequence[Check]) -> list[tuple[str, str, str, str, int, float, float]]:
     """Return, for each source and quantity, how many numbers there are, and the median and the
     largest size of the differences: source, quantity, unit, kind, count, median, largest."""
     groups: dict[tuple[str, str, str, str], list[float]] = {}
-    for check in found:
+    for check in checks:
         group = check.source, check.quantity, check.unit, check.kind
         groups.setdefault(group, []).append(abs(check.difference))
     return [(*group, len(sizes), median(sizes), max(sizes)) for group, sizes in groups.items()]
@@ -120,7 +120,7 @@ def _nhtsa_scene(row: Mapping[str, str]) -> dict[str, float]:
 
 
 def _nhtsa() -> list[Check]:
-    found = []
+    checks = []
     for row in _rows(NHTSA):
         result = solve(_nhtsa_scene(row), ("MUC", "WAF", "DVA", "WBF", "DVB"))
         values = {name: float(value) for name, value in result.items()}
@@ -133,9 +133,9 @@ def _nhtsa() -> list[Check]:
             ("ΔV, B", "mph", "delta_v2_mph", values["DVB"] / FEET_PER_SECOND),
         )
         for quantity, unit, column, computed in pairs:
-            own = NHTSA, row["test"], quantity, unit, PUBLISHED, float(row[column]), computed
-            found.append(Check(*own))
-    return found
+            fields = NHTSA, row["test"], quantity, unit, PUBLISHED, float(row[column]), computed
+            checks.append(Check(*fields))
+    return checks
 
 
 def _iihs_scene(row: Mapping[str, str]) -> dict[str, float]:
@@ -151,7 +151,7 @@ def _iihs_scene(row: Mapping[str, str]) -> dict[str, float]:
 
 
 def _iihs() -> list[Check]:
-    found = []
+    checks = []
     for row in _rows(IIHS):
         scene = _iihs_scene(row)
         result = barrier(scene, ("VAX", "VAY", "WAF"))
@@ -162,6 +162,6 @@ def _iihs() -> list[Check]:
             ("change of spin", "°/s", "delta_omega_deg_s", abs(degrees(values["WAF"]))),
         )
         for quantity, unit, column, computed in pairs:
-            own = IIHS, row["test"], quantity, unit, MEASURED, float(row[column]), computed
-            found.append(Check(*own))
-    return found
+            fields = IIHS, row["test"], quantity, unit, MEASURED, float(row[column]), computed
+            checks.append(Check(*fields))
+    return checks

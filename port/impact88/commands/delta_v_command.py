@@ -60,7 +60,7 @@ def main(args: options.Args) -> None:
         answer, lines = _answer(values, args.like, factor, units)
     except UserError as error:
         raise UserError(str(error), args.scene) from None
-    equation = deltav.described(factor)
+    equation = deltav.describe(factor)
     caution = f"An estimate: {deltav.ERROR};\nuntested elsewhere (Section VI)."
     record = {"equation": equation, **answer}
     options.show(args, "delta-v", lambda: record, lambda: [*lines, equation, caution])
