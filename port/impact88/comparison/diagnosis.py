@@ -153,11 +153,15 @@ class Diagnosis:
         digits = np.where(np.isfinite(off) & (sizes > 0), written / sizes, 0.0)
         loose = np.where(sizes > 0, case.loose / sizes, 0.0)
         self._resolutions = np.fmax(digits[worst], loose[worst])
-        near = np.fmin(np.fmax(4 * loose, _SAME_RTOL), _MAX_FRACTION_LEFT * self._differences)
+        within_limits = np.fmin(
+            np.fmax(4 * loose, _SAME_RTOL), _MAX_FRACTION_LEFT * self._differences
+        )
         # another program rounds its own numbers, which may be larger than anything in the scene
         theirs = np.where(wrong & np.isfinite(case.values), np.abs(case.values), 0.0)
         measure = np.fmax(sizes, theirs)
-        self._limits = np.where(wrong, near, np.fmax(loose, _SAME_RTOL)) * measure + written
+        self._limits = (
+            np.where(wrong, within_limits, np.fmax(loose, _SAME_RTOL)) * measure + written
+        )
 
     def _count_unexplained(self, violations: Mapping[str, Bools]) -> dict[str, Unexplained]:
         """Return the rows without a cause by kind of scene; a row counts for the first kind that it
@@ -238,16 +242,16 @@ class Diagnosis:
             for program, equivalents, names in explanation:
                 part = judge.narrow_to(names)
                 fits = try_program(program, part).rows
-                explained = fits & part.wrong & self._open
-                if not _has_enough_bits(program, explained & clear, bits, branch_rows & clear):
+                explained_rows = fits & part.wrong & self._open
+                if not _has_enough_bits(program, explained_rows & clear, bits, branch_rows & clear):
                     continue
                 says = self._name_both(program.description, judge) + _limitation(fits, agreeing)
                 # a result that is right needs no cause, though the program gives another
                 if unexplained := [name for name in wrong_results if name not in names]:
                     says += f"; {', '.join(unexplained)} {UNKNOWN}"
                 same = [trial.program.description for trial in equivalents[:_MAX_EQUIVALENTS]]
-                parts = _first_rows_of_edits(program, part, explained)
-                rows_of = (explained, part.wrong, fits & agreeing, agreeing)
+                parts = _first_rows_of_edits(program, part, explained_rows)
+                rows_of = (explained_rows, part.wrong, fits & agreeing, agreeing)
                 self._assign(program, says, rows_of, same, parts)
             if self.evidence:
                 return
@@ -299,14 +303,14 @@ class Diagnosis:
         judge = judge.select_results(_independent_results(sample))
         for program in fit_constants(judge.select_rows(rows)):
             fits = try_program(program, judge).rows
-            explained = fits & judge.wrong & self._open
+            explained_rows = fits & judge.wrong & self._open
             # the fitted number itself uses up the bits of one row
-            if bits[explained & clear].sum() < _MIN_BITS_NAMED + _MAX_BITS_PER_ROW:
+            if bits[explained_rows & clear].sum() < _MIN_BITS_NAMED + _MAX_BITS_PER_ROW:
                 continue
             agreeing = clear & ~judge.wrong
             if (fits & agreeing).sum() < MIN_FIT * agreeing.sum():
                 continue
-            rows_of = (explained, judge.wrong, fits & agreeing, agreeing)
+            rows_of = (explained_rows, judge.wrong, fits & agreeing, agreeing)
             self._assign(program, program.description, rows_of, [], {})
             return
 
@@ -321,14 +325,14 @@ class Diagnosis:
         order = np.argsort(case.ours[first])
         limits = case.units * HALF + np.fmax(case.loose, _SAME_RTOL * case.sizes)
         lowest = np.searchsorted(case.ours[first, order], case.values[first] - limits[first])
-        matched = np.zeros(wrong.size, bool)
+        matching_rows = np.zeros(wrong.size, bool)
         for step in range(_MAX_TIES):
             place = order[np.minimum(lowest + step, wrong.size - 1)]
-            near = np.abs(case.values - case.ours[:, place]) <= limits
-            near |= ~(np.isfinite(case.values) & np.isfinite(case.ours[:, place]))
-            matched |= near.all(0)
-        if (matched & wrong).sum() >= MIN_FIT * wrong.sum():
-            self._causes[matched & wrong] = OTHER_ROWS
+            within_limits = np.abs(case.values - case.ours[:, place]) <= limits
+            within_limits |= ~(np.isfinite(case.values) & np.isfinite(case.ours[:, place]))
+            matching_rows |= within_limits.all(0)
+        if (matching_rows & wrong).sum() >= MIN_FIT * wrong.sum():
+            self._causes[matching_rows & wrong] = OTHER_ROWS
 
     def _explain_stratum(
         self, name: str, judge: Judge, rows: Bools, bits: Floats, branch_rows: Bools
@@ -343,20 +347,23 @@ class Diagnosis:
                 [pick_evenly(np.flatnonzero(x), _MAX_DISAGREEING) for x in (unexplained, rows)]
             )
         )
-        few = judge.select_rows(places)._replace(wrong=unexplained[places])
+        stratum_sample = judge.select_rows(places)._replace(wrong=unexplained[places])
         for base in (*self.programs[:1], Program()):
-            trial = next(iter(find_single_edits(few, few.wrong, base)), None)
-            if trial is None or trial.explained_count < _MIN_FRACTION_OF_REST * few.wrong.sum():
+            trial = next(iter(find_single_edits(stratum_sample, stratum_sample.wrong, base)), None)
+            if (
+                trial is None
+                or trial.explained_count < _MIN_FRACTION_OF_REST * stratum_sample.wrong.sum()
+            ):
                 continue
             new = Program(trial.program.edits[len(base.edits) :])
             fits = try_program(trial.program, judge).rows
-            explained = fits & unexplained
-            if not _has_enough_bits(new, explained, bits, branch_rows & rows):
+            explained_rows = fits & unexplained
+            if not _has_enough_bits(new, explained_rows, bits, branch_rows & rows):
                 continue
             agreeing = rows & ~judge.wrong
             says = f"{name}: {trial.program.description}" + _limitation(fits, agreeing)
-            parts = _first_rows_of_edits(trial.program, judge, explained)
-            rows_of = (explained, unexplained, fits & agreeing, agreeing)
+            parts = _first_rows_of_edits(trial.program, judge, explained_rows)
+            rows_of = (explained_rows, unexplained, fits & agreeing, agreeing)
             self._assign(trial.program, says, rows_of, [], parts)
             return
 
@@ -399,10 +406,14 @@ class Diagnosis:
         for says, (width, low, high) in _WIDTHS.items():
             bounds = errorbound.relative_bounds(condition, 2.0**-width)
             visible = bounds * _TYPICAL_FRACTION_OF_BOUND > self._resolutions
-            explained = wrong & (self._differences / self._case.per_unit <= 2.0**-width)
-            affected = (wrong & visible).sum() >= _MIN_AFFECTED * visible.sum()
-            if low <= bits < high and explained.sum() >= MIN_FIT * wrong.sum() and affected:
-                self._causes[explained & self._open] = says
+            explained_rows = wrong & (self._differences / self._case.per_unit <= 2.0**-width)
+            is_widespread = (wrong & visible).sum() >= _MIN_AFFECTED * visible.sum()
+            if (
+                low <= bits < high
+                and explained_rows.sum() >= MIN_FIT * wrong.sum()
+                and is_widespread
+            ):
+                self._causes[explained_rows & self._open] = says
                 return
 
     def _describe_unexplained(self, violations: Mapping[str, Bools]) -> None:
@@ -410,9 +421,9 @@ class Diagnosis:
         for row in np.flatnonzero(self._open).tolist():
             broken = [number for number, rows in violations.items() if rows[row]]
             if broken and len(broken) < len(violations):
-                which = f"Equations {', '.join(broken[:-1])} and {broken[-1]} are"
-                which = which if len(broken) > 1 else f"Equation {broken[0]} is"
-                self._causes[row] = f"{UNKNOWN}, but only {which} violated"
+                subject = f"Equations {', '.join(broken[:-1])} and {broken[-1]} are"
+                subject = subject if len(broken) > 1 else f"Equation {broken[0]} is"
+                self._causes[row] = f"{UNKNOWN}, but only {subject} violated"
             elif 0 < self._differences[row] < 1e-2:
                 digits = int(-math.log10(self._differences[row]))
                 self._causes[row] = f"{UNKNOWN}, but agrees to about {digits} digits"
@@ -475,28 +486,30 @@ def _match_printout(case: Case, wrong: Bools) -> Bools:
     return rows
 
 
-def _first_rows_of_edits(program: Program, judge: Judge, explained: Bools) -> dict[str, int]:
+def _first_rows_of_edits(program: Program, judge: Judge, explained_rows: Bools) -> dict[str, int]:
     """Return each mistake of a program with several, and the first row that it takes to explain."""
     first_rows = {}
     for edit in program.edits if len(program.edits) > 1 else ():
         without = Program(tuple(x for x in program.edits if x is not edit))
-        needs_edit = explained & ~try_program(without, judge).rows
+        needs_edit = explained_rows & ~try_program(without, judge).rows
         if needs_edit.any():
             first_rows[edit.text] = int(np.argmax(needs_edit))
     return first_rows
 
 
-def _has_enough_bits(program: Program, explained: Bools, bits: Floats, branch_rows: Bools) -> bool:
+def _has_enough_bits(
+    program: Program, explained_rows: Bools, bits: Floats, branch_rows: Bools
+) -> bool:
     """Return whether a cause gets right the bits that it must.
 
     A branch taken counts for one bit a row, and the choice of its rows for log2 of the number of
     choices: of k rows among n that would show it, log2(n over k).
     """
-    count, possible = int((explained & branch_rows).sum()), int(branch_rows.sum())
-    earned = float(bits[explained & ~branch_rows].sum()) + count
-    needed = _MIN_BITS_NAMED if program.edits[0].rank <= RARE_CONVENTION else _MIN_BITS
-    needed = _MIN_BITS_PAIR if len(program.edits) > 1 else needed
-    return earned + math.log2(math.comb(possible, count)) >= needed
+    count, possible = int((explained_rows & branch_rows).sum()), int(branch_rows.sum())
+    earned_bits = float(bits[explained_rows & ~branch_rows].sum()) + count
+    required_bits = _MIN_BITS_NAMED if program.edits[0].rank <= RARE_CONVENTION else _MIN_BITS
+    required_bits = _MIN_BITS_PAIR if len(program.edits) > 1 else required_bits
+    return earned_bits + math.log2(math.comb(possible, count)) >= required_bits
 
 
 def _sample_rows(judge: Judge, clear: Bools) -> NDArray[np.intp]:
@@ -543,8 +556,8 @@ def _explanations(judge: Judge, is_large: bool) -> Iterator[list[_Explanation]]:
             complete = [trial for trial in rank_programs(programs, first) if trial.is_complete]
         if complete:
             wrong = {name for group in groups[1:] for name in group}
-            rest = judge.narrow_to([name for name in judge.theirs if name not in wrong])
-            yield [_extend_to_groups(_add_edits(complete, rest), groups, judge)]
+            remaining = judge.narrow_to([name for name in judge.theirs if name not in wrong])
+            yield [_extend_to_groups(_add_edits(complete, remaining), groups, judge)]
         yield _mixed_programs(singles, first, judge)
 
 
@@ -577,12 +590,14 @@ def _add_edits(trials: Sequence[Trial], judge: Judge) -> Sequence[Trial]:
     """Add edits to the best program while they explain most of the rows that it leaves: mistakes in
     a branch that few rows take. Returns ``trials`` themselves where there are none."""
     for _ in range(_MAX_FURTHER_EDITS):
-        rest = judge.wrong & ~trials[0].rows
+        remaining = judge.wrong & ~trials[0].rows
         better = []
-        for trial in find_single_edits(judge, rest, trials[0].program) if rest.any() else ():
-            count = (trial.rows & rest).sum()
+        for trial in (
+            find_single_edits(judge, remaining, trials[0].program) if remaining.any() else ()
+        ):
+            count = (trial.rows & remaining).sum()
             is_convention = trial.program.edits[-1].rank <= RARE_CONVENTION
-            is_enough = count >= _MIN_FRACTION_OF_REST * rest.sum()
+            is_enough = count >= _MIN_FRACTION_OF_REST * remaining.sum()
             if trial.is_complete and is_enough and (count > 1 or is_convention):
                 better.append(trial)
         if not better:
@@ -614,16 +629,16 @@ def _mixed_programs(singles: Sequence[Trial], part: Judge, judge: Judge) -> list
 
     A program gives all results of ``judge`` where its rows fit in all, else those of ``part``.
     """
-    rest = part.wrong.copy()
+    remaining = part.wrong.copy()
     chosen: list[_Explanation] = []
-    while singles and rest.any() and len(chosen) < _MAX_MIXED_PROGRAMS:
-        best = max(singles, key=lambda trial: ((trial.rows & rest).sum(), -trial.rank))
-        explained = best.rows & rest
-        if not explained.any():
+    while singles and remaining.any() and len(chosen) < _MAX_MIXED_PROGRAMS:
+        best = max(singles, key=lambda trial: ((trial.rows & remaining).sum(), -trial.rank))
+        explained_rows = best.rows & remaining
+        if not explained_rows.any():
             break
-        fits_all = (try_program(best.program, judge).rows & explained).sum()
-        gives_all = fits_all >= MIN_FIT * explained.sum()
+        fits_all = (try_program(best.program, judge).rows & explained_rows).sum()
+        gives_all = fits_all >= MIN_FIT * explained_rows.sum()
         chosen.append((best.program, (), [*(judge if gives_all else part).theirs]))
-        rest &= ~best.rows
-    count = part.wrong.sum() - rest.sum()
+        remaining &= ~best.rows
+    count = part.wrong.sum() - remaining.sum()
     return chosen if count >= MIN_FIT * part.wrong.sum() else []

@@ -53,14 +53,14 @@ def answer(
             failure = {"id": head["id"], "error": {"line": line, "message": message}}
             questions.append((failure, None))
     answers = iter(oracle([scene for _, scene in questions if scene is not None], reference))
-    for whole, scene in questions:
+    for entry, scene in questions:
         if scene is not None:
-            whole |= {"scene": {name: scene[name] for name in SCENE}, **next(answers)}
+            entry |= {"scene": {name: scene[name] for name in SCENE}, **next(answers)}
             if scene.units:
-                whole["units"] = base_of(system_of(scene.units))
+                entry["units"] = base_of(system_of(scene.units))
             if remarks := [*scene.remarks.values()]:
-                whole["remarks"] = remarks
-        yield with_schema("oracle", whole)
+                entry["remarks"] = remarks
+        yield with_schema("oracle", entry)
 
 
 def published_tests(reference: bool = True) -> Iterator[dict[str, Any]]:
@@ -75,23 +75,23 @@ def published_tests(reference: bool = True) -> Iterator[dict[str, Any]]:
     answers = oracle(
         [_scene_of({"M": float(DEFAULT_M), **scene}) for scene in tests.values()], reference
     )
-    for (name, scene), whole in zip(tests.items(), answers, strict=True):
+    for (name, scene), entry in zip(tests.items(), answers, strict=True):
         texts = _scene_of({"M": float(DEFAULT_M), **scene})
         source = next(text for kind, text in validation.SOURCES.items() if name.startswith(kind))
         head = {"id": name, "source": source, "reported": checks[name]}
-        yield with_schema("oracle", {**head, "scene": {n: texts[n] for n in SCENE}, **whole})
+        yield with_schema("oracle", {**head, "scene": {n: texts[n] for n in SCENE}, **entry})
 
 
 def _parse_question(text: str, head: dict[str, Any], units: str | None) -> Scene:
     """Return the scene of a line; put its ``id``, ``class`` and ``label`` into ``head``."""
     try:
         # ids keep their type; the scene's numbers keep their digits
-        whole, digits = json.loads(text), _decode(text)
+        entry, digits = json.loads(text), _decode(text)
     except ValueError as error:
         raise ValueError(f"is not JSON: {error}") from None
-    if not isinstance(whole, dict):
+    if not isinstance(entry, dict):
         raise ValueError('is not a JSON object; expected {"id": ..., "scene": {...}}')
-    head |= {name: whole[name] for name in ("id", "class", "label") if name in whole}
+    head |= {name: entry[name] for name in ("id", "class", "label") if name in entry}
     values = digits.get("scene")
     if not isinstance(values, dict):
         raise ValueError('has no "scene" object')
@@ -188,7 +188,7 @@ def oracle(
                 "double": solved[name][index],
                 "reference": digits.get(name),
             }
-        whole = {
+        entry = {
             "printout": ported.printout,
             "ending": "ZERO DETERMINANT" if ported.zero_determinant else ported.error,
             "results": results,
@@ -196,7 +196,7 @@ def oracle(
             "error_bound": {"double": double[index], "applesoft": listing[index]},
             "status": status.names(int(solved["STATUS"][index])),
         }
-        out.append(plain(whole))
+        out.append(plain(entry))
     return out
 
 

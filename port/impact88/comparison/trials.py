@@ -176,8 +176,8 @@ def rank_programs(programs: Iterable[Program], judge: Judge) -> list[Trial]:
     """Run programs on all rows and sort them, best first; among equals the likeliest."""
 
     def order(trial: Trial) -> tuple[int, int, int]:
-        explained = trial.explained_count * trial.is_supported
-        return -explained, -int((trial.rows & ~trial.wrong).sum()), trial.rank
+        explained_count = trial.explained_count * trial.is_supported
+        return -explained_count, -int((trial.rows & ~trial.wrong).sum()), trial.rank
 
     return sorted((try_program(program, judge) for program in programs), key=order)
 
