@@ -2,6 +2,7 @@
 meets every given, so that it lies within the bounds."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -10,6 +11,7 @@ from impact88.mechanics.closedform.solve import solve
 from impact88.mechanics.state import State
 from impact88.reconstruction.adjustment import reconstruct
 from impact88.reconstruction.reconstructed import draws, ranges
+from impact88.reconstruction.reconstructedtable import Measured
 
 SIDESWIPE = {
     **{"M": 6.0, "MA": 140.0, "MB": 101.74, "IA": 3172.0, "IB": 2562.2, "GA": 86.583},
@@ -156,3 +158,18 @@ def test_an_exact_change_of_velocity_is_met_by_every_draw_and_both_roots_are_dra
     bounds = ranges(first, ["VX", "UX"], 0, drawn)
     assert bounds["VX"].lower == pytest.approx(24 - gained, rel=1e-6)
     assert bounds["VX"].upper == pytest.approx(36 + gained, rel=1e-6)
+
+
+def test_what_is_rounding_beside_its_own_deviation_is_0():
+    """Standstill fits best, found to 1e-11 of a speed that is known within 2."""
+    known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "GA": 180.0, "UY": 0.0, "VY": 0.0, "MUP": 0.0}
+    known |= {"E": 0.1, "SA": 50.0, "HA": 0.0, "VX": read("normal 0 2", "VX")}
+    (found,) = reconstruct(known)
+    (row,) = found.adjusted
+    for speed, shown in ((1.8e-11, 0.0), (-1.8e-11, 0.0), (1.8e-8, 1.8e-8)):
+        values = {**found.values, "VX": speed, "SB": abs(speed)}
+        near = replace(found, values=values, adjusted=(row._replace(adjusted=speed),))
+        record = Measured(near, 0).as_json()
+        assert record["values"]["VX"] == shown
+        assert record["values"]["SB"] == shown
+        assert record["adjusted"][0]["adjusted"] == shown

@@ -19,7 +19,7 @@ from ..uncertainty.boundstable import unbounded
 from . import adjustment
 from .adjustment import Reconstruction, typed_friction
 from .reconstructed import LEAST_GAIN, SIGMAS, Draws, Range, draws, ranges
-from .solutiontable import DRIVERS, ROUNDING, Impact, completed, in_turn
+from .solutiontable import DRIVERS, NOISE, ROUNDING, Impact, completed, in_turn
 
 _RESULTS = (*VELOCITIES, *FINAL_STATE, *SPEEDS, *COURSES, "DVA", "DVB")
 _RESULTS = (*_RESULTS, "PDOFA", "PDOFB", "VC", "VS", "LOSS", *COEFFICIENTS)
@@ -138,6 +138,12 @@ class Measured(Impact):
             shares = responses**2 / (np.square(responses).sum() or 1.0)
             ranked = np.argsort(-shares, kind="stable")
             self.drivers[name] = [(solution.system.observations[i], shares[i]) for i in ranked]
+
+    @property
+    def uncertainties(self) -> Mapping[str, float]:
+        known = self.solution.system.known
+        measured = {a.name: known[a.name].standard_deviation for a in self.solution.adjusted}
+        return {**measured, **self.deviations}
 
     def headline(self, units: System) -> list[tuple[str, str]]:
         broken = [*super().headline(units)]
@@ -292,7 +298,7 @@ class Measured(Impact):
         for a in self.solution.adjusted:
             item = self.solution.system.known[a.name]
             half = math.nan if item.kind == "normal" else a.tolerance
-            rounding = abs(a.adjusted) < 1e-9 * item.standard_deviation
+            rounding = abs(a.adjusted) < NOISE * item.standard_deviation
             adjusted = 0.0 if rounding else a.adjusted
             measured, now = (
                 units.display_unwrapped(a.name, float(x)) for x in (a.measured, adjusted)
@@ -363,7 +369,10 @@ class Measured(Impact):
     def more(self, units: System) -> dict[str, Any]:
         solution, adjusted = self.solution, []
         for a in solution.adjusted:
-            small = abs(a.adjusted) < ROUNDING * solution.system.scale(a.name)
+            deviation = solution.system.known[a.name].standard_deviation
+            small = abs(a.adjusted) < max(
+                ROUNDING * solution.system.scale(a.name), NOISE * deviation
+            )
             sizes = {
                 "measured": units.display_unwrapped(a.name, float(a.measured)),
                 "tolerance": units.factor(a.name) * a.tolerance,

@@ -33,7 +33,7 @@ DRIVERS, _SHARE = 3, 0.05
 """Values named as making a result uncertain, at most, and a share of its variance too small to."""
 _LEFT, _WIDTH = 16, 100
 """Characters of the answer's labels and lines."""
-_NOISE = 1e-9
+NOISE = 1e-9
 """Of the largest quantity of the same unit: less is rounding, and printed as 0; twice as much
 prints the same of 100 solutions."""
 ROUNDING = 1e-13  # of the same: what a program reads is 0 below this
@@ -86,6 +86,11 @@ class Impact:
         self.ranges: Mapping[str, Any] = {}
         self.drivers: Mapping[str, Sequence[tuple[str, float]]] = {}
 
+    @property
+    def uncertainties(self) -> Mapping[str, float]:
+        """Standard deviations, of known values too: what is rounding beside them is 0."""
+        return self.deviations
+
     def headline(self, units: System) -> Sequence[tuple[str, str]]:
         """Return what is said before the answer: label and text."""
         return [("IMPOSSIBLE", self.impossible)] if self.impossible else []
@@ -112,7 +117,7 @@ class Impact:
         """The answer, tables and remarks."""
         remarks = self.warnings(units)
         undetermined = [paragraph(f"! {remarks.pop(0)}")] if self.undetermined else []
-        clean = without_noise(self.values)
+        clean = without_noise(self.values, deviations=self.uncertainties)
         values = display_values(clean, units)
         named = (
             *(("E", "MUP", "EM", "RR0"), ("PN", "PT", "PM", "P", "PDOFA", "PDOFB")),
@@ -135,7 +140,7 @@ class Impact:
         """The same for a program; numbers that do not exist are null."""
         # what was given stands as it was given
         given = {n: v for n, v in self.values.items() if self.known.get(n) == v}
-        clean = {**without_noise(self.values, ROUNDING), **given}
+        clean = {**without_noise(self.values, ROUNDING, self.uncertainties), **given}
         values = {n: v for n, v in display_values(clean, units).items() if n != "STATUS"}
         record: dict[str, Any] = plain(
             {
@@ -251,9 +256,14 @@ def in_turn(found: Sequence[Impact], units: System = RULES) -> str:
     return "\n\n".join(f"SOLUTION {i} {of}\n\n{text}" for i, text in enumerate(texts, 1))
 
 
-def without_noise(values: Mapping[str, float], noise: float = _NOISE) -> dict[str, float]:
-    """Return ``values``, those below ``noise`` of the largest of their unit 0, and directions above
-    -180. A spin's unit is that of velocities, too: over the smaller radius of gyration."""
+def without_noise(
+    values: Mapping[str, float],
+    noise: float = NOISE,
+    deviations: Mapping[str, float] | None = None,
+) -> dict[str, float]:
+    """Return ``values``, those below ``noise`` of the largest of their unit 0, and those that are
+    rounding beside their own standard deviations, and directions above -180. A spin's unit is that
+    of velocities, too: over the smaller radius of gyration."""
     largest: dict[str, float] = {}
     for name, value in values.items():
         if math.isfinite(value):
@@ -272,6 +282,7 @@ def without_noise(values: Mapping[str, float], noise: float = _NOISE) -> dict[st
     clean = {}
     for name, value in values.items():
         small = abs(value) < noise * largest.get(quantity(name).unit, 0.0)
+        small |= abs(value) < NOISE * (deviations or {}).get(name, 0.0)
         opposite = name in (*COURSES, *FORCES) and value < -179.9995  # to three decimals
         clean[name] = 180.0 if opposite else 0.0 if small else value
     return clean
