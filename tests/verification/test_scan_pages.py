@@ -27,6 +27,7 @@ from impact88.verification.reporting.examination import Examined, Verification, 
 from impact88.verification.reporting.verification import EXPLAINED, lines
 from impact88.verification.scan import sheets
 from impact88.verification.scan.claims import claims, is_of_a_printout
+from impact88.verification.scan.grid import _distinct
 from impact88.verification.scan.holding import (
     FOREIGN,
     KIND,
@@ -663,6 +664,32 @@ def test_a_speck_before_an_angle_moves_none_of_its_cells() -> None:
     assert read.shift("TA", "-87") == 0
     assert read.shift("TB", "87") == 0
     assert read.shift("TB", "-87") == -1
+
+
+def test_lines_that_overlap_are_one() -> None:
+    """An underline is taken for a line of its own, and is laid on the type above it."""
+    height = 20.0
+    middles, weights = np.array([100.0, 104.0, 140.0, 154.0, 170.0]), [500, 40, 300, 50, 400]
+    assert list(_distinct(middles, weights, height)) == [100.0, 140.0, 170.0]
+    assert list(_distinct(middles, weights, 4.0)) == [100.0, 104.0, 140.0, 154.0, 170.0]
+
+
+@pytest.mark.long
+def test_a_page_whose_results_are_underlined_is_read() -> None:
+    from PIL import ImageDraw
+
+    row = next(row for row in TRUTH if row["file"] == "clean-001.png")
+    with Pillow.open(PAGES / row["file"]) as page:
+        grey = page.convert("L")
+    (plain,) = examine("page.png", data=saved(grey, "PNG")).results
+    pen = ImageDraw.Draw(grey)
+    for name in ("VAX", "VAY", "KI"):
+        boxes = [cell["box"] for cell in plain.cells if cell["field"] == name]
+        left, right = min(box[0] for box in boxes), max(box[2] for box in boxes)
+        foot = boxes[0][3] + 1
+        pen.line((left - 20, foot, right + 20, foot + 1), 40, 3)
+    (found,) = examine("page.png", data=saved(grey, "PNG")).results
+    assert found.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
 
 
 def cell(name: str, *, distance: float, other_distance: float, hand: str = "") -> Cell:

@@ -5,6 +5,7 @@ Fourier component at the pitch is strong; the phase of that component says where
 Smooth polynomials carry both over the page, which takes in turned, keystoned and bent paper.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +35,9 @@ the given photographs flat."""
 _GUTTER, _COLUMN = 6, 0.25
 """The least gap between printouts side by side, in 300ths of the page, some three characters of
 160, and the least part of the ink that is a column: angles at the end of their line are none."""
+_OVERLAP = (
+    0.75  # of their height: lines whose middles are nearer are one; no leading is less than 1
+)
 FEWEST_POINTS = 500  # a page has more ink
 _COARSE = 80
 """Stretches of a dozen cells from which the starts are found, those with the clearest gaps."""
@@ -223,7 +227,7 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
     scale = CELL_WIDTH / pitch
     middles = np.array([(top + bottom) / 2 for top, bottom in lines])
     rise, drifts = _risen(across - left, level, middles, height, scale)
-    middles = middles + drifts
+    middles = _distinct(middles + drifts, [len(inside) for inside in members], height)
     small = resized(ink, scale)
     tall = round(1.7 * height * scale)
 
@@ -250,10 +254,21 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
         picture: Image = ndimage.map_coordinates(small, where, order=1, cval=0.0)
         return picture
 
-    pictures = [sampled(line) for line in range(len(lines))]
+    pictures = [sampled(line) for line in range(len(middles))]
     edges, ends = left + np.arange(count + 1) * pitch, np.array([-0.65, 0.65]) * height
     corners = [np.stack(place(*np.meshgrid(edges, middle + ends))).T for middle in middles]
     return Grid(pictures, middles / pitch, corners, pitch, clarity, ink.shape, turns)
+
+
+def _distinct(middles: Floats, weights: Sequence[int], height: float) -> Floats:
+    """Return the middles of lines without those that overlap another with more ink: an underline,
+    or the edge of a shaded band, comes to lie on the line that it belongs to."""
+    kept: list[float] = []
+    for which in np.argsort(-np.array(weights), kind="stable").tolist():
+        middle = float(middles[which])
+        if all(abs(middle - other) > _OVERLAP * height for other in kept):
+            kept.append(middle)
+    return np.array(sorted(kept))
 
 
 def _bows(u: Floats, v: Floats) -> Floats:

@@ -110,8 +110,7 @@ def looked(
             best = laid
         if laid.upright:
             break
-    found = best.grids
-    leaves = [leaf for pair in found for leaf in _leaves(*pair, seeds, copy)]
+    leaves = [leaf for pair in best.grids for leaf in _leaves(*pair, seeds, copy)]
     return Looked(leaves, _rest(ink, coloured, leaves, copy))
 
 
@@ -135,13 +134,18 @@ def _tried(ink: Image) -> Iterator[_Laid]:
     """Yield what is on a page as it is looked at in one way after the other: as it lies, without
     what pen joins, turned, and with the grain of bad paper taken together."""
     order = _turns(ink)
+    certain: int | None = None  # a turn in which so much is read that it is the right one
     for fold, turns in product((1, 2), order):
         if turns == order[0]:
             points = points_of(ink, fold)
             if len(points.x) < FEWEST_POINTS:
                 return
+        if certain not in (None, turns):
+            continue
         laid = _laid(ink, points, turns)
         yield laid
+        if any(sheet.gain > _UPRIGHT for _, sheets in laid.grids for sheet in sheets):
+            certain = turns
         if (fold, turns) == (1, order[0]) and laid.grids:
             plain = points_of(without_pen(ink, laid.grids[0][0].pitch, turns))
             if len(plain.x) >= FEWEST_POINTS:
