@@ -11,13 +11,12 @@ import subprocess
 import sys
 from pathlib import Path
 
-import kernels
 import numpy as np
 import pytest
 
 import impact88
 from impact88.bench.populations import POPULATIONS, repeat_scenes, scenes, texts
-from impact88.mechanics import native
+from impact88.mechanics import kernelsource, native
 from impact88.mechanics.closedform import kernelcalls
 from impact88.mechanics.closedform import solve as solving
 from impact88.mechanics.closedform.impactprograms import ALL, BODIES, FORMULAS, KERNELS
@@ -54,15 +53,15 @@ def test_every_result_of_every_population(name, count):
 
 def test_what_is_compiled_as_a_whole_is_what_the_formulas_say(file_regression, request):
     file = Path(native.__file__).with_name("kernels.h")
-    rewrite = "pytest tests/mechanics/test_native.py -k say --force-regen"
+    rewrite = "python -m impact88.mechanics.kernelsource"
     try:
-        file_regression.check(kernels.text(), fullpath=file, encoding="ascii")
+        file_regression.check(kernelsource.text(), fullpath=file, encoding="ascii")
     except AssertionError:
         if request.config.getoption("force_regen"):
             raise
         pytest.fail(f"kernels.h is not of the formulas as they are; next step: {rewrite}")
-    assert kernels.digest() == FORMULAS, (
-        f'next step: FORMULAS = "{kernels.digest()}" in mechanics/closedform/impactprograms.py'
+    assert kernelsource.digest() == FORMULAS, (
+        f'next step: FORMULAS = "{kernelsource.digest()}" in mechanics/closedform/impactprograms.py'
     )
     assert kernelcalls.usable(), "the library is of other formulas; next step: pip install -e ."
 

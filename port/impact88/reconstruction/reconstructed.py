@@ -24,8 +24,8 @@ from ..collision.uncertain import Uncertain, columns_of, fixed_value, random_num
 from ..mechanics.state import CRUSH, DIRECTIONS, SPEEDS, State
 from ..names import COEFFICIENTS, IMPULSES, VELOCITIES
 from ..optimization.ascent import OUTSIDE, climb, extremes_of, spread_out
+from ..optimization.widening import extremes
 from ..uncertainty.boundstable import Spread
-from ..uncertainty.widening import extremes
 from .adjustment import Reconstruction, pseudo_inverse
 from .posterior import Ground, Posterior
 from .system import PARAMETERS, TINY, System

@@ -70,7 +70,7 @@ def varying(pivot: bool, point: bool, infinite: bool = False, zeros: Iterable[st
 ALL = tuple(RESULTS)
 COLUMNS = tuple(SCENE)
 FORMULAS = "f8e1954879adabdc"
-"""Digest of the bodies' programs (`kernels.py` of the tests): the library has the same formulas."""
+"""Digest of the bodies' programs (`mechanics.kernelsource`): the library has the same formulas."""
 
 BODIES: dict[str, Kinds] = {
     "friction": varying(False, False, True),
@@ -83,7 +83,7 @@ BODIES: dict[str, Kinds] = {
     "friction_hurried": varying(False, False, True),
     "pivot_hurried": varying(True, False, True),
 }
-"""Name -> kinds of what the machine has as a whole, made by `kernels.py` of the tests. The first
+"""Name -> kinds of what the machine has as a whole, made by `mechanics.kernelsource`. The first
 four are every scene there is; of the others all scenes of a call have to be; the hurried leave what
 STATUS takes the final velocities for undecided (`statusbits.undecided`), and the machine looks
 again."""

@@ -1,4 +1,4 @@
-/* Made from the formulas of closedform/impact.py by tests/kernels.py: not to be edited. */
+/* Made from the formulas of closedform/impact.py by mechanics/kernelsource.py: not to be edited. */
 
 #define COLUMN(name) const double *restrict name = in[AT_##name];
 #define RESULT_AT(name, p) double *restrict to_##name = out[p];

@@ -1,8 +1,8 @@
 """C text of the impact as a whole, for `native/kernels.h`: one body for each kind of scene.
 
 A body computes every result; the kernels made of it keep some, and the compiler leaves out what
-these do not need. test_native checks that the file is what the formulas say; ``--force-regen``
-writes it anew.
+these do not need. In a checkout, ``python -m impact88.mechanics.kernelsource`` writes the file and
+``pip install -e .`` compiles it; test_native checks that file and formulas agree.
 """
 
 from __future__ import annotations
@@ -10,8 +10,12 @@ from __future__ import annotations
 import hashlib
 import math
 import textwrap
+from pathlib import Path
 
-from impact88.mechanics.closedform.impactprograms import (
+from impact88.mechanics.closedform.statusbits import UNDECIDED
+
+from . import native
+from .closedform.impactprograms import (
     ALL,
     BODIES,
     COLUMNS,
@@ -19,11 +23,10 @@ from impact88.mechanics.closedform.impactprograms import (
     KERNELS,
     program_for,
 )
-from impact88.mechanics.closedform.statusbits import UNDECIDED
-from impact88.mechanics.native.program import Program
+from .native.program import Program
 
 HEAD = """\
-/* Made from the formulas of closedform/impact.py by tests/support/kernels.py: not to be edited. */
+/* Made from the formulas of closedform/impact.py by mechanics/kernelsource.py: not to be edited. */
 
 #define COLUMN(name) const double *restrict name = in[AT_##name];
 #define RESULT_AT(name, p) double *restrict to_##name = out[p];
@@ -33,7 +36,7 @@ CONDITIONS = ("EQUAL", "LESS", "LESS_OR_EQUAL", "EITHER", "BOTH", "NOT")
 
 
 def text() -> str:
-    """The whole file."""
+    """Return the whole file."""
     bodies = [_body(name, program) for name, program in programs().items()]
     return "\n".join([HEAD, *_places(), *bodies, _table(), ""])
 
@@ -47,13 +50,13 @@ def programs() -> dict[str, Program]:
 
 
 def digest() -> str:
-    """By what the library and the formulas know that they belong together."""
+    """Return the digest of the formulas, by which a library is known to be of them."""
     text = " ".join(f"{program.digest:016x}" for program in programs().values())
     return hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
 
 
 def _places() -> list[str]:
-    """Where columns and results are, and what the library says of its formulas."""
+    """Return the places of columns and results, and the digest of the formulas."""
     columns = ", ".join([*(f"AT_{name}" for name in COLUMNS), "COLUMNS"])
     return [
         *textwrap.wrap(f"enum column {{ {columns} }};", 96, subsequent_indent="    "),
@@ -66,7 +69,7 @@ def _places() -> list[str]:
 
 
 def _table() -> str:
-    """The kernels: the number of the body, its name, and the results each keeps, as bits."""
+    """Return the kernels: number and name of the body, and the results each keeps, as bits."""
     rows = []
     for place, (name, results) in enumerate(KERNELS):
         mask = sum(1 << ALL.index(result) for result in results)
@@ -96,7 +99,7 @@ def _loop(lines: list[str]) -> list[str]:
 
 
 def _numbers(operation: str, operands: list[str], conditions: set[str]) -> list[str]:
-    """A number of each condition among arithmetic's operands, without leaving floating point."""
+    """Write conditions among the operands of arithmetic as numbers, in floating point."""
     if operation not in ARITHMETIC:
         return operands
     return [f"({x} ? 1.0 : 0.0)" if x in conditions else x for x in operands]
@@ -112,9 +115,11 @@ def _pointers(program: Program) -> list[str]:
 
 
 def _lines(program: Program) -> tuple[list[str], list[str], list[str]]:
-    """The arrays of sines and cosines, the lines that fill them, and all others. In a loop of their
-    own they take a tenth less of the six velocities' time: a processor has several scenes of a
-    short loop in work at once, of one as long as a body hardly two."""
+    """Return the arrays of sines and cosines, the lines that fill them, and all other lines.
+
+    Sines in a loop of their own take a tenth less of the six velocities' time: a processor works on
+    several scenes of a short loop at once, and hardly on two of one as long as a body.
+    """
     values = {place: f"{column}[i]" for place, column in enumerate(program.columns)}
     first, conditions = len(values), set[str]()
     for place, scalar in enumerate(program.scalars, program.moving):
@@ -163,5 +168,11 @@ def _lines(program: Program) -> tuple[list[str], list[str], list[str]]:
     return sines, list(angles), list(lines)
 
 
+def main() -> None:
+    """Write kernels.h, and say what is left to do."""
+    Path(native.__file__).with_name("kernels.h").write_text(text(), encoding="ascii")
+    print(f'FORMULAS = "{digest()}" in mechanics/closedform/impactprograms.py; pip install -e .')
+
+
 if __name__ == "__main__":
-    print(text(), end="")
+    main()

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..optimization.ascent import OUTSIDE, Landscape, below_all, climb
+from .ascent import OUTSIDE, Landscape, below_all, climb
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
