@@ -212,7 +212,7 @@ def _turns(ink: Image) -> list[int]:
 
 
 def _leaves(
-    grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]], copy: Copy | None
+    grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]], copy: Copy | None = None
 ) -> list[Leaf]:
     if sheets and grid.clarity < _REGULAR:
         likeliest = max(sheets, key=lambda sheet: sheet.gain)
