@@ -11,19 +11,22 @@ The 1988 program
     Applesoft           the machine itself, for any Applesoft program
 
 Old printouts and other programs
-    verify, read_printouts      check a printout against the program's own, and explain differences
+    verify, Verification, Verifications
+                        check a printout against the program's own, and explain differences
+    read_printouts, Printout    the printouts in a text, number by number
     oracle              complete reference results of scenes, to check other programs with
-    compare             another program's table compared with this one's results
+    compare, Comparison     another program's table compared with this one's results
 
 Today's work, in double precision
     solve               final velocities and the rest, over arrays
-    prepared            the same for many short calls: root finders, samplers
+    prepared, Prepared      the same for many short calls: root finders, samplers
     solve_frame         the same for pandas, polars, pyarrow, xarray, records, lists of dicts
-    bounds, Uncertain   results of values known within limits
-    solve_for           Equations 13-18 for any unknowns, over arrays
-    reconstruct, Reconstruction     the same with tolerances: measured values are adjusted
+    bounds, Bounds, Uncertain   results of values known within limits
+    solve_for, Solution     Equations 13-18 for any unknowns, over arrays
+    reconstruct, Reconstruction, Reconstructions
+                        the same with tolerances: measured values are adjusted
     colinear, colinear_inverse, barrier, delta_v    the chapter's other problems
-    scene_svg           a scene from above
+    scene_svg, Svg      a scene from above
 
     accelerated         the processor's instructions that `solve` uses, None if it uses numpy only
     names, status       the tables of names and of STATUS's bits
@@ -46,12 +49,15 @@ if TYPE_CHECKING:
     from .chapter.colinear import colinear_inverse as colinear_inverse
     from .chapter.deltav import delta_v as delta_v
     from .collision.uncertain import Uncertain as Uncertain
+    from .comparison.compare import Comparison as Comparison
     from .comparison.compare import compare as compare
     from .comparison.oracle import oracle as oracle
     from .emulator.emulator import Applesoft as Applesoft
     from .errors import PlausibilityWarning as PlausibilityWarning
     from .errors import UserError as UserError
+    from .figures.canvas import Svg as Svg
     from .figures.sceneview import scene_svg as scene_svg
+    from .mechanics.closedform.prepared import Prepared as Prepared
     from .mechanics.closedform.prepared import prepared as prepared
     from .mechanics.closedform.solve import solve as solve
     from .mechanics.native import accelerated as accelerated
@@ -62,14 +68,17 @@ if TYPE_CHECKING:
     from .program.vectorized import Replay as Replay
     from .program.vectorized import replay as replay
     from .reconstruction.adjustment import Reconstruction as Reconstruction
+    from .reconstruction.reconstructedtable import Reconstructions as Reconstructions
     from .reconstruction.reconstructedtable import reconstruct as reconstruct
     from .reconstruction.unknowns import Solution as Solution
     from .reconstruction.unknowns import solve_for as solve_for
     from .tables.frames import solve_frame as solve_frame
     from .uncertainty.bounds import bounds as bounds
     from .uncertainty.boundstable import Bounds as Bounds
+    from .verification.reading.printout import Printout as Printout
     from .verification.reading.printout import read_printouts as read_printouts
     from .verification.reporting.examination import Verification as Verification
+    from .verification.reporting.examination import Verifications as Verifications
     from .verification.reporting.examination import verify as verify
 
 _LAZY = {
@@ -79,25 +88,26 @@ _LAZY = {
         "chapter.barrier": "barrier",
         "chapter.colinear": "colinear colinear_inverse",
         "chapter.deltav": "delta_v",
-        "comparison.compare": "compare",
+        "comparison.compare": "Comparison compare",
         "comparison.oracle": "oracle",
-        "mechanics.closedform.prepared": "prepared",
+        "mechanics.closedform.prepared": "Prepared prepared",
         "mechanics.closedform.solve": "solve",
         "emulator.emulator": "Applesoft",
         "errors": "PlausibilityWarning UserError",
+        "figures.canvas": "Svg",
         "figures.sceneview": "scene_svg",
         "mechanics.native": "accelerated",
         "program.run": "Run run",
-        "verification.reading.printout": "read_printouts",
+        "verification.reading.printout": "Printout read_printouts",
         "reconstruction.adjustment": "Reconstruction",
         "reconstruction.unknowns": "Solution solve_for",
         "program.vectorized": "Replay replay",
-        "verification.reporting.examination": "Verification verify",
+        "verification.reporting.examination": "Verification Verifications verify",
         "program.scene": "Scene sample",
         "tables.frames": "solve_frame",
         "uncertainty.bounds": "bounds",
         "uncertainty.boundstable": "Bounds",
-        "reconstruction.reconstructedtable": "reconstruct",
+        "reconstruction.reconstructedtable": "Reconstructions reconstruct",
         "collision.uncertain": "Uncertain",
     }.items()
     for name in names_there.split()

@@ -69,11 +69,15 @@ class UserError(ValueError):
 
 
 class PlausibilityWarning(UserWarning):
-    """Implausible values in a frame: a mass, speed, arm or inertia that no vehicle has, velocities
-    and headings in different conventions, EM = 0.
+    """Implausible values in a frame.
 
-    Notes ----- The values are used all the same. ``warnings.filterwarnings("ignore",
-    category=impact88.PlausibilityWarning)`` silences it.
+    Such are a mass, speed, arm or inertia that no vehicle has, velocities and headings in different
+    conventions, and EM = 0.
+
+    Notes
+    -----
+    The values are used all the same.
+    ``warnings.filterwarnings("ignore", category=impact88.PlausibilityWarning)`` silences it.
 
     Examples
     --------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+import re
 import subprocess
 import sys
 from importlib.util import find_spec
@@ -43,16 +44,7 @@ def test_checkers_see_what_python_finds() -> None:
 def test_a_public_name_is_there_and_says_what_it_is(name: str) -> None:
     value = getattr(impact88, name)
     assert name in ("__version__", "accelerated") or inspect.getdoc(value)
-    assert (
-        name == "__version__"
-        or name in (impact88.__doc__ or "")
-        or name
-        in (
-            "Bounds",
-            "Solution",
-            "Verification",
-        )
-    )
+    assert name == "__version__" or re.search(rf"\b{name}\b", impact88.__doc__ or "")
 
 
 def test_completion_lists_no_plumbing() -> None:

@@ -111,13 +111,43 @@ class Skipped:
 class Comparison:
     """The result of `compare`.
 
-    ``causes``: likely cause -> number of rows it explains; ``evidence`` and ``programs``: for each
-    cause that is a program, the rows that support it, and the program; ``equations``: number ->
-    rows in which it was checked, and in which it is violated; ``unexplained``: rows without a
-    cause, by kind of scene; ``differences``: every row that disagrees; ``not_compared``: by reason;
-    ``unknown``: columns not recognised -> the name that was probably meant, or ""; ``place``: the
-    table's sheet in a workbook and the row of its headings; ``remarks``: how its headings were
-    understood.
+    Parameters
+    ----------
+    rows, agreeing, differing : int
+        Rows of the table, those whose results all agree, and those with one that does not.
+    tallies : dict of str to Tally
+        How many rows agree, by result.
+    causes : Counter of str
+        Rows that each likely cause explains.
+    differences : list of Row
+        Every row that disagrees, with its worst result and its likely cause.
+    not_compared : dict of str to Skipped
+        Rows that were not compared, by reason.
+    elimination : Elimination
+        Rows that agree only as closely as elimination can.
+    evidence : list of Cause
+        The rows that support each cause which is a program.
+    programs : list of Program
+        Those programs.
+    equations : dict of str to tuple of int
+        By equation, the rows in which it was checked and those that violate it.
+    unexplained : dict of str to Unexplained
+        Rows without a cause, by kind of scene.
+    bad : list of BadCell
+        Cells that could not be read.
+    unknown : dict of str to str
+        Columns that were not recognised, and the name that was probably meant, or "".
+    place : dict of str to object
+        Of a workbook, the sheet and the row of the headings.
+    remarks : list of str
+        How the headings were understood.
+
+    Examples
+    --------
+    >>> scene = impact88.sample(1).numbers()
+    >>> comparison = impact88.compare([{**scene, "LOSS": 57.0}], causes=False)
+    >>> comparison.differing, comparison.worst[0].result
+    (1, 'LOSS')
     """
 
     rows: int = 0
@@ -139,13 +169,12 @@ class Comparison:
 
     @property
     def worst(self) -> list[Row]:
-        """The rows that disagree most."""
+        """The rows that disagree most, the worst first."""
         return sorted(self.differences, key=lambda row: -row.relative)[:MAX_ROWS_LISTED]
 
     @property
     def silent(self) -> list[str]:
-        """Messages about columns, rows and cells that were not compared, which a count of
-        differences alone would pass over."""
+        """Messages about columns, rows and cells that were not compared."""
         messages = [f"column {name} not recognised" for name in self.unknown]
         for reason, skipped in self.not_compared.items():
             if reason not in HARMLESS:
@@ -169,7 +198,13 @@ class Comparison:
         return line
 
     def as_json(self) -> dict[str, Any]:
-        """Return the object that `impact88 compare --json` prints."""
+        """Return the object that ``impact88 compare --json`` prints.
+
+        Returns
+        -------
+        dict of str to object
+            The comparison as JSON types, in the form of ``impact88 schema compare``.
+        """
         equations = {
             number: {"checked": checked, "violated": violated}
             for number, (checked, violated) in self.equations.items()
@@ -233,6 +268,7 @@ def compare(
     Returns
     -------
     Comparison
+        How many rows agree, and for those that do not the likely causes.
 
     Raises
     ------

@@ -26,7 +26,14 @@ HALO = "halo"
 
 
 class Svg(str):
-    """The text of an SVG element, which a notebook shows as a picture."""
+    """The text of an SVG element, which a notebook shows as a picture.
+
+    Examples
+    --------
+    >>> picture = impact88.scene_svg(impact88.sample(1))
+    >>> isinstance(picture, str), picture.count("</svg>")
+    (True, 1)
+    """
 
     __slots__ = ()
 

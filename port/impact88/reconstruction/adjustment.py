@@ -440,13 +440,13 @@ class Reconstruction:
 
     @property
     def collides(self) -> bool:
-        """Whether the contact points approach and push each other, as far as that is known."""
+        """True if the contact points approach and push each other, as far as that is known."""
         state = self.system.state(self.x)
         return bool(state.relative_before[0] < 0 and self.values.get("PN", 1.0) > 0)
 
     @cached_property
     def impossible(self) -> Status:
-        """The bits of STATUS that no real impact has, none (0) where it may have been so."""
+        """Bits of STATUS that no real impact has, 0 if the impact is possible."""
         bits = Status(int(outcome(self.values)["STATUS"])) & IMPOSSIBLE
         if not self.collides:
             bits |= Status.PULLING if self.values.get("PN", 1.0) <= 0 else Status.SEPARATING
@@ -454,8 +454,7 @@ class Reconstruction:
 
     @cached_property
     def backwards(self) -> tuple[str, ...]:
-        """The known courses along which this impact drives backwards, and PDOFs from which it
-        pulls."""
+        """Known courses along which a vehicle drives backwards, and PDOFs that pull."""
         state, system = self.system.state(self.x), self.system
         return tuple(
             name
@@ -468,8 +467,7 @@ class Reconstruction:
 
     @cached_property
     def folded(self) -> tuple[str, ...]:
-        """Quantities that nothing limits to first order though the impact stands alone: two
-        branches meet there, or nearly do."""
+        """Quantities without a first-order limit, where two branches of impacts nearly meet."""
         rows = self.system.slopes(self.x)
         sizes = np.abs(rows).max(axis=1, initial=0.0)
         rows = rows[sizes > 0] / sizes[sizes > 0, None]
@@ -498,7 +496,7 @@ class Reconstruction:
 
     @cached_property
     def helpful(self) -> tuple[str, ...]:
-        """Further values that would determine all that is not; none where none would."""
+        """Further values that would determine everything undetermined, empty if none would."""
         _, null = pseudo_inverse(self.system.slopes(self.x))
         rows, names = np.zeros((0, null.shape[1])), []
         wanted = [*dict.fromkeys((*_HELPFUL_FIRST, *self.undetermined))]
@@ -529,13 +527,24 @@ class Reconstruction:
 
     @cached_property
     def evidence(self) -> Evidence:
-        """The verdict on the evidence: whether the measured values can all be true."""
+        """Verdict on the evidence: whether the measured values can all be true."""
         return self.weighed()
 
     @within_doubles
     def weighed(self, inside: bool | None = None) -> Evidence:
-        """Return the verdict on the evidence; ``inside``: whether an impact lies within all limits
-        at once."""
+        """Return the verdict on the evidence, in the light of a search for feasible impacts.
+
+        Parameters
+        ----------
+        inside : bool, optional
+            True if some impact lies within the limits of all known values at once, False if none
+            does, None if that was not searched for.
+
+        Returns
+        -------
+        Evidence
+            Whether the measured values can all be true, and those most at odds.
+        """
         shown = dict(zip(self.system.observations, self._unit_responses[1].tolist(), strict=True))
         known = self.system.known
         values = {
@@ -550,28 +559,75 @@ class Reconstruction:
 
     @within_doubles
     def responses(self, names: Sequence[str]) -> Floats:
-        """What an error of each known value (column) by its standard deviation does to quantities
-        (rows), to first order."""
+        """Return the first-order change of quantities per standard deviation of each known value.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Names of m quantities.
+
+        Returns
+        -------
+        ndarray, shape (m, k)
+            A row for each quantity, a column for each of the k adjusted values, in the order of
+            ``adjusted``.
+        """
         return np.asarray(self.system.gradients(self.x, names) @ self._responses)
 
     @within_doubles
     def deviations(self, names: Sequence[str]) -> dict[str, float]:
-        """Return first-order standard deviations, as the tolerances make them: of values that
-        contradict one another they say nothing until multiplied by ``evidence.widening``."""
+        """Return first-order standard deviations of quantities, as the tolerances make them.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Names of quantities.
+
+        Returns
+        -------
+        dict of str to float
+            Standard deviation of each quantity, in its own unit.
+
+        Notes
+        -----
+        Where the known values contradict one another, the deviations mean nothing until they are
+        multiplied by ``evidence.widening``.
+        """
         sizes = np.sqrt(np.square(self.responses(names)).sum(axis=1))
         return dict(zip(names, sizes.tolist(), strict=True))
 
     @within_doubles
     def correlations(self, names: Sequence[str]) -> Floats:
-        """First-order correlations; nan where a quantity does not vary."""
+        """Return first-order correlations of quantities.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Names of m quantities.
+
+        Returns
+        -------
+        ndarray, shape (m, m)
+            Correlation coefficients, nan where a quantity does not vary.
+        """
         responses = self.responses(names)
         units = responses / np.sqrt(np.square(responses).sum(axis=1, keepdims=True))
         return np.asarray(units @ units.T)
 
     @within_doubles
     def scene(self) -> dict[str, float]:
-        """The impact as a scene's values, MU as line 280 would hold it. Raises UnsolvableError
-        naming what is not determined."""
+        """Return the impact as a scene, with MU as line 280 of the listing would hold it.
+
+        Returns
+        -------
+        dict of str to float
+            All 21 values of a scene by name, M too.
+
+        Raises
+        ------
+        UnsolvableError
+            When a value of the scene is not determined; the message names it.
+        """
         names = [n for n in ("E", "EM", *VELOCITIES) if not (self.system.point and n == "EM")]
         missing = [n for n in (*names, "MUP") if n not in self.values]
         if missing:

@@ -421,7 +421,22 @@ class Measured(Impact):
 
 
 class Reconstructions(list[Reconstruction]):
-    """The impacts that agree with what is known."""
+    """The impacts that agree with what is known, the likeliest first.
+
+    A list, which a notebook shows as the command prints it.
+
+    Parameters
+    ----------
+    iterable : iterable of Reconstruction, optional
+        The impacts.
+
+    Examples
+    --------
+    >>> known = {name: text for name, text in impact88.sample(1).items() if name != "MU"}
+    >>> impacts = impact88.reconstruct({**known, "VAX": "-13.3 +- 0.5"})
+    >>> [impact.redundancy for impact in impacts]
+    [0]
+    """
 
     def _repr_html_(self) -> str:
         """What `impact88 reconstruct --samples 0` prints, as a notebook shows it."""
@@ -445,10 +460,10 @@ def reconstruct(known: Mapping[str, Uncertain | float | str]) -> Reconstructions
 
     Returns
     -------
-    list of Reconstruction
-        Possible impacts before those that break physics, each group ordered by the sum of squared
-        adjustments. Each has ``values``, ``adjusted``, ``evidence`` (whether the measurements can
-        all be true), ``deviations(names)`` and ``scene()``.
+    Reconstructions
+        A list of `Reconstruction`: possible impacts before those that break physics, each group
+        ordered by the sum of squared adjustments. Each has ``values``, ``adjusted``, ``evidence``
+        (whether the measurements can all be true), ``deviations(names)`` and ``scene()``.
 
     Raises
     ------

@@ -118,22 +118,22 @@ class Solution:
 
     @property
     def found(self) -> NDArray[np.bool_]:
-        """Where all unknowns have a value."""
+        """Mask of the scenes in which all unknowns have a value."""
         return np.asarray(np.all([np.isfinite(self.values[n]) for n in self.unknown], axis=0))
 
     @property
     def worst(self) -> Array:
-        """The largest amplification of any unknown."""
+        """Largest amplification of any unknown."""
         return np.asarray(np.max([*self.amplification.values()], axis=0))
 
     @property
     def badly_conditioned(self) -> NDArray[np.bool_]:
-        """Whether some unknown's amplification reaches `BADLY_CONDITIONED`."""
+        """Mask of the scenes in which some amplification reaches `BADLY_CONDITIONED`."""
         return ~(self.worst < BADLY_CONDITIONED)
 
     @property
     def contradictory(self) -> NDArray[np.bool_]:
-        """Whether the known values contradict one another beyond rounding."""
+        """Mask of the scenes whose known values contradict one another beyond rounding."""
         speeds = [np.abs(self.values[n]) for n in (*VELOCITIES, *FINAL_STATE) if n in self.values]
         return np.asarray(self.mismatch > _OPEN * np.max(speeds, axis=0))
 

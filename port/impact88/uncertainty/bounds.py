@@ -74,7 +74,7 @@ def bounds(
     quantiles: Sequence[float] = QUANTILES,
     exclude: Sequence[str] = (),
     keep_draws: bool = False,
-    progress: Callable[[int], object] = lambda draws: None,
+    progress: Callable[[int], object] | None = None,
 ) -> Bounds:
     """Return bounds, random draws and sensitivities of a scene known within limits.
 
@@ -383,7 +383,7 @@ def _monte_carlo(
     rng: np.random.Generator,
     samples: int,
     correlated: tuple[list[str], Array],
-    progress: Callable[[int], object],
+    progress: Callable[[int], object] | None,
 ) -> tuple[dict[str, Array], dict[str, Array], NDArray[np.int64]]:
     """The outputs of each draw, the inputs of the first `RANKED`, and the STATUS of each draw."""
     names, root = correlated
@@ -411,5 +411,6 @@ def _monte_carlo(
             for name, column in ranked.items():
                 part = column[chunk]
                 part[:] = columns[name][: len(part)]
-        progress(count)
+        if progress is not None:
+            progress(count)
     return draws, ranked, flags

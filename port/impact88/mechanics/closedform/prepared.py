@@ -100,7 +100,23 @@ def _check_names(names: Sequence[str], table: Iterable[str], what: str) -> None:
 
 
 class Prepared:
-    """Results of scenes that share all but some numbers: see `prepared`."""
+    """Results of scenes that share all but some numbers: see `prepared`.
+
+    Parameters
+    ----------
+    names : tuple of str
+        The inputs given at each call, in the order of their rows.
+    outputs : tuple of str
+        Names of the results.
+    scene : mapping of str to float or str
+        The inputs that stay.
+
+    Examples
+    --------
+    >>> loss = impact88.prepared(["MU", "E"], ["LOSS"], impact88.sample(1))
+    >>> loss.names, loss.outputs
+    (('MU', 'E'), ('LOSS',))
+    """
 
     def __init__(
         self, names: tuple[str, ...], outputs: tuple[str, ...], scene: Mapping[str, object]
@@ -156,13 +172,12 @@ class Prepared:
 
     @explains_arguments
     def bind(self, values: Array) -> "Bound":
-        """Return a function without arguments: the results of what an array holds when it is
-        called.
+        """Return a function of an array's current numbers, without arguments.
 
         Parameters
         ----------
         values : ndarray
-            float64 in C order, a row for each of ``names``: its numbers are changed in place
+            Numbers of float64 in C order, a row for each of ``names``, to be changed in place
             between the calls.
 
         Returns

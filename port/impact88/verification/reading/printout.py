@@ -100,19 +100,53 @@ class Piece(NamedTuple):
 
 @dataclass(repr=False)
 class Printout:
-    """One printout as read.
+    """One printout as read from a text, by `read_printouts`.
 
-    ``page``: the text as glyphs; ``line``, ``column``, ``start``, ``stop``: where the printout
-    stands in it. ``fields``: name -> reading, for every number found; ``replies``: the velocities
-    typed at the prompts, where the transcript shows them; ``angles``: ways to cut the row of five
-    angles with what each costs, the likeliest first, where blanks alone do not tell, and
-    ``angle_row`` its glyphs then; ``ending``: ``ZERO DETERMINANT`` or an Applesoft error as
-    printed, with its line; ``ended``: whether anything of the last row of asterisks is there;
-    ``has_final_spins``: whether the final WA, WB line is, read or not: then M = N; ``left_over``:
-    text that belongs nowhere; ``remarks``: what could not be read, and where; ``labels``: how each
-    number is named; ``notes``: what was normalised or passed over; ``unread``: why the text was not
-    read to its end; ``misread_letters``: of labels and asterisks, how many were read as others;
-    ``misread_prompts``: the first reply of each prompt whose question mark was.
+    Parameters
+    ----------
+    page : Page
+        The text as glyphs.
+    _states : mapping of int to int
+        The character of the program's page that each glyph was aligned with.
+    line, column : int
+        Line and column of the text, from 1, at which the printout begins.
+    start, stop : int
+        Offsets in the text of its begin and end.
+    fields : dict of str to Reading
+        Every number found, by the field's name.
+    replies : dict of str to Reading
+        The velocities typed at the prompts, where the transcript shows them.
+    angles : list of tuple
+        Where blanks alone do not tell the five angles of a row apart: the ways to part the row, as
+        five texts and a penalty each, the likeliest first.
+    angle_row : tuple of Glyph
+        The glyphs of that row.
+    ending : str, optional
+        ``ZERO DETERMINANT`` or an Applesoft error as printed, with its line.
+    ended : bool
+        True if anything of the last row of asterisks was found.
+    has_final_spins : bool
+        True if the line of the final WA and WB was found, read or not: then M = N.
+    left_over : list of Piece
+        Text that belongs to no field and no label.
+    remarks : list of str
+        What could not be read, and its place.
+    labels : list of LabelCheck
+        How each number is named.
+    notes : list of str
+        What was normalised or passed over.
+    unread : str
+        Why the text was not read to its end, empty if it was.
+    misread_letters : int
+        Letters of labels and asterisks that were read as others.
+    misread_prompts : set of str
+        The first reply of each prompt whose question mark was read as another character.
+
+    Examples
+    --------
+    >>> (printout,) = impact88.read_printouts(impact88.run(impact88.sample(1)).page)
+    >>> printout.fields["VAX"].text, printout.fields["VAX"].line
+    ('-13.263', 25)
     """
 
     page: Page = field(repr=False)
@@ -202,13 +236,16 @@ class Printout:
 
     @property
     def mislabelled(self) -> list[LabelCheck]:
-        """The labels that say another number than the one that stands there."""
+        """Labels that name another number than the one beside them."""
         return [label for label in self.labels if label.state is LabelState.CONTRADICTORY]
 
     @property
     def marks(self) -> int:
-        """How many marks of an optical reader its numbers bear: those that nobody types so, in
-        pieces or with more than O for 0 and l for 1, and specks beside them."""
+        """Number of signs of an optical reader on its numbers.
+
+        Counted are numbers that nobody would type so, in pieces or with more than O for 0 and l
+        for 1, and specks beside numbers.
+        """
         specks = (
             piece.beside and not piece.whole and len(piece.text) <= 3 for piece in self.left_over
         )
@@ -221,28 +258,37 @@ class Printout:
 
     @property
     def machine_read(self) -> bool:
-        """Whether the text bears the marks of an optical reader: letters of labels and asterisks
-        that would not be typed so, or damaged numbers."""
+        """True if the text shows signs of an optical reader: misread labels, damaged numbers."""
         return self.misread_letters + self.marks >= MACHINE_READ
 
     @property
     def badly_read(self) -> bool:
-        """Whether so much of it was misread that a digit altered on the paper and one misread
-        cannot be told apart."""
+        """True if too much was misread to tell an altered digit from a misread one."""
         return self.misread_letters + self.marks >= BADLY_READ
 
     @property
     def fragment(self) -> bool:
-        """Whether it holds too few numbers, five at most, to be called a printout."""
+        """True if it holds too few numbers, five at most, to be called a printout."""
         return len(self.fields) <= 5
 
     @property
     def fragment_of_run(self) -> bool:
-        """Whether nothing of the results is there, and no message that says why."""
+        """True if it holds no final velocity of a center and no message that says why."""
         return self.ending is None and self.fields.keys().isdisjoint(("VAX", "VAY", "VBX", "VBY"))
 
     def text(self, name: str) -> str | None:
-        """The text of a field, None when it was not read."""
+        """Return the text of a field.
+
+        Parameters
+        ----------
+        name : str
+            Name of the field.
+
+        Returns
+        -------
+        str or None
+            The number as read, None if the field was not read.
+        """
         reading = self.fields.get(name)
         return reading.text if reading else None
 
@@ -253,7 +299,13 @@ class Printout:
         return STATES[self._states.get(index, 0)].line
 
     def read(self) -> bool:
-        """Read the numbers; whether there are any, or a prompt."""
+        """Read the numbers.
+
+        Returns
+        -------
+        bool
+            True if there are enough numbers for a printout, or a prompt.
+        """
         self._crop()
         for name, (start, stop) in self._slots.items():
             if name in FIELDS:
@@ -278,7 +330,20 @@ class Printout:
         return True
 
     def end(self, message: re.Match[str], text: str) -> int:
-        """The run ended with a message in the glyphs' text; the glyph after it."""
+        """End the printout with a message, such as an error of Applesoft.
+
+        Parameters
+        ----------
+        message : re.Match
+            The message in the text of the page's glyphs.
+        text : str
+            The text of the page's glyphs.
+
+        Returns
+        -------
+        int
+            Place of the glyph behind the message.
+        """
         begin, stop = message.span()
         self.ending = _ENDINGS[message[1].replace("'", "")]
         if self.ending != ZERO_DETERMINANT and (line := _IN_LINE.match(text, stop)):
@@ -289,7 +354,7 @@ class Printout:
         return stop
 
     def check_labels(self) -> None:
-        """How the numbers are named, and what of the letters was misread."""
+        """Set ``labels`` and ``misread_letters``: the number that each label names."""
         read = {name: self._slots[name] for name in self.fields if name in self._slots}
         marks = self.marks + self._misread("*") if len(self.fields) >= _PART else READERS
         found = [
@@ -305,8 +370,13 @@ class Printout:
         self.misread_letters = self._misread("*ABCDEFGHIJKLMNOPQRSTUVWXYZ", wrong)
 
     def read_otherwise(self) -> list[str]:
-        """Return a note on the letters and marks of labels that were read as others and leave no
-        doubt which number is meant."""
+        """Return a note on misread letters of labels that leave no doubt which number is meant.
+
+        Returns
+        -------
+        list of str
+            One note with the letters by line, or none.
+        """
         told = {at for label in self.labels if label.doubt for at in range(label.start, label.stop)}
         told |= {at for label in self.mislabelled for at in range(label.start, label.stop)}
         places: dict[int, list[str]] = {}
@@ -407,8 +477,15 @@ class Printout:
             self._remark("reply", start, " is not three numbers", self.page.shown(start, stop))
 
     def roles(self) -> dict[int, str]:
-        """What each glyph is: of a number, an exact letter of a label, a damaged one;
-        not others between lines or put into labels."""
+        """Return the role of each glyph that belongs to the program's page.
+
+        Returns
+        -------
+        dict of int to str
+            ``"number"``, ``"exact"`` (a letter of a label, as the program prints it) or
+            ``"letter"`` (a misread one) by the glyph's place on the page. Glyphs between the lines
+            or inserted into labels are left out.
+        """
         roles = dict.fromkeys(self._exact, "exact")
         for index, state in self._states.items():
             letter, figure = letter_of(state), self.page.glyphs[index].char.isdigit()

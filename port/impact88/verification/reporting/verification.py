@@ -142,27 +142,33 @@ class Verification:
 
     @property
     def where(self) -> str:
-        """Where the printout begins in its file."""
+        """Line, and page of a picture, at which the printout begins in its file."""
         return f"line {self.line}" if self.page is None else f"page {self.page}, line {self.line}"
 
     @property
     def differing(self) -> list[FieldCheck]:
-        """The fields printed otherwise than recomputed."""
+        """Fields whose printed number differs from the recomputed one."""
         return [check for check in self.fields if check.same is False]
 
     @property
     def complete_scene(self) -> dict[str, str]:
-        """The scene; empty where a value of it was not recovered."""
+        """The recovered scene, empty if any value of it was not recovered."""
         scene = {name: text for name, text in self.scene.items() if text is not None}
         return scene if len(scene) == len(self.scene) else {}
 
     @property
     def not_read(self) -> list[str]:
-        """The fields the program prints and that were not read."""
+        """Names of the fields that the program prints and that were not read."""
         return [check.name for check in self.fields if check.status == Status.NOT_READ]
 
     def renumber(self, lines: Sequence[int]) -> None:
-        """Give every place the number that its line had in the file."""
+        """Renumber the lines of all places, from lines of the text to lines of the file.
+
+        Parameters
+        ----------
+        lines : sequence of int
+            Line number in the file of each line of the text, from the text's line 1.
+        """
         for check in [*self.fields, *self.replies]:
             check.line = lines[check.line - 1] if check.line else None
             check.doubts = [doubt._replace(line=lines[doubt.line - 1]) for doubt in check.doubts]
@@ -182,7 +188,13 @@ class Verification:
         return notebook.preformatted_html("\n".join(lines(self)))
 
     def as_json(self) -> dict[str, Any]:
-        """The object `impact88 verify --json` prints."""
+        """Return the object that ``impact88 verify --json`` prints.
+
+        Returns
+        -------
+        dict of str to object
+            The verification as JSON types, in the form of ``impact88 schema verify``.
+        """
         described = {"printout": self.number, "span": [self.start, self.stop]}
         described |= {name: _plain(getattr(self, name)) for name in _IN_JSON}
         if self.copy:
@@ -193,7 +205,21 @@ class Verification:
 
 
 class Verifications(list[Verification]):
-    """The verdicts on the printouts of one file, in their order; a notebook shows them whole."""
+    """The verdicts on the printouts of one file, in their order.
+
+    A list, which a notebook shows as the command prints it.
+
+    Parameters
+    ----------
+    iterable : iterable of Verification, optional
+        The verdicts.
+
+    Examples
+    --------
+    >>> page = impact88.run(impact88.sample(1)).page
+    >>> [result.verdict.name for result in impact88.verify(page)]
+    ['IDENTICAL']
+    """
 
     def _repr_html_(self) -> str:
         return notebook.preformatted_html("\n".join(line for one in self for line in lines(one)))
