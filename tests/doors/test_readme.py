@@ -1,4 +1,4 @@
-"""README's examples are run, and print what README shows.
+"""The examples of README and of the guide are run, and print what is shown.
 
 In a ``console`` block a line that begins with ``$`` is a command and what follows is its output, in
 order of appearance on the terminal; a line ``...`` stands for any lines. All blocks share one
@@ -21,6 +21,7 @@ from pathlib import Path
 import pytest
 from captures import ROOT
 from extras import run_with
+from guide import guide
 from installed import COMMAND, impact88
 
 from impact88.commands.cli import COMMANDS
@@ -28,7 +29,7 @@ from impact88.names import SCENE
 from impact88.program.scene import sample
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-GUIDE = (ROOT / "port" / "GUIDE.md").read_text(encoding="utf-8")
+GUIDE = guide()
 BOTH = f"{README}\n{GUIDE}"
 TEST_COMMAND = "python3 -m venv .venv && .venv/bin/pip install -e '.[test]' && .venv/bin/pytest"
 FIRST_COMMAND = (
@@ -177,12 +178,12 @@ def test_a_tour_needs_the_extras_it_names_and_no_other(
         assert done.returncode in (0, 1), done.stderr
 
 
-PAGES = ["README.md", "port/GUIDE.md", "port/README.md", "port/CHANGELOG.md", "tests/README.md"]
+PAGES = ["README.md", "port/README.md", "port/CHANGELOG.md", "tests/README.md"]
 
 
-@pytest.mark.parametrize("page", PAGES)
+@pytest.mark.parametrize("page", [*PAGES, "the guide"])
 def test_files_and_rooms_named_are_there(page: str) -> None:
-    text = (ROOT / page).read_text(encoding="utf-8")
+    text = GUIDE if page == "the guide" else (ROOT / page).read_text(encoding="utf-8")
     named = re.findall(r"`([A-Za-z0-9_./-]+(?:\.py|\.md|/))`", text)
     assert named
     places = [ROOT, ROOT / "port", ROOT / "port" / "impact88", ROOT / "tests", ROOT / "golden"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from captures import ROOT
+from guide import guide
 
 from impact88.collision.scenefile import SIGNS, template
 from impact88.commands.cli import main
@@ -155,7 +155,7 @@ def test_signs_are_told_where_a_scene_is_filled_in(capsys, monkeypatch):
     assert main(["scene", "--help"]) == 0
     out = capsys.readouterr().out
     assert all(line in out for line in SIGNS.splitlines() if line.startswith(" "))
-    assert SIGNS in (ROOT / "port" / "GUIDE.md").read_text(encoding="utf-8")
+    assert SIGNS in guide()
 
 
 def test_signs_are_those_of_the_mechanics():
