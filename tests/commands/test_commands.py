@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 from captures import ROOT
+from guide import guide
 from installed import COMMAND, process
 from installed import impact88 as command
 
@@ -70,9 +71,9 @@ def test_every_registered_command_is_complete(name: str) -> None:
     readme = (ROOT / "README.md").read_text("utf-8").splitlines()
     prose = "\n".join(line for line in readme if not line.startswith("|"))
     words = f"impact88 {'chapter ' if name in CHAPTER else ''}{name}"
-    assert words in prose + (ROOT / "port" / "GUIDE.md").read_text("utf-8"), (
-        f"no page for users says {words}; next step: an example in port/GUIDE.md, which "
-        "tests/doors/test_readme.py runs"
+    assert words in prose + guide(), (
+        f"no page for users says {words}; next step: an example in a chapter of "
+        "port/docs/guide/, which tests/doors/test_readme.py runs"
     )
 
 

@@ -219,10 +219,10 @@ def main(args: options.Args) -> None:
             "next step: its row in ROWS of commands/__init__.py",
         ),
         Step(
-            "port/GUIDE.md",
+            "port/docs/guide/apple.md",
             "```console\n$ impact88 hello Brach\nHELLO Brach\n```\n\n",
             "`impact88 basic` is the",
-            "next step: an example in port/GUIDE.md",
+            "next step: an example in a chapter of port/docs/guide/",
         ),
         Step(
             "README.md",
@@ -240,7 +240,7 @@ def main(args: options.Args) -> None:
             "next step: main in commands/hello_command.py",
         ),
         Step(
-            "port/GUIDE.md",
+            "port/docs/guide/apple.md",
             "```console\n$ impact88 hello Brach\nGOOD MORNING\n```\n\n",
             "`impact88 basic` is the",
             "HELLO Brach",

@@ -68,7 +68,18 @@ class Uncertain:
     critical: float = 0.0
 
     def over(self, factor: float) -> Uncertain:
-        """Return the value in another unit: all numbers divided by ``factor``."""
+        """Return the value in another unit.
+
+        Parameters
+        ----------
+        factor : float
+            The size of that unit in the present one; all numbers are divided by it.
+
+        Returns
+        -------
+        Uncertain
+            The value in that unit.
+        """
         nominal, low, high = (value / factor for value in (self.nominal, self.low, self.high))
         return replace(self, nominal=nominal, low=low, high=high, deviation=self.deviation / factor)
 
@@ -79,7 +90,7 @@ class Uncertain:
 
     @property
     def standard_deviation(self) -> float:
-        """The standard deviation; a normal's is that without its limits."""
+        """Standard deviation; for a normal with limits, that without its limits."""
         if self.kind == "triangular":
             a, c, b = self.low, self.nominal, self.high
             return math.sqrt((a * a + b * b + c * c - a * b - a * c - b * c) / 18)
@@ -91,21 +102,53 @@ class Uncertain:
         return self.deviation if self.kind == "normal" else (self.high - self.low) / 2
 
     def limits(self, sigmas: float) -> tuple[float, float]:
-        """Return lower and upper limit; a normal is cut at ``sigmas`` standard deviations."""
+        """Return lower and upper limit.
+
+        Parameters
+        ----------
+        sigmas : float
+            Cut-off for a normal, in standard deviations.
+
+        Returns
+        -------
+        tuple of float
+            Lower and upper limit.
+        """
         if self.kind != "normal":
             return self.low, self.high
         reach = sigmas * self.deviation
         return max(self.low, self.nominal - reach), min(self.high, self.nominal + reach)
 
     def around(self, nominal: float) -> Uncertain:
-        """Return the range with ``nominal`` as its nominal value, unchanged if that lies
-        outside."""
+        """Return the range with another nominal value.
+
+        Parameters
+        ----------
+        nominal : float
+            The nominal value.
+
+        Returns
+        -------
+        Uncertain
+            The same range around it, unchanged if ``nominal`` lies outside or this is no range.
+        """
         if self.kind != "uniform" or not self.low <= nominal <= self.high:
             return self
         return replace(self, nominal=nominal)
 
     def quantile(self, share: float) -> float:
-        """Return the quantile at probability ``share``, 0 to 1."""
+        """Return a quantile.
+
+        Parameters
+        ----------
+        share : float
+            Probability, 0 to 1.
+
+        Returns
+        -------
+        float
+            The value that is not exceeded with that probability.
+        """
         if self.kind == "fixed":
             return self.nominal
         if self.kind == "uniform":
@@ -125,7 +168,20 @@ class Uncertain:
         return min(max(normal.inv_cdf(target), self.low), self.high)
 
     def draws(self, rng: np.random.Generator, count: int) -> NDArray[np.float64]:
-        """Return ``count`` independent random values."""
+        """Return independent random values.
+
+        Parameters
+        ----------
+        rng : numpy.random.Generator
+            Source of random numbers.
+        count : int
+            Number of values.
+
+        Returns
+        -------
+        ndarray of float
+            The values.
+        """
         import numpy as np
 
         if self.kind == "fixed":
@@ -137,7 +193,18 @@ class Uncertain:
         return self.from_normal(rng.standard_normal(count))
 
     def log_density(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the log density of a triangular or normal within its limits, up to a constant."""
+        """Return the log density of a triangular or normal within its limits, up to a constant.
+
+        Parameters
+        ----------
+        values : ndarray of float
+            Values within the limits.
+
+        Returns
+        -------
+        ndarray of float
+            The log density at each value.
+        """
         import numpy as np
 
         off = values - self.nominal
@@ -150,8 +217,21 @@ class Uncertain:
     def from_normal(self, variates: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the values that standard normal variates map to, quantile to quantile.
 
-        Interpolated in a table: the error, below 1e-6 of the spread, is a thousandth of what a
-        million samples resolve."""
+        Parameters
+        ----------
+        variates : ndarray of float
+            Standard normal variates.
+
+        Returns
+        -------
+        ndarray of float
+            The value at the same quantile as each variate.
+
+        Notes
+        -----
+        Values are interpolated in a table: the error, below 1e-6 of the spread, is a thousandth of
+        what a million samples resolve.
+        """
         import numpy as np
 
         if self.kind == "normal" and math.isinf(self.low) and math.isinf(self.high):

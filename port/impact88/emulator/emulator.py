@@ -73,26 +73,56 @@ class Applesoft:
         return self._keyboard() if self._keyboard else None
 
     def feed(self, *lines: str) -> None:
-        """Queue lines to be typed, for INPUT, GET or the prompt."""
+        """Queue lines to be typed, for INPUT, GET or the prompt.
+
+        Parameters
+        ----------
+        *lines : str
+            The lines, without RETURN.
+        """
         self._queue.extend(lines)
 
     def feed_keys(self, text: str) -> None:
-        """Queue keys, a newline for RETURN; the last line may end without one."""
+        """Queue keys, a newline for RETURN; the last line may end without one.
+
+        Parameters
+        ----------
+        text : str
+            The keys in the order in which they are pressed.
+        """
         *lines, last = text.split("\n")
         self.feed(*lines, *([Keys(last)] if last else []))
 
     def take_output(self) -> str:
-        """Return the output since the last call: RETURN as newline, control characters kept."""
+        """Return the output since the last call.
+
+        Returns
+        -------
+        str
+            Every character sent to the screen, RETURN as newline, control characters kept.
+        """
         text = "".join(self._output)
         self._output.clear()
         return text
 
     def screen_rows(self) -> list[bytes]:
-        """Return the 24 rows of the text screen, 40 bytes each, as in the machine's memory."""
+        """Return the rows of the text screen as they lie in the machine's memory.
+
+        Returns
+        -------
+        list of bytes
+            24 rows of 40 bytes.
+        """
         return self.machine.screen.rows()
 
     def screen_text(self) -> str:
-        """Return the 24 rows of the text screen as text, without blanks at their ends."""
+        """Return the text screen as text.
+
+        Returns
+        -------
+        str
+            24 rows, without blanks at their ends.
+        """
         return self.machine.screen.text()
 
     def load(self, program: str | bytes) -> None:
@@ -114,12 +144,33 @@ class Applesoft:
         self.machine.load(read_program(program).lines)
 
     def type_line(self, text: str) -> ApplesoftError | None:
-        """Enter a line typed at the prompt, small letters as capitals. Return the error that ended
-        it, or None."""
+        """Enter a line typed at the prompt, small letters as capitals.
+
+        Parameters
+        ----------
+        text : str
+            The line, of which the Apple keeps 239 characters.
+
+        Returns
+        -------
+        ApplesoftError or None
+            The error that ended it, if any.
+        """
         return self.enter(capitals(text)[:MAX_INPUT])
 
     def enter(self, text: str) -> ApplesoftError | None:
-        """Enter a line as it is. Return the error that ended it, or None."""
+        """Enter a line as it is.
+
+        Parameters
+        ----------
+        text : str
+            The line.
+
+        Returns
+        -------
+        ApplesoftError or None
+            The error that ended it, if any.
+        """
         self.machine.errflg >>= 1
         self.machine.error = None
         if text.strip(" "):
@@ -151,17 +202,41 @@ class Applesoft:
         raise Restart
 
     def source(self) -> str:
-        """Return the program as text for `load`, one line a row, as SAVE writes it."""
+        """Return the program as text that `load` takes.
+
+        Returns
+        -------
+        str
+            One line a row, as SAVE writes it.
+        """
         return "".join(f"{number} {detokenise(line)}\n" for number, line in self.machine.lines())
 
     def run(self) -> ApplesoftError | None:
-        """RUN the program. Return the error that ended it, or None. Raises `console.EndOfInput` if
-        it asks for more input than was queued, and `faults.TooManyStatements`."""
+        """Run the program, as RUN does.
+
+        Returns
+        -------
+        ApplesoftError or None
+            The error that ended it, if any.
+
+        Raises
+        ------
+        EndOfInput
+            When it asks for more input than was queued.
+        TooManyStatements
+            When it takes more statements than ``machine.statements_left`` allowed.
+        """
         return self.enter("RUN")
 
     def prompt(self, handle: Callable[[str], bool] | None = None) -> None:
-        """Read and execute lines at the ``]`` prompt until the keyboard ends. ``handle``: called
-        first; returns True for lines it has handled (commands of the disk system)."""
+        """Read and execute lines at the ``]`` prompt until the keyboard ends.
+
+        Parameters
+        ----------
+        handle : callable, optional
+            Called with each line first; returns True for a line that it has handled, such as a
+            command of the disk system.
+        """
         while True:
             self.machine.console.put("\n")
             try:
@@ -174,14 +249,30 @@ class Applesoft:
                 self.machine.console.put("\n")
 
     def value(self, name: str) -> Any:
-        """Return the value of a simple variable, named as in BASIC: stored bytes in hexadecimal,
-        text for a string, None if it was never assigned."""
+        """Return the value of a simple variable.
+
+        Parameters
+        ----------
+        name : str
+            Its name in BASIC, such as ``A``, ``N%`` or ``A$``.
+
+        Returns
+        -------
+        str or None
+            Stored bytes in hexadecimal, the text of a string, None if it was never assigned.
+        """
         key = _key(name)
         address = self.machine.simple.get(key)
         return None if address is None else self._value_text(key, address)
 
     def reals(self) -> dict[str, str]:
-        """Return all real variables, oldest first: five stored bytes in hexadecimal."""
+        """Return all real variables, the oldest first.
+
+        Returns
+        -------
+        dict of str to str
+            The five stored bytes of each variable in hexadecimal.
+        """
         return {
             key.to_bytes(2, "big").rstrip(b"\0").decode(): self._value_text(key, address)
             for key, address in self.machine.simple.items()
@@ -189,8 +280,19 @@ class Applesoft:
         }
 
     def array(self, name: str) -> dict[str, Any] | None:
-        """Return an array: ``dims`` (sizes) and ``data``, first subscript fastest; None if there is
-        no such array."""
+        """Return an array.
+
+        Parameters
+        ----------
+        name : str
+            Its name in BASIC, without parentheses.
+
+        Returns
+        -------
+        dict or None
+            ``dims``, the sizes, and ``data``, the values as `value` gives them, first subscript
+            fastest; None if there is no such array.
+        """
         key = _key(name)
         array = self.machine.arrays.get(key)
         if array is None:

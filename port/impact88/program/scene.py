@@ -76,7 +76,23 @@ class Scene(Mapping[str, str]):
 
     @classmethod
     def of(cls, case: Case) -> Self:
-        """Return the scene of a case. Raises UserError."""
+        """Return the scene of a case.
+
+        Parameters
+        ----------
+        case : Case
+            The entries of a file, form or mapping.
+
+        Returns
+        -------
+        Scene
+            The scene, with ranges at their nominal values.
+
+        Raises
+        ------
+        UserError
+            For a missing or unknown name, or a text that is not an amount.
+        """
         scene = cls.__new__(cls)
         scene._take(case)
         return scene
@@ -104,17 +120,75 @@ class Scene(Mapping[str, str]):
     def from_mapping(
         cls, values: Mapping[str, str], source: str = "scene", units: str | None = None
     ) -> Self:
-        """Return the scene of texts by name. Raises UserError."""
+        """Return the scene of texts by name.
+
+        Parameters
+        ----------
+        values : mapping of str to str
+            Texts by the listing's names, as `Scene` takes them.
+        source : str, default "scene"
+            The scene's name in messages.
+        units : str, optional
+            The system of bare numbers if no entry names one.
+
+        Returns
+        -------
+        Scene
+            The scene, with ranges at their nominal values.
+
+        Raises
+        ------
+        UserError
+            For a missing or unknown name, or a text that is not an amount.
+        """
         return cls.of(Case(values, source, units))
 
     @classmethod
     def from_toml(cls, path: str, units: str | None = None) -> Self:
-        """Return the scene in a TOML file. Raises UserError naming file, line or key."""
+        """Return the scene in a TOML file.
+
+        Parameters
+        ----------
+        path : str
+            Path of the file.
+        units : str, optional
+            The system of bare numbers if the file names none.
+
+        Returns
+        -------
+        Scene
+            The scene, with ranges at their nominal values.
+
+        Raises
+        ------
+        UserError
+            For a file that cannot be read as a scene; the message names file, line or key.
+        """
         return cls.of(case_in(path, units))
 
     @classmethod
     def from_toml_text(cls, text: str, source: str, units: str | None = None) -> Self:
-        """Return the scene in a TOML document; ``source`` names it in errors."""
+        """Return the scene in a TOML document.
+
+        Parameters
+        ----------
+        text : str
+            The document.
+        source : str
+            Its name in messages.
+        units : str, optional
+            The system of bare numbers if the document names none.
+
+        Returns
+        -------
+        Scene
+            The scene, with ranges at their nominal values.
+
+        Raises
+        ------
+        UserError
+            For a text that cannot be read as a scene; the message names line or key.
+        """
         if not isinstance(text, str):
             raise UserError(f"{quoted(text)} is not the text of a file")
         return cls.of(Case(toml_texts(text, source), source, units))
@@ -156,18 +230,46 @@ class Scene(Mapping[str, str]):
         return notebook.preformatted_html(self.to_toml())
 
     def replaced(self, changes: Mapping[str, str]) -> Self:
-        """Return this scene with some values changed, see `Case.replaced`; a percentage of the
-        critical friction stays that percentage. Raises UserError."""
+        """Return this scene with some values changed.
+
+        Parameters
+        ----------
+        changes : mapping of str to str
+            New texts by name, as an edit of the scene's file: amounts, ranges around the present
+            value, estimates, or nothing, which takes an entry out. A percentage of the critical
+            friction stays that percentage.
+
+        Returns
+        -------
+        Scene
+            The changed scene.
+
+        Raises
+        ------
+        UserError
+            For an unknown name, or a text that is not an amount.
+        """
         check_mapping(changes)
         return type(self).of(self.case.replaced(changes))
 
     def keyboard(self) -> list[str]:
-        """Return the replies to the INPUTs of lines 210 and 230."""
+        """Return the replies to the INPUTs of lines 210 and 230.
+
+        Returns
+        -------
+        list of str
+            Two replies, three numbers each.
+        """
         return [",".join(self[n] for n in names) for names in (VELOCITIES[:3], VELOCITIES[3:])]
 
     def typed_lines(self) -> list[str]:
-        """Return the program lines to retype for this scene: 280, 290, 310, and 350 unless M is
-        6."""
+        """Return the program lines to retype for this scene.
+
+        Returns
+        -------
+        list of str
+            Lines 280, 290 and 310, and 350 unless M is 6.
+        """
         lines = [
             f"{line} "
             + ":".join(f"{q.name} = {self[q.name]}" for q in SCENE.values() if q.line == line)
@@ -178,13 +280,29 @@ class Scene(Mapping[str, str]):
         return lines
 
     def numbers(self) -> dict[str, float]:
-        """Return the values as doubles by name. Raises UserError past the range of doubles."""
+        """Return the values as numbers.
+
+        Returns
+        -------
+        dict of str to float
+            All 21 values by name.
+
+        Raises
+        ------
+        UserError
+            For a value past the range of doubles.
+        """
         return numbers_of(self)
 
     def check_typed(self) -> None:
-        """Raise UserError unless the values can be typed into program lines and mean the same there
-        as to INPUT: in a line ``E`` is the variable and ``-`` alone is not a number. A line has at
-        most 239 characters."""
+        """Check that the values can be typed into program lines and mean the same there.
+
+        Raises
+        ------
+        UserError
+            For a value that INPUT and a program line would read differently (in a line ``E`` is the
+            variable, and ``-`` alone is not a number), and for a line of more than 239 characters.
+        """
         for value in SCENE.values():
             text = self[value.name]
             if value.line not in REPLY_LINES and not re.match(r"[ +-]*[0-9.]", text):
@@ -202,7 +320,13 @@ class Scene(Mapping[str, str]):
                 )
 
     def to_toml(self) -> str:
-        """Return the scene as a commented TOML file, with its entries as written."""
+        """Return the scene as a commented TOML file.
+
+        Returns
+        -------
+        str
+            The file's text, with the entries as written.
+        """
         return template(self.case)
 
 

@@ -78,8 +78,10 @@ class Replay:
 
     @property
     def error(self) -> Strings:
-        """Each scene's error message, such as "?DIVISION BY ZERO ERROR IN 480"; "" without an error
-        (ZERO DETERMINANT is a normal end)."""
+        """Error message of each scene, "" without an error.
+
+        A message is such as "?DIVISION BY ZERO ERROR IN 480". ZERO DETERMINANT is a normal end.
+        """
         messages = np.full(self.count, "", dtype="<U48")
         for i in np.flatnonzero(self.code > ZERO_DETERMINANT).tolist():
             code, line = int(self.code[i]), int(self.line[i])
@@ -99,40 +101,100 @@ class Replay:
         )
 
     def to_dict(self) -> dict[str, Floats | Strings | Ints]:
-        """Return all results as floats, and ERROR and LINE of each scene, as columns of one length:
-        the input of a DataFrame of any library."""
+        """Return all results as columns of one length, which a DataFrame of any library takes.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Every result as floats, and of each scene ERROR, the message that ended it, and LINE.
+        """
         ending = np.where(self.zero_determinant, "ZERO DETERMINANT", self.error)
         results = {name: self.floats(name) for name in self.names}
         return {**results, "ERROR": ending, "LINE": self.line}
 
     def present(self, name: str) -> Bools:
-        """Return True for each scene that has the result ``name``."""
+        """Return a mask of the scenes that have a result.
+
+        Parameters
+        ----------
+        name : str
+            Name of the result.
+
+        Returns
+        -------
+        ndarray of bool
+            True for each scene that has it.
+        """
         return self._has_passed(name, statements.ASSIGNED)
 
     def floats(self, name: str) -> Floats:
-        """Return a result as float64, exactly; NaN where a scene has none. Raises KeyError for an
-        unknown name."""
+        """Return a result as floats, exactly.
+
+        Parameters
+        ----------
+        name : str
+            Name of the result.
+
+        Returns
+        -------
+        ndarray of float
+            The result of each scene, NaN for a scene without it.
+
+        Raises
+        ------
+        KeyError
+            For an unknown name.
+        """
         return np.where(self.present(name), self._values[name], np.nan)
 
     def reals(self, name: str) -> Packed:
-        """Return a result as five stored bytes, one uint64 each; 0 where a scene has none.
+        """Return a result as the five bytes that the Apple stored.
 
-        ``f"{x:010x}"`` writes the bytes in hexadecimal."""
+        Parameters
+        ----------
+        name : str
+            Name of the result.
+
+        Returns
+        -------
+        ndarray of uint64
+            The bytes of each scene as one number, which ``f"{x:010x}"`` writes in hexadecimal, 0
+            for a scene without the result.
+        """
         stored = from_floats(self._values[name].copy(), None, True).pack()
         return np.where(self.present(name), stored, np.uint64(0))
 
     def printed(self, name: str) -> Strings:
-        """Return a field of the printout, character for character, such as "-8.78" or "5E-03"; ""
-        where the program ended before it.
+        """Return a field of the printout, character for character.
 
-        ``name`` is a result or a value of the scene. MU and MUP both are the number that line 680
-        prints; KF is not printed. Fields are written on first use."""
+        Parameters
+        ----------
+        name : str
+            A result, or a value of the scene. MU and MUP both are the number that line 680 prints;
+            KF is not printed.
+
+        Returns
+        -------
+        ndarray of str
+            The field of each scene, such as "-8.78" or "5E-03", "" for a scene that ended before
+            it.
+
+        Notes
+        -----
+        Fields are written when they are first asked for; see `write_fields`.
+        """
         name = "MUP" if name == "MU" else name
         self.write_fields([name])
         return self._fields[name]
 
     def write_fields(self, names: Sequence[str] = tuple(FIELDS)) -> None:
-        """Write fields now, by default all: together they take less time than one by one."""
+        """Write fields now: together they take less time than one by one.
+
+        Parameters
+        ----------
+        names : sequence of str, optional
+            Names of the fields; all by default.
+        """
         names = [name for name in names if name not in self._fields]
         if not names:
             return
