@@ -6,9 +6,11 @@ built, ``quantities`` lists a table of `impact88.names`, ``bits`` those of STATU
 
 from __future__ import annotations
 
+import re
 import shlex
 import tempfile
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 
 from docutils import nodes
@@ -52,11 +54,11 @@ html_show_copyright = False
 html_static_path = ["static"]
 html_css_files = ["wide.css"]
 
-RETURNED = [
+CONSTRUCTED = [
     f"impact88.{name}"
-    for name in "Bounds Comparison Printout Reconstruction Replay Run Solution Verification".split()
+    for name in "Applesoft Prepared Reconstructions Scene Uncertain Verifications".split()
 ]
-"""Types that are returned and not constructed: their parameters are shown as attributes."""
+"""Classes that are called. Others are returned: their parameters are shown as attributes."""
 
 
 class Drawing(Directive):
@@ -130,16 +132,29 @@ def without_constructor(
     signature: str | None,
     returned: str,
 ) -> tuple[str, str] | None:
-    """Leave the parameters out of the heading of a type that is not constructed."""
-    return ("", "") if signature and name in RETURNED else None
+    """Leave the parameters out of the heading of a class that is not constructed."""
+    return ("", "") if signature and what == "class" and name not in CONSTRUCTED else None
 
 
 def attributes(
     app: Sphinx, what: str, name: str, value: object, options: object, lines: list[str]
 ) -> None:
-    """Call the parameters of a type that is not constructed its attributes."""
-    if name in RETURNED:
-        lines[:] = [line.replace(":Parameters:", ":Attributes:") for line in lines]
+    """Show the parameters of a class that is not constructed as attributes, but for private ones.
+
+    Where its docstring lists attributes, these are shown alone.
+    """
+    if what != "class" or name in CONSTRUCTED or ":Parameters:" not in lines:
+        return
+    start = lines.index(":Parameters:")
+    if ":Attributes:" in lines:
+        del lines[start : lines.index(":Attributes:")]
+        return
+    lines[start] = ":Attributes:"
+    field = re.compile(r" +\*\*(\w)")
+    starts = [at for at, line in enumerate(lines) if field.match(line)]
+    for first, after in reversed([*pairwise(starts)]):
+        if "**_" in lines[first]:
+            del lines[first:after]
 
 
 def documented(

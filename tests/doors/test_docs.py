@@ -14,7 +14,7 @@ from guide import DOCS, chapters
 import impact88
 
 API = DOCS / "api"
-DOCUMENTED = re.compile(r"^\.\. auto(?:function|class|exception):: (\w+)", re.M)
+DOCUMENTED = re.compile(r"^\.\. auto(?:function|class|exception):: (\w+)$", re.M)
 
 
 def groups() -> dict[str, list[str]]:

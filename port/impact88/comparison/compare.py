@@ -50,8 +50,21 @@ HARMLESS = (NO_RESULT, REFUSED)
 
 
 class Row(NamedTuple):
-    """A row that disagrees: its place in the table, its worst result, the relative difference, and
-    the likely cause."""
+    """A row that disagrees.
+
+    Parameters
+    ----------
+    row, line : int
+        Its number among the rows, from 1, and its line in the file, 0 without one.
+    id : str
+        Its entry in a column ``id``, or "".
+    result, theirs, ours : str, str, float
+        The result that disagrees most, the other program's text and this one's number.
+    relative : float
+        Their difference relative to the scene's largest velocity, spin or energy.
+    cause : str
+        The likely cause.
+    """
 
     row: int
     line: int
@@ -65,8 +78,22 @@ class Row(NamedTuple):
 
 @dataclass
 class Tally:
-    """Counts for one result: rows by grade of agreement, rows missing in the other program's
-    table, and the largest relative difference."""
+    """Counts of rows for one result.
+
+    Parameters
+    ----------
+    compared : int
+        Rows compared.
+    double, digits, elimination : int
+        Rows that agree to double precision, to all digits written, and as closely as elimination
+        can.
+    differ : int
+        Rows that disagree.
+    missing : int
+        Rows without the result in the other program's table.
+    largest : float
+        The largest relative difference.
+    """
 
     compared: int = 0
     double: int = 0
@@ -77,7 +104,15 @@ class Tally:
     largest: float = 0.0
 
     def add(self, grades: NDArray[np.intp], relative: NDArray[np.float64]) -> None:
-        """Count a block's rows."""
+        """Count a block's rows.
+
+        Parameters
+        ----------
+        grades : ndarray of int
+            Grade of agreement of each row.
+        relative : ndarray of float
+            Relative difference of each row.
+        """
         counts = np.bincount(grades, minlength=LOST + 1).tolist()
         absent, double, digits, elimination, differ, lost = counts
         self.compared += grades.size - absent - lost
@@ -91,7 +126,17 @@ class Tally:
 
 @dataclass
 class Elimination:
-    """Rows that agree only as closely as elimination can: their number, and the worst of them."""
+    """Rows that agree only as closely as elimination can.
+
+    Parameters
+    ----------
+    rows : int
+        Their number.
+    worst_row : int
+        The row with the largest difference.
+    worst_relative, worst_condition : float
+        Its relative difference and condition number.
+    """
 
     rows: int = 0
     worst_row: int = 0
@@ -101,7 +146,15 @@ class Elimination:
 
 @dataclass
 class Skipped:
-    """Rows not compared for one reason: their number, and the first of them."""
+    """Rows not compared for one reason.
+
+    Parameters
+    ----------
+    rows : int
+        Their number.
+    first : list of int
+        The first of them.
+    """
 
     rows: int = 0
     first: list[int] = field(default_factory=list)

@@ -86,11 +86,20 @@ bounds the time and memory for large tables."""
 
 
 class Cause(NamedTuple):
-    """A cause that is a program.
+    """A cause that is a program with a mistake, or several.
 
-    ``says``: its description; ``explains`` of the ``disagreeing`` rows, and the number of
-    ``agreeing`` ones that it ``fits``; ``equivalents``: descriptions of programs with the same
-    results; ``parts``: for a program with several mistakes, each with the first row that shows it.
+    Parameters
+    ----------
+    says : str
+        Its description.
+    explains, disagreeing : int
+        The rows that disagree and that it reproduces, of all that disagree.
+    fits, agreeing : int
+        The rows that agree and that it reproduces, of all looked at that agree.
+    equivalents : list of str
+        Descriptions of programs with the same results.
+    parts : dict of str to int
+        Of a program with several mistakes, each with the first row that shows it.
     """
 
     says: str
@@ -103,8 +112,15 @@ class Cause(NamedTuple):
 
 
 class Unexplained(NamedTuple):
-    """Numbers of rows of one kind of scene: all, those that disagree without a cause, and of these
-    those that violate each equation."""
+    """Rows of one kind of scene.
+
+    Parameters
+    ----------
+    rows, unexplained : int
+        Their number, and those that disagree without a cause.
+    violated : dict of str to int
+        Of the latter, the rows that violate each equation.
+    """
 
     rows: int
     unexplained: int

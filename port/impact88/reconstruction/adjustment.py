@@ -327,7 +327,15 @@ def _decomposed(matrix: Floats) -> tuple[Floats, Floats, Floats, Floats]:
 
 
 class Adjusted(NamedTuple):
-    """One known value; ``moved``: by how many tolerances."""
+    """One known value as measured and as adjusted.
+
+    Parameters
+    ----------
+    name : str
+        Name of the quantity.
+    measured, tolerance, adjusted : float
+        Measured value, its tolerance, and the adjusted value.
+    """
 
     name: str
     measured: float
@@ -336,15 +344,30 @@ class Adjusted(NamedTuple):
 
     @property
     def moved(self) -> float:
+        """Adjustment in tolerances."""
         return (self.adjusted - self.measured) / self.tolerance
 
 
 class Searched(NamedTuple):
-    """How impacts were searched for: ``batches`` of random starts, ``starts`` in all, the last
-    ``idle`` batches without a further impact; ``single``: the equations are linear, or leave
-    something open, and no search is needed or possible; ``impacts`` that agree with what is known,
-    ``possible`` of them; ``solutions`` of the quadratic equations of exact values, ``nonreal`` of
-    them complex or at infinity: where all are found no starts are needed (0: not so)."""
+    """Record of the search for impacts.
+
+    Parameters
+    ----------
+    batches, starts : int
+        Batches of random starts, and the starts in all of them.
+    idle : int
+        The last batches in a row that found no further impact.
+    single : bool
+        True if the equations are linear or leave something open, so that no search is needed or
+        possible.
+    impacts, possible : int
+        Impacts that agree with what is known, and those of them that physics allows.
+    solutions : int
+        Solutions of the quadratic equations of exact values, all of which were found; 0 if they
+        were not solved.
+    nonreal : int
+        Those that are complex or at infinity.
+    """
 
     batches: int = 0
     starts: int = 0
@@ -356,7 +379,13 @@ class Searched(NamedTuple):
     nonreal: int = 0
 
     def text(self) -> str:
-        """Return the statement of the search."""
+        """Return a statement of the search.
+
+        Returns
+        -------
+        str
+            One sentence without its full stop.
+        """
         impacts = "1 impact" if self.impacts == 1 else f"{self.impacts} impacts"
         if self.possible < self.impacts:
             impacts += f", {self.possible or 'none'} of which physics allows"

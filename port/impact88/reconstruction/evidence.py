@@ -34,9 +34,20 @@ UNCHECKED = "not checked"
 
 @dataclass(frozen=True)
 class AtOdds:
-    """One measured value against the others: ``residual``, how far it is off, in standard
-    deviations of that; ``without``: the probability of the sum of squares of the others alone, nan
-    where nothing would be left to check."""
+    """One measured value in contradiction with the others.
+
+    Parameters
+    ----------
+    name : str
+        Name of the quantity.
+    measured, adjusted : float
+        Measured and adjusted value.
+    residual : float
+        Adjustment in standard deviations of that adjustment.
+    without : float
+        Probability of the sum of squares of the other values alone, nan if nothing would be left to
+        check.
+    """
 
     name: str
     measured: float
@@ -47,12 +58,27 @@ class AtOdds:
 
 @dataclass(frozen=True)
 class Evidence:
-    """``verdict``: `AGREE`, `STRAINED`, `CONTRADICT` or, where nothing is known more than needed,
-    `UNCHECKED`; ``squares`` of ``redundancy`` values more than needed; ``probability`` of as many
-    or more, nan where not checked; ``at_odds``: the values most at odds with the others, the worst
-    first; ``inside``: whether an impact lies within all limits at once, None where that was not
-    asked; ``exact``: the values are exact, and deviations those of the misfit; ``laws``: those that
-    exact values miss."""
+    """Verdict on whether the measured values of a reconstruction can all be true.
+
+    Parameters
+    ----------
+    verdict : str
+        `AGREE`, `STRAINED`, `CONTRADICT`, or `UNCHECKED` if no more is known than needed.
+    squares : float
+        Sum of squared adjustments in standard deviations.
+    redundancy : int
+        Known values more than needed.
+    probability : float
+        Probability of a sum of squares that large or larger, nan if unchecked.
+    at_odds : sequence of AtOdds
+        The values most at odds with the others, the worst first.
+    inside : bool, optional
+        True if some impact lies within all limits at once, None if that was not searched for.
+    exact : bool
+        True if the values are exact, and the standard deviations those of the misfit.
+    laws : tuple of Missed
+        The laws that exact values do not satisfy.
+    """
 
     verdict: str
     squares: float
@@ -65,21 +91,35 @@ class Evidence:
 
     @property
     def contradictory(self) -> bool:
+        """True if the values contradict one another."""
         return self.verdict == CONTRADICT
 
     @property
     def widening(self) -> float:
-        """What standard deviations are multiplied by where the values contradict one another: the
-        root of the sum of squares over the redundancy; else 1."""
+        """Factor on the standard deviations of values that contradict one another, else 1.
+
+        It is the square root of the sum of squares over the redundancy.
+        """
         return math.sqrt(self.squares / self.redundancy) if self.contradictory else 1.0
 
     @property
     def sum_text(self) -> str:
-        """The sum of squares as it is printed: what is rounding is 0."""
+        """The sum of squares as printed, 0 if it is rounding only."""
         return _amount(self.squares if self.squares > NOISE else 0.0, 3)
 
     def text(self, units: System = RULES) -> str:
-        """Return the verdict in a sentence or two."""
+        """Return the verdict in a sentence or two.
+
+        Parameters
+        ----------
+        units : System
+            Units of the numbers in it.
+
+        Returns
+        -------
+        str
+            The verdict, without a full stop.
+        """
         if self.verdict == UNCHECKED:
             return "not checked: no more is known than needed, so no measurement tests another"
         if self.exact:
@@ -96,7 +136,18 @@ class Evidence:
         return f"these measurements contradict one another; {self.named(units)}: {sums}"
 
     def named(self, units: System = RULES) -> str:
-        """Return the values most at odds, each as measured and as adjusted."""
+        """Return the values most at odds, each as measured and as adjusted.
+
+        Parameters
+        ----------
+        units : System
+            Units of the numbers.
+
+        Returns
+        -------
+        str
+            The values, in one line.
+        """
         parts = []
         for item in self.at_odds:
             unit = units.unit(item.name)
@@ -118,7 +169,18 @@ class Evidence:
         return text
 
     def as_json(self, units: System = RULES) -> dict[str, Any]:
-        """Return the same for a program."""
+        """Return the object that ``impact88 reconstruct --json`` prints for the evidence.
+
+        Parameters
+        ----------
+        units : System
+            Units of the numbers.
+
+        Returns
+        -------
+        dict of str to object
+            The evidence as JSON types.
+        """
         rows = [
             {
                 "name": item.name,

@@ -93,8 +93,17 @@ class ArrowTexts(ArrowColumn):
 
 
 class BadCell(NamedTuple):
-    """Why a row cannot be used: ``row`` counts the rows of data from 1, ``line`` is the line of the
-    file (0: a file without lines), ``column`` the column at fault ("" for the row as a whole)."""
+    """Reason why a row cannot be used.
+
+    Parameters
+    ----------
+    row, line : int
+        Its number among the rows, from 1, and its line in the file, 0 without one.
+    column : str
+        The column at fault, "" for the row as a whole.
+    reason : str
+        What is wrong.
+    """
 
     row: int
     line: int

@@ -39,7 +39,15 @@ def quantiles_of(values: Array, shares: Sequence[float]) -> list[float]:
 
 @dataclass(frozen=True)
 class Spread:
-    """Monte Carlo: mean, standard deviation and quantiles (share -> value) of one result."""
+    """Mean, standard deviation and quantiles of one result over random draws.
+
+    Parameters
+    ----------
+    mean, deviation : float
+        Mean and standard deviation of the draws, in the result's unit.
+    quantiles : dict of float to float
+        The value at each probability.
+    """
 
     mean: float
     deviation: float
@@ -47,7 +55,20 @@ class Spread:
 
     @classmethod
     def of(cls, values: Array, quantiles: Sequence[float]) -> Self:
-        """NaN of no values."""
+        """Return the spread of values; nan without values.
+
+        Parameters
+        ----------
+        values : ndarray of float
+            The draws.
+        quantiles : sequence of float
+            Probabilities, 0 to 1.
+
+        Returns
+        -------
+        Spread
+            Mean, standard deviation and quantiles.
+        """
         if not len(values):
             return cls(math.nan, math.nan, dict.fromkeys(quantiles, math.nan))
         found = quantiles_of(values, quantiles)
@@ -57,11 +78,17 @@ class Spread:
 
 @dataclass(frozen=True)
 class Drive:
-    """What one input does to one result.
+    """Influence of one input on one result.
 
-    ``rank_correlation``: Spearman's, over the draws; nan where either does not vary; ``at_low`` and
-    ``at_high``: the result with this input at its limits and the others nominal; ``lowest`` and
-    ``highest``: over the whole sweep, beyond the former where the result turns around.
+    Parameters
+    ----------
+    rank_correlation : float
+        Spearman's rank correlation over the draws, nan if either does not vary.
+    at_low, at_high : float
+        The result with this input at its lower and upper limit and the others nominal.
+    lowest, highest : float
+        Extremes of the result as this input alone runs through its range. They lie beyond
+        ``at_low`` and ``at_high`` if the result turns around in between.
     """
 
     rank_correlation: float
@@ -72,18 +99,29 @@ class Drive:
 
     @property
     def swing(self) -> float:
-        """How far the result goes as this input alone runs through its range."""
+        """Range of the result as this input alone runs through its range."""
         return self.highest - self.lowest
 
 
 @dataclass(frozen=True)
 class Bound:
-    """Lowest and highest value of one result over the box, and the inputs that give them.
+    """Lowest and highest value of one result, and the inputs that give them.
 
-    ``nominal``: with every input at its nominal value; ``corner_lower`` and ``corner_upper``: over
-    the corners evaluated; a bound is infinite where the range holds a scene without solution (the
-    inputs beside it are then close to that scene's); ``lower_warnings`` and ``upper_warnings``:
-    names of what is unphysical there.
+    A bound is infinite if the range holds a scene without a solution; the inputs given for it are
+    then close to that scene's.
+
+    Parameters
+    ----------
+    nominal : float
+        The result with every input at its nominal value.
+    lower, upper : float
+        Lowest and highest value within the limits of all inputs.
+    at_lower, at_upper : dict of str to float
+        The inputs at which these are attained.
+    corner_lower, corner_upper : float
+        Lowest and highest value over the corners of the box of limits that were evaluated.
+    lower_warnings, upper_warnings : tuple of str
+        STATUS names of the impacts at the two bounds.
     """
 
     nominal: float

@@ -268,7 +268,19 @@ class Prepared:
 class Bound:
     """Results of one array's numbers, as they are when it is called: see `Prepared.bind`.
 
-    ``values``: the array; ``results``: by name what the last call found, NaN before the first.
+    Parameters
+    ----------
+    prepared_call : Prepared
+        The function that is bound.
+    values : ndarray
+        The array.
+
+    Attributes
+    ----------
+    values : ndarray
+        The array.
+    results : dict of str to ndarray
+        The results of the last call by name, NaN before the first.
     """
 
     def __init__(self, prepared_call: Prepared, values: Array) -> None:

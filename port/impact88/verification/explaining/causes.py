@@ -36,13 +36,31 @@ the last of them. Doubled, none changes; without, one in IEEE double is not told
 
 @dataclass
 class Cause:
-    """A cause that was tried: its ``kind``, a ``note`` on it, the ``bits`` it asks for, the names
-    that it leaves unexplained, and the numbers it puts ``right``.
+    """A cause that was tried for the differences of a page.
 
-    Of one that is offered as an explanation: how many it ``explains`` of how many ``differing``
-    numbers; ``changes``, all that it puts right and where that stands; ``field``, ``printed``,
-    ``would_be``: the first of them; where to ``look`` on the paper; ``rank``, from 1: explanations
-    that the page cannot tell apart share it."""
+    One that is offered as an explanation also has ``field``, ``printed`` and ``would_be``, the
+    first of its changes; ``look``, the places to look at on the paper; and ``remaining``, the
+    number of differences that it leaves.
+
+    Parameters
+    ----------
+    kind : str
+        Kind of cause, such as "digit misread".
+    note : str
+        A note on it.
+    bits : float
+        Improbability of the cause, in bits.
+    left : frozenset of str
+        The fields that it leaves unexplained.
+    right : tuple of Change
+        The numbers that it puts right.
+    explains, differing : int
+        How many of the differing numbers it explains.
+    changes : list of dict
+        All that it puts right, with places.
+    rank : int
+        Rank from 1; explanations that the page cannot tell apart share it.
+    """
 
     kind: str
     note: str
@@ -74,7 +92,13 @@ class Cause:
         return what + (f" ({self.note})" if self.note else "")
 
     def as_json(self) -> dict[str, Any]:
-        """The object `impact88 verify --json` prints."""
+        """Return the object that ``impact88 verify --json`` prints.
+
+        Returns
+        -------
+        dict of str to object
+            The explanation as JSON types.
+        """
         names = ("kind", "field", "printed", "would_be", "explains", "remaining", "note", "changes")
         return {name: getattr(self, name) for name in (*names, "look", "rank")}
 

@@ -22,7 +22,12 @@ from ..recovery.typedtext import stored_and_printed
 
 
 class Verdict(StrEnum):
-    """What a printout is found to be."""
+    """Verdict on a printout.
+
+    IDENTICAL: every number was read exactly, and is what the program prints. IDENTICAL_AS_READ: so
+    are all numbers as far as they could be read. DIFFERS: a number is cleanly read and is not what
+    the program prints. INCOMPLETE: too little could be read to decide.
+    """
 
     IDENTICAL = "identical"
     IDENTICAL_AS_READ = "identical_as_read"
@@ -41,9 +46,17 @@ class Status(StrEnum):
 
 
 class Doubtful(NamedTuple):
-    """One place where the paper was not read as the program prints it: line and column (from 1),
-    offset in the text, what was read and what the program prints (either may be empty), and how
-    they differ (`numerals.Doubt`)."""
+    """One place where the paper was not read as the program prints it.
+
+    Parameters
+    ----------
+    line, column, start : int
+        Line and column from 1, and the offset in the text.
+    read, printed : str
+        What was read and what the program prints; either may be empty.
+    how : str
+        Kind of the difference (`numerals.Doubt`).
+    """
 
     line: int
     column: int
@@ -55,11 +68,25 @@ class Doubtful(NamedTuple):
 
 @dataclass
 class FieldCheck:
-    """One printed number against the replay.
+    """One printed number compared with the program's.
 
-    ``printed``: what was read; ``recomputed``: what the program prints; ``exact``: what exact
-    arithmetic gives, ``difference``: printed less exact; ``line``, ``column`` (from 1), ``start``,
-    ``stop`` (offsets): its place in the text; ``doubts``: where reading and printout part."""
+    Parameters
+    ----------
+    name : str
+        Name of the field.
+    printed : str, optional
+        The number as read, None if it was not read.
+    recomputed : str, optional
+        The number that the program prints, None if it prints none.
+    status : Status
+        READ, DOUBTFUL, CONTRADICTED, NOT_READ or NOT_COMPARED.
+    exact, difference : str, optional
+        The number in exact arithmetic, and the printed number less that.
+    line, column, start, stop : int, optional
+        Its place in the text: line and column from 1, and offsets.
+    doubts : list of Doubtful
+        The places at which it was not read as the program prints it.
+    """
 
     name: str
     printed: str | None
@@ -75,22 +102,33 @@ class FieldCheck:
 
     @property
     def same(self) -> bool | None:
-        """True when read exactly so, False when contradicted, None when doubtful, not read or not
-        to be compared."""
+        """True if read exactly, False if contradicted, None otherwise."""
         return {Status.READ: True, Status.CONTRADICTED: False}.get(self.status)
 
     @property
     def mark(self) -> str:
-        """How the number is marked: not at all where it was read exactly."""
+        """The word printed beside the number, empty if it was read exactly."""
         return {Status.READ: "", Status.CONTRADICTED: "differs"}.get(self.status, self.status)
 
     def as_json(self) -> dict[str, Any]:
-        """The object `impact88 verify --json` prints for a number."""
+        """Return the object that ``impact88 verify --json`` prints for a number.
+
+        Returns
+        -------
+        dict of str to object
+            The check as JSON types.
+        """
         doubts = [doubt._asdict() for doubt in self.doubts]
         return {**vars(self), "same": self.same, "status": str(self.status), "doubts": doubts}
 
     def swapped(self) -> list[tuple[str, str]]:
-        """The digits cleanly read as other digits: (printed by the program, read)."""
+        """Return the digits that were cleanly read as other digits.
+
+        Returns
+        -------
+        list of tuple of str
+            For each, the digit that the program prints and the digit read.
+        """
         return [
             (doubt.printed, doubt.read)
             for doubt in self.doubts

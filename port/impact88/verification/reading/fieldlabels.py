@@ -37,9 +37,22 @@ class LabelState(StrEnum):
 
 
 class LabelCheck(NamedTuple):
-    """One label: the field it names, what the program prints there (letters), the letters read,
-    its state, whether it leaves a doubt about which number it names, and where it stands (line and
-    column from 1, offsets; of a missing one its number's)."""
+    """One label compared with the program's.
+
+    Parameters
+    ----------
+    name : str
+        The field that the label names.
+    printed, read : str
+        The letters that the program prints, and those read.
+    state : LabelState
+        EXACT, DAMAGED, CONTRADICTORY or MISSING.
+    doubt : bool
+        True if the letters leave open which number is meant.
+    line, column, start, stop : int
+        Its place in the text: line and column from 1, and offsets; for a missing label, its
+        number's.
+    """
 
     name: str
     printed: str

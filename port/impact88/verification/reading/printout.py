@@ -56,10 +56,20 @@ _SLOT_COMMAND = re.compile(r"PR#[0-9]")
 class Reading:
     """One number as read.
 
-    ``text``: what it is taken for, ``?`` for illegible glyphs; ``line``, ``column`` (from 1),
-    ``start``, ``stop`` (offsets in the text): where it stands; ``region``: its glyphs; ``cut``:
-    whether the text, or a line as wide as the page, ends right at it, so that more of it may have
-    stood there; ``sign_free``: whether a minus before it may be the label's own sign, damaged."""
+    Parameters
+    ----------
+    text : str
+        The number, with ``?`` for illegible characters.
+    line, column, start, stop : int
+        Its place in the text: line and column from 1, and offsets.
+    region : tuple of Glyph
+        Its glyphs.
+    cut : bool
+        True if it stands at the end of the text, or of a line as wide as the page, so that more of
+        it may be lost.
+    sign_free : bool
+        True if a minus before it may be the damaged equals sign of the label.
+    """
 
     text: str
     line: int
@@ -72,12 +82,22 @@ class Reading:
 
     @property
     def clean(self) -> bool:
-        """Whether it is a number beyond doubt, character for character."""
+        """True if every character of it was read beyond doubt."""
         return numerals.clean(self.region) is not None
 
     def texts(self, most: int) -> dict[str, float]:
-        """The texts as printed that it may be, with what each costs, cheapest first; one where it
-        is clean."""
+        """Return the texts that it may have been printed as.
+
+        Parameters
+        ----------
+        most : int
+            The largest number of texts.
+
+        Returns
+        -------
+        dict of str to float
+            Penalty of each text, the likeliest first; one text if the number was read cleanly.
+        """
         ways = numerals.candidates(self.region, most, self.sign_free)
         if self.clean and (ways or numerals.value_of(self.text) is not None):
             return dict(ways[:1] or [(self.text, 0.0)])
@@ -85,9 +105,19 @@ class Reading:
 
 
 class Piece(NamedTuple):
-    """Text that belongs to no field and no label: where it is (line and column from 1, offsets),
-    whether it may bear on a number (it stands beside one, or holds a number or a label of its own),
-    and whether it is a whole line."""
+    """Text that belongs to no field and no label.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+    line, column, start, stop : int
+        Its place: line and column from 1, and offsets.
+    beside : bool
+        True if it may bear on a number: it stands beside one, or holds a number or a label.
+    whole : bool
+        True if it is a whole line.
+    """
 
     text: str
     line: int
