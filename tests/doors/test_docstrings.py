@@ -25,6 +25,7 @@ from numpydoc.validate import validate
 
 NOT_ASKED_FOR = {
     "ES01",  # an extended summary: one line is often enough
+    "GL01",  # before numpydoc 1.11: a summary on the line below the quotes
     "SA01",  # a section See Also
     "SA04",  # a description of each entry of See Also
 }
