@@ -135,7 +135,7 @@ def test_stopping_after_every_line():
     assert arithmetics.APPLESOFT.write(after_280.reals["MU"]) == ".911"
     assert "DA" not in after_280.reals
     assert after_280.A is None
-    assert seen[-1][1].reals["MX"].stored().hex() == result.reals["MX"]
+    assert seen[-1][1].reals["MX"].to_bytes().hex() == result.reals["MX"]
 
 
 digits = st.text("0123456789", min_size=1, max_size=4)
