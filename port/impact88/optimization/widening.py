@@ -1,12 +1,11 @@
-"""Extremes over impacts that no box holds: climbing and evolution by turns.
+"""Extremes over a region that is no box, by sequential linear programming and evolution in turns.
 
-Climbing (`ascent`) ends at a bend of a constraint, and draws hardly reach where several known
-values are at their limits at once. So the draws are spread over all that lies within limits first,
-whatever its density; then the best for each extreme evolve by differences of one another (Storn and
-Price, *Differential Evolution*, 1997), which cross bends and pass from branch to branch, and where
-they come farther than the climbers did these climb again from there. The search has come to its end
-when evolution finds nothing farther.
-"""
+Sequential linear programming (`ascent`) can stop where a constraint is strongly curved, and random
+draws hardly reach points where several known values are at their limits together. So the draws are
+first spread over the whole feasible region, whatever its density. Then a population for each
+extreme evolves by differential evolution (Storn and Price, 1997), which crosses such places and
+passes from branch to branch; where it improves an extreme, sequential linear programming starts
+again from there. An extreme has converged when evolution does not improve it."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -14,27 +13,29 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .ascent import OUTSIDE, Landscape, below_all, climb
+from .ascent import CONSTRAINT_TOL, SearchProblem, climb, replace_nonfinite
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-SPREAD, SPREADING_STEPS = 2000, 30  # points spread over all within limits, and their steps
-STARTS = 4  # climbers of each extreme in the first round
-AGAIN = 2  # climbers of each extreme where evolution found something farther
-MAX_ROUNDS = 6  # of climbing and evolution
-POPULATION, GENERATIONS = 24, 40  # of each extreme's evolution
-LARGER = 4  # times as many, where a climber came to no end or evolution came farther
-SHARED = 0.3  # steps by differences of the spread points, not of an extreme's own
-CHANGED = 0.7  # of the coordinates a step changes, at least one
-LEAST_GAIN = 1e-7  # of a quantity's range: not worth a climber's step
-NO_FARTHER = 1e-4  # of a quantity's range: who gains less has found nothing farther
-CHUNK = 1 << 13
+SPREAD_POINTS = 2000  # points spread over the feasible region
+SPREAD_STEPS = 30  # random steps that spread them
+STARTS = 4  # local searches per extreme in the first round
+RESTARTS = 2  # local searches per extreme where evolution improved it
+MAX_ROUNDS = 6  # of local search and evolution
+POPULATION = 24  # members per extreme
+GENERATIONS = 40
+POPULATION_FACTOR = 4  # larger populations from the second round on
+SPREAD_FRACTION = 0.3  # of steps are differences of the spread points, not of the population
+CROSSOVER = 0.7  # probability that a step changes a coordinate; it changes one at least
+MIN_GAIN = 1e-7  # of a quantity's range: a local search stops below
+IMPROVEMENT_TOL = 1e-4  # of a quantity's range: a smaller improvement does not count
+CHUNK = 1 << 13  # points evaluated at a time, bounds the memory
 
 
 class Extremes(NamedTuple):
     """Lowest and highest values of m functions (2, m), the points (2, m, coordinates) and states
-    (2, m) they lie at, and whether the search for each came to its end."""
+    (2, m) they lie at, and True in ``done`` for each search that converged."""
 
     values: Array
     at: Array
@@ -43,7 +44,7 @@ class Extremes(NamedTuple):
 
 
 class _Pool:
-    """Points within limits (n, coordinates) with their state and functions."""
+    """Feasible points (n, coordinates) with their states and functions."""
 
     def __init__(self, u: Array, x: Array, functions: Array) -> None:
         self.u, self.x, self.functions = u, x, functions
@@ -59,133 +60,151 @@ class _Pool:
         return _Pool(self.u[which], self.x[which], self.functions[which])
 
 
-def _looked_at(ground: Landscape, u: Array, x: Array) -> tuple[_Pool, Flags]:
-    """Return points with their functions, and which of them lie within all limits."""
-    functions, good = [], []
+def _evaluate(problem: SearchProblem, u: Array, x: Array) -> tuple[_Pool, Flags]:
+    """Return points with their functions, and True for each within all limits."""
+    functions, usable_parts = [], []
     for first in range(0, len(u), CHUNK):
-        part = slice(first, first + CHUNK)
-        _, own, walls, usable = ground.at(u[part], x[None, part])
-        functions.append(own)
-        beyond = np.maximum(-walls, walls - 1).max(axis=1, initial=0.0)
-        good.append(usable & (beyond <= OUTSIDE))
-    inside = np.concatenate(good) & (np.abs(u - 0.5) <= 0.5).all(axis=1)
+        block = slice(first, first + CHUNK)
+        _, values, constraints, usable = problem.evaluate(u[block], x[None, block])
+        functions.append(values)
+        excess = np.maximum(-constraints, constraints - 1).max(axis=1, initial=0.0)
+        usable_parts.append(usable & (excess <= CONSTRAINT_TOL))
+    inside = np.concatenate(usable_parts) & (np.abs(u - 0.5) <= 0.5).all(axis=1)
     return _Pool(u, x, np.concatenate(functions)), inside
 
 
 def extremes(
-    ground: Landscape,
+    problem: SearchProblem,
     u: Array,
     x: Array,
     rng: np.random.Generator,
     progress: Callable[[int], object] = lambda points: None,
 ) -> Extremes:
-    """Seek the extremes of all functions from draws ``u`` (n, coordinates) within limits, in the
-    states ``x`` (n)."""
-    drawn, _ = _looked_at(ground, u, x)
-    count = drawn.functions.shape[1]
-    # the last points are those spread already
-    spread = _spread(ground, drawn[-SPREAD:], rng)
-    pool = drawn + spread
-    number, sense = np.tile(np.arange(count), 2), np.repeat([-1.0, 1.0], count)
-    every = np.arange(2 * count)
-    open_ones, size = every, 1
+    """Search for the extremes of all functions from random ``u`` (n, coordinates) within limits, in
+    the states ``x`` (n)."""
+    draws, _ = _evaluate(problem, u, x)
+    count = draws.functions.shape[1]
+    # the last draws are the most widely spread
+    spread_pool = _spread_points(problem, draws[-SPREAD_POINTS:], rng)
+    pool = draws + spread_pool
+    index, sense = np.tile(np.arange(count), 2), np.repeat([-1.0, 1.0], count)
+    all_goals = np.arange(2 * count)
+    open_goals, population_factor = all_goals, 1
 
-    def heights(of: _Pool) -> Array:
-        return below_all(of.functions[:, number] * sense)
+    def objectives(points: _Pool) -> Array:
+        return replace_nonfinite(points.functions[:, index] * sense)
 
     parts = [np.arange(i, len(pool.u), STARTS) for i in range(min(STARTS, len(pool.u)))]
-    height = heights(pool)
-    first = np.stack([part[height[part].argmax(axis=0)] for part in parts])
-    begin, goals = pool[first.reshape(-1)], np.tile(every, len(first))
-    done, gone_on = np.zeros((2, 2 * count), bool)
+    values = objectives(pool)
+    start_numbers = np.stack([part[values[part].argmax(axis=0)] for part in parts])
+    start_pool, goals = pool[start_numbers.reshape(-1)], np.tile(all_goals, len(start_numbers))
+    converged, retried_once = np.zeros((2, 2 * count), bool)
     for _ in range(MAX_ROUNDS):
-        most = heights(pool).max(axis=0)
-        width = np.maximum(np.nan_to_num(most + np.roll(most, count), neginf=0.0), 0.0)
-        ends, states, _, ended = climb(
-            *(ground, begin.u, begin.x[None], number[goals], sense[goals]),
-            LEAST_GAIN * width[goals],
+        best_values = objectives(pool).max(axis=0)
+        ranges = np.maximum(
+            np.nan_to_num(best_values + np.roll(best_values, count), neginf=0.0), 0.0
         )
-        # climbers may stand outside by rounding, as draws may
-        reached, _ = _looked_at(ground, ends, states[0])
-        pool = pool + reached
-        height = heights(pool)
-        most = height.max(axis=0)
-        came = heights(reached)[ended].max(axis=0, initial=-np.inf)
-        done |= came >= most - NO_FARTHER * width
-        evolved = _evolved(
-            *(ground, pool, spread, height[:, open_ones], number[open_ones], sense[open_ones]),
-            *(size * POPULATION, rng),
+        points, states, _, climb_converged = climb(
+            problem,
+            start_pool.u,
+            start_pool.x[None],
+            index=index[goals],
+            sense=sense[goals],
+            min_gain=MIN_GAIN * ranges[goals],
         )
-        pool = pool + evolved
-        gained = heights(evolved).max(axis=0) > most + NO_FARTHER * width
-        done &= ~gained
-        # a climber that came to no end goes on once, others where there is farther to go
-        again = np.flatnonzero(gained | (~done & ~gone_on))
-        gone_on |= ~gained & ~done
-        open_ones, size = again, LARGER
-        if not len(again):
+        # keep points outside by rounding, as draws may be
+        end_pool, _ = _evaluate(problem, points, states[0])
+        pool = pool + end_pool
+        values = objectives(pool)
+        best_values = values.max(axis=0)
+        end_values = objectives(end_pool)[climb_converged].max(axis=0, initial=-np.inf)
+        converged |= end_values >= best_values - IMPROVEMENT_TOL * ranges
+        offspring = _evolve(
+            problem,
+            pool,
+            spread_pool,
+            values=values[:, open_goals],
+            index=index[open_goals],
+            sense=sense[open_goals],
+            members=population_factor * POPULATION,
+            rng=rng,
+        )
+        pool = pool + offspring
+        has_gained = objectives(offspring).max(axis=0) > best_values + IMPROVEMENT_TOL * ranges
+        converged &= ~has_gained
+        # a search that did not converge is continued once, others while they improve
+        next_goals = np.flatnonzero(has_gained | (~converged & ~retried_once))
+        retried_once |= ~has_gained & ~converged
+        open_goals, population_factor = next_goals, POPULATION_FACTOR
+        if not len(next_goals):
             break
-        goals = np.repeat(again, AGAIN)
-        top = np.argsort(-heights(pool)[:, again], axis=0, kind="stable")[:AGAIN]
-        begin = pool[top.T.reshape(-1)]
-    height = heights(pool)
-    best, most = height.argmax(axis=0), height.max(axis=0)
-    values = sense * np.where(np.isneginf(most), np.nan, most)
+        goals = np.repeat(next_goals, RESTARTS)
+        best_rows = np.argsort(-objectives(pool)[:, next_goals], axis=0, kind="stable")[:RESTARTS]
+        start_pool = pool[best_rows.T.reshape(-1)]
+    values = objectives(pool)
+    winners, best_values = values.argmax(axis=0), values.max(axis=0)
+    extreme_values = sense * np.where(np.isneginf(best_values), np.nan, best_values)
     return Extremes(
-        values.reshape(2, count),
-        pool.u[best].reshape(2, count, -1),
-        pool.x[best].reshape(2, count),
-        done.reshape(2, count),
+        extreme_values.reshape(2, count),
+        pool.u[winners].reshape(2, count, -1),
+        pool.x[winners].reshape(2, count),
+        converged.reshape(2, count),
     )
 
 
-def _spread(ground: Landscape, points: _Pool, rng: np.random.Generator) -> _Pool:
-    """Return points spread over all that lies within limits, by steps of their differences."""
-    size = points.u.shape[1]
-    for _ in range(SPREADING_STEPS):
-        one, two = rng.integers(len(points.u), size=(2, len(points.u)))
-        length = 1.19 / np.sqrt(size) * np.exp(rng.standard_normal(len(points.u)))
-        tried = points.u + length[:, None] * (points.u[one] - points.u[two])
-        found, good = _looked_at(ground, np.clip(tried, 0.0, 1.0), points.x)
-        points.u[good], points.functions[good] = found.u[good], found.functions[good]
+def _spread_points(problem: SearchProblem, points: _Pool, rng: np.random.Generator) -> _Pool:
+    """Return the points spread over the feasible region, by steps along differences of one
+    another."""
+    dimensions = points.u.shape[1]
+    for _ in range(SPREAD_STEPS):
+        first, second = rng.integers(len(points.u), size=(2, len(points.u)))
+        length = 1.19 / np.sqrt(dimensions) * np.exp(rng.standard_normal(len(points.u)))
+        trial = points.u + length[:, None] * (points.u[first] - points.u[second])
+        trial_pool, inside = _evaluate(problem, np.clip(trial, 0.0, 1.0), points.x)
+        points.u[inside], points.functions[inside] = (
+            trial_pool.u[inside],
+            trial_pool.functions[inside],
+        )
     return points
 
 
-def _evolved(
-    ground: Landscape,
+def _evolve(
+    problem: SearchProblem,
     pool: _Pool,
-    spread: _Pool,
-    height: Array,
-    number: NDArray[np.intp],
+    spread_pool: _Pool,
+    values: Array,
+    index: NDArray[np.intp],
     sense: Array,
     members: int,
     rng: np.random.Generator,
 ) -> _Pool:
-    """Return the populations that evolve from the best points for each extreme: ``height``, of all
-    points (n, extremes)."""
-    goals, members = height.shape[1], min(members, len(height))
-    order = np.argsort(-height, axis=0, kind="stable")
-    # half the best of all, half from many more, of other branches
+    """Return the populations that evolve from the best points for each extreme. ``values``: the
+    objective of each extreme at all points (n, extremes)."""
+    goal_count, members = values.shape[1], min(members, len(values))
+    order = np.argsort(-values, axis=0, kind="stable")
+    # half the best of all, half sampled from far more, for other branches
     half = members // 2
     chosen = np.concatenate([order[:half], order[half :: max(1, len(order) // 20 // members)]])
     population = pool[chosen[:members].T.reshape(-1)]
-    goal = np.repeat(np.arange(goals), members)
-    rows, own_number, own_sense = np.arange(len(goal)), number[goal], sense[goal]
-    now = below_all(population.functions[rows, own_number] * own_sense)
-    size = pool.u.shape[1]
+    goal = np.repeat(np.arange(goal_count), members)
+    rows, own_index, own_sense = np.arange(len(goal)), index[goal], sense[goal]
+    own_values = replace_nonfinite(population.functions[rows, own_index] * own_sense)
+    dimensions = pool.u.shape[1]
     for _ in range(GENERATIONS):
-        one, two = goal * members + rng.integers(members, size=(2, len(goal)))
-        by = population.u[one] - population.u[two]
-        first, second = rng.integers(len(spread.u), size=(2, len(goal)))
-        shared = rng.random(len(goal)) < SHARED
-        by[shared] = (spread.u[first] - spread.u[second])[shared]
+        first, second = goal * members + rng.integers(members, size=(2, len(goal)))
+        difference = population.u[first] - population.u[second]
+        spread_first, spread_second = rng.integers(len(spread_pool.u), size=(2, len(goal)))
+        from_spread = rng.random(len(goal)) < SPREAD_FRACTION
+        difference[from_spread] = (spread_pool.u[spread_first] - spread_pool.u[spread_second])[
+            from_spread
+        ]
         length = 0.5 * np.exp(1.0 * rng.standard_normal(len(goal)))
-        changed = rng.random((len(goal), size)) < CHANGED
-        changed[rows, rng.integers(size, size=len(goal))] = True
-        tried = np.clip(population.u + length[:, None] * by * changed, 0.0, 1.0)
-        found, good = _looked_at(ground, tried, population.x)
-        after = below_all(found.functions[rows, own_number] * own_sense)
-        better = good & (after > now)
-        population.u[better], now[better] = found.u[better], after[better]
-        population.functions[better] = found.functions[better]
+        crossover = rng.random((len(goal), dimensions)) < CROSSOVER
+        crossover[rows, rng.integers(dimensions, size=len(goal))] = True
+        trial = np.clip(population.u + length[:, None] * difference * crossover, 0.0, 1.0)
+        trial_pool, inside = _evaluate(problem, trial, population.x)
+        trial_values = replace_nonfinite(trial_pool.functions[rows, own_index] * own_sense)
+        better = inside & (trial_values > own_values)
+        population.u[better], own_values[better] = trial_pool.u[better], trial_values[better]
+        population.functions[better] = trial_pool.functions[better]
     return population

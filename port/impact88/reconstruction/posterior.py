@@ -610,10 +610,12 @@ class Posterior:
 
 
 class Ground:
-    """The impacts within all limits as `ascent.Landscape`: coordinates, 0 to 1 from limit to limit
-    or over what draws reach and ``BEYOND_DRAWS`` times as much on either side; the state of a point
-    is its friction's sign. Functions: quantities ``names``, then what divides open coefficients
-    among them; walls: the values within limits that are no coordinates."""
+    """The impacts within all limits, as an `ascent.SearchProblem`.
+
+    Coordinates run from 0 to 1, from limit to limit, or over the range of the draws and
+    ``BEYOND_DRAWS`` times as much on either side. The state of a point is the sign of its friction.
+    Functions: the quantities ``names``, then the denominators of the unknown coefficients among
+    them. Constraints: the values within limits that are no coordinates."""
 
     def __init__(self, posterior: Posterior, names: Sequence[str], drawn: Floats) -> None:
         self.posterior, self.names = posterior, names
@@ -643,8 +645,8 @@ class Ground:
             rows.append((posterior._observed(state, name)[0] - item.low) / (item.high - item.low))
         return np.array([np.broadcast_to(row, count) for row in rows])
 
-    def at(self, u: Floats, guess: Floats) -> tuple[Floats, Floats, Floats, Flags]:
-        """`ascent.Landscape`."""
+    def evaluate(self, u: Floats, guess: Floats) -> tuple[Floats, Floats, Floats, Flags]:
+        """`ascent.SearchProblem`."""
         state, _, along = self.posterior.impacts(self.points(u), guess[0], weighed=False)
         rows = self._rows(state, len(u)).T
         count = len(self.names) + len(self.ratios)
@@ -653,7 +655,7 @@ class Ground:
         return guess, functions, np.where(np.isfinite(walls), walls, -1e9), usable
 
     def slopes(self, u: Floats, x: Floats) -> tuple[Floats, Floats, Floats]:
-        """`ascent.Landscape`."""
+        """`ascent.SearchProblem`."""
         count, size = u.shape
         width = (self.high - self.low)[:, None, None]
         aside = 1j * TINY * width * np.eye(size)[:, :, None]
@@ -690,7 +692,7 @@ class Ground:
             slopes = (np.imag(whole) / TINY).transpose(2, 0, 1)
             steps = np.linalg.pinv(slopes, rcond=1e-9) @ np.real(whole[:, 0]).T[:, :, None]
             u = np.clip(u - steps[:, :, 0], 0.0, 1.0)
-        _, _, walls, usable = self.at(u, signs[None])
+        _, _, walls, usable = self.evaluate(u, signs[None])
         state, _, _ = self.posterior.impacts(self.points(u), signs, weighed=False)
         still = np.hypot(*(np.real(state[n]) for n in SPEEDS[speed])) < STILL * typical
         inside = (np.abs(walls - 0.5) <= 0.5 + _TOUCH).all(axis=1)

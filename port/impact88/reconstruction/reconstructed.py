@@ -23,7 +23,7 @@ from ..collision.geometry import GEOMETRY, Geometry, within_doubles
 from ..collision.uncertain import Uncertain, columns_of, fixed_value, random_numbers
 from ..mechanics.state import CRUSH, DIRECTIONS, SPEEDS, State
 from ..names import COEFFICIENTS, IMPULSES, VELOCITIES
-from ..optimization.ascent import OUTSIDE, climb, extremes_of, spread_out
+from ..optimization.ascent import CONSTRAINT_TOL, climb, find_extremes, latin_hypercube
 from ..optimization.widening import extremes
 from ..uncertainty.boundstable import Spread
 from .adjustment import Reconstruction, pseudo_inverse
@@ -149,7 +149,7 @@ def ranges(
     functions = box.functions(points)
     # of each part of the points the best: climbers that stand apart
     parts = [np.arange(i, len(points), STARTS) for i in range(min(STARTS, len(points)))]
-    (lower, upper), ends, done = extremes_of(
+    (lower, upper), ends, done = find_extremes(
         *(box, points, functions, parts, 1, LEAST_GAIN),
         lambda start: box.from_nominal(start)[0],
     )
@@ -158,7 +158,7 @@ def ranges(
     endless |= {name for i, name in enumerate(box.ratios, len(names)) if lower[i] < 0 < upper[i]}
     found = {}
     for i, name in enumerate(names):
-        low, high = ({n: float(v[0]) for n, v in box.data(at[i, None]).items()} for at in ends)
+        low, high = ({n: float(v[0]) for n, v in box.data(end[i, None]).items()} for end in ends)
         found[name] = Range(float(lower[i]), float(upper[i]), low, high, bool(done[:, i].all()))
     return found | {name: Range(-np.inf, np.inf, {}, {}) for name in endless if name in found}
 
@@ -189,7 +189,7 @@ def _extremes(
     found = {}
     for i, name in enumerate(names):
         low, high = (ground.values(ends[side, i], states[side, i]) for side in (0, 1))
-        inside = all((np.abs(at[i][free] - 0.5) < 0.5).all() for at in ends)
+        inside = all((np.abs(end[i][free] - 0.5) < 0.5).all() for end in ends)
         searched = bool(done[:, i].all()) and inside
         least = float(lower[i])
         if name in SPEEDS and least > 0:
@@ -279,7 +279,7 @@ class _Box:
         return x, functions, np.where(np.isfinite(walls), walls, -1e9), usable
 
     def from_nominal(self, u: Floats, guess: Floats | None = None) -> Point:
-        """As `at`, reached from the nominal impact, or from a ``guess`` of each, s x n."""
+        """As `evaluate`, reached from the nominal impact, or from a ``guess`` of each, s x n."""
         data, geometry = self.data(u), None
         x = start = np.repeat(self.x, len(u), axis=1) if guess is None else guess
         if set(data) & set(GEOMETRY):
@@ -309,8 +309,8 @@ class _Box:
             found.append(np.where(usable[:, None], functions, np.nan))
         return np.concatenate(found)
 
-    def at(self, u: Floats, guess: Floats) -> Point:
-        """`ascent.Landscape`."""
+    def evaluate(self, u: Floats, guess: Floats) -> Point:
+        """`ascent.SearchProblem`."""
         data = self.data(u)
         x, settled = self._newton(data, guess)
         return self._found(x, self.system.state(x, data), settled)
@@ -343,7 +343,7 @@ class _Box:
         return x, np.abs(self._left(x, data)).max(axis=0, initial=0.0) <= 100 * SETTLED
 
     def slopes(self, u: Floats, x: Floats) -> tuple[Floats, Floats, Floats]:
-        """`ascent.Landscape`: by the derivatives of the conditions, without error."""
+        """`ascent.SearchProblem`: by the derivatives of the conditions, without error."""
         system, data = self.system, self.data(u)
         jacobian = system.linearized(x, system.left, data, data)[1].transpose(2, 0, 1)
         moved: dict[str, Any] = {}
@@ -390,12 +390,12 @@ class _Box:
 
     def inside(self, rng: np.random.Generator) -> Floats:
         """Points of the box that lie within all walls; none where none was found."""
-        points = spread_out(len(self.kept), SCATTERED, rng)
+        points = latin_hypercube(len(self.kept), SCATTERED, rng)
         on_faces = rng.random(points.shape) < rng.choice([0.0, 0.5, 1.0], (SCATTERED, 1))
         points = np.concatenate([self.middle, np.where(on_faces, np.round(points), points)])
         x, _, walls, usable = self.from_nominal(points)
         outside = np.where(usable, np.abs(walls - 0.5).max(axis=1, initial=0.0) - 0.5, np.inf)
-        good = outside <= OUTSIDE
+        good = outside <= CONSTRAINT_TOL
         if not self.rest or good.sum() >= SEEKERS:
             return points[good]
         nearest = np.argsort(outside, kind="stable")[:SEEKERS]
@@ -403,10 +403,10 @@ class _Box:
         nobody = np.full(len(nearest), -1)
         u, _, _, _ = climb(
             *(self, points[nearest], x[:, nearest], nobody, np.ones(len(nearest))),
-            np.full(len(nearest), OUTSIDE),
+            np.full(len(nearest), CONSTRAINT_TOL),
         )
         _, _, walls, usable = self.from_nominal(u)
-        reached = usable & (np.abs(walls - 0.5) <= 0.5 + OUTSIDE).all(axis=1)
+        reached = usable & (np.abs(walls - 0.5) <= 0.5 + CONSTRAINT_TOL).all(axis=1)
         return np.concatenate([points[good], u[reached]])
 
     def proper_density(self, u: Floats, x: Floats, walls: Floats) -> Floats:

@@ -34,7 +34,7 @@ from ..mechanics.closedform.solve import quantities, share_typed
 from ..mechanics.outcome import forward_model, reconstruction_model
 from ..messages.arguments import explains_arguments
 from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, VELOCITIES, check_names, split_names
-from ..optimization.extremes import CORNERS_IN_FULL, Extremes, Piece, merged
+from ..optimization.extremes import MAX_FULL_CORNERS, Extremes, Piece, merge
 from .boundstable import Bound, Bounds, Drive, Spread
 from .ranges import complete, read_correlations
 
@@ -173,7 +173,7 @@ def bounds(
         seed=seed,
         sigmas=sigmas,
         evaluations=searched.evaluations,
-        corners_in_full=len(box.inputs) <= CORNERS_IN_FULL,
+        corners_in_full=len(box.inputs) <= MAX_FULL_CORNERS,
         correlations=pairs,
         draws=draws if keep_draws else {},
         units=base_system(values),
@@ -282,7 +282,7 @@ class _Box:
             # kept where gt <= 0, changed where gt > 0
             if lowest <= 0 if sign > 0 else highest > 0:
                 pieces.append(self.piece(sign).extremes(count, rng, slip.at[:, 0]))
-        searched = merged(pieces)
+        searched = merge(pieces)
         return searched._replace(evaluations=searched.evaluations + slip.evaluations)
 
     def piece(self, sign: float | None) -> Piece:
