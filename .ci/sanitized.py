@@ -42,7 +42,7 @@ def main() -> None:
         library = copy / "mechanics" / "native" / "_machine.so"
         source = str(copy / "mechanics" / "native" / "machine.c")
         subprocess.run([COMPILER, *FLAGS, *SANITIZERS, "-o", library, source, "-lm"], check=True)
-        probe = "from impact88 import native; print(native.__file__, native.accelerated)"
+        probe = "from impact88.mechanics import native; print(native.__file__, native.accelerated)"
         given = {"env": environment(folder), "check": True, "timeout": SECONDS}
         asked = subprocess.run([python, "-c", probe], capture_output=True, text=True, **given)
         where, accelerated = asked.stdout.split(maxsplit=1)

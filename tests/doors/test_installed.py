@@ -29,8 +29,9 @@ opened = set()
 uses = ("open", "ctypes.dlopen")
 sys.addaudithook(lambda event, told: opened.add(str(told[0])) if event in uses else None)
 import numpy
-from impact88 import cli, sample
+from impact88 import sample
 from impact88.bench.populations import evolved
+from impact88.commands import cli
 from impact88.desk import app
 from impact88.comparison.equations import edits
 from impact88.verification.scan.typeface import prototypes
