@@ -9,45 +9,71 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage
 
 from .ink import Floats, Image, Points, resized, slopes
 
 CELL_WIDTH = 16
-"""Pixels across a cell after sampling: the least at which 3 and 8 of a dot matrix stay apart."""
+"""Width of a resampled cell, pixels: the least at which 3 and 8 of a dot matrix are distinct."""
 SLACK = 2
 """Pixels of picture kept on each side of a cell, for the shifts that are tried."""
-_LEAST_HEIGHT, _MOST_LINES = 5, 64  # pixels, lines; doubled, the verdicts of 5 pages stay
+_MIN_HEIGHT = 5  # pixels of a line of text; doubled, the verdicts of 5 pages stay
+_MAX_LINES = 64  # lines of a page; doubled, the verdicts of 5 pages stay
 _INKED = 0.25
-"""Darkness, of full ink, from which a cell is inked: of 2,405 blank cells one in a thousand is
-darker than 0.27, of 7,648 others one in a thousand is lighter than 0.44."""
+"""Darkness, as a fraction of full ink, from which a cell is inked: of 2,405 blank cells one in a
+thousand is darker than 0.27, of 7,648 others one in a thousand is lighter than 0.44."""
 _PITCHES = (0.4, 1.15)
-"""The least and greatest pitch, in heights of a line from its capitals' top to its deepest comma:
-those of the given pages have 0.6 to 0.97."""
-_MOST_COLUMNS = 200
+"""Smallest and largest pitch, in heights of a line from the top of its capitals to its deepest
+comma: the given pages have 0.6 to 0.97."""
+_MAX_COLUMNS = 200
 """Pitches across the page's longer side: two printouts side by side have 180."""
 _STRETCH = 6 * CELL_WIDTH
-"""Pixels of a line whose height is measured at once."""
+"""Length of the piece of a line whose height is measured at once, resampled pixels."""
+_GAP_STRETCH = 12
+"""Length of the piece of a line whose gaps are summed to one phasor, pitches."""
 _STRAIN = 0.02
-"""What a pitch of keystone or bow costs of the clarity (0 to 1) it gains: without it a page of
-broken type, in which gaps stand within characters, is bent to fit them; twice as much leaves two of
-the given photographs flat."""
-_GUTTER, _COLUMN = 6, 0.25
-"""The least gap between printouts side by side, in 300ths of the page, some three characters of
-160, and the least part of the ink that is a column: angles at the end of their line are none."""
-_OVERLAP = (
-    0.75  # of their height: lines whose middles are nearer are one; no leading is less than 1
-)
+"""Penalty on bending, in clarity (0 to 1) per pitch of keystone or bow: without it a page of broken
+type, in which gaps stand within characters, is bent to fit them; twice as much leaves two of the
+given photographs flat."""
+_MIN_GUTTER = 6
+"""Narrowest gap between printouts side by side, in 300ths of the page: some three characters of
+160."""
+_MIN_COLUMN = 0.25
+"""Smallest fraction of the ink that makes a column: angles at the end of their line are none."""
+_OVERLAP = 0.75
+"""Lines whose middles are nearer than this, in heights of a line, are one: no leading is below
+1."""
 FEWEST_POINTS = 500  # a page has more ink
-_COARSE = 80
-"""Stretches of a dozen cells from which the starts are found, those with the clearest gaps."""
+_MAX_COARSE = 80
+"""Pieces of lines used in the coarse search for the bend: those with the clearest gaps."""
+_REACHES = (0.35, 0.35, 0.3, 0.3, 0.25, 0.25, 0.2, 0.2)
+"""Residual at which a piece of a line has 1/e of its weight, in pitches, by refinement step."""
+_RIDGE = (1e-6, 1e-4, 1e-4, 3e-4, 3e-4, 1e-2)
+"""Tikhonov weight of each coefficient of `_terms`, relative to the total weight."""
 
 
 class Grid(NamedTuple):
-    """Cells of a page. ``pictures``: of each line, cell k from pixel SLACK + k CELL_WIDTH on, with
-    SLACK rows above and below; ``tops``: each line's place in pitches down the page; ``corners``:
-    each line's cells in the picture, shape (cells + 1, 2, 2): left edge k, top or bottom, x and y;
-    ``size``: height and width of the picture after the quarter ``turns`` to the left."""
+    """Cells of a page.
+
+    Attributes
+    ----------
+    pictures : list of ndarray
+        Resampled picture of each line: cell k begins at pixel SLACK + k CELL_WIDTH, with SLACK rows
+        above and below.
+    tops : ndarray
+        Place of each line, in pitches down the page.
+    corners : list of ndarray, shape (cells + 1, 2, 2)
+        Cell edges of each line in the picture, pixels: left edge k; top or bottom; x and y.
+    pitch : float
+        Width of a cell in the picture, pixels.
+    clarity : float
+        How strictly the gaps between characters keep to the pitch, 0 to 1.
+    size : tuple of int
+        Height and width of the picture after the turns.
+    turns : int
+        Quarter turns to the left by which the picture was set upright.
+    """
 
     pictures: list[Image]
     tops: Floats
@@ -58,14 +84,14 @@ class Grid(NamedTuple):
     turns: int
 
     def around(self, line: int, cell: int) -> Floats:
-        """The corners of a cell in the upright picture, clockwise: shape (4, 2)."""
+        """Return the corners of a cell in the upright picture, clockwise: shape (4, 2)."""
         corners = self.corners[line]
         at = min(max(cell, 0), len(corners) - 2)
         around: Floats = corners[[at, at + 1, at + 1, at], [0, 0, 1, 1]]
         return around
 
     def shows(self, line: int, cell: int) -> bool:
-        """Whether a cell lies on the picture, and not beyond an edge that was cut off."""
+        """Return True for a cell that lies on the picture, not beyond an edge that was cut off."""
         if not 0 <= cell < len(self.corners[line]) - 1:
             return False
         x, y = self.around(line, cell).T
@@ -74,8 +100,10 @@ class Grid(NamedTuple):
         return bool(x.min() > -slack and x.max() < width + slack and 0 <= y.mean() < height)
 
     def odds(self) -> list[Floats]:
-        """The log odds that each cell of each line is inked, within 6 of even: by a dot, or by as
-        much ink along a line, the hair of a thin dash."""
+        """Return the log odds that each cell of each line is inked, clipped to -6 to 6.
+
+        Ink is a dot of 3 by 3 pixels, or as much ink along 9 pixels of a row: a thin dash.
+        """
         edge, width = SLACK + 1, CELL_WIDTH + 2 * SLACK
         odds = []
         for line in self.pictures:
@@ -83,14 +111,18 @@ class Grid(NamedTuple):
             cells = np.stack([line[:, start : start + width] for start in starts])
             dots = ndimage.uniform_filter(cells, (1, 3, 3))[:, edge:-edge, edge + 1 : -edge - 1]
             hairs = ndimage.uniform_filter(cells, (1, 1, 9))[:, edge:-edge, edge + 4 : -edge - 4]
-            most = np.maximum(dots.max(axis=(1, 2)), hairs.max(axis=(1, 2)))
-            odds.append(np.clip(20 * (most.astype(float) - _INKED), -6, 6))
+            darkest = np.maximum(dots.max(axis=(1, 2)), hairs.max(axis=(1, 2)))
+            odds.append(np.clip(20 * (darkest.astype(float) - _INKED), -6, 6))
         return odds
 
 
 def _lines(points: Points, level: Floats) -> list[tuple[float, float]]:
-    """Top and bottom of each line of text along ``level``, the height that is constant on it: rows
-    of which a character or two hold ink as densely as type does, were it the only digit."""
+    """Return top and bottom of each line of text, in pixels of ``level``.
+
+    ``level`` is the height of each point after the slope is taken out, constant along a line. A row
+    belongs to a line where some stretch of it, a character or two wide, is as dense as type; a line
+    with a single digit is found, too.
+    """
     low = level.min()
     rows = (level - low).astype(int)
     stretch = max(8.0, points.span / 80)
@@ -101,32 +133,40 @@ def _lines(points: Points, level: Floats) -> list[tuple[float, float]]:
     dense = (counts[:, :-1] + counts[:, 1:]).max(axis=1)
     typical = np.percentile(dense[dense > 0], 75) if np.any(dense > 0) else 1.0
     grain = np.percentile(dense, 30)  # fewer rows than that are between lines on no page
-    inked = dense > grain + 0.2 * (typical - grain)
-    edges = np.flatnonzero(np.diff(np.r_[0, inked.astype(int), 0]))
+    is_inked = dense > grain + 0.2 * (typical - grain)
+    edges = np.flatnonzero(np.diff(np.r_[0, is_inked.astype(int), 0]))
     return [(low + top, low + bottom) for top, bottom in edges.reshape(-1, 2)]
 
 
 def _pitch(xs: list[Floats], height: float, span: float) -> float:
-    """The period of the gaps between characters, 0 for none. (The ink has others: most digits have
-    a stroke at each side of their cell.)"""
+    """Return the period of the gaps between characters in pixels, 0 where there is none.
+
+    The period maximizes the summed power spectrum of the lines' gaps. The ink itself has other
+    periods: most digits have a stroke at each side of their cell.
+    """
     size, low = 1 << 15, min(float(x.min()) for x in xs)
     gaps = [np.bincount((2 * (_gaps(x, height) - low)).astype(int), minlength=2) for x in xs]
     power = sum(np.abs(np.fft.rfft(gap, size)) ** 2 / gap.sum() for gap in gaps)
     first, last = (int(2 * height * part) for part in _PITCHES)
-    first = max(first, int(2 * span / _MOST_COLUMNS))
+    first = max(first, int(2 * span / _MAX_COLUMNS))
     chosen = np.arange(size // last, size // max(first, 2) + 1)
     return float(size / chosen[np.argmax(np.asarray(power)[chosen])] / 2) if len(chosen) else 0.0
 
 
 def _terms(x: Floats, y: Floats, span: float) -> Floats:
-    """The polynomial that bends the columns: shape (6, points)."""
+    """Return the terms 1, x, y, xy, x², y² of the bend of the columns: shape (6, points).
+
+    x and y in units of ``span``, the picture's longer side.
+    """
     x, y = x / span, y / span
     return np.stack([np.ones_like(x), x, y, x * y, x * x, y * y])
 
 
 def _gaps(x: Floats, pitch: float) -> Floats:
-    """Places in a line where no ink stands above another, in the gaps between characters; gaps as
-    wide as a blank say nothing of where cells begin."""
+    """Return the places along a line, in pixels, that no ink crosses: the gaps between characters.
+
+    Gaps as wide as a blank are left out: they do not show where cells begin.
+    """
     step = max(pitch / 24, 0.5)
     low = x.min()
     counts = np.bincount(((x - low) / step).astype(int)).astype(float)
@@ -136,53 +176,106 @@ def _gaps(x: Floats, pitch: float) -> Floats:
     return low + (np.concatenate(gaps) + 0.5) * step if gaps else np.array([low])
 
 
-def _bend(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> tuple[Floats, float]:
-    """Coefficients of `_terms` that bring the edges of the cells to whole pitches, and how clear
-    the columns are then. Sums over stretches of a dozen cells stand for their gaps."""
+class _Phasors(NamedTuple):
+    """Gaps of a page's lines, one complex number per piece of a line of `_GAP_STRETCH` pitches.
+
+    ``sums`` are Σ exp(2πi x / pitch) over the piece's gaps x: the argument says where the gaps lie
+    within a pitch, the modulus how many there are. ``terms``, shape (6, pieces): `_terms` there.
+    """
+
+    sums: NDArray[np.complex128]
+    terms: Floats
+
+    def shifted(self, bend: Floats, pitch: float) -> NDArray[np.complex128]:
+        """Return the sums after the columns were moved by a bend."""
+        shifted: NDArray[np.complex128] = self.sums * np.exp(2j * np.pi / pitch * bend @ self.terms)
+        return shifted
+
+
+def _gap_phasors(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> _Phasors:
+    """Return the phasors of the gaps in lines of text with inked points ``xs``, ``ys``."""
     sums, places = [], []
+    width = _GAP_STRETCH * pitch
     for x, y in zip(xs, ys, strict=True):
         gaps = _gaps(x, pitch)
-        stretch = np.floor(gaps / (12 * pitch)).astype(int)
-        for part in np.unique(stretch):
-            inside = gaps[stretch == part]
-            near = np.abs(x - inside.mean()) < 12 * pitch
+        piece = np.floor(gaps / width).astype(int)
+        for number in np.unique(piece):
+            inside = gaps[piece == number]
+            is_near = np.abs(x - inside.mean()) < width
             sums.append(np.exp(2j * np.pi * inside / pitch).sum())
-            places.append((inside.mean(), y[near].mean() if near.any() else y.mean()))
-    total, at = np.array(sums), np.array(places)
-    terms = _terms(at[:, 0], at[:, 1], span)
+            places.append((inside.mean(), y[is_near].mean() if is_near.any() else y.mean()))
+    at = np.array(places)
+    return _Phasors(np.array(sums), _terms(at[:, 0], at[:, 1], span))
+
+
+def _fit_bend(phasors: _Phasors, pitch: float, span: float) -> tuple[Floats, float]:
+    """Return the bend that brings the cells' edges to whole pitches, and the clarity then.
+
+    The bend holds the coefficients b of `_terms` in pixels: a point x moves to x + b · terms. It
+    maximizes the clarity |Σ z exp(2πi b · terms / pitch)| / Σ |z| over the phasors z, which is 1
+    where every gap lies at the same place of its cell. The function has many local maxima, one a
+    pitch or so, hence a search on a lattice before the refinement.
+    """
+    bend = _refine_bend(_search_bend(phasors, pitch, span), phasors, pitch)
+    total = phasors.shifted(bend, pitch).sum()
+    bend[0] -= float(np.angle(total)) / (2 * np.pi) * pitch
+    return bend, float(np.abs(total) / np.abs(phasors.sums).sum())
+
+
+def _search_bend(phasors: _Phasors, pitch: float, span: float) -> Floats:
+    """Return the clearest bend on a lattice of slant, stretch, keystone and bow.
+
+    The four are searched together: with any of them wrong by a few pitches, no value of the others
+    gives clear columns. Keystone and bow are penalized with `_STRAIN`.
+    """
     turn = 2j * np.pi / pitch
-    # slant, keystone and the pitch itself together: each alone leaves nothing to see of the others
     step = 0.3 * pitch
     slants, stretches, keystones, bows = (
         np.arange(-reach * span, reach * span, width)
         for reach, width in ((0.1, step), (0.04, step), (0.15, 2 * step), (0.06, 4 * step))
     )
     curves = np.array([(keystone, bow) for keystone in keystones for bow in bows - bows.mean()])
-    few = np.argsort(-np.abs(total))[:_COARSE]
-    strong, sited = total[few], terms[:, few]
-    wide = np.exp(turn * np.outer(slants, sited[2]))
-    narrow = np.exp(turn * np.outer(stretches, sited[1])).T
-    curved = strong * np.exp(turn * curves @ sited[3:5])
-    clear = np.stack([np.abs((wide * sums) @ narrow) for sums in curved]) / np.abs(strong).sum()
-    clear -= _STRAIN * np.abs(curves).sum(axis=1)[:, None, None] / pitch
-    spot = np.unravel_index(int(np.argmax(clear)), clear.shape)
-    best = np.array([0, stretches[spot[2]], slants[spot[1]], *curves[spot[0]], 0])
-    weights = np.abs(total)
-    for reach in (0.35, 0.35, 0.3, 0.3, 0.25, 0.25, 0.2, 0.2):
-        # what is off by a good part of a pitch counts less
-        turned = total * np.exp(turn * best @ terms)
-        off = np.angle(turned * np.conj(turned.sum())) / (2 * np.pi) * pitch
+    chosen = np.argsort(-np.abs(phasors.sums))[:_MAX_COARSE]
+    sums, terms = phasors.sums[chosen], phasors.terms[:, chosen]
+    by_slant = np.exp(turn * np.outer(slants, terms[2]))
+    by_stretch = np.exp(turn * np.outer(stretches, terms[1])).T
+    by_curve = sums * np.exp(turn * curves @ terms[3:5])
+    clarity = np.stack([np.abs((by_slant * row) @ by_stretch) for row in by_curve])
+    clarity /= np.abs(sums).sum()
+    clarity -= _STRAIN * np.abs(curves).sum(axis=1)[:, None, None] / pitch
+    curve, slant, stretch = np.unravel_index(int(np.argmax(clarity)), clarity.shape)
+    return np.array([0, stretches[stretch], slants[slant], *curves[curve], 0])
+
+
+def _refine_bend(bend: Floats, phasors: _Phasors, pitch: float) -> Floats:
+    """Return a bend improved by reweighted least squares.
+
+    The residual of a piece is the phase of its phasor against their sum, in pixels. Weights fall
+    off as exp(-(residual / reach)²), so that a piece that is off by a good part of a pitch hardly
+    counts; `_RIDGE` keeps coefficients that the page does not determine at their values.
+    """
+    terms, weights = phasors.terms, np.abs(phasors.sums)
+    for reach in _REACHES:
+        moved = phasors.shifted(bend, pitch)
+        off = np.angle(moved * np.conj(moved.sum())) / (2 * np.pi) * pitch
         sure = weights * np.exp(-((off / (reach * pitch)) ** 2))
-        ridge = np.diag([1e-6, 1e-4, 1e-4, 3e-4, 3e-4, 1e-2]) * sure.sum()
-        best = best - np.linalg.solve((terms * sure) @ terms.T + ridge, (terms * sure) @ off)
-    turned = total * np.exp(turn * best @ terms)
-    best[0] -= float(np.angle(turned.sum())) / (2 * np.pi) * pitch
-    return best, float(np.abs(turned.sum()) / weights.sum())
+        ridge = np.diag(_RIDGE) * sure.sum()
+        bend = bend - np.linalg.solve((terms * sure) @ terms.T + ridge, (terms * sure) @ off)
+    return bend
 
 
 def grids_of(ink: Image, points: Points, turns: int) -> list[Grid]:
-    """The grids of a page turned by quarters to the left: one, or those of columns side by side.
-    ``points``: of the ink as it lies."""
+    """Return the grids of a page turned to the left: one, or one for each column of printouts.
+
+    Parameters
+    ----------
+    ink : ndarray
+        Ink of the page as it lies, 0 to 1.
+    points : Points
+        Inked places of the page as it lies.
+    turns : int
+        Quarter turns to the left that set the page upright.
+    """
     ink = np.ascontiguousarray(np.rot90(ink, turns))
     points = points.turned(turns)
     slope, keystone = slopes(points)
@@ -191,125 +284,162 @@ def grids_of(ink: Image, points: Points, turns: int) -> list[Grid]:
 
 
 def _columns(points: Points, slope: float) -> list[Points]:
-    """The ink left and right of a gap that runs down the page with much ink on both sides."""
+    """Return the ink left and right of a gap that runs down the page, or all in one.
+
+    Either side of the widest such gap has at least `_MIN_COLUMN` of the ink.
+    """
     across = points.x + slope * points.y
     step = points.span / 300
     counts = np.bincount(((across - across.min()) / step).astype(int)).astype(float)
-    empty = counts < 0.05 * np.mean(counts)  # specks fall into gaps, too
-    runs = np.flatnonzero(np.diff(np.r_[0, empty.astype(int), 0])).reshape(-1, 2)
-    behind = np.cumsum(counts) / len(across)
-    inner = [run for run in runs if _COLUMN < behind[run[0]] < 1 - _COLUMN]
+    is_empty = counts < 0.05 * np.mean(counts)  # specks fall into gaps, too
+    runs = np.flatnonzero(np.diff(np.r_[0, is_empty.astype(int), 0])).reshape(-1, 2)
+    cumulative = np.cumsum(counts) / len(across)
+    inner = [run for run in runs if _MIN_COLUMN < cumulative[run[0]] < 1 - _MIN_COLUMN]
     start, stop = max(inner, key=lambda run: float(run[1] - run[0]), default=(0, 0))
-    if stop - start < _GUTTER:
+    if stop - start < _MIN_GUTTER:
         return [points]
-    left = across < across.min() + step * (start + stop) / 2
-    return [Points(points.x[side], points.y[side], points.span) for side in (left, ~left)]
+    is_left = across < across.min() + step * (start + stop) / 2
+    return [Points(points.x[side], points.y[side], points.span) for side in (is_left, ~is_left)]
 
 
 def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int) -> Grid | None:
+    """Return the grid of one column of text, None where no lines or no pitch are found.
+
+    u and v are the levelled page's coordinates: x plus the bend of the columns, and y less the
+    slope of the lines, in pixels of the picture.
+    """
     x, y, span = points.x, points.y, points.span
     level = y - x * (slope + keystone * y / span)
     lines = _lines(points, level)
     height = float(np.median([bottom - top for top, bottom in lines])) if lines else 0.0
     lines = [(top, bottom) for top, bottom in lines if bottom - top > 0.25 * height]  # no specks
-    if not 6 <= len(lines) <= _MOST_LINES or height < _LEAST_HEIGHT:
+    if not 6 <= len(lines) <= _MAX_LINES or height < _MIN_HEIGHT:
         return None
     members = [np.flatnonzero((level >= top) & (level < bottom)) for top, bottom in lines]
-    xs, ys = [x[inside] for inside in members], [y[inside] for inside in members]
+    xs, ys = [x[inked] for inked in members], [y[inked] for inked in members]
     pitch = _pitch(xs, height, span)
     if not pitch:
         return None
-    bend, clarity = _bend(xs, ys, pitch, span)
+    bend, clarity = _fit_bend(_gap_phasors(xs, ys, pitch, span), pitch, span)
     across = x + bend @ _terms(x, y, span)
-    inside = across[np.concatenate(members)]
-    left = (np.floor(inside.min() / pitch) - 1) * pitch
-    count = round(np.ceil(inside.max() / pitch) + 1 - left / pitch)
+    inked = across[np.concatenate(members)]
+    origin = (np.floor(inked.min() / pitch) - 1) * pitch
+    count = round(np.ceil(inked.max() / pitch) + 1 - origin / pitch)
     scale = CELL_WIDTH / pitch
     middles = np.array([(top + bottom) / 2 for top, bottom in lines])
-    rise, drifts = _risen(across - left, level, middles, height, scale)
-    middles = _distinct(middles + drifts, [len(inside) for inside in members], height)
+    rise, drifts = _fit_rise(across - origin, level, middles, height, scale)
+    middles = _distinct(middles + drifts, [len(inked) for inked in members], height)
     small = resized(ink, scale)
     tall = round(1.7 * height * scale)
 
     def place(u: Floats, v: Floats) -> tuple[Floats, Floats]:
-        """Where in the picture the point ``u`` across and ``v`` down the levelled page is."""
+        """Return x and y in the picture of points u, v of the levelled page.
+
+        The bend is a function of x and y, so x is found by fixed-point iteration.
+        """
         x, y = u, v
         for _ in range(5):
             x = u - np.tensordot(bend, _terms(x, y, span), 1)
             y = v + x * (slope + keystone * y / span)
-        t = (u - left) * scale / _STRETCH
+        t = (u - origin) * scale / _STRETCH
         y = y + np.tensordot(rise, _bows(t, v * scale / _STRETCH), 1)
         return x + ink.shape[1] / 2, y + ink.shape[0] / 2
 
-    def sampled(line: int) -> Image:
-        u = left + (np.arange(count * CELL_WIDTH + 2 * SLACK) - SLACK + 0.5) / scale
+    def resample(line: int) -> Image:
+        """Return the picture of a line with cells of `CELL_WIDTH` pixels."""
+        u = origin + (np.arange(count * CELL_WIDTH + 2 * SLACK) - SLACK + 0.5) / scale
         v = middles[line] + (np.arange(tall + 2 * SLACK) - SLACK - tall / 2 + 0.5) / scale
         # the map bends slowly: it is worked out at every eighth point
         coarse = np.linspace(0, len(u) - 1, len(u) // 8)
         across, down = place(*np.meshgrid(u[0] + coarse / scale, v[[0, -1]]))
-        fine, where = np.arange(len(u)), []
+        fine, coordinates = np.arange(len(u)), []
         for at in (down, across):
             top, foot = (np.interp(fine, coarse, row) * scale - 0.5 for row in at)
-            where.append(np.linspace(top, foot, len(v)))
-        picture: Image = ndimage.map_coordinates(small, where, order=1, cval=0.0)
+            coordinates.append(np.linspace(top, foot, len(v)))
+        picture: Image = ndimage.map_coordinates(small, coordinates, order=1, cval=0.0)
         return picture
 
-    pictures = [sampled(line) for line in range(len(middles))]
-    edges, ends = left + np.arange(count + 1) * pitch, np.array([-0.65, 0.65]) * height
+    pictures = [resample(line) for line in range(len(middles))]
+    edges, ends = origin + np.arange(count + 1) * pitch, np.array([-0.65, 0.65]) * height
     corners = [np.stack(place(*np.meshgrid(edges, middle + ends))).T for middle in middles]
     return Grid(pictures, middles / pitch, corners, pitch, clarity, ink.shape, turns)
 
 
 def _distinct(middles: Floats, weights: Sequence[int], height: float) -> Floats:
-    """Return the middles of lines without those that overlap another with more ink: an underline,
-    or the edge of a shaded band, comes to lie on the line that it belongs to."""
-    kept: list[float] = []
-    for which in np.argsort(-np.array(weights), kind="stable").tolist():
-        middle = float(middles[which])
-        if all(abs(middle - other) > _OVERLAP * height for other in kept):
-            kept.append(middle)
-    return np.array(sorted(kept))
+    """Return the middles of lines without those that overlap another with more ink.
+
+    An underline, or the edge of a shaded band, overlaps the line that it belongs to.
+    """
+    distinct: list[float] = []
+    for line in np.argsort(-np.array(weights), kind="stable").tolist():
+        middle = float(middles[line])
+        if all(abs(middle - accepted) > _OVERLAP * height for accepted in distinct):
+            distinct.append(middle)
+    return np.array(sorted(distinct))
 
 
 def _bows(u: Floats, v: Floats) -> Floats:
-    """What lines of a bent page have in common: shape (4, ...)."""
+    """Return the terms u, uv, u², u²v (a tenth of each) of the rise of lines: shape (4, ...)."""
     return np.stack([u, u * v, u * u, u * u * v]) / 10
 
 
-def _risen(
+def _fit_rise(
     across: Floats, level: Floats, middles: Floats, height: float, scale: float
 ) -> tuple[Floats, Floats]:
-    """How the lines still rise and fall, in pixels: coefficients of `_bows`, and how far each line
-    is off. The ink of each stretch is laid on the mean of all."""
-    reach = 9
+    """Return how the lines still rise and fall after levelling, in pixels.
+
+    Each line is cut into stretches of `_STRETCH` resampled pixels. The vertical ink profile of a
+    stretch is aligned with the mean profile of all; the shifts are then fitted by reweighted least
+    squares with the smooth terms of `_bows`, common to all lines, and a constant for each line.
+
+    Parameters
+    ----------
+    across, level : ndarray
+        Place of each inked point along its line and down the levelled page, pixels.
+    middles : ndarray
+        Middle of each line, pixels of ``level``.
+    height, scale : float
+        Height of a line in pixels, and resampled pixels per pixel.
+
+    Returns
+    -------
+    rise : ndarray, shape (4,)
+        Coefficients of `_bows`.
+    drifts : ndarray, shape (lines,)
+        Constant of each line.
+    """
+    reach = 9  # largest shift tried, resampled pixels
     half = int(0.85 * height * scale) + reach
     stretches = np.maximum((across * scale / _STRETCH).astype(int), 0)
     profiles, places = [], []
     for line, middle in enumerate(middles):
         down = np.floor((level - middle) * scale).astype(int) + half
-        near = (down >= 0) & (down < 2 * half)
+        is_near = (down >= 0) & (down < 2 * half)
         counts = np.zeros((stretches.max() + 1, 2 * half))
-        np.add.at(counts, (stretches[near], down[near]), 1.0)
+        np.add.at(counts, (stretches[is_near], down[is_near]), 1.0)
         counts = ndimage.uniform_filter1d(counts, 3, axis=1)
         for stretch in np.flatnonzero(counts[:, reach:-reach].sum(axis=1) > 40):
             profiles.append(counts[stretch] / np.linalg.norm(counts[stretch]))
             places.append((line, stretch + 0.5, middle * scale / _STRETCH))
     if not profiles:
         return np.zeros(4), np.zeros(len(middles))
-    every, at = np.array(profiles), np.array(places)
+    all_profiles, at = np.array(profiles), np.array(places)
     size = 2 * half - 2 * reach
-    moves = np.zeros(len(every), int)
+    moves = np.zeros(len(all_profiles), int)
     for _ in range(3):
         mean = np.mean(
-            [row[reach + m : reach + m + size] for row, m in zip(every, moves, strict=True)], 0
+            [row[reach + m : reach + m + size] for row, m in zip(all_profiles, moves, strict=True)],
+            0,
         )
-        fits = np.stack([every[:, k : k + size] @ mean for k in range(2 * reach + 1)], axis=1)
+        fits = np.stack(
+            [all_profiles[:, k : k + size] @ mean for k in range(2 * reach + 1)], axis=1
+        )
         moves = np.argmax(fits, axis=1) - reach
-    off = moves - np.median(moves)
-    common = np.vstack([_bows(at[:, 1], at[:, 2]), np.eye(len(middles))[:, at[:, 0].astype(int)]])
-    sure = np.ones(len(off))
+    offsets = moves - np.median(moves)
+    terms = np.vstack([_bows(at[:, 1], at[:, 2]), np.eye(len(middles))[:, at[:, 0].astype(int)]])
+    weights = np.ones(len(offsets))
     for _ in range(6):  # what is far off counts less
-        normal = (common * sure) @ common.T + 1e-3 * np.eye(len(common))
-        rise = np.linalg.solve(normal, (common * sure) @ off)
-        sure = 1 / (1 + ((off - rise @ common) / 1.5) ** 2)
+        normal = (terms * weights) @ terms.T + 1e-3 * np.eye(len(terms))
+        rise = np.linalg.solve(normal, (terms * weights) @ offsets)
+        weights = 1 / (1 + ((offsets - rise @ terms) / 1.5) ** 2)
     return rise[:4] / scale, rise[4:] / scale
