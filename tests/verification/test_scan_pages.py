@@ -35,7 +35,7 @@ from impact88.verification.scan.holding import (
     MOST_SPECKS,
     Cell,
     Judged,
-    judged,
+    judge,
     state,
 )
 from impact88.verification.scan.layout import Place, Sheet
@@ -256,8 +256,8 @@ def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, be
         lambda grid, found: [{"MA": np.zeros((1, 1))} for one in found],
     )
     monkeypatch.setattr(sheets, "scene_of", lambda *given: object())
-    monkeypatch.setattr(sheets, "held", lambda grid, known: [[] for one in known])
-    monkeypatch.setattr(sheets, "judged", lambda *given_: next(given))
+    monkeypatch.setattr(sheets, "compare_cells", lambda grid, known: [[] for one in known])
+    monkeypatch.setattr(sheets, "judge", lambda *given_: next(given))
     monkeypatch.setattr(sheets, "borne_out", lambda one, *_: one)
     grid = SimpleNamespace(odds=lambda: [np.zeros(8)], clarity=0.9)
     leaves = sheets._leaves(grid, [Sheet(gain=1000.0), Sheet(gain=1000.0)], [])
@@ -720,7 +720,7 @@ def test_a_digit_like_nothing_on_the_page_settles_nothing(monkeypatch, away: flo
     monkeypatch.setattr(Sheet, "whole", True)
     candidate = Candidate({}, SimpleNamespace(fields={}, ending=None), 0.0)  # type: ignore[arg-type]
     expected = Verdict.INCOMPLETE if away > 0 else Verdict.IDENTICAL
-    assert judged(Sheet(rows={}), candidate, [odd]).verdict is expected
+    assert judge(Sheet(rows={}), candidate, [odd]).verdict is expected
 
 
 @pytest.mark.parametrize("beyond", [-1.0, 1.0])
@@ -733,7 +733,7 @@ def test_a_page_read_otherwise_in_more_places_than_differ_accuses_nobody(
     candidate = Candidate({}, SimpleNamespace(fields={}, ending=None), cost)  # type: ignore[arg-type]
     differs = cell("TB", distance=100.0, other_distance=FOREIGN - 1)
     expected = Verdict.INCOMPLETE if beyond > 0 else Verdict.DIFFERS
-    assert judged(Sheet(rows={}), candidate, [differs]).verdict is expected
+    assert judge(Sheet(rows={}), candidate, [differs]).verdict is expected
 
 
 def test_another_letter_is_near_to_that_letters_mean() -> None:

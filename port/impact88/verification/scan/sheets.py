@@ -13,7 +13,7 @@ from ..judging.judgement import Verdict
 from ..reading.alignment import MAY_BE_MISSING
 from .claims import claims, is_of_a_printout
 from .grid import FEWEST_POINTS, Grid, grids_of
-from .holding import Added, Cell, Judged, held, judged, state
+from .holding import Added, Cell, Judged, compare_cells, judge, state
 from .ink import Floats, Image, Points, ink_of, points_of, without_pen
 from .layout import Sheet, sheets_of
 from .residue import Explained, Kind, Mark, Residue, residue_of
@@ -239,7 +239,7 @@ def _leaves(
             found = leaf.found
             if wrongly := _divided_wrongly(leaf):
                 found = found._replace(cost=found.cost - wrongly)
-            leaf.judged = judged(leaf.read.sheet, found, leaf.cells)
+            leaf.judged = judge(leaf.read.sheet, found, leaf.cells)
     # the printouts of a page share their mean characters: one misplaced spoils them for all
     if any(leaf.judged.verdict is Verdict.INCOMPLETE for leaf in leaves):
         for leaf in leaves:
@@ -251,7 +251,7 @@ def _leaves(
 
 def _hold(grid: Grid, known: Sequence[Leaf]) -> None:
     """Holds the cells of all printouts against the pages of their scenes."""
-    cells = held(grid, [(leaf.read, leaf.found) for leaf in known if leaf.found])
+    cells = compare_cells(grid, [(leaf.read, leaf.found) for leaf in known if leaf.found])
     for leaf, own in zip(known, cells, strict=True):
         leaf.cells = own
 

@@ -188,7 +188,7 @@ def likeness(sample: Sample, typeface: Typeface, styles: int | None = _STYLES) -
     return unlike
 
 
-def hands_of(
+def foreign_digits(
     sample: Sample,
     typeface: Typeface,
     names: Sequence[str],
