@@ -10,7 +10,7 @@ from impact88.collision.uncertain import fixed_value
 from impact88.mechanics.closedform.solve import solve
 from impact88.mechanics.state import State
 from impact88.program.scene import sample
-from impact88.reconstruction.adjustment import reconstruct, straight
+from impact88.reconstruction.adjustment import reconstruct, solve_gauss_newton
 from impact88.reconstruction.quadrics import Quadrics, follow_paths, quadratic_equations
 from impact88.reconstruction.system import System
 
@@ -70,9 +70,9 @@ def test_random_starts_find_nothing_that_the_paths_do_not():
     paths = follow_paths(equations, np.random.default_rng(1))
     assert paths.lost == 0
     starts = np.random.default_rng(2).standard_normal((len(exact.variables), 1000))
-    ends, over = straight(exact, starts)
+    ends, over = solve_gauss_newton(exact, starts)
     met = ends[:, over < 1e-10]
-    own, left = straight(exact, paths.real)
+    own, left = solve_gauss_newton(exact, paths.real)
     assert (left < 1e-10).all()
     assert met.shape[1]
     for end in met.T:

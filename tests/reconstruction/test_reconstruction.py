@@ -18,7 +18,7 @@ from impact88.errors import UserError
 from impact88.mechanics.closedform.solve import solve
 from impact88.mechanics.state import State
 from impact88.program.scene import Scene, sample
-from impact88.reconstruction.adjustment import polished, reconstruct, straight
+from impact88.reconstruction.adjustment import reconstruct, refine, solve_gauss_newton
 from impact88.reconstruction.reconstructed import draws, ranges
 from impact88.reconstruction.reconstructedtable import Measured
 from impact88.reconstruction.system import System
@@ -189,7 +189,7 @@ class TestLeastOfAll:
         known["EL"] = read("-29.82 +- 80.33", "EL")
         known["WAF"] = read("-165.43 +- 360", "WAF")
         (solution,) = reconstruct(known)
-        assert max(abs(one.moved) for one in solution.adjusted) < 0.5
+        assert max(abs(one.normalized_residual) for one in solution.adjusted) < 0.5
 
     def test_a_saddle_is_no_solution(self):
         """Of UX = 1, UY = 0 and a speed of 10, each within 1, squares are least at UX = 5.5. At
@@ -203,9 +203,9 @@ class TestLeastOfAll:
             for name, value in (("UX", ux), ("UY", 0.0), ("SA", abs(ux))):
                 row = system.variables.index(name)
                 start[row] = value / system.scales[row]
-            ends, over = straight(system, start)
+            ends, over = solve_gauss_newton(system, start)
             assert over[0] < 1e-9
-            return polished(system, ends)[1]
+            return refine(system, ends)[1]
 
         assert solved(5.5) < 1e-12
         assert solved(-4.5) == math.inf
@@ -243,7 +243,9 @@ class TestLeastSquares:
         ):
             assert adjusted[name].adjusted == pytest.approx(value, rel=1e-11)
             tolerance = 2 if name[0] == "V" else 0.3
-            assert adjusted[name].moved == pytest.approx((value - was) / tolerance, abs=1e-9)
+            assert adjusted[name].normalized_residual == pytest.approx(
+                (value - was) / tolerance, abs=1e-9
+            )
         deviations = solution.deviations(["UX", "VY"])
         assert deviations["UX"] == pytest.approx(math.sqrt(covariance[0, 0]), rel=1e-9)
         assert deviations["VY"] == pytest.approx(math.sqrt(covariance[1, 1]), rel=1e-9)
@@ -305,7 +307,7 @@ class TestDetermined:
         for name in unknown:
             assert solution.values[name] == pytest.approx(float(expected[name]), abs=1e-9)
         assert solution.redundancy == 0
-        assert max(abs(a.moved) for a in solution.adjusted) < 1e-9
+        assert max(abs(a.normalized_residual) for a in solution.adjusted) < 1e-9
 
     def test_size_of_friction_gives_both_signs(self):
         after = {n: float(v) for n, v in solve(TABLE_3, FINAL).items()}

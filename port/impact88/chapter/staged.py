@@ -31,7 +31,7 @@ from ..mechanics.closedform.solve import solve
 from ..mechanics.outcome import forces
 from ..mechanics.state import State
 from ..names import FINAL_STATE, VELOCITIES
-from ..reconstruction.unknowns import typed
+from ..reconstruction.unknowns import mu_to_type
 from .deltav import delta_v
 
 Array = NDArray[np.float64]
@@ -195,7 +195,7 @@ def collisions() -> tuple[Collision, ...]:
 def typed_friction(scene: Mapping[str, Any], signed: Any) -> Array:
     """Return the MU to type for a signed P_t/P_n: line 400 changes its sign where gt > 0."""
     state = State.of_known(scene)
-    return typed(np.asarray(signed, np.float64), state.relative_before[1], state.before)
+    return mu_to_type(np.asarray(signed, np.float64), state.relative_before[1], state.before)
 
 
 def forward(

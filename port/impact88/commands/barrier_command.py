@@ -25,7 +25,7 @@ exit status: 0 solved; 2 bad input, or unknowns that are not determined
 from ..chapter.barrier import BARRIER, BARRIER_AFTER
 from ..collision.uncertain import fixed_value
 from ..errors import note
-from ..reconstruction.adjustment import share_resolved
+from ..reconstruction.adjustment import resolve_friction
 from ..reconstruction.solutiontable import Exact
 from . import options
 
@@ -55,7 +55,7 @@ ARGUMENTS = (*options.SOLUTION, options.sample_option("vehicle A of a published 
 def main(args: options.Args) -> None:
     values, units = options.known_within_limits(args, KNOWABLE, single=True)
     barrier = BARRIER if "UX" in values else BARRIER | BARRIER_AFTER
-    inputs, friction = share_resolved(
+    inputs, friction = resolve_friction(
         values | {n: fixed_value(value) for n, value in barrier.items()}
     )
     if friction:

@@ -67,7 +67,7 @@ from ..reconstruction.adjustment import (
     Reconstruction,
     needs_adjustment,
     reconstruct,
-    share_resolved,
+    resolve_friction,
 )
 from ..reconstruction.reconstructedtable import Measured
 from ..reconstruction.solutiontable import Exact, Impact
@@ -92,7 +92,7 @@ def main(args: options.Args) -> None:
     output_names = options.names_given(args.outputs, QUANTITIES, "--outputs") or None
     case = options.known_case(args, KNOWABLE)
     values, units = options.read_known(case, KNOWABLE), case.system
-    values, friction = share_resolved(values)
+    values, friction = resolve_friction(values)
     if friction:
         note(None, friction)
     solutions: Sequence[Impact]

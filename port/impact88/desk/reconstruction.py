@@ -62,7 +62,7 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     try:
         if problems or case is None:
             raise UserError(f"To be corrected: {' '.join(problems)}.")
-        known, friction = adjustment.share_resolved(known)
+        known, friction = adjustment.resolve_friction(known)
         if friction:
             answered["remarks"].append(friction)
         found: Sequence[Impact]

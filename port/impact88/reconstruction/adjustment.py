@@ -1,11 +1,10 @@
-"""Any reconstruction with its tolerances: adjustment of observations with conditions.
+"""Reconstruction with tolerances: weighted least squares with equality constraints.
 
-What is known of an impact is adjusted so that the laws and the exact values hold (`system.System`)
-and the sum of squared adjustments, each in units of its standard deviation, is least: by Gauss and
-Newton's steps, or Levenberg and Marquardt's while tolerances are tightened little by little, and at
-last by Newton's method, which shows that nothing beside it is less. First-order deviations and
-correlations come from the same equations.
-"""
+What is known of an impact is adjusted so that the laws and the exact values hold (`system.System`:
+the conditions) and the sum of squared adjustments, each in units of its standard deviation, is
+least. Candidates come from Gauss-Newton iterations, or from Levenberg-Marquardt iterations while
+tolerances are tightened step by step (numerical continuation). Newton's method refines them and
+confirms the minimum. First-order deviations and correlations come from the same equations."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -45,225 +44,287 @@ from ..names import (
 )
 from ..status import Status
 from .evidence import Evidence, weigh
-from .laws import missed_laws, told
+from .laws import describe_laws, missed_laws
 from .quadrics import MAX_EQUATIONS, Paths, follow_paths, quadratic_equations
 from .system import PARAMETERS, SPINS, System
-from .unknowns import UnsolvableError, check_physical, solve_for, typed
+from .unknowns import UnsolvableError, check_physical, mu_to_type, solve_for
 
 Floats = NDArray[np.float64]
 Progress = Callable[[int], object]
 
-_STARTS = 240  # random starts in a batch
-_IDLE_BATCHES = 4
-"""The search ends when so many batches in turn find no further impact: the rarest of 80 random
-problems are found from one start in 200."""
-_MAX_BATCHES = 16  # of a search that keeps finding impacts
-_FITTED_STARTS = 120  # starts in a batch where nothing agrees exactly and a fit is sought
-_LEFT_OUT = 8  # sets of superfluous values left out, each for exact impacts as starts of a fit
-_NEARBY = 0.3  # spread of starts around impacts that were found before
-_ASIDE = 1e-2  # scaled distance at which a fold is told from a continuum
-_FOLDED = 1e-4  # singular value, of the largest, up to which branches nearly meet
-_FOLDED_PART = 1e-3  # part of a gradient along the fold up to which a quantity does not feel it
-_SAME = 1e-6  # scaled variables that differ by no more are of the same impact
-_TIGHTENED_FIRST, _TIGHTENED = 4, 12
-"""Of the starts so many with tolerances tightened little by little, the second number where nothing
-is found by then, or something not determined. Twice as many find the same in 75 problems."""
-# of these none changes a solution of 104 problems when doubled
-_STEPS, _LONGEST, _LAST = 50, 2.0, 1e-14
-"""Of an iteration (a descent: twice as many); longest and last, the last as a share of them."""
-_TIGHTER, _TIGHTEST = 0.1, 1e-12
-"""Tolerances are tightened by so much at a time, to so much of an ordinary size at most."""
-_ROUGHLY, _CLOSELY = 0.1, 1e-9
-"""The share of the squares a descent must gain: while tolerances are tightened, and at last."""
-_HELD = 100.0
-"""Conditions count so many times as much as the tightest tolerance."""
-_NEARLY, _HOLDS = 1e-3, 1e-10
-"""What conditions may leave over where the exact solution is sought, and there."""
-_BESIDE, _CLOSE = 1e-5, 0.5
-"""Of ends no farther apart one is followed, no farther than the second."""
-_FEW = 8
-"""Ends followed where something is not determined."""
-_DIFFERENCE, _DOWNWARD = 1e-6, 1e-9
-"""Half the distance slopes are compared over, for curvatures; curvatures that are rounding."""
-_RANK, _OPEN = 1e-10, 1e-7
-"""Singular values, and shares of a gradient in the null space, up to that are none."""
-_LIKELY = 4.0
-"""Impacts with so many times the least sum of squares are reported, too."""
-_FRICTIONS, _SETTLED = 40, 1e-12
-"""Frictions tried, of which secants need six to ten, and the change of P_t/P_n at which it has
-settled. Half or twice as much finds the same in 60 problems."""
-_HELPFUL_FIRST = ("WAF", "WBF", "WA", "WB", "E", "MUP", "EM")
-"""Of what is not known, what can be found out best."""
+# The search for every impact
+BATCH_SIZE = 240  # random starts
+MAX_IDLE_BATCHES = 4  # without a new impact; the rarest of 80 problems are found once in 200 starts
+MAX_BATCHES = 16
+FIT_BATCH_SIZE = 120  # random starts where exact values contradict and a fit is sought
+MAX_OMITTED_SETS = 8  # sets of redundant measurements left out to find starts of a fit
+RESTART_SPREAD = 0.3  # relative spread of starts around impacts already found
+DISTINCT_TOL = 1e-6  # impacts whose scaled variables differ by less are the same
+CONTINUATION_STARTS = 4  # starts from which tolerances are tightened step by step
+# ... where nothing is found from these, or not all is determined. Twice as many find the same in
+# 75 problems.
+MORE_CONTINUATION_STARTS = 12
+MAX_OPEN_ENDS = 8  # end points polished where something is undetermined
+
+# Iterations. Doubling any of these changes no solution of 104 problems.
+MAX_ITERATIONS = 50  # Gauss-Newton and Newton; Levenberg-Marquardt takes twice as many
+MAX_STEP = 2.0  # relative step length
+XTOL = 1e-14  # relative step at convergence
+TOLERANCE_FACTOR = 0.1  # tolerances are tightened by this factor at a time ...
+MIN_TOLERANCE = 1e-12  # ... down to this, in scaled variables
+COARSE_FTOL = 0.1  # least relative decrease of the sum of squares while tolerances are tightened
+FTOL = 1e-9  # and at last
+CONSTRAINT_WEIGHT = 100.0  # penalty weight of conditions relative to the tightest observation
+CANDIDATE_TOL = 1e-3  # largest scaled residual of conditions where Newton's method is started
+RESIDUAL_TOL = 1e-10  # largest scaled residual of conditions that hold
+DUPLICATE_TOL = 1e-5  # of end points closer than this one is polished
+MAX_POLISH_SHIFT = 0.5  # longest relative step of Newton's method
+DIFFERENCE_STEP = 1e-6  # half width of the central differences for second derivatives
+CURVATURE_TOL = 1e-9  # negative eigenvalues above minus this are rounding
+
+# Rank decisions
+RANK_TOL = 1e-10  # singular values below, relative to the largest, count as zero
+NULL_TOL = 1e-7  # relative part of a gradient in the null space that counts as zero
+FOLD_OFFSET = 1e-2  # scaled distance at which a fold is distinguished from a continuum
+FOLD_TOL = 1e-4  # relative singular value below which two branches nearly meet
+FOLD_GRADIENT_TOL = 1e-3  # relative part of a gradient along the fold that counts as zero
+
+MAX_SQUARES_RATIO = 4.0  # impacts with up to this many times the least sum of squares are reported
+# Secant steps for friction given as a fraction of the critical one; six to ten are needed. Half or
+# twice as many find the same in 60 problems.
+MAX_SECANT_STEPS = 40
+FRICTION_TOL = 1e-12  # change of P_t/P_n at convergence
+# Unknowns that can be determined best by other evidence
+PREFERRED_MEASUREMENTS = ("WAF", "WBF", "WA", "WB", "E", "MUP", "EM")
 
 
-def straight(system: System, starts: Floats) -> tuple[Floats, Floats]:
-    """Gauss and Newton from several starts, a column each: where their steps end, and the
-    largest of what conditions leave over there. Steps may climb, as long as the conditions hold
-    no worse."""
-    x, left_over, _ = _stepped(system, starts)
-    return x, left_over
+def solve_gauss_newton(system: System, starts: Floats) -> tuple[Floats, Floats]:
+    """Return the ends of Gauss-Newton iterations from several starts, a column each, and the
+    largest residual of the conditions at each end.
+
+    Steps may increase the sum of squares, as long as they do not increase the conditions' residuals
+    much."""
+    x, largest_residual, _ = _iterate_gauss_newton(system, starts)
+    return x, largest_residual
 
 
-def _stepped(system: System, starts: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-    """Return the same as `straight`, and whose steps came to an end."""
-    count, x = len(system.conditions), starts.copy()
-    going = np.arange(x.shape[1])
-    for _ in range(_STEPS):
-        here = x[:, going]
-        residual, slopes = system.linearized(here, system.left)
-        steps = _steps(residual, slopes, count)
-        size = np.abs(steps).max(axis=0, initial=0.0)
-        longest = _LONGEST * np.maximum(1.0, np.abs(here).max(axis=0, initial=0.0))
-        steps = steps * np.minimum(1.0, longest / np.maximum(size, longest))
-        before = np.abs(residual[:count]).max(axis=0, initial=0.0)
+def _iterate_gauss_newton(
+    system: System, starts: Floats
+) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+    """Return the same as `solve_gauss_newton`, and True for each iteration that converged."""
+    condition_count, x = len(system.conditions), starts.copy()
+    running = np.arange(x.shape[1])
+    for _ in range(MAX_ITERATIONS):
+        point = x[:, running]
+        residual, jacobian = system.linearize(point, system.residuals)
+        steps = _gauss_newton_steps(residual, jacobian, condition_count)
+        step_size = np.abs(steps).max(axis=0, initial=0.0)
+        allowed_length = MAX_STEP * np.maximum(1.0, np.abs(point).max(axis=0, initial=0.0))
+        steps = steps * np.minimum(1.0, allowed_length / np.maximum(step_size, allowed_length))
+        violation = np.abs(residual[:condition_count]).max(axis=0, initial=0.0)
         for _ in range(12):
-            tried = here + steps
-            after = np.abs(system.left(system.state(tried))[:count]).max(axis=0, initial=0.0)
-            worse = after > np.maximum(1.5 * before, 1e-9)
-            if not worse.any():
+            trial = point + steps
+            trial_violation = np.abs(system.residuals(system.state(trial))[:condition_count]).max(
+                axis=0, initial=0.0
+            )
+            has_grown = trial_violation > np.maximum(1.5 * violation, 1e-9)
+            if not has_grown.any():
                 break
-            steps = np.where(worse, steps / 2, steps)
-        x[:, going] = tried
-        going = going[size >= _LAST * (1 + np.abs(tried).max(axis=0, initial=0.0))]
-        if not len(going):
+            steps = np.where(has_grown, steps / 2, steps)
+        x[:, running] = trial
+        running = running[step_size >= XTOL * (1 + np.abs(trial).max(axis=0, initial=0.0))]
+        if not len(running):
             break
-    left_over = np.abs(system.left(system.state(x))[:count]).max(axis=0, initial=0.0)
-    settled = np.ones(x.shape[1], bool)
-    settled[going] = False
-    return x, left_over, settled
+    largest_residual = np.abs(system.residuals(system.state(x))[:condition_count]).max(
+        axis=0, initial=0.0
+    )
+    converged = np.ones(x.shape[1], bool)
+    converged[running] = False
+    return x, largest_residual, converged
 
 
-def tightened(system: System, x: Floats) -> tuple[Floats, float]:
-    """Least squares from one start, and the largest of what conditions leave over at the end. Tight
-    tolerances among loose ones make a narrow curved valley: all begin loose and are tightened
-    little by little."""
-    held = np.full(len(system.conditions), _HELD)
-    shares = np.array(
+def fit_with_continuation(system: System, x: Floats) -> tuple[Floats, float]:
+    """Return the least-squares solution from one start, and the largest residual of its conditions.
+
+    Tight tolerances among loose ones make a narrow curved valley, which descent follows slowly. So
+    all tolerances begin loose and are tightened by `TOLERANCE_FACTOR` at a time, each solution the
+    start of the next (continuation)."""
+    weights = np.full(len(system.conditions), CONSTRAINT_WEIGHT)
+    tolerances = np.array(
         [system.known[n].standard_deviation / system.scale(n) for n in system.observations]
     )
-    # vehicles and coefficients are known about well enough to begin with
-    spared = np.array([n in GEOMETRY or n in COEFFICIENTS for n in system.observations])
-    loosest, tightest = 1.0, max(float(shares.min()), _TIGHTEST)
-    while loosest > tightest:
-        weights = np.where(spared, 1.0, np.minimum(1.0, shares / loosest))
-        x = _descended(system, x, np.concatenate([held / loosest, weights])[:, None], _ROUGHLY)
-        loosest *= _TIGHTER
-    rows = np.concatenate([held / tightest, np.ones(len(shares))])
-    x = _descended(system, x, rows[:, None], _CLOSELY)
-    return x, float(np.abs(system.left(system.state(x))[: len(held)]).max(initial=0.0))
+    # vehicles and coefficients keep their own tolerances from the beginning
+    keeps_tolerance = np.array([n in GEOMETRY or n in COEFFICIENTS for n in system.observations])
+    tolerance, final_tolerance = 1.0, max(float(tolerances.min()), MIN_TOLERANCE)
+    while tolerance > final_tolerance:
+        observation_weights = np.where(
+            keeps_tolerance, 1.0, np.minimum(1.0, tolerances / tolerance)
+        )
+        x = _minimize(
+            system,
+            x,
+            np.concatenate([weights / tolerance, observation_weights])[:, None],
+            COARSE_FTOL,
+        )
+        tolerance *= TOLERANCE_FACTOR
+    row_weights = np.concatenate([weights / final_tolerance, np.ones(len(tolerances))])
+    x = _minimize(system, x, row_weights[:, None], FTOL)
+    return x, float(np.abs(system.residuals(system.state(x))[: len(weights)]).max(initial=0.0))
 
 
-def _descended(system: System, x: Floats, rows: Floats, enough: float) -> Floats:
-    """Least squares of what conditions and observations leave over, ``rows`` times as much, in
-    damped steps (Levenberg, Marquardt) until three gain less than the share ``enough``."""
-    residual, damping, idle = rows * system.left(system.state(x)), 1e-3, 0
-    for _ in range(2 * _STEPS):
-        jacobian = rows * system.slopes(x)
+def _minimize(system: System, x: Floats, row_weights: Floats, ftol: float) -> Floats:
+    """Minimize the sum of squares of residuals times ``row_weights`` by the Levenberg-Marquardt
+    method, until three steps decrease it by less than the fraction ``ftol``."""
+    residual, damping, small_gains = row_weights * system.residuals(system.state(x)), 1e-3, 0
+    for _ in range(2 * MAX_ITERATIONS):
+        jacobian = row_weights * system.jacobian(x)
         if not (np.isfinite(jacobian).all() and np.isfinite(residual).all()):
             break
         u, s, vt = np.linalg.svd(jacobian, full_matrices=False)
-        before = after = float(np.square(residual).sum())
-        while not after < before:
-            inverse = (vt.T * (s / (s * s + damping * s[0] ** 2))) @ u.T
-            step = -inverse @ residual
-            size = np.abs(step).max()
-            if not size > _LAST:
+        squares = trial_squares = float(np.square(residual).sum())
+        while not trial_squares < squares:
+            damped_inverse = (vt.T * (s / (s * s + damping * s[0] ** 2))) @ u.T
+            step = -damped_inverse @ residual
+            step_size = np.abs(step).max()
+            if not step_size > XTOL:
                 return x
-            step *= min(1.0, _LONGEST / size)
-            tried, missed = _bent(system, x + step, residual + jacobian @ step, inverse, rows)
-            after = float(np.square(missed).sum())
+            step *= min(1.0, MAX_STEP / step_size)
+            trial, trial_residual = _follow_curvature(
+                system, x + step, residual + jacobian @ step, damped_inverse, row_weights
+            )
+            trial_squares = float(np.square(trial_residual).sum())
             damping *= 10
-        x, residual, damping = tried, missed, max(damping / 100, 1e-16)
-        idle = 0 if before - after > enough * before else idle + 1
-        if idle == 3:
+        x, residual, damping = trial, trial_residual, max(damping / 100, 1e-16)
+        small_gains = 0 if squares - trial_squares > ftol * squares else small_gains + 1
+        if small_gains == 3:
             break
     return x
 
 
-def _bent(
-    system: System, x: Floats, promised: Floats, inverse: Floats, rows: Floats
+def _follow_curvature(
+    system: System, x: Floats, predicted: Floats, inverse: Floats, row_weights: Floats
 ) -> tuple[Floats, Floats]:
-    """A straight step's end brought to where what is left over is what the slopes promised, as
-    long as that lessens it: so steps follow narrow curved valleys."""
-    after = rows * system.left(system.state(x))
-    for _ in range(_STEPS):
-        if not np.square(after).sum() > 1.1 * np.square(promised).sum():
+    """Return the end of a step corrected towards the residuals that the linear model predicted, and
+    its residuals, as long as the correction decreases them.
+
+    With these corrections steps follow narrow curved valleys."""
+    residual = row_weights * system.residuals(system.state(x))
+    for _ in range(MAX_ITERATIONS):
+        if not np.square(residual).sum() > 1.1 * np.square(predicted).sum():
             break
-        tried = x - inverse @ (after - promised)
-        missed = rows * system.left(system.state(tried))
-        if not np.square(missed).sum() < 0.9 * np.square(after).sum():
+        trial = x - inverse @ (residual - predicted)
+        trial_residual = row_weights * system.residuals(system.state(trial))
+        if not np.square(trial_residual).sum() < 0.9 * np.square(residual).sum():
             break
-        x, after = tried, missed
-    return x, after
+        x, residual = trial, trial_residual
+    return x, residual
 
 
-def polished(system: System, x: Floats) -> tuple[Floats, float]:
-    """Newton's method from close by, for conditions that hold exactly and adjustments that are
-    least, curvature and all: the adjusted impact, and the largest of what its conditions leave
-    over, infinite where no impact is found that is least."""
-    count, last, begin = len(system.conditions), np.inf, x
-    for _ in range(_STEPS):
-        residual, slopes = system.linearized(x, system.left)
-        step, least = _newton(system, x, residual[:, 0], slopes[:, :, 0])
-        size, far = np.abs(step).max(initial=0.0), 1 + np.abs(x).max(initial=0.0)
-        if not size < _CLOSE * far:
+def refine(system: System, x: Floats) -> tuple[Floats, float]:
+    """Refine an impact by Newton's method. Return it and the largest residual of its conditions,
+    infinite where the iteration does not converge to a minimum nearby."""
+    condition_count, previous_size, start = len(system.conditions), np.inf, x
+    for _ in range(MAX_ITERATIONS):
+        residual, jacobian = system.linearize(x, system.residuals)
+        step, is_minimum = _newton_step(system, x, residual[:, 0], jacobian[:, :, 0])
+        step_size, point_size = np.abs(step).max(initial=0.0), 1 + np.abs(x).max(initial=0.0)
+        if not step_size < MAX_POLISH_SHIFT * point_size:
             return x, np.inf
         x = x + step[:, None]
-        if size < _LAST * far or 1e-9 * far > size > 0.5 * last:
+        if step_size < XTOL * point_size or 1e-9 * point_size > step_size > 0.5 * previous_size:
             break
-        last = size
+        previous_size = step_size
     else:
         return x, np.inf
-    before, after = system.left(system.state(begin)), system.left(system.state(x))
-    # neither a saddle nor another valley
-    if not least or np.square(after[count:]).sum() > 1.01 * np.square(before[count:]).sum() + 1e-9:
+    start_residual, end_residual = (
+        system.residuals(system.state(start)),
+        system.residuals(system.state(x)),
+    )
+    # reject saddle points, and minima of another valley
+    if (
+        not is_minimum
+        or np.square(end_residual[condition_count:]).sum()
+        > 1.01 * np.square(start_residual[condition_count:]).sum() + 1e-9
+    ):
         return x, np.inf
-    return x, float(np.abs(after[:count]).max(initial=0.0))
+    return x, float(np.abs(end_residual[:condition_count]).max(initial=0.0))
 
 
-def _newton(system: System, x: Floats, residual: Floats, jacobian: Floats) -> tuple[Floats, bool]:
-    """The step to where the gradient of the squares has no part along the conditions, and
-    whether they curve upward there. What nothing determines to first order stays."""
-    count, size = len(system.conditions), len(x)
-    inverse, null = pseudo_inverse(jacobian[:count])
-    loose, measured = jacobian[count:], residual[count:]
-    multipliers = np.concatenate([-inverse.T @ (loose.T @ measured), measured])
-    aside = _DIFFERENCE * np.eye(size)
-    slopes = system.linearized(np.concatenate([x + aside, x - aside], axis=1), system.left)[1]
-    ahead, behind = np.split(np.einsum("r,rik->ik", multipliers, slopes), 2, axis=1)
-    curvature = (ahead - behind) / (2 * _DIFFERENCE)
-    # the step along what is determined, the adjustments after it, and the multipliers
-    *_, along, _ = _decomposed(jacobian)
-    weight = np.abs(loose).max(initial=0.0) or 1.0
-    tight, narrow = jacobian[:count] @ along.T, loose @ along.T / weight
-    free, rows = len(along), len(loose)
-    equations = np.zeros((free + rows + count,) * 2)
-    equations[:free, :free] = along @ (curvature + curvature.T) @ along.T / (2 * weight * weight)
-    equations[:free, free : free + rows], equations[:free, free + rows :] = narrow.T, tight.T
-    equations[free : free + rows, :free], equations[free + rows :, :free] = narrow, tight
-    equations[free : free + rows, free : free + rows] = -np.eye(rows)
-    right = np.zeros(len(equations))
-    right[free : free + rows], right[free + rows :] = -measured / weight, -residual[:count]
-    if not (np.isfinite(equations).all() and np.isfinite(right).all()):
+def _newton_step(
+    system: System, x: Floats, residual: Floats, jacobian: Floats
+) -> tuple[Floats, bool]:
+    """Return the step of Newton's method for constrained least squares, and True if the Lagrangian
+    curves upward there in every direction the conditions allow.
+
+    With conditions c(x) = 0, observations r(x), their Jacobians C and A and the Lagrangian's
+    Hessian H, the step p, the new residuals s and the multipliers l solve the augmented system
+
+        H p + A^T s + C^T l = 0,    A p - s = -r,    C p = -c.
+
+    Directions that nothing determines to first order are left out of p. By the inertia of this
+    matrix the point is a minimum if it has no more negative eigenvalues than A has rows and C has
+    rank (Nocedal and Wright, *Numerical Optimization*, 16.1).
+    """
+    condition_count, variable_count = len(system.conditions), len(x)
+    inverse, null = pseudo_inverse(jacobian[:condition_count])
+    observation_rows, observation_residual = jacobian[condition_count:], residual[condition_count:]
+    multipliers = np.concatenate(
+        [-inverse.T @ (observation_rows.T @ observation_residual), observation_residual]
+    )
+    curvature = _lagrangian_hessian(system, x, multipliers)
+    *_, determined, _ = _decompose(jacobian)
+    # in units of the tightest observation, so that no block is much larger than another
+    weight = np.abs(observation_rows).max(initial=0.0) or 1.0
+    c = jacobian[:condition_count] @ determined.T
+    a = observation_rows @ determined.T / weight
+    step_size, row_count = len(determined), len(observation_rows)
+    steps = slice(0, step_size)
+    residuals = slice(step_size, step_size + row_count)
+    conditions = slice(step_size + row_count, step_size + row_count + condition_count)
+    equations = np.zeros((conditions.stop, conditions.stop))
+    equations[steps, steps] = (
+        determined @ (curvature + curvature.T) @ determined.T / (2 * weight * weight)
+    )
+    equations[steps, residuals] = a.T
+    equations[steps, conditions] = c.T
+    equations[residuals, steps] = a
+    equations[conditions, steps] = c
+    equations[residuals, residuals] = -np.eye(row_count)
+    right_side = np.zeros(len(equations))
+    right_side[residuals] = -observation_residual / weight
+    right_side[conditions] = -residual[:condition_count]
+    if not (np.isfinite(equations).all() and np.isfinite(right_side).all()):
         raise np.linalg.LinAlgError("not finite")
-    solution = np.linalg.lstsq(equations, right, rcond=1e-15)[0]
-    # for every residual and every condition that says something, one curves downward
-    downward = np.linalg.eigvalsh(_balanced(equations)) < -_DOWNWARD
-    step: Floats = along.T @ solution[:free]
-    return step, bool(downward.sum() <= rows + size - null.shape[1])
+    solution = np.linalg.lstsq(equations, right_side, rcond=1e-15)[0]
+    negative = np.linalg.eigvalsh(_equilibrate(equations)) < -CURVATURE_TOL
+    step: Floats = determined.T @ solution[steps]
+    condition_rank = variable_count - null.shape[1]
+    return step, bool(negative.sum() <= row_count + condition_rank)
 
 
-def _start(system: System, rng: np.random.Generator, count: int) -> Floats:
-    """Scaled variables to begin with, ``count`` columns."""
-    x = rng.standard_normal((count, len(system.variables))).T
+def _lagrangian_hessian(system: System, x: Floats, multipliers: Floats) -> Floats:
+    """Return the sum of the residuals' second derivatives times ``multipliers``, by central
+    differences of the Jacobian."""
+    offsets = DIFFERENCE_STEP * np.eye(len(x))
+    jacobians = system.linearize(
+        np.concatenate([x + offsets, x - offsets], axis=1), system.residuals
+    )[1]
+    ahead, behind = np.split(np.einsum("r,rik->ik", multipliers, jacobians), 2, axis=1)
+    return np.asarray((ahead - behind) / (2 * DIFFERENCE_STEP))
+
+
+def _random_starts(system: System, rng: np.random.Generator, count: int) -> Floats:
+    """Return ``count`` random starts: scaled variables, a column each, known ones at their nominal
+    values."""
+    starts = rng.standard_normal((count, len(system.variables))).T
     for i, name in enumerate(system.variables):
         if name in system.nominal:
-            x[i] = system.nominal[name] / system.scales[i]
-    return x
+            starts[i] = system.nominal[name] / system.scales[i]
+    return starts
 
 
-def _face(system: System, starts: Floats) -> None:
-    """Turn the velocities of ``starts`` that run backwards along known courses around."""
+def _align_with_courses(system: System, starts: Floats) -> None:
+    """Turn the velocities in ``starts`` whose course is known to that course."""
     for name, speed in COURSES.items():
         rows = [system.variables.index(n) for n in SPEEDS[speed] if n in system.variables]
         if name in system.known and len(rows) == 2:
@@ -272,54 +333,61 @@ def _face(system: System, starts: Floats) -> None:
             starts[rows[0]], starts[rows[1]] = size * np.cos(angle), size * np.sin(angle)
 
 
-def _distinct(met: Floats, more: Floats) -> Floats:
-    """Return the columns of ``met`` and those of ``more`` that differ from all before."""
-    for column in more.T:
-        if not (np.abs(met - column[:, None]).max(axis=0, initial=0.0) < _SAME).any():
-            met = np.column_stack([met, column])
-    return met
+def _append_distinct(impacts: Floats, candidates: Floats) -> Floats:
+    """Return the columns of ``impacts`` and those of ``candidates`` that differ from all before."""
+    for column in candidates.T:
+        if not (np.abs(impacts - column[:, None]).max(axis=0, initial=0.0) < DISTINCT_TOL).any():
+            impacts = np.column_stack([impacts, column])
+    return impacts
 
 
-def _balanced(matrix: Floats) -> Floats:
-    """A symmetric matrix in other units, so that no row is much larger than others: as many of its
-    eigenvalues are negative."""
+def _equilibrate(matrix: Floats) -> Floats:
+    """Scale rows and columns of a symmetric matrix so that no row is much larger than others. The
+    numbers of positive and negative eigenvalues do not change (Sylvester's law of inertia)."""
     for _ in range(3):
         largest = np.sqrt(np.abs(matrix).max(axis=1, initial=0.0))
-        unit = np.where(largest > 0, largest, 1.0)
-        matrix = matrix / np.outer(unit, unit)
+        units = np.where(largest > 0, largest, 1.0)
+        matrix = matrix / np.outer(units, units)
     return matrix
 
 
-def _steps(residual: Floats, slopes: Floats, count: int) -> Floats:
-    """The Gauss-Newton steps, a column an impact, that meet the first ``count`` rows and bring the
-    others nearest; none (nan) where something is not finite."""
-    finite = np.isfinite(residual).all(axis=0) & np.isfinite(slopes).all(axis=(0, 1))
-    steps = np.full(slopes.shape[1:], np.nan)
-    matrices, over = slopes[:, :, finite].transpose(2, 0, 1), residual[:, finite].T[:, :, None]
-    inverse = np.linalg.pinv(matrices[:, :count], rcond=_RANK)
-    step = -inverse @ over[:, :count]
-    if len(residual) > count:
-        loose = matrices[:, count:]
-        free = np.eye(slopes.shape[1]) - inverse @ matrices[:, :count]
-        narrowed = np.linalg.pinv(loose @ free, rcond=_RANK)
-        step = step - free @ (narrowed @ (over[:, count:] + loose @ step))
+def _gauss_newton_steps(residual: Floats, jacobians: Floats, condition_count: int) -> Floats:
+    """Return the Gauss-Newton step of each impact (a column): it meets the first
+    ``condition_count`` rows, linearized, and minimizes the others in the null space of these. Steps
+    are nan where something is not finite."""
+    finite = np.isfinite(residual).all(axis=0) & np.isfinite(jacobians).all(axis=(0, 1))
+    steps = np.full(jacobians.shape[1:], np.nan)
+    matrices, residuals = (
+        jacobians[:, :, finite].transpose(2, 0, 1),
+        residual[:, finite].T[:, :, None],
+    )
+    inverse = np.linalg.pinv(matrices[:, :condition_count], rcond=RANK_TOL)
+    step = -inverse @ residuals[:, :condition_count]
+    if len(residual) > condition_count:
+        observation_rows = matrices[:, condition_count:]
+        projector = np.eye(jacobians.shape[1]) - inverse @ matrices[:, :condition_count]
+        projected_inverse = np.linalg.pinv(observation_rows @ projector, rcond=RANK_TOL)
+        step = step - projector @ (
+            projected_inverse @ (residuals[:, condition_count:] + observation_rows @ step)
+        )
     steps[:, finite] = step[:, :, 0].T
     return steps
 
 
 def pseudo_inverse(matrix: Floats) -> tuple[Floats, Floats]:
-    """The Moore-Penrose inverse, and a basis of the null space. Raises LinAlgError for a matrix
-    that is not finite, whose singular values LAPACK may seek without end."""
-    u, s, vt, null = _decomposed(matrix)
+    """Return the Moore-Penrose inverse and a basis of the null space.
+
+    Raise LinAlgError for a matrix that is not finite: LAPACK may not return from it."""
+    u, s, vt, null = _decompose(matrix)
     return (vt.T / s) @ u.T, null
 
 
-def _decomposed(matrix: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """U, the singular values above rounding, V^T, and a basis of the null space."""
+def _decompose(matrix: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return U, the singular values that count, V^T and a basis of the null space."""
     if not np.isfinite(matrix).all():
         raise np.linalg.LinAlgError("not finite")
     u, s, vt = np.linalg.svd(matrix)
-    rank = int((s > _RANK * s.max(initial=0.0)).sum())
+    rank = int((s > RANK_TOL * s.max(initial=0.0)).sum())
     return u[:, :rank], s[:rank], vt[:rank], vt[rank:].T
 
 
@@ -343,7 +411,7 @@ class Adjusted(NamedTuple):
     adjusted: float
 
     @property
-    def moved(self) -> float:
+    def normalized_residual(self) -> float:
         """Adjustment in tolerances."""
         return (self.adjusted - self.measured) / self.tolerance
 
@@ -491,27 +559,27 @@ class Reconstruction:
             if name in system.known
             and (COURSES.get(name) or "PN") in self.values
             and state.along_and_across(name)[0]
-            < -_HOLDS * system.scale("PN" if name in FORCES else "UX")
+            < -RESIDUAL_TOL * system.scale("PN" if name in FORCES else "UX")
         )
 
     @cached_property
     def folded(self) -> tuple[str, ...]:
         """Quantities without a first-order limit, where two branches of impacts nearly meet."""
-        rows = self.system.slopes(self.x)
+        rows = self.system.jacobian(self.x)
         sizes = np.abs(rows).max(axis=1, initial=0.0)
         rows = rows[sizes > 0] / sizes[sizes > 0, None]
         if self.undetermined or not (len(rows) and np.isfinite(rows).all()):
             return ()
         _, singular, vt = np.linalg.svd(rows)
-        weak = vt[(singular > _FOLDED * singular[0]).sum() :].T
+        weak = vt[(singular > FOLD_TOL * singular[0]).sum() :].T
         if not weak.shape[1]:
             return ()
-        # a speed at its least changes alike to both sides; what is merely uncertain does not
-        ahead, here, behind = (
-            self.system.left(self.system.state(self.x + side * weak))
-            for side in (_ASIDE, 0, -_ASIDE)
+        # at a fold residuals change alike to both sides; along a weak direction they do not
+        ahead, center, behind = (
+            self.system.residuals(self.system.state(self.x + side * weak))
+            for side in (FOLD_OFFSET, 0, -FOLD_OFFSET)
         )
-        even, odd = np.abs(ahead + behind - 2 * here), np.abs(ahead - behind)
+        even, odd = np.abs(ahead + behind - 2 * center), np.abs(ahead - behind)
         weak = weak[:, even.max(axis=0) > odd.max(axis=0)]
         gradients = self.system.gradients(self.x, QUANTITIES)
         largest = np.abs(gradients).max(axis=1, initial=0.0)
@@ -520,47 +588,48 @@ class Reconstruction:
             name
             for name, part, size in zip(QUANTITIES, along, largest, strict=True)
             if name in self.values and name not in self.system.known
-            if part > _FOLDED_PART * size
+            if part > FOLD_GRADIENT_TOL * size
         )
 
     @cached_property
     def helpful(self) -> tuple[str, ...]:
         """Further values that would determine everything undetermined, empty if none would."""
-        _, null = pseudo_inverse(self.system.slopes(self.x))
+        _, null = pseudo_inverse(self.system.jacobian(self.x))
         rows, names = np.zeros((0, null.shape[1])), []
-        wanted = [*dict.fromkeys((*_HELPFUL_FIRST, *self.undetermined))]
+        wanted = [*dict.fromkeys((*PREFERRED_MEASUREMENTS, *self.undetermined))]
         for name, gradient in zip(wanted, self.system.gradients(self.x, wanted), strict=True):
             if name in self.undetermined and np.isfinite(gradient).all():
                 row = gradient @ null / np.abs(gradient).max(initial=1e-300)
-                tried = np.vstack([rows, row])
-                if np.linalg.matrix_rank(tried, tol=_OPEN) > len(rows):
-                    rows = tried
+                candidate_rows = np.vstack([rows, row])
+                if np.linalg.matrix_rank(candidate_rows, tol=NULL_TOL) > len(rows):
+                    rows = candidate_rows
                     names.append(name)
         return tuple(names) if len(rows) == null.shape[1] else ()
 
     @cached_property
     def _unit_responses(self) -> tuple[Floats, Floats]:
-        """Return how scaled variables (rows) answer to an error of each observation by its
-        deviation, and which part of such an error each observation's own adjustment shows."""
-        jacobian = self.system.slopes(self.x)
+        """Response of the scaled variables (rows) to an error of one standard deviation in each
+        observation, and each observation's redundancy number: the part of such an error that its
+        own adjustment shows."""
+        jacobian = self.system.jacobian(self.x)
         count = len(self.system.conditions)
-        _, free = pseudo_inverse(jacobian[:count])
-        narrowed, _ = pseudo_inverse(jacobian[count:] @ free)
-        responses = np.asarray(free @ narrowed)
+        _, feasible = pseudo_inverse(jacobian[:count])
+        projected_inverse, _ = pseudo_inverse(jacobian[count:] @ feasible)
+        responses = np.asarray(feasible @ projected_inverse)
         return responses, 1 - np.einsum("ij,ji->i", jacobian[count:], responses)
 
     @property
     def _responses(self) -> Floats:
-        # of assumed tolerances nothing but the misfit is known
+        # assumed tolerances are scaled by the misfit
         return np.asarray(self._unit_responses[0] * (self.evidence.widening if self.assumed else 1))
 
     @cached_property
     def evidence(self) -> Evidence:
         """Verdict on the evidence: whether the measured values can all be true."""
-        return self.weighed()
+        return self.weigh_evidence()
 
     @within_doubles
-    def weighed(self, inside: bool | None = None) -> Evidence:
+    def weigh_evidence(self, inside: bool | None = None) -> Evidence:
         """Return the verdict on the evidence, in the light of a search for feasible impacts.
 
         Parameters
@@ -574,14 +643,18 @@ class Reconstruction:
         Evidence
             Whether the measured values can all be true, and those most at odds.
         """
-        shown = dict(zip(self.system.observations, self._unit_responses[1].tolist(), strict=True))
+        redundancy_numbers = dict(
+            zip(self.system.observations, self._unit_responses[1].tolist(), strict=True)
+        )
         known = self.system.known
         values = {
-            a.name: (
-                *(a.measured, a.adjusted),
-                *((a.adjusted - a.measured) / known[a.name].standard_deviation, shown[a.name]),
+            item.name: (
+                item.measured,
+                item.adjusted,
+                (item.adjusted - item.measured) / known[item.name].standard_deviation,
+                redundancy_numbers[item.name],
             )
-            for a in self.adjusted
+            for item in self.adjusted
         }
         laws = missed_laws(self.system.nominal) if self.assumed else ()
         return weigh(self.squares, self.redundancy, values, inside, self.assumed, laws)
@@ -661,29 +734,30 @@ class Reconstruction:
         missing = [n for n in (*names, "MUP") if n not in self.values]
         if missing:
             raise UnsolvableError(f"no scene: {' '.join(missing)} not determined")
-        kept = {n: self.values[n] for n in (*GEOMETRY, *names)}
-        kept |= {"MU": typed_friction(self.system.state(self.x), self.values["MUP"])}
-        return {"M": 4.0 if self.system.point else 6.0, "EM": 0.0, **kept}
+        values = {n: self.values[n] for n in (*GEOMETRY, *names)}
+        values |= {"MU": typed_friction(self.system.state(self.x), self.values["MUP"])}
+        return {"M": 4.0 if self.system.point else 6.0, "EM": 0.0, **values}
 
 
 def typed_friction(state: State, signed: float) -> float:
-    """The MU that line 400 turns into ``signed`` for this impact's sliding."""
+    """Return the MU that line 400 of the listing turns into ``signed`` for this impact's
+    sliding."""
     sliding = float(np.ravel(np.real(state.relative_before[1]))[0])
-    return float(np.ravel(typed(signed, sliding, map(np.real, state.before)))[0])
+    return float(np.ravel(mu_to_type(signed, sliding, map(np.real, state.before)))[0])
 
 
 def needs_adjustment(known: Mapping[str, Uncertain], wanted: Sequence[str] | None = None) -> bool:
-    """Whether `unknowns.solve_for` does not do: values with limits, quantities it does not know, or
-    exact values that leave over equations that do not hold."""
+    """Return True for a problem that `unknowns.solve_for` cannot solve: one with tolerances, with
+    quantities it does not take, or with exact values that contradict one another."""
     if any(item.varies or name in OTHERS for name, item in known.items()):
         return True
     try:
         solutions = solve_for({name: item.nominal for name, item in known.items()}, wanted)
     except UnsolvableError:
-        # what leaves something open may contradict itself all the same
+        # values that leave something undetermined may be contradictory, too
         return bool(missed_laws({name: item.nominal for name, item in known.items()}))
     except UserError:
-        return False  # told by the one who shows it
+        return False  # `solve_for` reports it when it is called
     return any(bool(solution.contradictory) for solution in solutions)
 
 
@@ -691,43 +765,44 @@ def needs_adjustment(known: Mapping[str, Uncertain], wanted: Sequence[str] | Non
 def reconstruct(
     known: Mapping[str, Uncertain | float | str], progress: Progress = lambda impacts: None
 ) -> list[Reconstruction]:
-    """Every impact found that agrees with what is ``known`` (`KNOWABLE` names; M 6 where left out).
+    """Return every impact found that agrees with what is ``known`` (`KNOWABLE` names; M is 6 by
+    default).
 
-    A number is exact, an `Uncertain` known within its tolerance. MU is known in size only: each
+    A number is exact, an `Uncertain` is known within its tolerance. MU is known in size only: each
     solution that agrees with the sign line 400 gives it is returned; MUP is signed. Where exact
     values contradict one another and none has a tolerance, all known velocities are given the same
-    one (spins divided by the radius of gyration). ``progress`` is called with the impacts looked
-    at.
+    one (spins divided by the radius of gyration). ``progress`` is called with the number of impacts
+    evaluated.
 
-    Raises UserError for names and numbers that cannot be used and for exact values that contradict
-    one another beside others with a tolerance, UnsolvableError where nothing unknown is determined.
-    """
-    given, _ = share_resolved(_checked(known))
-    mu = given.pop("MU", None)
-    readings = [given]
+    Raise UserError for names and numbers that cannot be used and for exact values that
+    contradict one another beside others with a tolerance, UnsolvableError where nothing unknown
+    is determined."""
+    values, _ = resolve_friction(_check_known(known))
+    mu = values.pop("MU", None)
+    readings = [values]
     if mu is not None:
-        readings = [{**given, "MUP": mu}]
+        readings = [{**values, "MUP": mu}]
         if mu.varies or mu.nominal not in (0, PIVOT):
-            turned = replace(mu, nominal=-mu.nominal, low=-mu.high, high=-mu.low)
-            readings.append({**given, "MUP": turned})
-    found: list[Reconstruction] = []
+            opposite = replace(mu, nominal=-mu.nominal, low=-mu.high, high=-mu.low)
+            readings.append({**values, "MUP": opposite})
+    solutions: list[Reconstruction] = []
     failure: UserError | None = None
     searches: list[_Search] = []
-    # what contradicts itself in one reading of MU's sign may agree in the other
-    for fits in (False, True):
+    # values that are contradictory for one sign of MU may agree for the other
+    for is_fit in (False, True):
         for reading in readings:
             try:
                 search = _Search(reading, progress)
-                found += search.found() if search.assumed == fits else []
+                solutions += search.run() if search.assumed == is_fit else []
                 searches.append(search)
             except UserError as error:
                 failure = error
-        agreeing = [s for s in found if mu is None or _agrees(s, mu.nominal)]
+        agreeing = [s for s in solutions if mu is None or _agrees(s, mu.nominal)]
         if agreeing:
-            return _ordered(agreeing, searches, mu)
-    fitted = [replace(s, against_sign=True) for s in found if s.redundancy]
-    if fitted:
-        return _ordered(fitted, searches, None)
+            return _sort_solutions(agreeing, searches, mu)
+    fits = [replace(s, against_sign=True) for s in solutions if s.redundancy]
+    if fits:
+        return _sort_solutions(fits, searches, None)
     raise failure or UnsolvableError(
         "neither sign of MU agrees with the sliding it leads to (line 400): no friction that "
         "opposes the sliding joins what is known"
@@ -735,11 +810,11 @@ def reconstruct(
 
 
 def _invariants(values: Mapping[str, float]) -> list[float]:
-    """Return what axes, names and units do not change, as far as it is known, in six digits: the
-    fraction of the kinetic energy before that is in spins, e, that energy; then what else impacts
-    differ in."""
+    """Return what does not depend on axes, names of vehicles or units, to six digits: the
+    fraction of the initial kinetic energy that is in spins, e and that energy first, then
+    everything else in which impacts differ."""
     pairs = [("A", "B"), ("AF", "BF")]
-    rotation = [
+    spin_energies = [
         sum(
             # a product of huge spins is infinite, a power of them an error
             values.get(spin, 0.0) * values.get(spin, 0.0) * values[inertia] / 2
@@ -749,31 +824,31 @@ def _invariants(values: Mapping[str, float]) -> list[float]:
         for after in ("", "F")
     ]
     energy = values.get("KI", 0.0)
-    shares = [x / energy if energy else 0.0 for x in rotation]
+    fractions = [x / energy if energy else 0.0 for x in spin_energies]
     speeds = [sum(values.get("S" + x, 0.0) for x in pair) for pair in pairs]
     sizes = [abs(values.get(name, 0.0)) for name in ("E", "VC", "PN", "PT", "PM", "MUP", "EM")]
     sums = [values.get("DVA", 0.0) + values.get("DVB", 0.0), values.get("EL", 0.0)]
-    ranks = [shares[0], sizes[0], energy, shares[1], *speeds, *sums, *sizes[1:]]
+    ranks = [fractions[0], sizes[0], energy, fractions[1], *speeds, *sums, *sizes[1:]]
     return [float(f"{x:.5e}") if abs(x) > 1e-9 else 0.0 for x in ranks]
 
 
-def _ordered(
-    found: list[Reconstruction], searches: "Sequence[_Search]", mu: Uncertain | None
+def _sort_solutions(
+    solutions: list[Reconstruction], searches: "Sequence[_Search]", mu: Uncertain | None
 ) -> list[Reconstruction]:
-    """Return the likely solutions, those that contradict the measurements only where all do, in
-    the order of physics: possible impacts before those that break it or drive backwards along a
-    known course, those that separate or pull, which are none, last; then by the sum of squared
-    adjustments. Ties by what
-    no axes, names or units change, the smaller first (`_invariants`). A course is a direction: what
-    drives backwards along one is kept only where nothing else is."""
-    ahead = [s for s in found if not s.backwards] or found
-    # what contradicts the measurements, as standstill does, is no answer beside what agrees
-    agreeing = [s for s in ahead if not s.evidence.contradictory] or ahead
+    """Return the likely solutions, sorted by physics.
+
+    First possible impacts, then those that break physics or drive backwards along a known course,
+    then those that separate or pull; among these by the sum of squared adjustments, ties by
+    `_invariants`, the smaller first. Solutions that contradict the measurements are kept only where
+    all do, those that drive backwards only where no others exist."""
+    forward_solutions = [s for s in solutions if not s.backwards] or solutions
+    # a solution that contradicts the measurements, such as standstill, is dropped if others agree
+    agreeing = [s for s in forward_solutions if not s.evidence.contradictory] or forward_solutions
     possible = [s for s in agreeing if not s.impossible]
-    kept = []
+    likely = []
     for group in (possible, [s for s in agreeing if s.impossible]):
         least = min((s.squares for s in (group if group is possible else agreeing)), default=0.0)
-        kept += [s for s in group if s.squares <= max(_LIKELY * least, 1e-9)]
+        likely += [s for s in group if s.squares <= max(MAX_SQUARES_RATIO * least, 1e-9)]
 
     def order(solution: Reconstruction) -> tuple[float, ...]:
         squares = float(f"{max(solution.squares, 1e-9):.6e}")
@@ -783,310 +858,361 @@ def _ordered(
         return bool(broken), no_impact, squares, broken.bit_count(), *ranks
 
     search = Searched(
-        sum(each.batches for each in searches),
-        sum(each.starts for each in searches),
-        min((each.idle for each in searches), default=0),
-        all(each.single for each in searches),
-        len(kept),
-        sum(not solution.impossible for solution in kept),
+        sum(item.batches for item in searches),
+        sum(item.starts for item in searches),
+        min((item.idle for item in searches), default=0),
+        all(item.single for item in searches),
+        len(likely),
+        sum(not solution.impossible for solution in likely),
     )
-    paths = [each.paths for each in searches if each.paths]
+    paths = [item.paths for item in searches if item.paths]
     if len(paths) == len(searches):
-        solutions = sum(each.total for each in paths)
-        nonreal = sum(each.complex_ends + each.infinite_ends for each in paths)
-        search = search._replace(solutions=solutions, nonreal=nonreal)
-    beside = tuple((s.system, s.x) for s in ahead)
-    shared: dict[str, Any] = {"search": search, "beside": beside}
+        path_count = sum(item.total for item in paths)
+        nonreal = sum(item.complex_ends + item.infinite_ends for item in paths)
+        search = search._replace(solutions=path_count, nonreal=nonreal)
+    alternatives = tuple((s.system, s.x) for s in forward_solutions)
+    common: dict[str, Any] = {"search": search, "beside": alternatives}
     if mu is not None and (mu.varies or mu.nominal not in (0, PIVOT)):
-        shared["typed_mu"] = mu.nominal
-    return [replace(s, **shared) for s in sorted(kept, key=order)]
+        common["typed_mu"] = mu.nominal
+    return [replace(s, **common) for s in sorted(likely, key=order)]
 
 
-def _checked(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertain]:
-    given = within_limits(known)
-    check_names(given, KNOWABLE, "value of an impact")
-    if given.setdefault("M", fixed_value(6.0)).nominal == 4:
-        ignored = (*SPINS, "EM", "DA", "DB", "PA", "PB", "IA", "IB")
-        given = {name: item for name, item in given.items() if name not in ignored}
-        given = {n: fixed_value(v) for n, v in with_point_masses({"M": 4.0}).items()} | given
+def _check_known(known: Mapping[str, Uncertain | float | str]) -> dict[str, Uncertain]:
+    """Return what is ``known`` as uncertain values, those of point masses filled in. Raise
+    UserError for values that cannot be used."""
+    values = within_limits(known)
+    check_names(values, KNOWABLE, "value of an impact")
+    if values.setdefault("M", fixed_value(6.0)).nominal == 4:
+        without_effect = (*SPINS, "EM", "DA", "DB", "PA", "PB", "IA", "IB")
+        values = {name: item for name, item in values.items() if name not in without_effect}
+        values = {n: fixed_value(v) for n, v in with_point_masses({"M": 4.0}).items()} | values
     check_physical(
-        {n: np.array([x.nominal if x.kind == "normal" else x.low]) for n, x in given.items()}
+        {n: np.array([x.nominal if x.kind == "normal" else x.low]) for n, x in values.items()}
     )
-    if given["M"].varies:
+    if values["M"].varies:
         raise UserError("M must be 6, or 4 for point masses")
-    _check_crush(given)
-    for name, item in given.items():
+    _check_crush(values)
+    for name, item in values.items():
         if name in SPEEDS and item.nominal < 0:
             raise UserError(f"{name} is negative; expected a speed, its course beside it")
-    return given
+    return values
 
 
-def _check_crush(given: dict[str, Uncertain]) -> None:
-    """Raise UserError unless the crush of both vehicles is known, or of none; a rigid barrier's is
-    filled in: it loses no energy."""
+def _check_crush(values: dict[str, Uncertain]) -> None:
+    """Raise UserError unless the crush of both vehicles is known, or of none. Fill in a rigid
+    barrier's: it absorbs no energy."""
     for vehicle in "AB":
-        names = [n for n in CRUSH if n in given and n.endswith(vehicle)]
+        names = [n for n in CRUSH if n in values and n.endswith(vehicle)]
         if len(names) == 2:
             raise UserError(f"{' and '.join(names)} are both given; expected one of them")
-        own = "AB".replace(vehicle, "")
-        if any(n in given for n in CRUSH if n.endswith(own)) and not names:
-            if not math.isinf(given["M" + vehicle].nominal):
+        other_vehicle = "AB".replace(vehicle, "")
+        if any(n in values for n in CRUSH if n.endswith(other_vehicle)) and not names:
+            if not math.isinf(values["M" + vehicle].nominal):
                 raise UserError("ELA and ELB (or EBSA and EBSB) sum to EL; expected both, or EL")
-            given["EL" + vehicle] = fixed_value(0.0)
+            values["EL" + vehicle] = fixed_value(0.0)
         for name in names:
-            if given[name].nominal < 0:
+            if values[name].nominal < 0:
                 raise UserError(f"{name} is negative; expected what was lost in {vehicle}")
 
 
 def _agrees(solution: Reconstruction, mu: float) -> bool:
+    """Return True if line 400 gives ``mu`` the sign this solution has, as far as velocities are
+    determined."""
     signed = solution.system.nominal["MUP"]
-    known = not set(VELOCITIES) & set(solution.undetermined)
-    return not known or typed_friction(solution.system.state(solution.x), signed) == mu
+    is_determined = not set(VELOCITIES) & set(solution.undetermined)
+    return not is_determined or typed_friction(solution.system.state(solution.x), signed) == mu
 
 
 class _Search:
-    """The impacts nearest to what is known, friction signed, each once.
+    """Search for the impacts nearest to what is known, friction signed, each once.
 
-    ``begin``: where to begin, a column each; ``at_hand``: whether measured values agree with one
-    another there; ``assumed``: exact values contradict one another, and the known velocities were
-    given tolerances."""
+    ``initial``: the starts of the fit, a column each; ``is_consistent``: impacts agree exactly with
+    all nominal values, and the starts are these; ``assumed``: exact values contradict one another,
+    and the known velocities were given tolerances; ``open_solutions``: the best solution that
+    leaves something undetermined."""
 
     def __init__(self, known: Mapping[str, Uncertain], progress: Progress) -> None:
         self.solutions: list[Reconstruction] = []
-        self.open: list[Reconstruction] = []
-        self.followed: list[Floats] = []
+        self.open_solutions: list[Reconstruction] = []
+        self.end_points: list[Floats] = []
         self.rng = np.random.default_rng(1988)
-        self.batches = self.starts = self.idle = self.times_open = 0
+        self.batches = self.starts = self.idle = self.open_count = 0
         self.paths: Paths | None = None
-        plain = System(known, adjusted=False, progress=progress)
-        loose = any(known[name].varies for name in PARAMETERS if name in known)
-        self.linear = plain.linear and not loose  # one valley, without bends
-        x = self.exact_impacts(plain, 1 if plain.linear and not loose else _STARTS)
-        self.at_hand = bool(x.shape[1])
-        self.assumed = not self.at_hand and not any(item.varies for item in known.values())
+        exact_system = System(known, adjusted=False, progress=progress)
+        inputs_vary = any(known[name].varies for name in PARAMETERS if name in known)
+        self.linear = exact_system.linear and not inputs_vary  # one valley, without bends
+        x = self.exact_impacts(
+            exact_system, 1 if exact_system.linear and not inputs_vary else BATCH_SIZE
+        )
+        self.is_consistent = bool(x.shape[1])
+        self.assumed = not self.is_consistent and not any(item.varies for item in known.values())
         if self.assumed:
             for name in (n for n in (*VELOCITIES, *FINAL_STATE) if n in known):
-                deviation = 1 / plain.gyration if name in SPINS else 1.0
-                loose_one = Uncertain("normal", known[name].nominal, -np.inf, np.inf, deviation)
-                known = {**known, name: loose_one}
+                deviation = 1 / exact_system.gyration if name in SPINS else 1.0
+                measurement = Uncertain("normal", known[name].nominal, -np.inf, np.inf, deviation)
+                known = {**known, name: measurement}
         self.system = System(known, adjusted=True, progress=progress)
-        count = x.shape[1] or (1 if self.linear else _FITTED_STARTS)
-        self.begin = _start(self.system, self.rng, count)
-        if self.at_hand:
-            self.begin = self.beginnings(plain, x)
+        count = x.shape[1] or (1 if self.linear else FIT_BATCH_SIZE)
+        self.initial = _random_starts(self.system, self.rng, count)
+        if self.is_consistent:
+            self.initial = self.starts_at(exact_system, x)
         elif not (self.linear or self.assumed):
-            self.begin = np.concatenate([self.exact_without(known), self.begin], axis=1)
+            self.initial = np.concatenate(
+                [self.starts_without_redundancy(known), self.initial], axis=1
+            )
 
-    def beginnings(self, plain: System, x: Floats) -> Floats:
-        """Return the starts that have the velocities and impulses of exact impacts ``x``."""
-        begin, state = _start(self.system, self.rng, x.shape[1]), plain.state(x)
+    def starts_at(self, exact_system: System, x: Floats) -> Floats:
+        """Return starts with the velocities and impulses of exact impacts ``x``."""
+        starts, state = _random_starts(self.system, self.rng, x.shape[1]), exact_system.state(x)
         for row, name in enumerate(self.system.variables):
             if name in VELOCITIES or name in IMPULSES:
-                begin[row] = state[name] / self.system.scales[row]
-        return begin
+                starts[row] = state[name] / self.system.scales[row]
+        return starts
 
-    def exact_without(self, known: Mapping[str, Uncertain]) -> Floats:
-        """Return starts at the impacts that agree exactly with all but the measured values more
-        than needed, whichever these are."""
-        loose = [n for n, item in known.items() if item.varies and n not in GEOMETRY]
-        plain = System(known, adjusted=False)
-        more = len(plain.conditions) - len(plain.variables)
-        begin = self.begin[:, :0]
-        if not 0 <= more <= len(loose):
-            return begin
-        left_out = [*combinations(loose, more)]
-        for names in left_out[:: -(-len(left_out) // _LEFT_OUT)]:
-            some = {name: item for name, item in known.items() if name not in names}
-            reading = System(some, adjusted=False)
-            equations = quadratic_equations(reading)
+    def starts_without_redundancy(self, known: Mapping[str, Uncertain]) -> Floats:
+        """Return starts at the impacts that agree exactly with as many measured values as determine
+        an impact, for several choices of the redundant ones."""
+        measured = [n for n, item in known.items() if item.varies and n not in GEOMETRY]
+        exact_system = System(known, adjusted=False)
+        surplus = len(exact_system.conditions) - len(exact_system.variables)
+        starts = self.initial[:, :0]
+        if not 0 <= surplus <= len(measured):
+            return starts
+        omissions = [*combinations(measured, surplus)]
+        for omitted in omissions[:: -(-len(omissions) // MAX_OMITTED_SETS)]:
+            sufficient = {name: item for name, item in known.items() if name not in omitted}
+            sufficient_system = System(sufficient, adjusted=False)
+            equations = quadratic_equations(sufficient_system)
             if equations is not None and equations.size <= MAX_EQUATIONS:
                 paths = follow_paths(equations, self.rng)
-                several = np.concatenate([paths.real, paths.near], axis=1)
-                begin = np.concatenate([begin, self.beginnings(reading, several)], axis=1)
-        return begin
+                roots = np.concatenate([paths.real, paths.near], axis=1)
+                starts = np.concatenate([starts, self.starts_at(sufficient_system, roots)], axis=1)
+        return starts
 
     @property
     def single(self) -> bool:
-        """Whether there is one impact, or nothing that tells impacts apart."""
+        """True where there is one impact, or a continuum of them: no search is needed or
+        possible."""
         return self.linear or not (self.batches or self.paths)
 
-    def exact_impacts(self, plain: System, count: int) -> Floats:
-        """Return the impacts with every known value as it stands, a column each: the real solutions
-        of their quadratic equations, else sought in batches of ``count`` starts until several
-        batches find no further one."""
-        size = len(plain.variables)
-        met = np.empty((size, 0))
-        equations = None if self.linear else quadratic_equations(plain)
+    def exact_impacts(self, system: System, count: int) -> Floats:
+        """Return the impacts with every known value at its nominal value, a column each.
+
+        They are the real solutions of quadratic equations, found by homotopy continuation
+        (`quadrics`). Where the equations are not quadratic, batches of ``count`` random starts are
+        tried until `MAX_IDLE_BATCHES` in turn find no new impact."""
+        variable_count = len(system.variables)
+        impacts = np.empty((variable_count, 0))
+        equations = None if self.linear else quadratic_equations(system)
         if equations is not None and equations.size <= MAX_EQUATIONS:
             paths = follow_paths(equations, self.rng)
             if paths.real.shape[1]:
-                x, left_over = straight(plain, paths.real)
-                met = _distinct(met, x[:, left_over <= _HOLDS])
+                x, largest_residual = solve_gauss_newton(system, paths.real)
+                impacts = _append_distinct(impacts, x[:, largest_residual <= RESIDUAL_TOL])
             if not paths.lost:
                 self.paths = paths
-                return met
-        # more conditions than variables: no start meets them, unless all do
-        tried = 1 if len(plain.conditions) > size else count
-        for _ in range(_MAX_BATCHES):
-            starts = _start(plain, self.rng, tried)
-            if met.shape[1] and tried > 1:
+                return impacts
+        # more conditions than variables: either every start meets them or none does
+        start_count = 1 if len(system.conditions) > variable_count else count
+        for _ in range(MAX_BATCHES):
+            starts = _random_starts(system, self.rng, start_count)
+            if impacts.shape[1] and start_count > 1:
                 # impacts are often found in pairs, as the roots of a quadratic equation
-                near, of = tried // 4, self.rng.integers(met.shape[1], size=tried // 4)
-                starts[:, :near] = met[:, of] * (1 + _NEARBY * starts[:, :near])
-                _face(plain, starts[:, near : 2 * near])
-            x, left_over = straight(plain, starts)
-            before, met = met.shape[1], _distinct(met, x[:, left_over <= _HOLDS])
-            if tried < count and met.shape[1]:
-                tried = count  # more conditions than needed, and they agree: others may, too
+                nearby_count, origins = (
+                    start_count // 4,
+                    self.rng.integers(impacts.shape[1], size=start_count // 4),
+                )
+                starts[:, :nearby_count] = impacts[:, origins] * (
+                    1 + RESTART_SPREAD * starts[:, :nearby_count]
+                )
+                _align_with_courses(system, starts[:, nearby_count : 2 * nearby_count])
+            x, largest_residual = solve_gauss_newton(system, starts)
+            count_before, impacts = (
+                impacts.shape[1],
+                _append_distinct(impacts, x[:, largest_residual <= RESIDUAL_TOL]),
+            )
+            if start_count < count and impacts.shape[1]:
+                start_count = count  # redundant conditions that agree: search for further impacts
                 continue
-            if tried == 1 or (not met.shape[1] and len(plain.conditions) > size):
-                return met
-            self.batches, self.starts = self.batches + 1, self.starts + tried
-            self.idle = 0 if met.shape[1] > before else self.idle + 1
-            if met.shape[1] and not self.closed(plain, met[:, :1]):
-                return met  # a continuum of impacts
-            if self.idle == _IDLE_BATCHES:
+            if start_count == 1 or (
+                not impacts.shape[1] and len(system.conditions) > variable_count
+            ):
+                return impacts
+            self.batches, self.starts = self.batches + 1, self.starts + start_count
+            self.idle = 0 if impacts.shape[1] > count_before else self.idle + 1
+            if impacts.shape[1] and not self.is_isolated(system, impacts[:, :1]):
+                return impacts  # a continuum of impacts
+            if self.idle == MAX_IDLE_BATCHES:
                 break
-        return met
+        return impacts
 
-    def closed(self, plain: System, x: Floats) -> bool:
-        """Return whether impacts stand apart from one another, as at ``x``."""
-        return not pseudo_inverse(plain.slopes(x))[1].shape[1]
+    def is_isolated(self, system: System, x: Floats) -> bool:
+        """Return True if the impact ``x`` is isolated from others: its Jacobian has full column
+        rank."""
+        return not pseudo_inverse(system.jacobian(x))[1].shape[1]
 
-    def found(self) -> list[Reconstruction]:
-        """The solutions. Raises UnsolvableError where there are none."""
-        met = finite = False
-        if not self.at_hand:
+    def run(self) -> list[Reconstruction]:
+        """Return the solutions. Raise UnsolvableError where there are none."""
+        has_candidates = is_finite = False
+        if not self.is_consistent:
             self.paths = None  # a fit is no solution of the equations
-        for batch in range(_MAX_BATCHES):
-            before = len(self.solutions)
-            closely, sound = self.fit(self.begin, thorough=not batch)
-            met, finite = met or closely, finite or sound
-            if self.at_hand or self.begin.shape[1] == 1 or not met or self.is_open:
+        for batch in range(MAX_BATCHES):
+            count_before = len(self.solutions)
+            batch_has_candidates, batch_is_finite = self.fit(self.initial, thorough=not batch)
+            has_candidates, is_finite = (
+                has_candidates or batch_has_candidates,
+                is_finite or batch_is_finite,
+            )
+            if (
+                self.is_consistent
+                or self.initial.shape[1] == 1
+                or not has_candidates
+                or self.is_open
+            ):
                 break
-            self.batches, self.starts = self.batches + 1, self.starts + self.begin.shape[1]
-            self.idle = 0 if len(self.solutions) > before else self.idle + 1
-            if self.idle == _IDLE_BATCHES:
+            self.batches, self.starts = self.batches + 1, self.starts + self.initial.shape[1]
+            self.idle = 0 if len(self.solutions) > count_before else self.idle + 1
+            if self.idle == MAX_IDLE_BATCHES:
                 break
-            self.begin = _start(self.system, self.rng, _FITTED_STARTS)
-        if not (met or finite):
+            self.initial = _random_starts(self.system, self.rng, FIT_BATCH_SIZE)
+        if not (has_candidates or is_finite):
             raise np.linalg.LinAlgError("not finite")
-        if met and not (self.solutions or self.open):
+        if has_candidates and not (self.solutions or self.open_solutions):
             raise UnsolvableError(
                 "the search for the impact nearest to what is known came to no end; expected wider "
                 "tolerances, or fewer values"
             )
-        if not (self.solutions or self.open):
+        if not (self.solutions or self.open_solutions):
             known = self.system.known
             exact = {name: item.nominal for name, item in known.items() if not item.varies}
-            laws = told(missed_laws(exact))
+            laws = describe_laws(missed_laws(exact))
             raise UnsolvableError(
                 f"no impact agrees with all that is known exactly{': ' * bool(laws)}{laws}; "
                 "expected tolerances ('+- D') for what is measured"
             )
-        # what leaves something open counts where all else contradicts the measurements
-        least = min((each.squares for each in self.solutions), default=math.inf)
-        return [s for s in self.open if _LIKELY * s.squares + 1e-9 < least] + self.solutions
+        # an undetermined solution counts where all others contradict the measurements
+        least_squares = min((solution.squares for solution in self.solutions), default=math.inf)
+        return [
+            solution
+            for solution in self.open_solutions
+            if MAX_SQUARES_RATIO * solution.squares + 1e-9 < least_squares
+        ] + self.solutions
 
-    def fit(self, begin: Floats, thorough: bool) -> tuple[bool, bool]:
-        """Keep the solutions that the starts ``begin`` lead to: whether conditions were nearly met
-        anywhere, and whether numbers stayed finite. ``thorough``: with tolerances tightened little
-        by little, too."""
+    def fit(self, starts: Floats, thorough: bool) -> tuple[bool, bool]:
+        """Add the solutions that iterations from ``starts`` lead to.
+
+        ``thorough``: also tighten tolerances step by step from the first starts. Return True if
+        conditions were nearly met anywhere, and True if any iteration stayed finite."""
         system = self.system
-        ends, over, settled_ends = _stepped(system, begin)
-        squares = np.square(system.left(system.state(ends))[len(system.conditions) :]).sum(axis=0)
-        wandering = 0
-        for i in np.argsort(np.broadcast_to(squares, over.shape), kind="stable").tolist():
-            if self.is_open and len(self.followed) >= _FEW:
+        ends, largest_residuals, converged = _iterate_gauss_newton(system, starts)
+        squares = np.square(system.residuals(system.state(ends))[len(system.conditions) :]).sum(
+            axis=0
+        )
+        unconverged_count = 0
+        for i in np.argsort(
+            np.broadcast_to(squares, largest_residuals.shape), kind="stable"
+        ).tolist():
+            if self.is_open and len(self.end_points) >= MAX_OPEN_ENDS:
                 break
-            if over[i] <= _NEARLY and (settled_ends[i] or wandering < _FEW):
-                wandering += not settled_ends[i]
-                self.follow(ends[:, i : i + 1])
-        met = bool((over <= _NEARLY).any())
-        few, more = begin[:, :_TIGHTENED_FIRST], begin[:, _TIGHTENED_FIRST:_TIGHTENED]
-        for some in () if self.at_hand or not thorough else (few, more):
-            settled = begin.shape[1] == 1 or (some is more and not self.is_open)
-            if (self.solutions or self.open) and settled:
+            if largest_residuals[i] <= CANDIDATE_TOL and (
+                converged[i] or unconverged_count < MAX_OPEN_ENDS
+            ):
+                unconverged_count += not converged[i]
+                self.add_solution_near(ends[:, i : i + 1])
+        has_candidates = bool((largest_residuals <= CANDIDATE_TOL).any())
+        first_starts, more_starts = (
+            starts[:, :CONTINUATION_STARTS],
+            starts[:, CONTINUATION_STARTS:MORE_CONTINUATION_STARTS],
+        )
+        for group in () if self.is_consistent or not thorough else (first_starts, more_starts):
+            is_settled = starts.shape[1] == 1 or (group is more_starts and not self.is_open)
+            if (self.solutions or self.open_solutions) and is_settled:
                 break
-            for start in some.T:
-                nearby, left_over = tightened(system, start[:, None])
-                if left_over <= _NEARLY:
-                    met = True
-                    self.follow(nearby)
-        return met, bool(np.isfinite(over).any())
+            for start in group.T:
+                end, largest_residual = fit_with_continuation(system, start[:, None])
+                if largest_residual <= CANDIDATE_TOL:
+                    has_candidates = True
+                    self.add_solution_near(end)
+        return has_candidates, bool(np.isfinite(largest_residuals).any())
 
     @property
     def is_open(self) -> bool:
-        """Whether the solution leaves something undetermined: there may be many as good."""
-        return bool(self.open) and not self.solutions
+        """True where the solution leaves something undetermined: there may be many equally good
+        ones."""
+        return bool(self.open_solutions) and not self.solutions
 
-    def follow(self, nearby: Floats) -> None:
-        """Keep the solution beside ``nearby``, if there is one."""
-        if any(np.abs(nearby - other).max(initial=0.0) < _BESIDE for other in self.followed):
+    def add_solution_near(self, end: Floats) -> None:
+        """Refine ``end`` to a solution and keep it, if it is new and likely."""
+        if any(np.abs(end - item).max(initial=0.0) < DUPLICATE_TOL for item in self.end_points):
             return
-        self.followed.append(nearby)
+        self.end_points.append(end)
         try:
-            x, left_over = polished(self.system, nearby)
+            x, largest_residual = refine(self.system, end)
         except np.linalg.LinAlgError:
             return  # something is not finite there
-        if not left_over <= _HOLDS or any(
-            np.abs(x - other.x).max(initial=0.0) < _SAME for other in self.solutions
+        if not largest_residual <= RESIDUAL_TOL or any(
+            np.abs(x - item.x).max(initial=0.0) < DISTINCT_TOL for item in self.solutions
         ):
             return
-        if pseudo_inverse(self.system.slopes(x))[1].shape[1]:
-            rest = self.system.left(self.system.state(x))[len(self.system.conditions) :]
-            squares = float(np.square(rest).sum())
-            least = min((other.squares for other in self.solutions), default=math.inf)
-            # a fold that is not likely, or the continuum that was met before
-            if squares > _LIKELY * least + 1e-9:
+        if pseudo_inverse(self.system.jacobian(x))[1].shape[1]:
+            adjustments = self.system.residuals(self.system.state(x))[len(self.system.conditions) :]
+            squares = float(np.square(adjustments).sum())
+            least_squares = min((item.squares for item in self.solutions), default=math.inf)
+            # skip an unlikely fold, and the continuum that was found before
+            if squares > MAX_SQUARES_RATIO * least_squares + 1e-9:
                 return
-            if self.times_open >= _FEW and squares > self.open[0].squares - 1e-9:
+            if self.open_count >= MAX_OPEN_ENDS and squares > self.open_solutions[0].squares - 1e-9:
                 return
-        solution = _described(self.system, x, self.assumed)
-        if solution.undetermined:  # from elsewhere it would only come out otherwise
-            self.times_open += 1
-            both = (*self.open, solution)
-            self.open = [min(both, key=lambda impact: round(impact.squares, 9))]
+        solution = _describe(self.system, x, self.assumed)
+        if solution.undetermined:  # keep one: any other point of the continuum is as good
+            self.open_count += 1
+            candidates = (*self.open_solutions, solution)
+            self.open_solutions = [min(candidates, key=lambda impact: round(impact.squares, 9))]
         else:
             self.solutions.append(solution)
 
 
 def _is_fold(system: System, x: Floats, null: Floats) -> bool:
-    """Return whether the impact stands alone though to first order something is open: where two
-    branches meet. From aside the steps come back to it; along a continuum they stay aside."""
-    aside = np.concatenate([x + _ASIDE * null, x - _ASIDE * null], axis=1)
-    ends, over = straight(system, aside)
-    met = over <= _HOLDS
-    return bool((np.abs(ends - x).max(axis=0)[met] < 0.1 * _ASIDE).all())
+    """Return True if the impact is isolated although first order leaves something undetermined: two
+    branches meet there. Iterations from points beside a fold return to it; beside a point of a
+    continuum they do not."""
+    offset_points = np.concatenate([x + FOLD_OFFSET * null, x - FOLD_OFFSET * null], axis=1)
+    ends, largest_residuals = solve_gauss_newton(system, offset_points)
+    returned = largest_residuals <= RESIDUAL_TOL
+    return bool((np.abs(ends - x).max(axis=0)[returned] < 0.1 * FOLD_OFFSET).all())
 
 
-def _described(system: System, x: Floats, assumed: bool) -> Reconstruction:
-    state, rows = system.state(x), system.slopes(x)
-    rest = system.left(state)[len(system.conditions) :, 0]
+def _describe(system: System, x: Floats, assumed: bool) -> Reconstruction:
+    """Return the solution at ``x``: every quantity that is determined there, and the adjustments.
+
+    A quantity is undetermined where its gradient has a component in the null space of the
+    Jacobian."""
+    state, rows = system.state(x), system.jacobian(x)
+    adjustments = system.residuals(state)[len(system.conditions) :, 0]
     _, null = pseudo_inverse(rows)
 
-    def value(of: Any) -> float:
-        return float(np.ravel(of)[0])
+    def to_float(array: Any) -> float:
+        return float(np.ravel(array)[0])
 
-    values = {n: value(state.values[n]) for n in ("M", *GEOMETRY)}
+    values = {n: to_float(state.values[n]) for n in ("M", *GEOMETRY)}
     undetermined: list[str] = []
-    fold = bool(null.shape[1]) and _is_fold(system, x, null)
+    is_fold = bool(null.shape[1]) and _is_fold(system, x, null)
     for name, gradient in zip(QUANTITIES, system.gradients(x, QUANTITIES), strict=True):
         if system.point and name in (*SPINS, "PM", "EM"):
             continue
-        known = name in COEFFICIENTS and name in system.known
+        is_known = name in COEFFICIENTS and name in system.known
         if name == "MUP" and "MUC" in system.constants:
-            known = False  # a share of this impact's own critical friction
-        size = value(state.values[name] if known else state[name])
+            is_known = False  # a fraction of this impact's own critical friction
+        amount = to_float(state.values[name] if is_known else state[name])
         largest = np.abs(gradient).max(initial=0.0)
-        is_open = not fold and np.abs(gradient @ null).max(initial=0.0) > _OPEN * largest
+        is_open = not is_fold and np.abs(gradient @ null).max(initial=0.0) > NULL_TOL * largest
         if name in COURSES and name not in system.known:
             # along an axis a course does not change with the speed, until it turns round
             is_open |= bool({*undetermined} & {*SPEEDS[COURSES[name]]})
         if name in FORCES and name not in system.known:
             is_open |= "PN" not in values
-        if known or (np.isfinite(size) and np.isfinite(largest) and not is_open):
-            values[name] = size
+        if is_known or (np.isfinite(amount) and np.isfinite(largest) and not is_open):
+            values[name] = amount
         elif name in (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS):
             undetermined.append(name)
     unknown = [n for n in (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS) if n not in system.known]
@@ -1094,77 +1220,94 @@ def _described(system: System, x: Floats, assumed: bool) -> Reconstruction:
         raise UnsolvableError(
             f"nothing of {' '.join(unknown)} is determined by what is known; expected more of it"
         )
-    items = [(n, system.known[n], value(system.measured(state, n))) for n in system.observations]
-    adjusted = tuple(Adjusted(n, item.nominal, item.tolerance, now) for n, item, now in items)
+    items = [
+        (n, system.known[n], to_float(system.observed_value(state, n))) for n in system.observations
+    ]
+    adjusted = tuple(
+        Adjusted(n, item.nominal, item.tolerance, adjusted_value)
+        for n, item, adjusted_value in items
+    )
     redundancy = len(rows) - (rows.shape[1] - null.shape[1])
     return Reconstruction(
-        *(system, x, values, tuple(undetermined), adjusted, redundancy, float(rest @ rest)),
-        assumed,
+        system=system,
+        x=x,
+        values=values,
+        undetermined=tuple(undetermined),
+        adjusted=adjusted,
+        redundancy=redundancy,
+        squares=float(adjustments @ adjustments),
+        assumed=assumed,
     )
 
 
-# -- friction as a share of the critical one
+# -- friction given as a fraction of the critical one
 
 
-def share_resolved(known: Mapping[str, Uncertain]) -> tuple[dict[str, Uncertain], str | None]:
-    """``known`` with a number, or limits, for a MU that is a share, and how it was found; as it is
-    where MU is none. Raises UserError where no friction is found that is the share.
+def resolve_friction(known: Mapping[str, Uncertain]) -> tuple[dict[str, Uncertain], str | None]:
+    """Return ``known`` with MU, given as a fraction of the critical friction, replaced by a number
+    or limits, and a sentence that says so; ``known`` and None where MU is no fraction.
 
-    The critical friction follows from the whole scene. Where that is known, MU is; where some of it
-    is solved for, MUP = share · MUC is one more equation, met by trying friction until it holds."""
+    The critical friction MUC follows from the whole scene. Where that is known, so is MU; where
+    part of it is solved for, MUP = fraction · MUC is one more equation, solved by the secant
+    method. Raise UserError where no friction satisfies it."""
     item = known.get("MU")
     if item is None or not item.share:
         return dict(known), None
-    others = {name: value for name, value in known.items() if name != "MU"}
-    scene = {"M": 6.0} | {n: x.nominal for n, x in others.items() if n in SCENE}
+    other_values = {name: value for name, value in known.items() if name != "MU"}
+    scene = {"M": 6.0} | {n: x.nominal for n, x in other_values.items() if n in SCENE}
     if len(scene) == len(SCENE) - 1:
         name, value = "MU", float(share_typed(scene, item.nominal))
     else:
-        name, value = "MUP", _signed(others, item.nominal)
+        name, value = "MUP", _solve_friction(other_values, item.nominal)
     if value != value:
         raise UserError("no friction ends the sliding here; expected a number", "MU")
     text = f"MU is {100 * item.nominal:g} % of the critical friction: {name} = {value:.9g}"
-    varying = item.varies or any(x.varies for x in others.values())
-    if name == "MU" and varying:
+    varies = item.varies or any(x.varies for x in other_values.values())
+    if name == "MU" and varies:
         signed = item.nominal * float(solve({**scene, "MU": 0.0}, ("MUC",))["MUC"])
         name, value = "MUP", signed
     scale = value / item.nominal if item.nominal else 0.0
     low, high = sorted((item.low * scale, item.high * scale))
-    found = fixed_value(value)
+    friction = fixed_value(value)
     if item.varies:
         spread = abs(item.deviation * scale)
-        found = replace(item, nominal=value, low=low, high=high, deviation=spread, share=False)
-    if varying and scale:  # a condition of each impact: Equation 16 with its own critical friction
-        found = replace(found, critical=scale)
-    return {**others, name: found}, text
+        friction = replace(item, nominal=value, low=low, high=high, deviation=spread, share=False)
+    if varies and scale:  # a condition of each impact: Equation 16 with its own critical friction
+        friction = replace(friction, critical=scale)
+    return {**other_values, name: friction}, text
 
 
-def _signed(others: Mapping[str, Uncertain], share: float) -> float:
-    """The P_t/P_n that is a share of MUC in the impact that follows from it and the others."""
-    exact = not needs_adjustment(others, None)
-    numbers = {name: item.nominal for name, item in others.items()}
+def _solve_friction(other_values: Mapping[str, Uncertain], fraction: float) -> float:
+    """Return the P_t/P_n that is the given fraction of MUC in the impact that follows from it and
+    the other values, by the secant method."""
+    exact = not needs_adjustment(other_values, None)
+    numbers = {name: item.nominal for name, item in other_values.items()}
 
     def excess(mu: float) -> float:
         scene: dict[str, Any]
         if exact:
             scene = {**numbers, **solve_for({**numbers, "MUP": mu})[0].values}
         else:
-            scene = reconstruct({**others, "MUP": fixed_value(mu)})[0].scene()
+            scene = reconstruct({**other_values, "MUP": fixed_value(mu)})[0].scene()
         scene = {name: value for name, value in scene.items() if name in SCENE}
-        return mu - share * float(solve({**scene, "MU": 0.0}, ("MUC",))["MUC"])
+        return mu - fraction * float(solve({**scene, "MU": 0.0}, ("MUC",))["MUC"])
 
     failure = UserError("no friction is found that is this share of the critical friction", "MU")
     for start in (0.3, -0.3):
         try:
-            a, b = 0.0, start
-            at_a, at_b = excess(a), excess(b)
-            for _ in range(_FRICTIONS):
-                if abs(at_b) <= _SETTLED or at_a == at_b:
+            previous, current = 0.0, start
+            previous_excess, excess_now = excess(previous), excess(current)
+            for _ in range(MAX_SECANT_STEPS):
+                if abs(excess_now) <= FRICTION_TOL or previous_excess == excess_now:
                     break
-                a, at_a, b = b, at_b, b - at_b * (b - a) / (at_b - at_a)
-                at_b = excess(b)
-            if abs(at_b) <= 1e3 * _SETTLED:
-                return b
+                previous, previous_excess, current = (
+                    current,
+                    excess_now,
+                    current - excess_now * (current - previous) / (excess_now - previous_excess),
+                )
+                excess_now = excess(current)
+            if abs(excess_now) <= 1e3 * FRICTION_TOL:
+                return current
         except UserError as error:
             failure = error
     raise failure

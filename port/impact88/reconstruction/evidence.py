@@ -16,7 +16,7 @@ from typing import Any
 from ..collision.units import RULES, System
 from ..messages.plaintable import number
 from ..names import quantity
-from .laws import Missed, told
+from .laws import MissedLaw, describe_laws
 
 CONTRADICTION = 1e-3
 """Values whose sum of squares is reached with less probability contradict one another: one set of
@@ -76,7 +76,7 @@ class Evidence:
         True if some impact lies within all limits at once, None if that was not searched for.
     exact : bool
         True if the values are exact, and the standard deviations those of the misfit.
-    laws : tuple of Missed
+    laws : tuple of MissedLawLaw
         The laws that exact values do not satisfy.
     """
 
@@ -87,7 +87,7 @@ class Evidence:
     at_odds: Sequence[AtOdds]
     inside: bool | None = None
     exact: bool = False
-    laws: tuple[Missed, ...] = ()
+    laws: tuple[MissedLaw, ...] = ()
 
     @property
     def contradictory(self) -> bool:
@@ -123,7 +123,7 @@ class Evidence:
         if self.verdict == UNCHECKED:
             return "not checked: no more is known than needed, so no measurement tests another"
         if self.exact:
-            laws = f": {told(self.laws, units)}" if self.laws else ""
+            laws = f": {describe_laws(self.laws, units)}" if self.laws else ""
             return f"these exact values contradict one another{laws}; {self.named(units)}"
         sums = (
             f"sum of squared adjustments, in standard deviations, {self.sum_text} where about "
@@ -218,7 +218,7 @@ def weigh(
     values: Mapping[str, tuple[float, float, float, float]],
     inside: bool | None = None,
     exact: bool = False,
-    laws: tuple[Missed, ...] = (),
+    laws: tuple[MissedLaw, ...] = (),
 ) -> Evidence:
     """Return the verdict on adjusted values.
 

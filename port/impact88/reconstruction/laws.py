@@ -1,11 +1,10 @@
-"""Which law exact values break, and by how much.
+"""The laws that exact values violate, and by how much.
 
 With exact geometry and coefficients Equations 13 to 18 are linear in the twelve velocities:
 momentum along n and t, angular momentum about the contact point, restitution, friction and moment
-(point masses have neither spins nor moment). A law of which nothing is unknown is tested by itself,
-whatever else is not determined; so is a speed, a change of velocity or an energy whose velocities
-are all known; else the fewest laws that cannot hold together are told.
-"""
+(point masses have neither spins nor moment). A law without unknowns is tested by itself, whatever
+else is undetermined; so is a speed, a change of velocity or an energy whose velocities are all
+known. If these hold, the smallest set of laws that cannot hold together is reported."""
 
 import math
 from collections.abc import Mapping
@@ -24,8 +23,7 @@ from ..names import FINAL_STATE, PIVOT, VELOCITIES, quantity
 
 Floats = NDArray[np.float64]
 
-ROUNDING = 1e-9
-"""A law missed by no more, of the largest of its terms, holds."""
+ROUNDING = 1e-9  # a law missed by less, relative to its largest term, holds
 NAMES = {
     "n": "momentum along n",
     "t": "momentum along t",
@@ -34,20 +32,21 @@ NAMES = {
     "MUP": "friction",
     "EM": "the moment coefficient's law",
 }
-"""The laws, by what they are kept under."""
+# Known values that follow from velocities alone
 QUANTITIES = (*SPEEDS, *CHANGES, *CONTACT, *ENERGIES)
-"""Known values that velocities alone make."""
 _SPINS = ("WA", "WB", "WAF", "WBF")
+# For each law a quantity of the same unit
 _MEASURED_AS = {"n": "PN", "t": "PT", "angular": "PM", "E": "VC", "MUP": "PT", "EM": "WA"}
-"""For each law a quantity of its unit."""
 
 
 @dataclass(frozen=True)
-class Missed:
-    """One law that exact values miss: ``amount``, in the unit of the quantity ``like``;
-    ``fraction`` of the largest of its terms; ``given`` and ``present``: the coefficient as known
-    and as the velocities have it, nan where there is none; ``alone``: nothing in it is unknown,
-    else it is missed where the others told with it hold."""
+class MissedLaw:
+    """One law that exact values violate.
+
+    ``amount``: the residual, in the unit of the quantity ``like``; ``fraction``: the same over the
+    largest term. ``given`` and ``present``: the coefficient as known and as the velocities give it,
+    nan where there is none. ``alone``: True if the law has no unknowns; else it is violated where
+    the others reported with it hold."""
 
     law: str
     like: str
@@ -59,7 +58,7 @@ class Missed:
 
     @property
     def name(self) -> str:
-        """The law, or the quantity, in words."""
+        """Name of the law, or of the quantity."""
         if self.law in NAMES:
             return NAMES[self.law]
         return f"{self.law} ({quantity(self.law).meaning})"
@@ -79,106 +78,115 @@ class Missed:
             return text + ")"
         return f"{text} ({number(100 * self.fraction, 2)} % of its largest term)"
 
-    def share(self) -> str:
-        """Return the same without a unit."""
-        share = number(100 * self.fraction, 2)
-        return f"{self.name} is missed by {share} % of its largest term"
+    def relative_text(self) -> str:
+        """Return the law and by how much it is missed, in percent of its largest term."""
+        percent = number(100 * self.fraction, 2)
+        return f"{self.name} is missed by {percent} % of its largest term"
 
 
-def told(missed: tuple[Missed, ...], units: System | None = None) -> str:
-    """Return the laws missed in one phrase, "" for none; without ``units`` as percentages."""
-    texts = [law.share() if units is None else law.text(units) for law in missed]
+def describe_laws(missed: tuple[MissedLaw, ...], units: System | None = None) -> str:
+    """Return the violated laws as one phrase, "" for none; without ``units`` as percentages."""
+    texts = [law.relative_text() if units is None else law.text(units) for law in missed]
     if missed and not missed[0].alone:
         return " or ".join(texts) + ", where the others of these hold"
     return "; ".join(texts)
 
 
 @within_doubles
-def missed_laws(known: Mapping[str, float]) -> tuple[Missed, ...]:
-    """Return the laws that exact values miss, those of which nothing is unknown before all others;
-    none where no single law is to be named.
+def missed_laws(known: Mapping[str, float]) -> tuple[MissedLaw, ...]:
+    """Return the laws that exact values violate: those without unknowns if any, else the smallest
+    set that cannot hold together; empty where no law can be named.
 
-    ``known``: vehicles, geometry and exact values, friction as MUP.
-    """
+    ``known``: vehicles, geometry and exact values, friction as MUP."""
     if not {*GEOMETRY} <= {*known}:
         return ()
-    values, model = _with_components(known), np.float64(known.get("M", 6.0))
-    here = Geometry({n: np.float64(values[n]) for n in GEOMETRY} | {"M": model})
-    if model == 4:
+    values, mass_model = _with_components(known), np.float64(known.get("M", 6.0))
+    geometry = Geometry({n: np.float64(values[n]) for n in GEOMETRY} | {"M": mass_model})
+    if mass_model == 4:
         values |= dict.fromkeys(_SPINS, 0.0)
     names = (*VELOCITIES, *FINAL_STATE)
-    rows = _rows(values, here)
-    if model == 4:
+    rows = _rows(values, geometry)
+    if mass_model == 4:
         rows = {law: row for law, row in rows.items() if law not in ("angular", "EM")}
     laws = [law for law, row in rows.items() if np.isfinite(row).all()]
-    missed = _missed_quantities(known, values, here)
+    missed = _missed_quantities(known, values, geometry)
     if not laws:
         return missed
     matrix = np.array([rows[law] for law in laws])
-    at = np.array([values.get(n, 0.0) for n in names], float)
-    open_ones = np.array([n not in values for n in names])
-    # a spin is as large as what it makes at the radius of gyration
-    gyration = math.sqrt(float(here.inverse_mass / here.inverse_spin_inertia))
-    unit = np.array([1 / gyration if n in _SPINS else 1.0 for n in names])
-    speed = float(np.abs(at / unit).max(initial=0.0))
-    sizes = np.abs(matrix * unit).max(axis=1) * speed
-    left, loose = matrix @ at, matrix[:, open_ones] * unit[open_ones]
+    velocities = np.array([values.get(n, 0.0) for n in names], float)
+    is_unknown = np.array([n not in values for n in names])
+    # spins are compared as velocities at the radius of gyration
+    gyration = math.sqrt(float(geometry.inverse_mass / geometry.inverse_spin_inertia))
+    units = np.array([1 / gyration if n in _SPINS else 1.0 for n in names])
+    speed = float(np.abs(velocities / units).max(initial=0.0))
+    law_sizes = np.abs(matrix * units).max(axis=1) * speed
+    residuals, coefficients = matrix @ velocities, matrix[:, is_unknown] * units[is_unknown]
     alone = [*missed]
     for i, law in enumerate(laws):
-        off = float(abs(left[i]))
-        if sizes[i] and off > ROUNDING * sizes[i]:
-            largest = float(np.abs(matrix[i] * at).max(initial=0.0))
-            if np.abs(loose[i]).max(initial=0.0) <= 1e-12 * sizes[i] / speed:
-                given, present = _coefficient(law, values, here, at)
-                alone.append(Missed(law, _MEASURED_AS[law], off, off / largest, given, present))
-    return tuple(alone) or _missed_together(laws, left, loose, sizes, speed)
+        residual = float(abs(residuals[i]))
+        if law_sizes[i] and residual > ROUNDING * law_sizes[i]:
+            largest = float(np.abs(matrix[i] * velocities).max(initial=0.0))
+            if np.abs(coefficients[i]).max(initial=0.0) <= 1e-12 * law_sizes[i] / speed:
+                given, present = _coefficient(law, values, geometry, velocities)
+                alone.append(
+                    MissedLaw(law, _MEASURED_AS[law], residual, residual / largest, given, present)
+                )
+    return tuple(alone) or _missed_together(laws, residuals, coefficients, law_sizes, speed)
 
 
 def _missed_quantities(
-    known: Mapping[str, float], values: Mapping[str, float], here: Any
-) -> tuple[Missed, ...]:
-    """Return the known values that are not what the velocities make them, where these are all
+    known: Mapping[str, float], values: Mapping[str, float], geometry: Any
+) -> tuple[MissedLaw, ...]:
+    """Return the known values that contradict the velocities they follow from, where these are all
     known."""
     state = State.of_known({name: np.float64(x) for name, x in values.items()})
-    state.here = here
-    missed = []
+    state.here = geometry
+    contradictions = []
     for name in QUANTITIES:
         if name not in known or {*SPEEDS.get(name, ())} & {*values} - {*known}:
-            continue  # the components were made of it
+            continue  # the components were computed from it
         given, present = known[name], float(np.real(state[name]))
-        # what is lost is the difference of two energies
+        # the loss is a difference of two energies
         largest = float(np.real(state.initial_energy)) if name == "EL" else abs(present)
         largest = max(largest, abs(given), 1.0 if name == "LOSS" else 0.0)
-        off = abs(present - given)
-        if math.isfinite(off) and off > ROUNDING * largest:
-            missed.append(Missed(name, name, off, off / largest, given, present))
-    return tuple(missed)
+        deviation = abs(present - given)
+        if math.isfinite(deviation) and deviation > ROUNDING * largest:
+            contradictions.append(
+                MissedLaw(name, name, deviation, deviation / largest, given, present)
+            )
+    return tuple(contradictions)
 
 
 def _missed_together(
-    laws: list[str], left: Floats, loose: Floats, sizes: Floats, speed: float
-) -> tuple[Missed, ...]:
-    """Return the fewest laws that cannot hold together, each with what it is missed by where the
-    others of them hold."""
-    if not speed or not loose.shape[1]:
+    laws: list[str], residuals: Floats, coefficients: Floats, sizes: Floats, speed: float
+) -> tuple[MissedLaw, ...]:
+    """Return the smallest set of laws that cannot hold together, each with its residual where the
+    others of the set hold."""
+    if not speed or not coefficients.shape[1]:
         return ()
-    size = np.where(sizes > 0, sizes, 1.0)
-    matrix, right = loose * speed / size[:, None], left / size
+    units = np.where(sizes > 0, sizes, 1.0)
+    matrix, right = coefficients * speed / units[:, None], residuals / units
 
-    def off(law: int, rest: list[int]) -> float:
+    def residual_given(law: int, rest: list[int]) -> float:
         x = -np.linalg.pinv(matrix[rest], rcond=1e-10) @ right[rest]
         return abs(float(right[law] + matrix[law] @ x))
 
     for count in range(2, len(laws) + 1):
-        for several in combinations(range(len(laws)), count):
-            chosen = [*several]
+        for subset in combinations(range(len(laws)), count):
+            chosen = [*subset]
             x = -np.linalg.pinv(matrix[chosen], rcond=1e-10) @ right[chosen]
             if np.abs(right[chosen] + matrix[chosen] @ x).max() > ROUNDING:
                 # fewer of them agree: each is missed where the others of these hold
                 return tuple(
-                    Missed(laws[i], _MEASURED_AS[laws[i]], share * size[i], share, alone=False)
+                    MissedLaw(
+                        laws[i],
+                        _MEASURED_AS[laws[i]],
+                        relative_text * units[i],
+                        relative_text,
+                        alone=False,
+                    )
                     for i in chosen
-                    for share in [off(i, [k for k in chosen if k != i])]
+                    for relative_text in [residual_given(i, [k for k in chosen if k != i])]
                 )
     return ()
 
@@ -191,18 +199,18 @@ def _with_components(known: Mapping[str, float]) -> dict[str, float]:
             angle = math.radians(values[course])
             for name, part in zip(SPEEDS[speed], (math.cos(angle), math.sin(angle)), strict=True):
                 values.setdefault(name, values[speed] * part)
-    for own, names in (("MA", VELOCITIES[:3]), ("MB", VELOCITIES[3:])):
-        if math.isinf(values[own]):
+    for mass_name, names in (("MA", VELOCITIES[:3]), ("MB", VELOCITIES[3:])):
+        if math.isinf(values[mass_name]):
             values |= dict.fromkeys(names, 0.0)
     return values
 
 
-def _rows(values: Mapping[str, float], here: Any) -> dict[str, Floats]:
+def _rows(values: Mapping[str, float], geometry: Any) -> dict[str, Floats]:
     """Return the coefficients of each law over the velocities before and after."""
-    every = np.eye(12)
-    before, after = every[:6], every[6:]
+    unit_vectors = np.eye(12)
+    before, after = unit_vectors[:6], unit_vectors[6:]
     changes = after - before
-    cosine, sine = float(here.cosine), float(here.sine)
+    cosine, sine = float(geometry.cosine), float(geometry.sine)
 
     def push(vehicle: str, first: int) -> tuple[Floats, Floats]:
         mass = values["M" + vehicle]
@@ -211,7 +219,7 @@ def _rows(values: Mapping[str, float], here: Any) -> dict[str, Floats]:
 
     (an, at), (bn, bt) = push("A", 0), push("B", 3)
     # what an impulse along n, or t, gives each vehicle of angular momentum
-    units = [here.changes(*(np.float64(x) for x in row)) for row in np.eye(3)]
+    units = [geometry.changes(*(np.float64(x) for x in row)) for row in np.eye(3)]
     arms = [(values["IA"] * float(unit[2]), values["IB"] * float(unit[5])) for unit in units]
     if math.isinf(values["MA"]):
         pn, pt = -bn, -bt
@@ -220,25 +228,25 @@ def _rows(values: Mapping[str, float], here: Any) -> dict[str, Floats]:
         pn, pt = an, at
         moment = (values["IA"] * changes[2] - an * arms[0][0] - at * arms[1][0]) / arms[2][0]
     rows = {"n": an + bn, "t": at + bt}
-    turned_a = values["IA"] * changes[2] - an * arms[0][0] - at * arms[1][0]
-    turned_b = values["IB"] * changes[5] + bn * arms[0][1] + bt * arms[1][1]
-    rows["angular"] = turned_a + turned_b
-    early, late = here.relative([*before]), here.relative([*after])
+    turning_a = values["IA"] * changes[2] - an * arms[0][0] - at * arms[1][0]
+    turning_b = values["IB"] * changes[5] + bn * arms[0][1] + bt * arms[1][1]
+    rows["angular"] = turning_a + turning_b
+    early, late = geometry.relative([*before]), geometry.relative([*after])
     if "E" in values:
         rows["E"] = late[0] + values["E"] * early[0]
     if "MUP" in values:
         rows["MUP"] = late[1] if values["MUP"] == PIVOT else pt - values["MUP"] * pn
     if "EM" in values:
-        below = late[2] + moment * float(here.inverse_spin_inertia)
-        rows["EM"] = late[2] - values["EM"] * below
+        denominator = late[2] + moment * float(geometry.inverse_spin_inertia)
+        rows["EM"] = late[2] - values["EM"] * denominator
     return {law: np.asarray(row, np.float64) for law, row in rows.items()}
 
 
 def _coefficient(
-    law: str, values: Mapping[str, float], here: Any, at: Floats
+    law: str, values: Mapping[str, float], geometry: Any, velocities: Floats
 ) -> tuple[float, float]:
-    """Return a coefficient as known and as all velocities have it; nan for other laws."""
+    """Return a coefficient as known and as the velocities give it; nan for other laws."""
     if law not in ("E", "MUP", "EM") or (law == "MUP" and values["MUP"] == PIVOT):
         return math.nan, math.nan
-    zero, one = (float(_rows({**values, law: x}, here)[law] @ at) for x in (0.0, 1.0))
+    zero, one = (float(_rows({**values, law: x}, geometry)[law] @ velocities) for x in (0.0, 1.0))
     return values[law], zero / (zero - one) if zero != one else math.nan

@@ -26,7 +26,7 @@ from ..collision.uncertain import Uncertain
 from ..mechanics.state import BARRIER_SPEEDS, COURSES, CRUSH, DIRECTIONS, ENERGIES, SPEEDS, State
 from ..names import COEFFICIENTS, IMPULSES, PIVOT, VELOCITIES
 from .adjustment import Reconstruction
-from .system import TINY, System
+from .system import COMPLEX_STEP, System
 from .unknowns import TIE
 
 Floats = NDArray[np.float64]
@@ -190,9 +190,9 @@ class Posterior:
     def _turn(self, y: Sequence[float], inputs: Sequence[float]) -> None:
         """Turn the basis so that the last direction is the one along which the curved value changes
         most at the solution."""
-        aside = (np.array(y) / self.scales)[:, None] + 1j * TINY * self.basis.T
+        aside = (np.array(y) / self.scales)[:, None] + 1j * COMPLEX_STEP * self.basis.T
         own = np.tile(np.array(inputs)[:, None], len(self.basis)).reshape(len(inputs), -1)
-        slope = np.imag(self._curve(aside, own)) / TINY
+        slope = np.imag(self._curve(aside, own)) / COMPLEX_STEP
         size = np.linalg.norm(slope)
         direction = slope / size if size > 0 else np.eye(len(slope))[-1]
         others = _unique_basis_across(direction)
@@ -555,12 +555,12 @@ class Posterior:
     def _slopes(self, center: Floats, sign: float) -> Floats:
         """Return the derivatives of all values known within limits, in standard deviations, over
         the coordinates."""
-        aside = center[:, None] + 1j * TINY * np.eye(self.size)
+        aside = center[:, None] + 1j * COMPLEX_STEP * np.eye(self.size)
         state, _, _ = self.impacts(aside, np.full(self.size, sign), weighed=False)
         rows = []
         for name in self.items:
             value = np.broadcast_to(self._observed(state, name)[0], self.size)
-            rows.append(np.imag(value) / TINY / self.known[name].standard_deviation)
+            rows.append(np.imag(value) / COMPLEX_STEP / self.known[name].standard_deviation)
         return np.asarray(np.nan_to_num(np.array(rows), posinf=0.0, neginf=0.0))
 
     def _on_grid(self, points: Floats) -> Floats:
@@ -658,11 +658,11 @@ class Ground:
         """`ascent.SearchProblem`."""
         count, size = u.shape
         width = (self.high - self.low)[:, None, None]
-        aside = 1j * TINY * width * np.eye(size)[:, :, None]
+        aside = 1j * COMPLEX_STEP * width * np.eye(size)[:, :, None]
         points = (self.points(u)[:, None] + aside).reshape(size, size * count)
         signs = np.tile(x[0], size)
         state, _, _ = self.posterior.impacts(points, signs, weighed=False)
-        rows = np.imag(self._rows(state, size * count)) / TINY
+        rows = np.imag(self._rows(state, size * count)) / COMPLEX_STEP
         rows = np.nan_to_num(rows).reshape(len(rows), size, count).transpose(2, 0, 1)
         split = len(self.names) + len(self.ratios)
         return rows[:, :split], rows[:, split:], np.zeros((count, 1, size))
@@ -672,7 +672,7 @@ class Ground:
         it has a kink, which no climb comes to the end of."""
         count, size = u.shape
         width = (self.high - self.low)[:, None, None]
-        aside = 1j * TINY * width * np.eye(size)[:, :, None]
+        aside = 1j * COMPLEX_STEP * width * np.eye(size)[:, :, None]
         typical = self.posterior.system.scale(speed)
         for _ in range(STANDSTILL_STEPS):
             points = (self.points(u)[:, None] + aside).reshape(size, size * count)
@@ -689,7 +689,7 @@ class Ground:
             whole = np.array(rows).reshape(len(rows), size, count)
             if not np.isfinite(whole).all():
                 return u[:0]
-            slopes = (np.imag(whole) / TINY).transpose(2, 0, 1)
+            slopes = (np.imag(whole) / COMPLEX_STEP).transpose(2, 0, 1)
             steps = np.linalg.pinv(slopes, rcond=1e-9) @ np.real(whole[:, 0]).T[:, :, None]
             u = np.clip(u - steps[:, :, 0], 0.0, 1.0)
         _, _, walls, usable = self.evaluate(u, signs[None])

@@ -28,7 +28,7 @@ from ..optimization.widening import extremes
 from ..uncertainty.boundstable import Spread
 from .adjustment import Reconstruction, pseudo_inverse
 from .posterior import Ground, Posterior
-from .system import PARAMETERS, TINY, System
+from .system import COMPLEX_STEP, PARAMETERS, System
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -235,7 +235,7 @@ class _Box:
         state = solution.system.state(solution.x)
         scaled = zip(system.variables, system.scales, strict=True)
         self.x = np.array([np.ravel(state[n])[0] / scale for n, scale in scaled]).reshape(-1, 1)
-        jacobian = system.slopes(self.x)
+        jacobian = system.jacobian(self.x)
         self.inverse, null = pseudo_inverse(jacobian)
         self.square = jacobian.shape[0] == jacobian.shape[1] and not null.shape[1]
         self.names, self.nominal = names, solution.values
@@ -318,7 +318,7 @@ class _Box:
     def _left(
         self, x: Floats, data: Mapping[str, Floats], geometry: Geometry | None = None
     ) -> Floats:
-        return np.asarray(self.system.left(self.system.state(x, data, geometry), data))
+        return np.asarray(self.system.residuals(self.system.state(x, data, geometry), data))
 
     def _newton(self, data: Mapping[str, Floats], x: Floats) -> tuple[Floats, Flags]:
         """Impacts with the known values ``data`` by Newton's method from the impacts ``x``, and
@@ -329,7 +329,7 @@ class _Box:
         going = np.arange(count)
         for _ in range(NEWTONS):
             here, known = x[:, going], {name: column[going] for name, column in data.items()}
-            residual, jacobian = self.system.linearized(here, self.system.left, known, known)
+            residual, jacobian = self.system.linearize(here, self.system.residuals, known, known)
             left = np.abs(residual).max(axis=0, initial=0.0)
             idle = np.where(left < 0.5 * least, 0, idle + 1)
             least = np.fmin(least, left)
@@ -345,17 +345,17 @@ class _Box:
     def slopes(self, u: Floats, x: Floats) -> tuple[Floats, Floats, Floats]:
         """`ascent.SearchProblem`: by the derivatives of the conditions, without error."""
         system, data = self.system, self.data(u)
-        jacobian = system.linearized(x, system.left, data, data)[1].transpose(2, 0, 1)
+        jacobian = system.linearize(x, system.residuals, data, data)[1].transpose(2, 0, 1)
         moved: dict[str, Any] = {}
         for name, side in zip(self.kept, np.eye(len(self.kept))[:, :, None], strict=True):
             item = self.items[name]
-            moved[name] = data[name] + 1j * TINY * (item.high - item.low) * side
+            moved[name] = data[name] + 1j * COMPLEX_STEP * (item.high - item.low) * side
         still = x[:, None].astype(complex)
-        left = np.imag(system.left(system.state(still, moved), moved)) / TINY
+        left = np.imag(system.residuals(system.state(still, moved), moved)) / COMPLEX_STEP
         right = np.broadcast_to(left, (len(left), len(self.kept), len(u)))
         turns = -_solved(jacobian, right.transpose(2, 0, 1))
-        state = system.state(still + 1j * TINY * turns.transpose(1, 2, 0), moved)
-        derivatives = np.nan_to_num(np.imag(self._rows(state)) / TINY).transpose(2, 0, 1)
+        state = system.state(still + 1j * COMPLEX_STEP * turns.transpose(1, 2, 0), moved)
+        derivatives = np.nan_to_num(np.imag(self._rows(state)) / COMPLEX_STEP).transpose(2, 0, 1)
         count = len(self.names) + len(self.ratios)
         return derivatives[:, :count], derivatives[:, count:], turns
 
@@ -369,7 +369,7 @@ class _Box:
         if not (self.square and self.limited):
             return np.zeros(len(u))
         system, data = self.system, self.data(u)
-        jacobian = system.linearized(x, system.left, data, data)[1]
+        jacobian = system.linearize(x, system.residuals, data, data)[1]
         state = system.state(x, data)
         laws = [n for n in COEFFICIENTS if not (system.point and n == "EM")]
         values = {**state.values, **dict(zip(VELOCITIES, state.before, strict=True))}
@@ -380,9 +380,9 @@ class _Box:
                 divided += np.log(np.abs(state.quotient(name)[1]))
         rows = []
         for name in IMPULSES[: len(laws)]:
-            pushed = State({**values, name: values[name] + 1j * TINY}, state.here)
+            pushed = State({**values, name: values[name] + 1j * COMPLEX_STEP}, state.here)
             rows.append([np.broadcast_to(np.imag(pushed.law(n)), len(u)) for n in laws])
-        forward = np.linalg.slogdet(np.array(rows).transpose(2, 0, 1) / TINY)[1]
+        forward = np.linalg.slogdet(np.array(rows).transpose(2, 0, 1) / COMPLEX_STEP)[1]
         inverse = np.linalg.slogdet(jacobian.transpose(2, 0, 1))[1]
         return np.asarray(forward - inverse - divided)
 
@@ -525,7 +525,7 @@ def _independent(solution: Reconstruction) -> tuple[list[str], list[str]]:
     """The values with a tolerance that determine the impact, and the redundant rest; the tightest
     first, so that few impacts fall outside the others' limits."""
     system = solution.system
-    jacobian = system.slopes(solution.x)
+    jacobian = system.jacobian(solution.x)
     count, names = len(system.conditions), system.observations
     inputs = (*GEOMETRY, *CRUSH)  # what is no quantity cannot be redundant
 
@@ -553,7 +553,7 @@ def _endless(box: _Box, known: Mapping[str, Uncertain], names: Sequence[str]) ->
     if "E" not in box.system.laws or not known["E"].low <= 0 <= known["E"].high:
         return set()
     nothing = System({**box.system.known, "E": fixed_value(0.0)}, adjusted=False)
-    _, null = pseudo_inverse(nothing.slopes(box.x))
+    _, null = pseudo_inverse(nothing.jacobian(box.x))
     slopes = nothing.gradients(box.x, names)
     left_open = np.abs(slopes @ null).max(axis=1, initial=0.0)
     endless = left_open > 1e-7 * np.abs(slopes).max(axis=1, initial=0.0)

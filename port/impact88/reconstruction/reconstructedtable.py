@@ -120,7 +120,7 @@ class Measured(Impact):
         if infeasible:
             self.draws, self.ranges = None, {}
             if not self.not_drawn:
-                self.evidence = solution.weighed(inside=False)
+                self.evidence = solution.weigh_evidence(inside=False)
         if not solution.assumed:
             widening = max(self.evidence.widening, 1.0)
             self.deviations = {n: x * widening for n, x in self.deviations.items()}
@@ -307,7 +307,12 @@ class Measured(Impact):
             sizes = [(measured, 6), (half * factor, 3), (item.standard_deviation * factor, 3)]
             cells = [number(x, n) for x, n in (*sizes, (now, 6))]
             rows.append(
-                [a.name, *cells, format_fixed(a.moved, 2), units.label(quantity(a.name).unit)]
+                [
+                    a.name,
+                    *cells,
+                    format_fixed(a.normalized_residual, 2),
+                    units.label(quantity(a.name).unit),
+                ]
             )
         heading = ["known", "measured", "half-width", "sd", "adjusted", "moved, tolerances", "unit"]
         return [
@@ -378,7 +383,7 @@ class Measured(Impact):
                 "tolerance": units.factor(a.name) * a.tolerance,
                 "adjusted": units.display_unwrapped(a.name, 0.0 if small else float(a.adjusted)),
             }
-            adjusted.append({"name": a.name, **sizes, "moved": a.moved})
+            adjusted.append({"name": a.name, **sizes, "moved": a.normalized_residual})
         return {
             "undetermined": solution.undetermined,
             "adjusted": adjusted,

@@ -1,10 +1,10 @@
-"""What is known of impacts as equations, in scaled variables (rows) of n impacts.
+"""What is known of impacts as equations, in scaled variables (rows) of n impacts (columns).
 
-Equations 13, 14 and 17 hold by the way an impact is written (`State`); Equations 15, 16 and 18 and
-the exact values are conditions, values with a tolerance observations. Each is a velocity over a
-typical one: impulses by the reduced mass, spins by the radius of gyration. For exact values alone
-all is linear but speeds, directions, changes of velocity and energies.
-"""
+Equations 13, 14 and 17 hold by the way an impact is written (`State`). Equations 15, 16 and 18 and
+the exact values are conditions, values with a tolerance are observations. All residuals are divided
+by a typical velocity (impulses by the reduced mass times it, spins by it over the radius of
+gyration). With exact values alone all conditions are linear, except speeds, directions, changes of
+velocity and energies."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import reduce
@@ -33,24 +33,23 @@ Array = NDArray[Any]
 Floats = NDArray[np.float64]
 
 SPINS = ("WA", "WB", "WAF", "WBF")
+# Known values that enter the conditions; all others are quantities computed from a state
 PARAMETERS = (*GEOMETRY, *COEFFICIENTS, *SPEEDS, *DIRECTIONS, *CRUSH)
-"""Known values that enter the conditions; the others are quantities a state has."""
 MEASURABLE = (*VELOCITIES, *FINAL_STATE, *CHANGES, *ENERGIES, *CONTACT)
-TINY = 1e-30
-"""The imaginary step whose derivative has no error."""
+COMPLEX_STEP = 1e-30  # imaginary step of derivatives: without subtraction there is no rounding
 _COURSE_OF = {speed: course for course, speed in COURSES.items()}
-_CURVED = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES, *CRUSH)
-"""Quantities that more than one impact may have."""
+# Quantities whose conditions are not linear: several impacts may have the same
+_NONLINEAR = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES, *CRUSH)
 
 
 class System:
     """The equations of one reading of what is known.
 
-    ``known``: by name, friction as MUP; nominal values may be arrays where nothing is adjusted;
-    ``adjusted``: whether values with a tolerance are adjusted (each a variable or a quantity with
-    an observation) or taken as they are (conditions all); ``barrier``: whether a vehicle of
-    infinite mass is at rest; ``progress`` is called with the impacts looked at.
-    """
+    ``known``: values by name, friction as MUP; nominal values may be arrays where nothing is
+    adjusted. ``adjusted``: True to adjust values with a tolerance (each a variable or a quantity
+    with an observation), False to take their nominal values as exact (all are conditions).
+    ``progress`` is called with the number of impacts evaluated. ``barrier``: True if a vehicle of
+    infinite mass is at rest."""
 
     def __init__(
         self,
@@ -69,50 +68,57 @@ class System:
         self.gyration: Any = np.float64(1.0)
         if not self.point:
             self.gyration = np.sqrt(geometry.inverse_mass / geometry.inverse_spin_inertia)
-        still: tuple[str, ...] = ("WA", "WB", "PM") if self.point else ()
-        for own_mass, names in (("MA", VELOCITIES[:3]), ("MB", VELOCITIES[3:])):
-            if barrier and np.all(np.isinf(self.nominal[own_mass])):
-                still += names
+        fixed: tuple[str, ...] = ("WA", "WB", "PM") if self.point else ()
+        for mass_name, names in (("MA", VELOCITIES[:3]), ("MB", VELOCITIES[3:])):
+            if barrier and np.all(np.isinf(self.nominal[mass_name])):
+                fixed += names
         self.speed: Any = self._typical_speed()
         speed, mass, length = self.speed, self.mass, self.gyration
         self.sizes: dict[str, Any] = {
-            **{"1": 1.0, "percent": 100.0, "degree": np.degrees(1.0), "length": length},
-            **{"length/time": speed, "rad/time": speed / length},
-            **{"mass·length/time": mass * speed, "mass·length²/time": mass * speed * length},
+            "1": 1.0,
+            "percent": 100.0,
+            "degree": np.degrees(1.0),
+            "length": length,
+            "length/time": speed,
+            "rad/time": speed / length,
+            "mass·length/time": mass * speed,
+            "mass·length²/time": mass * speed * length,
             "mass·length²/time²": mass * speed**2,
         }
-        loose = {n for n, item in known.items() if adjusted and item.varies}
-        parameters = [n for n in known if n in PARAMETERS and n in loose]
-        unknown = [n for n in VELOCITIES if n not in still and (n not in known or n in loose)]
+        uncertain = {n for n, item in known.items() if adjusted and item.varies}
+        parameters = [n for n in known if n in PARAMETERS and n in uncertain]
+        unknown = [n for n in VELOCITIES if n not in fixed and (n not in known or n in uncertain)]
         self.from_after: tuple[str, ...] = ()
         after = dict(zip(VELOCITIES, FINAL_STATE, strict=True))
         if not adjusted:
             self.from_after = tuple(n for n in unknown if after[n] in known)
             unknown = [n for n in unknown if n not in self.from_after]
-        impulses = [n for n in IMPULSES if n not in still]
+        impulses = [n for n in IMPULSES if n not in fixed]
         self.variables = (*unknown, *impulses, *parameters)
         self.scales = np.array([*np.broadcast_arrays(*map(self.scale, self.variables))])
-        self.constants = {**dict.fromkeys(still, 0.0), **self.nominal}
+        self.constants = {**dict.fromkeys(fixed, 0.0), **self.nominal}
         if (friction := known.get("MUP")) is not None and friction.critical:
-            self.constants["MUC"] = friction.critical  # a share of each impact's own
+            self.constants["MUC"] = friction.critical  # a fraction of each impact's own
         self.laws = [n for n in COEFFICIENTS if n in known and not (self.point and n == "EM")]
-        settled = {after[n] for n in (*still, *self.from_after) if n in after}
+        implied = {after[n] for n in (*fixed, *self.from_after) if n in after}
         self.exact = [
             n
             for n in known
-            if (n in MEASURABLE and n not in (*loose, *VELOCITIES, *settled))
+            if (n in MEASURABLE and n not in (*uncertain, *VELOCITIES, *implied))
             or n in (*SPEEDS, *DIRECTIONS, "ELA", "EBSA")
         ]
         self.conditions = (*self.laws, *self.exact)
-        self.observations = tuple(n for n in known if n in loose and n not in still)
+        self.observations = tuple(n for n in known if n in uncertain and n not in fixed)
         self.geometry = None if set(parameters) & set(GEOMETRY) else geometry
         self.linear = (
             not adjusted
             and "MUC" not in self.constants
-            and not any(n in _CURVED and _COURSE_OF.get(n) not in known for n in known)
+            and not any(n in _NONLINEAR and _COURSE_OF.get(n) not in known for n in known)
         )
 
     def _typical_speed(self) -> Any:
+        """Return the largest known velocity: spins times the radius of gyration, energies as the
+        velocity they give the reduced mass; 1 if all are 0."""
         sizes: list[Any] = [np.float64(0.0)]
         for name, value in self.nominal.items():
             rule, size = quantity(name).unit, np.abs(value)
@@ -124,43 +130,49 @@ class System:
         return np.where(largest == 0, 1.0, largest)[()]
 
     def scale(self, name: str) -> Any:
-        """What a quantity of ordinary size measures in the problem's units."""
-        own = name in ("MA", "MB", "IA", "IB")
-        return abs(self.nominal[name]) if own else self.sizes[quantity(name).unit]
+        """Return the size of an ordinary quantity ``name``, in the problem's units."""
+        is_inertia = name in ("MA", "MB", "IA", "IB")
+        return abs(self.nominal[name]) if is_inertia else self.sizes[quantity(name).unit]
 
     def state(
         self, x: Array, data: Mapping[str, Array] | None = None, geometry: Geometry | None = None
     ) -> State:
-        """The impact with these variables; ``data`` replaces known values (when not adjusted) and
-        ``geometry`` is what they make, where it has been worked out before."""
-        moved = {
+        """Return the impact with these variables. ``data`` replaces known values (when nothing is
+        adjusted); ``geometry`` is computed from them where it is not given."""
+        variables = {
             n: row * scale for n, row, scale in zip(self.variables, x, self.scales, strict=True)
         }
         if geometry is None and not (data and set(data) & set(GEOMETRY)):
             geometry = self.geometry
-        return State({**self.constants, **(data or {}), **moved}, geometry, self.from_after)
+        return State({**self.constants, **(data or {}), **variables}, geometry, self.from_after)
 
-    def left(self, state: State, targets: Mapping[str, Any] | None = None) -> Array:
-        """What conditions, then observations leave over, scaled: rows, one column an impact."""
+    def residuals(self, state: State, targets: Mapping[str, Any] | None = None) -> Array:
+        """Return the scaled residuals of conditions, then of observations: rows, one column an
+        impact. ``targets`` replaces known values."""
         targets = {**self.nominal, **(targets or {})}
         rows = [state.law(n) / self.law_scale(n) for n in self.laws]
         rows += [self.exact_residual(state, n, targets) for n in self.exact]
         for name in self.observations:
-            off = self.measured(state, name) - targets[name]
-            rows.append(off / self.known[name].standard_deviation)
+            deviation = self.observed_value(state, name) - targets[name]
+            rows.append(deviation / self.known[name].standard_deviation)
         # with the impulse, for the shape where there are none
         return np.stack(np.broadcast_arrays(state.values["PN"], *rows))[1:]
 
-    def measured(self, state: State, name: str) -> Any:
-        """What an observation is of: an adjusted value that conditions hold, or a quantity."""
+    def observed_value(self, state: State, name: str) -> Any:
+        """Return the value that an observation is compared with: a variable, or a quantity of the
+        state."""
         return state.values[name] if name in self.variables else state[name]
 
     def law_scale(self, coefficient: str) -> Any:
+        """Return the scale of a law's residual: a velocity, a spin for EM, an impulse for MUP (but
+        for the pivot's condition, which is on a velocity)."""
         if coefficient == "MUP" and not np.all(self.nominal["MUP"] == PIVOT):
             return self.mass * self.speed
         return self.speed / (self.gyration if coefficient == "EM" else 1.0)
 
     def exact_residual(self, state: State, name: str, targets: Mapping[str, Any]) -> Any:
+        """Return the scaled residual of one exact value. A direction's is the component across
+        it."""
         if name in DIRECTIONS:
             return state.along_and_across(name)[1] / (
                 self.speed * (self.mass if name in FORCES else 1.0)
@@ -175,33 +187,36 @@ class System:
             return (size - value) / self.speed
         return (state[name] - targets[name]) / self.scale(name)
 
-    def linearized(
+    def linearize(
         self,
         x: Array,
         rows: Callable[[State, Mapping[str, Array] | None], Any],
         data: Mapping[str, Array] | None = None,
         targets: Mapping[str, Array] | None = None,
     ) -> tuple[Floats, Floats]:
-        """``rows(state, targets)``, rows and impacts, and their derivatives over the scaled
-        variables: rows, variables, impacts. ``data`` as for `state`, ``targets`` as for `left`, a
-        column an impact."""
+        """Return ``rows(state, targets)`` (rows, impacts) and its derivatives over the scaled
+        variables (rows, variables, impacts), by complex steps. ``data`` as for `state`, ``targets``
+        as for `residuals`, a column an impact."""
         size, count = len(self.variables), x.shape[1]
         self.progress(count)
-        moved = x[:, None] + 1j * TINY * np.eye(size)[:, :, None]
-        values = rows(self.state(moved, data), targets)
+        offset_points = x[:, None] + 1j * COMPLEX_STEP * np.eye(size)[:, :, None]
+        values = rows(self.state(offset_points, data), targets)
         values = np.broadcast_to(values, (len(values), size, count))
-        return np.real(values[:, 0]), np.imag(values) / TINY
+        return np.real(values[:, 0]), np.imag(values) / COMPLEX_STEP
 
-    def slopes(self, x: Array) -> Floats:
-        return self.linearized(x, self.left)[1][:, :, 0]
+    def jacobian(self, x: Array) -> Floats:
+        """Return the derivatives of the residuals over the scaled variables (rows, variables), of
+        one impact."""
+        return self.linearize(x, self.residuals)[1][:, :, 0]
 
     def gradients(self, x: Array, names: Sequence[str]) -> Floats:
-        """Of quantities, or of known values that are adjusted (rows), over the scaled variables."""
+        """Return the derivatives of quantities, or of known values that are adjusted (rows), over
+        the scaled variables."""
         adjusted = {*self.variables} - {*QUANTITIES}
 
         def rows(state: State, _: Any) -> Array:
-            every = (state.values[n] if n in adjusted else state[n] for n in names)
+            values = (state.values[n] if n in adjusted else state[n] for n in names)
             # with the impulse, for the shape where there are none
-            return np.stack(np.broadcast_arrays(state.values["PN"], *every))[1:]
+            return np.stack(np.broadcast_arrays(state.values["PN"], *values))[1:]
 
-        return self.linearized(x, rows)[1][:, :, 0]
+        return self.linearize(x, rows)[1][:, :, 0]

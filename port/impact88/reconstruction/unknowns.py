@@ -42,7 +42,7 @@ from ..names import (
     missing,
     quantity,
 )
-from .system import SPINS, TINY, System
+from .system import COMPLEX_STEP, SPINS, System
 
 Array = NDArray[np.float64]
 
@@ -65,11 +65,11 @@ of what is left open in a quantity, and equations' mismatch."""
 
 def _disagreement(values: Mapping[str, Any]) -> str:
     """Return by how much values of which nothing is unknown miss a law, "" where they miss none."""
-    from .laws import missed_laws, told
+    from .laws import describe_laws, missed_laws
 
     if any(np.ndim(value) for value in values.values()):
         return ""
-    laws = told(missed_laws({n: float(v) for n, v in values.items()}))
+    laws = describe_laws(missed_laws({n: float(v) for n, v in values.items()}))
     return f", and the values contradict one another: {laws}" if laws else ""
 
 
@@ -269,7 +269,7 @@ class _Problem:
         agrees = np.all([np.isfinite(values[n]) for n in self.wanted], axis=0)
         if "MUP" in values:
             speeds = [values[n] for n in (*VELOCITIES, *FINAL_STATE) if n in values]
-            values["MU"] = typed(values["MUP"], sliding, speeds)
+            values["MU"] = mu_to_type(values["MUP"], sliding, speeds)
             if must_agree:
                 agrees = agrees & ((values["MU"] == self.known["MU"]) | np.isnan(sliding))
         return Solution(
@@ -359,12 +359,12 @@ def _determined(given: Mapping[str, Any], wanted: Sequence[str], point: bool) ->
         return state
 
     def left(state: State, _: Any = None) -> Array:
-        laws, momentum = copy(state), system.left(state, state.values)[len(system.laws) :]
-        rows = system.left(held(laws), state.values)[: len(system.laws)]
+        laws, momentum = copy(state), system.residuals(state, state.values)[len(system.laws) :]
+        rows = system.residuals(held(laws), state.values)[: len(system.laws)]
         return np.concatenate([rows, momentum])
 
     start = np.zeros((len(system.variables), count))
-    residual, jacobian = system.linearized(start, left)
+    residual, jacobian = system.linearize(start, left)
     # a barrier's momentum is nobody's equation
     said = jacobian.any(axis=(1, 2)) | residual.any(axis=1)
     residual, jacobian = residual[said], jacobian[said]
@@ -375,10 +375,10 @@ def _determined(given: Mapping[str, Any], wanted: Sequence[str], point: bool) ->
     known = [n for n in (*VELOCITIES, *FINAL_STATE) if n in system.nominal]
     sizes = np.max([np.zeros(count), *(np.abs(given[n] / system.scale(n)) for n in known)], axis=0)
     moved = {
-        name: given[name] + 1j * TINY * system.scale(name) * unit[:, None]
+        name: given[name] + 1j * COMPLEX_STEP * system.scale(name) * unit[:, None]
         for name, unit in zip(known, np.eye(len(known)), strict=True)
     }
-    missed = np.imag(left(system.state(x[:, None].astype(complex), moved))) / TINY
+    missed = np.imag(left(system.state(x[:, None].astype(complex), moved))) / COMPLEX_STEP
     errors = -np.einsum("nvr,rkn->vkn", inverse, missed[said])
 
     names = [n for n in (*VELOCITIES, *FINAL_STATE, *IMPULSES) if n not in ignored]
@@ -392,10 +392,12 @@ def _determined(given: Mapping[str, Any], wanted: Sequence[str], point: bool) ->
         rows += [velocity / system.speed for velocity in state.relative_before[:2]]
         return np.stack(np.broadcast_arrays(*rows))
 
-    rows, slopes = system.linearized(x, scaled)
+    rows, slopes = system.linearize(x, scaled)
     unsure = np.abs(np.einsum("qvn,nvw->qwn", slopes, left_open)).max(axis=1)
     sure = unsure <= _OPEN * np.abs(slopes).max(axis=1)
-    growth = np.imag(scaled(system.state(x[:, None] + 1j * TINY * errors, moved))) / TINY
+    growth = (
+        np.imag(scaled(system.state(x[:, None] + 1j * COMPLEX_STEP * errors, moved))) / COMPLEX_STEP
+    )
     closing = np.hypot(*rows[-2:])
     rows, growth = np.where(sure, rows, np.nan), np.where(sure[:, None], growth, np.nan)
     result = {n: row * system.scale(n) for n, row in zip(names, rows, strict=False)}
@@ -436,7 +438,7 @@ def _pseudo_inverse(matrix: Array) -> tuple[Array, Array]:
     return pseudo, np.eye(matrix.shape[2]) - (v * kept[:, None]) @ vt
 
 
-def typed(mup: Any, sliding: Any, velocities: Iterable[Any]) -> Array:
+def mu_to_type(mup: Any, sliding: Any, velocities: Iterable[Any]) -> Array:
     """The MU that line 400 turns into MUP: changed where the sliding is positive. Where the sliding
     is not known the sign stays as it is."""
     mu, speed = np.asarray(mup), reduce(np.maximum, map(np.abs, velocities))

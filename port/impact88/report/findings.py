@@ -488,7 +488,7 @@ def _details(found: Findings, case: Case, units: System) -> list[Table]:
                 quantity(item.name).meaning,
                 _amount(item.name, item.measured, units, item.tolerance),
                 _amount(item.name, item.adjusted, units, item.tolerance),
-                format_fixed(item.moved, 2),
+                format_fixed(item.normalized_residual, 2),
                 _unit(item.name, units),
             ]
             for item in found.adjusted
