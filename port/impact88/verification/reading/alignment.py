@@ -1,9 +1,14 @@
 """Aligning a text with the program's page, by dynamic programming.
 
-The page is a row of states seen through noise: a glyph of a label, a number (any glyphs), what lies
-between lines (any), and first what lies outside of pages. A glyph belongs to the state of the one
-before it, or to another at the cost of all that is passed over. Costs are whole hundredths of one
-wrong letter; of equal ways the one through the earlier states is taken.
+The page is a hidden Markov chain of states: each letter of a label, each number (any glyphs), the
+space between lines (any glyphs), and state 0, the text outside of pages. A glyph belongs to the
+state of the one before it, or to another at the cost of all states that are passed over. With e the
+cost of a glyph in a state and t that of a transition, the states s minimize
+
+    sum over glyphs g of  e(s[g], g) + t(gap before g, s[g - 1], s[g])
+
+(Viterbi's algorithm). Costs are whole hundredths of one wrong letter; of equally cheap sequences
+the one through the earlier states is taken.
 """
 
 import re
@@ -46,23 +51,38 @@ LINES = (
     " WA= {WAF} WB= {WBF}",
     "*****",
 )
-"""What lines 200 to 770 print, fields in braces."""
+"""Output of lines 200 to 770 of the program, fields in braces."""
 MAY_BE_MISSING = (0, 1, 10, 13, 14)
 """Lines that genuine pages lack: the prompts, rows of asterisks, the final spins where M = 4."""
 _LABELLED = "PA={PA}PB={PB}TA={TA}TB={TB}GA={GA}"
 """The angles as some people retype them."""
 _ROWS = [line.replace(" ", "").upper() for line in (*LINES[:6], _LABELLED, *LINES[6:])]
-PROMPTS, HEADING, ANGLE_ROW, SPINS, STARS = 2, 4, 5, 14, 15
-"""Lines of a page in which the angles may also stand retyped, the sixth; prompts come before."""
+# Indices of lines in `_ROWS`, which has the retyped angles as its line 6.
+PROMPTS = 2  # the lines before this one are prompts
+HEADING = 4
+ANGLE_ROW = 5
+SPINS = 14
+STARS = 15
 _OPTIONAL = (0, 1, HEADING, 6, 11, SPINS, STARS)
 _LOOSE_WORDS = {"INITIALKE=": 7, "KELOSS=": 2}
-"""Letters of labels that retyped pages leave out, as they do prompts."""
-_MOST: int = np.iinfo(np.int16).max // 3
+"""Number of a label's first letters that retyped pages leave out, as they do prompts."""
+_INFINITE: int = np.iinfo(np.int16).max // 3
+"""Cost of what is impossible; three of them still fit into an int16."""
 
 
 class State(NamedTuple):
-    """A state: ``kind`` (outside, between, letter, loose, number), a letter of a label or a
-    number's field, and the line of the page."""
+    """A state of the page.
+
+    Attributes
+    ----------
+    kind : str
+        ``"outside"``, ``"between"``, ``"letter"``, ``"loose"`` (a letter that retyped pages leave
+        out) or ``"number"``.
+    name : str
+        The letter of a label, or a number's field.
+    line : int
+        Line of `_ROWS`, -1 outside.
+    """
 
     kind: str
     name: str
@@ -70,16 +90,17 @@ class State(NamedTuple):
 
 
 def _page() -> tuple[list[State], list[tuple[str, list[int]]]]:
+    """Return `STATES` and `LABELS`."""
     states = [State("outside", "", -1)]
     labels = []
     for number, line in enumerate(_ROWS):
         states.append(State("between", "", number))
         for text, name in re.findall(r"([^{]*)(?:{(\w+)}|$)", line):
             loose = len(text) if number < PROMPTS else _LOOSE_WORDS.get(text, 0)
-            named = ANGLES if number == HEADING and text else [name] if text and name else []
-            own = [len(states) + at for at, letter in enumerate(text) if letter.isalpha()]
-            size = len(own) // max(len(named), 1)
-            labels += [(field, own[at * size :][:size]) for at, field in enumerate(named)]
+            fields = ANGLES if number == HEADING and text else [name] if text and name else []
+            letters_at = [len(states) + at for at, letter in enumerate(text) if letter.isalpha()]
+            size = len(letters_at) // max(len(fields), 1)
+            labels += [(field, letters_at[at * size :][:size]) for at, field in enumerate(fields)]
             for place, letter in enumerate(text):
                 states.append(State("loose" if place < loose else "letter", letter, number))
             if name:
@@ -88,147 +109,210 @@ def _page() -> tuple[list[State], list[tuple[str, list[int]]]]:
 
 
 STATES, LABELS = _page()
-"""The states, the first of which is the text outside any printout; of what names each number the
-field (of a prompt, its reply's slot), and the states of the label's letters."""
+"""The states, the first of which is the text outside any printout; and for each label the field
+that it names (a prompt: its reply's slot) with the states of its letters."""
 
 
 def letter_of(state: int) -> str:
-    """The letter of a label that a state is, "" for any other."""
+    """Return the letter of a label that a state stands for, "" for other states."""
     entry = STATES[state]
     return entry.name if entry.kind in ("letter", "loose") else ""
 
 
-@lru_cache(maxsize=1)
-def _jumps() -> tuple[Costs, Costs, Costs]:
-    """What it costs that a glyph belongs to another state than the one before it: ``(gap, from,
-    to)``; that one more glyph of a number follows a gap, ``(gap, state)``; that the text ends after
-    a state."""
+class _Transitions(NamedTuple):
+    """Costs between the states of two successive glyphs.
 
-    def then(first: NDArray[np.int32], second: NDArray[np.int32]) -> NDArray[np.int32]:
-        least = np.full((len(first), second.shape[1]), _MOST, np.int32)
-        for before, after in zip(first.T, second, strict=True):
-            np.minimum(least, before[:, None] + after, out=least)
-        return least
+    Attributes
+    ----------
+    jumps : ndarray, shape (gaps, states, states)
+        Cost of going from a state to another, or into the same anew, over a gap.
+    staying : ndarray, shape (gaps, states)
+        Cost of one more glyph of the same state after a gap, in numbers.
+    ending : ndarray, shape (states,)
+        Cost of ending the text after a state.
+    """
 
-    missed = np.cumsum([_missing(state) for state in STATES], dtype=np.int32)
+    jumps: Costs
+    staying: Costs
+    ending: Costs
+
+
+def _min_plus(first: NDArray[np.int32], second: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Return the cheapest way from i over any k to j: min over k of first[i, k] + second[k, j]."""
+    least = np.full((len(first), second.shape[1]), _INFINITE, np.int32)
+    for before, after in zip(first.T, second, strict=True):
+        np.minimum(least, before[:, None] + after, out=least)
+    return least
+
+
+def _passing_costs() -> NDArray[np.int32]:
+    """Return the cost of having passed state j after a glyph of state i: shape (states, states).
+
+    It is the least of: passing over each state from i + 1 to j, which costs its `_skip_cost`; the
+    same with whole lines skipped, from the space before one to the space before another; and ending
+    the page at i to begin another. To be outside (j = 0), the page must end at i.
+    """
     size = len(STATES)
     between = [place for place, state in enumerate(STATES) if state.kind == "between"]
-    passed = np.where(np.tri(size, k=-1), _MOST, missed[None] - missed[:, None])
-    absent = [COSTS["line may be missing" if n in _OPTIONAL else "line"] for n in range(len(_ROWS))]
-    skipped = np.where(np.eye(size), 0, _MOST).astype(np.int32)
-    for number, start in enumerate(between):
-        skipped[0, start] = COSTS["begins"]
-        for stop in range(number, len(between)):
-            skipped[start, between[stop]] = sum(absent[number:stop])
-    ends = np.array([COSTS["ends"] if _closes(state) else _MOST for state in STATES])
-    skips = then(passed[:, [0, *between]], skipped[[0, *between]][:, between])
-    ways = np.minimum(passed, then(skips, passed[between]))
-    ways = np.minimum(ways, ends[:, None] + ways[0])
-    ways[:, 0] = np.minimum(ways[:, 0], ends)
-    closing = [place for place, state in enumerate(STATES) if _closes(state) or not place]
-    into = np.roll(ways, 1, axis=1)
-    into[:, [0, *between]] = ways[:, [0, *between]]
+    cumulative = np.cumsum([_skip_cost(state) for state in STATES], dtype=np.int32)
+    one_by_one = np.where(np.tri(size, k=-1), _INFINITE, cumulative[None] - cumulative[:, None])
+    line_costs = [
+        COSTS["line may be missing" if line in _OPTIONAL else "line"] for line in range(len(_ROWS))
+    ]
+    by_line = np.where(np.eye(size), 0, _INFINITE).astype(np.int32)
+    for line, start in enumerate(between):
+        by_line[0, start] = COSTS["begins"]
+        for stop in range(line, len(between)):
+            by_line[start, between[stop]] = sum(line_costs[line:stop])
+    starts = [0, *between]
+    to_line = _min_plus(one_by_one[:, starts], by_line[starts][:, between])
+    passing: NDArray[np.int32] = np.minimum(one_by_one, _min_plus(to_line, one_by_one[between]))
+    ends = np.array([COSTS["ends"] if _may_end(state) else _INFINITE for state in STATES])
+    passing = np.minimum(passing, ends[:, None] + passing[0])
+    passing[:, 0] = np.minimum(passing[:, 0], ends)
+    return passing
+
+
+@lru_cache(maxsize=1)
+def _transitions() -> _Transitions:
+    """Return the costs of transitions, made once."""
+    passing = _passing_costs()
+    # a glyph enters state j when all states up to j - 1 are passed; the states that hold any number
+    # of glyphs, none included, are entered when they are passed themselves
+    into = np.roll(passing, 1, axis=1)
+    optional = [place for place, state in enumerate(STATES) if state.kind in ("outside", "between")]
+    into[:, optional] = passing[:, optional]
     jumps = np.array([into] * len(Gap))
+    staying = np.zeros((len(Gap), len(STATES)), np.int16)
     numbers = np.flatnonzero([state.kind == "number" for state in STATES])
     for place, state in enumerate(STATES):
         if state.name == "=" or (state.kind == "letter" and state.name.isalpha()):
-            before = [number for number in numbers if STATES[number].line == state.line]
-            jumps[Gap.NONE, before, place] += COSTS["label without gap"]
-    staying = np.zeros((len(Gap), size), np.int16)
-    for place, state in enumerate(STATES):
-        if place and STATES[place - 1].name == "=" and state.kind == "number":
-            others = np.arange(size) != place - 1
-            jumps[:, others, place] += np.array(GAP_COSTS["unlabelled"])[:, None]
-        if state.kind == "number":
-            reply, angle = state.line < PROMPTS, state.line == ANGLE_ROW
-            staying[:, place] = GAP_COSTS["reply" if reply else "angle" if angle else "number"]
-            if angle and state.name != ANGLES[0]:
-                jumps[Gap.NONE, :, place] += COSTS["angle without gap"]
-            elif not angle:
-                before = numbers[numbers != place]
-                jumps[Gap.NONE, before, place] += COSTS["number without gap"]
-    ending = ways[:, closing].min(axis=1)
-    return np.minimum(jumps, _MOST).astype(np.int16), staying, ending.astype(np.int16)
+            of_line = [number for number in numbers if STATES[number].line == state.line]
+            jumps[Gap.NONE, of_line, place] += COSTS["label without gap"]
+        elif state.kind == "number":
+            _add_gap_costs(place, numbers, jumps, staying)
+    may_end = [place for place, state in enumerate(STATES) if _may_end(state) or not place]
+    ending = passing[:, may_end].min(axis=1)
+    return _Transitions(
+        np.minimum(jumps, _INFINITE).astype(np.int16), staying, ending.astype(np.int16)
+    )
 
 
-def _missing(state: State) -> int:
-    """What it costs to pass over a state without a glyph."""
+def _add_gap_costs(
+    place: int, numbers: NDArray[np.intp], jumps: NDArray[np.int32], staying: Costs
+) -> None:
+    """Add to a number's transitions what the gap before a glyph costs.
+
+    ``place``: the number's state; ``numbers``: the states of all numbers.
+    """
+    state = STATES[place]
+    is_reply, is_angle = state.line < PROMPTS, state.line == ANGLE_ROW
+    if STATES[place - 1].name == "=":
+        is_other = np.arange(len(STATES)) != place - 1
+        jumps[:, is_other, place] += np.array(GAP_COSTS["unlabelled"])[:, None]
+    staying[:, place] = GAP_COSTS["reply" if is_reply else "angle" if is_angle else "number"]
+    if is_angle and state.name != ANGLES[0]:
+        jumps[Gap.NONE, :, place] += COSTS["angle without gap"]
+    elif not is_angle:
+        jumps[Gap.NONE, numbers[numbers != place], place] += COSTS["number without gap"]
+
+
+def _skip_cost(state: State) -> int:
+    """Return the cost of passing over a state without a glyph."""
     if state.kind == "letter":
         lost = "letter" if state.name.isalpha() else "=" if state.name == "=" else "mark"
         return COSTS[f"{lost} lost"]
     if state.kind == "number":
         return COSTS["reply lost" if state.line < PROMPTS else "number lost"]
-    return {"outside": _MOST, "loose": COSTS["mark lost"]}.get(state.kind, 0)
+    return {"outside": _INFINITE, "loose": COSTS["mark lost"]}.get(state.kind, 0)
 
 
-def _closes(state: State) -> bool:
-    """Whether a text may end here."""
+def _may_end(state: State) -> bool:
+    """Return True for a state after which a page may end."""
     return state.kind in ("number", "between") or state.name in (")", "%", "*")
 
 
 @lru_cache(maxsize=1)
-def _alike() -> list[tuple[State, bool, list[int]]]:
-    """The states in which every glyph costs the same: one of them, whether it is a number behind
-    its "=", and the places of all."""
+def _cost_classes() -> list[tuple[State, bool, list[int]]]:
+    """Return the states grouped by what glyphs cost in them.
+
+    Each group is one of its states, True if they are numbers behind an ``=``, and their places.
+    """
     groups: dict[tuple[str, str, bool, bool], list[int]] = {}
     for place, state in enumerate(STATES):
-        number = state.kind == "number"
+        is_number = state.kind == "number"
         kind = "letter" if state.kind == "loose" else state.kind
-        labelled = number and STATES[place - 1].name == "="
-        key = kind, "" if number else state.name, number and state.line < PROMPTS, labelled
+        follows_sign = is_number and STATES[place - 1].name == "="
+        is_reply = is_number and state.line < PROMPTS
+        key = kind, "" if is_number else state.name, is_reply, follows_sign
         groups.setdefault(key, []).append(place)
     return [(STATES[places[0]], key[-1], places) for key, places in groups.items()]
 
 
 @lru_cache(maxsize=2000)
-def _emitted(char: str, broken: bool = False) -> tuple[Costs, Costs]:
-    """What a glyph costs by state: that opens it, and one more of it; "" is none of the page's.
-    ``broken``: whether a line ends before it."""
-    opened = COSTS["letter opens number on a new line"] * (broken and char.isalpha())
-    more = COSTS["inserted figure" if char.isdigit() else "inserted"]
-    enter, stay = np.empty((2, len(STATES)), np.int16)
-    for state, labelled, places in _alike():
+def _glyph_costs(char: str, broken: bool = False) -> tuple[Costs, Costs]:
+    """Return what a glyph costs in each state: as the first of the state, and as a further one.
+
+    Parameters
+    ----------
+    char : str
+        The glyph, "" for one that is known to be none of the program's.
+    broken : bool
+        True if a line ends before it.
+    """
+    at_line_start = COSTS["letter opens number on a new line"] * (broken and char.isalpha())
+    inserted = COSTS["inserted figure" if char.isdigit() else "inserted"]
+    firsts, furthers = np.empty((2, len(STATES)), np.int16)
+    for state, follows_sign, places in _cost_classes():
         if state.kind in ("outside", "between"):
             figure = COSTS["figure between"] * (char.isdigit() and state.kind == "between")
             first = further = (COSTS[state.kind] + figure) * bool(char)
         elif not char:
-            first = further = _MOST
+            first = further = _INFINITE
         elif state.kind == "number":
             further = _in_number(char, state.line < PROMPTS)
-            first = further + opened * labelled
+            first = further + at_line_start * follows_sign
         else:
-            first, further = label_cost(state.name, char), more
-        enter[places], stay[places] = first, further
-    return enter, stay
+            first, further = label_cost(state.name, char), inserted
+        firsts[places], furthers[places] = first, further
+    return firsts, furthers
 
 
 def _in_number(char: str, reply: bool) -> int:
+    """Return what a glyph costs in a number, or in a reply."""
     if char.isdigit():
         return 0
     if char in NUMERIC or char == "?" or (reply and char in ",;"):
         return COSTS["E in number" if char == "E" else "mark in number"]
     if char == "=" or not printed_for(char):
         return COSTS["= in number" if char == "=" else "other in number"]
-    letter = char.isalpha() and char not in "OQLISBZ"
-    return COSTS["letter in number" if letter else "look-alike in number"]
+    is_letter = char.isalpha() and char not in "OQLISBZ"
+    return COSTS["letter in number" if is_letter else "look-alike in number"]
 
 
 WINDOW = 9000
 """Glyphs aligned at a time: a dozen printouts."""
-_WHOLE = 20
-"""Numbers of a page for which the budget is filled again; labels without end are aligned as 14."""
+_MIN_NUMBERS = 20
+"""Numbers from which a page fills the budget again; labels without end are aligned as 14."""
 _LABELS = re.compile("=|VAX|VAY|VBX|VBY|LOSS|M[AB]|[IDPTWXY][AB]|[UV][XY]")
 _EXPONENT = re.compile("(?<=[0-9.])E(?=[-+][0-9])")
 _ROW_PIECE = 10
 """Glyphs of a row of angles that may stand outside between its pieces: one number."""
-_ASIDE = 1000
+_MAX_INTERRUPTION = 1000
 """Glyphs that may stand between two parts of a page: half a page of text."""
 
 
 @dataclass
 class Budget:
-    """How much text is read: ``left`` glyphs more, as many again for every page found;
-    ``stopped``: the glyph at which it was spent, none where it was not."""
+    """Glyphs that may still be aligned.
+
+    Attributes
+    ----------
+    left : int
+        Number of glyphs left; every whole page that is found fills it again.
+    stopped : int, optional
+        The glyph at which the budget was spent.
+    """
 
     left: int = 25_000
     stopped: int | None = None
@@ -237,9 +321,22 @@ class Budget:
 def align(
     glyphs: Sequence[Glyph], start: int, stop: int, budget: Budget, notes: Collection[int]
 ) -> Iterator[dict[int, int]]:
-    """The printouts in the glyphs from one place to another, in order: the state of each of its
-    glyphs, by place; as many as the budget allows. ``notes``: glyphs known to be none of the
-    program's."""
+    """Yield the printouts among some glyphs, in order, as far as the budget allows.
+
+    Parameters
+    ----------
+    glyphs : sequence of Glyph
+    start, stop : int
+        Range of the glyphs that are aligned.
+    budget : Budget
+    notes : collection of int
+        Places of glyphs that are known to be none of the program's.
+
+    Yields
+    ------
+    dict of int to int
+        State of each glyph of a printout, by its place.
+    """
     while start < stop:
         window = glyphs[start : min(start + WINDOW, stop)]
         last = start + len(window) >= stop
@@ -253,34 +350,35 @@ def align(
         chars = ["" if at in notes else glyph.char for at, glyph in enumerate(window, start)]
         for exponent in _EXPONENT.finditer(text):
             chars[exponent.start()] = "0"  # as good as a figure, and no label
-        parts = _parts(start, _states(chars, [glyph.gap for glyph in window]))
-        found = parts if last else parts[:-1] or parts[:1]
-        numbers = [
-            sum(STATES[place].kind == "number" for place in {*part.values()}) for part in found
+        parts = _segments(start, _decode(chars, [glyph.gap for glyph in window]))
+        # the last segment may go on behind the window: it is aligned again with what follows
+        complete = parts if last else parts[:-1] or parts[:1]
+        counts = [
+            sum(STATES[place].kind == "number" for place in {*part.values()}) for part in complete
         ]
-        whole = max(numbers, default=0) >= _WHOLE
-        budget.left = Budget.left if whole else budget.left - len(window)
-        yield from found
+        has_page = max(counts, default=0) >= _MIN_NUMBERS
+        budget.left = Budget.left if has_page else budget.left - len(window)
+        yield from complete
         if last:
             return
         start = min(parts[-1]) if len(parts) > 1 else max(parts[0]) + 1 if parts else start + WINDOW
 
 
-def _states(chars: Sequence[str], gaps: Sequence[int]) -> list[int]:
-    """The state of every glyph on the cheapest way."""
-    jumps, staying, ending = _jumps()
+def _decode(chars: Sequence[str], gaps: Sequence[int]) -> list[int]:
+    """Return the state of every glyph in the cheapest sequence of states."""
+    jumps, staying, ending = _transitions()
     costs = np.empty((len(chars) + 1, len(STATES)), np.int16)
-    costs[0] = np.where(np.arange(len(STATES)), _MOST, 0)
+    costs[0] = np.where(np.arange(len(STATES)), _INFINITE, 0)
     stays = np.empty(costs.shape, bool)
     moves = np.empty_like(jumps[0])
     for row, (char, gap) in enumerate(zip(chars, gaps, strict=True)):
-        enter, more = _emitted(char, gap is Gap.LINE)
+        first, further = _glyph_costs(char, gap is Gap.LINE)
         np.add(costs[row][:, None], jumps[gap], out=moves)
-        move = moves.min(axis=0) + enter
-        stay = costs[row] + more + staying[gap]
+        move = moves.min(axis=0) + first
+        stay = costs[row] + further + staying[gap]
         stays[row] = stay <= move
         best = np.minimum(stay, move)
-        np.minimum(best - best.min(), _MOST, out=costs[row + 1])
+        np.minimum(best - best.min(), _INFINITE, out=costs[row + 1])
     states = [int((costs[-1] + ending).argmin())]
     for row in range(len(chars) - 1, 0, -1):
         state = states[-1]
@@ -289,35 +387,42 @@ def _states(chars: Sequence[str], gaps: Sequence[int]) -> list[int]:
     return states[::-1]
 
 
-def _parts(start: int, states: Sequence[int]) -> list[dict[int, int]]:
-    """The stretches of glyphs inside printouts. States only go forward, so one below the one before
-    it begins another printout; a stretch that goes on where the one before left off is of the same,
-    with something between."""
+def _segments(start: int, states: Sequence[int]) -> list[dict[int, int]]:
+    """Return the states of the glyphs of each printout, by the glyphs' places.
+
+    States only go forward, so that one below the one before it begins another printout. A stretch
+    that goes on where the one before left off belongs to the same printout, if no more than
+    `_MAX_INTERRUPTION` glyphs stand between; these get state 0.
+    """
     parts: list[dict[int, int]] = []
     last = before = 0
     for index, state in enumerate(states, start):
         if state:
-            further = STATES[before].line < STATES[state].line and index - last <= _ASIDE
-            if not parts or not (state >= before if index == last + 1 else further):
+            goes_on = STATES[before].line < STATES[state].line
+            goes_on = goes_on and index - last <= _MAX_INTERRUPTION
+            if not parts or not (state >= before if index == last + 1 else goes_on):
                 parts.append({})
             elif index > last + 1:
                 parts[-1].update(dict.fromkeys(range(last + 1, index), 0))
             parts[-1][index] = state
             last, before = index, state
-    return _rows_joined(parts)
+    return _join_angle_rows(parts)
 
 
-def _rows_joined(parts: Sequence[dict[int, int]]) -> list[dict[int, int]]:
-    """The same with a row of angles that blanks and line breaks cut into more than five pieces in
-    one: the pieces beyond begin no printout, for nothing of a page stands between them."""
+def _join_angle_rows(parts: Sequence[dict[int, int]]) -> list[dict[int, int]]:
+    """Return the parts with those that are a continued row of angles joined to the one before.
+
+    Blanks and line breaks may cut the row into more than five pieces. The pieces beyond begin no
+    printout, since nothing of a page stands between them.
+    """
     row = [place for place, state in enumerate(STATES) if state.line == ANGLE_ROW]
-    joined: list[dict[int, int]] = []
+    merged: list[dict[int, int]] = []
     for part in parts:
-        begin, end = min(part), max(joined[-1]) if joined else 0
-        if joined and joined[-1][end] in row and part[begin] in row and begin - end <= _ROW_PIECE:
-            rest = [index for index, state in part.items() if state in row]
-            joined[-1].update(part)
-            joined[-1].update(dict.fromkeys(range(end + 1, max(rest) + 1), row[-1]))
+        begin, end = min(part), max(merged[-1]) if merged else 0
+        if merged and merged[-1][end] in row and part[begin] in row and begin - end <= _ROW_PIECE:
+            pieces = [index for index, state in part.items() if state in row]
+            merged[-1].update(part)
+            merged[-1].update(dict.fromkeys(range(end + 1, max(pieces) + 1), row[-1]))
         else:
-            joined.append(part)
-    return joined
+            merged.append(part)
+    return merged
