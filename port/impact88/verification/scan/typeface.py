@@ -1,7 +1,7 @@
-"""The type a page is written in: the mean glyph of each character, made of the page's own cells.
+"""The typeface of a page: the mean glyph of each character, made of the page's own cells.
 
-Labels need no reading: they are known text at known places. The characters of numbers have their
-first names from small prototypes of a few styles of type.
+Labels need no reading: they are known text at known places. The characters of numbers get their
+first names from small prototypes of digits in a few typefaces ("styles").
 """
 
 from collections.abc import Sequence
@@ -24,73 +24,108 @@ Vectors = NDArray[np.float32]
 BLANK = " "
 NUMERIC = "0123456789.-"
 READABLE = f"{NUMERIC},E{BLANK}"
-"""What may stand in a number's cell: a reply has commas, a large number an exponent."""
+"""Characters of a number's cell: a reply has commas, a large number an exponent."""
 STRENGTHS = (0.4, 1.3)
-"""Between these the ink of a cell may be as strong as the page's."""
+"""Smallest and largest strength of a cell's ink, relative to the page's."""
 _ROUNDS = 2
-"""Times that cells are shifted onto the means they form: the two of the method's description."""
+"""Iterations of shifting cells onto the means that they form."""
 _SHIFTS = [(y, x) for y in range(2 * SLACK + 1) for x in range(2 * SLACK + 1)]
-_ROWS, _TOP, _BOTTOM = 24, 4, 20
-"""Prototypes stand on this many rows, a capital's top and foot at these."""
+_ROWS = 24  # rows of a prototype's picture
+_TOP = 4  # row of a capital's top in it
+_BOTTOM = 20  # row of a capital's foot
 _READINGS = 2
-"""Times that the cells of numbers are read by the means of the names they had."""
+"""Iterations of reading the cells of numbers by means of the names they had before."""
 _STYLES = 3
-"""How many styles a page may mix: a printer's type lies between those that are known."""
-_SPREAD = 1.6
-"""How far apart the cells of a group may be, in units of what three quarters of the pairs of one
-letter keep to. The widest pairs of 11 pages had 1.2 to 2.5, two digits mostly 2 to 4 and once 1.5;
-labels laid out wrongly leave the three quarters alone."""
-_CLEARLY = 0.13, 2.5
-"""How unlike a digit of a known style a cell is at most that is taken for it, and how many times as
-unlike the predicted: 16 digits drawn in another font came to 0.01 to 0.12 and 2.7 to 27 times; 60
-with a blot, a stroke or a scratch to 0.09 and more and 1 to 2.2 times, one to 0.05."""
-_AGAIN = 0.1
-"""What a character's second group costs a cell, in units of `likeness`."""
+"""Number of styles that a page may mix: a printer's type lies between those that are known."""
+_MAX_SPREAD = 1.6
+"""Largest mean distance within a group of cells, in units of the 75th percentile of the distances
+between equal letters of the page's labels. The widest pairs of 11 pages had 1.2 to 2.5, two digits
+mostly 2 to 4 and once 1.5; labels laid out wrongly hardly change the percentile."""
+_MAX_UNLIKE = 0.13
+"""Largest `unlikeness` of a cell to a digit of a known style that it is taken for: 16 digits drawn
+in another font had 0.01 to 0.12; 60 with a blot, a stroke or a scratch 0.09 and more, one 0.05."""
+_MIN_RATIO = 2.5
+"""Smallest ratio of the `unlikeness` to the predicted digit and to the one that the cell is taken
+for: digits in another font had 2.7 to 27; those with a blot, a stroke or a scratch 1 to 2.2."""
+_REPEAT_PENALTY = 0.1
+"""Penalty on a character's second group of cells, per cell, in units of `unlikeness`."""
 
 
 class Sample(NamedTuple):
-    """Cells of a page at every shift, shape (cells, shifts, pixels), with their squared norms."""
+    """Cells of a page at every shift.
+
+    Attributes
+    ----------
+    vectors : ndarray, shape (cells, shifts, pixels)
+    norms : ndarray, shape (cells, shifts)
+        Squared norms of the vectors.
+    shape : tuple of int
+        Height and width of a cell, pixels.
+    """
 
     vectors: Vectors
     norms: Vectors
     shape: tuple[int, int]
 
     def at(self, chosen: NDArray[np.intp]) -> "Sample":
-        """Some of the cells."""
+        """Return some of the cells, by index."""
         return Sample(self.vectors[chosen], self.norms[chosen], self.shape)
 
 
 def sample_of(grid: Grid, places: Sequence[Place]) -> Sample:
-    """The cells at ``places``; those off the grid are blank."""
+    """Return the cells at ``places``; those off the grid are blank."""
     height, width = grid.pictures[0].shape[0] - 2 * SLACK, CELL_WIDTH
-    whole = np.zeros((len(places), height + 2 * SLACK, width + 2 * SLACK), np.float32)
-    for row, place in zip(whole, places, strict=True):
+    windows = np.zeros((len(places), height + 2 * SLACK, width + 2 * SLACK), np.float32)
+    for row, place in zip(windows, places, strict=True):
         picture = grid.pictures[place.line]
         columns = place.cell * CELL_WIDTH + np.arange(row.shape[1])
-        there = (columns >= 0) & (columns < picture.shape[1])
-        row[:, there] = picture[:, columns[there]]
+        is_on_grid = (columns >= 0) & (columns < picture.shape[1])
+        row[:, is_on_grid] = picture[:, columns[is_on_grid]]
     vectors = np.stack(
-        [whole[:, y : y + height, x : x + width].reshape(len(places), -1) for y, x in _SHIFTS], 1
+        [windows[:, y : y + height, x : x + width].reshape(len(places), -1) for y, x in _SHIFTS], 1
     )
     return Sample(vectors, np.einsum("nsp,nsp->ns", vectors, vectors), (height, width))
 
 
 def distances(sample: Sample, means: Vectors) -> tuple[Floats, Floats]:
-    """Squared distance of each cell from each mean at the shift and the strength of ink that fit
-    best, and that strength: shapes (cells, means). Ribbons run dry within a line."""
+    """Return the squared distance of each cell from each mean glyph, and the strength of its ink.
+
+    For a cell x[s] at shift s and a mean m the distance is the minimum over shifts s and strengths
+    a within `STRENGTHS` of |x[s] - a m|²: ribbons run dry within a line.
+
+    Returns
+    -------
+    distances, strengths : ndarray, shape (cells, means)
+    """
     count, shifts, pixels = sample.vectors.shape
-    inner = (sample.vectors.reshape(-1, pixels) @ means.T).reshape(count, shifts, len(means))
+    inner_products = (sample.vectors.reshape(-1, pixels) @ means.T).reshape(
+        count, shifts, len(means)
+    )
     energy = np.maximum(np.einsum("mp,mp->m", means, means), 1e-6)
-    strength = np.clip(inner / energy, *STRENGTHS)
-    squared = sample.norms[:, :, None] - 2 * strength * inner + strength**2 * energy
-    best = np.argmin(squared, axis=1)[:, None, :]
-    least = np.take_along_axis(squared, best, axis=1)[:, 0].astype(float)
+    strength = np.clip(inner_products / energy, *STRENGTHS)
+    squares = sample.norms[:, :, None] - 2 * strength * inner_products + strength**2 * energy
+    best = np.argmin(squares, axis=1)[:, None, :]
+    least = np.take_along_axis(squares, best, axis=1)[:, 0].astype(float)
     return np.maximum(least, 0.0), np.take_along_axis(strength, best, axis=1)[:, 0].astype(float)
 
 
 class Typeface(NamedTuple):
-    """Mean glyphs: ``characters`` in order, ``means`` (characters, pixels), on how many cells each
-    rests, and which shifted cells they were made of."""
+    """Mean glyphs of a page.
+
+    Attributes
+    ----------
+    characters : str
+        The characters in order.
+    means : ndarray, shape (characters, pixels)
+    counts : ndarray, shape (characters,)
+        Number of cells of which each mean was made.
+    names : ndarray, shape (cells,)
+        Index of each cell's character, -1 for cells that belong to none.
+    members : ndarray, shape (cells, pixels)
+        The cells, shifted onto their means.
+    shape : tuple of int
+        Height and width of a glyph, pixels.
+    """
 
     characters: str
     means: Vectors
@@ -100,40 +135,44 @@ class Typeface(NamedTuple):
     shape: tuple[int, int]
 
     def between(self) -> Floats:
-        """Squared distances of the means from each other, of whatever strength, and from blank
-        paper: of the two directions the less."""
-        whole = np.vstack([self.means, np.zeros_like(self.means[:1])])
-        norms = np.einsum("mp,mp->m", whole, whole)
-        apart, _ = distances(Sample(whole[:, None], norms[:, None], (0, 0)), whole)
-        least: Floats = np.minimum(apart, apart.T)
+        """Return the squared distances of the means from each other and, last, from blank paper.
+
+        Either mean may have the strength that fits best; the smaller distance counts.
+        """
+        glyphs = np.vstack([self.means, np.zeros_like(self.means[:1])])
+        norms = np.einsum("mp,mp->m", glyphs, glyphs)
+        to_means, _ = distances(Sample(glyphs[:, None], norms[:, None], (0, 0)), glyphs)
+        least: Floats = np.minimum(to_means, to_means.T)
         return least
 
     def without(self, cell: int) -> Vectors | None:
-        """The mean of a cell's own class, the cell left out; None where it stands alone."""
+        """Return the mean of a cell's own class, the cell left out; None if it is alone there."""
         name = self.names[cell]
         if name < 0 or self.counts[name] < 2:
             return None
         count = self.counts[name]
-        rest: Vectors = (self.means[name] * count - self.members[cell]) / (count - 1)
-        return rest
+        mean: Vectors = (self.means[name] * count - self.members[cell]) / (count - 1)
+        return mean
 
 
 def typeface_of(sample: Sample, names: Sequence[str]) -> Typeface:
-    """The mean glyph of each name; cells named "" belong to none. Cells are shifted onto their
-    mean as it forms."""
+    """Return the mean glyph of each name; cells named "" belong to none.
+
+    Cells are shifted onto their means, and the means made again, `_ROUNDS` times.
+    """
     characters = "".join(sorted(set(names) - {"", BLANK}))
     index = np.array([characters.find(name or BLANK) for name in names])
-    pick = (index == np.arange(len(characters))[:, None]).astype(np.float32)
-    counts = pick.sum(axis=1).astype(int)
+    membership = (index == np.arange(len(characters))[:, None]).astype(np.float32)
+    counts = membership.sum(axis=1).astype(int)
 
     def mean(members: Vectors) -> Vectors:
-        return np.asarray(pick @ members / np.maximum(counts[:, None], 1), np.float32)
+        return np.asarray(membership @ members / np.maximum(counts[:, None], 1), np.float32)
 
     members = sample.vectors[:, len(_SHIFTS) // 2]
     for _ in range(_ROUNDS):
         # each cell at the shift that fits the mean of its class
-        own = mean(members)[np.maximum(index, 0)]
-        inner = np.matmul(sample.vectors, own[:, :, None])[:, :, 0]
+        means = mean(members)[np.maximum(index, 0)]
+        inner = np.matmul(sample.vectors, means[:, :, None])[:, :, 0]
         best = np.argmin(sample.norms - 2 * inner, axis=1)
         members = sample.vectors[np.arange(len(index)), best]
     return Typeface(characters, mean(members), counts, index, members, sample.shape)
@@ -141,36 +180,51 @@ def typeface_of(sample: Sample, names: Sequence[str]) -> Typeface:
 
 @lru_cache
 def prototypes() -> tuple[str, Vectors]:
-    """The characters, and glyphs of shape (styles, characters, rows, columns)."""
+    """Return the known digits: characters, and glyphs (styles, characters, rows, columns)."""
     with resources.files("impact88.verification.scan").joinpath("digits.npz").open("rb") as file:
-        stored = np.load(file)
-        characters = "".join(stored["characters"].tolist())
-        glyphs = stored["glyphs"].astype(np.float32) / 255
+        archive = np.load(file)
+        characters = "".join(archive["characters"].tolist())
+        glyphs = archive["glyphs"].astype(np.float32) / 255
     return characters, ndimage.gaussian_filter(glyphs, (0, 0, 0.8, 0.8))
 
 
-def _normal(sample: Sample, typeface: Typeface) -> Vectors:
-    """Cells, the height of the page's capitals that of the prototypes': (cells, rows, columns)."""
+def _scaled_cells(sample: Sample, typeface: Typeface) -> Vectors:
+    """Return cells scaled to the prototypes' height of capitals: shape (cells, rows, columns)."""
     height, width = sample.shape
     capitals = [typeface.characters.find(c) for c in "MABEIDTPUVXYKL" if c in typeface.characters]
     profile = typeface.means[capitals].reshape(-1, height, width).sum(axis=(0, 2))
-    inked = np.flatnonzero(profile > 0.25 * profile.max())
-    top, foot = float(inked[0]), float(inked[-1] + 1)
-    middle = sample.vectors[:, sample.vectors.shape[1] // 2].reshape(-1, height, width)
+    inked_rows = np.flatnonzero(profile > 0.25 * profile.max())
+    top, foot = float(inked_rows[0]), float(inked_rows[-1] + 1)
+    centred = sample.vectors[:, sample.vectors.shape[1] // 2].reshape(-1, height, width)
     scale = (foot - top) / (_BOTTOM - _TOP)
     offset = top + (0.5 - _TOP) * scale - 0.5
     normal: Vectors = ndimage.affine_transform(
-        middle, [1, scale, 1], [0, offset, 0], (len(middle), _ROWS, width),
+        centred, [1, scale, 1], [0, offset, 0], (len(centred), _ROWS, width),
         order=1, mode="grid-constant",
     )  # fmt: skip
     return normal
 
 
-def likeness(sample: Sample, typeface: Typeface, styles: int | None = _STYLES) -> Floats:
-    """How unlike each cell is to each of `NUMERIC` in the ``styles`` that fit best, None for all:
-    shape (cells, characters), 0 for the same picture, 1 for nothing in common."""
+def unlikeness(sample: Sample, typeface: Typeface, styles: int | None = _STYLES) -> Floats:
+    """Return how unlike each cell is to each of `NUMERIC`, the best of the styles.
+
+    Unlikeness is 1 - cos φ, with φ the angle between the two pictures as vectors, at the best
+    shift: 0 for the same picture, 1 for nothing in common.
+
+    Parameters
+    ----------
+    sample : Sample
+    typeface : Typeface
+        Gives the height of the page's capitals.
+    styles : int or None
+        Number of styles that are considered, those that fit the page best; None for all.
+
+    Returns
+    -------
+    ndarray, shape (cells, characters)
+    """
     characters, glyphs = prototypes()
-    cells = ndimage.gaussian_filter(_normal(sample, typeface), (0, 0.5, 0.5))
+    cells = ndimage.gaussian_filter(_scaled_cells(sample, typeface), (0, 0.5, 0.5))
     reach = 3
     padded = np.pad(cells, ((0, 0), (reach, reach), (reach, reach)))
     flat = glyphs.reshape(-1, _ROWS * CELL_WIDTH)
@@ -178,9 +232,9 @@ def likeness(sample: Sample, typeface: Typeface, styles: int | None = _STYLES) -
     best = np.full((len(cells), len(flat)), -1.0)
     for y in range(0, 2 * reach + 1):
         for x in range(1, 2 * reach):
-            moved = padded[:, y : y + _ROWS, x : x + CELL_WIDTH].reshape(len(cells), -1)
-            norm = np.maximum(np.linalg.norm(moved, axis=1, keepdims=True), 1e-3)
-            best = np.maximum(best, moved @ flat.T / norm)
+            shifted = padded[:, y : y + _ROWS, x : x + CELL_WIDTH].reshape(len(cells), -1)
+            norm = np.maximum(np.linalg.norm(shifted, axis=1, keepdims=True), 1e-3)
+            best = np.maximum(best, shifted @ flat.T / norm)
     apart = 1 - best.reshape(len(cells), len(glyphs), len(characters))
     total = apart.min(axis=2).sum(axis=0)
     order = np.argsort(total)[:styles]
@@ -192,97 +246,130 @@ def foreign_digits(
     sample: Sample,
     typeface: Typeface,
     names: Sequence[str],
-    alone: NDArray[np.bool_],
-    far: NDArray[np.bool_],
+    is_alone: NDArray[np.bool_],
+    is_far: NDArray[np.bool_],
 ) -> list[str]:
-    """The digit that a cell is in a known style of type, where it is not the predicted: of cells
-    alone with their character the nearest in the page's styles, of those that are far from their
-    mean what they clearly are in any."""
-    hands = [""] * len(names)
-    known = np.array([name in NUMERIC for name in names])
-    for asked, styles, most, clearly in ((alone, _STYLES, 1.0, 1.0), (far, None, *_CLEARLY)):
-        chosen = np.flatnonzero(asked & known)
+    """Return the digit other than the predicted that each cell is in a known style, or "".
+
+    Parameters
+    ----------
+    sample : Sample
+    typeface : Typeface
+    names : sequence of str
+        Predicted characters.
+    is_alone : ndarray of bool
+        Cells alone with their character: the most alike digit in the page's styles is returned.
+    is_far : ndarray of bool
+        Cells far from their mean: the digit must be alike in one of all styles, within
+        `_MAX_UNLIKE`, and clearly more so than the predicted, by `_MIN_RATIO`.
+    """
+    digits = [""] * len(names)
+    is_numeric = np.array([name in NUMERIC for name in names])
+    for is_asked, styles, max_unlike, min_ratio in (
+        (is_alone, _STYLES, 1.0, 1.0),
+        (is_far, None, _MAX_UNLIKE, _MIN_RATIO),
+    ):
+        chosen = np.flatnonzero(is_asked & is_numeric)
         if len(chosen):
-            apart = likeness(sample.at(chosen), typeface, styles)
-            for cell, row in zip(chosen.tolist(), apart, strict=True):
+            unlike = unlikeness(sample.at(chosen), typeface, styles)
+            for cell, row in zip(chosen.tolist(), unlike, strict=True):
                 least = float(row.min())
-                if least < most and least * clearly < row[NUMERIC.index(names[cell])]:
-                    hands[cell] = NUMERIC[int(row.argmin())]
-    return hands
+                if least < max_unlike and least * min_ratio < row[NUMERIC.index(names[cell])]:
+                    digits[cell] = NUMERIC[int(row.argmin())]
+    return digits
 
 
-def _apart(sample: Sample) -> Floats:
-    """How far cells are from each other, a blot or the strength of the ribbon aside: shape
-    (cells, cells)."""
+def _pair_distances(sample: Sample) -> Floats:
+    """Return the distances of cells from each other, relative to their energies: (cells, cells).
+
+    The smaller of the two directions counts: a blot, or the strength of the ribbon, does not.
+    """
     middle = sample.vectors.shape[1] // 2
-    apart, _ = distances(sample, sample.vectors[:, middle])
+    to_cells, _ = distances(sample, sample.vectors[:, middle])
     energy = sample.norms[:, middle] + 1e-6
-    pairs: Floats = np.minimum(apart, apart.T) / np.sqrt(np.sqrt(np.outer(energy, energy)))
+    pairs: Floats = np.minimum(to_cells, to_cells.T) / np.sqrt(np.sqrt(np.outer(energy, energy)))
     np.fill_diagonal(pairs, 0)
     return pairs
 
 
-def _named(sample: Sample, unlike: Floats, widest: float) -> NDArray[np.intp]:
-    """A name for each cell, as an index of `NUMERIC`: cells that are alike have one name, cells
-    that are not have two where that costs little. So a 3 that is most like the 8 of every known
-    style is a 3 where the page has another 8."""
-    tree = linkage(squareform(_apart(sample), checks=False), "average")
+def _name_clusters(sample: Sample, unlike: Floats, widest: float) -> NDArray[np.intp]:
+    """Return a name for each cell, as an index of `NUMERIC`.
+
+    Cells are clustered (average linkage, distances up to ``widest``); the clusters are assigned to
+    characters with the least total `unlikeness`, each character once, or again with
+    `_REPEAT_PENALTY`. So a 3 that is most like the 8 of every known style is a 3 where the page has
+    another 8.
+    """
+    tree = linkage(squareform(_pair_distances(sample), checks=False), "average")
     widest = min([widest, *tree[: 1 - len(NUMERIC), 2][-1:]])  # a page has all digits, or nearly
-    group = fcluster(tree, widest, "distance") - 1
-    members = (group[None] == np.arange(group.max() + 1)[:, None]).astype(float)
+    groups = fcluster(tree, widest, "distance") - 1
+    members = (groups[None] == np.arange(groups.max() + 1)[:, None]).astype(float)
     sizes = members.sum(axis=1, keepdims=True)
-    times = 1 + len(members) // len(NUMERIC)  # a name may be given again, at a price
-    costs = [members @ unlike + again * _AGAIN * sizes for again in range(times + 1)]
+    repeats = 1 + len(members) // len(NUMERIC)  # a name may be given again, at a price
+    costs = [members @ unlike + repeat * _REPEAT_PENALTY * sizes for repeat in range(repeats + 1)]
     rows, columns = linear_sum_assignment(np.hstack(costs))
     names: NDArray[np.intp] = np.zeros(len(members), int)
     names[rows] = columns % len(NUMERIC)
-    return np.asarray(names[group])
+    return np.asarray(names[groups])
 
 
 def read_numbers(grid: Grid, sheets: Sequence[Sheet]) -> list[dict[str, Floats]]:
-    """By name of each printout's numbers the cost of each of `READABLE` in each cell, 0 for the
-    likeliest. All printouts of a page share its type."""
+    """Return for each printout the cost of each of `READABLE` in each cell of its numbers.
+
+    All printouts of a page share its typeface. Cells get first names by `_name_clusters`; the means
+    of the named cells are then compared with all cells, `_READINGS` times.
+
+    Returns
+    -------
+    list of dict of str to ndarray, shape (cells, characters)
+        By name of the number: squared distance from the mean of the character less that from the
+        nearest, in units of 0.6 of the page's usual distance; 0 for the likeliest character.
+    """
     if not sheets:
         return []
     places: list[Place] = []
     names: list[str] = []
     chosen: list[int] = []
     numbers: list[tuple[int, str, slice]] = []
-    for which, sheet in enumerate(sheets):
-        for name, text, held in (piece for row in sheet.rows.values() for piece in row.pieces):
+    for number, sheet in enumerate(sheets):
+        for name, text, cells in (piece for row in sheet.rows.values() for piece in row.pieces):
             if name:
-                begin = len(chosen)
-                chosen += range(len(places), len(places) + len(held))
-                numbers.append((which, name, slice(begin, len(chosen))))
-            places += held
-            names += text if len(text) == len(held) else BLANK * len(held)
+                start = len(chosen)
+                chosen += range(len(places), len(places) + len(cells))
+                numbers.append((number, name, slice(start, len(chosen))))
+            places += cells
+            names += text if len(text) == len(cells) else BLANK * len(cells)
     sample = sample_of(grid, places)
     of_numbers = sample.at(np.array(chosen))
-    labels = np.array([k for k, name in enumerate(names) if name != BLANK])
-    unlike = likeness(of_numbers, typeface_of(sample, names))
+    label_cells = np.array([k for k, name in enumerate(names) if name != BLANK])
+    unlike = unlikeness(of_numbers, typeface_of(sample, names))
     # how far apart two cells of one character are on this page, as its labels show
-    letters = np.array(names)[labels]
-    same = np.triu(letters[:, None] == letters, 1)
-    usual = np.percentile(_apart(sample.at(labels))[same], 75) if same.any() else 0.0
-    first = _named(of_numbers, unlike, _SPREAD * float(usual))
+    letters = np.array(names)[label_cells]
+    is_same = np.triu(letters[:, None] == letters, 1)
+    usual = (
+        np.percentile(_pair_distances(sample.at(label_cells))[is_same], 75)
+        if is_same.any()
+        else 0.0
+    )
+    first = _name_clusters(of_numbers, unlike, _MAX_SPREAD * float(usual))
     for cell, k in zip(chosen, first, strict=True):
         names[cell] = NUMERIC[k]
     costs = np.full((len(chosen), len(READABLE)), np.inf)
     for _ in range(_READINGS):
         typeface = typeface_of(sample, names)
-        apart, strength = distances(of_numbers, typeface.means)
-        weak = np.take_along_axis(strength, apart.argmin(axis=1)[:, None], axis=1) ** 2
+        to_means, strength = distances(of_numbers, typeface.means)
+        weak = np.take_along_axis(strength, to_means.argmin(axis=1)[:, None], axis=1) ** 2
         costs[:] = np.inf
         for k, character in enumerate(READABLE):
             if (column := typeface.characters.find(character)) >= 0:
-                costs[:, k] = apart[:, column]
+                costs[:, k] = to_means[:, column]
         costs[:, -1] = of_numbers.norms.min(axis=1)
         for cell, k in zip(chosen, costs.argmin(axis=1), strict=True):
             names[cell] = READABLE[k]
-    own = costs.min(axis=1, keepdims=True)
-    unit = max(float(np.median(own)) * 0.6, 1e-3)
-    costs = (costs - own) / (unit * weak)
+    least = costs.min(axis=1, keepdims=True)
+    unit = max(float(np.median(least)) * 0.6, 1e-3)
+    costs = (costs - least) / (unit * weak)
     return [
-        {name: costs[part] for index, name, part in numbers if index == which}
-        for which in range(len(sheets))
+        {name: costs[part] for index, name, part in numbers if index == number}
+        for number in range(len(sheets))
     ]
