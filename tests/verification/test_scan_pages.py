@@ -40,7 +40,7 @@ from impact88.verification.scan.holding import (
 )
 from impact88.verification.scan.layout import Place, Sheet
 from impact88.verification.scan.rates import COUNTS, NONE, sentences, table
-from impact88.verification.scan.scenes import WORST, Candidate, Read, borne_out
+from impact88.verification.scan.scenes import MAX_CELL_COST, Candidate, Read, confirm_inputs
 from impact88.verification.scan.typeface import READABLE
 
 pytest.importorskip("scipy", reason="the extra scan is not installed")
@@ -173,8 +173,8 @@ def test_an_input_that_no_result_bears_out_is_what_the_paper_shows() -> None:
     scene = {**{name: str(value) for name, value in RUN_1.items()}, "DA": "0"}
     scene["M"] = "6"
     one = Candidate(scene, run_all([scene])[0], 0.0)
-    assert borne_out(one, {"TA": "8"}).outcome.fields["TA"] == "8"
-    assert borne_out(one, {"TB": "8"}) is one
+    assert confirm_inputs(one, {"TA": "8"}).outcome.fields["TA"] == "8"
+    assert confirm_inputs(one, {"TB": "8"}) is one
 
 
 @pytest.mark.parametrize(
@@ -258,7 +258,7 @@ def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, be
     monkeypatch.setattr(sheets, "scene_of", lambda *given: object())
     monkeypatch.setattr(sheets, "compare_cells", lambda grid, known: [[] for one in known])
     monkeypatch.setattr(sheets, "judge", lambda *given_: next(given))
-    monkeypatch.setattr(sheets, "borne_out", lambda one, *_: one)
+    monkeypatch.setattr(sheets, "confirm_inputs", lambda one, *_: one)
     grid = SimpleNamespace(odds=lambda: [np.zeros(8)], clarity=0.9)
     leaves = sheets._leaves(grid, [Sheet(gain=1000.0), Sheet(gain=1000.0)], [])
     expected = Verdict.DIFFERS if beside is Verdict.IDENTICAL else Verdict.INCOMPLETE
@@ -729,7 +729,7 @@ def test_a_page_read_otherwise_in_more_places_than_differ_accuses_nobody(
 ) -> None:
     """What the first reading contradicts of the scene, less what the cells that differ explain."""
     monkeypatch.setattr(Sheet, "whole", True)
-    cost = WORST + MOST_MISREAD + beyond
+    cost = MAX_CELL_COST + MOST_MISREAD + beyond
     candidate = Candidate({}, SimpleNamespace(fields={}, ending=None), cost)  # type: ignore[arg-type]
     differs = cell("TB", distance=100.0, other_distance=FOREIGN - 1)
     expected = Verdict.INCOMPLETE if beyond > 0 else Verdict.DIFFERS

@@ -24,7 +24,7 @@ from ..scan.picture import Page, pages_of
 from ..scan.rates import sentences
 from ..scan.residue import Mark
 from ..scan.scenes import scenes_in
-from ..scan.sheets import Leaf, looked
+from ..scan.sheets import Leaf, read_page
 from ..scan.typeface import BLANK
 from .verification import Verification
 
@@ -45,7 +45,7 @@ def verified(
             unread = 0
             for paper in papers_of(page.picture):
                 tried = [*seeds, *scenes_in(page.text)]
-                seen = looked(paper.grey, tried, paper.coloured, copy)
+                seen = read_page(paper.grey, tried, paper.coloured, copy)
                 unread += not seen.leaves
                 causes = causes or ("" if seen.leaves else "; ".join(paper.remarks))
                 for leaf in seen.leaves:

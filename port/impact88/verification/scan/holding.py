@@ -25,7 +25,7 @@ from ..judging.judgement import Verdict
 from .grid import Grid
 from .ink import Floats
 from .layout import SPACED, Place, Sheet
-from .scenes import WORST, Candidate, Read
+from .scenes import MAX_CELL_COST, Candidate, Read
 from .typeface import (
     BLANK,
     READABLE,
@@ -70,7 +70,7 @@ MOST_DOUBTFUL = 4
 """Doubtful cells on a page that is settled; with more it was the reading that went wrong."""
 MOST_DIFFERING = 4
 """Cells that differ on a page that is accused; with more it was the reading that went wrong."""
-MOST_MISREAD = 2 * WORST
+MOST_MISREAD = 2 * MAX_CELL_COST
 """Largest cost of the first reading against the scene beyond the cells that differ: 240 of 245
 altered pages stay within, three genuine ones that had been accused had 20 to 36."""
 _MARKS = frozenset(".,-")
@@ -502,7 +502,7 @@ def judge(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> Judged:
         return Judged(Verdict.INCOMPLETE, differing, doubtful, reason)
     verdict, only_slight = Verdict.IDENTICAL, all(map(_is_slight, doubtful))
     if differing:
-        misread = candidate.cost - WORST * len(differing)
+        misread = candidate.cost - MAX_CELL_COST * len(differing)
         sure = only_slight and len(differing) <= MOST_DIFFERING and misread <= MOST_MISREAD
         verdict = Verdict.DIFFERS if sure else Verdict.INCOMPLETE
     elif doubtful:
