@@ -16,7 +16,7 @@ from ..judging.copies import CopyPages, as_printed, converted_inputs
 from ..judging.judgement import Doubtful, FieldCheck, Status, Verdict
 from ..reading.printout import read_printouts
 from ..scan.cleaning import Paper, papers_of
-from ..scan.exhibit import exhibit, shown
+from ..scan.exhibit import character_name, exhibit
 from ..scan.grid import Grid
 from ..scan.holding import Cell, state
 from ..scan.ink import Floats
@@ -138,9 +138,9 @@ def _verification(
         result.remarks.append(f"page {page.number}: {leaf.judged.reason}")
     result.findings += [
         f"page {page.number}, line {cell.place.line + 1}, cell {cell.place.cell + 1}: "
-        f"{cell.name or 'a label'} shows {shown(cell.other)} where the program prints "
-        f"{shown(cell.predicted)} (margin {cell.margin:+.2f}, {cell.count} and {cell.other_count} "
-        "cells of each on the page)"
+        f"{cell.name or 'a label'} shows {character_name(cell.other)} where the program prints "
+        f"{character_name(cell.predicted)} (margin {cell.margin:+.2f}, "
+        f"{cell.count} and {cell.other_count} cells of each on the page)"
         for cell in leaf.judged.differing
     ]
     result.findings += [

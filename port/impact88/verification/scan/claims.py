@@ -1,4 +1,4 @@
-"""Typed text outside the program's page that gives one of the page's numbers another value."""
+"""Claims: typed text outside the program's page that gives one of its numbers another value."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -8,10 +8,8 @@ from typing import NamedTuple
 from ...collision.fields import ANGLES, FIELDS, label
 from ..reading.alignment import LINES
 
-_FAR = 18
-"""Characters of words between a label of three letters or more and its number; shorter labels are
-also words, and need their equals sign."""
-_LONG = 3
+_MAX_WORDS = 18  # characters between a label and its number, where no equals sign stands
+_MIN_LABEL = 3  # letters of a label that needs no equals sign; shorter labels are also words
 _NUMBER = re.compile(r"(?<![A-Z0-9.?-])-?(?:\d+\.?\d*|\.\d+)(?:E-?\d+)?(?![A-Z0-9.?])")
 
 
@@ -23,7 +21,7 @@ class Claim(NamedTuple):
     printed: str
 
 
-def _of_labels() -> dict[str, list[str]]:
+def _fields_by_label() -> dict[str, list[str]]:
     """Return the fields that each label stands before."""
     names: dict[str, list[str]] = {}
     for name in FIELDS:
@@ -32,7 +30,7 @@ def _of_labels() -> dict[str, list[str]]:
     return names
 
 
-_NAMES = _of_labels()
+_NAMES = _fields_by_label()
 _LABEL = re.compile(
     "(?<![A-Z0-9?])("
     + "|".join(re.escape(text) for text in sorted(_NAMES, key=len, reverse=True))
@@ -43,46 +41,48 @@ _PROGRAM = [
     for line in LINES
     if "={" in line.replace(" ", "")
 ]
-"""The lines in which the program prints numbers with labels, each number a ``#``."""
+"""Patterns of the lines in which the program prints numbers with labels, each number a ``#``."""
 
 
 def claims(
     text: str, printed: Sequence[Mapping[str, str | None]], sure: str = ""
 ) -> Iterator[Claim]:
-    """Yield the numbers of a typed text that are none of those the page has under their labels.
+    """Yield the numbers of a typed text that differ from those the page has under their labels.
 
     Parameters
     ----------
     text : str
-        What is typed, ``?`` for a character that was not read.
+        The typed text, with ``?`` for a character that was not read.
     printed : sequence of mapping of str to str or None
-        Of each printout on the page its numbers by field, None of one that was not read with
-        certainty: text under its label may be right.
+        For each printout on the page its numbers by field, None for one that was not read with
+        certainty: text with its label may be right.
     sure : str, optional
-        The same text with ``?`` for each character that another is nearly as like. Numbers are
-        taken from it; a label is a word, and an O like a 0 leaves it what it is.
+        The text with ``?`` for each character that may well be another. Numbers are taken from it;
+        labels are not, since a word stays what it is if its O is like a 0.
     """
-    before = 0
+    end = 0
     for number in _NUMBER.finditer(sure or text):
-        left, before = text[before : number.start()], number.end()
-        labels = [*_LABEL.finditer(left)]
+        words, end = text[end : number.start()], number.end()
+        labels = [*_LABEL.finditer(words)]
         if not labels:
             continue
-        name, rest = labels[-1][1], left[labels[-1].end() :]
-        told = len(name) >= _LONG and "=" not in rest and len(rest) <= _FAR
-        if not told and rest.strip() != "=":
+        name, between = labels[-1][1], words[labels[-1].end() :]
+        is_labelled = len(name) >= _MIN_LABEL and "=" not in between and len(between) <= _MAX_WORDS
+        if not is_labelled and between.strip() != "=":
             continue
         fields = _NAMES[name]
-        shown = [numbers[field] for numbers in printed for field in fields if field in numbers]
-        certain = [each for each in shown if each is not None]
-        if len(certain) < len(shown) or not shown:
+        values = [numbers[field] for numbers in printed for field in fields if field in numbers]
+        certain = [value for value in values if value is not None]
+        if len(certain) < len(values) or not values:
             continue
         if Decimal(number[0]) not in map(Decimal, certain):
             yield Claim(name, number[0], " or ".join(dict.fromkeys(certain)))
 
 
 def is_of_a_printout(text: str) -> bool:
-    """Whether a typed text is a whole line as the program prints it: of another printout, of which
-    the sheet shows no more."""
+    """Return True for a whole line as the program prints it.
+
+    It belongs to another printout, of which the sheet shows no more.
+    """
     line = re.sub(r"(?<=[=\s])-?[0-9.?]+(?:E-?[0-9?]+)?", "#", text)
     return any(form.search(line) for form in _PROGRAM)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from .grid import FEWEST_POINTS
-from .ink import Floats, Image, ink_of, points_of, resized
+from .ink import Floats, Image, ink_of, points_of, resize
 from .picture import Picture
 
 Mask = NDArray[np.bool_]
@@ -103,7 +103,7 @@ def papers_of(picture: Picture) -> Iterator[Paper]:
             yield _level(Paper(grey, coloured_ink, page_remarks))
             continue
         page_ink = None if coloured_ink is None else flat.resample(coloured_ink, 0.0)
-        yield _level(Paper(flat.resample(grey, 255.0), page_ink, page_remarks, flat.back))
+        yield _level(Paper(flat.resample(grey, 255.0), page_ink, page_remarks, flat.to_picture))
 
 
 def _luminance(picture: Picture) -> Image:
@@ -186,7 +186,7 @@ def _without_strips(grey: Image) -> Image | None:
     between them.
     """
     scale = min(1.0, _FINE / max(grey.shape))
-    small = resized(grey, scale)
+    small = resize(grey, scale)
     paper = float(np.percentile(small, 75))
     is_dark = small < _HOLE_DARK * paper
     width = is_dark.shape[1]
@@ -267,7 +267,7 @@ def _skew(grey: Image) -> float:
     differences between successive rows' ink along it; a steep slope counts from `_SHARPER` times
     the sharpness of the best slope that the grid tries itself.
     """
-    small = resized(grey, min(1.0, _FINE / max(grey.shape)))
+    small = resize(grey, min(1.0, _FINE / max(grey.shape)))
     points = points_of(ink_of(small))
     if len(points.x) < FEWEST_POINTS:
         return 0.0
@@ -319,7 +319,7 @@ class Flat(NamedTuple):
         size = max(1, round((upper + lower) / 2)), max(1, round((left + right) / 2))
         return cls(frame.reshape(3, 3), np.zeros((4, 3)), size)
 
-    def back(self, points: Floats) -> Floats:
+    def to_picture(self, points: Floats) -> Floats:
         """Return where points of the sheet, shape (..., 2), are in the picture."""
         u = np.clip(points[..., 0] / self.size[0], -0.05, 1.05)
         v = np.clip(points[..., 1] / self.size[1], -0.05, 1.05)
@@ -339,7 +339,7 @@ class Flat(NamedTuple):
         for top in range(0, height, 256):  # in strips, for memory
             rows = np.arange(top, min(top + 256, height))
             points = np.stack(np.meshgrid(np.arange(width) + 0.5, rows + 0.5), axis=-1)
-            place = self.back(points) - 0.5
+            place = self.to_picture(points) - 0.5
             sheet[rows] = ndimage.map_coordinates(
                 picture, [place[..., 1], place[..., 0]], order=1, cval=beyond
             )
@@ -352,7 +352,7 @@ def _find_pages(grey: Image) -> list[tuple[Flat | None, str]]:
     None stands for a page that fills the picture.
     """
     scale = min(1.0, _COARSE / max(grey.shape))
-    small = resized(grey, scale)
+    small = resize(grey, scale)
     pages: list[tuple[Flat | None, str]] = []
     for start, stop in _page_columns(small):
         mask = _page_mask(small[:, start:stop])

@@ -1,5 +1,7 @@
-"""What a picture's verdict rests on, as the report's template shows it: the page with every
-number's cells outlined, the cells in doubt beside the glyphs they were compared with, all margins.
+"""The evidence for a picture's verdict, for the report's template.
+
+It is the page with every number's cells outlined, the cells in doubt beside the glyphs that they
+were compared with, and a histogram of all margins.
 """
 
 import base64
@@ -16,23 +18,36 @@ from .rates import HEADINGS, sentences, table
 from .sheets import Leaf
 from .typeface import BLANK, sample_of, typeface_of
 
-_WIDEST = 1400
-"""Pixels across the page as the report shows it; a digit of 80 columns has 17 of them."""
-_MOST_STRIPS = 24
-"""Three pages of the report; a printout that got a verdict has at most eight such cells."""
+_MAX_WIDTH = 1400  # pixels across the page in the report; a digit of 80 columns has 17 of them
+_MAX_STRIPS = 24  # three pages; a printout that got a verdict has at most eight such cells
 
 
 def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
-    """One of a page's printouts: ``page``, ``width`` and ``height`` of its picture; ``cells``, each
-    with its corners on it; ``marks``, what the program does not print, in the same way;
-    ``strips``, the cells in doubt, and how many ``more`` there are; ``bars``, margins in 60 steps
-    from -1.5 to 1.5; ``basis`` and ``rates``, how pages with known truth fared."""
+    """Return the evidence on one of a page's printouts.
+
+    Parameters
+    ----------
+    grey : ndarray, shape (rows, columns)
+        The page as it lies.
+    leaves : sequence of Leaf
+        All printouts of the page.
+    leaf : Leaf
+        The printout.
+
+    Returns
+    -------
+    dict
+        ``page``, ``width`` and ``height`` of the picture; ``cells`` and ``marks``, each with its
+        corners on it; ``strips``, the cells in doubt, and the number of ``more``; ``bars``, the
+        histogram of the margins in 60 steps from -1.5 to 1.5; ``basis`` and ``rates``, the verdicts
+        on pages with known truth.
+    """
     upright = np.rot90(grey, leaf.grid.turns)
     height, width = upright.shape
-    scale = min(1.0, _WIDEST / width)
+    scale = min(1.0, _MAX_WIDTH / width)
     size = (max(1, round(width * scale)), max(1, round(height * scale)))
     kinds = [(cell, state(cell), leaf.grid.around(*cell.place)) for cell in leaf.cells]
-    doubted = [box for box in kinds if box[1] != "holds"]
+    questioned = [box for box in kinds if box[1] != "holds"]
     margins = [cell.margin for cell in leaf.cells if cell.name and cell.predicted != BLANK]
     counts, _ = np.histogram(np.clip(margins, -1.5, 1.499), bins=60, range=(-1.5, 1.5))
     return {
@@ -43,7 +58,7 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
             {
                 "name": cell.name or "label",
                 "predicted": cell.predicted,
-                "other": shown(cell.other),
+                "other": character_name(cell.other),
                 "state": kind,
                 "corners": (scale * around).tolist(),
             }
@@ -59,8 +74,8 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
             }
             for mark in leaf.marks
         ],
-        "strips": _strips(upright, leaves, doubted[:_MOST_STRIPS], leaf),
-        "more": max(0, len(doubted) - _MOST_STRIPS),
+        "strips": _strips(upright, leaves, questioned[:_MAX_STRIPS], leaf),
+        "more": max(0, len(questioned) - _MAX_STRIPS),
         "bars": (counts / max(counts.max(initial=1), 1)).tolist(),
         "margins": len(margins),
         "limits": (HOLDS, DIFFERS),
@@ -70,35 +85,43 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
 
 
 def _uri(picture: Image, size: tuple[int, int] | None = None) -> str:
+    """Return a picture as a data URI of a PNG, resized if ``size`` is given."""
     grey = np.ascontiguousarray(np.clip(picture, 0, 255).astype(np.uint8))
-    shown, file = Pillow.fromarray(grey), io.BytesIO()
-    (shown.resize(size) if size else shown).save(file, "PNG")
+    image, file = Pillow.fromarray(grey), io.BytesIO()
+    (image.resize(size) if size else image).save(file, "PNG")
     return f"data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}"
 
 
 def _strips(
-    upright: Image, leaves: Sequence[Leaf], doubted: Sequence[tuple[Cell, str, Floats]], leaf: Leaf
+    upright: Image,
+    leaves: Sequence[Leaf],
+    questioned: Sequence[tuple[Cell, str, Floats]],
+    leaf: Leaf,
 ) -> list[dict[str, Any]]:
-    if not doubted:
+    """Return the cells in doubt with their paper and the two glyphs they were compared with."""
+    if not questioned:
         return []
     # the printouts on a grid share their mean characters
-    everything = [cell for other in leaves if other.grid is leaf.grid for cell in other.cells]
-    sample = sample_of(leaf.grid, [cell.place for cell in everything])
-    typeface = typeface_of(sample, ["" if cell.cut else cell.predicted for cell in everything])
+    all_cells = [
+        cell for neighbour in leaves if neighbour.grid is leaf.grid for cell in neighbour.cells
+    ]
+    sample = sample_of(leaf.grid, [cell.place for cell in all_cells])
+    typeface = typeface_of(sample, ["" if cell.cut else cell.predicted for cell in all_cells])
 
     def glyph(character: str, count: int) -> dict[str, Any]:
+        """Return a mean glyph and the number of cells it was made of."""
         at, picture = typeface.characters.find(character), ""
         if at >= 0:
             mean = typeface.means[at].reshape(typeface.shape)
             picture = _uri(255 - 220 * np.clip(mean, 0, 1))
-        return {"name": shown(character), "picture": picture, "count": count}
+        return {"name": character_name(character), "picture": picture, "count": count}
 
     strips = []
-    for cell, kind, around in doubted:
-        beside = np.array([1.0, 0.2]) * np.ptp(around, axis=0)
-        left, top = np.maximum(around.min(axis=0) - beside, 0).astype(int)
-        right, bottom = np.maximum(around.max(axis=0) + beside, 1).astype(int)
-        crop, (line, at) = upright[top:bottom, left:right], cell.place
+    for cell, kind, around in questioned:
+        margin = np.array([1.0, 0.2]) * np.ptp(around, axis=0)
+        x0, y0 = np.maximum(around.min(axis=0) - margin, 0).astype(int)
+        x1, y1 = np.maximum(around.max(axis=0) + margin, 1).astype(int)
+        crop, (line, at) = upright[y0:y1, x0:x1], cell.place
         strips.append(
             {
                 "place": f"{cell.name or 'label'}, line {line + 1}, cell {at + 1}",
@@ -111,6 +134,6 @@ def _strips(
     return strips
 
 
-def shown(character: str) -> str:
-    """A character as the report names it."""
+def character_name(character: str) -> str:
+    """Return the name of a character in the report."""
     return "blank" if character == BLANK else character

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from .ink import Floats, Image, Points, resized, slopes
+from .ink import Floats, Image, Points, resize, slopes
 
 CELL_WIDTH = 16
 """Width of a resampled cell, pixels: the least at which 3 and 8 of a dot matrix are distinct."""
@@ -186,10 +186,10 @@ class _Phasors(NamedTuple):
     sums: NDArray[np.complex128]
     terms: Floats
 
-    def shifted(self, bend: Floats, pitch: float) -> NDArray[np.complex128]:
+    def shift(self, bend: Floats, pitch: float) -> NDArray[np.complex128]:
         """Return the sums after the columns were moved by a bend."""
-        shifted: NDArray[np.complex128] = self.sums * np.exp(2j * np.pi / pitch * bend @ self.terms)
-        return shifted
+        sums: NDArray[np.complex128] = self.sums * np.exp(2j * np.pi / pitch * bend @ self.terms)
+        return sums
 
 
 def _gap_phasors(xs: list[Floats], ys: list[Floats], pitch: float, span: float) -> _Phasors:
@@ -217,7 +217,7 @@ def _fit_bend(phasors: _Phasors, pitch: float, span: float) -> tuple[Floats, flo
     pitch or so, hence a search on a lattice before the refinement.
     """
     bend = _refine_bend(_search_bend(phasors, pitch, span), phasors, pitch)
-    total = phasors.shifted(bend, pitch).sum()
+    total = phasors.shift(bend, pitch).sum()
     bend[0] -= float(np.angle(total)) / (2 * np.pi) * pitch
     return bend, float(np.abs(total) / np.abs(phasors.sums).sum())
 
@@ -256,7 +256,7 @@ def _refine_bend(bend: Floats, phasors: _Phasors, pitch: float) -> Floats:
     """
     terms, weights = phasors.terms, np.abs(phasors.sums)
     for reach in _REACHES:
-        moved = phasors.shifted(bend, pitch)
+        moved = phasors.shift(bend, pitch)
         off = np.angle(moved * np.conj(moved.sum())) / (2 * np.pi) * pitch
         sure = weights * np.exp(-((off / (reach * pitch)) ** 2))
         ridge = np.diag(_RIDGE) * sure.sum()
@@ -277,7 +277,7 @@ def grids_of(ink: Image, points: Points, turns: int) -> list[Grid]:
         Quarter turns to the left that set the page upright.
     """
     ink = np.ascontiguousarray(np.rot90(ink, turns))
-    points = points.turned(turns)
+    points = points.turn(turns)
     slope, keystone = slopes(points)
     grids = [_grid(ink, part, slope, keystone, turns) for part in _columns(points, slope)]
     return [grid for grid in grids if grid]
@@ -329,7 +329,7 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
     middles = np.array([(top + bottom) / 2 for top, bottom in lines])
     rise, drifts = _fit_rise(across - origin, level, middles, height, scale)
     middles = _distinct(middles + drifts, [len(inked) for inked in members], height)
-    small = resized(ink, scale)
+    small = resize(ink, scale)
     tall = round(1.7 * height * scale)
 
     def place(u: Floats, v: Floats) -> tuple[Floats, Floats]:

@@ -1,5 +1,6 @@
-"""Pages of a PDF as pictures, rendered in a process of its own, whose memory is limited: what a
-damaged or hostile file makes of the renderer ends there.
+"""Pages of a PDF as pictures, rendered in a process of its own.
+
+The process has a memory limit, and a damaged or hostile file cannot harm any other.
 
 The process reads the file from standard input and writes, for each page, a line of JSON, the
 page's pixels (blue, green, red) and its text. It imports nothing of impact88.
@@ -15,14 +16,14 @@ from typing import IO, Any, NamedTuple
 
 DOTS_PER_INCH = 300  # a character of 10 or 12 an inch is 25 to 30 pixels wide
 MAX_INCHES = 60.0  # longest side of a page: more than A0
-MAX_PAGES = 200  # of a file, at a second or two each
+MAX_PAGES = 200  # pages of a file, at a second or two each
 MAX_SECONDS = 10.0  # for a page; one of 300 dots an inch takes 0.1
 MAX_BYTES = 512_000_000  # address space of the process
 MAX_TEXT = 100_000  # characters of a page's text layer; a printout has 900
 
 
 class Rendered(NamedTuple):
-    """A page: ``width``, ``height`` in pixels, its ``pixels`` in three bytes, ``text`` layer."""
+    """A page: width and height in pixels, its pixels in three bytes each, its text layer."""
 
     width: int
     height: int
@@ -55,7 +56,7 @@ def render_pages(data: bytes, max_side: int) -> Iterator[Rendered]:
             _send(process.stdin, data)
             while True:
                 number += 1
-                header = _timed(process, number)
+                header = _read_header(process, number)
                 if "error" in header:
                     raise PdfError(header["error"])
                 if "end" in header:
@@ -68,6 +69,7 @@ def render_pages(data: bytes, max_side: int) -> Iterator[Rendered]:
 
 
 def _send(pipe: IO[bytes], data: bytes) -> None:
+    """Write all data and close the pipe."""
     try:
         pipe.write(data)
         pipe.close()
@@ -75,8 +77,8 @@ def _send(pipe: IO[bytes], data: bytes) -> None:
         pass
 
 
-def _timed(process: subprocess.Popen[bytes], number: int) -> dict[str, Any]:
-    """Return the next line of JSON; the process is ended if it takes longer than a page may."""
+def _read_header(process: subprocess.Popen[bytes], number: int) -> dict[str, Any]:
+    """Return the next line of JSON; the process is killed if it takes over `MAX_SECONDS`."""
     assert process.stdout
     late: list[bool] = []
 
@@ -101,6 +103,7 @@ def _timed(process: subprocess.Popen[bytes], number: int) -> dict[str, Any]:
 
 
 def _limit_memory() -> None:
+    """Limit the address space of this process to `MAX_BYTES`."""
     try:
         import resource
     except ImportError:  # Windows: only the limits of pages and time hold there
@@ -109,6 +112,7 @@ def _limit_memory() -> None:
 
 
 def _answer(out: IO[bytes], header: dict[str, Any], *parts: bytes) -> None:
+    """Write a line of JSON and the bytes that it announces."""
     out.write(json.dumps(header).encode() + b"\n")
     for part in parts:
         out.write(part)

@@ -1,4 +1,4 @@
-"""Pictures of pages: PNG, JPEG and TIFF files and PDFs, no finer than they are read."""
+"""Pictures of pages from PNG, JPEG and TIFF files and PDFs, in the resolution that is read."""
 
 import io
 from collections.abc import Iterator
@@ -18,13 +18,25 @@ Picture = NDArray[np.uint8]
 
 MAX_PIXELS = 60_000_000  # of a page in its file: more than A3 at 500 dots an inch
 MAX_SIDE = 4000
-"""Pixels of the longer side of a page as it is read: 200 columns, two printouts side by side, then
-have 20 pixels a character, and 16 are read. Of 400 pages the longest has 3,888."""
+"""Pixels of the longer side of a page as it is read. The widest page, 200 columns of two printouts
+side by side, then has 20 pixels a character, of which 16 are read. The longest of 400 pages has
+3,888."""
 
 
 class Page(NamedTuple):
-    """One page: its number, its picture, the text layer of a PDF ("": none), and how many pixels
-    of the file (of a PDF: 300ths of an inch, or what the picture has) one of the picture takes."""
+    """One page of a file.
+
+    Attributes
+    ----------
+    number : int
+        Number of the page, from 1.
+    picture : ndarray
+        Its picture.
+    text : str
+        Text layer of a PDF, "" if there is none.
+    scale : float
+        Pixels of the file, on its longer side, per pixel of the picture.
+    """
 
     number: int
     picture: Picture
@@ -37,18 +49,18 @@ def pages_of(data: bytes, path: str) -> Iterator[Page]:
     if data.startswith(b"%PDF-"):
         yield from _pdf(data, display_name(path))
         return
-    where, number = display_name(path), 1
+    name, number = display_name(path), 1
     try:
         with PIL.Image.open(io.BytesIO(data)) as file:
             count = getattr(file, "n_frames", 1)
             if count > MAX_PAGES:
-                raise UserError(f"has {count:,} pages; expected at most {MAX_PAGES}", where)
+                raise UserError(f"has {count:,} pages; expected at most {MAX_PAGES}", name)
             for number in range(1, count + 1):
                 file.seek(number - 1)
                 if file.width * file.height > MAX_PIXELS:
                     size = f"{file.width} x {file.height}"
                     limit = f"expected at most {MAX_PIXELS:,}"
-                    raise UserError(f"{where}: page {number}: {size} pixels; {limit}")
+                    raise UserError(f"{name}: page {number}: {size} pixels; {limit}")
                 longer = max(file.size)
                 if count == 1:  # a JPEG is made smaller while it is decoded
                     file.draft(None, (MAX_SIDE, MAX_SIDE))
@@ -58,7 +70,7 @@ def pages_of(data: bytes, path: str) -> Iterator[Page]:
         raise
     except Exception as error:  # a library's, of whatever kind, on a file that is damaged
         message = str(error).splitlines()[0] if str(error) else "damaged"
-        raise UserError(f"{where}: is not a picture that can be read: {message}") from None
+        raise UserError(f"{name}: is not a picture that can be read: {message}") from None
 
 
 def _upright(file: PIL.Image.Image) -> Picture:
@@ -84,6 +96,7 @@ def _upright(file: PIL.Image.Image) -> Picture:
 
 
 def _pdf(data: bytes, where: str) -> Iterator[Page]:
+    """Yield the pages of a PDF; ``where``: its name in messages."""
     try:
         for number, page in enumerate(render_pages(data, MAX_SIDE), 1):
             pixels = np.frombuffer(page.pixels, np.uint8)

@@ -1,4 +1,4 @@
-"""How pages with known truth fared: the counts, and what may be said of them.
+"""Verdicts on pages with known truth: the counts, and the sentences that a report says of them.
 
 Every page that was offered counts, whatever became of it. `tests/support/scanrates.py` counts them.
 """
@@ -8,8 +8,19 @@ from typing import NamedTuple
 
 
 class Count(NamedTuple):
-    """Pages of one kind by verdict. ``alteration``: none, replaced, added, erased or moved; of
-    several printouts on a page the worst counts, and a page that was refused was left open."""
+    """Number of pages of one kind by verdict.
+
+    The worst of several printouts on a page counts; a page that was refused was left open.
+
+    Attributes
+    ----------
+    alteration : str
+        ``"none"``, ``"replaced"``, ``"added"``, ``"erased"`` or ``"moved"``.
+    quality : str
+        Kind and quality of the picture.
+    identical, as_read, open, differs : int
+        Number of pages with each verdict.
+    """
 
     alteration: str
     quality: str
@@ -20,7 +31,7 @@ class Count(NamedTuple):
 
     @property
     def pages(self) -> int:
-        """How many were offered."""
+        """Number of pages that were offered."""
         return self.identical + self.as_read + self.open + self.differs
 
 
@@ -50,25 +61,36 @@ clock, whatever had come out, so that these are a sample of the first set, and m
 Most were counted before typed lines were read and strips of holes left out; of 97 that were counted
 again afterwards three are told better and none otherwise."""
 HEADINGS = (
-    *("alteration", "quality", "offered", "IDENTICAL", "AS FAR AS READ", "left open", "DIFFERS"),
+    "alteration",
+    "quality",
+    "offered",
+    "IDENTICAL",
+    "AS FAR AS READ",
+    "left open",
+    "DIFFERS",
 )
-_CONFIDENT = 3
-"""Of N cases without an event the rate is below this over N, at 95 % confidence."""
+_BOUND_95 = 3
+"""0 events in N cases bound the rate at this over N (95 % confidence; the "rule of three")."""
 
 
 def table(counts: tuple[Count, ...] = COUNTS) -> Iterator[tuple[str | int, ...]]:
     """Yield the rows under `HEADINGS`, by alteration and quality."""
     for count in counts:
         yield (
-            *(count.alteration, count.quality, count.pages),
-            *(count.identical, count.as_read, count.open, count.differs),
+            count.alteration,
+            count.quality,
+            count.pages,
+            count.identical,
+            count.as_read,
+            count.open,
+            count.differs,
         )
 
 
 def sentences(counts: tuple[Count, ...] = COUNTS) -> str:
-    """Return what a report says of the rates, in two sentences."""
-    genuine = _summed(count for count in counts if count.alteration == NONE)
-    altered = _summed(count for count in counts if count.alteration != NONE)
+    """Return the two sentences of a report on these rates."""
+    genuine = _sum(count for count in counts if count.alteration == NONE)
+    altered = _sum(count for count in counts if count.alteration != NONE)
     return (
         f"Of {genuine.pages} genuine pages offered to this program, {genuine.identical} were found "
         f"IDENTICAL, {genuine.as_read} IDENTICAL AS FAR AS READ, {genuine.open} were left open and "
@@ -78,12 +100,13 @@ def sentences(counts: tuple[Count, ...] = COUNTS) -> str:
         "All these pages, and the alterations, were drawn by a computer, and limits of this "
         "program were chosen on some of them: the figures are no probability that the page at hand "
         "is genuine or altered, and an error that occurred on no page can still, at 95 % "
-        f"confidence, befall up to 1 in {genuine.pages // _CONFIDENT} such genuine pages or 1 in "
-        f"{altered.pages // _CONFIDENT} such altered ones."
+        f"confidence, befall up to 1 in {genuine.pages // _BOUND_95} such genuine pages or 1 in "
+        f"{altered.pages // _BOUND_95} such altered ones."
     )
 
 
-def _summed(counts: Iterator[Count]) -> Count:
+def _sum(counts: Iterator[Count]) -> Count:
+    """Return the total of some counts."""
     identical = as_read = open_ = differs = 0
     for count in counts:
         identical += count.identical

@@ -18,7 +18,7 @@ from scipy import ndimage
 from .claims import Claim
 from .grid import CELL_WIDTH, Grid
 from .holding import DIFFERS, FIT, INKED, Added, Cell
-from .ink import Floats, Image, resized
+from .ink import Floats, Image, resize
 from .layout import Place
 from .typeface import BLANK, Typeface, distances, sample_of, typeface_of
 
@@ -137,7 +137,7 @@ def residue_of(ink: Image, coloured: Image | None, explained: Sequence[Explained
     lines_of_type = [mark for part in explained for mark in _typed_lines(part)]
     pitch = min(part.grid.pitch for part in explained)
     scale = min(1.0, CELL_WIDTH / pitch)
-    small = resized(np.ascontiguousarray(ink), scale)
+    small = resize(np.ascontiguousarray(ink), scale)
     is_dark = small > _DARK
     cells = [
         (cell, part.grid.around(*cell.place))
@@ -153,7 +153,7 @@ def residue_of(ink: Image, coloured: Image | None, explained: Sequence[Explained
     residue = Residue([*_added_marks(explained), *lines_of_type])
     regions = [(is_dark & ~is_explained, Kind.STROKE)]
     if coloured is not None:
-        regions.append((resized(np.ascontiguousarray(coloured), scale) > _DARK, Kind.COLOURED))
+        regions.append((resize(np.ascontiguousarray(coloured), scale) > _DARK, Kind.COLOURED))
     for is_left, kind in regions:
         for mark, area in _regions(is_left, kind, in_bands):
             if area < _SPECK * CELL_WIDTH**2:
