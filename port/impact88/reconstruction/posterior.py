@@ -191,7 +191,7 @@ class Posterior:
         """Turn the basis so that the last direction is the one along which the curved value changes
         most at the solution."""
         aside = (np.array(y) / self.scales)[:, None] + 1j * COMPLEX_STEP * self.basis.T
-        own = np.tile(np.array(inputs)[:, None], len(self.basis)).reshape(len(inputs), -1)
+        own = np.repeat(np.array(inputs, float)[:, None], len(self.basis), axis=1)
         slope = np.imag(self._curve(aside, own)) / COMPLEX_STEP
         size = np.linalg.norm(slope)
         direction = slope / size if size > 0 else np.eye(len(slope))[-1]
