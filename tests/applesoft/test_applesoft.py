@@ -1,10 +1,11 @@
-"""Every captured call of the ROM's arithmetic, bit for bit: stored, raw and extension."""
+"""Every captured call of the ROM's arithmetic, bit for bit, and the codes of its errors."""
 
 from __future__ import annotations
 
 import captures
 import pytest
 
+from impact88.applesoft.errorcodes import CODES
 from impact88.qualification import captured
 
 
@@ -30,3 +31,11 @@ def test_a_changed_digit_is_seen():
         )
         other = result[:-1] + ("1" if result[-1] != "1" else "2")
         assert captured.call(*call) != captured.result(other)
+
+
+def test_an_error_code_is_the_offset_of_its_message_in_the_rom():
+    """The ROM stores the messages without their ``ERROR`` one behind the other."""
+    offset = 0
+    for kind, code in CODES.items():
+        assert (kind, code) == (kind, offset)
+        offset += len(kind)

@@ -136,6 +136,7 @@ class TestConversion:
         assert [float(x) for x in texts["UX"].split() if x[0].isdigit()] == pytest.approx(
             [22, 2.2, 44 / 3, 88 / 3]
         )
+        assert based(UX="normal 15 1.5 mph")["UX"].split() == ["normal", "22", "2.2"]
 
     @pytest.mark.parametrize(
         ("texts", "message"),

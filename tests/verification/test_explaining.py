@@ -17,7 +17,7 @@ from impact88.verification.explaining.machines import cut
 from impact88.verification.reading.numerals import as_printed
 from impact88.verification.reading.printout import FIELDS, read_printouts
 from impact88.verification.recovery import replays
-from impact88.verification.recovery.slips import slip
+from impact88.verification.recovery.slips import Change, slip
 from impact88.verification.recovery.typedtext import opposite
 from impact88.verification.reporting.examination import Verdict, verify
 
@@ -141,6 +141,17 @@ def test_rounded_instead_of_floored() -> None:
     assert (found.kind, found.remaining) == ("rounded, not floored", 0)
 
 
+def test_inputs_exchanged_and_a_slip_in_another() -> None:
+    """The slip is looked for in the page as it is with the inputs in their places."""
+    true = replays.run_once(sample(1)).fields
+    changed = {"MA": true["MB"], "MB": true["MA"], "GA": "-33"}
+    cause = first(_printed(sample(1), changed))
+    assert {change["field"]: change["would_be"] for change in cause.changes} == {
+        name: true[name] for name in changed
+    }
+    assert (cause.kind, cause.remaining) == ("A and B exchanged and digit misread", 0)
+
+
 def test_point_mass_with_arms_left() -> None:
     scene = sample(1).replaced({"M": "4"})
     proper = replays.run_once(scene.replaced({"DA": "0", "DB": "0"})).fields
@@ -194,6 +205,31 @@ def test_another_arithmetic_is_offered_only_where_no_machine_explains_the_page()
 def test_slips_are_told_apart(other: str, kind: str | None) -> None:
     assert slip("-14.52", other) == kind
     assert slip(other, "-14.52") == kind
+
+
+def test_a_sign_is_that_of_the_number_or_of_its_exponent() -> None:
+    assert slip("-1.452E-05", "1.452E-05") == "sign misread"
+    assert slip("-1.452E-05", "-1.452E+05") == "sign misread"
+    assert slip("-1.452E+05", "-1.452E-05") == "sign misread"
+
+
+def test_a_rarer_kind_of_slip_takes_more_to_believe() -> None:
+    """From a sign, which is easily lost, to two digits of one number."""
+    ascending = ["14.52", "-14.57", "-1.452", "-41.52", "-114.52", "-19.57"]
+    kinds = [slip("-14.52", other) for other in ascending]
+    assert kinds == [
+        "sign misread",
+        "digit misread",
+        "decimal point misread",
+        "digits swapped",
+        "digit lost or added",
+        "two digits misread",
+    ]
+    bits = [
+        Change(kind or "", "XA", "-14.52", other).bits
+        for kind, other in zip(kinds, ascending, strict=True)
+    ]
+    assert bits == sorted(set(bits))
 
 
 @pytest.mark.parametrize(
