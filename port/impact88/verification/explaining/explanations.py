@@ -69,7 +69,11 @@ def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) ->
     causes = [*_slipped(page, (), page.base, found.recovered.outcome.fields), *_labels(page)]
     if not found.recovered.missing and any(not name.startswith("label ") for name in page.base):
         rows = Rows(page)
-        causes += [*_reread(page, rereading.best(1)), *rows.causes(), *machines.causes(page)]
+        causes += [
+            *_reread(page, rereading.best(single=True)),
+            *rows.causes(),
+            *machines.causes(page),
+        ]
         for more in (
             lambda: _reread(page, rereading.best()),
             lambda: (*rows.searched(), *_exchanged_and_slipped(page, rows, rereading)),
@@ -142,7 +146,7 @@ def _exchanged_and_slipped(page: PageEvidence, rows: Rows, rereading: Rereading)
     """Inputs of a side or an axis exchanged, and a slip in another."""
     for row, exchanged in rows.exchanges():
         texts = {change.field: change.would_be for change in exchanged}
-        for reread in rereading.best(1, texts):
+        for reread in rereading.best(single=True, exchanged=texts):
             changes = (*exchanged, *reread.changes)
             bits = row.bits + sum(map(_believed, reread.changes))
             run = reread.scored

@@ -80,15 +80,19 @@ class Rereading:
         for name in recovered.apart if apart else ():
             self._base[name] = recovered.scene[scene_name(name)].replace(" ", "").upper()
 
-    def best(self, most: int = 2, exchanged: Mapping[str, str] | None = None) -> list[Reread]:
-        """Scenes with one input put right, or with up to two, those that explain most first.
-        ``exchanged``: texts printed in place of others, by field, and not to be put right."""
+    def best(
+        self, single: bool = False, exchanged: Mapping[str, str] | None = None
+    ) -> list[Reread]:
+        """Return scenes with up to two inputs put right, those that explain most first.
+
+        ``single``: with one input put right; ``exchanged``: texts printed in place of others, by
+        field, and not to be put right."""
         columns = [*self._columns]
         for name, text in (exchanged or {}).items():
             place = INPUTS.index(name)
             columns[place] = column_of(name, [(text, 0.0)], columns[place].typed)
         search = self._recovered.search
-        if most == 1:
+        if single:
             picks = search.screened(columns, one_each(columns), 2 if exchanged else _REPLAYED)
         else:
             wrong = self._recovered.wrong
