@@ -17,7 +17,8 @@ from impact88.verification.explaining.machines import cut
 from impact88.verification.reading.numerals import as_printed
 from impact88.verification.reading.printout import FIELDS, read_printouts
 from impact88.verification.recovery import replays
-from impact88.verification.recovery.slips import Change, slip
+from impact88.verification.recovery.recovered import recover
+from impact88.verification.recovery.slips import BITS, Change, Rereading, slip
 from impact88.verification.recovery.typedtext import opposite
 from impact88.verification.reporting.examination import Verdict, verify
 
@@ -205,6 +206,33 @@ def test_another_arithmetic_is_offered_only_where_no_machine_explains_the_page()
 def test_slips_are_told_apart(other: str, kind: str | None) -> None:
     assert slip("-14.52", other) == kind
     assert slip(other, "-14.52") == kind
+
+
+def test_a_point_moves_within_the_figures_and_leaves_the_exponent() -> None:
+    assert slip("1.452E-05", "14.52E-05") == "decimal point misread"
+    assert slip("1.452E-05", "1452E-05") == "decimal point misread"
+
+
+def test_a_digit_that_looks_like_the_other_takes_less_to_believe() -> None:
+    bits = [Change("digit misread", "MA", "143.5", f"14{other}.5").bits for other in "8592017"]
+    assert bits == sorted(bits)
+    assert bits[0] < bits[-1]
+
+
+def test_an_angle_beyond_a_full_turn_takes_as_much_as_a_digit_more() -> None:
+    def bits(field: str, would_be: str) -> float:
+        return Change("digit lost or added", field, "36", would_be).bits
+
+    assert bits("PA", "360") == bits("PA", "-360") == bits("MA", "361")
+    assert bits("PA", "361") == bits("PA", "-361") == bits("PA", "360") + BITS["digit misread"]
+    assert Change("no slip", "PA", "36", "361").bits == 0
+
+
+def test_single_slips_are_one_input_put_right_and_pairs_are_two() -> None:
+    (shown,) = read_printouts(_printed(sample(1), {"MUP": "-.911", "MA": "148.5"}))
+    rereading = Rereading(recover(shown))
+    assert {len(reread.changes) for reread in rereading.best(single=True)} <= {0, 1}
+    assert [change.would_be for change in rereading.best()[0].changes] == ["143.5", ".911"]
 
 
 def test_a_sign_is_that_of_the_number_or_of_its_exponent() -> None:
