@@ -546,3 +546,45 @@ def test_a_program_run_before_leaves_nothing_behind():
     text = '10 A=A+1:B$=B$+"X":PRINT A;B$;FRE(0);RND(1)\n20 POKE 2055,66'
     shown = [displayed(text), displayed("10 POKE 2055,67:A=7"), displayed(text)]
     assert shown[0] == shown[2]
+
+
+def stack_at_error(line: str) -> int:
+    """The stack pointer at the ROM's jump to ERROR, of a line typed without a number."""
+    machine = Applesoft(lambda: None)
+    machine.enter(line)
+    return machine.machine.error.stack
+
+
+def test_an_error_is_detected_below_the_routines_that_lead_to_it():
+    """Each JSR takes two bytes of the stack, which ONERR leaves there."""
+    # EXP calls OUTOFRNG; LOG jumps to its error
+    assert stack_at_error("X=EXP(99)") == stack_at_error("X=LOG(0)") - 2
+    # CONINT calls MKINT, which refuses a minus sign and what is no integer; from 256 on it refuses
+    assert stack_at_error("PRINT CHR$(-1)") == stack_at_error("PRINT CHR$(256)") - 2
+    assert stack_at_error("PRINT CHR$(32768)") == stack_at_error("PRINT CHR$(256)") - 2
+    assert stack_at_error("PRINT CHR$(32767)") == stack_at_error("PRINT CHR$(256)")
+    # statements are called by one JSR
+    assert stack_at_error("CONT") == stack_at_error("GOTO 999") == 0xF8 - 2
+
+
+@pytest.mark.parametrize(
+    ("address", "rows"),
+    [
+        (-936, ["!"]),  # HOME
+        (-912, ["", "", "ABCDE", "FG!", ""]),  # SCROLL
+        (-922, ["", "", "", "ABCDE", "FG!"]),  # LF
+        (-998, ["", "", "  !", "ABCDE", "FGH"]),  # UP
+        (-1008, ["", "", "", "A!CDE", "FGH"]),  # BS
+        (-1036, ["", "", "", "ABC!E", "FGH"]),  # ADVANCE
+        (-926, ["", "", "", "ABCDE", "!GH"]),  # CR
+        (-868, ["", "", "", "AB!", "FGH"]),  # CLREOL
+        (-958, ["", "", "", "AB!"]),  # CLREOP
+    ],
+)
+def test_the_monitor_s_routines_for_the_screen(address, rows):
+    """As the Apple II Reference Manual describes them, with the cursor on the C of ABCDE."""
+    machine, _ = session(
+        '10 HOME:VTAB 4:HTAB 1:PRINT "ABCDE":PRINT "FGH";:VTAB 4:HTAB 3:'
+        f'CALL {address}:PRINT "!";:VTAB 20'
+    )
+    assert [row.rstrip() for row in machine.screen_text().split("\n")][: len(rows)] == rows
