@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 from captures import ROOT
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 from pytest_regressions.file_regression import FileRegressionFixture
 
 from impact88.mechanics import native
@@ -51,7 +51,10 @@ LONGEST = (
 """Files of tests that take more than some seconds (``--durations=0`` has the times)."""
 
 settings.register_profile(
-    "run", max_examples=int(os.environ.get("IMPACT88_EXAMPLES") or 40), deadline=None
+    "run",
+    max_examples=int(os.environ.get("IMPACT88_EXAMPLES") or 40),
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],  # a busy machine fails no test
 )
 settings.load_profile("run")
 

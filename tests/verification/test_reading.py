@@ -107,6 +107,15 @@ def test_every_look_alike_is_read_for_a_glyph_that_it_stands_for(look_alike: str
     )
 
 
+def test_a_rarer_reading_of_a_look_alike_costs_little_more() -> None:
+    """So little that the numbers of the page decide."""
+    several = [costs for look_alike in SHAPES if len(costs := glyphs.printed_for(look_alike)) > 1]
+    assert several
+    for costs in map(list, map(dict.values, several)):
+        assert costs == sorted(costs)
+        assert 0.3 == costs[0] <= costs[-1] < 0.5
+
+
 def test_no_figure_is_a_look_alike_of_another() -> None:
     """A figure read for a figure contradicts the page: no table excuses it."""
     for section in ("numbers", "number shapes"):
