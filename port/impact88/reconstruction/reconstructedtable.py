@@ -18,7 +18,7 @@ from ..names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..uncertainty.boundstable import unbounded
 from . import adjustment
 from .adjustment import Reconstruction, typed_friction
-from .reconstructed import LEAST_GAIN, SIGMAS, Draws, Range, draws, ranges
+from .reconstructed import MIN_GAIN, SIGMAS, Draws, Range, draws, ranges
 from .solutiontable import DRIVERS, NOISE, ROUNDING, Impact, completed, in_turn
 
 _RESULTS = (*VELOCITIES, *FINAL_STATE, *SPEEDS, *COURSES, "DVA", "DVB")
@@ -56,7 +56,7 @@ def _ends(bound: Range) -> tuple[float, float]:
     width = bound.upper - bound.lower
     if not math.isfinite(width):
         return bound.lower, bound.upper
-    lower, upper = (0.0 if abs(x) < LEAST_GAIN * width else x for x in (bound.lower, bound.upper))
+    lower, upper = (0.0 if abs(x) < MIN_GAIN * width else x for x in (bound.lower, bound.upper))
     return lower, upper
 
 
