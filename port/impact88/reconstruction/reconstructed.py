@@ -25,7 +25,7 @@ from ..optimization.ascent import CONSTRAINT_TOL, climb, find_extremes, latin_hy
 from ..optimization.widening import extremes
 from ..uncertainty.boundstable import Spread
 from .adjustment import Reconstruction, pseudo_inverse
-from .posterior import Ground, Posterior
+from .posterior import SIGMAS, FeasibleRegion, Posterior
 from .system import COMPLEX_STEP, PARAMETERS, System
 
 Floats = NDArray[np.float64]
@@ -35,8 +35,7 @@ Progress = Callable[[int], object]
 
 # Chosen on 14 problems, half of them redundant. Doubled on four of those, no bound moves by 1e-4 of
 # its range, unless noted, and draws change only where their density is improper.
-SIGMAS = 3.0  # cut-off of unbounded normal values, in standard deviations, for bounds
-NORMAL_CUTOFF = 6.0  # the same where all values are taken as normal
+NORMAL_CUTOFF = 6.0  # where all values are taken as normal, in standard deviations
 CHUNK = 1 << 14  # draws at a time, bounds the memory
 MAX_CHORD_ITERATIONS = 8  # with twice as many no further draw is solved
 MAX_NEWTON_ITERATIONS = 12  # nor with twice these
@@ -107,7 +106,7 @@ def draws(
     standard deviation."""
     rng = random_numbers(seed, 1)
     posterior = Posterior(solution, progress)
-    if posterior.closed:
+    if posterior.determined:
         sampled_points, signs = posterior.sample(count, rng)
         if len(signs):
             value_rows = posterior.values(sampled_points, signs, names)
@@ -139,7 +138,7 @@ def ranges(
     """Return the lowest and highest value of each quantity over the limits of what is known. The
     search starts from the draws ``drawn``, too."""
     posterior = Posterior(solution, progress)
-    if posterior.closed:
+    if posterior.determined:
         return _ranges_over_branches(posterior, solution, names, seed, drawn, progress)
     box = _Box(solution, names, progress)
     points = box.inside(random_numbers(seed, 0))
@@ -181,15 +180,15 @@ def _ranges_over_branches(
 ) -> dict[str, Range]:
     """Return the same as `ranges` over all branches of impacts, searched for from draws of the
     posterior distribution."""
-    points, signs = posterior.scattered(LEVEL_DRAWS, random_numbers(seed, 0))
+    points, signs = posterior.sample_level(LEVEL_DRAWS, random_numbers(seed, 0))
     if previous_draws is not None and previous_draws.signs is not None:
         points = np.concatenate([previous_draws.points.T, points], axis=1)
         signs = np.concatenate([previous_draws.signs, signs])
     if not len(signs):
         return {name: Range(np.nan, np.nan, {}, {}) for name in names}
-    region = Ground(posterior, names, points)
+    region = FeasibleRegion(posterior, names, points)
     (lower, upper), ends, states, converged = extremes(
-        region, region.shares(points), signs, random_numbers(seed, 2)
+        region, region.fractions(points), signs, random_numbers(seed, 2)
     )
     box = _Box(solution, names, progress)
     unbounded = _unbounded_names(box, solution.system.known, names)
@@ -204,7 +203,9 @@ def _ranges_over_branches(
         if name in SPEEDS and lowest > 0:
             speeds = posterior.values(points, signs, [name])[0]
             slowest = np.argsort(speeds, kind="stable")[:STANDSTILL_STARTS]
-            standstills = region.standstill(name, region.shares(points[:, slowest]), signs[slowest])
+            standstills = region.standstill(
+                name, region.fractions(points[:, slowest]), signs[slowest]
+            )
             if len(standstills):
                 lowest, low, has_converged = (
                     0.0,

@@ -18,7 +18,8 @@ from ..names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..uncertainty.boundstable import unbounded
 from . import adjustment
 from .adjustment import Reconstruction, typed_friction
-from .reconstructed import MIN_GAIN, SIGMAS, Draws, Range, draws, ranges
+from .posterior import SIGMAS
+from .reconstructed import MIN_GAIN, Draws, Range, draws, ranges
 from .solutiontable import DRIVERS, NOISE, ROUNDING, Impact, completed, in_turn
 
 _RESULTS = (*VELOCITIES, *FINAL_STATE, *SPEEDS, *COURSES, "DVA", "DVB")
