@@ -1,24 +1,23 @@
 """Equations 13-18 solved for any unknowns: reconstruction and its relatives (chapter, IV-C).
 
-Twelve velocities (six before, six after the impact) and three coefficients stand in six equations.
-Whatever is not given is unknown: six final velocities (what the 1988 program solves), six initial
-ones, three velocities and e, e_m, μ, or any other set. A coefficient that is unknown stands in one
-equation alone (e in 15, μ in 16, e_m in 18), which gives it at the end; the others are linear
-(`system.System`), so that one step of Newton's solves them. Equations left over are fitted by least
-squares and the mismatch is given. Singular values decide; a set that is not determined is refused
-with the reason.
+Twelve velocities (six before, six after the impact) and three coefficients appear in six equations.
+Whatever is not given is unknown: six final velocities (as in the 1988 program), six initial ones,
+three velocities and e, e_m, μ, or any other set. An unknown coefficient appears in one equation
+alone (e in 15, μ in 16, e_m in 18), which determines it at the end; the remaining equations are
+linear (`system.System`) and are solved at once. Redundant equations are fitted by least squares,
+and the mismatch is reported. The rank is decided by singular values; a set that is not determined
+is refused with the reason.
 
 Friction: ``MUP`` is the signed P_t/P_n as printed; ``MU`` is what line 280 would hold, whose sign
 line 400 chooses so that friction opposes the sliding. Where the initial velocities are unknown both
-signs are tried, and each solution that agrees with its own sign is returned.
-"""
+signs are tried, and each solution that agrees with its own sign is returned."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
 from functools import reduce
 from itertools import combinations
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,23 +47,17 @@ Array = NDArray[np.float64]
 
 UNKNOWNS = (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS)
 
-BADLY_CONDITIONED = 10.0
-"""From this amplification on a solution is flagged: an error of the known velocities is found
-tenfold, or worse, in some unknown."""
-ORDINARY = {"E": 0.37, "EM": -0.61, "MUP": 0.43}
-"""Coefficients at which nothing special happens."""
-CHUNK = 1 << 12
-"""Scenes solved at a time: bounds the memory."""
-# of these twice or a hundredth as much changes none of 260 problems
-TIE = 1e-14
-"""Sliding below this share of the largest speed is rounding, and counts as line 400's tie."""
-_NOTHING, _OPEN = 1e-12, 1e-9
-"""Smaller shares of the largest are rounding: of singular values and denominators of coefficients;
-of what is left open in a quantity, and equations' mismatch."""
+BADLY_CONDITIONED = 10.0  # error amplification at which a solution is flagged
+ORDINARY = {"E": 0.37, "EM": -0.61, "MUP": 0.43}  # coefficients at which nothing special happens
+CHUNK = 1 << 12  # scenes solved at a time, bounds the memory
+# Twice or a hundredth of these changes none of 260 problems.
+TIE = 1e-14  # relative sliding below counts as none (line 400)
+RANK_TOL = 1e-12  # relative singular values and denominators of coefficients below count as zero
+NULL_TOL = 1e-9  # relative part of a gradient in the null space, or mismatch, that counts as zero
 
 
 def _disagreement(values: Mapping[str, Any]) -> str:
-    """Return by how much values of which nothing is unknown miss a law, "" where they miss none."""
+    """Return a phrase with the law that the exact values violate, "" if none."""
     from .laws import describe_laws, missed_laws
 
     if any(np.ndim(value) for value in values.values()):
@@ -135,7 +128,7 @@ class Solution:
     def contradictory(self) -> NDArray[np.bool_]:
         """Mask of the scenes whose known values contradict one another beyond rounding."""
         speeds = [np.abs(self.values[n]) for n in (*VELOCITIES, *FINAL_STATE) if n in self.values]
-        return np.asarray(self.mismatch > _OPEN * np.max(speeds, axis=0))
+        return np.asarray(self.mismatch > NULL_TOL * np.max(speeds, axis=0))
 
 
 @within_doubles
@@ -185,12 +178,12 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
     problem = _Problem(known, unknown)
     solutions = problem.solutions()
     if problem.shape == ():
-        kept = [s for s in solutions if s.agrees]
-        kept = [s for s in kept if not s.contradictory] or kept
+        agreeing = [s for s in solutions if s.agrees]
+        agreeing = [s for s in agreeing if not s.contradictory] or agreeing
     else:
-        kept = [s for s in solutions if s.agrees.any()]
-    if kept or 0 in problem.shape:
-        return kept
+        agreeing = [s for s in solutions if s.agrees.any()]
+    if agreeing or 0 in problem.shape:
+        return agreeing
     if any(s.found.any() for s in solutions):
         raise UnsolvableError(
             "neither sign of MU agrees with the sliding it leads to (line 400): no friction "
@@ -200,20 +193,20 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
 
 
 class _Problem:
-    """What is known and wanted, checked; every number an array of one ``shape``; ``names``: what
-    can be unknown; ``absent``: what is."""
+    """The known values and unknowns of a call, checked. Every number is an array of one ``shape``;
+    ``names``: quantities that can be unknown; ``absent``: those that are."""
 
     def __init__(self, known: Mapping[str, Any], unknown: Iterable[str] | None) -> None:
         allowed = {*GEOMETRY, "M", *VELOCITIES, *FINAL_STATE, "E", "EM", "MU", "MUP"}
         values = columns(known)
         check_names(values, [n for n in (*SCENE, *RESULTS) if n in allowed], "value of an impact")
-        given = {n: np.asarray(v, np.float64) for n, v in with_point_masses(values).items()}
-        check_physical(given)
-        m = given.get("M", np.asarray(6.0))
+        values = {n: np.asarray(v, np.float64) for n, v in with_point_masses(values).items()}
+        check_physical(values)
+        m = values.get("M", np.asarray(6.0))
         self.point = point = bool(m.size) and bool((m == 4).all())
         self.names = tuple(n for n in UNKNOWNS if not (point and n in (*SPINS, "EM")))
-        settled = {*given} | ({"MUP"} if "MU" in given else set())
-        self.absent = tuple(name for name in self.names if name not in settled)
+        given = {*values} | ({"MUP"} if "MU" in values else set())
+        self.absent = tuple(name for name in self.names if name not in given)
         self.wanted = self.absent if unknown is None else tuple(dict.fromkeys(unknown))
         check_names(self.wanted, self.names, "quantity that may be unknown")
         for name in self.wanted:
@@ -221,51 +214,52 @@ class _Problem:
                 raise UserError(f"{name} is both known and wanted; leave it out of one")
         if not self.wanted:
             raise UserError(
-                f"nothing is unknown{_disagreement(given)}; leave out values to solve for"
+                f"nothing is unknown{_disagreement(values)}; leave out values to solve for"
             )
         try:
-            self.shape = np.broadcast_shapes(*(value.shape for value in given.values()))
+            self.shape = np.broadcast_shapes(*(value.shape for value in values.values()))
         except ValueError:
-            shapes = ", ".join(f"{name} {v.shape}" for name, v in given.items() if v.ndim)
+            shapes = ", ".join(f"{name} {v.shape}" for name, v in values.items() if v.ndim)
             raise UserError(f"the arrays do not broadcast together: {shapes}") from None
-        self.known = {name: np.broadcast_to(v, self.shape) for name, v in given.items()}
+        self.known = {name: np.broadcast_to(v, self.shape) for name, v in values.items()}
 
     @property
     def friction(self) -> Array | None:
-        """MUP, or MU with its sign still open."""
+        """MUP, or MU with its sign undecided."""
         return self.known.get("MUP", self.known.get("MU"))
 
     def solutions(self) -> list[Solution]:
-        """One solution, or one for each sign of MU where line 400 needs what is unknown."""
+        """Return one solution, or one for each sign of MU where the sign that line 400 gives
+        depends on unknowns."""
         if "MU" not in self.known:
-            return [self._solved(self.friction)]
+            return [self._solve(self.friction)]
         mu = self.known["MU"]
         if (mu == PIVOT).any() or not mu.any():
-            return [self._solved(mu)]
+            return [self._solve(mu)]
         if all(name in self.known for name in VELOCITIES if not (self.point and name in SPINS)):
-            # solve's own line 400; what else a scene has does not matter to it
+            # line 400 as `solve` computes it; other values have no effect on it
             scene = {"WA": 0.0, "WB": 0.0, "E": 0.0, "EM": 0.0, **self.known}
             signed = solve({name: scene[name] for name in SCENE if name in scene}, ("MUP",))
-            return [self._solved(np.where(signed["MUP"] == mu, mu, -mu))]
-        return [self._solved(mu, must_agree=True), self._solved(-mu, must_agree=True)]
+            return [self._solve(np.where(signed["MUP"] == mu, mu, -mu))]
+        return [self._solve(mu, must_agree=True), self._solve(-mu, must_agree=True)]
 
-    def _solved(self, mu: Array | None, must_agree: bool = False) -> Solution:
-        """The solution for a signed friction coefficient."""
+    def _solve(self, mu: Array | None, must_agree: bool = False) -> Solution:
+        """Return the solution for a signed friction coefficient."""
         count = int(np.prod(self.shape))
         flat = {name: value.reshape(count) for name, value in self.known.items()}
         if mu is not None:
             flat["MUP"] = np.broadcast_to(mu, self.shape).reshape(count)
         parts = [
-            _determined({n: v[at : at + CHUNK] for n, v in flat.items()}, self.wanted, self.point)
+            _solve_block({n: v[at : at + CHUNK] for n, v in flat.items()}, self.wanted, self.point)
             for at in range(0, max(count, 1), CHUNK)
         ]
 
-        def whole(name: str) -> Array:
+        def join_blocks(name: str) -> Array:
             return np.concatenate([part[name] for part in parts]).reshape(self.shape)
 
-        values = {name: whole(name) for name in (*UNKNOWNS, *IMPULSES) if name in parts[0]}
+        values = {name: join_blocks(name) for name in (*UNKNOWNS, *IMPULSES) if name in parts[0]}
         values = {n: v for n, v in values.items() if n in self.wanted or not np.isnan(v).all()}
-        sliding = whole("sliding")
+        sliding = join_blocks("sliding")
         agrees = np.all([np.isfinite(values[n]) for n in self.wanted], axis=0)
         if "MUP" in values:
             speeds = [values[n] for n in (*VELOCITIES, *FINAL_STATE) if n in values]
@@ -275,41 +269,41 @@ class _Problem:
         return Solution(
             values=values,
             unknown=self.wanted,
-            amplification={name: whole(f"error of {name}") for name in self.wanted},
+            amplification={name: join_blocks(f"error of {name}") for name in self.wanted},
             agrees=agrees,
-            mismatch=whole("mismatch"),
-            gyration=whole("gyration"),
+            mismatch=join_blocks("mismatch"),
+            gyration=join_blocks("gyration"),
         )
 
-    # -- why a set is refused
+    # -- the reason for refusing a set of unknowns
 
-    def _first(self, wanted: Sequence[str], **changes: float) -> "_Problem":
-        """The first scene's problem with other unknowns wanted and some values changed."""
-        given = {name: value.reshape(-1)[:1] for name, value in self.known.items()}
-        if "MU" in given:
-            given["MUP"] = given.pop("MU")
-        return _Problem(given | changes, wanted)
+    def _first_scene(self, wanted: Sequence[str], **changes: float) -> "_Problem":
+        """Return the first scene's problem, with other unknowns and some values changed."""
+        values = {name: value.reshape(-1)[:1] for name, value in self.known.items()}
+        if "MU" in values:
+            values["MUP"] = values.pop("MU")
+        return _Problem(values | changes, wanted)
 
     def _determines(self, wanted: Sequence[str], **changes: float) -> bool:
-        """Whether all of ``wanted`` is determined in the first scene."""
-        return all(s.found.all() for s in self._first(wanted, **changes).solutions())
+        """Return True if all of ``wanted`` is determined in the first scene."""
+        return all(s.found.all() for s in self._first_scene(wanted, **changes).solutions())
 
     def reason(self) -> str:
-        """One line saying why the wanted unknowns are not determined in the first scene."""
-        if blame := self._coefficient_to_blame() or self._nothing_over_nothing():
+        """Return one line: why the wanted unknowns are not determined in the first scene."""
+        if blame := self._coefficient_to_blame() or self._coefficient_without_value():
             return blame
-        alone = [name for name in self.absent if self._determines([name])]
-        hint = f"; {' '.join(alone)} could be found alone" if alone else ""
-        count, few = (4, "four") if self.point else (6, "six")
+        findable = [name for name in self.absent if self._determines([name])]
+        hint = f"; {' '.join(findable)} could be found alone" if findable else ""
+        count, count_in_words = (4, "four") if self.point else (6, "six")
         if len(self.absent) > count:
             return (
                 f"{len(self.absent)} quantities are unknown ({' '.join(self.absent)}) and the "
-                f"{few} equations do not determine {' '.join(self.wanted)}{hint}; give at least "
-                f"{len(self.absent) - count} more"
+                f"{count_in_words} equations do not determine {' '.join(self.wanted)}{hint}; give "
+                f"at least {len(self.absent) - count} more"
             )
         for vehicle, at in (("A", 0), ("B", 3)):
-            its = {*VELOCITIES[at : at + 3], *FINAL_STATE[at : at + 3]} & {*self.names}
-            if its <= {*self.absent}:
+            own_velocities = {*VELOCITIES[at : at + 3], *FINAL_STATE[at : at + 3]} & {*self.names}
+            if own_velocities <= {*self.absent}:
                 return (
                     f"all velocities of {vehicle} are unknown: those of the other determine the "
                     "whole impulse, which leaves Equation 16 nothing to determine and the common "
@@ -321,129 +315,165 @@ class _Problem:
         )
 
     def _coefficient_to_blame(self) -> str | None:
-        """The coefficient whose value makes the set undetermined, found by changing it."""
-        given: dict[str, float] = {n: self.known[n].flat[0] for n in ("E", "EM") if n in self.known}
+        """Return the reason if a coefficient's special value makes the set undetermined: the set is
+        determined with an ordinary value in its place."""
+        coefficients: dict[str, float] = {
+            n: self.known[n].flat[0] for n in ("E", "EM") if n in self.known
+        }
         if self.friction is not None:
-            given["MUP"] = self.friction.flat[0]
-        for size in range(1, len(given) + 1):
-            for names in combinations(given, size):
+            coefficients["MUP"] = self.friction.flat[0]
+        for size in range(1, len(coefficients) + 1):
+            for names in combinations(coefficients, size):
                 if self._determines(self.wanted, **{n: ORDINARY[n] for n in names}):
-                    return "; and ".join(_blame(n, float(given[n])) for n in names)
+                    return "; and ".join(
+                        _explain_coefficient(n, float(coefficients[n])) for n in names
+                    )
         return None
 
-    def _nothing_over_nothing(self) -> str | None:
-        """A wanted coefficient whose parts are determined but give no quotient."""
-        bad = []
+    def _coefficient_without_value(self) -> str | None:
+        """Return the reason if a wanted coefficient is a quotient 0/0, although numerator and
+        denominator are determined."""
+        reasons = []
         for name in self.wanted:
-            alone = name in COEFFICIENTS and not self._determines([name])
-            if alone and _determined(self._first([name]).known, [name], self.point)["parts"].all():
-                bad.append(_NO_VALUE[name])
-        return "; and ".join(bad) or None
+            is_undetermined = name in COEFFICIENTS and not self._determines([name])
+            if (
+                is_undetermined
+                and _solve_block(self._first_scene([name]).known, [name], self.point)["parts"].all()
+            ):
+                reasons.append(_NO_VALUE[name])
+        return "; and ".join(reasons) or None
 
 
-def _determined(given: Mapping[str, Any], wanted: Sequence[str], point: bool) -> dict[str, Array]:
-    """What the equations of n scenes determine, n each, NaN elsewhere: quantities by name, the
-    ``error of`` each wanted one (`Solution.amplification`), ``sliding`` before the impact,
-    ``mismatch``, ``gyration``, and whether the ``parts`` of all wanted coefficients are."""
-    count, ignored = len(given["MA"]), (*SPINS, "EM", "PM") if point else ()
+class _Fit(NamedTuple):
+    """The least-squares solutions of n scenes: scaled variables ``x`` (variables, n), their
+    ``errors`` (variables, known velocities, n) when each known velocity errs by one unit, the
+    projector on the null space (n, variables, variables), and the residuals (equations, n)."""
+
+    x: Array
+    errors: Array
+    null_projector: Array
+    misfit: Array
+
+
+def _solve_block(known: Mapping[str, Any], wanted: Sequence[str], point: bool) -> dict[str, Array]:
+    """Return everything that the equations of n scenes determine, n values each, NaN elsewhere.
+
+    Quantities by name; the ``error of`` each wanted one (`Solution.amplification`); the ``sliding``
+    before the impact, ``mismatch`` and ``gyration``; ``parts``: True where numerator and
+    denominator of all wanted coefficients are determined.
+    """
+    count, ignored = len(known["MA"]), (*SPINS, "EM", "PM") if point else ()
     system = System(
-        {n: fixed_value(v) for n, v in given.items() if n not in ignored},
+        {n: fixed_value(v) for n, v in known.items() if n not in ignored},
         adjusted=False,
         barrier=False,
     )
-
-    def held(state: State) -> State:
-        """A velocity known after the impact is that, whatever its momentum equation leaves over."""
-        after = zip(FINAL_STATE, state.after, strict=True)
-        state.after = [state.values.get(late, value) for late, value in after]
-        return state
-
-    def left(state: State, _: Any = None) -> Array:
-        laws, momentum = copy(state), system.residuals(state, state.values)[len(system.laws) :]
-        rows = system.residuals(held(laws), state.values)[: len(system.laws)]
-        return np.concatenate([rows, momentum])
-
-    start = np.zeros((len(system.variables), count))
-    residual, jacobian = system.linearize(start, left)
-    # a barrier's momentum is nobody's equation
-    said = jacobian.any(axis=(1, 2)) | residual.any(axis=1)
-    residual, jacobian = residual[said], jacobian[said]
-    inverse, left_open = _pseudo_inverse(jacobian.transpose(2, 0, 1))
-    x = -np.einsum("nvr,rn->vn", inverse, residual)
-    rest = residual + np.einsum("rvn,vn->rn", jacobian, x)
-    # each known velocity in error by one unit
-    known = [n for n in (*VELOCITIES, *FINAL_STATE) if n in system.nominal]
-    sizes = np.max([np.zeros(count), *(np.abs(given[n] / system.scale(n)) for n in known)], axis=0)
-    moved = {
-        name: given[name] + 1j * COMPLEX_STEP * system.scale(name) * unit[:, None]
-        for name, unit in zip(known, np.eye(len(known)), strict=True)
+    velocities = [n for n in (*VELOCITIES, *FINAL_STATE) if n in system.nominal]
+    sizes = np.max(
+        [np.zeros(count), *(np.abs(known[n] / system.scale(n)) for n in velocities)], axis=0
+    )
+    offset_data = {
+        name: known[name] + 1j * COMPLEX_STEP * system.scale(name) * unit[:, None]
+        for name, unit in zip(velocities, np.eye(len(velocities)), strict=True)
     }
-    missed = np.imag(left(system.state(x[:, None].astype(complex), moved))) / COMPLEX_STEP
-    errors = -np.einsum("nvr,rkn->vkn", inverse, missed[said])
+    fit = _fit(system, count, offset_data)
 
     names = [n for n in (*VELOCITIES, *FINAL_STATE, *IMPULSES) if n not in ignored]
-    unknown = [n for n in COEFFICIENTS if n not in given and n not in ignored]
+    coefficients = [n for n in COEFFICIENTS if n not in known and n not in ignored]
 
-    def scaled(state: State, _: Any = None) -> Array:
-        rows = [held(state)[name] / system.scale(name) for name in names]
-        for name in unknown:
+    def scaled_quantities(state: State, _: Any = None) -> Array:
+        rows = [_with_known_after(state)[name] / system.scale(name) for name in names]
+        for name in coefficients:
             unit = {"MUP": system.mass, "EM": 1 / system.gyration}.get(name, 1.0) * system.speed
             rows += [part / unit for part in state.quotient(name)]
         rows += [velocity / system.speed for velocity in state.relative_before[:2]]
         return np.stack(np.broadcast_arrays(*rows))
 
-    rows, slopes = system.linearize(x, scaled)
-    unsure = np.abs(np.einsum("qvn,nvw->qwn", slopes, left_open)).max(axis=1)
-    sure = unsure <= _OPEN * np.abs(slopes).max(axis=1)
-    growth = (
-        np.imag(scaled(system.state(x[:, None] + 1j * COMPLEX_STEP * errors, moved))) / COMPLEX_STEP
-    )
-    closing = np.hypot(*rows[-2:])
-    rows, growth = np.where(sure, rows, np.nan), np.where(sure[:, None], growth, np.nan)
-    result = {n: row * system.scale(n) for n, row in zip(names, rows, strict=False)}
-    error = dict(zip(names, growth, strict=False))
-    parts = np.ones(count, bool)
-    for at, name in enumerate(unknown, len(names)):
-        two = slice(2 * at - len(names), 2 * at - len(names) + 2)
-        (above, below), (da, db) = rows[two], growth[two]
-        value = np.where(np.abs(below) > _NOTHING * sizes, above / below, np.nan)
-        result[name], error[name] = value, (da - value * db) / below * closing
-        parts &= sure[two].all(axis=0) | (name not in wanted)
+    rows, slopes = system.linearize(fit.x, scaled_quantities)
+    null_parts = np.abs(np.einsum("qvn,nvw->qwn", slopes, fit.null_projector)).max(axis=1)
+    is_determined = null_parts <= NULL_TOL * np.abs(slopes).max(axis=1)
+    offset_state = system.state(fit.x[:, None] + 1j * COMPLEX_STEP * fit.errors, offset_data)
+    row_errors = np.imag(scaled_quantities(offset_state)) / COMPLEX_STEP
+    closing_speed = np.hypot(*rows[-2:])
+    rows = np.where(is_determined, rows, np.nan)
+    row_errors = np.where(is_determined[:, None], row_errors, np.nan)
+    values = {n: row * system.scale(n) for n, row in zip(names, rows, strict=False)}
+    errors = dict(zip(names, row_errors, strict=False))
+    parts_determined = np.ones(count, bool)
+    for i, name in enumerate(coefficients):
+        # a coefficient is a quotient of two rows: numerator and denominator
+        pair = slice(len(names) + 2 * i, len(names) + 2 * i + 2)
+        (numerator, denominator), (d_numerator, d_denominator) = rows[pair], row_errors[pair]
+        is_quotient = np.abs(denominator) > RANK_TOL * sizes
+        value = np.where(is_quotient, numerator / denominator, np.nan)
+        values[name] = value
+        errors[name] = (d_numerator - value * d_denominator) / denominator * closing_speed
+        parts_determined &= is_determined[pair].all(axis=0) | (name not in wanted)
     if point:  # nothing turns a point mass: no moment, and a spin passes through
-        result["PM"] = np.zeros(count)
-        for pair in (("WA", "WAF"), ("WB", "WBF")):
-            spins = [given[name] for name in pair if name in given]
-            result |= dict.fromkeys(pair, spins[0]) if spins else {}
-    mismatch = np.sqrt((rest**2).sum(axis=0) / max(len(rest), 1))
+        values["PM"] = np.zeros(count)
+        for pair_names in (("WA", "WAF"), ("WB", "WBF")):
+            spins = [known[name] for name in pair_names if name in known]
+            values |= dict.fromkeys(pair_names, spins[0]) if spins else {}
+    mismatch = np.sqrt((fit.misfit**2).sum(axis=0) / max(len(fit.misfit), 1))
     return {
-        **result,
-        **{n: given[n] for n in UNKNOWNS if n in given and not (point and n == "EM")},
-        **{f"error of {name}": np.sqrt((error[name] ** 2).sum(axis=0)) for name in wanted},
+        **values,
+        **{n: known[n] for n in UNKNOWNS if n in known and not (point and n == "EM")},
+        **{f"error of {name}": np.sqrt((errors[name] ** 2).sum(axis=0)) for name in wanted},
         "sliding": rows[-1] * system.speed,
-        "mismatch": np.where(mismatch > _OPEN * sizes, mismatch * system.speed, 0.0),
+        "mismatch": np.where(mismatch > NULL_TOL * sizes, mismatch * system.speed, 0.0),
         "gyration": np.broadcast_to(system.gyration, count),
-        "parts": parts,
+        "parts": parts_determined,
     }
 
 
-def _pseudo_inverse(matrix: Array) -> tuple[Array, Array]:
-    """The Moore-Penrose inverse of each matrix, and a projector on what it leaves open.
+def _fit(system: System, count: int, offset_data: Mapping[str, Array]) -> _Fit:
+    """Return the least-squares solutions of n scenes. The equations are linear, so that one
+    Gauss-Newton step from 0 solves them. ``offset_data``: each known velocity with a complex step
+    of one unit, (known velocities, n)."""
 
-    A matrix with a number that is not finite (masses beyond all bounds) leaves everything open.
-    """
+    def residuals(state: State, _: Any = None) -> Array:
+        law_state, momentum = copy(state), system.residuals(state, state.values)[len(system.laws) :]
+        laws = system.residuals(_with_known_after(law_state), state.values)[: len(system.laws)]
+        return np.concatenate([laws, momentum])
+
+    residual, jacobian = system.linearize(np.zeros((len(system.variables), count)), residuals)
+    # rows that are 0 are no equations, such as the momentum of a barrier
+    is_equation = jacobian.any(axis=(1, 2)) | residual.any(axis=1)
+    residual, jacobian = residual[is_equation], jacobian[is_equation]
+    inverse, null_projector = _pseudo_inverse(jacobian.transpose(2, 0, 1))
+    x = -np.einsum("nvr,rn->vn", inverse, residual)
+    misfit = residual + np.einsum("rvn,vn->rn", jacobian, x)
+    offset_state = system.state(x[:, None].astype(complex), offset_data)
+    changes = np.imag(residuals(offset_state)) / COMPLEX_STEP
+    errors = -np.einsum("nvr,rkn->vkn", inverse, changes[is_equation])
+    return _Fit(x, errors, null_projector, misfit)
+
+
+def _with_known_after(state: State) -> State:
+    """Replace the velocities after the impact by those that are known, whatever residual their
+    momentum equations have."""
+    after = zip(FINAL_STATE, state.after, strict=True)
+    state.after = [state.values.get(late, value) for late, value in after]
+    return state
+
+
+def _pseudo_inverse(matrix: Array) -> tuple[Array, Array]:
+    """Return the Moore-Penrose inverse of each matrix, and a projector on its null space. For a
+    matrix that is not finite (masses beyond the range of doubles) the projector is the identity:
+    nothing is determined."""
     finite = np.asarray(np.isfinite(matrix).all(axis=(1, 2)))
     u, s, vt = np.linalg.svd(np.where(finite[:, None, None], matrix, 0.0), full_matrices=False)
-    kept, v = s > _NOTHING * s.max(axis=1, initial=0.0)[:, None], vt.swapaxes(1, 2)
-    pseudo = (v * np.where(kept, 1 / s, 0.0)[:, None]) @ u.swapaxes(1, 2)
-    return pseudo, np.eye(matrix.shape[2]) - (v * kept[:, None]) @ vt
+    counts, v = s > RANK_TOL * s.max(axis=1, initial=0.0)[:, None], vt.swapaxes(1, 2)
+    pseudo = (v * np.where(counts, 1 / s, 0.0)[:, None]) @ u.swapaxes(1, 2)
+    return pseudo, np.eye(matrix.shape[2]) - (v * counts[:, None]) @ vt
 
 
 def mu_to_type(mup: Any, sliding: Any, velocities: Iterable[Any]) -> Array:
-    """The MU that line 400 turns into MUP: changed where the sliding is positive. Where the sliding
-    is not known the sign stays as it is."""
+    """Return the MU to type in line 280 so that line 400 turns it into ``mup``: the sign is changed
+    where the sliding is positive. Where the sliding is nan the sign stays."""
     mu, speed = np.asarray(mup), reduce(np.maximum, map(np.abs, velocities))
-    changed = (sliding > TIE * speed) & (mu != PIVOT) & (mu != 0)
-    return np.where(changed, -mu, mu)
+    is_changed = (sliding > TIE * speed) & (mu != PIVOT) & (mu != 0)
+    return np.where(is_changed, -mu, mu)
 
 
 _NO_VALUE = {
@@ -454,8 +484,9 @@ _NO_VALUE = {
 }
 
 
-def _blame(name: str, value: float) -> str:
-    why = {
+def _explain_coefficient(name: str, value: float) -> str:
+    """Return why a coefficient's value makes a set of unknowns undetermined."""
+    reasons = {
         ("E", 0.0): "E = 0: Equation 15 then only says that the contact points stay together, so "
         "the final velocities do not determine how fast they approached",
         ("EM", 0.0): "EM = 0: Equation 18 then only says that the final spins are equal, and the "
@@ -464,23 +495,23 @@ def _blame(name: str, value: float) -> str:
         "tangential impulse is not determined",
     }
     label = "MU (signed)" if name == "MUP" else name
-    usual = f"{label} = {value:.6g}: at exactly this value the unknowns cannot be separated"
-    return why.get((name, value), usual)
+    default = f"{label} = {value:.6g}: at exactly this value the unknowns cannot be separated"
+    return reasons.get((name, value), default)
 
 
-def check_physical(given: Mapping[str, Any]) -> None:
-    """Raises UserError where vehicles or geometry are missing, for M other than 6 or 4, values that
-    are not finite, masses that are not positive, two infinite ones."""
-    if absent := [name for name in GEOMETRY if name not in given]:
-        raise UserError(f"{missing(absent)}: the vehicles and their geometry must be known")
-    if "MU" in given and "MUP" in given:
+def check_physical(values: Mapping[str, Any]) -> None:
+    """Raise UserError where vehicles or geometry are missing, for M other than 6 or 4, values that
+    are not finite, masses that are not positive, and for two infinite masses or inertias."""
+    if missing_names := [name for name in GEOMETRY if name not in values]:
+        raise UserError(f"{missing(missing_names)}: the vehicles and their geometry must be known")
+    if "MU" in values and "MUP" in values:
         raise UserError("MU and MUP are both given; give MUP (signed Pt/Pn) or MU, not both")
-    m, mu = given.get("M", 6.0), given.get("MUP", given.get("MU", 0.0))
+    m, mu = values.get("M", 6.0), values.get("MUP", values.get("MU", 0.0))
     if not (np.all(m == 6) or np.all(m == 4)):
         raise UserError("M must be 6, or 4 for point masses, the same in all scenes")
     if np.any(mu == PIVOT) and not np.all(mu == PIVOT):
         raise UserError("MU is the pivot's -10 in some scenes only; solve pivots apart")
-    for name, value in given.items():
+    for name, value in values.items():
         meaning = f"{quantity(name).meaning} [{quantity(name).unit}]"
         infinite_allowed = name in ("MA", "MB", "IA", "IB")
         if np.isnan(value).any() or (np.isinf(value).any() and not infinite_allowed):
@@ -488,5 +519,5 @@ def check_physical(given: Mapping[str, Any]) -> None:
         if infinite_allowed and not np.all(value > 0):
             raise UserError(f"{name} is not positive; expected {meaning}")
     for kind, names in (("mass", ("MA", "MB")), ("moment of inertia", ("IA", "IB"))):
-        if all(np.isinf(given[name]).any() for name in names):
+        if all(np.isinf(values[name]).any() for name in names):
             raise UserError(f"{' and '.join(names)} are both infinite; expected one {kind} at most")
