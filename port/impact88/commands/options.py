@@ -253,12 +253,12 @@ def show(
 
 
 def show_impacts(args: Args, found: Sequence[Impact], units: System) -> None:
-    from ..reconstruction.solutiontable import in_turn
+    from ..reconstruction.solutiontable import join_texts
 
     def record() -> dict[str, Any]:
         return {"solutions": [impact.as_json(units) for impact in found]}
 
-    show(args, "reconstruct", record, lambda: [in_turn(found, units)])
+    show(args, "reconstruct", record, lambda: [join_texts(found, units)])
 
 
 def print_json(form: str, found: Mapping[str, Any], indent: int | None = None) -> None:

@@ -146,10 +146,10 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
 def _answer(scene: Scene, exact: Mapping[str, float], system: System) -> list[dict[str, Any]]:
     """Rows of ``words``, a ``unit``, and ``values``: name, text, and a direction as it is ``said``,
     one or one for each vehicle."""
-    from ..reconstruction.solutiontable import completed
+    from ..reconstruction.solutiontable import with_derived_values
 
     given = {name: double(text) for name, text in scene.items()}
-    values = without_rounding(completed({**given, **exact}, None), _ROUNDING)
+    values = without_rounding(with_derived_values({**given, **exact}, None), _ROUNDING)
     rows = []
     for words, *names in _ANSWER:
         if not values.keys() >= set(names):

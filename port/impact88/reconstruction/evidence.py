@@ -1,11 +1,10 @@
 """The verdict on the evidence: whether the measured values of a reconstruction can all be true.
 
-The sum of squared adjustments, each in standard deviations, of r values more than needed follows
-the chi-square distribution of r degrees of freedom where the tolerances are right (Mikhail and
-Ackermann, *Observations and Least Squares*, 1976). What a value adds to that sum, by which the sum
-falls when the value is left out, is the square of its standardized residual (Baarda, *A Testing
-Procedure for Use in Geodetic Networks*, 1968).
-"""
+The sum of squared adjustments, each in standard deviations, of r redundant values follows the
+chi-square distribution with r degrees of freedom if the tolerances are right (Mikhail and
+Ackermann, *Observations and Least Squares*, 1976). Leaving a value out reduces the sum by the
+square of its standardized residual (Baarda, *A Testing Procedure for Use in Geodetic Networks*,
+1968)."""
 
 import math
 import re
@@ -18,17 +17,17 @@ from ..messages.plaintable import number
 from ..names import quantity
 from .laws import MissedLaw, describe_laws
 
+# Measurements contradict one another if their sum of squares has a smaller probability: one
+# consistent set in a thousand is accused.
 CONTRADICTION = 1e-3
-"""Values whose sum of squares is reached with less probability contradict one another: one set of
-true measurements in a thousand is accused."""
-STRAIN = 0.05
-"""With less probability they agree poorly."""
-EQUALLY = 0.9
-"""Values that add at least this share of what the largest adds are named with it."""
-NOISE = 1e-9  # sums of squares of measurements that agree to the last digit
-MOST_NAMED = 3  # values at odds that are named
-LEAST_PROBABILITY = 1e-12  # less is beyond what tolerances can mean
-AGREE, STRAINED, CONTRADICT = "agree", "agree poorly", "contradict"
+STRAIN = 0.05  # probability below which they agree poorly
+NAMED_RATIO = 0.9  # squared residual, relative to the largest, from which a value is named with it
+MAX_NAMED = 3  # values at odds that are named
+NOISE = 1e-9  # sums of squares below are rounding
+MIN_PROBABILITY = 1e-12  # smaller ones are printed as "below" this
+AGREE = "agree"
+STRAINED = "agree poorly"
+CONTRADICT = "contradict"
 UNCHECKED = "not checked"
 
 
@@ -105,7 +104,7 @@ class Evidence:
     @property
     def sum_text(self) -> str:
         """The sum of squares as printed, 0 if it is rounding only."""
-        return _amount(self.squares if self.squares > NOISE else 0.0, 3)
+        return _format_amount(self.squares if self.squares > NOISE else 0.0, 3)
 
     def text(self, units: System = RULES) -> str:
         """Return the verdict in a sentence or two.
@@ -124,18 +123,21 @@ class Evidence:
             return "not checked: no more is known than needed, so no measurement tests another"
         if self.exact:
             laws = f": {describe_laws(self.laws, units)}" if self.laws else ""
-            return f"these exact values contradict one another{laws}; {self.named(units)}"
+            at_odds = self.name_values_at_odds(units)
+            return f"these exact values contradict one another{laws}; {at_odds}"
         sums = (
             f"sum of squared adjustments, in standard deviations, {self.sum_text} where about "
-            f"{self.redundancy} is expected; probability {_probability(self.probability)}"
+            f"{self.redundancy} is expected; probability {_format_probability(self.probability)}"
         )
         if not self.contradictory:
             return f"the measurements {self.verdict}: {sums}"
         if self.probability >= CONTRADICTION:
             sums = f"no impact lies within all limits at once; {sums}"
-        return f"these measurements contradict one another; {self.named(units)}: {sums}"
+        return (
+            f"these measurements contradict one another; {self.name_values_at_odds(units)}: {sums}"
+        )
 
-    def named(self, units: System = RULES) -> str:
+    def name_values_at_odds(self, units: System = RULES) -> str:
         """Return the values most at odds, each as measured and as adjusted.
 
         Parameters
@@ -152,10 +154,10 @@ class Evidence:
         for item in self.at_odds:
             unit = units.unit(item.name)
             unit = "°" if unit == "deg" else f" {unit}" if unit else ""
-            # what the table of names says besides is for the tables
+            # the first part of the meaning; the rest is for the tables
             meaning = re.split("[:;,]| as printed", quantity(item.name).meaning)[0]
             measured, adjusted = (
-                _amount(units.display_unwrapped(item.name, float(x))) + unit
+                _format_amount(units.display_unwrapped(item.name, float(x))) + unit
                 for x in (item.measured, item.adjusted)
             )
             word = "given" if self.exact else "measured"
@@ -201,15 +203,15 @@ class Evidence:
         }
 
 
-def _amount(value: float, digits: int = 4) -> str:
-    """Return an amount to so many digits, without an exponent up to a billion."""
+def _format_amount(value: float, digits: int = 4) -> str:
+    """Return a number with so many digits, without an exponent up to a billion."""
     text = number(value, digits)
     return f"{float(text):,.0f}" if "e+" in text and abs(value) < 1e9 else text
 
 
-def _probability(value: float) -> str:
-    """Return a probability to two digits."""
-    return number(value, 2) if value >= LEAST_PROBABILITY else f"below {LEAST_PROBABILITY:g}"
+def _format_probability(value: float) -> str:
+    """Return a probability with two digits."""
+    return number(value, 2) if value >= MIN_PROBABILITY else f"below {MIN_PROBABILITY:g}"
 
 
 def weigh(
@@ -224,19 +226,20 @@ def weigh(
 
     ``values``: by name the measured and the adjusted value, the adjustment in standard deviations,
     and the redundancy number (the part of an error of the value that its adjustment shows, 0 to 1).
-    """
+    ``inside``: True if some impact lies within all limits, None if that was not searched for.
+    ``exact``: the values are exact and contradict one another; ``laws``: the laws they violate."""
     if redundancy < 1:
         return Evidence(UNCHECKED, squares, redundancy, math.nan, (), inside)
     probability = chi_square_tail(squares, redundancy)
     items = []
-    for name, (measured, adjusted, moved, shown) in values.items():
-        if shown > 1e-9:
-            residual = moved / math.sqrt(shown)
-            rest = max(squares - residual * residual, 0.0)
-            without = chi_square_tail(rest, redundancy - 1) if redundancy > 1 else 1.0
+    for name, (measured, adjusted, adjustment, redundancy_number) in values.items():
+        if redundancy_number > 1e-9:
+            residual = adjustment / math.sqrt(redundancy_number)
+            other_squares = max(squares - residual * residual, 0.0)
+            without = chi_square_tail(other_squares, redundancy - 1) if redundancy > 1 else 1.0
             items.append(AtOdds(name, measured, adjusted, residual, without))
     items.sort(key=lambda item: -abs(item.residual))
-    worst = [x for x in items if x.residual**2 >= EQUALLY * items[0].residual ** 2][:MOST_NAMED]
+    worst = [x for x in items if x.residual**2 >= NAMED_RATIO * items[0].residual ** 2][:MAX_NAMED]
     verdict = AGREE if probability >= STRAIN else STRAINED
     if exact or probability < CONTRADICTION or inside is False:
         verdict = CONTRADICT
@@ -245,8 +248,8 @@ def weigh(
 
 
 def chi_square_tail(squares: float, freedom: int) -> float:
-    """Return the probability that a chi-square variate of ``freedom`` degrees, 1 or more, is at
-    least ``squares``: the finite sums of Abramowitz and Stegun 26.4.4 and 26.4.5."""
+    """Return the probability that a chi-square variate with ``freedom`` degrees of freedom, 1 or
+    more, is at least ``squares``: the finite sums of Abramowitz and Stegun 26.4.4 and 26.4.5."""
     half = squares / 2
     if half > 700:
         return 0.0

@@ -1,5 +1,5 @@
-"""A reconstruction with its tolerances, as tables to read and as JSON to process: what was measured
-and how it was adjusted, what follows, and how uncertain that is in three ways side by side."""
+"""A reconstruction with its tolerances, as tables to read and as JSON to process: measured and
+adjusted values, results, and their uncertainty to first order, from draws and as bounds."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -20,40 +20,47 @@ from . import adjustment
 from .adjustment import Reconstruction, typed_friction
 from .posterior import SIGMAS
 from .reconstructed import MIN_GAIN, Draws, Range, draws, ranges
-from .solutiontable import DRIVERS, NOISE, ROUNDING, Impact, completed, in_turn
+from .solutiontable import DRIVERS, NOISE, ROUNDING, Impact, join_texts, with_derived_values
 
-_RESULTS = (*VELOCITIES, *FINAL_STATE, *SPEEDS, *COURSES, "DVA", "DVB")
-_RESULTS = (*_RESULTS, "PDOFA", "PDOFB", "VC", "VS", "LOSS", *COEFFICIENTS)
-_ANSWERS = ("SA", "SB", "DVA", "DVB")
-"""What the answer holds, known within limits or not."""
-QUANTILES = (0.05, 0.5, 0.95)
-"""The median and the middle 90 % of the draws."""
-MOST_CORRELATED = 7
-"""Columns of correlations: what 96 characters hold."""
-MOST_APART = 1 / 3
-"""First-order deviations that differ from the draws' by more, as a fraction, are not shown."""
-MOST_FOLDED = 6  # results that are named where branches meet
-MOST_SEPARATING = 0.005  # draws that do not approach, as a fraction, that nothing is said of
-ILL_POSED = 0.25
-"""From this share of the largest speed, a velocity's standard deviation is called ill-posed."""
+_RESULTS = (
+    *VELOCITIES,
+    *FINAL_STATE,
+    *SPEEDS,
+    *COURSES,
+    "DVA",
+    "DVB",
+    "PDOFA",
+    "PDOFB",
+    "VC",
+    "VS",
+    "LOSS",
+    *COEFFICIENTS,
+)
+_ANSWERS = ("SA", "SB", "DVA", "DVB")  # results of the answer, uncertain even where they are known
+QUANTILES = (0.05, 0.5, 0.95)  # the median and the middle 90 % of the draws
+MAX_CORRELATION_COLUMNS = 7  # as many as 96 characters hold
+FIRST_ORDER_RTOL = 1 / 3  # first-order deviations farther from the draws' are not shown
+MAX_FOLDED_NAMED = 6  # results named where branches meet
+MAX_SEPARATING_DRAWS = 0.005  # fraction of draws that do not approach, above which a remark is made
+ILL_POSED = 0.25  # standard deviation of a velocity, relative to the largest speed
 
 
 def _along_an_axis(solution: Reconstruction, name: str) -> bool:
-    """Whether a course says no more than the velocity's components do."""
+    """Return True if a course is along an axis: it is implied by a velocity component that is 0."""
     components = SPEEDS[COURSES[name]] if name in COURSES else ()
     known = solution.system.known
     return any(n in known and known[n].nominal == 0 and not known[n].varies for n in components)
 
 
 def _is_within_limits(solution: Reconstruction) -> bool:
-    """Return whether an impact meets all limits of what is known, normal values `SIGMAS` wide."""
+    """Return True if an impact meets all limits of what is known, normal values within `SIGMAS`."""
     known = solution.system.known
     limits = [(item.adjusted, *known[item.name].limits(SIGMAS)) for item in solution.adjusted]
     return all(low <= value <= high for value, low, high in limits)
 
 
-def _ends(bound: Range) -> tuple[float, float]:
-    """Return the bounds, 0 where the search for them does not tell one from 0."""
+def _bounds_without_noise(bound: Range) -> tuple[float, float]:
+    """Return the bounds, 0 where they are below the resolution of the search."""
     width = bound.upper - bound.lower
     if not math.isfinite(width):
         return bound.lower, bound.upper
@@ -62,10 +69,12 @@ def _ends(bound: Range) -> tuple[float, float]:
 
 
 class Measured(Impact):
-    """A reconstruction, everything that follows from it (`solutiontable.completed`), and how
-    uncertain the results ``wanted`` are, or those that were not known: first-order ``deviations``
-    and ``correlations``, the ``drivers`` of each and, for ``samples`` above 0 and tolerances that
-    were given, ``draws`` and bounds, ``ranges``."""
+    """A reconstruction, everything that follows from it, and the uncertainty of results.
+
+    ``wanted``: the results, by default those that were not known. First-order ``deviations`` and
+    ``correlations``, the ``drivers`` of each result and, for ``samples`` above 0 and given
+    tolerances, ``draws`` and bounds (``ranges``). ``like``: another impact of the same
+    distribution, whose draws and bounds are used."""
 
     @within_doubles
     def __init__(
@@ -81,15 +90,15 @@ class Measured(Impact):
         known, values = solution.system.known, dict(solution.values)
         if "MUP" in values and "UX" in values:
             values["MU"] = typed_friction(solution.system.state(solution.x), values["MUP"])
-        super().__init__(known, completed(values, contact_time))
+        super().__init__(known, with_derived_values(values, contact_time))
         self.solution, self.undetermined = solution, solution.undetermined
-        several = solution.search.impacts > 1 and not solution.search.possible
+        has_alternatives = solution.search.impacts > 1 and not solution.search.possible
         if any(item.varies for item in known.values()):
-            # within the limits there are others, of which physics may allow some
+            # other impacts within the limits may be possible
             self.subject = "the impact that fits best"
-            if several:
+            if has_alternatives:
                 self.subject = "each of the impacts that fit best"
-        elif several:
+        elif has_alternatives:
             self.subject = "every impact that agrees with what is known"
         self.helpful = solution.helpful if solution.undetermined else ()
         results = wanted or [
@@ -100,7 +109,7 @@ class Measured(Impact):
         ]
         names = [name for name in results if name in solution.values]
         self.deviations = solution.deviations(names)
-        # what the exact values alone determine is not uncertain
+        # results that exact values determine are not uncertain
         names = [n for n in names if self.deviations[n] > 1e-9 * solution.system.scale(n)]
         self.names, self.correlations = names, solution.correlations(names)
         self.draws: Draws | None = None
@@ -108,7 +117,7 @@ class Measured(Impact):
         self.evidence = solution.evidence
         infeasible = False
         if like is not None and like.draws and {*names} <= {*like.draws.values}:
-            # the distribution is one, whichever impact it is begun about
+            # all impacts have one distribution, whichever it was sampled from
             self.draws, self.ranges = like.draws, {n: like.ranges[n] for n in names}
         elif samples and names and not self.evidence.contradictory:
             self.draws = draws(solution, names, samples, seed, progress)
@@ -127,35 +136,46 @@ class Measured(Impact):
             self.deviations = {n: x * widening for n, x in self.deviations.items()}
         self.first_order: dict[str, float | None] = {**self.deviations}
         for name in names if self.draws else ():
-            drawn = float(np.nanstd(self.draws.values[name], ddof=1)) if self.draws else math.nan
-            if not abs(self.deviations[name] - drawn) <= MOST_APART * drawn:
-                self.first_order[name], self.deviations[name] = None, drawn
+            draws_deviation = (
+                float(np.nanstd(self.draws.values[name], ddof=1)) if self.draws else math.nan
+            )
+            if (
+                not abs(self.deviations[name] - draws_deviation)
+                <= FIRST_ORDER_RTOL * draws_deviation
+            ):
+                self.first_order[name], self.deviations[name] = None, draws_deviation
         for name in {*names} & {*solution.folded}:
             self.first_order[name] = None
             if not self.draws:
                 self.deviations[name] = math.nan
         self.drivers: dict[str, list[tuple[str, float]]] = {}
         for name, responses in zip(names, solution.responses(names), strict=True):
-            shares = responses**2 / (np.square(responses).sum() or 1.0)
-            ranked = np.argsort(-shares, kind="stable")
-            self.drivers[name] = [(solution.system.observations[i], shares[i]) for i in ranked]
+            fractions = responses**2 / (np.square(responses).sum() or 1.0)
+            order = np.argsort(-fractions, kind="stable")
+            self.drivers[name] = [(solution.system.observations[i], fractions[i]) for i in order]
 
     @property
     def uncertainties(self) -> Mapping[str, float]:
+        """Standard deviations of results and of adjusted values."""
         known = self.solution.system.known
         measured = {a.name: known[a.name].standard_deviation for a in self.solution.adjusted}
         return {**measured, **self.deviations}
 
     def headline(self, units: System) -> list[tuple[str, str]]:
-        broken = [*super().headline(units)]
+        """Return labels and texts to print above the answer: broken physics, the evidence, the
+        search."""
+        broken_rules = [*super().headline(units)]
         search, evidence = self.solution.search, ("EVIDENCE", self.evidence.text(units))
-        rows = [evidence, *broken] if self.evidence.contradictory else [*broken, evidence]
+        rows = (
+            [evidence, *broken_rules] if self.evidence.contradictory else [*broken_rules, evidence]
+        )
         if not search.single:
             rows.append(("SEARCH", search.text()))
         return rows
 
     @within_doubles
     def warnings(self, units: System = RULES) -> list[str]:
+        """Return the warnings, a sentence each."""
         solution, lines = self.solution, []
         if solution.undetermined:
             lines.append(f"not determined by what is known: {' '.join(solution.undetermined)}")
@@ -185,9 +205,9 @@ class Measured(Impact):
                 f"{self.evidence.text(units)}; standard deviations are widened "
                 f"{number(self.evidence.widening, 3)} times"
             )
-        if folded := [name for name in self.names if name in solution.folded]:
+        if folded_names := [name for name in self.names if name in solution.folded]:
             texts = []
-            for name in folded[:MOST_FOLDED]:
+            for name in folded_names[:MAX_FOLDED_NAMED]:
                 value, scale = solution.values[name], solution.system.scale(name)
                 value = 0.0 if abs(value) < 1e-6 * scale else value
                 # a direction opposite to the axis is 180, from either side
@@ -200,7 +220,7 @@ class Measured(Impact):
                 f"two branches of impacts meet here ({amounts}): to first order nothing limits "
                 f"these, so no first-order deviation is given{both}"
             )
-        lines += self._ill_posed(units)
+        lines += self._ill_posed_warnings(units)
         if self.not_drawn:
             lines.append(
                 "this impact lies within the limits of all known values, but the search for draws "
@@ -211,20 +231,21 @@ class Measured(Impact):
                 "no impact was found that lies within the limits of all known values at once: "
                 "there are neither draws nor bounds"
             )
-        if apart := self.separating:
+        if separating := self.separating:
             lines.append(
-                f"{100 * apart:.2g} % of the draws separate already before the impact, which meets "
-                "all known values and is no impact; a course or a closing speed would exclude them"
+                f"{100 * separating:.2g} % of the draws separate already before the impact, which "
+                "meets all known values and is no impact; a course or a closing speed would "
+                "exclude them"
             )
         if self.draws and self.draws.signs is None and len(solution.beside) > 1:
             lines.append(
                 f"draws and bounds are about this impact only, one of {len(solution.beside)} that "
                 "were found; they may be too narrow"
             )
-        if unsearched := self.not_searched:
+        if not_searched := self.not_searched:
             lines.append(
                 "the search for bounds ended before its time; not searched to the end, and perhaps "
-                f"wider: {' '.join(unsearched)}"
+                f"wider: {' '.join(not_searched)}"
             )
         if self.draws and self.draws.failed:
             lines.append(f"{100 * self.draws.failed:.3g} % of the draws have no solution")
@@ -232,20 +253,20 @@ class Measured(Impact):
 
     @property
     def not_searched(self) -> list[str]:
-        """The results whose bounds may be wider: the search took all it may."""
+        """Results whose bounds may be wider: the search did not converge."""
         return [name for name, bound in self.ranges.items() if not bound.searched]
 
     @property
     def separating(self) -> float:
-        """The fraction of draws whose contact points do not approach, if it is more than a few."""
+        """Fraction of draws whose contact points do not approach, 0 if it is negligible."""
         if self.draws is None or "VC" not in self.draws.values:
             return 0.0
-        share = float((self.draws.values["VC"] < 0).mean())
-        return share if share > MOST_SEPARATING else 0.0
+        fraction = float((self.draws.values["VC"] < 0).mean())
+        return fraction if fraction > MAX_SEPARATING_DRAWS else 0.0
 
-    def _apart(self, name: str, deviation: float) -> list[float]:
-        """Return the values of a result in the impacts found, the least first, where its draws are
-        of several, farther apart than their standard deviation; else none."""
+    def _separate_values(self, name: str, deviation: float) -> list[float]:
+        """Return the values of a result in all impacts found, sorted, if draws cover several
+        impacts and these are farther apart than the standard deviation; else an empty list."""
         if not (self.draws and self.draws.signs is not None):
             return []
         values = sorted(
@@ -254,26 +275,30 @@ class Measured(Impact):
         gaps = np.diff(values)
         return values if len(gaps) and gaps.max() > deviation else []
 
-    def _ill_posed(self, units: System) -> list[str]:
-        """Velocities that the known values hardly determine, with the number and what drives it."""
+    def _ill_posed_warnings(self, units: System) -> list[str]:
+        """Return a warning for each velocity that the known values hardly determine, with its
+        deviation and the value that causes it."""
         system, lines = self.solution.system, []
         for name in self.names:
             deviation = self.deviations[name]
-            share = deviation / system.scale(name)
-            if name in (*VELOCITIES, *FINAL_STATE) and share > ILL_POSED:
-                if apart := self._apart(name, deviation):
-                    amounts = [number(units.display_unwrapped(name, value), 3) for value in apart]
-                    listed = " or ".join(dict.fromkeys(amounts))
+            fraction = deviation / system.scale(name)
+            if name in (*VELOCITIES, *FINAL_STATE) and fraction > ILL_POSED:
+                if alternatives := self._separate_values(name, deviation):
+                    amounts = [
+                        number(units.display_unwrapped(name, value), 3) for value in alternatives
+                    ]
+                    alternatives_text = " or ".join(dict.fromkeys(amounts))
                     lines.append(
-                        f"{name} is about {listed} {units.unit(name)}".rstrip()
+                        f"{name} is about {alternatives_text} {units.unit(name)}".rstrip()
                         + ", in another impact each; draws and bounds have all of them"
                     )
                     continue
                 driver, part = self.drivers[name][0]
                 size = f"{number(deviation * units.factor(name), 3)} {units.unit(name)}".rstrip()
                 lines.append(
-                    f"ill-posed: {name} has a standard deviation of {size}, {100 * share:.0f} % of "
-                    f"the largest speed; {100 * part:.0f} % of its variance comes from {driver}"
+                    f"ill-posed: {name} has a standard deviation of {size}, "
+                    f"{100 * fraction:.0f} % of the largest speed; {100 * part:.0f} % "
+                    f"of its variance comes from {driver}"
                 )
         e = self.solution.values.get("E")
         ill_posed = any(line.startswith("ill-posed") for line in lines)
@@ -283,36 +308,47 @@ class Measured(Impact):
             )
         return lines
 
-    def further(self, units: System) -> list[list[str]]:
-        return [self._adjustments(units), self._spreads(units), *self._connections(units)]
+    def further_tables(self, units: System) -> list[list[str]]:
+        """Return the tables of adjusted values, spreads, correlations and drivers."""
+        return [
+            self._adjustment_table(units),
+            self._spread_table(units),
+            *self._correlation_tables(units),
+        ]
 
     def _correlations(self, units: System) -> Any:
-        """Return the correlations of results as they are shown."""
+        """Return the correlations of results, with the signs of the system of units."""
         signs = np.array([-1.0 if units.is_turned(name) else 1.0 for name in self.names])
         return np.asarray(self.correlations) * np.outer(signs, signs) if len(signs) else []
 
-    def _adjustments(self, units: System) -> list[str]:
+    def _adjustment_table(self, units: System) -> list[str]:
+        """Return the table of measured and adjusted values; empty without redundancy."""
         count = self.solution.redundancy
         if not count:
             return []
         rows = []
-        for a in self.solution.adjusted:
-            item = self.solution.system.known[a.name]
-            half = math.nan if item.kind == "normal" else a.tolerance
-            rounding = abs(a.adjusted) < NOISE * item.standard_deviation
-            adjusted = 0.0 if rounding else a.adjusted
-            measured, now = (
-                units.display_unwrapped(a.name, float(x)) for x in (a.measured, adjusted)
+        for entry in self.solution.adjusted:
+            item = self.solution.system.known[entry.name]
+            half_width = math.nan if item.kind == "normal" else entry.tolerance
+            rounding = abs(entry.adjusted) < NOISE * item.standard_deviation
+            adjusted_value = 0.0 if rounding else entry.adjusted
+            measured_value, shown_value = (
+                units.display_unwrapped(entry.name, float(x))
+                for x in (entry.measured, adjusted_value)
             )
-            factor = units.factor(a.name)
-            sizes = [(measured, 6), (half * factor, 3), (item.standard_deviation * factor, 3)]
-            cells = [number(x, n) for x, n in (*sizes, (now, 6))]
+            factor = units.factor(entry.name)
+            sizes = [
+                (measured_value, 6),
+                (half_width * factor, 3),
+                (item.standard_deviation * factor, 3),
+            ]
+            cells = [number(x, n) for x, n in (*sizes, (shown_value, 6))]
             rows.append(
                 [
-                    a.name,
+                    entry.name,
                     *cells,
-                    format_fixed(a.normalized_residual, 2),
-                    units.label(quantity(a.name).unit),
+                    format_fixed(entry.normalized_residual, 2),
+                    units.label(quantity(entry.name).unit),
                 ]
             )
         heading = ["known", "measured", "half-width", "sd", "adjusted", "moved, tolerances", "unit"]
@@ -320,29 +356,31 @@ class Measured(Impact):
             *table(rows, heading, left=(0, 6)),
             "A tolerance is the half-width of limits, or the sd of a normal value.",
             *paragraph(
-                "Adjusted by least squares so that Equations 13 to 18 hold exactly (adjustment of "
+                "Adjusted by least squares so that Equations 13 to 18 hold exactly (entry of "
                 f"observations with conditions): {count} value{'s' if count > 1 else ''} more than "
                 f"needed, sum of squared adjustments {self.evidence.sum_text} (in "
                 f"standard deviations; about {count} where the tolerances are right)"
             ),
         ]
 
-    def _spreads(self, units: System) -> list[str]:
+    def _spread_table(self, units: System) -> list[str]:
+        """Return the table of results: first-order deviations, and deviations, quantiles and bounds
+        from draws."""
         heading = ["result", "first order sd"]
         if self.draws:
-            heading += ["draws sd", *(f"{100 * share:g} %" for share in QUANTILES)]
+            heading += ["draws sd", *(f"{100 * fraction:g} %" for fraction in QUANTILES)]
             heading += ["lower bound", "upper bound"]
         rows = []
         for name in self.names:
             factor = units.factor(name)
-            plain = self.first_order[name]
-            cells = [name, "" if plain is None else number(factor * plain, 3)]
+            first_order = self.first_order[name]
+            cells = [name, "" if first_order is None else number(factor * first_order, 3)]
             if self.draws:
-                drawn, bound = self.draws.spread(name, QUANTILES), self.ranges[name]
-                cells.append(number(factor * drawn.deviation, 3))
-                quantiles = [units.display_unwrapped(name, q) for q in drawn.quantiles.values()]
+                spread, bound = self.draws.spread(name, QUANTILES), self.ranges[name]
+                cells.append(number(factor * spread.deviation, 3))
+                quantiles = [units.display_unwrapped(name, q) for q in spread.quantiles.values()]
                 quantiles = quantiles[::-1] if units.is_turned(name) else quantiles
-                limits = (*quantiles, *units.ends(name, *_ends(bound)))
+                limits = (*quantiles, *units.ends(name, *_bounds_without_noise(bound)))
                 cells += [number(value, 5) for value in limits]
             rows.append([*cells, units.label(quantity(name).unit)])
         lines = table(rows, [*heading, "unit"], left=(0, len(heading))) if rows else []
@@ -358,70 +396,87 @@ class Measured(Impact):
                 )
         return lines
 
-    def _connections(self, units: System) -> list[list[str]]:
+    def _correlation_tables(self, units: System) -> list[list[str]]:
+        """Return the tables of correlations and of drivers."""
         names = self.names
-        # the unknowns themselves: courses and speeds are made of them
-        at = [i for i, n in enumerate(names) if n not in (*SPEEDS, *COURSES)][:MOST_CORRELATED]
+        # courses and speeds follow from the components
+        columns_shown = [i for i, n in enumerate(names) if n not in (*SPEEDS, *COURSES)][
+            :MAX_CORRELATION_COLUMNS
+        ]
         matrix = self._correlations(units)
-        rows = [[names[i], *(f"{matrix[i, k]:.2f}" for k in at if k <= i)] for i in at]
-        correlations = table(rows, ["correlation", *(names[i] for i in at)])
+        rows = [
+            [names[i], *(f"{matrix[i, k]:.2f}" for k in columns_shown if k <= i)]
+            for i in columns_shown
+        ]
+        correlations = table(rows, ["correlation", *(names[i] for i in columns_shown)])
         driving = [
-            [name, *(f"{n} {100 * share:.0f} %" for n, share in drivers[:DRIVERS] if share >= 5e-3)]
+            [
+                name,
+                *(
+                    f"{n} {100 * fraction:.0f} %"
+                    for n, fraction in drivers[:DRIVERS]
+                    if fraction >= 5e-3
+                ),
+            ]
             for name, drivers in self.drivers.items()
         ]
         columns = table(driving, ["uncertain through", *[""] * DRIVERS], left=(0, 1, 2, 3))
-        return [correlations if len(at) > 1 else [], columns if driving else []]
+        return [correlations if len(columns_shown) > 1 else [], columns if driving else []]
 
-    def more(self, units: System) -> dict[str, Any]:
-        solution, adjusted = self.solution, []
-        for a in solution.adjusted:
-            deviation = solution.system.known[a.name].standard_deviation
-            small = abs(a.adjusted) < max(
-                ROUNDING * solution.system.scale(a.name), NOISE * deviation
+    def json_items(self, units: System) -> dict[str, Any]:
+        """Return the JSON items of a reconstruction."""
+        solution, adjusted_items = self.solution, []
+        for item in solution.adjusted:
+            deviation = solution.system.known[item.name].standard_deviation
+            is_noise = abs(item.adjusted) < max(
+                ROUNDING * solution.system.scale(item.name), NOISE * deviation
             )
             sizes = {
-                "measured": units.display_unwrapped(a.name, float(a.measured)),
-                "tolerance": units.factor(a.name) * a.tolerance,
-                "adjusted": units.display_unwrapped(a.name, 0.0 if small else float(a.adjusted)),
+                "measured": units.display_unwrapped(item.name, float(item.measured)),
+                "tolerance": units.factor(item.name) * item.tolerance,
+                "adjusted": units.display_unwrapped(
+                    item.name, 0.0 if is_noise else float(item.adjusted)
+                ),
             }
-            adjusted.append({"name": a.name, **sizes, "moved": a.normalized_residual})
+            adjusted_items.append({"name": item.name, **sizes, "moved": item.normalized_residual})
         return {
             "undetermined": solution.undetermined,
-            "adjusted": adjusted,
+            "adjusted": adjusted_items,
             "redundancy": solution.redundancy,
             "sum_of_squares": solution.squares,
             "evidence": self.evidence.as_json(units),
             "search": {**solution.search._asdict(), "text": solution.search.text()},
             "equal_tolerances_assumed": solution.assumed,
-            "uncertainty": {name: self._uncertain(name, units) for name in self.names},
+            "uncertainty": {name: self._uncertainty_json(name, units) for name in self.names},
             "correlations": {"names": self.names, "matrix": self._correlations(units)},
             "draws_without_solution": self.draws.failed if self.draws else None,
             "not_searched": self.not_searched,
         }
 
-    def _uncertain(self, name: str, units: System) -> dict[str, Any]:
-        factor, plain = units.factor(name), self.first_order[name]
+    def _uncertainty_json(self, name: str, units: System) -> dict[str, Any]:
+        """Return the uncertainty of one result as JSON."""
+        factor, first_order = units.factor(name), self.first_order[name]
         record: dict[str, Any] = {
-            "first_order": None if plain is None else plain * factor,
+            "first_order": None if first_order is None else first_order * factor,
             "drivers": dict(self.drivers[name]),
         }
         if self.draws:
-            drawn, bound = self.draws.spread(name, QUANTILES), self.ranges[name]
-            lower, upper = units.ends(name, *_ends(bound))
-            at = (bound.at_lower, bound.at_upper)
-            values = [units.display_unwrapped(name, value) for value in drawn.quantiles.values()]
+            spread, bound = self.draws.spread(name, QUANTILES), self.ranges[name]
+            lower, upper = units.ends(name, *_bounds_without_noise(bound))
+            points = (bound.at_lower, bound.at_upper)
+            values = [units.display_unwrapped(name, value) for value in spread.quantiles.values()]
             if units.is_turned(name):  # quantiles stand in pairs about the half
-                at, values = at[::-1], values[::-1]
-            quantiles = dict(zip(drawn.quantiles, values, strict=True))
+                points, values = points[::-1], values[::-1]
+            quantiles = dict(zip(spread.quantiles, values, strict=True))
             record |= {
-                "mean": units.display_unwrapped(name, drawn.mean),
-                "deviation": drawn.deviation * factor,
+                "mean": units.display_unwrapped(name, spread.mean),
+                "deviation": spread.deviation * factor,
                 "quantiles": {f"{q:g}": v for q, v in quantiles.items()},
                 "lower": lower,
                 "upper": upper,
                 "unbounded": unbounded(bound),
-                "at_lower": display_values(at[0], units),
-                "at_upper": display_values(at[1], units),
+                "at_lower": display_values(points[0], units),
+                "at_upper": display_values(points[1], units),
             }
         return record
 
@@ -445,8 +500,8 @@ class Reconstructions(list[Reconstruction]):
     """
 
     def _repr_html_(self) -> str:
-        """What `impact88 reconstruct --samples 0` prints, as a notebook shows it."""
-        return notebook.preformatted_html(in_turn([Measured(impact, 0) for impact in self]))
+        """Return the output of `impact88 reconstruct --samples 0` as HTML for a notebook."""
+        return notebook.preformatted_html(join_texts([Measured(impact, 0) for impact in self]))
 
 
 @explains_arguments

@@ -1,7 +1,6 @@
 """A solved impact as tables to read and as JSON to process: the answer in a few lines, velocities,
-coefficients, impulse, what follows, remarks. `Exact` is one of exact values (`unknowns`), one with
-tolerances is `reconstruction.reconstructedtable.Measured`.
-"""
+coefficients, impulse, derived quantities, remarks. `Exact` shows an impact of exact values
+(`unknowns`), `reconstruction.reconstructedtable.Measured` one with tolerances."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,25 +18,23 @@ from ..status import sentences
 from .unknowns import BADLY_CONDITIONED, Solution, solve_for
 
 _ORDER = (*SCENE, *RESULTS, *CHAPTER)
-_BARRIERS = (*(name for name in _ORDER if "B" in name), "VX", "VY")
-"""What a rigid barrier does not have."""
-_TURNING = (
-    *("EM", "RR0", "PM", "WA", "WAF", "WB", "WBF", "IA", "IB", "DA", "DB", "PA", "PB"),
-    *("XA", "YA", "XB", "YB", "XAF", "YAF", "XBF", "YBF", "CAX", "CAY", "CBX", "CBY"),
-)
-"""What point masses do not have, or twice."""
-_ROAD = {"ft/s": ("mph", 3600 / 5280), "m/s": ("km/h", 3.6)}
-"""The unit of speeds on the road."""
+# Quantities that a rigid barrier does not have
+_NOT_OF_BARRIERS = (*(name for name in _ORDER if "B" in name), "VX", "VY")
+# Quantities that point masses do not have, or that repeat others
+_NOT_OF_POINT_MASSES = (
+    "EM RR0 PM WA WAF WB WBF IA IB DA DB PA PB XA YA XB YB XAF YAF XBF YBF CAX CAY CBX CBY"
+).split()
+_ROAD = {"ft/s": ("mph", 3600 / 5280), "m/s": ("km/h", 3.6)}  # units of speeds on the road
 _SPINS = ("WA", "WB", "WAF", "WBF")
-DRIVERS, _SHARE = 3, 0.05
-"""Values named as making a result uncertain, at most, and a share of its variance too small to."""
-_LEFT, _WIDTH = 16, 100
-"""Characters of the answer's labels and lines."""
+DRIVERS = 3  # values named as the causes of a result's uncertainty
+_MIN_FRACTION = 0.05  # of a result's variance, for a value to be named
+_LABEL_WIDTH = 16  # characters
+_WIDTH = 100
+# A value smaller than this fraction of the largest of its unit is rounding, and printed as 0. Twice
+# as much prints the same for 100 solutions.
 NOISE = 1e-9
-"""Of the largest quantity of the same unit: less is rounding, and printed as 0; twice as much
-prints the same of 100 solutions."""
-ROUNDING = 1e-13  # of the same: what a program reads is 0 below this
-_COEFFICIENT_NOISE = 1e-13  # a coefficient below this is rounding
+ROUNDING = 1e-13  # the same for programs (JSON)
+_COEFFICIENT_NOISE = 1e-13  # a coefficient below is rounding
 _ROWS = (
     ("x", "length/time", ("UX", "VAX", "VX", "VBX")),
     ("y", "length/time", ("UY", "VAY", "VY", "VBY")),
@@ -49,31 +46,35 @@ _ROWS = (
 )
 
 
-def completed(values: dict[str, float], contact_time: float | None) -> dict[str, float]:
-    """An impact's values and what follows from them, in the tables' order."""
-    following = {name: float(value) for name, value in outcome(values).items()}
-    if contact_time is not None and "P" in following:
-        following["TF"] = contact_time
-        following |= {n: float(v) for n, v in forces(following["P"], contact_time).items()}
-    values = values | following
+def with_derived_values(values: dict[str, float], contact_time: float | None) -> dict[str, float]:
+    """Return an impact's values and everything that follows from them, in the tables' order."""
+    derived = {name: float(value) for name, value in outcome(values).items()}
+    if contact_time is not None and "P" in derived:
+        derived["TF"] = contact_time
+        derived |= {n: float(v) for n, v in forces(derived["P"], contact_time).items()}
+    values = values | derived
     if "EM" in values:
         values["RR0"] = float(moment_ratio(values["EM"]))
-    absent = _absent(values)
+    absent = _absent_quantities(values)
     return {name: values[name] for name in _ORDER if name in values and name not in absent}
 
 
-def _absent(values: Mapping[str, float]) -> tuple[str, ...]:
+def _absent_quantities(values: Mapping[str, float]) -> tuple[str, ...]:
+    """Return the quantities that this impact's vehicles do not have: a rigid barrier, point
+    masses."""
     # a barrier's mass is left out of the values
-    barrier = _BARRIERS if math.isinf(values.get("MB", math.inf)) else ()
-    return (*barrier, *_TURNING) if values.get("M") == 4 else barrier
+    barrier = _NOT_OF_BARRIERS if math.isinf(values.get("MB", math.inf)) else ()
+    return (*barrier, *_NOT_OF_POINT_MASSES) if values.get("M") == 4 else barrier
 
 
 class Impact:
-    """A solved impact: what is ``known`` and all ``values``, in base units; ``undetermined``: what
-    is told apart from the remarks, ``helpful``: further values that would determine it; ``note``:
-    what is said of several solutions; ``deviations``, bounds (``ranges``) and ``drivers``: of its
-    uncertain results, the last the known values that make them so, with their shares of the
-    variance."""
+    """A solved impact, in base units.
+
+    ``known``: the known values; ``values``: all values; ``undetermined``: what nothing determines,
+    reported apart from the remarks; ``helpful``: further values that would determine it; ``note``:
+    a remark on several solutions; ``deviations``: standard deviations of the uncertain results;
+    ``ranges``: their bounds; ``drivers``: for each the known values that cause its uncertainty,
+    with their fractions of its variance."""
 
     undetermined: Sequence[str] = ()
     helpful: Sequence[str] = ()
@@ -88,46 +89,52 @@ class Impact:
 
     @property
     def uncertainties(self) -> Mapping[str, float]:
-        """Standard deviations, of known values too: what is rounding beside them is 0."""
+        """Standard deviations, of known values too. A value far below its own deviation is printed
+        as 0."""
         return self.deviations
 
     def headline(self, units: System) -> Sequence[tuple[str, str]]:
-        """Return what is said before the answer: label and text."""
+        """Return labels and texts to print above the answer."""
         return [("IMPOSSIBLE", self.impossible)] if self.impossible else []
 
     @property
     def impossible(self) -> str:
-        """What of physics it breaks, in a sentence; nothing for an impact that may have been."""
+        """A sentence that names the broken rules of physics; "" for a possible impact."""
         broken = int(self.values.get("STATUS", 0)) & IMPOSSIBLE
-        said = "; ".join(sentences(broken))
-        return f"{self.subject} breaks physics: {said}" if broken else ""
+        reasons = "; ".join(sentences(broken))
+        return f"{self.subject} breaks physics: {reasons}" if broken else ""
 
     def warnings(self, units: System = RULES) -> list[str]:
-        """What a reader must know, in sentences."""
+        """Return the warnings, a sentence each."""
         return sentences(int(self.values.get("STATUS", 0)), self.values)
 
-    def further(self, units: System) -> list[list[str]]:
+    def further_tables(self, units: System) -> list[list[str]]:
+        """Return the tables of a subclass, as lines."""
         return []
 
-    def more(self, units: System) -> dict[str, Any]:
+    def json_items(self, units: System) -> dict[str, Any]:
+        """Return the JSON items of a subclass."""
         return {}
 
     @within_doubles
     def as_text(self, units: System = RULES) -> str:
-        """The answer, tables and remarks."""
+        """Return the answer, tables and remarks as text."""
         remarks = self.warnings(units)
         undetermined = [paragraph(f"! {remarks.pop(0)}")] if self.undetermined else []
         clean = without_noise(self.values, deviations=self.uncertainties)
         values = display_values(clean, units)
-        named = (
-            *(("E", "MUP", "EM", "RR0"), ("PN", "PT", "PM", "P", "PDOFA", "PDOFB")),
-            *(("TF", "FA", "FM2", "FM3"), (*CHANGES, "VC", "VS"), ("KI", "KF", "EL", "LOSS")),
+        groups: Sequence[Sequence[str]] = (
+            ("E", "MUP", "EM", "RR0"),
+            ("PN", "PT", "PM", "P", "PDOFA", "PDOFB"),
+            ("TF", "FA", "FM2", "FM3"),
+            (*CHANGES, "VC", "VS"),
+            ("KI", "KF", "EL", "LOSS"),
         )
         blocks = [
-            [*self._answer(clean, len(remarks), units)],
-            self._velocities(values, units),
-            *(self._named(names, values, units) for names in named),
-            *self.further(units),
+            [*self._answer_lines(clean, len(remarks), units)],
+            self._velocity_table(values, units),
+            *(self._quantity_table(names, values, units) for names in groups),
+            *self.further_tables(units),
             *undetermined,
         ]
         lines = [line for block in blocks if block for line in (*block, "")]
@@ -137,8 +144,8 @@ class Impact:
 
     @within_doubles
     def as_json(self, units: System = RULES) -> dict[str, Any]:
-        """The same for a program; numbers that do not exist are null."""
-        # what was given stands as it was given
+        """Return everything as a JSON object; numbers that do not exist are null."""
+        # given values are not rounded
         given = {n: v for n, v in self.values.items() if self.known.get(n) == v}
         clean = {**without_noise(self.values, ROUNDING, self.uncertainties), **given}
         values = {n: v for n, v in display_values(clean, units).items() if n != "STATUS"}
@@ -149,12 +156,16 @@ class Impact:
                 "units": {n: units.label(quantity(n).unit) for n in values},
                 "status": int(self.values["STATUS"]) if "STATUS" in self.values else None,
                 "warnings": self.warnings(units),
-                **self.more(units),
+                **self.json_items(units),
             }
         )
         return record
 
-    def _answer(self, values: Mapping[str, float], remarks: int, units: System) -> Iterator[str]:
+    def _answer_lines(
+        self, values: Mapping[str, float], remarks: int, units: System
+    ) -> Iterator[str]:
+        """Yield the lines of the answer: speeds, delta-v, and everything the reader must know
+        first."""
         unit = units.label(VELOCITY)
 
         def size(vehicle: str, name: str) -> str:
@@ -189,32 +200,37 @@ class Impact:
             if not math.isnan(origin) and f"DV{vehicle}" in values:
                 text += f", force from {clock(origin)} ({number(round(origin), 3)} deg)"
             rows.append(("DELTA-V", text))
-        absent = (*values, *_absent(values))
-        unknown = self.undetermined or [n for n in (*VELOCITIES, *FINAL_STATE) if n not in absent]
-        if unknown:
-            names = [name for name in unknown if name not in _SPINS]
-            text = ", ".join(["spins", *names] if {*_SPINS} <= {*unknown} else unknown)
+        absent = (*values, *_absent_quantities(values))
+        missing = self.undetermined or [n for n in (*VELOCITIES, *FINAL_STATE) if n not in absent]
+        if missing:
+            names = [name for name in missing if name not in _SPINS]
+            text = ", ".join(["spins", *names] if {*_SPINS} <= {*missing} else missing)
             if self.helpful:
-                first = ", ".join(self.helpful[:-1])
-                text += f": give {first}{' and ' if first else ''}{self.helpful[-1]}"
+                leading = ", ".join(self.helpful[:-1])
+                text += f": give {leading}{' and ' if leading else ''}{self.helpful[-1]}"
             rows.append(("NOT FOUND", text))
         for vehicle in vehicles:
             drivers = self.drivers.get(f"S{vehicle}", ())[:DRIVERS]
-            named = [f"{name} {100 * share:.0f} %" for name, share in drivers if share >= _SHARE]
-            if named:
-                rows.append(("DEPENDS ON", f"{vehicle}'s speed: {', '.join(named)}"))
+            causes = [
+                f"{name} {100 * fraction:.0f} %"
+                for name, fraction in drivers
+                if fraction >= _MIN_FRACTION
+            ]
+            if causes:
+                rows.append(("DEPENDS ON", f"{vehicle}'s speed: {', '.join(causes)}"))
         rows.append(("REMARKS", f"{remarks}, below" if remarks else "none"))
-        before = ""
+        previous_label = ""
         for label, text in rows:
-            for part in wrap(text, _WIDTH - _LEFT):
-                yield f"{'' if label == before else label:{_LEFT}}{part}"
-                before = label
+            for part in wrap(text, _WIDTH - _LABEL_WIDTH):
+                yield f"{'' if label == previous_label else label:{_LABEL_WIDTH}}{part}"
+                previous_label = label
 
-    def _velocities(self, values: Mapping[str, float], units: System) -> list[str]:
+    def _velocity_table(self, values: Mapping[str, float], units: System) -> list[str]:
+        """Return the table of velocities; solved ones have a *."""
         decimals: dict[str, int] = {}
         for _, unit, _ in _ROWS:
-            alike = (n for _, own, row in _ROWS if own == unit for n in row if n in values)
-            decimals[unit] = decimals_for([values[n] for n in alike])
+            names_alike = (n for _, own, row in _ROWS if own == unit for n in row if n in values)
+            decimals[unit] = decimals_for([values[n] for n in names_alike])
         rows = []
         count = 4 if "VX" in values or "VBX" in values else 2
         for label, unit, names in _ROWS:
@@ -230,14 +246,17 @@ class Impact:
         lines = table(rows, ["velocity", *heading, "unit"], left=(0, 1 + count))
         return [*lines, "* solved for"]
 
-    def _named(self, names: Sequence[str], values: Mapping[str, float], units: System) -> list[str]:
+    def _quantity_table(
+        self, names: Sequence[str], values: Mapping[str, float], units: System
+    ) -> list[str]:
+        """Return a table of the quantities ``names``: value, unit and meaning."""
         rows = []
         for name in names:
             if math.isnan(values.get(name, math.nan)):
                 continue
-            given = name in self.known or (name == "MUP" and "MU" in self.known)
-            mark = "*" if name in ("E", "MUP", "EM") and not given else " "
-            note = _friction(values) if name == "MUP" else quantity(name).meaning
+            is_given = name in self.known or (name == "MUP" and "MU" in self.known)
+            mark = "*" if name in ("E", "MUP", "EM") and not is_given else " "
+            note = _friction_note(values) if name == "MUP" else quantity(name).meaning
             if name.startswith("PDOF"):
                 note += f" ({clock(values[name])})"
             if name == "EM":
@@ -247,12 +266,12 @@ class Impact:
         return table(rows, left=(0, 2, 3))
 
 
-def in_turn(found: Sequence[Impact], units: System = RULES) -> str:
-    """The solutions one below the other, numbered where there are several."""
-    texts = [impact.as_text(units) for impact in found]
+def join_texts(impacts: Sequence[Impact], units: System = RULES) -> str:
+    """Return the solutions one below the other, numbered where there are several."""
+    texts = [impact.as_text(units) for impact in impacts]
     if len(texts) == 1:
         return texts[0]
-    of = f"OF {len(texts)}{found[0].note}"
+    of = f"OF {len(texts)}{impacts[0].note}"
     return "\n\n".join(f"SOLUTION {i} {of}\n\n{text}" for i, text in enumerate(texts, 1))
 
 
@@ -261,24 +280,26 @@ def without_noise(
     noise: float = NOISE,
     deviations: Mapping[str, float] | None = None,
 ) -> dict[str, float]:
-    """Return ``values``, those below ``noise`` of the largest of their unit 0, and those that are
-    rounding beside their own standard deviations, and directions above -180. A spin's unit is that
-    of velocities, too: over the smaller radius of gyration."""
+    """Return ``values`` with rounding removed.
+
+    Values below ``noise`` times the largest of their unit, and those far below their own standard
+    deviation, are 0; directions of -180 are 180. A spin's size is also compared with velocities
+    over the smaller radius of gyration."""
     largest: dict[str, float] = {}
     for name, value in values.items():
         if math.isfinite(value):
             unit = quantity(name).unit
             largest[unit] = max(abs(value), largest.get(unit, 0.0))
-    largest["1"] = _COEFFICIENT_NOISE / noise  # numbers have no common size
+    largest["1"] = _COEFFICIENT_NOISE / noise  # pure numbers have no common size
     radii = [
         math.sqrt(values[inertia] / values[mass])
         for inertia, mass in (("IA", "MA"), ("IB", "MB"))
         if math.isfinite(values.get(inertia, math.inf) / values.get(mass, 1.0))
     ]
     if radii and min(radii) > 0:
-        # spins that are all rounding have no size of their own
-        turning = largest.get(VELOCITY, 0.0) / min(radii) * ROUNDING / noise
-        largest["rad/time"] = max(largest.get("rad/time", 0.0), turning)
+        # where all spins are rounding, their size is that of velocities
+        spin_size = largest.get(VELOCITY, 0.0) / min(radii) * ROUNDING / noise
+        largest["rad/time"] = max(largest.get("rad/time", 0.0), spin_size)
     clean = {}
     for name, value in values.items():
         small = abs(value) < noise * largest.get(quantity(name).unit, 0.0)
@@ -288,7 +309,8 @@ def without_noise(
     return clean
 
 
-def _friction(values: Mapping[str, float]) -> str:
+def _friction_note(values: Mapping[str, float]) -> str:
+    """Return the note beside MUP."""
     if values["MUP"] == PIVOT:
         text = "pivot: no sliding at separation"
         if values.get("PN"):
@@ -309,7 +331,7 @@ class Exact(Impact):
         self, known: Mapping[str, float], solution: Solution, contact_time: float | None
     ) -> None:
         values = {**known, **{name: float(value) for name, value in solution.values.items()}}
-        super().__init__(known, completed(values, contact_time))
+        super().__init__(known, with_derived_values(values, contact_time))
         self.solution, self.note = solution, ": MU is known in size, and both signs agree"
         if solution.contradictory:
             self.note += " (each a fit of values that contradict one another)"
@@ -323,13 +345,13 @@ class Exact(Impact):
         contact_time: float | None = None,
         source: str | None = None,
     ) -> list[Self]:
-        """Every solution of a single scene. Raises UserError; ``source`` names where the known
-        values come from."""
+        """Return every solution of a single scene, possible impacts first. Raise UserError;
+        ``source`` says where the known values come from."""
         try:
-            found = [cls(known, solution, contact_time) for solution in solve_for(known, wanted)]
+            impacts = [cls(known, solution, contact_time) for solution in solve_for(known, wanted)]
         except UserError as error:
             raise UserError(str(error), source) from None
-        return sorted(found, key=lambda impact: bool(int(impact.values["STATUS"]) & IMPOSSIBLE))
+        return sorted(impacts, key=lambda impact: bool(int(impact.values["STATUS"]) & IMPOSSIBLE))
 
     def warnings(self, units: System = RULES) -> list[str]:
         lines = []
@@ -339,16 +361,18 @@ class Exact(Impact):
                 "the known values contradict one another: the solution fits them by least squares, "
                 f"root-mean-square mismatch {number(mismatch, 3)} [{units.label(VELOCITY)}]"
             )
-        amplified = self.solution.amplification.items()
-        bad = [f"{n} {number(x, 3)} times" for n, x in amplified if not x < BADLY_CONDITIONED]
-        if bad:
+        amplifications = self.solution.amplification.items()
+        badly_amplified = [
+            f"{n} {number(x, 3)} times" for n, x in amplifications if not x < BADLY_CONDITIONED
+        ]
+        if badly_amplified:
             lines.append(
                 "badly conditioned: errors of the known velocities are amplified "
-                f"({', '.join(bad)})"
+                f"({', '.join(badly_amplified)})"
             )
         return lines + super().warnings()
 
-    def further(self, units: System) -> list[list[str]]:
+    def further_tables(self, units: System) -> list[list[str]]:
         errors = [f"{n} {number(value, 3)}" for n, value in self.solution.amplification.items()]
         conditions = paragraph(
             "Error amplification (error of the unknown when each known velocity errs independently "
@@ -357,9 +381,9 @@ class Exact(Impact):
             f"{', '.join(errors)}"
         )
         values = display_values(self.values, units)
-        return [self._named(("CAX", "CAY", "CBX", "CBY"), values, units), conditions]
+        return [self._quantity_table(("CAX", "CAY", "CBX", "CBY"), values, units), conditions]
 
-    def more(self, units: System) -> dict[str, Any]:
+    def json_items(self, units: System) -> dict[str, Any]:
         return {
             "known": [name for name in self.values if name in self.known],
             "solved_for": list(self.solution.unknown),

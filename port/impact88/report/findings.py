@@ -164,7 +164,7 @@ def _cell(text: str) -> float | str | None:
 
 def _forward(case: Case, source: str, samples: int, seed: int, units: System) -> Findings:
     from ..mechanics.closedform.solve import share_typed, solve
-    from ..reconstruction.solutiontable import completed
+    from ..reconstruction.solutiontable import with_derived_values
     from ..uncertainty.bounds import bounds
     from ..uncertainty.boundstable import quantiles_of
     from ..uncertainty.ranges import read_inputs
@@ -174,7 +174,7 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
     if inputs.values["MU"].share:
         nominal["MU"] = share_typed(nominal, nominal["MU"])
     results = {name: float(value) for name, value in solve(nominal).items()}
-    values = completed({**{n: float(v) for n, v in nominal.items()}, **results}, None)
+    values = with_derived_values({**{n: float(v) for n, v in nominal.items()}, **results}, None)
     spreads: dict[str, Spread] = {}
     remarks = sentences(int(results["STATUS"]), {**nominal, **results})
     if any(item.varies for item in inputs.values.values()):
