@@ -356,7 +356,7 @@ class Measured(Impact):
             *table(rows, heading, left=(0, 6)),
             "A tolerance is the half-width of limits, or the sd of a normal value.",
             *paragraph(
-                "Adjusted by least squares so that Equations 13 to 18 hold exactly (entry of "
+                "Adjusted by least squares so that Equations 13 to 18 hold exactly (adjustment of "
                 f"observations with conditions): {count} value{'s' if count > 1 else ''} more than "
                 f"needed, sum of squared adjustments {self.evidence.sum_text} (in "
                 f"standard deviations; about {count} where the tolerances are right)"
