@@ -1,7 +1,7 @@
-"""What a solved impact means, and the closed forms: final velocities, or initial ones from them.
+"""Consequences of a solved impact, and initial velocities from final ones in closed form.
 
-What follows from an impact (contact point, ΔV, energy, critical friction, STATUS) is computed from
-the velocities before and after and from the impulse, as far as they are known.
+The consequences (contact point, ΔV, energy, critical friction, STATUS) are computed from the
+velocities before and after and from the impulse, as far as these are known.
 
 The inverse of Equations 13-18 (chapter, Section IV-C: "if the final velocities are known, these
 equations are linear and can be solved for the initial velocities, as done in an accident
@@ -43,79 +43,95 @@ IMPOSSIBLE = (
     | Status.FRICTION_ABOVE_CRITICAL
     | Status.FRICTION_WRONG_DIRECTION
 )
-"""What breaks physics."""
+"""Bits of STATUS that no real collision sets."""
 
 Divided = tuple[dict[str, Array], list[Array]]
-"""Arrays by name, and what divides them: where one of these is zero, some of them are infinite."""
+"""Results by name, and their divisors: where a divisor is zero, some results are infinite."""
 
 
 @np.errstate(all="ignore")
 def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
-    """The consequences of ``values`` (geometry, velocities, coefficients, PN and PT, by name), as
-    far as what they need is known: contact point, STATUS, direction of force, contact velocities,
-    energies, velocity changes, speeds and courses, and MUC."""
+    """Return the consequences of ``values`` (geometry, velocities, coefficients, PN and PT, by
+    name): contact point, STATUS, direction of force, contact velocities, energies, velocity
+    changes, speeds and courses, and MUC, each where the values it needs are known."""
     values = with_point_masses(values)
-    given = {name: np.asarray(value, np.float64) for name, value in values.items()}
-    if (given.get("M", np.array(6.0)) == 4).all():
-        given = {"WA": np.zeros(()), "WB": np.zeros(()), "EM": np.zeros(()), **given}
-        given = {"WAF": given["WA"], "WBF": given["WB"], **given}
-    state = State.of_known(given)
+    numbers = {name: np.asarray(value, np.float64) for name, value in values.items()}
+    if (numbers.get("M", np.array(6.0)) == 4).all():
+        numbers = {"WA": np.zeros(()), "WB": np.zeros(()), "EM": np.zeros(()), **numbers}
+        numbers = {"WAF": numbers["WA"], "WBF": numbers["WB"], **numbers}
+    state = State.of_known(numbers)
     here = state.here
     result = {"CAX": -here.d4, "CAY": -here.d3, "CBX": here.d2, "CBY": here.d1}
     names = (*CONTACT, *CHANGES, "KI", "KF", "LOSS", *SPEEDS, *COURSES)
     following = {name: state[name] for name in names} | state.contact_velocities()
     result |= {name: value for name, value in following.items() if not np.isnan(value).all()}
-    if "PN" in given and "PT" in given:
+    if "PN" in numbers and "PT" in numbers:
         result |= {name: state[name] for name in FORCES}
-        result["P"] = np.hypot(given["PN"], given["PT"])
+        result["P"] = np.hypot(numbers["PN"], numbers["PT"])
     condition: Any = 1.0
-    if all(name in given for name in SCENE if name != "M"):
-        scene = {name: given[name] for name in SCENE if name in given}
+    if all(name in numbers for name in SCENE if name != "M"):
+        scene = {name: numbers[name] for name in SCENE if name in numbers}
         result["MUC"], condition = solve(scene, ("MUC", "COND")).values()
-    result["STATUS"] = status(state, given, condition)
-    shape = np.broadcast_shapes(*(np.shape(value) for value in given.values()))
+    result["STATUS"] = status(state, numbers, condition)
+    shape = np.broadcast_shapes(*(np.shape(value) for value in numbers.values()))
     return {name: np.broadcast_to(value, shape) for name, value in result.items()}
 
 
 def moment_ratio(em: Any) -> Any:
-    """R/R0: the relative spin after the impact over that before, as far as the moment impulse alone
-    makes it (Equation 18 as printed with P = 0): -em/(1 - 2 em). 1 at em = +1, no moment; 0 at 0,
-    where the spins become equal; 1/3 at -1. Infinite at em = 1/2."""
+    """Return R/R0, the ratio of the relative spins after and before, by the moment impulse alone.
+
+    Equation 18 as printed with P = 0: -em/(1 - 2 em). 1 at em = +1, no moment; 0 at 0, where the
+    spins become equal; 1/3 at -1; infinite at em = 1/2."""
     em = np.asarray(em, np.float64)
     with np.errstate(divide="ignore", invalid="ignore"):
         return -em / (1 - 2 * em)
 
 
 def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Array:
-    """STATUS of an impact; what cannot be decided for lack of a value is not remarked.
+    """Return STATUS of an impact; a bit that cannot be decided for lack of a value is clear.
 
-    ``given``: what is known of the velocities before and after, and of the scene; ``condition``:
-    COND, where the forward equations are at hand.
+    ``given``: the known velocities before and after and numbers of the scene; ``condition``: COND,
+    where the forward equations can be set up.
     """
     here, value = state.here, state.values
     e, em, mu = (value.get(name, np.array(np.nan)) for name in ("E", "EM", "MUP"))
-    known = [given[name] for name in (*VELOCITIES, *FINAL_STATE) if name in given]
-    # of the same impact if the sliding ended at separation
+    velocities = [given[name] for name in (*VELOCITIES, *FINAL_STATE) if name in given]
+    # the same impact if the sliding ended at separation
     pivot = {name: given[name] for name in SCENE if name in given} | {"MU": np.array(PIVOT)}
     complete = all(name in pivot for name in SCENE if name != "M")
-    ending = quantities(pivot, ("PN", "PT")) if complete else dict.fromkeys(("PN", "PT"), np.nan)
+    names = ("PN", "PT")
+    pivot_impulse = quantities(pivot, names) if complete else dict.fromkeys(names, np.nan)
     with np.errstate(all="ignore"):
         lost, initial = 2 * state.energy_lost, state.initial_energy
-        operands = (
-            *(state.relative_before[0], value["PN"], here.at, here.bt),
-            *(np.where(here.point, 0.0, value[name]) for name in ("DA", "DB")),
-            # energies that are not known are not numbers that are not finite
-            *(np.where(np.isnan(lost), 0.0, lost), np.where(np.isnan(initial), 1.0, initial)),
-            *(e, np.where(here.point, 0.0, em), np.where(mu == PIVOT, 0.0, mu)),
-            *(ending["PN"], ending["PT"], state.relative_before[1], *_turning(here, value)),
-            *(np.asarray(condition), sum(known, np.zeros(()))),
+        normal_slip, slip, _ = state.relative_before
+        turning, yielding = _slip_changes(here, value)
+        conditions = findings(
+            gn=normal_slip,
+            pn=value["PN"],
+            arm_a=here.at,
+            arm_b=here.bt,
+            da=np.where(here.point, 0.0, value["DA"]),
+            db=np.where(here.point, 0.0, value["DB"]),
+            # an energy that is not known must not set NOT_FINITE
+            twice_lost=np.where(np.isnan(lost), 0.0, lost),
+            initial=np.where(np.isnan(initial), 1.0, initial),
+            e=e,
+            em=np.where(here.point, 0.0, em),
+            friction_mu=np.where(mu == PIVOT, 0.0, mu),
+            pivot_pn=pivot_impulse["PN"],
+            pivot_pt=pivot_impulse["PT"],
+            gt=slip,
+            turning=turning,
+            yielding=yielding,
+            condition=np.asarray(condition),
+            sum_of_velocities=sum(velocities, np.zeros(())),
         )
-        return np.asarray(bits(findings(*operands)), np.uint16)
+        return np.asarray(bits(conditions), np.uint16)
 
 
-def _turning(here: Geometry, value: Mapping[str, Any]) -> tuple[Any, Any]:
-    """Return what the normal and the moment impulse add to the sliding, and what a unit of the
-    tangential one does."""
+def _slip_changes(here: Geometry, value: Mapping[str, Any]) -> tuple[Any, Any]:
+    """Return the change of the sliding velocity by the normal and the moment impulse, and that by
+    a unit of the tangential impulse."""
     a, b = here.inverse_ia, here.inverse_ib
     by_normal = here.an * here.at * a + here.bn * here.bt * b
     by_moment = here.at * a - here.bt * b
@@ -125,9 +141,9 @@ def _turning(here: Geometry, value: Mapping[str, Any]) -> tuple[Any, Any]:
 
 
 def forces(impulse: Any, contact_time: Any) -> dict[str, Array]:
-    """Average force FA = P/t_f of an impulse over a contact time, and the range FM2 ... FM3 of the
-    peak force, "typically two to three times the average" (chapter, Section III). Raises UserError
-    unless every contact time is positive."""
+    """Return the average force FA = P/t_f of an impulse over a contact time, and FM2 and FM3, the
+    range of the peak force: "typically two to three times the average" (chapter, Section III).
+    Raises UserError unless every contact time is positive."""
     time = np.asarray(contact_time, np.float64)
     if not (time > 0).all() or not np.isfinite(time).all():
         raise UserError(f"contact time {contact_time} is not positive; expected a duration")
@@ -136,7 +152,7 @@ def forces(impulse: Any, contact_time: Any) -> dict[str, Array]:
 
 
 def initial_impact(columns: Mapping[str, Any]) -> State:
-    """The impact of six final velocities, with the velocities before and the impulses PN PT PM.
+    """Return the impact that has six final velocities: the velocities before, and PN PT PM.
 
     ``columns``: numbers or arrays that broadcast: the geometry, the coefficients E, EM and MUP (the
     *signed* P_t/P_n) and VAX VAY VBX VBY WAF WBF. Where there is no solution (e = 0, e_m = 0, the
@@ -150,14 +166,14 @@ def initial_impact(columns: Mapping[str, Any]) -> State:
         normal, _, spin = geometry.relative([values[name] for name in FINAL_STATE])
         a, b = geometry.inverse_ia, geometry.inverse_ib
         moment = np.where(geometry.point, 0.0, (1 - em) / em * spin / geometry.inverse_spin_inertia)
-        turned = (geometry.an * a - geometry.bn * b) * moment
-        pn = ((1 + 1 / e) * normal - turned) / _along_impulse(geometry, mu)
+        from_moment = (geometry.an * a - geometry.bn * b) * moment
+        pn = ((1 + 1 / e) * normal - from_moment) / _along_impulse(geometry, mu)
         impulse = {"PN": pn, "PT": mu * pn, "PM": moment}
         return State({**values, **impulse}, geometry, from_after=VELOCITIES)
 
 
 def _along_impulse(geometry: Geometry, mu: Array) -> Array:
-    """R + S_nn + μ S_nt: what a unit of Pn, with the friction that goes with it, changes of Gn."""
+    """Return R + S_nn + μ S_nt: the change of Gn by a unit of Pn and the friction it causes."""
     a, b = geometry.inverse_ia, geometry.inverse_ib
     snn = geometry.an * geometry.an * a + geometry.bn * geometry.bn * b
     snt = geometry.an * geometry.at * a + geometry.bn * geometry.bt * b
@@ -167,7 +183,7 @@ def _along_impulse(geometry: Geometry, mu: Array) -> Array:
 def forward_model(
     columns: Mapping[str, Any], outputs: Sequence[str], sign: float | None = None
 ) -> Divided:
-    """Equations 13-18 solved for the final velocities."""
+    """Solve Equations 13-18 for the final velocities; ``sign``: see `quantities`."""
     names = ["determinant", "critical_denominator"] if "MUC" in outputs else ["determinant"]
     values = quantities(columns, (*outputs, *names), sign)
     return {name: values[name] for name in outputs}, [values[name] for name in names]
@@ -176,8 +192,8 @@ def forward_model(
 def reconstruction_model(
     columns: Mapping[str, Any], outputs: Sequence[str], sign: float | None = None
 ) -> Divided:
-    """Equations 13-18 solved for the initial velocities, and what follows; STATUS is that of the
-    impact found, ``sign`` counts for nothing."""
+    """Solve Equations 13-18 for the initial velocities, and compute ``outputs`` and STATUS of that
+    impact. ``sign`` is ignored: `forward_model` has the same parameters."""
     state = initial_impact(columns)
     before = dict(zip(VELOCITIES, state.before, strict=True))
     denominators = [state.values["E"], state.values["EM"]]

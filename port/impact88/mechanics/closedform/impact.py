@@ -46,7 +46,7 @@ from ...names import PIVOT
 from ...status import Status
 from ..native.formulas import Expression, ExpressionTable
 from .energy import kinetic_energy
-from .statusbits import UNDECIDED, findings, undecided
+from .statusbits import UNDECIDED, findings, needs_full_kernel
 
 LARGEST = float_info.max
 
@@ -296,11 +296,25 @@ def impact(
     yielding = R + (at * at * ia + bt * bt * ib)
     sign_of_pivot = table.choose(pivot_determinant < 0.0, table.constant(-1.0), table.constant(1.0))
     status = findings(
-        *(gn, PN, at, bt, DA, DB, lost, KI, E, EM, sliding),
-        # of the pivot's impulse signs and ratios are asked for: its numerators, not the quotients
-        *(critical_denominator * sign_of_pivot, critical_numerator * sign_of_pivot),
-        *(gt, turning, yielding, COND),
-        VAX + VAY + VBX + VBY + WAF + WBF,
+        gn=gn,
+        pn=PN,
+        arm_a=at,
+        arm_b=bt,
+        da=DA,
+        db=DB,
+        twice_lost=lost,
+        initial=KI,
+        e=E,
+        em=EM,
+        friction_mu=sliding,
+        # only signs and ratios of the pivot's impulse count: its numerators will do
+        pivot_pn=critical_denominator * sign_of_pivot,
+        pivot_pt=critical_numerator * sign_of_pivot,
+        gt=gt,
+        turning=turning,
+        yielding=yielding,
+        condition=COND,
+        sum_of_velocities=VAX + VAY + VBX + VBY + WAF + WBF,
     )
     if pivot is True:  # of friction none is at fault
         del status[Status.FRICTION_ABOVE_CRITICAL], status[Status.FRICTION_WRONG_DIRECTION]
@@ -308,7 +322,8 @@ def impact(
         del status[Status.SINGULAR], status[Status.NOT_FINITE]
     bits = [condition * float(bit) for bit, condition in status.items()]
     if hurried:
-        bits.append(undecided(determinant, absolute_sum, lost, KI) * float(UNDECIDED))
+        repeated = needs_full_kernel(determinant, absolute_sum, lost, KI)
+        bits.append(repeated * float(UNDECIDED))
     return {
         **{"gn": gn, "gt": gt, "determinant": determinant, "PN": PN, "PT": PT, "PM": PM},
         **{"critical_denominator": critical_denominator, "VC": -gn, "VS": E * -gn},

@@ -1,5 +1,12 @@
-"""STATUS: one rule a bit of `impact88.status.Status`: comparisons joined by & | ~, one text for
-arrays and `Expression`s. A comparison with NaN is false: what cannot be decided stays clear."""
+"""STATUS: one rule for each bit of `impact88.status.Status`.
+
+The rules are comparisons joined by & | ~, so that the same code serves arrays and `Expression`s. A
+comparison with NaN is false: a bit that cannot be decided stays clear.
+
+A *hurried* kernel is a compiled kernel that computes STATUS without the final velocities, which
+takes less time. It does not decide SINGULAR and NOT_FINITE: it sets `UNDECIDED` in the few
+scenes where these may be set, and those scenes are computed again by the full kernel.
+"""
 
 from math import inf
 from typing import Any
@@ -8,21 +15,23 @@ from ...names import PIVOT
 from ...status import Status
 
 SINGULAR_FROM = 2.0**26
-"""COND from which SINGULAR is set: 1/sqrt(unit roundoff). Half of a double's digits may be lost
-there, and of the 32 bits of the 1988 program's numbers a handful at most are left."""
+"""Least COND of a SINGULAR scene: 1/sqrt(unit roundoff). Half of a double's digits may be lost
+there, and at most a handful of the 32 bits of the 1988 program's numbers are left."""
 ENERGY_TOLERANCE = 1e-12
-"""What may be gained of the initial kinetic energy before it counts: some thousand roundings."""
+"""Gain below this fraction of the initial kinetic energy is rounding: some thousand roundings."""
 FRICTION_TOLERANCE = 1e-9
-"""How far P_t/P_n may lie outside what friction can do: above the rounding of a coefficient typed
-or solved for, below the last digit anyone gives."""
+"""Absolute tolerance of P_t/P_n: above the rounding of a coefficient typed or solved for, below the
+last digit anyone gives."""
 SIDE_TOLERANCE = 1e-9
-"""How far a center may lie beyond the contact plane, of its distance to the contact point."""
+"""A center this far beyond the contact plane, as a fraction of its distance to the contact point,
+is still on its own side."""
 MODERATE = 1e15
-"""Largest size of a scene's numbers for `undecided`; the least inertia is its inverse."""
+"""Largest size of a scene's numbers for a hurried kernel; the least inertia is its inverse."""
 UNDECIDED = 0x8000
-"""Beside STATUS's bits: set by a hurried kernel where `undecided` holds, and never seen outside."""
+"""Bit beside STATUS's, set by a hurried kernel where `needs_full_kernel` holds; no caller sees
+it."""
 LISTING_MISREADS = PIVOT
-"""Line 510 takes any MU not above this for a pivot."""
+"""Line 510 takes any MU up to this for a pivot."""
 
 
 def friction_faults(
@@ -46,20 +55,20 @@ def friction_faults(
     decides nothing by itself: a normal impulse on eccentric contact can turn it round without
     friction, and before it does friction may act the other way. Where the pivot's normal impulse
     would pull, no friction ends the sliding, and any in the pivot's direction is admissible. Where
-    MUC is 0 none is.
+    MUC is 0, none is admissible.
     """
-    room = FRICTION_TOLERANCE
-    approach, limited, down = (gn < 0) & (pn > 0), pivot_pn > 0, pivot_pt < 0
-    most = abs(pivot_pt)
+    tolerance = FRICTION_TOLERANCE
+    approach, pivot_pushes, down = (gn < 0) & (pn > 0), pivot_pn > 0, pivot_pt < 0
+    limit = abs(pivot_pt)
     # mu in the direction of pivot_pt, less the tolerance, and times pivot_pn
-    forward_down, forward_up = (-mu - room) * pivot_pn, (mu - room) * pivot_pn
-    backward = approach & (down & (mu > room) | ~down & (mu < -room))
-    none = limited & (most <= room * pivot_pn)
-    above = approach & limited & (down & (forward_down > most) | ~down & (forward_up > most))
-    above = above | backward & none
-    wrong = backward & ~none & (most > 0)
-    excused = slides_forth_and_back(pn, mu, gt, turning, yielding)
-    return above & ~excused, wrong & ~excused
+    forward_down, forward_up = (-mu - tolerance) * pivot_pn, (mu - tolerance) * pivot_pn
+    backward = approach & (down & (mu > tolerance) | ~down & (mu < -tolerance))
+    frictionless = pivot_pushes & (limit <= tolerance * pivot_pn)
+    above = approach & pivot_pushes & (down & (forward_down > limit) | ~down & (forward_up > limit))
+    above = above | backward & frictionless
+    wrong = backward & ~frictionless & (limit > 0)
+    possible = slides_forth_and_back(pn, mu, gt, turning, yielding)
+    return above & ~possible, wrong & ~possible
 
 
 def slides_forth_and_back(pn: Any, mu: Any, gt: Any, turning: Any, yielding: Any) -> Any:
@@ -71,8 +80,8 @@ def slides_forth_and_back(pn: Any, mu: Any, gt: Any, turning: Any, yielding: Any
     impulse adds.
 
     Let friction of coefficient m act against the sliding, and the normal impulse reverse it after
-    p1 = abs(gt)/(m K_tt + abs(K)) of Pn. What is left in the end is Pt = m (Pn - 2 p1) along the
-    sliding before. Its least value over m is
+    p1 = abs(gt)/(m K_tt + abs(K)) of Pn. The net impulse is Pt = m (Pn - 2 p1) along the sliding
+    before. Its least value over m is
 
         -Pn (w - abs(K))^2 / (abs(K) K_tt)  with  w^2 = 2 abs(gt K)/Pn,
 
@@ -82,12 +91,12 @@ def slides_forth_and_back(pn: Any, mu: Any, gt: Any, turning: Any, yielding: Any
     """
     size = abs(turning)
     across = (abs(mu) - FRICTION_TOLERANCE) * (pn * yielding)
-    left = abs(gt) + abs(gt) - size
-    rest = left - across
-    # by what fails, so that what is not known excuses
-    straight = (gt * turning >= 0) | (mu * gt >= 0)
-    outside = (left <= 0) | (left >= 3.0 * size)
-    return ~(straight | outside | (rest < 0) | (rest * rest < 4.0 * (size * across)))
+    excess = abs(gt) + abs(gt) - size
+    gap = excess - across
+    # each condition is negated, so that a NaN counts as possible
+    one_way = (gt * turning >= 0) | (mu * gt >= 0)
+    outside = (excess <= 0) | (excess >= 3.0 * size)
+    return ~(one_way | outside | (gap < 0) | (gap * gap < 4.0 * (size * across)))
 
 
 def findings(
@@ -110,7 +119,8 @@ def findings(
     condition: Any,
     sum_of_velocities: Any,
 ) -> dict[Status, Any]:
-    """Bit -> the condition under which it is set; only NOT_FINITE and SINGULAR for a NaN.
+    """Return, for each bit, the condition under which it is set. A NaN sets only NOT_FINITE and
+    SINGULAR.
 
     ``gn``: normal relative velocity at the contact point, A minus B; ``pn``: normal impulse on A;
     ``arm_a``, ``arm_b``: the tangential lever arms, minus the distances of A's and B's center from
@@ -121,7 +131,7 @@ def findings(
     """
     sliding = gt, turning, yielding
     above, wrong = friction_faults(gn, pn, friction_mu, pivot_pn, pivot_pt, *sliding)
-    # what the sum of velocities does not show, the energies and the quotients do
+    # velocities that cancel in the sum are infinite in the energies and their quotients
     finite = abs(sum_of_velocities) < inf
     finite = finite & (abs(initial - 0.5 * twice_lost) < inf) & (abs(twice_lost / initial) < inf)
     return {
@@ -129,7 +139,7 @@ def findings(
         Status.PULLING: pn < 0,
         Status.ENERGY_GAINED: -twice_lost > (2 * ENERGY_TOLERANCE) * initial,
         Status.E_OUT_OF_RANGE: (e < 0) | (e > 1),
-        # NaN: 0/0 in the condition itself, as singular as can be
+        # a NaN in COND is 0/0: singular, too
         Status.SINGULAR: ~(condition < SINGULAR_FROM),
         Status.NOT_FINITE: ~(finite & (condition <= inf)),
         Status.A_ON_WRONG_SIDE: arm_a > SIDE_TOLERANCE * abs(da),
@@ -141,19 +151,19 @@ def findings(
     }
 
 
-def undecided(determinant: Any, absolute_sum: Any, twice_lost: Any, initial: Any) -> Any:
+def needs_full_kernel(determinant: Any, absolute_sum: Any, twice_lost: Any, initial: Any) -> Any:
     """Return where SINGULAR and NOT_FINITE are not certain to be clear, without the velocities.
 
     ``absolute_sum``: the determinant's with absolute values, COND/3 times its size. The scene's
     numbers are at most `MODERATE` in size, inertias at least its inverse (or infinite, of a rigid
     barrier). No product in a velocity's numerator then exceeds 1e160, so that a determinant above
-    1e-100 leaves every velocity finite; of the energies the last comparison says it.
+    1e-100 leaves every velocity finite; the last comparison decides on the energies.
     """
     size = abs(determinant)
     regular = absolute_sum < (SINGULAR_FROM / 6) * size
     return ~((size > 1e-100) & regular & (abs(twice_lost) < 1e150 * initial))
 
 
-def bits(found: dict[Status, Any]) -> Any:
-    """STATUS of conditions over arrays, which broadcast: integers."""
-    return sum(condition * int(bit) for bit, condition in found.items())
+def bits(conditions: dict[Status, Any]) -> Any:
+    """Return STATUS, as integers, of conditions by bit over arrays, which broadcast."""
+    return sum(condition * int(bit) for bit, condition in conditions.items())
