@@ -20,7 +20,7 @@ from impact88.mechanics import kernelsource, native
 from impact88.mechanics.closedform import kernelcalls
 from impact88.mechanics.closedform import solve as solving
 from impact88.mechanics.closedform.impactprograms import ALL, BODIES, FORMULAS, KERNELS
-from impact88.mechanics.closedform.plain import FEW
+from impact88.mechanics.closedform.plain import MAX_CONVERTED
 from impact88.mechanics.closedform.solve import TILE, quantities
 from impact88.names import RESULTS
 from impact88.program.vectorized import blocks
@@ -46,7 +46,7 @@ def assert_same_bits(compiled, alone):
 
 
 @pytest.mark.parametrize("name", POPULATIONS)
-@pytest.mark.parametrize("count", [2, FEW, FEW + 1])
+@pytest.mark.parametrize("count", [2, MAX_CONVERTED, MAX_CONVERTED + 1])
 def test_every_result_of_every_population(name, count):
     assert_same_bits(*both(repeat_scenes(scenes(name, min(count, 500), 11), count), threads=1))
 
@@ -118,7 +118,9 @@ def test_kinds_that_change_far_behind_what_was_looked_at():
 
 
 def test_a_column_of_one_value_that_another_follows_far_behind():
-    columns = {name: values.copy() for name, values in scenes("casework", 3 * FEW, 6).items()}
+    columns = {
+        name: values.copy() for name, values in scenes("casework", 3 * MAX_CONVERTED, 6).items()
+    }
     columns["EM"][:] = -0.5
     columns["EM"][-7] = -0.25
     assert_same_bits(*both(columns, threads=1))
@@ -126,16 +128,16 @@ def test_a_column_of_one_value_that_another_follows_far_behind():
 
 def test_what_varies_may_go_beyond_what_was_looked_at(monkeypatch):
     """Numbers that are only larger than those looked at make no other kind."""
-    columns = scenes("casework", 3 * FEW, 6)
+    columns = scenes("casework", 3 * MAX_CONVERTED, 6)
     columns["UX"][-7] = 10 * columns["UX"].max()
     with native.switched_off():
         expected = impact88.solve(columns, SIX)
-    monkeypatch.setattr(solving, "_solved", None)  # the way of the other kinds
+    monkeypatch.setattr(solving, "_solve_arrays", None)  # the general path
     assert_same_bits(impact88.solve(columns, SIX), expected)
 
 
 def test_memory_of_results_is_used_again_only_once_nobody_holds_them():
-    columns = scenes("casework", 3 * FEW, 6)
+    columns = scenes("casework", 3 * MAX_CONVERTED, 6)
     other = {**columns, "UX": columns["UX"] + 1}
     held = impact88.solve(columns, SIX)
     kept = {name: values.copy() for name, values in held.items()}
@@ -168,7 +170,7 @@ def test_slices_types_and_shapes():
 
 
 def test_selections():
-    columns = odd(3 * FEW, 9)
+    columns = odd(3 * MAX_CONVERTED, 9)
     for name in RESULTS:
         assert_same_bits(*both(columns, name))
     few = {name: values[:100] for name, values in scenes("casework", 100, 4).items()}

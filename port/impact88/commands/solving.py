@@ -19,7 +19,7 @@ from ..collision.units import Convention, convention_named
 from ..errors import UserError, note, quoted
 from ..files import display_name, replacing
 from ..mechanics.closedform.columns import INERTIAS, UNUSED_BY_POINTS, examine, refusals
-from ..mechanics.closedform.share import resolved, share_of
+from ..mechanics.closedform.share import resolve_share, share_of
 from ..mechanics.closedform.solve import share_typed, solve
 from ..messages.progress import progress
 from ..names import DEFAULT_M, RESULTS, SCENE, check_names
@@ -301,7 +301,7 @@ def _applesoft(rows: Rows, units: TableUnits, wanted: Sequence[str], said: _Rema
         if share_of(cell) is not None:
             scene = {name: column[index] for name, column in columns.items() if name in SCENE}
             with suppress(UserError, ValueError, TypeError):  # the cell's complaint follows
-                columns["MU"][index] = resolved(scene, "")[0]
+                columns["MU"][index] = resolve_share(scene, "")[0]
     unread = {index for index, *_ in rows.bad}
     try:
         # nearly always all cells can be read, and looking at each takes as long as solving

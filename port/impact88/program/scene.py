@@ -107,12 +107,12 @@ class Scene(Mapping[str, str]):
             raise UserError(missing(absent), source)
         self.remarks = dict(nominal_case.remarks)
         if is_share(values["MU"]):
-            from ..mechanics.closedform.share import resolved  # needed for a share only
+            from ..mechanics.closedform.share import resolve_share  # needed for a share only
 
             texts = {
                 n: check_value(n, text, case.place(n)) for n, text in values.items() if n != "MU"
             }
-            values["MU"], self.remarks["MU"] = resolved({**texts, "MU": values["MU"]}, source)
+            values["MU"], self.remarks["MU"] = resolve_share({**texts, "MU": values["MU"]}, source)
         self._values = {name: check_value(name, values[name], case.place(name)) for name in SCENE}
         self.case = case
 

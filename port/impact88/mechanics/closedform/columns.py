@@ -26,10 +26,10 @@ INERTIAS = ("MA", "MB", "IA", "IB")
 BODIES = (("MA", "IA", ("UX", "UY"), "WA"), ("MB", "IB", ("VX", "VY"), "WB"))
 """Mass, inertia, velocities and spin of A and of B."""
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
-"""What a point-mass scene (M = 4) does not look at."""
+"""Names that a point-mass scene (M = 4) ignores."""
 
 Limits = tuple[float, float]
-"""Least and most."""
+"""Least and largest number."""
 _LARGEST = float(np.finfo(np.float64).max)
 _SMALLEST = float(np.nextafter(0.0, 1.0))
 
@@ -39,18 +39,18 @@ Source = Array | Any
 
 
 def part(source: Source, start: int, stop: int) -> Floats:
-    """Scenes ``start`` to ``stop`` of a column, or its only value, as float64 side by side."""
+    """Return scenes ``start`` to ``stop`` of a column, or its only value, as contiguous float64."""
     if len(source) > 1:
         source = source[start:stop]
     return np.ascontiguousarray(source, np.float64)
 
 
 def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int, ...]]:
-    """Name -> source for every scene name, in the table's order, and the common shape.
+    """Return name -> source for every scene name, in the table's order, and the common shape.
 
     Raises UserError for an unknown or missing name, a column that holds no numbers, and shapes that
-    do not broadcast together. M may be missing; when it is 4 throughout, so may be what a point
-    mass does not look at. Scenes of M = 4 may have anything there, such as NaN or None.
+    do not broadcast together. M may be missing; when it is 4 throughout, so may `UNUSED_BY_POINTS`.
+    Scenes of M = 4 may have anything there, such as NaN or None.
     """
     columns = in_base(columns)
     unknown = [name for name in columns if name not in SCENE]
@@ -100,8 +100,8 @@ class Block(NamedTuple):
 
 
 def examine(values: Mapping[str, Floats]) -> Block:
-    """Find out what kind of block this is. ``values``: columns of one length, or of length 1. Only
-    where something may be unusable are the scenes looked at one by one."""
+    """Classify the columns of a block. ``values``: columns of one length, or of length 1. Single
+    scenes are examined only where a column's limits do not rule out unusable numbers."""
     extremes = dict(zip(values, limits_of(list(values.values())), strict=True))
     only_points = extremes["M"] == (4.0, 4.0)
     fixed: dict[str, Floats] = {}
@@ -112,72 +112,72 @@ def examine(values: Mapping[str, Floats]) -> Block:
         if only_points and name in UNUSED_BY_POINTS:
             fixed[name], kinds[name] = column[:1], "unused"
             continue
-        (least, most), (low, high) = extremes[name], ORDINARY[name]
-        if name in ANGLES and not (low <= least and most <= high):
+        (least, largest), (low, high) = extremes[name], ORDINARY[name]
+        if name in ANGLES and not (low <= least and largest <= high):
             if name in UNUSED_BY_POINTS:
                 column = np.where(values["M"] == 4, 0.0, column)
             with np.errstate(invalid="ignore"):
                 column = np.where(np.abs(column) <= LARGE_ANGLE, column, np.fmod(column, 360.0))
-            least, most = float(column.min()), float(column.max())
-        alike = len(column) == 1 or least == most
-        ordinary = low <= least and most <= high  # NaN is neither
+            least, largest = float(column.min()), float(column.max())
+        alike = len(column) == 1 or least == largest
+        ordinary = low <= least and largest <= high  # NaN is neither
         kind = alike_kind(name, least) if alike and ordinary else "scalar" if alike else "array"
         if name == "M" and not ordinary:
             ordinary = only_points
             kind = "4" if only_points else "6" if alike else "mixed"
         elif name in INERTIAS and not ordinary:
-            ordinary = alike and most == np.inf
+            ordinary = alike and largest == np.inf
             kind = "inf" if ordinary else "scalar" if alike else "array with infinities"
         elif name == "MU" and not ordinary:
-            ordinary = least >= -_LARGEST and most <= _LARGEST
+            ordinary = least >= -_LARGEST and largest <= _LARGEST
             if bool((column == PIVOT).any()):
                 kind = "pivot" if alike else "mixed"
         kinds[name] = kind
         usable = usable and ordinary
         (fixed if alike else varying)[name] = column[:1] if alike else column
-    ordered = tuple(kinds[name] for name in SCENE)
+    kinds_in_order = tuple(kinds[name] for name in SCENE)
     if usable and _at_rest_where_infinite(kinds):
-        return Block(fixed, varying, ordered, None)
+        return Block(fixed, varying, kinds_in_order, None)
     together = {name: fixed[name] if name in fixed else varying[name] for name in SCENE}
     refused = np.zeros(max(map(len, values.values())), np.bool_)
     for refusal in refusals(together):
         refused |= refusal.where
-    return Block(fixed, varying, ordered, refused if refused.any() else None)
+    return Block(fixed, varying, kinds_in_order, refused if refused.any() else None)
 
 
 def limits_of(columns: Sequence[Floats]) -> list[Limits]:
-    """The least and the largest number of each column; both NaN where one is."""
+    """Return the least and the largest number of each column; both are NaN where one number is."""
     if native.library is None:
         return [(float(column.min()), float(column.max())) for column in columns]
     order = sorted(range(len(columns)), key=lambda i: -len(columns[i]))
-    where, found = addresses(columns[i] for i in order), np.empty((len(order), 2))
+    starts, limits = addresses(columns[i] for i in order), np.empty((len(order), 2))
     count = len(columns[order[0]])
-    many = sum(len(column) == count for column in columns)
-    extremes = native.library.find_extremes
-    extremes(where.ctypes.data, many, len(order), count, found.ctypes.data)
-    return [(least, most) for least, most in found[np.argsort(order)].tolist()]
+    full_length = sum(len(column) == count for column in columns)
+    find_extremes = native.library.find_extremes
+    find_extremes(starts.ctypes.data, full_length, len(order), count, limits.ctypes.data)
+    return [(least, largest) for least, largest in limits[np.argsort(order)].tolist()]
 
 
 ORDINARY: dict[str, Limits] = {
     **dict.fromkeys(SCENE, (-_LARGEST, _LARGEST)),
     **dict.fromkeys(ANGLES, (-LARGE_ANGLE, LARGE_ANGLE)),
     **dict.fromkeys(INERTIAS, (_SMALLEST, _LARGEST)),
-    **{"M": (6.0, 6.0), "MU": (float(np.nextafter(PIVOT, 0.0)), _LARGEST)},
+    "M": (6.0, 6.0),
+    "MU": (float(np.nextafter(PIVOT, 0.0)), _LARGEST),
 }
-"""Name -> within which a column is an ordinary array, or an ordinary value: nothing in it has to be
-looked at."""
+"""Name -> limits within which no single number of a column has to be examined."""
 
 
 def alike_kind(name: str, value: float) -> str:
-    """The kind of an ordinary column that has one value."""
+    """Return the kind of a column that has one value, within its limits in `ORDINARY`."""
     if name == "M":
         return str(int(value))
-    # an inertia is never left out
+    # formulas keep every inertia, even of 1
     return "scalar" if name in INERTIAS else {0.0: "0", 1.0: "1"}.get(value, "scalar")
 
 
 def _at_rest_where_infinite(kinds: Mapping[str, str]) -> bool:
-    """Whether the kinds alone show that infinite bodies are at rest, and one at most."""
+    """Return True where the kinds alone show that infinite bodies are at rest, and one at most."""
     infinite = []
     for mass, inertia, velocities, spin in BODIES:
         no_shift, no_turn = kinds[mass] == "inf", kinds[inertia] == "inf"
@@ -198,18 +198,18 @@ class Refusal(NamedTuple):
 
 
 def refusals(columns: Mapping[str, Floats]) -> Iterator[Refusal]:
-    """What cannot be used in ``columns`` (every scene name -> array of one length, or of length 1).
-    A point-mass scene is not asked for what it does not look at."""
+    """Yield the unusable numbers in ``columns`` (every scene name -> array of one length, or of
+    length 1). `UNUSED_BY_POINTS` are not examined in point-mass scenes."""
     point = columns["M"] == 4
     yield Refusal("M", "is neither 4 nor 6", ~(point | (columns["M"] == 6)))
     for name, column in columns.items():
         if name == "M":
             continue
-        asked = ~point if name in UNUSED_BY_POINTS else True
+        examined = ~point if name in UNUSED_BY_POINTS else True
         if name in INERTIAS:
-            yield Refusal(name, "is not above 0", ~(column > 0) & asked)
+            yield Refusal(name, "is not above 0", ~(column > 0) & examined)
         else:
-            yield Refusal(name, "is not finite", ~np.isfinite(column) & asked)
+            yield Refusal(name, "is not finite", ~np.isfinite(column) & examined)
     infinite = []
     for mass, inertia, velocities, spin in BODIES:
         no_shift = columns[mass] == np.inf

@@ -1,5 +1,8 @@
-"""What is run for a kind of block and the results wanted: a program, by the compiled machine in one
-pass over the scenes, or by numpy one step after another (`plan`)."""
+"""Programs for each kind of block and set of results, and the bodies of the compiled kernels.
+
+A program is run by the compiled interpreter (`native/machine.c`) in one pass over the scenes, or by
+numpy one step after another (`plan`). The commonest are compiled as a whole: the kernels.
+"""
 
 import struct
 from collections.abc import Iterable
@@ -15,43 +18,51 @@ from .columns import INERTIAS, UNUSED_BY_POINTS
 from .impact import impact
 
 Kinds = tuple[str, ...]
-"""Of each column, see `closedform.columns.Block`."""
+"""Kind of each column, see `closedform.columns.Block`."""
 
 _CIRCLE = np.frombuffer(
     struct.pack(
-        *("P8dq", degrees.table().ctypes.data, 1 / sinetable.STEP, sinetable.STEP),
-        *(sinetable.INTEGER_IN_LOW_BITS, *sinetable.POLYNOMIALS, sinetable.STEPS),
+        "P8dq",
+        degrees.table().ctypes.data,
+        1 / sinetable.STEP,
+        sinetable.STEP,
+        sinetable.INTEGER_IN_LOW_BITS,
+        *sinetable.POLYNOMIALS,
+        sinetable.STEPS,
     ),
     np.uint8,
 ).copy()
 CIRCLE = _CIRCLE.ctypes.data
-"""Where the machine finds what sines and cosines are made of, ``circle`` there."""
+"""Address of the table of sines and its constants, ``circle`` in `native/machine.c`."""
 
 
 @lru_cache(maxsize=1024)
 def program_for(
     kinds: Kinds, wanted: tuple[str, ...], sign: float | None = None, hurried: bool = False
 ) -> Program:
-    """``sign``, ``hurried``: see `impact`. No result is a negative zero, and NaN is what is not
-    finite; COND alone may be infinite."""
+    """Return the program that computes ``wanted`` of columns of these kinds.
+
+    ``sign``, ``hurried``: see `impact`. No result is a negative zero. A result that is not finite
+    is NaN, except that COND may be infinite.
+    """
     table = ExpressionTable()
     kind = dict(zip(SCENE, kinds, strict=True))
     scene: dict[str, Expression] = {}
-    for name, what in kind.items():
-        if what in ("0", "1", "inf", "unused"):
-            scene[name] = table.constant(0.0 if what == "unused" else float(what))
+    for name, text in kind.items():
+        if text in ("0", "1", "inf", "unused"):
+            scene[name] = table.constant(0.0 if text == "unused" else float(text))
         else:
-            scene[name] = table.column(name, varies=what.startswith(("array", "mixed")))
+            scene[name] = table.column(name, varies=text.startswith(("array", "mixed")))
     pivot: bool | Expression = kind["MU"] == "pivot"
     if kind["MU"] == "mixed":
         pivot = table.equals(scene["MU"], PIVOT)
     point: bool | Expression = kind["M"] == "4"
     if kind["M"] == "mixed":
         point = table.equals(scene["M"], 4.0)
-    infinite = any("inf" in what for what in kinds)
-    found = impact(table, scene, pivot, point, infinite, sign, hurried)
+    infinite = any("inf" in text for text in kinds)
+    results = impact(table, scene, pivot, point, infinite, sign, hurried)
     endings = {"COND": "RESULT_OR_INFINITE", "STATUS": "BITS"}
-    return Program({x: found[x] for x in wanted}, [endings.get(x, "RESULT") for x in wanted])
+    return Program({x: results[x] for x in wanted}, [endings.get(x, "RESULT") for x in wanted])
 
 
 def varying(pivot: bool, point: bool, infinite: bool = False, zeros: Iterable[str] = ()) -> Kinds:
@@ -83,10 +94,12 @@ BODIES: dict[str, Kinds] = {
     "friction_hurried": varying(False, False, True),
     "pivot_hurried": varying(True, False, True),
 }
-"""Name -> kinds of what the machine has as a whole, made by `mechanics.kernelsource`. The first
-four are every scene there is; of the others all scenes of a call have to be; the hurried leave what
-STATUS takes the final velocities for undecided (`statusbits.undecided`), and the machine looks
-again."""
+"""Name -> kinds of columns of each body: the formulas of one kind of scene as a C function, made by
+`mechanics.kernelsource`. A kernel is a body that keeps some of its results.
+
+The first four serve all scenes. The next three are shorter, for calls all of whose scenes have a 0
+in these columns. The hurried bodies compute STATUS without the final velocities, and mark the
+scenes that a full kernel has to compute again (see `statusbits`)."""
 HURRIED = {"friction": "friction_hurried", "pivot": "pivot_hurried"}
 _MOTION = ("VC", "VS", "XA", "YA", "XB", "YB", "KI", "MUP")
 _IMPULSES = ("PN", "PT", "PM", "MUP", "DVA", "DVB", "VC", "VS")
@@ -110,4 +123,4 @@ KERNELS = [
     *((body, FINAL_VELOCITIES) for body in list(BODIES)[4:7]),
     *((body, results) for body in HURRIED.values() for results in _WITH_STATUS),
 ]
-"""Body and results of each kernel, the cheapest first: the first that has what is wanted is run."""
+"""Body and results of each kernel, the cheapest first: the first with all results wanted is run."""

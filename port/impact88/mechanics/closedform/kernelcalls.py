@@ -1,5 +1,7 @@
-"""The impact as a whole by the compiled machine (`native/impacts.h`): scenes of every kind in one
-call. A call is an argument block for the machine, used by one thread at a time."""
+"""Calls of the compiled kernels (`native/impacts.h`), which take scenes of every kind at once.
+
+A `Call` is the argument block of the C function; one thread uses it at a time.
+"""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -9,17 +11,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import native
-from ..native.processors import shared_out, workers
+from ..native.processors import run_in_threads, workers
 from ..native.program import Addresses
 from .columns import INERTIAS, ORDINARY
 from .impactprograms import ALL, BODIES, CIRCLE, COLUMNS, FORMULAS, HURRIED
 from .statusbits import MODERATE
 
-WORTH_A_THREAD = 32768
-"""Scenes for each thread from which it pays: half a millisecond of the compiled machine, of which
-starting a thread takes a fifth. With half as many two fifths; with twice as many calls with 65,536
-scenes have one thread."""
+MIN_SCENES_PER_THREAD = 32768
+"""Chosen so that starting a thread takes a fifth of the half millisecond that its scenes take; with
+half as many it takes two fifths, with twice as many calls with 65,536 scenes have one thread."""
 _LARGEST = np.finfo(np.float64).max
+# least and largest number of each column that needs no look at single scenes: by all kernels, and
+# by the hurried ones
 _LIMITS = np.array([{**ORDINARY, "MU": (-_LARGEST, _LARGEST)}[name] for name in COLUMNS])
 _SIZES = np.array([(-MODERATE, MODERATE)] * len(COLUMNS))
 _SIZES[[COLUMNS.index(name) for name in INERTIAS], 0] = 1 / MODERATE
@@ -29,14 +32,14 @@ _WITHOUT = {
     "smooth": (COLUMNS.index("MU"),),
     "friction_without_arms": (COLUMNS.index("DA"), COLUMNS.index("DB")),
 }
-"""Body -> the columns that are 0 in it."""
+"""Body -> the columns that are 0 in it; see `impactprograms.BODIES`."""
 _KINDS = list(BODIES)[:4]
 _KERNELS = 2 * len(COLUMNS) + len(ALL)
-"""Where in the argument block the kernels stand."""
+"""Index of the first kernel in the argument block."""
 
 
 def usable() -> bool:
-    """Return whether the machine was built, and of these formulas."""
+    """Return True where the compiled kernels are built, and from these formulas."""
     return native.library is not None and _of_these_formulas()
 
 
@@ -50,23 +53,26 @@ def _of_these_formulas() -> bool:
 
 @lru_cache(maxsize=1024)
 def _kernels(wanted: tuple[str, ...], without: str | None) -> list[int]:
-    """Where the kernels are that compute the results ``wanted`` of each kind of scene, then the
-    hurried ones, 0 where there is none."""
+    """Return the addresses of the kernels that compute ``wanted``, one for each kind of scene, then
+    those of the hurried ones (see `statusbits`), 0 where there is none.
+
+    ``without``: body for scenes with friction in which some columns are 0.
+    """
     bits = sum(1 << ALL.index(name) for name in wanted)
     kernel_of, bodies = native.library.kernel_of, list(BODIES)
     kernels = [kernel_of(bodies.index(kind), bits) for kind in _KINDS]
     if without is not None:
         kernels[0] = kernel_of(bodies.index(without), bits) or kernels[0]
-    hurried = [0] * len(_KINDS)
+    hurried_kernels = [0] * len(_KINDS)
     if "STATUS" in wanted:
         for kind, body in HURRIED.items():
-            hurried[_KINDS.index(kind)] = kernel_of(bodies.index(body), bits) or 0
-    return kernels + hurried
+            hurried_kernels[_KINDS.index(kind)] = kernel_of(bodies.index(body), bits) or 0
+    return kernels + hurried_kernels
 
 
 class Call:
-    """An argument block: ``columns`` says where each is in memory, ``steps`` is 1 where there is a
-    number for each scene and 0 where one is for all."""
+    """Argument block of the C call. ``columns``: their addresses; ``steps``: 1 for a column with a
+    number for each scene, 0 for one number for all."""
 
     def __init__(self, wanted: tuple[str, ...]) -> None:
         self._wanted = wanted
@@ -80,28 +86,28 @@ class Call:
         self.choose_kernels({})
 
     def choose_kernels(self, numbers: dict[int, float]) -> None:
-        """Take the kernels for constants, by their places among the columns: those that leave out
-        friction, moment or arms where all scenes are without."""
+        """Choose kernels by the constants, place among the columns -> number: those without
+        friction, moment or arms where these are 0 in all scenes."""
         zeros = {place for place, number in numbers.items() if number == 0.0}
         fit = (name for name, places in _WITHOUT.items() if zeros.issuperset(places))
         kernels = _kernels(self._wanted, next(fit, None) if zeros else None)
         self.block[_KERNELS : _KERNELS + len(kernels)] = kernels
 
     def run(self, results: Addresses | Sequence[int], count: int, threads: int | None = 1) -> None:
-        """Write the results wanted of ``count`` scenes to ``results``, addresses in their order."""
+        """Compute ``count`` scenes and write to ``results``, addresses in the order wanted."""
         self._results[self._places] = results
         work = native.library.solve_impacts
-        many = 1 if threads == 1 else workers(count, threads, WORTH_A_THREAD)
-        if many == 1:
+        number = 1 if threads == 1 else workers(count, threads, MIN_SCENES_PER_THREAD)
+        if number == 1:
             work(self._at, 0, count)
         else:
-            shared_out(lambda start, stop: work(self._at, start, stop), count, many)
+            run_in_threads(lambda start, stop: work(self._at, start, stop), count, number)
 
 
 class PreparedCall:
     """A call whose varying columns, by their ``places``, and results other than STATUS are rows of
-    two arrays. ``values`` holds a number for each column, to be kept as long as this. Any number of
-    threads may use it at a time."""
+    two arrays. ``values`` holds a number for each column, and must live as long as this. Any number
+    of threads may use it at a time."""
 
     def __init__(
         self, wanted: tuple[str, ...], places: Sequence[int], values: NDArray[np.float64]
@@ -112,39 +118,39 @@ class PreparedCall:
         call.choose_kernels({k: float(x) for k, x in enumerate(values) if k not in places})
         rows = [ALL.index(name) for name in wanted if name != "STATUS"]
         lists = (
-            np.array([*some, *[0] * (room - len(some))], np.int64)
-            for some, room in ((places, len(COLUMNS)), (rows, len(ALL)))
+            np.array([*filled, *[0] * (length - len(filled))], np.int64)
+            for filled, length in ((places, len(COLUMNS)), (rows, len(ALL)))
         )
         self._block = np.concatenate([call.block, [len(places), len(rows)], *lists])
         self._at = self._block.ctypes.data
 
     def run(self, values: int, results: int, status: int, count: int) -> None:
-        """Write the results of ``count`` scenes; all addresses, 0 for STATUS where not wanted."""
-        if count < 2 * WORTH_A_THREAD:
+        """Compute ``count`` scenes. All arguments are addresses; ``status``: 0 if not wanted."""
+        if count < 2 * MIN_SCENES_PER_THREAD:
             native.library.solve_prepared(self._at, values, results, status, count)
             return
         work = native.library.solve_prepared_part
 
-        def some(start: int, stop: int) -> None:
+        def solve_part(start: int, stop: int) -> None:
             work(self._at, values, results, status, count, start, stop)
 
-        shared_out(some, count, workers(count, None, WORTH_A_THREAD))
+        run_in_threads(solve_part, count, workers(count, None, MIN_SCENES_PER_THREAD))
 
     def bound(self, values: int, results: int, status: int, count: int) -> NDArray[np.int64]:
-        """The argument block of `run` for one call of ``solve_bound`` on this thread, to be kept
-        no longer than this and the memory."""
+        """Return the arguments of `run` as a block for ``solve_bound``, valid as long as this
+        object and the arrays live."""
         return np.array([self._at, values, results, status, count], np.int64)
 
 
 @lru_cache(maxsize=256)
 def _free_calls(wanted: tuple[str, ...]) -> list[Call]:
-    """The calls for the results ``wanted`` that no thread uses."""
+    """Return the list of calls for ``wanted`` that no thread is using."""
     return []
 
 
 @contextmanager
 def call_of(wanted: tuple[str, ...]) -> Iterator[Call]:
-    """A call for the results ``wanted``, this thread's alone for as long as this lasts."""
+    """Lend a call for ``wanted`` to this thread for the length of a ``with`` block."""
     free = _free_calls(wanted)
     call = free.pop() if free else Call(wanted)
     try:
@@ -159,8 +165,8 @@ def solve_columns(
     results: Addresses,
     count: int,
 ) -> None:
-    """Write the results wanted of contiguous columns in the table's order, of length ``count`` or
-    1."""
+    """Compute ``wanted`` of contiguous columns in the table's order, of length ``count`` or 1, and
+    write them to the addresses ``results``."""
     with call_of(wanted) as call:
         call.columns[:] = [column.ctypes.data for column in columns]
         call.steps[:] = [len(column) > 1 for column in columns]

@@ -1,9 +1,9 @@
 """One scene, for root finders and notebooks: a few microseconds a call.
 
-The compiled machine computes all results of one scene sooner than Python asks for them; without it
-a Python function of the scene's values does (`written`), one for each selection of results and kind
-of scene. Whatever is out of the ordinary (values that are no plain numbers or cannot be used,
-infinite bodies, a division by zero, a result that is not finite) is left to the arrays.
+The compiled kernels compute all results of one scene in less time than the call takes. Without
+them a Python function of the scene's values is compiled for each set of results and kind of scene
+(`written`). Unusual scenes (values that are not plain numbers or not usable, infinite bodies, a
+division by zero, a result that is not finite) are left to the general path of `solve`.
 """
 
 import math
@@ -21,14 +21,15 @@ from .columns import INERTIAS, UNUSED_BY_POINTS
 from .impactprograms import ALL, program_for, varying
 from .kernelcalls import Call
 from .plain import NAMES, PLAIN
-from .written import written
+from .written import compile_function
 
-_M, _MU = NAMES.index("M"), NAMES.index("MU")
+_M = NAMES.index("M")
+_MU = NAMES.index("MU")
 _in_order = itemgetter(*NAMES)
 
 
 def in_order(columns: Mapping[str, object]) -> tuple[Any, ...]:
-    """The scene's values in the table's order; none where names are missing or unknown."""
+    """Return the scene's values in the table's order; () where names are missing or unknown."""
     if "M" not in columns:
         columns = {**columns, "M": 6.0}
     try:
@@ -38,8 +39,8 @@ def in_order(columns: Mapping[str, object]) -> tuple[Any, ...]:
 
 
 def solve_one(values: tuple[Any, ...], wanted: tuple[str, ...]) -> dict[str, Any] | None:
-    """The results ``wanted`` of one scene (`in_order`), numpy's float64 (STATUS: uint16), which are
-    floats; None where the arrays have to look at it."""
+    """Return the results ``wanted`` of one scene (values as from `in_order`) as numpy's float64,
+    STATUS as uint16; None for a scene that is left to the general path."""
     if not PLAIN.issuperset(map(type, values)):
         return None
     try:
@@ -47,7 +48,7 @@ def solve_one(values: tuple[Any, ...], wanted: tuple[str, ...]) -> dict[str, Any
         if M != 6 and M != 4:
             return None
         if kernelcalls.usable():
-            return by_machine(values, wanted)
+            return _solve_compiled(values, wanted)
         results = _function(wanted, M == 4, MU == PIVOT)(*map(float, values))
     except ArithmeticError:
         return None
@@ -60,7 +61,7 @@ def solve_one(values: tuple[Any, ...], wanted: tuple[str, ...]) -> dict[str, Any
 
 
 class _Scene:
-    """A call of the machine for one scene, prepared once: all results."""
+    """Reusable call of the compiled kernels for all results of one scene."""
 
     def __init__(self) -> None:
         self.values, self.status = np.zeros(len(NAMES)), np.zeros(1, np.uint16)
@@ -72,27 +73,27 @@ class _Scene:
 
 
 _scenes: list[_Scene] = []
-"""Those that no thread uses."""
+"""The calls that no thread is using."""
 
 
 @lru_cache(maxsize=256)
 def _places(wanted: tuple[str, ...]) -> tuple[tuple[str, ...], NDArray[np.int64]]:
-    """The results wanted but STATUS, and where they are among all."""
+    """Return the results wanted except STATUS, and their places among all results."""
     names = tuple(name for name in wanted if name != "STATUS")
     return names, np.array([ALL.index(name) for name in names], np.int64)
 
 
-def by_machine(values: tuple[Any, ...], wanted: tuple[str, ...]) -> dict[str, Any] | None:
-    """`solve_one`, by the compiled machine."""
+def _solve_compiled(values: tuple[Any, ...], wanted: tuple[str, ...]) -> dict[str, Any] | None:
+    """Do `solve_one` by the compiled kernels."""
     scene = _scenes.pop() if _scenes else _Scene()
     scene.values[:] = values
     scene.call.run(scene.into, 1)
     names, places = _places(wanted)
-    found, status = scene.results[places], scene.status[0]
+    results, status = scene.results[places], scene.status[0]
     _scenes.append(scene)
-    if not math.isfinite(sum(found.tolist())):
+    if not math.isfinite(sum(results.tolist())):
         return None
-    by_name: dict[str, Any] = dict(zip(names, found, strict=True))
+    by_name: dict[str, Any] = dict(zip(names, results, strict=True))
     if len(names) == len(wanted):
         return by_name
     return {name: status if name == "STATUS" else by_name[name] for name in wanted}
@@ -102,8 +103,8 @@ def by_machine(values: tuple[Any, ...], wanted: tuple[str, ...]) -> dict[str, An
 def _function(
     wanted: tuple[str, ...], point: bool, pivot: bool
 ) -> Callable[..., tuple[float, ...]]:
-    """The function of the scene's values, in the table's order, that gives the results."""
-    asked = [name for name in NAMES if not (point and name in UNUSED_BY_POINTS)]
-    unusable = [f"not {name} > 0.0" for name in INERTIAS if name in asked]
-    unusable.append(f"not isfinite({' + '.join(asked)})")
-    return written(program_for(varying(pivot, point), wanted), " or ".join(unusable))
+    """Return a function of the scene's values, in the table's order, that returns the results."""
+    names = [name for name in NAMES if not (point and name in UNUSED_BY_POINTS)]
+    unusable = [f"not {name} > 0.0" for name in INERTIAS if name in names]
+    unusable.append(f"not isfinite({' + '.join(names)})")
+    return compile_function(program_for(varying(pivot, point), wanted), " or ".join(unusable))

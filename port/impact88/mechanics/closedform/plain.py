@@ -1,5 +1,8 @@
-"""Plain columns by one call of the compiled machine a thread: hardly anything is done column by
-column, for `bounds` and root finders make many short calls."""
+"""Short path of `solve` for plain columns: float64 arrays of one shape, and numbers.
+
+Each thread makes one call of the compiled kernels, and hardly anything is done column by column:
+`bounds` and root finders make many short calls.
+"""
 
 import math
 import sys
@@ -19,39 +22,45 @@ Array = NDArray[Any]
 
 PLAIN = {float, int, np.float64}
 NAMES = tuple(SCENE)
-_FLOATS, _BITS = np.dtype(np.float64), np.dtype(np.uint16)
-FEW = 4096
-"""Scenes up to which columns of other types or in pieces are copied side by side by one call of
-numpy; more are left to the arrays, which take them in tiles."""
-VERY_FEW = 512
-"""Scenes up to which copying columns side by side is cheaper than asking each for its address."""
-KEPT = 1 << 28
-"""Bytes up to which results are rows of one array, which is paged in twice as fast as arrays of
-their own but is kept as long as one of them, and up to which that memory is used again once nobody
-holds any of it: all results of a million scenes, which take 70 instead of 250 to 500 ns a scene; a
-quarter holds none."""
-WORTH_KEEPING = 1 << 17
-"""Bytes from which the C library gives memory back when it is freed, and fresh memory has to be
-paged in; twice or half as much makes no call slower or faster."""
+_FLOATS = np.dtype(np.float64)
+_BITS = np.dtype(np.uint16)
+MAX_CONVERTED = 4096
+"""Scenes up to which columns of other types, or not contiguous, are copied by one call of numpy;
+longer ones are left to the general path, which converts them tile by tile."""
+MAX_COPIED = 512
+"""Scenes up to which copying all columns is cheaper than asking each for its address."""
+MAX_REUSED_BYTES = 1 << 28
+"""Size up to which results are rows of one array, whose memory is used again once no result of it
+is referenced. One array is paged in twice as fast as many, but lives as long as any of its rows.
+Chosen for all results of a million scenes: 70 instead of 250 to 500 ns a scene; a quarter of this
+size is too small for them."""
+MIN_REUSED_BYTES = 1 << 17
+"""Size from which the C library returns freed memory to the system, so that fresh memory has to be
+paged in. Twice or half as much makes no call slower or faster."""
 
 
 class _Layout:
-    """Values of some types: which are columns and which are numbers."""
+    """Places of columns and of numbers among a scene's values, by the types of these.
+
+    ``columns``, ``numbers``: their places; ``order``: columns, then numbers; ``steps``: 1 for a
+    column, 0 for a number. Of values copied into one block, columns first: ``strides``, bytes per
+    scene before each value begins, and ``offsets``, further bytes.
+    """
 
     def __init__(self, types: tuple[type, ...]) -> None:
         self.columns = [i for i, kind in enumerate(types) if kind is np.ndarray]
         self.numbers = [i for i, kind in enumerate(types) if kind is not np.ndarray]
         self.order = np.array([*self.columns, *self.numbers])
         self.steps = np.array([kind is np.ndarray for kind in types], np.int64)
-        many = len(self.columns)
-        # of copies side by side: what a scene more moves them by, and where they begin
-        self.by_scene = 8 * np.array([*range(many), *[many] * len(self.numbers)])
-        self.after = 8 * np.array([*[0] * many, *range(len(self.numbers))])
+        count = len(self.columns)
+        self.strides = 8 * np.array([*range(count), *[count] * len(self.numbers)])
+        self.offsets = 8 * np.array([*[0] * count, *range(len(self.numbers))])
 
 
 @lru_cache(maxsize=256)
 def _layout(types: tuple[type, ...]) -> _Layout | None:
-    """None where not all values are arrays and plain numbers."""
+    """Return the layout of values of these types; None unless all are arrays or plain numbers, at
+    least one an array."""
     plain = all(kind is np.ndarray or kind in PLAIN for kind in types)
     return _Layout(types) if plain and np.ndarray in types else None
 
@@ -62,8 +71,11 @@ def solve_plain(
     threads: int | None,
     out: Mapping[str, Array] | None,
 ) -> dict[str, Array] | None:
-    """The results ``wanted`` of values in the table's order; None where they are not plain columns
-    of one shape and numbers."""
+    """Return the results ``wanted`` of values in the table's order; None where these are not plain
+    columns of one shape and numbers, and the general path has to look at them.
+
+    ``threads``, ``out``: as in `solve`.
+    """
     layout = _layout(tuple(map(type, values)))
     if layout is None:
         return None
@@ -72,123 +84,140 @@ def solve_plain(
     shape, count = arrays[0].shape, arrays[0].size
     if count < 2 or not all(array.shape == shape for array in arrays):
         return None
-    try:
-        if count > VERY_FEW and all(_is_plain(array) for array in arrays):
-            data = np.array(list(numbers.values()), np.float64)
-            where = np.concatenate(
-                [addresses(arrays), data.ctypes.data + 8 * np.arange(len(numbers))]
-            )
-        elif count <= FEW:
-            data = np.concatenate(
-                [*arrays, list(numbers.values())], None, dtype=np.float64, casting="same_kind"
-            )
-            where = data.ctypes.data + count * layout.by_scene + layout.after
-        else:
-            return None
-    except (TypeError, OverflowError):  # no numbers
+    inputs = _inputs(layout, arrays, list(numbers.values()))
+    if inputs is None:
         return None
-    by_name, into = rooms(wanted if out is None else [x for x in wanted if x not in out], shape)
+    _memory, input_addresses = inputs
+    missing = wanted if out is None else [name for name in wanted if name not in out]
+    by_name, result_addresses = allocate_results(missing, shape)
     if out is not None:
-        check_room(out, wanted, shape, arrays)
+        check_output_arrays(out, wanted, shape, arrays)
         by_name = {name: out[name] if name in out else by_name[name] for name in wanted}
-        into = addresses(by_name.values())
+        result_addresses = addresses(by_name.values())
     with call_of(wanted) as call:
-        call.columns[layout.order] = where
+        call.columns[layout.order] = input_addresses
         call.steps[:] = layout.steps
         call.choose_kernels(numbers)
-        call.run(into, count, threads)
+        call.run(result_addresses, count, threads)
     return by_name
+
+
+def _inputs(
+    layout: _Layout, arrays: list[Array], numbers: list[float]
+) -> tuple[Array, Addresses] | None:
+    """Return an array to be kept for the length of the call, and the addresses of all values.
+
+    Long float64 columns are read where they are, and only the numbers are copied; of few scenes
+    all values are copied into one block. None where neither is possible.
+    """
+    count = arrays[0].size
+    try:
+        if count > MAX_COPIED and all(_is_plain(array) for array in arrays):
+            data = np.array(numbers, np.float64)
+            number_addresses = data.ctypes.data + 8 * np.arange(len(numbers))
+            return data, np.concatenate([addresses(arrays), number_addresses])
+        if count <= MAX_CONVERTED:
+            data = np.concatenate([*arrays, numbers], None, dtype=np.float64, casting="same_kind")
+            return data, data.ctypes.data + count * layout.strides + layout.offsets
+    except (TypeError, OverflowError):  # not numbers
+        pass
+    return None
 
 
 def _is_plain(array: Array) -> bool:
     return array.dtype == np.float64 and array.flags.c_contiguous and array.flags.aligned
 
 
-_kept: list[Array] = []
+_reusable: list[Array] = []
+"""The block of results of the last call, or nothing."""
 
 
-def _taken(blocks: list[Array]) -> tuple[Array, int]:
-    """A block taken from a list, and how many refer to it."""
+def _pop_block(blocks: list[Array]) -> tuple[Array, int]:
+    """Take the last block from a list; return it and its reference count."""
     block = blocks.pop()
     return block, sys.getrefcount(block)
 
 
-_NOBODY_ELSE = _taken([np.empty(0)])[1]
+_UNSHARED = _pop_block([np.empty(0)])[1]
+"""Reference count of a block that no result refers to."""
 
 
 def memory(count: int) -> Array:
-    """So many float64, those of an earlier call where no array refers to them any more."""
-    block, references = _taken(_kept) if _kept else (None, 0)
-    if block is None or block.size != count or references > _NOBODY_ELSE:
+    """Return an uninitialized array of ``count`` float64: that of an earlier call where no result
+    refers to it any more."""
+    block, references = _pop_block(_reusable) if _reusable else (None, 0)
+    if block is None or block.size != count or references > _UNSHARED:
         block = np.empty(count)
-    if WORTH_KEEPING <= block.nbytes <= KEPT:
-        _kept[:] = [block]
+    if MIN_REUSED_BYTES <= block.nbytes <= MAX_REUSED_BYTES:
+        _reusable[:] = [block]
     return block
 
 
-def rooms(names: Sequence[str], shape: tuple[int, ...]) -> tuple[dict[str, Array], Addresses]:
-    """Arrays for results, and where they begin."""
+def allocate_results(
+    names: Sequence[str], shape: tuple[int, ...]
+) -> tuple[dict[str, Array], Addresses]:
+    """Return an uninitialized array for each result, and their addresses."""
     count = math.prod(shape)
-    many = max(1, KEPT // max(1, 8 * count))
-    made: dict[str, Array] = {}
-    where = np.empty(len(names), np.int64)
-    for at in range(0, len(names), many):
-        some = names[at : at + many]
-        together = memory(len(some) * count).reshape(len(some), *shape)
-        rows = together if shape else [together[i, ...] for i in range(len(some))]
-        made.update(zip(some, rows, strict=True))
-        where[at : at + many] = together.ctypes.data + 8 * count * np.arange(len(some))
-    if "STATUS" in made:
-        made["STATUS"] = np.empty(shape, np.uint16)
-        where[names.index("STATUS")] = made["STATUS"].ctypes.data
-    return made, where
+    per_block = max(1, MAX_REUSED_BYTES // max(1, 8 * count))
+    arrays: dict[str, Array] = {}
+    starts = np.empty(len(names), np.int64)
+    for at in range(0, len(names), per_block):
+        group = names[at : at + per_block]
+        block = memory(len(group) * count).reshape(len(group), *shape)
+        rows = block if shape else [block[i, ...] for i in range(len(group))]
+        arrays.update(zip(group, rows, strict=True))
+        starts[at : at + per_block] = block.ctypes.data + 8 * count * np.arange(len(group))
+    if "STATUS" in arrays:
+        arrays["STATUS"] = np.empty(shape, np.uint16)
+        starts[names.index("STATUS")] = arrays["STATUS"].ctypes.data
+    return arrays, starts
 
 
-def check_room(
+def check_output_arrays(
     out: Mapping[str, Array],
     wanted: Sequence[str],
     shape: tuple[int, ...],
     columns: Sequence[Array],
 ) -> None:
-    """Raises UserError for arrays that cannot take the results."""
+    """Raise UserError for arrays that cannot take the results."""
     for name, array in out.items():
-        where = f"out, {name}"
+        place = f"out, {name}"
         if name not in wanted:
             raise UserError(
-                f"is not a result asked for; expected some of {' '.join(wanted)}", where
+                f"is not a result asked for; expected some of {' '.join(wanted)}", place
             )
         dtype = _BITS if name == "STATUS" else _FLOATS
         if not isinstance(array, np.ndarray) or array.dtype != dtype or array.shape != shape:
             got = f"{array.dtype} {array.shape}" if isinstance(array, np.ndarray) else type(array)
-            raise UserError(f"is {got}; expected an array of {dtype} {shape}", where)
+            raise UserError(f"is {got}; expected an array of {dtype} {shape}", place)
         flags = array.flags
         if not (flags.c_contiguous and flags.writeable and flags.aligned):
-            raise UserError("is not contiguous, not aligned or not writable", where)
+            raise UserError("is not contiguous, not aligned or not writable", place)
     _check_apart(out, columns)
 
 
 def _check_apart(out: Mapping[str, Array], columns: Sequence[Array]) -> None:
-    """Raises UserError where a result shares memory with a column or another result: one pass over
-    the stretches of memory by where they begin. Columns may overlap each other."""
-    stretches = [(*_stretch(array), name) for name, array in out.items()]
-    stretches += [(*_stretch(column), "") for column in columns]
-    last, holder = 0, ""  # where the results so far end, and which ends there
-    last_column = 0
-    for start, end, name in sorted(stretches):
+    """Raise UserError where a result shares memory with a column or another result: one pass over
+    the address ranges in order. Columns may overlap each other."""
+    ranges = [(*_address_range(array), name) for name, array in out.items()]
+    ranges += [(*_address_range(column), "") for column in columns]
+    results_end, last_result = 0, ""  # the highest address of the results so far, and of which
+    columns_end = 0
+    for start, end, name in sorted(ranges):
         if start == end:
             continue
-        if start < last or (name and start < last_column):
+        if start < results_end or (name and start < columns_end):
             raise UserError(
-                "shares memory with a column or another result", f"out, {name or holder}"
+                "shares memory with a column or another result", f"out, {name or last_result}"
             )
         if name:
-            last, holder = max((last, holder), (end, name))
+            results_end, last_result = max((results_end, last_result), (end, name))
         else:
-            last_column = max(last_column, end)
+            columns_end = max(columns_end, end)
 
 
-def _stretch(array: Array) -> tuple[int, int]:
-    """Where an array's memory begins and ends."""
+def _address_range(array: Array) -> tuple[int, int]:
+    """Return the addresses of an array's first byte and of the one behind its last."""
     start = array.ctypes.data
     if array.flags.c_contiguous:
         return start, start + array.nbytes

@@ -14,11 +14,11 @@ from ..native.schedule import Schedule
 Array = NDArray[Any]
 
 CONDITIONS = ("EQUAL", "LESS", "LESS_OR_EQUAL", "EITHER", "BOTH", "NOT")
-"""Operations that make conditions, which are bytes in a working array's place."""
+"""Operations whose value is a condition, kept as bytes in a working array."""
 
 
 def _product(with_sum: Callable[..., object]) -> Callable[..., None]:
-    """``with_sum``: of the product, the other operand and ``out``."""
+    """Return the step a * b combined with c by ``with_sum(product, c, out)``."""
 
     def operation(a: Array, b: Array, c: Array, out: Array, work: Array) -> None:
         with_sum(np.multiply(a, b, out=work), c, out)
@@ -27,6 +27,8 @@ def _product(with_sum: Callable[..., object]) -> Callable[..., None]:
 
 
 def _products(with_sum: Callable[..., object]) -> Callable[..., None]:
+    """Return the step a * b combined with c * d by ``with_sum(product, product, out)``."""
+
     def operation(
         a: Array, b: Array, c: Array, d: Array, out: Array, work: Array, more: Array
     ) -> None:
@@ -36,9 +38,9 @@ def _products(with_sum: Callable[..., object]) -> Callable[..., None]:
 
 
 def _against(value: Array, slip: Array, out: Array) -> None:
-    where = slip > 0  # before out takes the place of either
+    positive = slip > 0  # out may be the memory of either operand
     np.copyto(out, value)
-    np.negative(value, out=out, where=where)
+    np.negative(value, out=out, where=positive)
 
 
 def _choose(where: Array, a: Array, b: Array, out: Array, work: Array) -> None:
@@ -52,7 +54,7 @@ def _sine_and_cosine(angle: Array, sine: Array, cosine: Array) -> None:
 
 
 def _result(value: Array, out: Array) -> None:
-    np.add(value, 0.0, out=out)  # -0.0 becomes 0.0: a zero's sign would tell which path led to it
+    np.add(value, 0.0, out=out)  # -0.0 becomes 0.0: a zero's sign depends on the path
 
 
 def _minimum(a: Array, b: Array, out: Array) -> None:
@@ -60,16 +62,21 @@ def _minimum(a: Array, b: Array, out: Array) -> None:
 
 
 OPERATIONS: dict[str, tuple[Callable[..., object], int]] = {
-    **{"ADD": (np.add, 0), "SUBTRACT": (np.subtract, 0), "MULTIPLY": (np.multiply, 0)},
-    **{"DIVIDE": (np.divide, 0), "NEGATIVE": (np.negative, 0), "SQRT": (np.sqrt, 0)},
-    **{"ABSOLUTE": (np.absolute, 0), "EQUAL": (np.equal, 0), "LESS": (np.less, 0)},
-    **{"LESS_OR_EQUAL": (np.less_equal, 0), "BOTH": (np.logical_and, 0)},
-    **{
-        "EITHER": (np.logical_or, 0),
-        "MINIMUM": (_minimum, 0),
-        "NOT": (np.logical_not, 0),
-        "AGAINST": (_against, 0),
-    },
+    "ADD": (np.add, 0),
+    "SUBTRACT": (np.subtract, 0),
+    "MULTIPLY": (np.multiply, 0),
+    "DIVIDE": (np.divide, 0),
+    "NEGATIVE": (np.negative, 0),
+    "SQRT": (np.sqrt, 0),
+    "ABSOLUTE": (np.absolute, 0),
+    "EQUAL": (np.equal, 0),
+    "LESS": (np.less, 0),
+    "LESS_OR_EQUAL": (np.less_equal, 0),
+    "BOTH": (np.logical_and, 0),
+    "EITHER": (np.logical_or, 0),
+    "MINIMUM": (_minimum, 0),
+    "NOT": (np.logical_not, 0),
+    "AGAINST": (_against, 0),
     "PRODUCT_PLUS": (_product(np.add), 1),
     "PRODUCT_MINUS": (_product(np.subtract), 1),
     "MINUS_PRODUCT": (_product(lambda product, c, out: np.subtract(c, product, out)), 1),
@@ -77,11 +84,11 @@ OPERATIONS: dict[str, tuple[Callable[..., object], int]] = {
     "PRODUCTS_MINUS": (_products(np.subtract), 2),
     "CHOOSE": (_choose, 1),
     "SINE_AND_COSINE": (_sine_and_cosine, 0),
-    **{"RESULT": (_result, 0), "RESULT_OR_INFINITE": (_result, 0)},
+    "RESULT": (_result, 0),
+    "RESULT_OR_INFINITE": (_result, 0),
     "BITS": (lambda number, out: np.copyto(out, number, casting="unsafe"), 0),
 }
-"""Operation -> the function of its operands, what it makes and working arrays; how many of
-these."""
+"""Operation -> a function of its operands, outputs and working arrays; number of working arrays."""
 
 
 @lru_cache(maxsize=1024)
@@ -92,24 +99,24 @@ class Plan:
     def __init__(self, program: Schedule) -> None:
         self.program = program
         self._views: dict[tuple[int, bool, bool], int] = {}
-        """Place, whether as conditions, whether of one value for all scenes -> index."""
+        """(place, is a condition, has one value for all scenes) -> index of the view."""
         conditions: set[int] = set()
         single = {program.moving + number for number in range(len(program.scalars))}
 
-        def seen(*view: Any) -> int:
+        def view_index(*view: Any) -> int:
             return self._views.setdefault(view, len(self._views))
 
         self._steps: list[tuple[Callable[..., object], tuple[int, ...]]] = []
         for number, (name, places) in enumerate(program.steps):
             once = number < program.once
             operation, work = OPERATIONS[name]
-            made = 2 if name == "SINE_AND_COSINE" else 1
-            views = [seen(p, p in conditions, p in single) for p in places[:-made]]
-            for place in places[-made:]:
+            outputs = 2 if name == "SINE_AND_COSINE" else 1
+            views = [view_index(p, p in conditions, p in single) for p in places[:-outputs]]
+            for place in places[-outputs:]:
                 (conditions.add if name in CONDITIONS else conditions.discard)(place)
                 (single.add if once else single.discard)(place)
-                views.append(seen(place, place in conditions, once))
-            views += [seen(program.places + k, False, once) for k in range(work)]
+                views.append(view_index(place, place in conditions, once))
+            views += [view_index(program.places + k, False, once) for k in range(work)]
             self._steps.append((operation, tuple(views)))
 
     def run(
@@ -119,8 +126,8 @@ class Plan:
         fixed: Mapping[str, float],
         tile: int,
     ) -> None:
-        """Read the varying ``columns`` (equally long float64 arrays, in the program's order), write
-        the ``results``; ``fixed``: the columns that do not vary."""
+        """Compute the ``results`` of the varying ``columns`` (float64 arrays of one length, in the
+        program's order); ``fixed``: values of the columns that do not vary."""
         length = len(next(iter(results.values())))
         for low in range(0, length, tile):
             high = min(low + tile, length)
@@ -138,7 +145,7 @@ class Plan:
             steps = self._steps[self.program.once :]
         for result, ending in zip(results.values(), self.program.endings, strict=True):
             if ending != "BITS" and not np.isfinite(result.sum()):
-                # NaN by one set of bits
+                # one bit pattern for all NaNs
                 bad = ~np.isfinite(result) if ending == "RESULT" else np.isnan(result)
                 result[bad] = np.nan
 

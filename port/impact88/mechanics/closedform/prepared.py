@@ -20,7 +20,7 @@ from . import kernelcalls
 from .columns import sources
 from .impactprograms import ALL, COLUMNS
 from .kernelcalls import PreparedCall
-from .plain import PLAIN, WORTH_KEEPING, memory
+from .plain import MIN_REUSED_BYTES, PLAIN, memory
 from .share import share_of
 from .solve import solve
 
@@ -78,20 +78,20 @@ def prepared(
     >>> loss([[0.5, 0.911, -10]])["LOSS"].round(2)
     array([44.43, 57.47, 57.56])
     """
-    chosen = split_names(names) if isinstance(names, str) else tuple(names)
-    wanted = ALL if outputs is None else outputs
-    wanted = split_names(wanted) if isinstance(wanted, str) else tuple(wanted)
-    rest = {} if scene is None else scene
-    check_mapping(rest)
-    _check_names(chosen, SCENE, "scene")
-    _check_names(wanted, RESULTS, "result")
-    if len(set(chosen)) < len(chosen):
-        raise UserError(f"a name stands twice in {' '.join(chosen)}; expected each once")
-    return Prepared(tuple(chosen), tuple(dict.fromkeys(wanted)), rest)
+    inputs = split_names(names) if isinstance(names, str) else tuple(names)
+    results = ALL if outputs is None else outputs
+    results = split_names(results) if isinstance(results, str) else tuple(results)
+    constants = {} if scene is None else scene
+    check_mapping(constants)
+    _check_names(inputs, SCENE, "scene")
+    _check_names(results, RESULTS, "result")
+    if len(set(inputs)) < len(inputs):
+        raise UserError(f"a name stands twice in {' '.join(inputs)}; expected each once")
+    return Prepared(tuple(inputs), tuple(dict.fromkeys(results)), constants)
 
 
 def _check_names(names: Sequence[str], table: Iterable[str], what: str) -> None:
-    """Raises UserError where no names are given, or one is not in the table."""
+    """Raise UserError where no names are given, or one is not in the table."""
     if not names:
         raise UserError(f"no {what} name is given; expected some of {' '.join(table)}")
     for name in names:
@@ -124,21 +124,21 @@ class Prepared:
         self.names = names
         self.outputs = outputs
         self._scene = {name: value for name, value in scene.items() if name not in names}
-        based = in_base(self._scene)
-        if "MU" in based and share_of(based["MU"]) is not None:
+        entries = in_base(self._scene)
+        if "MU" in entries and share_of(entries["MU"]) is not None:
             raise UserError(
-                f"MU = {based['MU']!r} is a share of the critical friction, which each scene has "
+                f"MU = {entries['MU']!r} is a share of the critical friction, which each scene has "
                 "for itself; expected a number"
             )
-        # 6: a number that M may be
-        given, shape = sources({**based, **dict.fromkeys(names, 6.0)})
+        # a placeholder for the numbers of each call: 6 is a number that M may be, too
+        inputs, shape = sources({**entries, **dict.fromkeys(names, 6.0)})
         if shape:
-            arrays = [name for name, source in given.items() if len(source) != 1]
+            arrays = [name for name, source in inputs.items() if len(source) != 1]
             raise UserError(
                 f"{(arrays or ['scene'])[0]} holds more than one number; expected it among the "
                 "names that are given at each call"
             )
-        self._values = np.array([float(given[name][0]) for name in COLUMNS])
+        self._values = np.array([float(inputs[name][0]) for name in COLUMNS])
         self._call: PreparedCall | None = None
         self._rows = tuple(name for name in outputs if name != "STATUS")
         self._has_status = len(self._rows) < len(outputs)
@@ -158,8 +158,8 @@ class Prepared:
         if self._factors is not None:
             rows = rows / self._factors.reshape(-1, *[1] * (rows.ndim - 1))
         if native.library is None or not kernelcalls.usable():
-            return self._solved(rows)
-        call = self._call or self._made()
+            return self._solve_by_numpy(rows)
+        call = self._call or self._create_call()
         shape = rows.shape[1:]
         results, bits = self._room(shape)
         call.run(
@@ -207,27 +207,28 @@ class Prepared:
         return Bound(self, values)
 
     def _rows_of(self, values: Any) -> Array:
-        """The values where they are, if they lie side by side, else a copy. Raises UserError."""
+        """Return the values themselves if they are contiguous float64, else a copy. Raises
+        UserError."""
         if type(values) is np.ndarray and values.dtype == _FLOATS:
             flags = values.flags
             if flags.c_contiguous and flags.aligned and values.shape[:1] == self._expected:
                 return values
         return self._read(values)
 
-    def _solved(self, rows: Array) -> dict[str, Array]:
-        """The results without the compiled machine."""
-        based = dict(zip(COLUMNS, self._values.tolist(), strict=True))
-        return solve({**based, **dict(zip(self.names, rows, strict=True))}, self.outputs)
+    def _solve_by_numpy(self, rows: Array) -> dict[str, Array]:
+        """Return the results without the compiled kernels."""
+        scene = dict(zip(COLUMNS, self._values.tolist(), strict=True))
+        return solve({**scene, **dict(zip(self.names, rows, strict=True))}, self.outputs)
 
-    def _made(self) -> PreparedCall:
+    def _create_call(self) -> PreparedCall:
         places = [COLUMNS.index(name) for name in self.names]
         self._call = PreparedCall(self.outputs, places, self._values)
         return self._call
 
     def _room(self, shape: tuple[int, ...]) -> tuple[Array, Array | None]:
-        """Memory for the results that are float64, and for STATUS."""
+        """Return uninitialized arrays for the float64 results, as rows, and for STATUS."""
         size = len(self._rows) * math.prod(shape)
-        small = size < WORTH_KEEPING // 8
+        small = size < MIN_REUSED_BYTES // 8
         room = (len(self._rows), *shape)
         results = np.empty(room) if small else memory(size).reshape(room)
         return results, np.empty(shape, np.uint16) if self._has_status else None
@@ -240,14 +241,14 @@ class Prepared:
         return {name: by_name[name] for name in self.outputs}
 
     def _read(self, values: Any) -> Array:
-        """The rows as an array, of whatever else the values are. Raises UserError."""
-        told = f"one row for each of {' '.join(self.names)}"
+        """Return values of any accepted kind as an array of rows. Raises UserError."""
+        expectation = f"one row for each of {' '.join(self.names)}"
         if isinstance(values, np.ndarray) and not values.ndim:
-            raise UserError(f"values are one number; expected {told}")
+            raise UserError(f"values are one number; expected {expectation}")
         if isinstance(values, (str, bytes, Mapping)) or not hasattr(values, "__len__"):
-            raise UserError(f"values are of type {type(values).__name__}; expected {told}")
+            raise UserError(f"values are of type {type(values).__name__}; expected {expectation}")
         if len(values) != len(self.names):
-            raise UserError(f"values have {len(values)} rows; expected {told}")
+            raise UserError(f"values have {len(values)} rows; expected {expectation}")
         if PLAIN.issuperset(map(type, values)):
             try:
                 return np.array(values, np.float64)
@@ -259,14 +260,14 @@ class Prepared:
         except ValueError:
             shapes = ", ".join(f"{n} {x.shape}" for n, x in zip(self.names, rows, strict=True))
             raise UserError(f"the rows' shapes do not broadcast together: {shapes}") from None
-        every = np.empty((len(rows), *shape))
+        block = np.empty((len(rows), *shape))
         for place, row in enumerate(rows):
-            every[place] = row
-        return every
+            block[place] = row
+        return block
 
 
 class Bound:
-    """Results of one array's numbers, as they are when it is called: see `Prepared.bind`.
+    """Function without arguments of the present numbers in one array: see `Prepared.bind`.
 
     Parameters
     ----------
@@ -298,9 +299,11 @@ class Bound:
         self._at: int | None = None
         self._machine = native.library if kernelcalls.usable() else None
         count = math.prod(values.shape[1:])
-        in_one_call = count < 2 * kernelcalls.WORTH_A_THREAD and prepared_call._factors is None
+        in_one_call = (
+            count < 2 * kernelcalls.MIN_SCENES_PER_THREAD and prepared_call._factors is None
+        )
         if self._machine is not None and in_one_call:
-            call = prepared_call._call or prepared_call._made()
+            call = prepared_call._call or prepared_call._create_call()
             status = 0 if bits is None else _address(bits)
             self._block = call.bound(_address(values), _address(results), status, count)
             self._call = call
@@ -312,14 +315,13 @@ class Bound:
         if self._at is not None and native.library is self._machine:
             self._run(self._at)
         else:
-            for name, found in self._prepared(self.values).items():
-                self.results[name][...] = found
+            for name, result in self._prepared(self.values).items():
+                self.results[name][...] = result
         return self.results
 
 
 def _address(array: Any) -> int:
-    """Where an array begins in memory. For one that can be written to by the buffer it is: that
-    takes a fourth of the time."""
+    """Return an array's address. The buffer of a writable one gives it in a fourth of the time."""
     if array.size and array.flags.writeable:
         return ctypes.addressof(ctypes.c_char.from_buffer(array))
     start: int = array.__array_interface__["data"][0]

@@ -1,9 +1,9 @@
 """MU as a share of the critical friction: MU = "85 %".
 
 Critical is the friction that just ends the sliding at separation, MUC; the share is of P_t/P_n. MU
-is then what line 280 would hold: the listing turns its sign where gt > 0 (line 400). Of a scene's
-texts it is worked out by Python alone, which a scene does not leave; `closedform.solve.share_typed`
-does the same over arrays.
+is then the number to be typed at line 280: the listing turns its sign where gt > 0 (line 400). For
+the texts of one scene it is computed without numpy; `closedform.solve.share_typed` does the same
+over arrays.
 """
 
 import math
@@ -16,19 +16,20 @@ from ...names import DEFAULT_M, SCENE
 from ..native.formulas import ExpressionTable
 from ..native.schedule import Schedule
 from .impact import impact
-from .written import written
+from .written import compile_function
 
 _SHARE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+))\s*%\s*")
 
 
 def share_of(text: object) -> float | None:
-    """The share that a text such as ``85 %`` is, 0.85; None where it is none."""
+    """Return the fraction a text such as ``85 %`` stands for, 0.85; None for anything else."""
     match = _SHARE.fullmatch(text) if isinstance(text, str) else None
     return float(match[1]) / 100 if match else None
 
 
-def resolved(texts: Mapping[str, str], source: str) -> tuple[str, str]:
-    """MU's number for a scene whose MU is a share, and how it was found. Raises UserError."""
+def resolve_share(texts: Mapping[str, str], source: str) -> tuple[str, str]:
+    """Return MU's number as text for a scene whose MU is a share, and a remark that says so. Raises
+    UserError."""
     share = share_of(texts["MU"])
     if share is None:
         raise UserError(f"MU = {texts['MU']!r} is not a share; expected one such as 85 %", source)
@@ -36,11 +37,11 @@ def resolved(texts: Mapping[str, str], source: str) -> tuple[str, str]:
     numbers |= {name: double(texts[name]) for name in SCENE if name in texts and name != "MU"}
     table = ExpressionTable()
     columns = {name: table.column(name, varies=True) for name in SCENE}
-    found = impact(table, columns, pivot=True, point=numbers["M"] == 4, infinite=False)
-    wanted = {name: found[name] for name in ("PN", "MUC", "gt")}
+    quantities = impact(table, columns, pivot=True, point=numbers["M"] == 4, infinite=False)
+    results = {name: quantities[name] for name in ("PN", "MUC", "gt")}
     values = [numbers.get(name, 0.0) for name in SCENE]
     try:
-        pn, critical, slip = written(Schedule(wanted, ["RESULT"] * 3))(*values)
+        pn, critical, slip = compile_function(Schedule(results, ["RESULT"] * 3))(*values)
     except ArithmeticError:
         pn = critical = slip = math.nan
     mu = share * critical

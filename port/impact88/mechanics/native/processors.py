@@ -1,4 +1,4 @@
-"""How many processors there are to use, and work shared out among threads."""
+"""Number of usable processors, and work divided among threads."""
 
 import os
 import threading
@@ -6,19 +6,20 @@ from collections.abc import Callable
 
 
 def processors() -> int:
-    """The processors this process may use, at least 1."""
+    """Return the number of processors this process may use, at least 1."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
 
 
 def workers(count: int, threads: int | None, share: int) -> int:
-    """How many threads, each with at least ``share`` scenes to do."""
+    """Return the number of threads for ``count`` scenes, at least ``share`` for each thread."""
     return max(1, min(threads or processors(), count // share))
 
 
-def shared_out(work: Callable[[int, int], None], count: int, workers: int) -> None:
-    """Do ``work(start, stop)`` of all scenes, an equal part by each of some threads."""
+def run_in_threads(work: Callable[[int, int], None], count: int, workers: int) -> None:
+    """Call ``work(start, stop)`` for all of ``count`` scenes, an equal part on each thread. Raises
+    the first exception of any of them."""
     size = -(-count // workers)
     failures: list[BaseException] = []
 
@@ -28,11 +29,11 @@ def shared_out(work: Callable[[int, int], None], count: int, workers: int) -> No
         except BaseException as error:
             failures.append(error)
 
-    others = [threading.Thread(target=part, args=(k * size,)) for k in range(1, workers)]
-    for thread in others:
+    helpers = [threading.Thread(target=part, args=(k * size,)) for k in range(1, workers)]
+    for thread in helpers:
         thread.start()
     part(0)
-    for thread in others:
+    for thread in helpers:
         thread.join()
     if failures:
         raise failures[0]

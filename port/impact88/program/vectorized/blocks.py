@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...mechanics import native
-from ...mechanics.native.processors import shared_out, workers
+from ...mechanics.native.processors import run_in_threads, workers
 from . import compiled, statements
 from .realcolumns import Scenes
 from .reals import Floats, compare, from_floats, select
@@ -59,7 +59,7 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int = BLOCK
                     values[name][rows] = column
 
         jobs = _blocks(pending, six, pivot, block)
-        shared_out(compute_jobs, len(jobs), max(1, min(threads, len(jobs))))
+        run_in_threads(compute_jobs, len(jobs), max(1, min(threads, len(jobs))))
 
     if native.library is not None:
         compute(partial(_compute_compiled, scenes.size >= MIN_SCENES_TO_SPECIALIZE))
