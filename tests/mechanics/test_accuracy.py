@@ -1,7 +1,8 @@
 """What each result by the closed form may be off: `errorbound.result_bounds` against 50 digits.
 
 `evolved_for_each_result.csv` holds the worst scenes that `benchmarks/evolve_each.py` made for one
-result in each family (seed 7, 30 s): there a result is off by up to 140,000 of its own roundings.
+result in each family (seed 7, 30 s), when contact velocities were the sums of what centers and
+spins give: there a result was off by up to 140,000 of its own roundings (``units``).
 The last two were evolved against the bound itself (``pivot --wide --bound``, seed 11).
 """
 
@@ -16,7 +17,13 @@ import pytest
 from impact88 import solve
 from impact88.bench.methods import reference
 from impact88.bench.populations import POPULATIONS, scenes
-from impact88.mechanics.accuracy.errorbound import relative_bounds, result_bounds, scales
+from impact88.mechanics.accuracy.errorbound import (
+    DOUBLE,
+    movements,
+    relative_bounds,
+    result_bounds,
+    scales,
+)
 from impact88.mechanics.accuracy.reference import fifty_digits
 from impact88.mechanics.closedform.impactprograms import BODIES, program_for
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
@@ -100,6 +107,45 @@ def test_no_error_is_above_a_quarter_of_it_whatever_the_inertia(power, pivots):
 @pytest.mark.parametrize("name", POPULATIONS)
 def test_no_error_is_above_a_quarter_of_it_in_any_population(name):
     assert_within_a_quarter(scenes(name, 12, 78))
+
+
+def own_roundings(g, found):
+    """Result -> errors, in roundings of the result itself and of each number of the scene."""
+    names = list(found)
+    hi, lo = reference(g, names)
+    moved = movements(g, names)
+    worst = {}
+    for j, name in enumerate(names):
+        with np.errstate(all="ignore"):
+            error = np.abs((found[name] - hi[:, j]) - lo[:, j])
+            size = DOUBLE * (moved[name] + np.abs(hi[:, j]))
+            worst[name] = np.nan_to_num(np.where(error == 0, 0.0, error / size))
+    return worst
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_every_result_is_within_16_of_its_own_roundings(family):
+    """But where friction stops a center at a barrier, or a point mass, whose center is what
+    touches: its velocity is the sum of the one before and its change."""
+    g = evolved(family)
+    centers = (*FINAL_VELOCITIES[:4], "XAF", "YAF", "XBF", "YBF")
+    left_out = ("MUP", *{"barrier": centers[:4], "point": centers}.get(family, ()))
+    worst = own_roundings(g, solve(g, [name for name in NAMES if name not in left_out]))
+    off = {name: float(x.max()) for name, x in worst.items() if x.max() >= 16}
+    assert not off
+
+
+@pytest.mark.parametrize("family", ["barrier", "barrier_pivot", "pivot"])
+def test_the_sum_of_center_and_spin_is_not(family):
+    """Of a contact velocity, where both cancel: these scenes tell one formula from another."""
+    g = evolved(family)
+    f = solve(g, ["VAX", "VAY", "WAF"])
+    angle = np.radians(np.fmod(g["TA"] + g["PA"], 360))
+    sums = {
+        "XAF": f["VAX"] + g["DA"] * np.sin(angle) * f["WAF"],
+        "YAF": f["VAY"] - g["DA"] * np.cos(angle) * f["WAF"],
+    }
+    assert max(x.max() for x in own_roundings(g, sums).values()) > 100
 
 
 def test_a_digit_lost_is_above_it():

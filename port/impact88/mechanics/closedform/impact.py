@@ -15,12 +15,12 @@ sigma_i sigma_j and kappa_i = a_i/Ia - b_i/Ib, the restitution equation (15), no
     Q_nt Pn + Q_tt Pt + kappa_t H = -(ct + sigma_t mean)                       (pivot only)
     em Ired kappa·P + z H         = -em Ired (omega_a - omega_b)
 
-Friction has Pt = mu Pn for the middle line. Every unknown, the final mean spin too, is found by
-Cramer's rule with the factor z cancelled: no term becomes infinite at em = 1/2, and for -1 <= em <=
-0 the pivot's determinant is a sum of terms of one sign. None is found from another, nor from both
-spins apart: such differences would lose their digits where an arm is far longer than a radius of
-gyration, or one body far lighter than the other. What of the spins is left are the products Ired X
-= Ired (b omega_a/Ib - a omega_b/Ia), and a x b = an bt - at bn, which is Ired sigma x kappa. The
+Friction has Pt = mu Pn for the middle line. Every unknown, the slip left by friction too, is found
+by Cramer's rule with the factor z cancelled: no term becomes infinite at em = 1/2, and for -1 <= em
+<= 0 the pivot's determinant is a sum of terms of one sign. None is found from another, nor from
+both spins apart: such differences would lose their digits where an arm is far longer than a radius
+of gyration, or one body far lighter than the other. What of the spins is left are the products Ired
+X = Ired (b omega_a/Ib - a omega_b/Ia), and a x b = an bt - at bn, which is Ired kappa x sigma. The
 moment impulse is (1 - em) H/em by Equation 18.
 
 Single spins are no sums of mean and H either, which may cancel: in Cramer's numerators of both, the
@@ -91,6 +91,10 @@ def impact(
         """From along x and y to along n and t."""
         return c * x + s * y, c * y - s * x
 
+    def turned_back(n: Expression, t: Expression) -> tuple[Expression, Expression]:
+        """From along n and t to along x and y."""
+        return c * n - s * t, s * n + c * t
+
     def arms(distance: Expression, angle: Expression) -> Sequence[Expression]:
         if distance.is_zero:
             return [distance] * 4
@@ -139,6 +143,11 @@ def impact(
     own_a, own_b = z * J - EM * (ia * weight_b), z * J - EM * (ib * weight_a)
     shared = other * J
 
+    # a x b, which is Ired kappa x sigma without the difference of products whose digits are lost in
+    # kappa already, times (Ia + Ib): of arms along n and t, and along x and y, of which each kind
+    # of impact has its own
+    crossing = spins * (an * bt - at * bn)
+
     # -- friction: everything along the direction (1, mu) of the impulse
 
     def friction() -> list[Expression]:
@@ -150,14 +159,14 @@ def impact(
         Pn = (em_kappa * turn - z * (w + sn * mean)) / determinant
         Pt = mu * Pn
         Px, Py = c * Pn - s * Pt, s * Pn + c * Pt
-        # not the mean spin before and what the impulse adds to it: where an arm is far longer than
-        # the radii of gyration, these nearly cancel
-        spin = (z * (R * mean - J_sigma * w) + em_kappa * X) / determinant
         moment = unless_point((twist * w - turn * R - sn * X) / determinant)
         cross = a * (ia * WB) - b * (ib * WA)
         spin_a = (R * kept_a - w * (a * own_a + b * shared) + (EM * bn) * cross) / determinant
         spin_b = (R * kept_b - w * (b * own_b + a * shared) - (EM * an) * cross) / determinant
-        slip = ct + R * Pt + (st * spin + kt * (EM * moment))
+        # by Cramer's rule, too: of ct and of what the impulse changes of it little may be left
+        kept = z * (R * ((ct + st * mean) - mu * (w + sn * mean)) + J_sigma * (ct * sn - st * w))
+        traded = twist * (kt * w - kn * ct) + (turn * R) * (mu * kn - kt) + crossing * X
+        slip = (kept + EM * traded) / determinant
         velocities = [UX + ma * Px, UY + ma * Py, VX - mb * Px, VY - mb * Py]
         size = absolute(mu)
         straight = R * (1.0 + size) + J * (sn_ * (sn_ + size * st_))
@@ -178,7 +187,7 @@ def impact(
     rx, ry = c * rebound, s * rebound
     wx, wy = dx + rx, dy + ry
     Xx, Xy = crossed(ax, bx), crossed(ay, by)
-    # a x b = Ired sigma x kappa, without the difference of products whose digits are lost in kappa
+    # a x b = Ired kappa x sigma, without the difference of products whose digits are lost in kappa
     # already; times (Ia + Ib) and times J/R
     cross, R_inverse = ax * by - ay * bx, 1.0 / R
     lever, lever_J = spins * cross, (J * R_inverse) * cross
@@ -250,6 +259,36 @@ def impact(
     H, PM = EM * moment, (1.0 - EM) * moment
     WAF, WBF = unless_point(spin_a, scene["WA"]), unless_point(spin_b, scene["WB"])
 
+    # The contact points part by the rebound along n and the slip along t. Where the terms of the
+    # one are smaller, with those of the slip, the other is found from it: of the terms of a car
+    # that stops at a barrier, or of a long arm that hits, little is left.
+    part_x, part_y = turned_back(-(E * gn), slip)
+    slipping = absolute(ct) + absolute(gt) + absolute(R * PT)
+    if not isinstance(pivot, bool):
+        slipping = table.choose(pivot, zero, slipping)
+    elif pivot:
+        slipping = zero
+
+    def contacts(
+        before: tuple[Expression, Expression],
+        after: tuple[Expression, Expression],
+        turned: tuple[Expression, Expression],
+        parting: Expression,
+        along_t: Expression,
+    ) -> tuple[Expression, Expression]:
+        """Of A and B, along x or y: of both centers' velocities and of what their spins add;
+        ``along_t``: a unit vector's component."""
+        terms = [absolute(x) + absolute(y) for x, y in zip(before, after, strict=True)]
+        terms_a, terms_b = (x + absolute(y) for x, y in zip(terms, turned, strict=True))
+        a, b = (x + y for x, y in zip(after, turned, strict=True))
+        of_slip = absolute(along_t) * slipping
+        of_a = table.choose(terms_b + of_slip < terms_a, b + parting, a)
+        of_b = table.choose(terms_a + of_slip < terms_b, a - parting, b)
+        return unless_point(of_a, after[0]), unless_point(of_b, after[1])
+
+    XAF, XBF = contacts((UX, VX), (VAX, VBX), (D3 * spin_a, -(D1 * spin_b)), part_x, s)
+    YAF, YBF = contacts((UY, VY), (VAY, VBY), (-(D4 * spin_a), D2 * spin_b), part_y, c)
+
     def finite(inertia: Expression) -> Expression:
         """An infinite body is at rest, exactly, before and after: times 0 any number will do."""
         if inertia.is_constant(inf):
@@ -265,9 +304,21 @@ def impact(
     crushed, rubbed = ((1.0 - E) * gn) * PN, PT * (gt + slip)
     twisted = PM * (gw + spins * H)
     lost = -(crushed + rubbed + twisted)
+    all_lost = lost
+    if pivot is not False:
+        # What long arms make of a pivot's works nearly cancels: then the loss is what the impulse
+        # does at the centers and what the spins lose, if these have the smaller terms.
+        x, y = dx + (VAX - VBX), dy + (VAY - VBY)
+        (wa, wb), (fa, fb) = (WA, WB), final_spins
+        of_spins = inertias[2] * ((wa - fa) * (wa + fa)) + inertias[3] * ((wb - fb) * (wb + fb))
+        in_spins = inertias[2] * (wa * wa + fa * fa) + inertias[3] * (wb * wb + fb * fb)
+        in_works = absolute(crushed) + absolute(rubbed) + absolute(twisted)
+        smaller = absolute(Px * x) + absolute(Py * y) + in_spins < in_works
+        of_pivot = table.choose(smaller, of_spins - (Px * x + Py * y), lost)
+        all_lost = of_pivot if pivot is True else table.choose(pivot, of_pivot, lost)
 
     # of an impact that gains energy nothing is left for crush; NaN stays NaN
-    twice_crush = table.choose(lost < 0.0, zero, lost)
+    twice_crush = table.choose(all_lost < 0.0, zero, all_lost)
     root_of_all, root_of_half = table.root(twice_crush), table.root(0.5 * twice_crush)
 
     def equivalent_speed(inverse_mass: Expression, other: Expression) -> Expression:
@@ -330,9 +381,8 @@ def impact(
         **{"VAX": VAX, "VAY": VAY, "VBX": VBX, "VBY": VBY, "WAF": WAF, "WBF": WBF},
         # lines 340, 700 and 710
         **{"XA": UX + D3 * WA, "YA": UY - D4 * WA, "XB": VX - D1 * WB, "YB": VY + D2 * WB},
-        **{"XAF": VAX + D3 * spin_a, "YAF": VAY - D4 * spin_a},
-        **{"XBF": VBX - D1 * spin_b, "YBF": VBY + D2 * spin_b},
-        **{"KI": KI, "KF": KF, "LOSS": (50.0 * lost) / KI, "COND": COND, "MUP": MUP},
+        **{"XAF": XAF, "YAF": YAF, "XBF": XBF, "YBF": YBF},
+        **{"KI": KI, "KF": KF, "LOSS": (50.0 * all_lost) / KI, "COND": COND, "MUP": MUP},
         **{"MUC": critical_numerator / critical_denominator},
         **{"ELN": -0.5 * crushed, "ELT": -0.5 * rubbed, "ELM": -0.5 * twisted},
         **{"EESA": equivalent_speed(ma, MB), "EESB": equivalent_speed(mb, MA)},
