@@ -15,7 +15,7 @@ from ..messages import notebook
 from ..messages.arguments import explains_arguments
 from ..messages.plaintable import format_fixed, number, paragraph, table
 from ..names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
-from ..uncertainty.boundstable import unbounded
+from ..uncertainty.boundstable import unbounded_sides
 from . import adjustment
 from .adjustment import Reconstruction, typed_friction
 from .posterior import SIGMAS
@@ -474,7 +474,7 @@ class Measured(Impact):
                 "quantiles": {f"{q:g}": v for q, v in quantiles.items()},
                 "lower": lower,
                 "upper": upper,
-                "unbounded": unbounded(bound),
+                "unbounded": unbounded_sides(bound),
                 "at_lower": display_values(points[0], units),
                 "at_upper": display_values(points[1], units),
             }

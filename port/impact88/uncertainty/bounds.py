@@ -1,16 +1,15 @@
 """Upper and lower bounds from ranges of the data (chapter, Section V: "reasonable ranges of these
 variables should be used ... to provide upper and lower bounds on vehicle speed").
 
-Of one scene whose values are known within limits (`collision.uncertain`), the box the ranges span
-is searched (`optimization.extremes`) for each sign that line 400 can give MU, correlations or not.
-Every bound is attained at the inputs kept beside it; that none lies farther is likely, not proven.
-Where the equations become singular inside, a bound is infinite. Beside it stand seeded Monte Carlo
-(`Spread`) and what each input does alone (`Drive`).
+The values of one scene are known within limits (`collision.uncertain`). The box that the limits
+span is searched (`optimization.extremes`) for each sign that line 400 can give MU, regardless of
+correlations. Every bound is attained at the inputs kept with it; that no value lies farther is
+likely, not proven. Where the equations become singular inside, a bound is infinite. In addition
+there are seeded Monte Carlo draws (`Spread`) and the effect of each input alone (`Drive`).
 
 The forward problem goes from initial to final velocities (Equations 13-18); the reconstruction from
-the six final velocities back, with MUP, the signed P_t/P_n, for MU: line 400's sign rule needs
-initial velocities.
-"""
+the six final velocities back, with MUP, the signed P_t/P_n, in place of MU: line 400's sign rule
+needs initial velocities."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -43,21 +42,14 @@ PROBLEMS = ("forward", "reconstruction")
 FORWARD_OUTPUTS = (*FINAL_VELOCITIES, "DVA", "DVB", "LOSS")
 RECONSTRUCTION_OUTPUTS = (*VELOCITIES, "SA", "SB", "DVA", "DVB", "LOSS")
 RECONSTRUCTED = (*RECONSTRUCTION_OUTPUTS, "KI", "KF", "PN", "PT", "PM", "MUC")
-"""What a reconstruction can be asked for."""
-WARNINGS = {bit.name or "": int(bit) for bit in status.Status}
-"""Name of a warning -> its bit."""
-QUANTILES = (0.025, 0.05, 0.5, 0.95, 0.975)
-"""The median, and the middle 90 and 95 % of the draws."""
-CHUNK = 1 << 15
-"""Draws evaluated at a time: what the processor's cache holds. Part of what a seed means."""
-RANKED = 20_000
-"""Draws the rank correlations are taken over at most: their standard error is 0.007, of twice as
-many 0.005, and they are printed to 0.01."""
-SWEEP_POINTS = 41
-"""The top of a parabola is missed by 6e-4 of its height at most, by a quarter of that with twice as
-many."""
-MOST_DRAWS = 100_000_000
-"""Draws of all outputs together that are kept: 800 MB."""
+WARNINGS = {bit.name or "": int(bit) for bit in status.Status}  # name of a warning -> its bit
+QUANTILES = (0.025, 0.05, 0.5, 0.95, 0.975)  # the median, the middle 90 and 95 % of the draws
+CHUNK = 1 << 15  # draws at a time, as fit the processor's cache; changes what a seed gives
+# Draws used for rank correlations, at most. Their standard error is 0.007 (with twice as many
+# 0.005), and they are printed to 0.01.
+RANKED_DRAWS = 20_000
+SWEEP_POINTS = 41  # the top of a parabola is missed by 6e-4 of its height at most
+MAX_DRAWS = 100_000_000  # of all outputs together, 800 MB
 
 
 @np.errstate(all="ignore")
@@ -123,36 +115,32 @@ def bounds(
     (13.42, 18.37)
     """
     check_mapping(values)
-    given = dict(values)
+    inputs = dict(values)
     pairs = dict(correlations or {})
-    if isinstance(text := given.pop("correlations", None), str):
+    if isinstance(text := inputs.pop("correlations", None), str):
         pairs = read_correlations(text, "correlations") | pairs
-    box = _Box(given, outputs, problem, sigmas, exclude)
+    box = _Box(inputs, outputs, problem, sigmas, exclude)
     _check(samples, sigmas, quantiles, len(box.outputs))
-    correlated = correlation_root(pairs, box.inputs)
+    root = correlation_root(pairs, box.inputs)
     nominal = box.nominal()
     sweeps = box.sweeps()
-    searched = box.extremes(random_numbers(seed, 0))
+    extremes = box.extremes(random_numbers(seed, 0))
     rng = random_numbers(seed, 1)
-    draws, ranked, flags = _monte_carlo(box, rng, samples, correlated, progress)
+    draws, ranked_inputs, flags = _monte_carlo(box, rng, samples, root, progress)
     usable = np.all([np.isfinite(column) for column in draws.values()], axis=0)
     if not usable.any():
         raise UserError("none of the draws has a finite result; expected narrower ranges")
-    some = usable[:RANKED]
-    input_ranks = {name: _ranks(column[some]) for name, column in ranked.items()}
-    output_ranks = {name: _ranks(column[:RANKED][some]) for name, column in draws.items()}
+    usable_ranked = usable[:RANKED_DRAWS]
+    input_ranks = {name: _ranks(column[usable_ranked]) for name, column in ranked_inputs.items()}
+    output_ranks = {
+        name: _ranks(column[:RANKED_DRAWS][usable_ranked]) for name, column in draws.items()
+    }
     return Bounds(
         problem=problem,
         inputs=box.inputs,
         limits=box.limits,
         bounds={
-            name: Bound(
-                nominal[name],
-                *searched.bound[:, place].tolist(),
-                *map(box.inputs_at, searched.at[:, place]),
-                *searched.corner[:, place].tolist(),
-                *map(box.warnings_at, searched.at[:, place]),
-            )
+            name: _bound(box, extremes, place, nominal[name])
             for place, name in enumerate(box.outputs)
         },
         spreads={name: Spread.of(draws[name][usable], quantiles) for name in box.outputs},
@@ -164,15 +152,15 @@ def bounds(
             for output in box.outputs
         },
         warnings={
-            name: share
+            name: fraction
             for name, bit in WARNINGS.items()
-            if (share := float(np.count_nonzero(flags & bit) / samples))
+            if (fraction := float(np.count_nonzero(flags & bit) / samples))
         },
         unusable=float(1 - np.count_nonzero(usable) / samples),
         samples=samples,
         seed=seed,
         sigmas=sigmas,
-        evaluations=searched.evaluations,
+        evaluations=extremes.evaluations,
         corners_in_full=len(box.inputs) <= MAX_FULL_CORNERS,
         correlations=pairs,
         draws=draws if keep_draws else {},
@@ -180,23 +168,43 @@ def bounds(
     )
 
 
+def _bound(box: "_Box", extremes: Extremes, place: int, nominal: float) -> Bound:
+    """Return the bounds of one output, the one in column ``place``."""
+    lower, upper = extremes.bound[:, place].tolist()
+    corner_lower, corner_upper = extremes.corner[:, place].tolist()
+    point_lower, point_upper = extremes.at[:, place]
+    return Bound(
+        nominal=nominal,
+        lower=lower,
+        upper=upper,
+        at_lower=box.inputs_at(point_lower),
+        at_upper=box.inputs_at(point_upper),
+        corner_lower=corner_lower,
+        corner_upper=corner_upper,
+        lower_warnings=box.warnings_at(point_lower),
+        upper_warnings=box.warnings_at(point_upper),
+    )
+
+
 def _ranks(values: Array) -> Array:
-    """Ranks from 0, equal values sharing the mean of theirs, less the mean of all."""
+    """Return ranks less their mean; equal values share the mean of theirs."""
     order = np.argsort(values)
-    ordered = values[order]
-    first = np.concatenate([[True], ordered[1:] != ordered[:-1]]).nonzero()[0]
-    many = np.diff(first, append=len(values))
+    sorted_values = values[order]
+    first = np.concatenate([[True], sorted_values[1:] != sorted_values[:-1]]).nonzero()[0]
+    counts = np.diff(first, append=len(values))
     ranks = np.empty(len(values))
-    ranks[order] = np.repeat(first + (many - 1) / 2, many)
+    ranks[order] = np.repeat(first + (counts - 1) / 2, counts)
     return np.asarray(ranks - ranks.mean())
 
 
 def _product(first: Array, second: Array) -> float:
-    """The inner product. BLAS would wake its threads for so many numbers, which then spin."""
+    """Return the inner product. BLAS would wake its threads for so many numbers, which then
+    spin."""
     return float(np.einsum("i,i", first, second))
 
 
 def _drive(sweep: Array, first: Array, second: Array) -> Drive:
+    """Return the effect of one input on one output, from its sweep and the ranks of both."""
     size = np.sqrt(_product(first, first) * _product(second, second))
     correlation = _product(first, second) / float(size) if size > 0 else float("nan")
     finite = sweep[np.isfinite(sweep)] if np.isfinite(sweep).any() else np.array([np.nan])
@@ -205,16 +213,17 @@ def _drive(sweep: Array, first: Array, second: Array) -> Drive:
 
 
 def _check(samples: int, sigmas: float, quantiles: Sequence[float], outputs: int) -> None:
+    """Raise UserError for numbers that cannot be used."""
     reason = ""
     if samples < 2:
         reason = f"{samples} samples are too few; expected 2 or more"
     elif not 0 < sigmas < np.inf:
         reason = f"{sigmas:g} standard deviations span nothing; expected above 0"
-    elif wrong := [q for q in quantiles if not 0 <= q <= 1]:
-        reason = f"{wrong[0]:g} is not a quantile; expected 0 ... 1"
-    elif samples * outputs > MOST_DRAWS:
+    elif bad_quantiles := [q for q in quantiles if not 0 <= q <= 1]:
+        reason = f"{bad_quantiles[0]:g} is not a quantile; expected 0 ... 1"
+    elif samples * outputs > MAX_DRAWS:
         reason = (
-            f"{samples:,} samples of {outputs} outputs are more than {MOST_DRAWS:,} numbers; "
+            f"{samples:,} samples of {outputs} outputs are more than {MAX_DRAWS:,} numbers; "
             "expected fewer samples, or fewer outputs"
         )
     if reason:
@@ -222,8 +231,8 @@ def _check(samples: int, sigmas: float, quantiles: Sequence[float], outputs: int
 
 
 class _Box:
-    """The problem over the box of its inputs' limits, k inputs that vary and m outputs; ``share``:
-    MU is a share of the critical friction."""
+    """A problem over the box of its inputs' limits: k inputs that vary and m outputs. Points are n
+    x k, of the unit cube. ``share``: True if MU is a fraction of the critical friction."""
 
     def __init__(
         self,
@@ -254,23 +263,26 @@ class _Box:
         self.excluded = sum({WARNINGS[name] for name in exclude})
         self.share = "MU" in given and given["MU"].share
 
-    # points are n x k, of the unit cube
-
     def columns(self, point: Array) -> dict[str, Array]:
+        """Return the inputs that vary at points of the cube, n values each."""
         return columns_of(self.limits, point)
 
     def inputs_at(self, point: Array) -> dict[str, float]:
+        """Return the inputs that vary at one point."""
         return {name: float(column[0]) for name, column in self.columns(point[None]).items()}
 
-    def solved(self, columns: Mapping[str, Array], outputs: Sequence[str]) -> dict[str, Array]:
-        """The outputs at n sets of inputs, n each (a lone number where nothing varies)."""
+    def solve(self, columns: Mapping[str, Array], outputs: Sequence[str]) -> dict[str, Array]:
+        """Return the outputs for n sets of inputs, n each (one number where nothing varies)."""
         return self.model(self.scenes(columns), outputs, None)[0]
 
     def scenes(self, columns: Mapping[str, Array]) -> Mapping[str, Array | float]:
+        """Return all values of the scenes with these inputs, MU as a number."""
         values = resolve_contact_point({**self.known, **columns})
         return {**values, "MU": share_typed(values, values["MU"])} if self.share else values
 
     def extremes(self, rng: np.random.Generator) -> Extremes:
+        """Search for the extremes of the outputs, on both sides of the surface where line 400
+        changes MU's sign (gt = 0)."""
         count = len(self.inputs)
         friction = self.known.get("MU")
         # a share of the critical friction has the sign that ends the sliding, whatever gt is
@@ -282,23 +294,28 @@ class _Box:
             # kept where gt <= 0, changed where gt > 0
             if lowest <= 0 if sign > 0 else highest > 0:
                 pieces.append(self.piece(sign).extremes(count, rng, slip.at[:, 0]))
-        searched = merge(pieces)
-        return searched._replace(evaluations=searched.evaluations + slip.evaluations)
+        extremes = merge(pieces)
+        return extremes._replace(evaluations=extremes.evaluations + slip.evaluations)
 
     def piece(self, sign: float | None) -> Piece:
-        """The outputs with MU's sign kept (+1) or changed (-1) throughout, and where line 400 does
-        that. None: with the sign the scene gives it."""
+        """Return the outputs as a `Piece` with MU's sign kept (+1) or changed (-1) throughout,
+        limited to where line 400 does that. None: everywhere, with the sign that each scene
+        gives."""
         names = (*self.outputs, "STATUS") if self.excluded else self.outputs
 
         def values(points: Array) -> Array:
             columns = self.scenes(self.columns(points))
-            solved, denominators = self.model(columns, names, sign)
-            results = [solved[name] for name in self.outputs]
+            results, denominators = self.model(columns, names, sign)
+            output_columns = [results[name] for name in self.outputs]
             if self.excluded:
-                left_out = self.left_out(solved)
-                results = [np.where(left_out, np.nan, column) for column in results]
-            every = [np.broadcast_to(column, len(points)) for column in (*results, *denominators)]
-            return np.stack(every, axis=1)
+                is_excluded = self.is_excluded(results)
+                output_columns = [
+                    np.where(is_excluded, np.nan, column) for column in output_columns
+                ]
+            all_columns = [
+                np.broadcast_to(column, len(points)) for column in (*output_columns, *denominators)
+            ]
+            return np.stack(all_columns, axis=1)
 
         def margin(points: Array) -> Array:
             slip = self.slip(points)  # at gt = 0 the sign is kept
@@ -307,61 +324,70 @@ class _Box:
         return Piece(values, len(self.outputs), None if sign is None else margin)
 
     def slip(self, points: Array) -> Array:
+        """Return the sliding gt before the impact, whose sign line 400 tests."""
         values = quantities(self.scenes(self.columns(points)), ["gt"])["gt"]
         return np.broadcast_to(values, len(points))
 
-    def left_out(self, solved: Mapping[str, Array]) -> NDArray[np.bool_]:
+    def is_excluded(self, solved: Mapping[str, Array]) -> NDArray[np.bool_]:
+        """Return True for each scene that has an excluded warning."""
         return np.asarray(np.asarray(solved["STATUS"], np.int64) & self.excluded, bool)
 
     def warnings_at(self, point: Array) -> tuple[str, ...]:
-        bits = int(np.ravel(self.solved(self.columns(point[None]), ["STATUS"])["STATUS"])[0])
+        """Return the names of the warnings of one point."""
+        bits = int(np.ravel(self.solve(self.columns(point[None]), ["STATUS"])["STATUS"])[0])
         return tuple(name for name, bit in WARNINGS.items() if bits & bit)
 
     def nominal(self) -> dict[str, float]:
+        """Return the outputs at the nominal inputs."""
         columns = {name: np.array([item.nominal]) for name, item in self.inputs.items()}
-        solved = self.solved(columns, self.outputs)
-        result = {name: float(np.ravel(solved[name])[0]) for name in self.outputs}
+        results = self.solve(columns, self.outputs)
+        result = {name: float(np.ravel(results[name])[0]) for name in self.outputs}
         for name, value in result.items():
             if not np.isfinite(value):
                 raise UserError(f"{name} has no finite value at the nominal inputs")
         return result
 
     def sweeps(self) -> dict[str, dict[str, Array]]:
-        """input -> output -> its values as that input alone runs from its lower limit to its
-        upper, `SWEEP_POINTS` of them."""
-        rest = {name: np.full(SWEEP_POINTS, item.nominal) for name, item in self.inputs.items()}
+        """Return by input, then output: `SWEEP_POINTS` values of the output as that input alone
+        runs from its lower limit to its upper."""
+        nominal_columns = {
+            name: np.full(SWEEP_POINTS, item.nominal) for name, item in self.inputs.items()
+        }
         result = {}
         for name, ends in self.limits.items():
-            solved = self.solved({**rest, name: np.linspace(*ends, SWEEP_POINTS)}, self.outputs)
-            result[name] = {n: np.broadcast_to(solved[n], SWEEP_POINTS) for n in self.outputs}
+            results = self.solve(
+                {**nominal_columns, name: np.linspace(*ends, SWEEP_POINTS)}, self.outputs
+            )
+            result[name] = {n: np.broadcast_to(results[n], SWEEP_POINTS) for n in self.outputs}
         return result
 
 
-def _check_values(given: Mapping[str, Uncertain], problem: str) -> None:
-    names = complete(given, problem)
-    check_names(given, (*names, *MOVES), f"value of the {problem} problem")
-    if given["M"].varies or given["M"].nominal not in (4, 6):
+def _check_values(values: Mapping[str, Uncertain], problem: str) -> None:
+    """Raise UserError for missing or unknown values and ranges that a problem cannot have."""
+    names = complete(values, problem)
+    check_names(values, (*names, *MOVES), f"value of the {problem} problem")
+    if values["M"].varies or values["M"].nominal not in (4, 6):
         raise UserError("expected 6, or 4 for point masses", "M")
     name = "MU" if problem == "forward" else "MUP"
-    friction = given[name]
+    friction = values[name]
     if friction.varies and friction.low <= -10 <= friction.high and friction.kind != "normal":
         raise UserError("a range must keep off -10, the pivot's sign", name)
     if problem != "forward":
-        _check_invertible(given)
+        _check_invertible(values)
 
 
-def _check_invertible(given: Mapping[str, Uncertain]) -> None:
-    """Raises UserError where no reconstruction exists: pivot, e = 0, e_m = 0."""
-    if given["MUP"].nominal == PIVOT:
+def _check_invertible(values: Mapping[str, Uncertain]) -> None:
+    """Raise UserError where no reconstruction exists: pivot, e = 0, e_m = 0."""
+    if values["MUP"].nominal == PIVOT:
         raise UserError(
             "the pivot has five equations for the six initial velocities; expected the signed "
             "P_t/P_n",
             "MUP",
         )
     for name in ("E", "EM"):
-        if name == "EM" and given["M"].nominal == 4:
+        if name == "EM" and values["M"].nominal == 4:
             continue
-        if given[name].low <= 0 <= given[name].high and given[name].kind != "normal":
+        if values[name].low <= 0 <= values[name].high and values[name].kind != "normal":
             raise UserError(
                 f"there is no reconstruction at {name} = 0, and near it the bounds are endless; "
                 "expected a range that keeps off 0",
@@ -370,25 +396,27 @@ def _check_invertible(given: Mapping[str, Uncertain]) -> None:
 
 
 def _outputs(problem: str, point_masses: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """The outputs taken where none are asked for, and those that can be."""
-    usual: tuple[str, ...] = FORWARD_OUTPUTS if problem == "forward" else RECONSTRUCTION_OUTPUTS
+    """Return the default outputs of a problem, and all that can be asked for."""
+    defaults: tuple[str, ...] = FORWARD_OUTPUTS if problem == "forward" else RECONSTRUCTION_OUTPUTS
     if point_masses:
-        usual = tuple(name for name in usual if name not in ("WA", "WB", "WAF", "WBF"))
+        defaults = tuple(name for name in defaults if name not in ("WA", "WB", "WAF", "WBF"))
     results = tuple(name for name in RESULTS if name != "STATUS")
-    return usual, results if problem == "forward" else RECONSTRUCTED
+    return defaults, results if problem == "forward" else RECONSTRUCTED
 
 
 def _monte_carlo(
     box: _Box,
     rng: np.random.Generator,
     samples: int,
-    correlated: tuple[list[str], Array],
+    correlation: tuple[list[str], Array],
     progress: Callable[[int], object] | None,
 ) -> tuple[dict[str, Array], dict[str, Array], NDArray[np.int64]]:
-    """The outputs of each draw, the inputs of the first `RANKED`, and the STATUS of each draw."""
-    names, root = correlated
+    """Return the outputs of each draw, the inputs of the first `RANKED_DRAWS`, and the STATUS of
+    each draw. ``correlation``: names of correlated inputs and the root of their correlation
+    matrix."""
+    names, root = correlation
     draws = {name: np.empty(samples) for name in box.outputs}
-    ranked = {name: np.empty(min(samples, RANKED)) for name in box.inputs}
+    ranked_inputs = {name: np.empty(min(samples, RANKED_DRAWS)) for name in box.inputs}
     flags = np.zeros(samples, np.int64)
     for first in range(0, samples, CHUNK):
         chunk = slice(first, min(first + CHUNK, samples))
@@ -402,15 +430,15 @@ def _monte_carlo(
             )
             for place, name in enumerate(names):
                 columns[name] = box.inputs[name].from_normal(variates[:, place])
-        solved = box.solved(columns, (*box.outputs, "STATUS"))
-        left_out = box.left_out(solved) if box.excluded else False
+        results = box.solve(columns, (*box.outputs, "STATUS"))
+        is_excluded = box.is_excluded(results) if box.excluded else False
         for name in box.outputs:
-            draws[name][chunk] = np.where(left_out, np.nan, solved[name])
-        flags[chunk] = solved["STATUS"]
-        if first < RANKED:
-            for name, column in ranked.items():
+            draws[name][chunk] = np.where(is_excluded, np.nan, results[name])
+        flags[chunk] = results["STATUS"]
+        if first < RANKED_DRAWS:
+            for name, column in ranked_inputs.items():
                 part = column[chunk]
                 part[:] = columns[name][: len(part)]
         if progress is not None:
             progress(count)
-    return draws, ranked, flags
+    return draws, ranked_inputs, flags

@@ -1,4 +1,4 @@
-"""What `bounds` found: the numbers, a table to read, and JSON to process."""
+"""The answer of `bounds`: the numbers, a table to read, and JSON to process."""
 
 import math
 from collections.abc import Sequence
@@ -19,19 +19,19 @@ from ..names import quantity
 Array = NDArray[np.float64]
 
 
-def quantiles_of(values: Array, shares: Sequence[float]) -> list[float]:
+def quantiles_of(values: Array, fractions: Sequence[float]) -> list[float]:
     """Return quantiles as `numpy.quantile` interpolates them, to the bit.
 
     That function asks `numpy.unique`, which imports `numpy.ma`: 30 ms at its first call.
     """
-    ordered = np.sort(values)
-    if np.isnan(ordered[-1:]).any():  # sorted last
-        return [math.nan] * len(shares)
+    sorted_values = np.sort(values)
+    if np.isnan(sorted_values[-1:]).any():  # sorted last
+        return [math.nan] * len(fractions)
     quantiles = []
-    for share in shares:
-        place = (len(ordered) - 1) * share
+    for fraction in fractions:
+        place = (len(sorted_values) - 1) * fraction
         below = math.floor(place)
-        low, high = ordered[below], ordered[min(below + 1, len(ordered) - 1)]
+        low, high = sorted_values[below], sorted_values[min(below + 1, len(sorted_values) - 1)]
         part, step = place - below, high - low
         quantiles.append(float(high - step * (1 - part) if part >= 0.5 else low + step * part))
     return quantiles
@@ -71,9 +71,9 @@ class Spread:
         """
         if not len(values):
             return cls(math.nan, math.nan, dict.fromkeys(quantiles, math.nan))
-        found = quantiles_of(values, quantiles)
+        numbers = quantiles_of(values, quantiles)
         deviation = float(values.std(ddof=1)) if len(values) > 1 else 0.0
-        return cls(float(values.mean()), deviation, dict(zip(quantiles, found, strict=True)))
+        return cls(float(values.mean()), deviation, dict(zip(quantiles, numbers, strict=True)))
 
 
 @dataclass(frozen=True)
@@ -204,16 +204,16 @@ class Bounds:
         return f"<Bounds of {results} over {varying}; {self.samples:,} draws>"
 
     def _repr_html_(self) -> str:
-        """What the command prints, as a notebook shows it."""
+        """Return the output of the command as HTML for a notebook."""
         return notebook.preformatted_html(table(self))
 
 
-def in_units(found: Bounds, system: System | str | None) -> Bounds:
-    """Return what was found in base units and the listing's axes as ``system`` (or its name) shows
-    it; as it is for None."""
+def in_units(bounds: Bounds, system: System | str | None) -> Bounds:
+    """Return ``bounds`` converted from base units and the listing's axes to ``system`` (or its
+    name); unchanged for None."""
     system = system_of(system) if system is None or isinstance(system, str) else system
     if system.is_bare and not system.convention:
-        return found
+        return bounds
 
     place = system.display_unwrapped
 
@@ -221,32 +221,32 @@ def in_units(found: Bounds, system: System | str | None) -> Bounds:
         return (high, low) if system.is_turned(name) else (low, high)
 
     def bound(name: str, value: Bound) -> Bound:
-        """Return a bound whose lower side is the lower one as shown."""
+        """Return a bound whose lower side is the lower one in the new system."""
         lower, upper = in_order(name, value.lower, value.upper)
         corner_lower, corner_upper = in_order(name, value.corner_lower, value.corner_upper)
         at_lower, at_upper = in_order(name, value.at_lower, value.at_upper)
         lower_warnings, upper_warnings = in_order(name, value.lower_warnings, value.upper_warnings)
         return Bound(
-            place(name, value.nominal),
-            place(name, lower),
-            place(name, upper),
-            display_values(at_lower, system),
-            display_values(at_upper, system),
-            place(name, corner_lower),
-            place(name, corner_upper),
-            lower_warnings,
-            upper_warnings,
+            nominal=place(name, value.nominal),
+            lower=place(name, lower),
+            upper=place(name, upper),
+            at_lower=display_values(at_lower, system),
+            at_upper=display_values(at_upper, system),
+            corner_lower=place(name, corner_lower),
+            corner_upper=place(name, corner_upper),
+            lower_warnings=lower_warnings,
+            upper_warnings=upper_warnings,
         )
 
     def spread(name: str, value: Spread) -> Spread:
         quantiles = value.quantiles
         if system.is_turned(name):  # shares are tabled in pairs about the half
             values = [*reversed(quantiles.values())]
-            shares = [round(1 - share, 12) for share in reversed(quantiles)]
-            quantiles = dict(zip(shares, values, strict=True))
-        shown = {share: place(name, quantile) for share, quantile in quantiles.items()}
+            fractions = [round(1 - fraction, 12) for fraction in reversed(quantiles)]
+            quantiles = dict(zip(fractions, values, strict=True))
+        converted = {fraction: place(name, quantile) for fraction, quantile in quantiles.items()}
         deviation = value.deviation * system.factor(name)
-        return Spread(place(name, value.mean), deviation, shown)
+        return Spread(place(name, value.mean), deviation, converted)
 
     def drive(output: str, name: str, value: Drive) -> Drive:
         low, high = in_order(name, value.at_low, value.at_high)
@@ -259,26 +259,26 @@ def in_units(found: Bounds, system: System | str | None) -> Bounds:
     def uncertain(name: str, item: Uncertain) -> Uncertain:
         low, high = in_order(name, item.low, item.high)
         deviation = item.deviation * system.factor(name)
-        shown = {"low": place(name, low), "high": place(name, high), "deviation": deviation}
-        return replace(item, nominal=place(name, item.nominal), **shown)
+        converted = {"low": place(name, low), "high": place(name, high), "deviation": deviation}
+        return replace(item, nominal=place(name, item.nominal), **converted)
 
     return replace(
-        found,
-        inputs={n: uncertain(n, item) for n, item in found.inputs.items()},
-        limits={n: system.ends(n, *pair) for n, pair in found.limits.items()},
-        bounds={n: bound(n, value) for n, value in found.bounds.items()},
-        spreads={n: spread(n, value) for n, value in found.spreads.items()},
+        bounds,
+        inputs={n: uncertain(n, item) for n, item in bounds.inputs.items()},
+        limits={n: system.ends(n, *pair) for n, pair in bounds.limits.items()},
+        bounds={n: bound(n, value) for n, value in bounds.bounds.items()},
+        spreads={n: spread(n, value) for n, value in bounds.spreads.items()},
         drives={
             output: {name: drive(output, name, value) for name, value in drives.items()}
-            for output, drives in found.drives.items()
+            for output, drives in bounds.drives.items()
         },
-        draws={n: place(n, values) for n, values in found.draws.items()},
+        draws={n: place(n, values) for n, values in bounds.draws.items()},
         units=system.name or None,
     )
 
 
 def as_json(bounds: Bounds) -> dict[str, Any]:
-    """Everything found, as JSON takes it; a value that does not exist is null."""
+    """Return everything as a JSON object; a value that does not exist is null."""
     units = system_of(bounds.units)
 
     def output(name: str, bound: Bound) -> dict[str, Any]:
@@ -287,7 +287,7 @@ def as_json(bounds: Bounds) -> dict[str, Any]:
             "meaning": quantity(name).meaning,
             "unit": units.label(quantity(name).unit),
             **asdict(bound),
-            "unbounded": unbounded(bound),
+            "unbounded": unbounded_sides(bound),
             **asdict(spread),
             "quantiles": {f"{share:g}": value for share, value in spread.quantiles.items()},
             "drives": {source: asdict(drive) for source, drive in bounds.drives[name].items()},
@@ -316,8 +316,8 @@ def as_json(bounds: Bounds) -> dict[str, Any]:
     return record
 
 
-def unbounded(bound: Any) -> list[str]:
-    """The sides on which a bound (with ``lower`` and ``upper``) is none."""
+def unbounded_sides(bound: Any) -> list[str]:
+    """Return the sides on which a bound (with ``lower`` and ``upper``) is infinite."""
     return [side for side in ("lower", "upper") if math.isinf(getattr(bound, side))]
 
 
@@ -327,7 +327,7 @@ def _width(bound: Bound) -> float:
 
 
 def table(bounds: Bounds) -> str:
-    """What a reader wants to see, at most 100 characters wide."""
+    """Return the table of bounds, quantiles and drivers, at most 100 characters wide."""
     units = system_of(bounds.units)
     lines = [f"Inputs that vary ({bounds.problem} problem)", ""]
     lines.append(f"{'':6}{'from':>12}{'to':>12}{'nominal':>12}  {'kind':<12}{'unit':<16}symbol")
@@ -366,7 +366,7 @@ def table(bounds: Bounds) -> str:
     lines.append("")
     if any("*" in row for row in rows):
         lines.append("* beyond every corner tried: the result turns around, or jumps, inside")
-    if any(map(unbounded, bounds.bounds.values())):
+    if any(map(unbounded_sides, bounds.bounds.values())):
         lines.append("inf: unbounded; somewhere in the ranges the equations have no solution")
     lines += _warnings_at_bounds(bounds)
     corners = "all corners" if bounds.corners_in_full else "corners at random"

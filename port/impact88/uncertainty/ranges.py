@@ -2,9 +2,8 @@
 
 The file is a scene's (`program.scene`) whose values may be texts such as "0.7 .. 0.9"
 (`collision.uncertain`), with ``correlations = "UX,VX 0.5; MA,IA 0.9"`` and, for a reconstruction,
-the six final velocities and MUP, the signed P_t/P_n. Without those it takes them from the forward
-solution of the nominal values: how well would the initial velocities have been found again?
-"""
+the six final velocities and MUP, the signed P_t/P_n. Without those they are taken from the forward
+solution of the nominal values: how well would the initial velocities have been found again?"""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -19,15 +18,15 @@ from ..errors import UserError
 from ..names import FINAL_VELOCITIES, SCENE, VELOCITIES, check_names
 
 Pair = tuple[str, str]
-AFTER = (*FINAL_VELOCITIES, "MUP")
-"""What only a reconstruction starts from."""
+AFTER = (*FINAL_VELOCITIES, "MUP")  # inputs of a reconstruction alone
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """What `impact88.bounds` takes: ``values`` by name, ``correlations`` by pair of names;
-    ``derived``: names whose values are the forward solution's; ``case``: what they were read
-    from."""
+    """The inputs of `impact88.bounds`.
+
+    ``values`` by name, ``correlations`` by pair of names; ``derived``: names whose values are the
+    forward solution's; ``case``: what they were read from."""
 
     values: dict[str, Uncertain]
     correlations: dict[Pair, float]
@@ -36,15 +35,16 @@ class Inputs:
 
 
 def input_names(problem: str) -> tuple[str, ...]:
-    """The values a problem needs; CX and CY may move the contact point beside them."""
+    """Return the values a problem needs. CX and CY, which move the contact point, may be given in
+    addition."""
     before = (*VELOCITIES, "MU")
     common = (name for name in SCENE if name not in before)
     return (*common, *(before if problem == "forward" else AFTER))
 
 
 def complete(given: Collection[str], problem: str, source: str | None = None) -> tuple[str, ...]:
-    """The names a problem needs, the contact point's as they are ``given``. Raises UserError where
-    one is missing."""
+    """Return the names a problem needs, those of the contact point as they are ``given``. Raise
+    UserError where one is missing."""
     names = coordinate_names(input_names(problem), given)
     if missing := [name for name in names if name not in given]:
         hint = " (MUP: the friction coefficient as signed P_t/P_n)" if "MUP" in missing else ""
@@ -108,7 +108,7 @@ def _read(case: Case, names: Collection[str]) -> dict[str, Uncertain]:
 
 
 def _where(case: Case, name: str) -> str:
-    """Return what messages call a value: ``FILE, NAME``, ``--range NAME``."""
+    """Return the place of a value for messages: ``FILE, NAME``, ``--range NAME``."""
     place = case.place(name)
     return f"{place} {name}" if place.startswith("--") else f"{place}, {name}"
 
@@ -139,7 +139,7 @@ def _forward_solution(case: Case) -> dict[str, str]:
 
 
 def read_correlations(text: str, source: str) -> dict[Pair, float]:
-    """Pairs of names and their correlation from ``NAME,NAME R; NAME,NAME R``. Raises UserError."""
+    """Return correlations by pair of names from ``NAME,NAME R; NAME,NAME R``. Raise UserError."""
     result: dict[Pair, float] = {}
     for part in filter(None, map(str.strip, text.split(";"))):
         names, _, number = part.rpartition(" ")
