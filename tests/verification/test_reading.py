@@ -15,6 +15,7 @@ from impact88.collision.fields import ANGLES, FIELDS
 from impact88.errors import UserError
 from impact88.verification.reading import glyphs
 from impact88.verification.reading.numerals import candidates
+from impact88.verification.reading.plaintext import decoded
 from impact88.verification.reading.printout import read_printouts
 
 
@@ -189,6 +190,20 @@ def test_error_messages_end_a_printout() -> None:
 def test_encodings(encoding: str) -> None:
     (shown,) = printouts.from_bytes(SAMPLE.replace("\n", "\r").encode(encoding), "page")
     assert {name: reading.text for name, reading in shown.fields.items()} == texts(SAMPLE)
+
+
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+def test_two_bytes_a_character_are_seen_without_their_mark(encoding: str) -> None:
+    """Typographic signs, too, whose bytes hold no zero."""
+    page = SAMPLE.replace("-", "−")
+    assert decoded(page.encode(encoding), "page") == page
+
+
+def test_a_minus_may_belong_to_the_label_only_where_the_label_has_no_equals_sign() -> None:
+    for printed, sign_free in (("MA= 143.5", False), ("MA= -143.5", False), ("MA - 143.5", True)):
+        (shown,) = read_printouts(SAMPLE.replace("MA= 143.5", printed))
+        assert shown.fields["MA"].sign_free is sign_free
+        assert not shown.fields["PA"].sign_free
 
 
 def test_unreadable_files_are_refused() -> None:
