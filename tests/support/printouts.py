@@ -12,7 +12,7 @@ import captures
 
 from impact88.collision.fields import ANGLES, FIELDS
 from impact88.verification.judging.judgement import FieldCheck, Status
-from impact88.verification.reading.plaintext import decoded
+from impact88.verification.reading.plaintext import decode
 from impact88.verification.reading.printout import Printout, read_printouts
 from impact88.verification.reporting.examination import Verification
 
@@ -70,7 +70,7 @@ def doubtful(result: Verification) -> list[FieldCheck]:
 
 def from_bytes(data: bytes, where: str) -> list[Printout]:
     """The printouts in a file's bytes."""
-    return read_printouts(decoded(data, where), where)
+    return read_printouts(decode(data, where), where)
 
 
 class Place(NamedTuple):

@@ -29,7 +29,7 @@ import sys
 
 from .. import files
 from ..errors import UserError, note
-from ..verification.reading.plaintext import decoded
+from ..verification.reading.plaintext import decode
 from ..verification.reading.printout import LARGEST_FILE
 from ..verification.reporting.examination import Examined, Verdict, examine
 from ..verification.reporting.verification import lines
@@ -78,7 +78,7 @@ def main(args: options.Args) -> int:
         from ..program.emulated import ListingCopy
 
         copy = ListingCopy(args.listing)
-    readings = [decoded(files.read_bytes(path, LARGEST_FILE), path) for path in args.text_from]
+    readings = [decode(files.read_bytes(path, LARGEST_FILE), path) for path in args.text_from]
     status = 0
     files_examined = []
     for path in args.printouts:

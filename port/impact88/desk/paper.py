@@ -60,7 +60,7 @@ def _text(examined: Examined, data: bytes) -> str | None:
     """The text that places are counted in: of words with their places, those laid out; of a
     picture, what was read on its only page."""
     try:
-        return pasted.laid_out(pasted.decoded(data, examined.file), examined.file)
+        return pasted.lay_out(pasted.decode(data, examined.file), examined.file)
     except UserError:
         return examined.results[0].text if len(examined.results) == 1 else None
 

@@ -1,4 +1,4 @@
-"""Labels: whether each number is named on the paper as the program names it.
+"""Checks that each number is named on the paper as the program names it.
 
 A number stands where it stands by its place on the page; its label says so a second time, and the
 two must agree. A label that reads as another of the program's, or as a word that is not this one,
@@ -71,8 +71,10 @@ them."""
 
 
 def words_before(page: Page, slots: Mapping[str, tuple[int, int]]) -> dict[str, tuple[int, int]]:
-    """The word that an equals sign joins to each number: where its letters stand, as glyphs; for
-    numbers that have such a sign before them."""
+    """Return the range of glyphs of the word that an equals sign joins to each number.
+
+    Numbers without such a sign before them are left out.
+    """
     glyphs = page.glyphs
     words = {}
     for name, (start, stop) in slots.items():
@@ -88,16 +90,26 @@ def words_before(page: Page, slots: Mapping[str, tuple[int, int]]) -> dict[str, 
 def label_checks(
     page: Page, found: Found, slots: Mapping[str, tuple[int, int]], marks: int
 ) -> list[LabelCheck]:
-    """The labels of one printout, in the order of the page.
+    """Return the labels of one printout, in the order of the page.
 
-    ``slots``: the glyphs of every number, by field; ``marks``: how many an optical reader left in
-    the numbers."""
+    Parameters
+    ----------
+    page : Page
+    found : sequence of (str, str, list of int)
+        For each label its field, its letters, and the glyphs that were aligned with them.
+    slots : mapping of str to (int, int)
+        Range of glyphs of every number, by field.
+    marks : int
+        Number of signs of an optical reader in the numbers.
+    """
     checks = []
-    for name, printed, start, stop, read in _seen(page, found, slots):
-        others = {text for label, text, _ in found if _kind(label) == _kind(name)} - {printed}
-        state, doubt = _state(_kind(name), printed, read, others)
+    for name, letters_printed, start, stop, read in _labels_read(page, found, slots):
+        other_labels = {text for label, text, _ in found if _kind(label) == _kind(name)} - {
+            letters_printed
+        }
+        state, doubt = _state(_kind(name), letters_printed, read, other_labels)
         checks.append(
-            LabelCheck(name, printed, read, state, doubt, *page.place(start), start, stop)
+            LabelCheck(name, letters_printed, read, state, doubt, *page.place(start), start, stop)
         )
     marks += sum(check.state is LabelState.DAMAGED for check in checks)
     pairs = {(check.printed, check.read) for check in checks}
@@ -108,15 +120,18 @@ def label_checks(
 
 
 def _kind(name: str) -> str:
-    """What a label may be taken for: prompts, angles, and all others."""
+    """Return the kind of a label: it may be mistaken for others of its kind only."""
     return "prompt" if name not in FIELDS else "angle" if name in ANGLES else "number"
 
 
-def _seen(
+def _labels_read(
     page: Page, found: Found, slots: Mapping[str, tuple[int, int]]
 ) -> Iterator[tuple[str, str, int, int, str]]:
-    """What stands in the place of each label whose number was read, or of which letters were: the
-    field, what is printed, the offsets, what is read."""
+    """Yield the labels of numbers that were read, and those of which letters were read.
+
+    Each is the field, the letters that the program prints, start and stop in the text, and the
+    letters that were read.
+    """
 
     def read(at: Iterable[int]) -> str:
         return letters(page.glyphs[index] for index in at)
@@ -124,26 +139,26 @@ def _seen(
     words = words_before(page, slots)
     of_angles = [label for label in found if label[0] in ANGLES]
     heading, row = of_angles[: len(ANGLES)], of_angles[len(ANGLES) :]
-    headed = [index for _, _, at in heading for index in at]
-    if headed:
-        yield from _heading(page, min(headed), max(headed))
+    heading_at = [index for _, _, at in heading for index in at]
+    if heading_at:
+        yield from _heading(page, min(heading_at), max(heading_at))
     for label in found:
-        name, printed, at = label
-        retyped = bool(headed) or any(at for _, _, at in row)
-        if (label in heading and (retyped or name not in slots)) or (label in row and not at):
+        name, letters_printed, at = label
+        is_retyped = bool(heading_at) or any(at for _, _, at in row)
+        if (label in heading and (is_retyped or name not in slots)) or (label in row and not at):
             continue
         word = range(*words.get(name, (0, 0)))
         if word and read(at[-len(word) :]) != read(word):
             at = word
         if at:
-            yield name, printed, *page.span(at[0], at[-1] + 1), read(at)
+            yield name, letters_printed, *page.span(at[0], at[-1] + 1), read(at)
         elif name in slots:
             begin = page.span(*slots[name])[0]
-            yield name, printed, begin, begin, ""
+            yield name, letters_printed, begin, begin, ""
 
 
 def _heading(page: Page, first: int, last: int) -> Iterator[tuple[str, str, int, int, str]]:
-    """The five of the heading: the words around what was taken for it, or its letters in pairs."""
+    """Yield the five labels of the heading, by its words or, if these are not five, in pairs."""
     glyphs, end = page.glyphs, last + 1
     while first and glyphs[first].gap is not Gap.LINE and glyphs[first - 1].char.isalpha():
         first -= 1
@@ -162,26 +177,30 @@ def _heading(page: Page, first: int, last: int) -> Iterator[tuple[str, str, int,
 
 
 def _state(kind: str, printed: str, read: str, others: set[str]) -> tuple[LabelState, bool]:
-    """How a label stands by itself, whoever read it, and whether it leaves a doubt: that is where
-    the letters which were read as they are printed are those of another, too."""
+    """Return the state of a label, and True if it leaves a doubt which number is meant.
+
+    There is a doubt where the letters that were read as printed fit another label, too.
+    """
     if read == printed:
         return LabelState.EXACT, False
-    own = _distance(printed, read)
-    other = min(_distance(text, read) for text in others)
-    kept = {(at, char) for at, char in enumerate(read) if printed[at : at + 1] == char}
-    alike = (kept.issubset(enumerate(text)) for text in others if len(text) == len(printed))
-    doubt = len(read) != len(printed) or not kept or any(alike)
+    cost = _distance(printed, read)
+    cost_of_other = min(_distance(text, read) for text in others)
+    matches = {(at, char) for at, char in enumerate(read) if printed[at : at + 1] == char}
+    alike = (matches.issubset(enumerate(text)) for text in others if len(text) == len(printed))
+    doubt = len(read) != len(printed) or not matches or any(alike)
     if not any(map(str.isalnum, read)):
         return LabelState.MISSING, doubt
     if kind == "prompt":
-        contradicts = other < own - COSTS["unseen"]
+        contradicts = cost_of_other < cost - COSTS["unseen"]
         return LabelState.CONTRADICTORY if contradicts else LabelState.DAMAGED, False
-    left = iter(printed)
-    lost = read not in others and all(letter in left for letter in read)  # itself, with gaps
-    if len(read + printed) > len("EL") and not lost:
-        word = read.isascii() and read.isalpha()
-        strange = word and (own >= _REACH * len(printed) or _names_otherwise(printed, read))
-        if other < own - _CLEARER or strange:
+    remaining = iter(printed)
+    is_gapped = read not in others and all(
+        letter in remaining for letter in read
+    )  # itself, with gaps
+    if len(read + printed) > len("EL") and not is_gapped:
+        is_word = read.isascii() and read.isalpha()
+        is_strange = is_word and (cost >= _REACH * len(printed) or _has_other_word(printed, read))
+        if cost_of_other < cost - _CLEARER or is_strange:
             return LabelState.CONTRADICTORY, doubt
     return LabelState.DAMAGED, doubt
 
@@ -190,25 +209,29 @@ _WORDS = {"INITIALKE": 7, "KELOSS": 2}
 """Labels of two words: the letters of the first."""
 
 
-def _names_otherwise(printed: str, read: str) -> bool:
-    """Whether one word of a label of two is read as a word that is not this one."""
+def _has_other_word(printed: str, read: str) -> bool:
+    """Return True for a label of two words, one of which is read as a different word."""
     if printed not in _WORDS:
         return False
     words = printed[: _WORDS[printed]], printed[_WORDS[printed] :]
     splits = ((read[:at], read[at:]) for at in range(len(read) + 1))
     parts = min(splits, key=lambda parts: sum(map(_distance, words, parts)))
     for word, part in zip(words, parts, strict=True):
-        left = iter(word)
-        lost = all(letter in left for letter in part)
-        kept = sum(letter == char for letter, char in zip(word, part, strict=False))
-        if not lost and 2 * kept < len(word) and _distance(word, part) >= _REACH * len(word):
+        remaining = iter(word)
+        is_gapped = all(letter in remaining for letter in part)
+        matches = sum(letter == char for letter, char in zip(word, part, strict=False))
+        if (
+            not is_gapped
+            and 2 * matches < len(word)
+            and _distance(word, part) >= _REACH * len(word)
+        ):
             return True
     return False
 
 
 @lru_cache(maxsize=4096)
 def _distance(printed: str, read: str) -> int:
-    """What it costs that a label was read so, letter by letter."""
+    """Return the cost of reading a label so: an edit distance with `label_cost`."""
     lost = COSTS["letter lost"]
     row = [lost * count for count in range(len(read) + 1)]
     for letter in printed:

@@ -1,4 +1,4 @@
-"""Glyphs: what typists and optical readers put where the printer struck a digit or a sign.
+"""Glyphs: the characters of a text, and those that typists and optical readers put for others.
 
 A page is a row of glyphs, blanks and control characters left out, each with the kind of gap before
 it and the place where it stood. Capitals and small letters, the many minus signs and the full-width
@@ -33,7 +33,7 @@ NUMERIC = frozenset("0123456789.-+E")
 
 
 class Gap(IntEnum):
-    """What stands before a glyph; the break of a full line parts nothing."""
+    """Kinds of gaps before a glyph; the break of a full line is none."""
 
     NONE = 0
     BLANK = 1
@@ -53,8 +53,19 @@ Region = tuple[Glyph, ...]
 
 
 class Page:
-    """A text as glyphs. ``text``: the original; ``glyphs``: its glyphs in order, ``lines``: those
-    of each line; ``width``: where lines were broken or cut off, 0 where they were not."""
+    """A text as glyphs.
+
+    Attributes
+    ----------
+    text : str
+        The original.
+    glyphs : tuple of Glyph
+        Its glyphs in order.
+    lines : list of range
+        Indices of the glyphs of each line.
+    width : int
+        Column at which lines were broken or cut off, 0 if they were not.
+    """
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -82,7 +93,7 @@ class Page:
                     last = offset + 1
 
     def _gap(self, last: int, offset: int) -> Gap:
-        """What lies between where a glyph ended and where the next begins."""
+        """Return the gap between the end of a glyph and the beginning of the next."""
         between = self.text[last:offset]
         if "\n" in between or not last:
             full = between == "\n" and self.place(last)[1] == self.width + 1
@@ -91,23 +102,22 @@ class Page:
         return Gap.WIDE if blanks > 1 or "\t" in between else Gap.BLANK if blanks else Gap.NONE
 
     def place(self, offset: int) -> tuple[int, int]:
-        """Line and column, counted from 1, of an offset in the text."""
+        """Return line and column, counted from 1, of an offset in the text."""
         line = bisect_right(self._lines, offset)
         return line, offset - self._lines[line - 1] + 1
 
     def span(self, start: int, stop: int) -> tuple[int, int]:
-        """Offsets of the text from glyph ``start`` up to before glyph ``stop``, without the blanks
-        after it."""
+        """Return the offsets in the text of glyphs ``start`` to ``stop``, without blanks behind."""
         return self.glyphs[start].offset, self.glyphs[stop - 1].offset + 1
 
     def shown(self, start: int, stop: int) -> str:
-        """The text from glyph ``start`` up to before glyph ``stop``, blanks as one."""
+        """Return the text of glyphs ``start`` to ``stop``, with runs of blanks as one."""
         return " ".join(self.text[slice(*self.span(start, stop))].split())
 
 
 @lru_cache(maxsize=4096)
 def plain_glyphs(character: str) -> str:
-    """The glyphs of one character: none for what does not show, else capitals."""
+    """Return the glyphs of a character in capitals, "" for one that does not show."""
     if " " < character < "\x7f":
         return character.upper()
     plain = _GLYPHS.get(character)
@@ -121,7 +131,7 @@ def plain_glyphs(character: str) -> str:
 
 
 def letters(region: Iterable[Glyph]) -> str:
-    """The glyphs as one string."""
+    """Return the glyphs as one string."""
     return "".join(glyph.char for glyph in region)
 
 
@@ -133,64 +143,74 @@ for _line in packaged_text(__package__, "channel.txt").splitlines():
     elif _line and not _line.startswith("# "):
         _rows.append(_line.split())
 COSTS = {" ".join(name): int(cost) for *name, cost in _CHANNEL["costs"]}
-"""What departures from the page cost, in hundredths of one wrong letter."""
+"""Costs of differences from the page, in hundredths of one wrong letter."""
 GAP_COSTS = {name: [int(cost) for cost in costs] for name, *costs in _CHANNEL["gaps"]}
-"""What a glyph costs by the gap before it."""
-_TYPED = 8  # readings that a shape counts for; doubled, 4 of 47 texts are weighed otherwise
+"""Costs of a glyph by the gap before it."""
+_SHAPE_COUNT = 8  # readings that a shape counts for; doubled, 4 of 47 texts get other costs
 
 
-def _counted(kind: str) -> dict[str, tuple[int, dict[str, int]]]:
-    """By printed glyph: how often it was printed, and how often it was read as what."""
+def _channel_counts(kind: str) -> dict[str, tuple[int, dict[str, int]]]:
+    """Return for each printed glyph its count, and the counts of what it was read as."""
     counts = {}
-    for printed, total, *readings in _CHANNEL[f"{kind}s"]:
-        uncounted = [reading for reading in readings if not reading[1:].isdecimal()]
-        if uncounted:
+    for glyph, total, *readings in _CHANNEL[f"{kind}s"]:
+        without_count = [reading for reading in readings if not reading[1:].isdecimal()]
+        if without_count:
             raise ValueError(
-                f"channel.txt, [{kind}s], {printed}: {uncounted[0]} has no count; expected the "
+                f"channel.txt, [{kind}s], {glyph}: {without_count[0]} has no count; expected the "
                 "glyph that was read and how often, such as €3"
             )
-        counts[printed] = (int(total), {reading[0]: int(reading[1:]) for reading in readings})
-    for printed, *shapes in _CHANNEL[f"{kind} shapes"]:
-        if printed not in counts:
+        counts[glyph] = (int(total), {reading[0]: int(reading[1:]) for reading in readings})
+    for glyph, *shapes in _CHANNEL[f"{kind} shapes"]:
+        if glyph not in counts:
             raise ValueError(
-                f"channel.txt, [{kind} shapes]: {printed} is no row of [{kind}s]; expected a "
+                f"channel.txt, [{kind} shapes]: {glyph} is no row of [{kind}s]; expected a "
                 "glyph that the program prints, and then those that stand for it"
             )
-        seen = counts[printed][1]
-        seen.update({read: seen.get(read, 0) + _TYPED for read in "".join(shapes)})
+        readings_of = counts[glyph][1]
+        readings_of.update(
+            {read: readings_of.get(read, 0) + _SHAPE_COUNT for read in "".join(shapes)}
+        )
     return counts
 
 
-_OF_NUMBERS, _OF_LABELS = _counted("number"), _counted("label")
+_OF_NUMBERS = _channel_counts("number")
+_OF_LABELS = _channel_counts("label")
 
 
 @lru_cache(maxsize=8192)
 def label_cost(printed: str, read: str) -> int:
-    """The cost of reading a glyph of a label, an asterisk or a prompt as another."""
+    """Return the cost of reading a glyph of a label, an asterisk or a prompt as another.
+
+    It is -25 log10 of the fraction of readings, in hundredths of one wrong letter.
+    """
     if printed == read:
         return 0
-    total, seen = _OF_LABELS.get(printed, (1, {}))
+    total, counts = _OF_LABELS.get(printed, (1, {}))
     cost = COSTS["unseen"]
-    if read in seen:
-        cost = round(-25 * log10(seen[read] / total))
+    if read in counts:
+        cost = round(-25 * log10(counts[read] / total))
     if printed == "=" and read in "-~_":  # rather the number's
         return COSTS["dash for ="]
     if printed == "*" and not read.isdigit():
         return min(cost, COSTS["any for *"])
-    if not read.isdigit() or (read in seen and printed != "="):
+    if not read.isdigit() or (read in counts and printed != "="):
         return cost
     return cost + COSTS["figure for =" if printed == "=" else "figure unseen"]
 
 
 @lru_cache(maxsize=1024)
 def printed_for(read: str) -> dict[str, float]:
-    """What a glyph that stands in no number was read for, with what each costs, likeliest first."""
-    every = _OF_NUMBERS.items()
-    shares = {printed: seen[read] / total for printed, (total, seen) in every if read in seen}
-    best = max(shares.values(), default=0.0)
-    likely = sorted(shares.items(), key=lambda item: -item[1])
+    """Return the printed glyphs that a foreign glyph may stand for, with their costs.
+
+    The likeliest comes first; those less than a fifth as frequent are left out. Costs are in units
+    of one wrong letter.
+    """
+    rows = _OF_NUMBERS.items()
+    fractions = {glyph: counts[read] / total for glyph, (total, counts) in rows if read in counts}
+    best = max(fractions.values(), default=0.0)
+    likely = sorted(fractions.items(), key=lambda item: -item[1])
     return {
-        printed: COSTS["look-alike"] / 100 + log10(best / share) / 4
-        for printed, share in likely
-        if share >= best / 5
+        glyph: COSTS["look-alike"] / 100 + log10(best / fraction) / 4
+        for glyph, fraction in likely
+        if fraction >= best / 5
     }

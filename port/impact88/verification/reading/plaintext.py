@@ -1,4 +1,4 @@
-"""What people type, paste and save: encodings, markup, and words with places, made plain text.
+"""Plain text from what people type, paste and save: encodings, markup, and words with places.
 
 Markup is blanked out, never shortened, so that every character keeps its line and column. Words
 with their places, as optical readers save them (hOCR, ALTO, TSV), are laid out: those whose middles
@@ -28,19 +28,23 @@ _NO_TEXT = {
 _MARKS = ("MA=", "MB=", "KE=", "VAX", "UX=", "ENTER", "LOSS", "PA PB", "ZERO DET", "MA ")
 
 
-def decoded(data: bytes, where: str) -> str:
-    """The text of a file, by the encoding that makes sense of it. Raises UserError for no text."""
+def decode(data: bytes, where: str) -> str:
+    """Return the text of a file in the encoding that makes sense of it.
+
+    Raises UserError for a file that is no text.
+    """
     for start, message in _NO_TEXT.items():
         if data.startswith(start):
             raise UserError(message, where)
-    text = _decoded(data)
+    text = _decode(data)
     odd = sum(char < " " and char not in "\t\n\r\f\a\b\0\x04\x1b" for char in text)
     if odd > 4 + len(text) / 50:
         raise UserError("is not UTF-8 text, nor any other this reads; expected plain text", where)
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
-def _decoded(data: bytes) -> str:
+def _decode(data: bytes) -> str:
+    """Return bytes as text, in the encoding that is marked or makes most sense."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return data.decode("utf-16", "replace")
     # UTF-16 whose byte-order mark was lost: every other byte of such a text is zero
@@ -58,7 +62,7 @@ def _decoded(data: bytes) -> str:
 
 
 def _sense(text: str) -> tuple[int, int]:
-    """How many marks of a printout are in a text, and dashes right before numbers."""
+    """Return the number of a printout's words in a text, and of dashes right before numbers."""
     dashes = len(re.findall(r"[–—−\u00ad-]\s?[.0-9]", text))
     return sum(mark in text.upper() for mark in _MARKS), dashes - 5 * text.count("�")
 
@@ -101,23 +105,25 @@ _HEADING = re.compile(
     r"""(?m)^[ \t]*["']?[A-Za-z]+["']?[ \t]*[,;\t][ \t]*["']?[A-Za-z]+["']?[ \t]*$"""
 )
 _GROUPED = re.compile(r"(?<![0-9.,])[0-9]{1,3}(?:[.][0-9]{3})+(?=,[0-9]|(?![0-9.,]))")
-_LINES = 6
-"""So many lines, and all of them, numbered upward: an editor or a listing did it; so many rows of
-names and numbers are a table."""
+_MIN_LINES = 6
+"""Lines from which numbers before all of them are an editor's, and rows of names and numbers a
+table."""
 
 
-def unwrapped(text: str) -> str:
-    """A text with markup blanked out: e-mail quotes, HTML, RTF, TeX, Markdown, line numbers, the
-    separators of tables. Of equal length."""
+def strip_markup(text: str) -> str:
+    """Return a text with markup blanked out, of equal length.
+
+    Markup is e-mail quotes, HTML, RTF, TeX, Markdown, line numbers and separators of tables.
+    """
     text = text.replace("\r\n", " \n").replace("\r", "\n")
     lines = [line for line in text.split("\n") if line.strip()]
-    if len(lines) >= _LINES and all(map(_NUMBERED.match, lines)):
+    if len(lines) >= _MIN_LINES and all(map(_NUMBERED.match, lines)):
         numbers = [int(number) for number in _NUMBERED.findall(text)]
         if all(before < after for before, after in pairwise(numbers)):
             text = _NUMBERED.sub(_blank, text)
     if text.lstrip().startswith("{\\rtf"):
         text = _RTF.sub(_blank, text)
-    if len(_DASHED_ITEM.findall(text)) >= _LINES:
+    if len(_DASHED_ITEM.findall(text)) >= _MIN_LINES:
         text = _DASHED_ITEM.sub(_blank, text)
     text = _ENTITY.sub(_entity, _MARKUP.sub(_blank, text))
     text = re.sub(r"\$(-|−)\$", r"  \1", text)
@@ -125,18 +131,23 @@ def unwrapped(text: str) -> str:
     if len(_ROW_OF_TABLE.findall(text)) >= 3:
         text = re.sub(r"(?m)^\s*\|[-:| \t]+\|\s*$", _blank, text)
         text = _ROW_OF_TABLE.sub(lambda row: row.group().replace("|", " "), text)
-    if len(_ROW.findall(text)) >= _LINES:
-        text = _ROW.sub(_row_parted, _HEADING.sub(_blank, text))
-    return _POWER.sub(_exponent, _groups_joined(text))
+    if len(_ROW.findall(text)) >= _MIN_LINES:
+        text = _ROW.sub(_split_row, _HEADING.sub(_blank, text))
+    return _POWER.sub(_exponent, _join_groups(text))
 
 
 def _median(values: Sequence[float]) -> float:
     """Return the median; that of `statistics` takes 5 ms to import."""
-    ordered, middle = sorted(values), len(values) // 2
-    return ordered[middle] if len(values) % 2 else (ordered[middle - 1] + ordered[middle]) / 2
+    sorted_values, middle = sorted(values), len(values) // 2
+    return (
+        sorted_values[middle]
+        if len(values) % 2
+        else (sorted_values[middle - 1] + sorted_values[middle]) / 2
+    )
 
 
 def _blank(match: re.Match[str]) -> str:
+    """Return blanks for all of a match but its line ends."""
     return re.sub(r"[^\n]", " ", match.group())
 
 
@@ -147,24 +158,31 @@ def _entity(match: re.Match[str]) -> str:
     return character.rjust(len(match.group())) if len(character) == 1 else match.group()
 
 
-def _row_parted(row: re.Match[str]) -> str:
+def _split_row(row: re.Match[str]) -> str:
+    """Return a table's row with its quotes and separators blanked out."""
     name = row.group()[: row.start("number") - row.start()]
     return re.sub(r"""["';,\t]""", " ", name) + row["number"].ljust(len(row.group()) - len(name))
 
 
 def _exponent(match: re.Match[str]) -> str:
-    """An exponent of one digit: so the program never prints it, and the verdict tells."""
+    """Return a power of ten as an exponent of one digit.
+
+    The program never prints one, so that the verdict shows that the number was retyped.
+    """
     power = (match.group(1) or match.group(2)).translate(_SMALL)
     return f"E{power if power.startswith('-') else '+' + power}".ljust(len(match.group()))
 
 
-def _groups_joined(text: str) -> str:
-    """The points that part thousands where commas part decimals (``100.904,929``) as blanks. Only a
-    labelled number says so: replies at a prompt are parted by commas (``-86.903,0,0``)."""
-    grouped = len(_GROUPED.findall(text))
+def _join_groups(text: str) -> str:
+    """Return a text with points between thousands as blanks, if commas are its decimal points.
+
+    Only a labelled number (``100.904,929``) shows that: the numbers of a reply are separated by
+    commas (``-86.903,0,0``).
+    """
+    group_count = len(_GROUPED.findall(text))
     points = len(re.findall(r"[0-9][.][0-9]|(?<![0-9])[.][0-9]", text))
-    both = re.search(r"[=:]\s*-?[0-9]{1,3}(?:[.][0-9]{3})+,[0-9]", text)
-    if not both or grouped < points - grouped:
+    has_both = re.search(r"[=:]\s*-?[0-9]{1,3}(?:[.][0-9]{3})+,[0-9]", text)
+    if not has_both or group_count < points - group_count:
         return text
     return _GROUPED.sub(lambda number: number.group().replace(".", "\u2009"), text)
 
@@ -173,15 +191,15 @@ _FIRST_WORDS = re.compile(
     r"(?i)(?<![A-Za-z])(?:ENTER +THE|MA *=|DA *=|PA\s+PB\s+TA|UX *=|VX *=|E *=|INITIAL +KE|"
     r"VAX *=|VBX *=)"
 )
-"""What lines of a printout begin with, each of another line."""
-_SHARED = 4
-"""Kinds of lines that stand in both of two columns, at least."""
-_NARROW = 30
-"""Columns of text that the left one of two takes at least."""
-_GUTTER = 10
-"""Characters by which lines of the right column begin earlier or later than most."""
-_RAGGED = 4
-"""The same of lines without labels."""
+"""Beginnings of a printout's lines."""
+_MIN_COMMON = 4
+"""Smallest number of kinds of lines that stand in both of two columns."""
+_MIN_WIDTH = 30
+"""Smallest width of the left one of two columns, characters."""
+_MAX_OFFSET = 10
+"""Largest distance of a line of the right column from where most begin, characters."""
+_MAX_RAGGED = 4
+"""The same for lines without labels."""
 
 
 def columns(text: str) -> list[str]:
@@ -189,28 +207,28 @@ def columns(text: str) -> list[str]:
     column as it is. Each is the whole text with the other columns blanked out, so that every
     character keeps its line and column."""
     lines = text.split("\n")
-    left: list[re.Match[str]] = []
-    right: list[re.Match[str]] = []
+    left_words: list[re.Match[str]] = []
+    right_words: list[re.Match[str]] = []
     cuts: list[int | None] = []
     margin = min((len(line) - len(line.lstrip()) for line in lines if line.strip()), default=0)
     for line in lines:
         words = [*_FIRST_WORDS.finditer(line)]
         first = words[0].start() - margin if words else 0
-        beyond = words if first >= _NARROW else words[1:]
-        left += words[: len(words) - len(beyond)]
-        right += beyond[:1]
+        beyond = words if first >= _MIN_WIDTH else words[1:]
+        left_words += words[: len(words) - len(beyond)]
+        right_words += beyond[:1]
         cuts.append(beyond[0].start() if beyond else None)
-    gutter = round(_median([word.start() for word in right] or [0]))
-    level = sum(abs(word.start() - gutter) <= _GUTTER for word in right)
-    shared = {*map(_plain_word, left)} & {*map(_plain_word, right)}
-    if len(shared) < _SHARED or 4 * level < 3 * len(right):
+    gutter = round(_median([word.start() for word in right_words] or [0]))
+    level = sum(abs(word.start() - gutter) <= _MAX_OFFSET for word in right_words)
+    common_words = {*map(_plain_word, left_words)} & {*map(_plain_word, right_words)}
+    if len(common_words) < _MIN_COMMON or 4 * level < 3 * len(right_words):
         return [text]
-    own, others = [], []
+    left_lines, right_lines = [], []
     for line, cut in zip(lines, cuts, strict=True):
         at = _gutter_of(line, gutter) if cut is None else cut
-        own.append(line[:at].ljust(len(line)))
-        others.append(" " * len(line[:at]) + line[at:])
-    return ["\n".join(own), *columns("\n".join(others))]
+        left_lines.append(line[:at].ljust(len(line)))
+        right_lines.append(" " * len(line[:at]) + line[at:])
+    return ["\n".join(left_lines), *columns("\n".join(right_lines))]
 
 
 def _plain_word(match: re.Match[str]) -> str:
@@ -222,15 +240,15 @@ def _gutter_of(line: str, gutter: int) -> int:
     nearest to the gutter; the line's length where all of it is the left column's."""
     gaps = [gap.end() for gap in re.finditer(r"^\s*|\s{2,}|\t", line) if gap.end() < len(line)]
     nearest = min(gaps, key=lambda end: abs(end - gutter), default=len(line))
-    return nearest if abs(nearest - gutter) <= _RAGGED else len(line)
+    return nearest if abs(nearest - gutter) <= _MAX_RAGGED else len(line)
 
 
 _TAG = re.compile(r"""<([\w:]+)((?:"[^"]*"|'[^']*'|[^"'<>])*)>([^<]*)""")
 _ATTRIBUTE = re.compile(r"""\b([\w:]++)\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s"'>]+))""")
 _BOX = re.compile(r"\bbbox +(-?[0-9]+) +(-?[0-9]+) +(-?[0-9]+) +(-?[0-9]+)")
-_FARTHEST = 1e7  # pixels, or tenths of a millimetre
-_NARROWEST = 0.01  # width of a letter, in the same units
-_PRINTER = 80
+_MAX_PLACE = 1e7  # pixels, or tenths of a millimetre
+_MIN_LETTER = 0.01  # width of a letter, in the same units
+_MAX_GAP = 80
 """Columns of a printer's line: no gap is wider."""
 
 
@@ -244,9 +262,11 @@ class _Word(NamedTuple):
     height: float
 
 
-def laid_out(text: str, where: str) -> str:
-    """The text of an hOCR or ALTO document or of tesseract's TSV; any other text as it is. Raises
-    UserError for a document that is damaged or holds no words."""
+def lay_out(text: str, where: str) -> str:
+    """Return the text of an hOCR or ALTO document or of tesseract's TSV; other text as it is.
+
+    Raises UserError for a document that is damaged or holds no words.
+    """
     head = text[:4000].lower()
     table = head.startswith("level\tpage_num\t")
     if not table and not re.search("<alto|ocr_page|ocrx_word|ocr-system", head):
@@ -266,13 +286,13 @@ def laid_out(text: str, where: str) -> str:
 def _pixels(text: str) -> float:
     """Return a place as a number. Raises ValueError for one that no page has, nan and inf too."""
     value = float(text)
-    if not abs(value) < _FARTHEST:
+    if not abs(value) < _MAX_PLACE:
         raise ValueError(text)
     return value
 
 
 def _rows(text: str) -> Iterator[list[str]]:
-    """The words of TSV: page, text, left, top, width, height."""
+    """Yield the words of TSV: page, text, left, top, width, height."""
     import csv  # with its dialects heavier than a page needs
 
     for row in csv.DictReader(text.splitlines(), delimiter="\t", quoting=csv.QUOTE_NONE):
@@ -281,22 +301,22 @@ def _rows(text: str) -> Iterator[list[str]]:
 
 
 def _elements(text: str) -> Iterator[list[str]]:
-    """The words of hOCR and ALTO, in the same way."""
+    """Yield the words of hOCR and ALTO: page, text, left, top, width, height."""
     from html import unescape
 
     page, box = 0, None
     for name, attributes, after in _TAG.findall(text):
-        given = {
+        values = {
             key.lower(): unescape("".join(value)) for key, *value in _ATTRIBUTE.findall(attributes)
         }
-        kind, element = given.get("class", ""), name.lower().rpartition(":")[2]
+        kind, element = values.get("class", ""), name.lower().rpartition(":")[2]
         if kind == "ocr_page" or element == "page":
             page += 1
         elif kind in ("ocrx_word", "ocr_word"):
-            box = _BOX.search(given.get("title", ""))
-        elif element == "string" and "content" in given:
-            place = [given.get(key, "0") for key in ("hpos", "vpos", "width", "height")]
-            yield [str(page), given["content"], *place]
+            box = _BOX.search(values.get("title", ""))
+        elif element == "string" and "content" in values:
+            place = [values.get(key, "0") for key in ("hpos", "vpos", "width", "height")]
+            yield [str(page), values["content"], *place]
         if box and after.strip():
             left, top, right, bottom = map(int, box.groups())
             place = [*map(str, (left, top, right - left, bottom - top))]
@@ -305,7 +325,7 @@ def _elements(text: str) -> Iterator[list[str]]:
 
 
 def _lines_of(words: Sequence[_Word]) -> str:
-    """A page's words in lines: those whose middles are less than half a height apart are level."""
+    """Return a page's words in lines: middles less than half a height apart are on one line."""
     lines: list[list[_Word]] = []
     middle = 0.0
     for word in sorted(words, key=lambda word: word.top + word.height / 2):
@@ -314,13 +334,13 @@ def _lines_of(words: Sequence[_Word]) -> str:
             lines.append([])
         lines[-1].append(word)
     letter = _median([word.width / len(word.text) for word in words])
-    letter = letter if letter > _NARROWEST else 1.0
+    letter = letter if letter > _MIN_LETTER else 1.0
     text = ""
     for line in lines:
         line.sort(key=lambda word: word.left)
         text += line[0].text
         for earlier, word in pairwise(line):
             gap = round((word.left - earlier.left - earlier.width) / letter)
-            text += " " * min(max(1, gap), _PRINTER) + word.text
+            text += " " * min(max(1, gap), _MAX_GAP) + word.text
         text += "\n"
     return text

@@ -585,16 +585,16 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     """
     if not isinstance(text, str):
         raise UserError(f"{quoted(text)}: expected a text; impact88.verify takes files and bytes")
-    text = pasted.laid_out(text, where)
-    unwrapped = pasted.unwrapped(text)
-    columns = [_read_column(part) for part in pasted.columns(unwrapped)]
+    text = pasted.lay_out(text, where)
+    stripped = pasted.strip_markup(text)
+    columns = [_read_column(part) for part in pasted.columns(stripped)]
     if not all(found for found, _ in columns):
-        columns = [_read_column(unwrapped)]
+        columns = [_read_column(stripped)]
     found = [printout for printouts, _ in columns for printout in printouts]
     if not found:
         expected = "expected text with labels such as MA= ... MB= ... VAX= ... VAY= ..."
         raise UserError(f"no printout of the program in it; {columns[0][1] or expected}", where)
-    found[0].notes += [*_left_out(text, unwrapped), *_markup(text, unwrapped)]
+    found[0].notes += [*_left_out(text, stripped), *_markup(text, stripped)]
     return found
 
 
@@ -603,21 +603,21 @@ def _read_column(text: str) -> tuple[list[Printout], str]:
     read where that is so."""
     page = Page(text)
     budget = Budget()
-    found = [*_printouts(page, budget)]
+    printouts = [*_printouts(page, budget)]
     reason = ""
     if budget.stopped is not None:
         line, column = page.place(page.glyphs[budget.stopped].offset)
         reason = f"what follows line {line}, column {column} was not read: there is too much of it"
-        found = [printout for printout in found if len(printout.fields) >= _PART]
-    if not found:
+        printouts = [printout for printout in printouts if len(printout.fields) >= _PART]
+    if not printouts:
         return [], reason
-    found[-1].unread = reason
-    _keep_left_over(page, found)
-    for printout in found:
+    printouts[-1].unread = reason
+    _keep_left_over(page, printouts)
+    for printout in printouts:
         printout.check_labels()
         printout.notes += _normalised(page.text[printout.start : printout.stop])
         printout.notes += printout.read_otherwise()
-    return found, reason
+    return printouts, reason
 
 
 _ALIKE = str.maketrans("0QL1|!582’`", "OOIIIISBZ''")
@@ -637,13 +637,15 @@ def _printouts(page: Page, budget: Budget) -> Iterator[Printout]:
     start = 0
     for message in [*_ENDING.finditer(text.translate(_ALIKE)), None]:
         stop = message.start() if message else len(text)
-        aligned = [*align(page.glyphs, start, stop, budget, commands)]
-        if notes := _notes(page, start, stop, aligned):
-            aligned = [*align(page.glyphs, start, stop, budget, notes | commands)]
-        found = [printout for states in aligned if (printout := Printout(page, states)).read()]
-        if message and found:
-            start = found[-1].end(message, text)
-        yield from found
+        states_of_each = [*align(page.glyphs, start, stop, budget, commands)]
+        if notes := _notes(page, start, stop, states_of_each):
+            states_of_each = [*align(page.glyphs, start, stop, budget, notes | commands)]
+        readable = [
+            printout for states in states_of_each if (printout := Printout(page, states)).read()
+        ]
+        if message and readable:
+            start = readable[-1].end(message, text)
+        yield from readable
         if budget.stopped is not None:
             return
 
@@ -653,10 +655,10 @@ def _notes(page: Page, start: int, stop: int, found: Sequence[Mapping[int, int]]
     half, five at least and four a number, are none of its labels'."""
     read = {at: state for states in found for at, state in states.items()}
     notes: set[int] = set()
-    for every in page.lines:
-        line = [at for at in every if start <= at < stop]
-        taken = (STATES[read.get(at, 0)] for at in line)
-        if any(state.kind == "number" and state.name in FIELDS for state in taken):
+    for line_range in page.lines:
+        line = [at for at in line_range if start <= at < stop]
+        states_on_line = (STATES[read.get(at, 0)] for at in line)
+        if any(state.kind == "number" and state.name in FIELDS for state in states_on_line):
             words = [at for at in line if page.glyphs[at].char.isalpha()]
             strange = sum(letter_of(read.get(at, 0)) != page.glyphs[at].char for at in words)
             text = "".join(" "[: page.glyphs[at].gap] + page.glyphs[at].char for at in line)
@@ -676,11 +678,11 @@ def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
     roles = {index: role for printout in found for index, role in printout.roles().items()}
     for line in page.lines:
         kinds = [roles.get(index) for index in line]
-        numbered = "number" in kinds
+        has_number = "number" in kinds
         alike = sum(label_cost("*", page.glyphs[index].char) < 40 for index in line)
         stars = len(line) <= len("*****") + 2 and 2 * alike > len(line)
-        whole = not (numbered or stars or 2 * kinds.count("exact") >= len(kinds))
-        loose = [at for at in line if whole or at not in roles]
+        is_whole = not (has_number or stars or 2 * kinds.count("exact") >= len(kinds))
+        loose = [at for at in line if is_whole or at not in roles]
         for _, pairs in groupby(enumerate(loose), lambda pair: pair[1] - pair[0]):
             run = [index for _, index in pairs]
             start, stop = run[0], run[-1] + 1
@@ -688,11 +690,13 @@ def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
                 text, span = page.shown(start, stop), page.span(start, stop)
                 number, column = page.place(span[0])
                 figure = not stars and any(map(str.isdigit, text))
-                words = re.split(r"[^A-Za-z]+", text) if whole else ()
-                named = {word.upper() if len(word) > 2 else word for word in words} & _LABEL_WORDS
-                beside = numbered or figure or bool(named)
+                words = re.split(r"[^A-Za-z]+", text) if is_whole else ()
+                label_words = {
+                    word.upper() if len(word) > 2 else word for word in words
+                } & _LABEL_WORDS
+                is_beside = has_number or figure or bool(label_words)
                 above = [printout for printout in found if printout.line <= number] or found[:1]
-                above[-1].left_over.append(Piece(text, number, column, *span, beside, whole))
+                above[-1].left_over.append(Piece(text, number, column, *span, is_beside, is_whole))
 
 
 def _normalised(text: str) -> list[str]:
@@ -713,28 +717,31 @@ _MARKUP_SHOWN = 6
 def _markup(text: str, unwrapped: str) -> list[str]:
     """Return a note on the markup that was passed over in lines that were read."""
     runs: Counter[str] = Counter()
-    for line, other in zip(text.split("\n"), unwrapped.split("\n"), strict=False):
-        if not other.strip() and any(map(str.isalpha, line)):
+    for line, stripped_line in zip(text.split("\n"), unwrapped.split("\n"), strict=False):
+        if not stripped_line.strip() and any(map(str.isalpha, line)):
             continue  # told whole
-        blanked = "".join(
-            char if after.isspace() else " " for char, after in zip(line, other, strict=False)
+        markup = "".join(
+            char if after.isspace() else " "
+            for char, after in zip(line, stripped_line, strict=False)
         )
-        runs.update(blanked.split())
+        runs.update(markup.split())
     kinds = [f"{count} {printable(run)}" for run, count in runs.most_common(_MARKUP_SHOWN)]
-    more = f" and {len(runs) - len(kinds)} more kinds" if len(runs) > len(kinds) else ""
-    return [f"markup passed over: {', '.join(kinds)}{more}"] if runs else []
+    and_more = f" and {len(runs) - len(kinds)} more kinds" if len(runs) > len(kinds) else ""
+    return [f"markup passed over: {', '.join(kinds)}{and_more}"] if runs else []
 
 
 def _left_out(text: str, unwrapped: str) -> list[str]:
     """That lines were left out as markup or as lines of a program."""
     lines = text.split("\n")
     pairs = zip(lines, unwrapped.split("\n"), strict=False)
-    gone = [any(map(str.isalpha, line)) and not other.strip() for line, other in pairs]
-    if not any(gone):
+    is_left_out = [
+        any(map(str.isalpha, line)) and not stripped_line.strip() for line, stripped_line in pairs
+    ]
+    if not any(is_left_out):
         return []
-    what = "1 line is" if sum(gone) == 1 else f"{sum(gone)} lines are"
-    first = printable(lines[gone.index(True)].strip())
+    count = "1 line is" if sum(is_left_out) == 1 else f"{sum(is_left_out)} lines are"
+    first = printable(lines[is_left_out.index(True)].strip())
     return [
-        f"{what} markup or lines of a BASIC program, and not read: the first is line "
-        f"{gone.index(True) + 1}: {first}"
+        f"{count} markup or lines of a BASIC program, and not read: the first is line "
+        f"{is_left_out.index(True) + 1}: {first}"
     ]

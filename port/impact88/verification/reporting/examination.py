@@ -21,7 +21,7 @@ from ...messages.arguments import explains_arguments
 from ..judging import beside
 from ..judging.judgement import Judged, Status, Verdict, judge, looked_past
 from ..judging.readings import judged_together, matching
-from ..reading.plaintext import decoded
+from ..reading.plaintext import decode
 from ..reading.printout import LARGEST_FILE, Printout, read_printouts
 from ..recovery.recovered import recover, without_angles
 from ..recovery.slips import Rereading
@@ -111,7 +111,7 @@ def _printed(
     where = files.display_name(path)
     if len(data) > LARGEST_FILE:
         raise UserError(f"is larger than {LARGEST_FILE:,} bytes of text", where)
-    text = decoded(data, where)
+    text = decode(data, where)
     if copy:
         from ..judging.copies import pages_of
 
