@@ -13,22 +13,23 @@ from typing import NamedTuple
 from ...collision.fields import ANGLES, FIELDS
 from .glyphs import COSTS, Gap, Page, label_cost, letters
 
-_REACH = 35
-"""From this cost a letter on, a label is none that a reader made of its own: one letter of two read
-so less than once in 600."""
-_CLEARER = 25
-"""How much less another label costs that is read there; U for V, the likeliest, costs 29."""
-READERS = 3
-"""So many other marks of an optical reader, and a label that contradicts is the reader's doing: of
-15,300 labels of given scans 373 read as other words, 7 of them on pages of fewer marks. No two of
-one page read as each other: those are exchanged, whoever read the page."""
+_DIFFERENT = 35
+"""Cost per letter from which a word is another label, not this one misread: that of two letters of
+which one is read so less than once in 600."""
+_MIN_ADVANTAGE = 25
+"""Cost by which another label must be cheaper to be the one read; U for V, the likeliest misreading,
+costs 29."""
+MIN_READER_MARKS = 3
+"""Other signs of an optical reader from which a contradictory label is attributed to it: of 15,300
+labels of given scans 373 read as other words, 7 of them on pages with fewer signs. No two labels of
+a page read as each other: such labels were exchanged, whoever read the page."""
 
 
 _NO_WORD = frozenset("0123456789=.(),:")
 
 
 class LabelState(StrEnum):
-    """How a label stands on the paper."""
+    """States of a label on the paper."""
 
     EXACT = "exact"
     DAMAGED = "damaged"
@@ -66,8 +67,8 @@ class LabelCheck(NamedTuple):
 
 
 Found = Sequence[tuple[str, str, Sequence[int]]]
-"""Of each label the field it names (of a prompt, its reply), its letters, the glyphs taken for
-them."""
+"""For each label the field that it names (a prompt: its reply), its letters, and the glyphs aligned
+with them."""
 
 
 def words_before(page: Page, slots: Mapping[str, tuple[int, int]]) -> dict[str, tuple[int, int]]:
@@ -113,7 +114,7 @@ def label_checks(
         )
     marks += sum(check.state is LabelState.DAMAGED for check in checks)
     pairs = {(check.printed, check.read) for check in checks}
-    for at, check in enumerate(checks if marks >= READERS else ()):
+    for at, check in enumerate(checks if marks >= MIN_READER_MARKS else ()):
         if check.state is LabelState.CONTRADICTORY and (check.read, check.printed) not in pairs:
             checks[at] = check._replace(state=LabelState.DAMAGED)
     return checks
@@ -199,8 +200,10 @@ def _state(kind: str, printed: str, read: str, others: set[str]) -> tuple[LabelS
     )  # itself, with gaps
     if len(read + printed) > len("EL") and not is_gapped:
         is_word = read.isascii() and read.isalpha()
-        is_strange = is_word and (cost >= _REACH * len(printed) or _has_other_word(printed, read))
-        if cost_of_other < cost - _CLEARER or is_strange:
+        is_strange = is_word and (
+            cost >= _DIFFERENT * len(printed) or _has_other_word(printed, read)
+        )
+        if cost_of_other < cost - _MIN_ADVANTAGE or is_strange:
             return LabelState.CONTRADICTORY, doubt
     return LabelState.DAMAGED, doubt
 
@@ -223,7 +226,7 @@ def _has_other_word(printed: str, read: str) -> bool:
         if (
             not is_gapped
             and 2 * matches < len(word)
-            and _distance(word, part) >= _REACH * len(word)
+            and _distance(word, part) >= _DIFFERENT * len(word)
         ):
             return True
     return False

@@ -199,13 +199,15 @@ _MIN_WIDTH = 30
 _MAX_OFFSET = 10
 """Largest distance of a line of the right column from where most begin, characters."""
 _MAX_RAGGED = 4
-"""The same for lines without labels."""
+"""Largest distance for lines without labels, characters."""
 
 
 def columns(text: str) -> list[str]:
-    """Return the texts of printouts that stand side by side, the left one first; a text in one
-    column as it is. Each is the whole text with the other columns blanked out, so that every
-    character keeps its line and column."""
+    """Return the texts of printouts that stand side by side, the left one first.
+
+    Each is the whole text with the other columns blanked out, so that every character keeps its
+    line and column. A text in one column is returned as it is.
+    """
     lines = text.split("\n")
     left_words: list[re.Match[str]] = []
     right_words: list[re.Match[str]] = []

@@ -1,4 +1,4 @@
-"""Reading a printout: text that was typed in or came from a scanner, into named fields.
+"""Printouts read from text, typed in or from an optical reader, into named fields.
 
 The text is aligned with the program's page (`alignment`), which says what every glyph belongs to.
 Here each printout's numbers get their names and places, the replies at the prompts are parted, the
@@ -30,26 +30,27 @@ from .alignment import (
     align,
     letter_of,
 )
-from .fieldlabels import READERS, LabelCheck, LabelState, label_checks, words_before
+from .fieldlabels import MIN_READER_MARKS, LabelCheck, LabelState, label_checks, words_before
 from .glyphs import ILLEGIBLE, Gap, Page, Region, label_cost, letters, plain_glyphs
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
 BADLY_READ = 17
-"""So many letters and numbers misread, asterisks included: of the given scans that differ 58 of 88
-readings of genuine pages have as many, and 2 of 84 of pages with an altered digit."""
+"""Misread letters, asterisks and numbers from which a page is badly read: of the given scans that
+differ 58 of 88 readings of genuine pages have as many, and 2 of 84 of pages with an altered
+digit."""
 MACHINE_READ = 3
-"""So many letters of labels misread, and a machine read the page: people do not type PE for PB."""
-_PART = 15
-"""A piece with fewer numbers is part of a page: its labels do not tell which numbers it holds."""
-_NOTE = 5
-"""So many letters that are none of a label's, four a number, make a line a note: ``BREAK IN 640``.
+"""Misread letters of labels from which a machine read the page: people do not type PE for PB."""
+_MIN_NUMBERS = 15
+"""Numbers of a page; labels of a smaller piece do not tell which numbers it holds."""
+_MIN_NOTE_LETTERS = 5
+"""Letters of no label, four a number, from which a line is a note: ``BREAK IN 640``.
 The program's labels have three letters a number at most but on the line of the energies."""
 _PROMPT_LETTERS = 25
-"""So many letters of a prompt, half of them, are a prompt."""
+"""Letters of a prompt, half of all, from which it counts as read."""
 _TYPED = frozenset("0123456789.,-+EOILQ?")
 _SLOT_COMMAND = re.compile(r"PR#[0-9]")
-"""What line 610 prints where no DOS takes it for a command."""
+"""Output of line 610 where no DOS takes it for a command."""
 
 
 @dataclass(frozen=True)
@@ -218,7 +219,7 @@ class Printout:
                 elif first <= start <= sign < stop - 1:
                     self._slots[name] = (sign + 1, stop)
         self._close_numbers()
-        self._part_row()
+        self._end_row()
         self._exact = {
             index: STATES[state].line
             for index, state in self._states.items()
@@ -228,8 +229,7 @@ class Printout:
         self.line, self.column = self.page.place(self.start)
 
     def _close_numbers(self) -> None:
-        """End a number at the mark that the program prints right behind it, ``)`` or ``%``; what
-        follows the mark is none of it."""
+        """End numbers at the mark that the program prints right behind them, ``)`` or ``%``."""
         glyphs = self.page.glyphs
         for place, state in enumerate(STATES[1:], 1):
             name = STATES[place - 1].name
@@ -246,8 +246,8 @@ class Printout:
                     self._states = {**self._states, **after, at: place}
                 break
 
-    def _part_row(self) -> None:
-        """A line of five clean numbers is the row of angles; what stands below it is none of it."""
+    def _end_row(self) -> None:
+        """End the row of angles at the end of its line, if five clean numbers stand on it."""
         glyphs = self.page.glyphs
         places = [index for name in ANGLES for index in self._slots.get(name, ())]
         starts = places[:1]
@@ -336,17 +336,17 @@ class Printout:
         bool
             True if there are enough numbers for a printout, or a prompt.
         """
-        self._crop()
+        self._drop_cropped()
         for name, (start, stop) in self._slots.items():
             if name in FIELDS:
-                signed = self._letter(start - 1) == "=" == self.page.glyphs[start - 1].char
-                sign_free = not signed and name not in ANGLES
+                has_sign = self._letter(start - 1) == "=" == self.page.glyphs[start - 1].char
+                sign_free = not has_sign and name not in ANGLES
                 reading = reading_of(self.page, self.page.glyphs[start:stop], sign_free)
                 if reading:
                     self.fields[name] = reading
                 else:
                     self._remark(name, start, ": expected a number", self.page.shown(start, stop))
-        if not self._worth_telling():
+        if not self._is_worth_reporting():
             return False
         self.has_final_spins = [*self._exact.values()].count(SPINS) >= 2
         for name in () if self.has_final_spins else FINAL_SPINS:  # a footer, a page number
@@ -386,8 +386,12 @@ class Printout:
     def check_labels(self) -> None:
         """Set ``labels`` and ``misread_letters``: the number that each label names."""
         read = {name: self._slots[name] for name in self.fields if name in self._slots}
-        marks = self.marks + self._misread("*") if len(self.fields) >= _PART else READERS
-        found = [
+        marks = (
+            self.marks + self._misread("*")
+            if len(self.fields) >= _MIN_NUMBERS
+            else MIN_READER_MARKS
+        )
+        label_glyphs = [
             (
                 name,
                 "".join(map(letter_of, own)),
@@ -395,7 +399,7 @@ class Printout:
             )
             for name, own in LABELS
         ]
-        self.labels = label_checks(self.page, found, read, marks)
+        self.labels = label_checks(self.page, label_glyphs, read, marks)
         wrong = {label.name for label in self.mislabelled}
         self.misread_letters = self._misread("*ABCDEFGHIJKLMNOPQRSTUVWXYZ", wrong)
 
@@ -407,24 +411,28 @@ class Printout:
         list of str
             One note with the letters by line, or none.
         """
-        told = {at for label in self.labels if label.doubt for at in range(label.start, label.stop)}
-        told |= {at for label in self.mislabelled for at in range(label.start, label.stop)}
+        reported = {
+            at for label in self.labels if label.doubt for at in range(label.start, label.stop)
+        }
+        reported |= {at for label in self.mislabelled for at in range(label.start, label.stop)}
         places: dict[int, list[str]] = {}
         for index, role in self.roles().items():
-            glyph, printed = self.page.glyphs[index], self._letter(index)
-            if role == "letter" and printed and glyph.offset not in told:
+            glyph, letter = self.page.glyphs[index], self._letter(index)
+            if role == "letter" and letter and glyph.offset not in reported:
                 line, _ = self.page.place(glyph.offset)
-                places.setdefault(line, []).append(f"{glyph.char} for {printed}")
-        said = [f"line {line}: {', '.join(marks)}" for line, marks in sorted(places.items())]
-        return [f"letters and marks read as others: {'; '.join(said)}"] if said else []
+                places.setdefault(line, []).append(f"{glyph.char} for {letter}")
+        by_line = [f"line {line}: {', '.join(marks)}" for line, marks in sorted(places.items())]
+        return [f"letters and marks read as others: {'; '.join(by_line)}"] if by_line else []
 
-    def _crop(self) -> None:
-        """Where most lines that begin with a label lack its first letter, three at least, the
-        margin is cut off, and what a line begins with is not to be relied on."""
-        seen = set(self._states.values())
+    def _drop_cropped(self) -> None:
+        """Drop numbers at the beginning of lines if the left margin is cut off.
+
+        It is where most lines that begin with a label lack its first letter, three lines at least.
+        """
+        states_read = set(self._states.values())
         first = [index for index in self._states if self.page.glyphs[index].gap is Gap.LINE]
         before = [self._states[at] - 1 for at in first if self._letter(at) not in ("", "*")]
-        lost = sum(bool(letter_of(state)) and state not in seen for state in before)
+        lost = sum(bool(letter_of(state)) and state not in states_read for state in before)
         if lost > max(2, len(before) / 2):
             for name, (start, _) in [*self._slots.items()]:
                 if start in first:
@@ -432,18 +440,20 @@ class Printout:
                     del self._slots[name]
 
     def _misread(self, letters_of: str, wrong: Collection[str] = ()) -> int:
-        """How many of some letters of labels, but of wrong ones, and asterisks were read as other
-        letters or figures."""
-        others = {state for name, own in LABELS if name in wrong for state in own}
+        """Return how many letters of labels were read as other letters or figures.
+
+        ``letters_of``: the letters and marks that count; ``wrong``: labels that are left out.
+        """
+        excluded = {state for name, own in LABELS if name in wrong for state in own}
         return sum(
             self.page.glyphs[index].char != letter and self.page.glyphs[index].char.isalnum()
             for index, state in self._states.items()
-            if state not in others and state != self._states.get(index - 1)
+            if state not in excluded and state != self._states.get(index - 1)
             and (letter := letter_of(state)) and letter in letters_of
         )  # fmt: skip
 
-    def _worth_telling(self) -> bool:
-        """Whether a label and its number, or a prompt, was read."""
+    def _is_worth_reporting(self) -> bool:
+        """Return True if a label and its number, or a prompt, was read."""
         if sum(line < PROMPTS for line in self._exact.values()) >= _PROMPT_LETTERS:
             return True
         numbers = {name for name, field in self.fields.items() if any(map(str.isdigit, field.text))}
@@ -455,12 +465,13 @@ class Printout:
         return count >= 1 and count + len(self._exact) >= 5
 
     def _remark(self, name: str, index: int, message: str, read: str | None = None) -> None:
-        """What could not be read at a glyph: what stands there, and what is wrong with it."""
+        """Add a remark on a glyph: its place, its field, what it reads, what is wrong."""
         line, column = self.page.place(self.page.glyphs[index].offset)
-        shown = "" if read is None else repr(read if len(read) <= 30 else read[:27] + "...")
-        self.remarks.append(f"line {line}, column {column}: {name}: {shown}{message}")
+        quoted_text = "" if read is None else repr(read if len(read) <= 30 else read[:27] + "...")
+        self.remarks.append(f"line {line}, column {column}: {name}: {quoted_text}{message}")
 
     def _read_angles(self) -> None:
+        """Set ``angles`` and ``angle_row`` if blanks alone do not separate the five angles."""
         glyphs = self.page.glyphs
         places = [self._slots[name] for name in ANGLES if name in self._slots]
         clean = all(name in self.fields and self.fields[name].clean for name in ANGLES)
@@ -474,11 +485,13 @@ class Printout:
             self._remark("PA", start, ": expected five angles, PA PB TA TB GA", row)
 
     def _read_reply(self, names: Sequence[str], start: int) -> None:
-        """The three numbers typed at a prompt, after any that INPUT refused."""
+        """Read the three numbers typed at a prompt, after any that INPUT refused."""
         stop, line, glyphs = start, self._line(start), self.page.glyphs
-        others = {begin for begin, _ in self._slots.values()} - {start}  # one may lack its label
+        other_starts = {begin for begin, _ in self._slots.values()} - {
+            start
+        }  # one may lack its label
         while (
-            stop not in others
+            stop not in other_starts
             and self._states.get(stop)
             and (not self._letter(stop) or self._line(stop) == line)
         ):
@@ -519,8 +532,8 @@ class Printout:
         roles = dict.fromkeys(self._exact, "exact")
         for index, state in self._states.items():
             letter, figure = letter_of(state), self.page.glyphs[index].char.isdigit()
-            again = state == self._states.get(index - 1) or (letter in "%()=" and figure)
-            if letter and again:
+            is_inserted = state == self._states.get(index - 1) or (letter in "%()=" and figure)
+            if letter and is_inserted:
                 roles.pop(index, None)
             elif letter:
                 roles.setdefault(index, "letter")
@@ -531,7 +544,7 @@ class Printout:
 
 
 def reading_of(page: Page, region: Region, sign_free: bool = False) -> Reading | None:
-    """A region of a page as a number, None when nothing of one is there."""
+    """Return a region of a page as a number, None if it holds nothing of one."""
     text = numerals.taken_for(region, sign_free)
     if text is None:
         return None
@@ -542,14 +555,16 @@ def reading_of(page: Page, region: Region, sign_free: bool = False) -> Reading |
 
 
 def _reply_parts(region: Region) -> list[Region]:
-    """The glyphs of a reply, parted at its commas, or where INPUT asked for more; after what it
-    refused, before what it ignored."""
-    asked = re.search(r"(?:.*REENTER)?\?*(.*?)(?:\?EXTRAIGNORED|PR#|$)", letters(region))
-    region = region[slice(*asked.span(1))] if asked else ()
+    """Return the glyphs of a reply, divided at its commas and where INPUT asked for more.
+
+    Numbers that INPUT refused before it, or ignored behind it, are left out.
+    """
+    match = re.search(r"(?:.*REENTER)?\?*(.*?)(?:\?EXTRAIGNORED|PR#|$)", letters(region))
+    region = region[slice(*match.span(1))] if match else ()
     parts: list[Region] = [()]
     for place, glyph in enumerate(region):
-        more = glyph.gap is Gap.LINE and letters(region[place : place + 2]) == "??"
-        if glyph.char in ",;" or more:
+        is_next = glyph.gap is Gap.LINE and letters(region[place : place + 2]) == "??"
+        if glyph.char in ",;" or is_next:
             parts.append(())
         elif not (glyph.char == "?" and place and region[place - 1].char == "?"):
             parts[-1] += (glyph,)
@@ -594,7 +609,7 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     if not found:
         expected = "expected text with labels such as MA= ... MB= ... VAX= ... VAY= ..."
         raise UserError(f"no printout of the program in it; {columns[0][1] or expected}", where)
-    found[0].notes += [*_left_out(text, stripped), *_markup(text, stripped)]
+    found[0].notes += [*_left_out_note(text, stripped), *_markup_note(text, stripped)]
     return found
 
 
@@ -608,14 +623,14 @@ def _read_column(text: str) -> tuple[list[Printout], str]:
     if budget.stopped is not None:
         line, column = page.place(page.glyphs[budget.stopped].offset)
         reason = f"what follows line {line}, column {column} was not read: there is too much of it"
-        printouts = [printout for printout in printouts if len(printout.fields) >= _PART]
+        printouts = [printout for printout in printouts if len(printout.fields) >= _MIN_NUMBERS]
     if not printouts:
         return [], reason
     printouts[-1].unread = reason
     _keep_left_over(page, printouts)
     for printout in printouts:
         printout.check_labels()
-        printout.notes += _normalised(page.text[printout.start : printout.stop])
+        printout.notes += _character_notes(page.text[printout.start : printout.stop])
         printout.notes += printout.read_otherwise()
     return printouts, reason
 
@@ -631,14 +646,14 @@ _IN_LINE = re.compile("[I1L|!]N([0-9OQIL|!]{1,5})")
 
 
 def _printouts(page: Page, budget: Budget) -> Iterator[Printout]:
-    """The printouts of each stretch of text up to where a run ended early."""
+    """Yield the printouts of a page; a message that ended a run ends its printout."""
     text = letters(page.glyphs)
     commands = {at for match in _SLOT_COMMAND.finditer(text) for at in range(*match.span())}
     start = 0
     for message in [*_ENDING.finditer(text.translate(_ALIKE)), None]:
         stop = message.start() if message else len(text)
         states_of_each = [*align(page.glyphs, start, stop, budget, commands)]
-        if notes := _notes(page, start, stop, states_of_each):
+        if notes := _note_glyphs(page, start, stop, states_of_each):
             states_of_each = [*align(page.glyphs, start, stop, budget, notes | commands)]
         readable = [
             printout for states in states_of_each if (printout := Printout(page, states)).read()
@@ -650,9 +665,11 @@ def _printouts(page: Page, budget: Budget) -> Iterator[Printout]:
             return
 
 
-def _notes(page: Page, start: int, stop: int, found: Sequence[Mapping[int, int]]) -> set[int]:
-    """The glyphs of lines whose numbers were taken for the page's, but of whose letters more than
-    half, five at least and four a number, are none of its labels'."""
+def _note_glyphs(page: Page, start: int, stop: int, found: Sequence[Mapping[int, int]]) -> set[int]:
+    """Return the glyphs of lines that are notes, though a number on them was taken for the page's.
+
+    More than half of a note's letters, `_MIN_NOTE_LETTERS` at least and four a number, belong to no label.
+    """
     read = {at: state for states in found for at, state in states.items()}
     notes: set[int] = set()
     for line_range in page.lines:
@@ -662,7 +679,9 @@ def _notes(page: Page, start: int, stop: int, found: Sequence[Mapping[int, int]]
             words = [at for at in line if page.glyphs[at].char.isalpha()]
             strange = sum(letter_of(read.get(at, 0)) != page.glyphs[at].char for at in words)
             text = "".join(" "[: page.glyphs[at].gap] + page.glyphs[at].char for at in line)
-            if strange >= max(_NOTE, 4 * len(re.findall(r"[0-9.]+", text)), len(words) / 2):
+            if strange >= max(
+                _MIN_NOTE_LETTERS, 4 * len(re.findall(r"[0-9.]+", text)), len(words) / 2
+            ):
                 notes.update(line)
     return notes
 
@@ -671,10 +690,12 @@ _LABEL_WORDS = {*re.findall("[A-Z]{2,}", re.sub("{.*?}", "", " ".join(LINES[PROM
 
 
 def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
-    """What no printout has taken of its lines, and every other line, whole: with the printout above
-    it, or with the first. A line is of the page where a number stands on it, half of its glyphs are
-    letters as they are printed, or it is a row of asterisks; what stands beside a number
-    may bear on the page, and so may another line that holds a number or one of the labels."""
+    """Add text that belongs to no printout to ``left_over`` of the one above it, or of the first.
+
+    A line belongs to a page if a number stands on it, half of its glyphs are letters as printed, or
+    it is a row of asterisks; of such lines the rest is left over, of others all. Text beside a
+    number may bear on the page, and so may another line that holds a number or a label.
+    """
     roles = {index: role for printout in found for index, role in printout.roles().items()}
     for line in page.lines:
         kinds = [roles.get(index) for index in line]
@@ -699,8 +720,8 @@ def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
                 above[-1].left_over.append(Piece(text, number, column, *span, is_beside, is_whole))
 
 
-def _normalised(text: str) -> list[str]:
-    """That characters were taken for others of the same meaning, and how many of each kind."""
+def _character_notes(text: str) -> list[str]:
+    """Return a note on characters that were read as plain ones, with their number by kind."""
     count = Counter(
         unicodedata.name(char, f"U+{ord(char):04X}").lower().replace("u+0000", "NUL")
         for char in text
@@ -710,14 +731,14 @@ def _normalised(text: str) -> list[str]:
     return [f"characters read as plain ones or passed over: {kinds}"] if kinds else []
 
 
-_MARKUP_SHOWN = 6
-"""Kinds of markup that are named."""
+_MAX_MARKUP = 6
+"""Number of kinds of markup that are named."""
 
 
-def _markup(text: str, unwrapped: str) -> list[str]:
+def _markup_note(text: str, stripped: str) -> list[str]:
     """Return a note on the markup that was passed over in lines that were read."""
     runs: Counter[str] = Counter()
-    for line, stripped_line in zip(text.split("\n"), unwrapped.split("\n"), strict=False):
+    for line, stripped_line in zip(text.split("\n"), stripped.split("\n"), strict=False):
         if not stripped_line.strip() and any(map(str.isalpha, line)):
             continue  # told whole
         markup = "".join(
@@ -725,15 +746,15 @@ def _markup(text: str, unwrapped: str) -> list[str]:
             for char, after in zip(line, stripped_line, strict=False)
         )
         runs.update(markup.split())
-    kinds = [f"{count} {printable(run)}" for run, count in runs.most_common(_MARKUP_SHOWN)]
+    kinds = [f"{count} {printable(run)}" for run, count in runs.most_common(_MAX_MARKUP)]
     and_more = f" and {len(runs) - len(kinds)} more kinds" if len(runs) > len(kinds) else ""
     return [f"markup passed over: {', '.join(kinds)}{and_more}"] if runs else []
 
 
-def _left_out(text: str, unwrapped: str) -> list[str]:
-    """That lines were left out as markup or as lines of a program."""
+def _left_out_note(text: str, stripped: str) -> list[str]:
+    """Return a note on lines that were left out as markup or as lines of a program."""
     lines = text.split("\n")
-    pairs = zip(lines, unwrapped.split("\n"), strict=False)
+    pairs = zip(lines, stripped.split("\n"), strict=False)
     is_left_out = [
         any(map(str.isalpha, line)) and not stripped_line.strip() for line, stripped_line in pairs
     ]
