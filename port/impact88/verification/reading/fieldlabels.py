@@ -17,8 +17,8 @@ _DIFFERENT = 35
 """Cost per letter from which a word is another label, not this one misread: that of two letters of
 which one is read so less than once in 600."""
 _MIN_ADVANTAGE = 25
-"""Cost by which another label must be cheaper to be the one read; U for V, the likeliest misreading,
-costs 29."""
+"""Cost by which another label must be cheaper to be the one read; U for V, the likeliest, costs
+29."""
 MIN_READER_MARKS = 3
 """Other signs of an optical reader from which a contradictory label is attributed to it: of 15,300
 labels of given scans 373 read as other words, 7 of them on pages with fewer signs. No two labels of

@@ -668,7 +668,8 @@ def _printouts(page: Page, budget: Budget) -> Iterator[Printout]:
 def _note_glyphs(page: Page, start: int, stop: int, found: Sequence[Mapping[int, int]]) -> set[int]:
     """Return the glyphs of lines that are notes, though a number on them was taken for the page's.
 
-    More than half of a note's letters, `_MIN_NOTE_LETTERS` at least and four a number, belong to no label.
+    More than half of the letters of a note, `_MIN_NOTE_LETTERS` at least and four a number, belong
+    to no label.
     """
     read = {at: state for states in found for at, state in states.items()}
     notes: set[int] = set()
