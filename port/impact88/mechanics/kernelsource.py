@@ -1,8 +1,8 @@
-"""C text of the impact as a whole, for `native/kernels.h`: one body for each kind of scene.
+"""Generator of `native/kernels.h`: the impact as C, one body for each kind of scene.
 
-A body computes every result; the kernels made of it keep some, and the compiler leaves out what
-these do not need. In a checkout, ``python -m impact88.mechanics.kernelsource`` writes the file and
-``pip install -e .`` compiles it; test_native checks that file and formulas agree.
+A body computes every result; each kernel made of it keeps some, and the compiler drops the rest. In
+a checkout, ``python -m impact88.mechanics.kernelsource`` writes the file and ``pip install -e .``
+compiles it; test_native checks that file and formulas agree.
 """
 
 from __future__ import annotations
@@ -36,21 +36,21 @@ CONDITIONS = ("EQUAL", "LESS", "LESS_OR_EQUAL", "EITHER", "BOTH", "NOT")
 
 
 def text() -> str:
-    """Return the whole file."""
+    """Return the text of kernels.h."""
     bodies = [_body(name, program) for name, program in programs().items()]
     return "\n".join([HEAD, *_places(), *bodies, _table(), ""])
 
 
 def programs() -> dict[str, Program]:
-    """Of every body."""
-    hurried = HURRIED.values()
+    """Return the program of every body."""
     return {
-        name: program_for(kinds, ALL, hurried=name in hurried) for name, kinds in BODIES.items()
+        name: program_for(kinds, ALL, hurried=name in HURRIED.values())
+        for name, kinds in BODIES.items()
     }
 
 
 def digest() -> str:
-    """Return the digest of the formulas, by which a library is known to be of them."""
+    """Return the digest of the formulas, which shows whether a library was built from them."""
     text = " ".join(f"{program.digest:016x}" for program in programs().values())
     return hashlib.blake2b(text.encode(), digest_size=8).hexdigest()
 
@@ -152,8 +152,8 @@ def _lines(program: Program) -> tuple[list[str], list[str], list[str]]:
         texts = [values[place] for place in operands]
         formula = f"{operation}({', '.join(_numbers(operation, texts, conditions))})"
         if operation == "PRODUCT_PLUS" and texts[0] in conditions:  # that number, or 0
-            product, rest = f"({texts[0]} ? {texts[1]} : 0.0)", texts[2:]
-            formula = f"ADD({product}, {_numbers('ADD', rest, conditions)[0]})"
+            product, addends = f"({texts[0]} ? {texts[1]} : 0.0)", texts[2:]
+            formula = f"ADD({product}, {_numbers('ADD', addends, conditions)[0]})"
         if operation in ("RESULT", "RESULT_OR_INFINITE", "BITS"):
             result = to - first
             keeps = formula if operation != "BITS" else texts[0]
@@ -169,7 +169,7 @@ def _lines(program: Program) -> tuple[list[str], list[str], list[str]]:
 
 
 def main() -> None:
-    """Write kernels.h, and say what is left to do."""
+    """Write kernels.h, and print the next steps."""
     Path(native.__file__).with_name("kernels.h").write_text(text(), encoding="ascii")
     print(f'FORMULAS = "{digest()}" in mechanics/closedform/impactprograms.py; pip install -e .')
 

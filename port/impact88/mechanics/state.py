@@ -22,27 +22,39 @@ SPEEDS = {"SA": ("UX", "UY"), "SB": ("VX", "VY"), "SAF": ("VAX", "VAY"), "SBF": 
 COURSES = {"HA": "SA", "HB": "SB", "HAF": "SAF", "HBF": "SBF"}
 """The course that belongs to each speed, the direction of that velocity from the x axis."""
 FORCES = {"PDOFA": "A", "PDOFB": "B"}
-"""Where the force on a vehicle comes from, clockwise from its front."""
+"""Directions the force on a vehicle comes from, in degrees clockwise from its front."""
 DIRECTIONS = (*COURSES, *FORCES)
 BARRIER_SPEEDS = {"EBSA": "ELA", "EBSB": "ELB"}
 """Equivalent barrier speeds, each with the energy it stands for."""
 CRUSH = ("ELA", "ELB", *BARRIER_SPEEDS)
-"""What was lost in each vehicle, energies that sum to EL: known of both or not at all."""
+"""Energies lost in each vehicle, which sum to EL: given for both or for neither."""
 CONTACT = ("VC", "VS")
 CHANGES = ("DVA", "DVB", "DVAF", "DVAR", "DVBF", "DVBR")
 ENERGIES = ("KI", "KF", "EL", "LOSS", "DT")
 QUANTITIES = (
-    *(*VELOCITIES, *FINAL_STATE, *COEFFICIENTS, *IMPULSES, *SPEEDS, *COURSES),
-    *(*CHANGES, *ENERGIES, *CONTACT, *FORCES),
+    *VELOCITIES,
+    *FINAL_STATE,
+    *COEFFICIENTS,
+    *IMPULSES,
+    *SPEEDS,
+    *COURSES,
+    *CHANGES,
+    *ENERGIES,
+    *CONTACT,
+    *FORCES,
 )
-"""What a state can be asked for."""
+"""Names of the quantities of a `State`."""
 OTHERS = (
     *(name for pair in zip(SPEEDS, COURSES, strict=True) for name in pair),
-    *(*CHANGES, *ENERGIES, *CRUSH, *CONTACT, *FORCES),
+    *CHANGES,
+    *ENERGIES,
+    *CRUSH,
+    *CONTACT,
+    *FORCES,
 )
-"""What `adjustment` knows and `unknowns.solve_for` does not."""
+"""Quantities that only `adjustment` takes as known, not `unknowns.solve_for`."""
 KNOWABLE = (*names.SCENE, "MUP", *names.FINAL_VELOCITIES, *OTHERS)
-"""What may be known of an impact."""
+"""Quantities that may be known of an impact."""
 
 
 class State:
@@ -61,8 +73,8 @@ class State:
 
     @classmethod
     def of_known(cls, values: Mapping[str, Any]) -> Self:
-        """An impact of which these velocities, before and after, and impulses are known; what they
-        do not tell is NaN."""
+        """Return the state with the known ones among velocities, before and after, and impulses;
+        what does not follow from them is NaN."""
         early, late = ([values.get(n, np.nan) for n in six] for six in (VELOCITIES, FINAL_STATE))
         state = cls({**dict.fromkeys(IMPULSES, np.nan), **values})
         state.before, state.after = early, late
@@ -101,8 +113,9 @@ class State:
         return self.here.relative(self.after)
 
     def law(self, coefficient: str) -> Any:
-        """What Equation 15 (E), 16 (MUP) or 18 (EM) leaves over, 0 where it holds: a velocity, an
-        impulse, a spin. MUP = -10 is the pivot, no tangential relative velocity afterwards."""
+        """Return the residual of Equation 15 (E), 16 (MUP) or 18 (EM): a velocity, an impulse or a
+        spin, 0 where the equation holds. MUP = -10 is the pivot: the residual is the tangential
+        relative velocity afterwards."""
         value = self.values[coefficient]
         if coefficient == "MUP" and np.all(value == PIVOT):
             return self.relative_after[1]
@@ -120,7 +133,7 @@ class State:
         e = self["E"] if e is None else e
         em = self["EM"] if em is None else em
         normal, tangential, spin = self.relative_before
-        # what a unit of P_n, P_t and M changes of the relative velocities
+        # changes of the relative velocities by a unit of P_n, P_t and M
         units = [here.relative(here.changes(*row)) for row in np.eye(3)]
         moment = [(1 - em) * unit[2] for unit in units]
         moment[2] = moment[2] - em * here.inverse_spin_inertia
@@ -128,14 +141,14 @@ class State:
         moment = [np.where(here.point, float(i == 2), row) for i, row in enumerate(moment)]
         rows = [[unit[0] for unit in units], [unit[1] for unit in units], moment]
         right = [-(1 + e) * normal, -tangential, last]
-        every = np.broadcast_arrays(*(x for row in rows for x in row), *right)
-        shape = every[0].shape
-        matrix = np.stack(every[:9], axis=-1).reshape(*shape, 3, 3)
-        solution = np.linalg.solve(matrix, np.stack(every[9:], axis=-1)[..., None])[..., 0]
+        entries = np.broadcast_arrays(*(x for row in rows for x in row), *right)
+        shape = entries[0].shape
+        matrix = np.stack(entries[:9], axis=-1).reshape(*shape, 3, 3)
+        solution = np.linalg.solve(matrix, np.stack(entries[9:], axis=-1)[..., None])[..., 0]
         return solution[..., 1] / solution[..., 0]
 
     def __getitem__(self, name: str) -> Any:
-        """A quantity by name; coefficients are what velocities and impulse make them."""
+        """Return a quantity by name; coefficients follow from velocities and impulse."""
         if name in VELOCITIES:
             return self.before[VELOCITIES.index(name)]
         if name in IMPULSES:
@@ -165,9 +178,9 @@ class State:
         return self[x], self[y]
 
     def along_and_across(self, direction: str) -> tuple[Any, Any]:
-        """The components along and across the course given, or of the push from the PDOF given; the
-        second is 0 where the velocity, or the impulse, runs along it."""
-        (x, y), (cosine, sine) = self._vector(direction), self._given(direction)
+        """Return the components of a velocity along and across its given course, or of the impulse
+        along and across its given PDOF; the second is 0 where the direction agrees."""
+        (x, y), (cosine, sine) = self._vector(direction), self._unit_vector(direction)
         return x * cosine + y * sine, y * cosine - x * sine
 
     def _vector(self, direction: str) -> tuple[Any, Any]:
@@ -178,7 +191,8 @@ class State:
         cosine, sine = self.here.cosine, self.here.sine
         return sign * (pn * cosine - pt * sine), sign * (pn * sine + pt * cosine)
 
-    def _given(self, direction: str) -> tuple[Any, Any]:
+    def _unit_vector(self, direction: str) -> tuple[Any, Any]:
+        """Return the unit vector of a given course or PDOF."""
         value = self.values[direction]
         if direction in FORCES:
             vehicle = FORCES[direction]
@@ -186,16 +200,16 @@ class State:
         return _unit(value)
 
     def _pdof(self, name: str) -> Any:
-        """Above -180 and up to 180; NaN without impulse."""
+        """Return a PDOF in degrees, above -180 and up to 180; NaN without impulse."""
         vehicle, (x, y) = FORCES[name], self._vector(name)
         clockwise = facing(vehicle, self.values["T" + vehicle]) + 180 - course(x, y)
-        turned = clockwise - 360 * np.ceil((np.real(clockwise) - 180) / 360)
-        return np.where((x == 0) & (y == 0), np.nan, turned)
+        reduced = clockwise - 360 * np.ceil((np.real(clockwise) - 180) / 360)
+        return np.where((x == 0) & (y == 0), np.nan, reduced)
 
     # -- quantities
 
     def quotient(self, coefficient: str) -> tuple[Any, Any]:
-        """What E, MUP or EM is, above and below the line: where the second is 0 it has no value."""
+        """Return numerator and denominator of E, MUP or EM; a denominator of 0 means no value."""
         pn, pt, moment = self.impulse
         if coefficient == "E":
             return -self.relative_after[0], self.relative_before[0]
@@ -205,14 +219,14 @@ class State:
         return spin, spin + moment * self.here.inverse_spin_inertia
 
     def crush_energy(self, vehicle: str) -> Any:
-        """The energy lost in a vehicle as ELA or ELB, or EBSA or EBSB, is known."""
+        """Return the energy lost in a vehicle, from the known one of ELA (ELB) and EBSA (EBSB)."""
         speed = self.values.get("EBS" + vehicle)
         if speed is None:
             return self.values["EL" + vehicle]
         return 0.5 * self.values["M" + vehicle] * speed * speed
 
     def contact_velocities(self) -> dict[str, Any]:
-        """XA YA XB YB of the contact points, and XAF ... YBF (listing lines 340, 700 and 710)."""
+        """Return XA YA XB YB of the contact points, and XAF ... YBF (lines 340, 700 and 710)."""
         velocities, here = {}, self.here
         arms = (("A", 0, here.d3, -here.d4), ("B", 3, -here.d1, here.d2))
         for suffix, six in (("", self.before), ("F", self.after)):
@@ -224,13 +238,13 @@ class State:
         return velocities
 
     def change(self, vehicle: str) -> tuple[Any, Any]:
-        """A vehicle's change of velocity, along x and y."""
+        """Return a vehicle's change of velocity along x and y."""
         x, y = self.changes[:2] if vehicle == "A" else self.changes[3:5]
         return x, y
 
     def _change(self, name: str) -> Any:
-        """A vehicle's change of velocity: its size, or along its length, forward (F), or across, to
-        its right (R)."""
+        """Return a vehicle's change of velocity: its size, or its component forward (F) or to the
+        right (R)."""
         vehicle, part = name[2], name[3:]
         x, y = self.change(vehicle)
         if not part:
@@ -253,8 +267,8 @@ class State:
 
     @cached_property
     def energy_lost(self) -> Any:
-        """The work of the impulse at the mean relative velocities, negated: no digits are lost as
-        in the difference of two energies."""
+        """Work of the impulse at the mean relative velocities, negated: it does not lose digits as
+        the difference of two energies would."""
         parts = zip(self.impulse, self.relative_before, self.relative_after, strict=True)
         return -0.5 * sum(part * (early + late) for part, early, late in parts)
 
@@ -269,11 +283,11 @@ def _unit(degrees: Any) -> tuple[Any, Any]:
 
 
 _of_number = lru_cache(maxsize=64)(sin_cos)
-"""What is known exactly is asked for again and again."""
+"""`sin_cos` of numbers, cached: exactly known angles recur at every evaluation."""
 
 
 def course(x: Any, y: Any) -> Any:
-    """The direction of (x, y) in degrees; the imaginary part is its derivative's."""
+    """Return the direction of (x, y) in degrees; its imaginary part carries the derivative."""
     real = np.degrees(np.arctan2(np.real(y), np.real(x)))
     if not (np.iscomplexobj(x) or np.iscomplexobj(y)):
         return real

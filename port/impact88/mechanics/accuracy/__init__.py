@@ -1,1 +1,1 @@
-"""How accurate: the 50-digit reference, the listing's elimination in double, error bounds."""
+"""Accuracy: the 50-digit reference, the listing's elimination in double, error bounds."""

@@ -92,7 +92,7 @@ def listing_rows(t: Terms) -> list[list[Any]]:
 
 
 class _Columns(Terms):
-    """Of arrays."""
+    """The terms of many scenes, as arrays."""
 
     def __init__(self, g: Mapping[str, Array], pi: float) -> None:
         self.pi = pi

@@ -1,4 +1,4 @@
-"""How far results may be off: by rounding alone, and when the scene's numbers are.
+"""Bounds of the errors of results, and their sensitivity to the scene's numbers.
 
 `FACTOR` times condition (`COND`) times unit roundoff is an estimate of errors relative to the
 largest velocity about, and no bound: COND does not know the rounding of angles. In 100 scenes of
@@ -26,11 +26,11 @@ from .runningerror import UNIT, listing_errors
 Floats = NDArray[np.float64]
 
 CLOSED_FORM = 64.0
-"""How many roundings of each number of a scene, at their worst, the closed form's error is worth:
-twice the most seen in 10^5 scenes of each of the benchmark's populations and of arms 10^±6 times a
+"""Error of the closed form, in roundings of each number of a scene at their worst: twice the most
+seen in 10^5 scenes of each of the benchmark's populations and of arms 10^±6 times a
 car's (26, of pivots with unrelated masses; 8 of others)."""
 DOUBLE = 2.0**-53
-"""Unit roundoff: what rounding a number to 53 bits changes of it, at most."""
+"""Unit roundoff of 53 bits: the largest relative change by rounding."""
 APPLESOFT = UNIT
 FACTOR = 16.0
 """Largest error seen over captured and generated scenes: 1.4 in velocities, 11 in spins."""
@@ -44,7 +44,7 @@ _GROUPS = (FINAL_VELOCITIES[:4], FINAL_VELOCITIES[4:])
 
 
 def relative_bounds(condition: Any, unit: float = DOUBLE) -> Floats:
-    """Return the estimate for scenes of an array of conditions (see above: no bound)."""
+    """Return `FACTOR` times condition times ``unit``, an estimate of errors and no bound."""
     condition = np.asarray(condition, float)
     return np.asarray(FACTOR * unit * np.maximum(np.nan_to_num(condition, nan=np.inf), 1.0))
 
@@ -52,17 +52,19 @@ def relative_bounds(condition: Any, unit: float = DOUBLE) -> Floats:
 def oracle_bounds(
     scenes: Sequence[Mapping[str, str]], columns: Mapping[str, Any], solved: Mapping[str, Any]
 ) -> tuple[list[float], list[float]]:
-    """For each scene, what the final velocities and spins may be off, by the closed form in double
-    precision and by the listing, relative to their `scales`; infinite where nothing can be said.
+    """Return error bounds of the final velocities and spins for each scene: of the closed form in
+    double precision, and of the listing. They are relative to `scales`; infinite where unknown.
 
     The first is `CLOSED_FORM` times what rounding every number of the scene to a double does
     (`movements`); the second a running error bound (`accuracy.runningerror`).
     ``scenes``: the texts; ``columns``: their numbers, arrays of n; ``solved``: `impact88.solve`'s.
     """
     sizes = scales(columns, solved)
-    moved = movements(columns)
+    change = movements(columns)
     with np.errstate(over="ignore", invalid="ignore"):
-        double = {name: DOUBLE * (CLOSED_FORM * moved[name] + abs(solved[name])) for name in moved}
+        double = {
+            name: DOUBLE * (CLOSED_FORM * change[name] + abs(solved[name])) for name in change
+        }
     listing = {name: np.full(len(scenes), np.inf) for name in FINAL_VELOCITIES}
     for i, scene in enumerate(scenes):
         errors = listing_errors(scene, {name: float(solved[name][i]) for name in FINAL_VELOCITIES})
@@ -72,16 +74,16 @@ def oracle_bounds(
 
 
 def _shares(errors: Mapping[str, Floats], sizes: Mapping[str, Floats]) -> list[float]:
-    """The largest of the errors by their sizes; no error is none of nothing, too."""
+    """Return each scene's largest error relative to its size; 0/0 is 0."""
     with np.errstate(all="ignore"):
         shares = [np.where(e == 0, 0.0, e / sizes[name]) for name, e in errors.items()]
     largest = np.max(shares, axis=0)
-    whole: list[float] = np.where(np.isnan(largest), np.inf, largest).tolist()
-    return whole
+    bounds: list[float] = np.where(np.isnan(largest), np.inf, largest).tolist()
+    return bounds
 
 
 def scales(scene: Mapping[str, Any], solved: Mapping[str, Any]) -> dict[str, Floats]:
-    """For each result the size that errors of it are measured by, scene by scene.
+    """Return, for each result, the size its errors are relative to, scene by scene.
 
     ``scene`` and ``solved`` are columns of n; ``solved`` holds every result of `impact88.solve`.
     Energies and impulses are made of two velocities, so they count twice.
@@ -128,31 +130,31 @@ def _finite(column: Any) -> Floats:
 def movements(
     columns: Mapping[str, Any], outputs: Sequence[str] = FINAL_VELOCITIES
 ) -> dict[str, Floats]:
-    """For every scene and each output, what it changes per relative change of all numbers of the
-    scene at their worst: the sum over the numbers of the central differences' sizes, infinite or
-    NaN past the range of doubles."""
+    """Return, for each output and scene, its change per relative change of all numbers of the scene
+    at their worst: the sum of the absolute central differences over the numbers, infinite or NaN
+    past the range of doubles."""
     with np.errstate(over="ignore", invalid="ignore"):
         return _movements(columns, outputs)
 
 
 def _movements(columns: Mapping[str, Any], outputs: Sequence[str]) -> dict[str, Floats]:
-    moved = {name: np.zeros(()) for name in outputs}
+    sums = {name: np.zeros(()) for name in outputs}
     for name, values in columns.items():
         values = np.asarray(values, np.float64)
         if name == "M":
             continue
-        # a pivot's MU stands for no friction: there is nothing to change
+        # a pivot's MU is a code, not a number to vary
         step = np.where(values == PIVOT, 0.0, STEP) if name == "MU" else STEP
         upper = solve({**columns, name: values * (1 + step)}, outputs)
         lower = solve({**columns, name: values * (1 - step)}, outputs)
         for result in outputs:
             change = np.abs(upper[result] - lower[result]) / (2 * STEP)
-            moved[result] = moved[result] + change
-    return moved
+            sums[result] = sums[result] + change
+    return sums
 
 
 def result_bounds(columns: Mapping[str, Any]) -> dict[str, Floats]:
-    """Return how far each result by the closed form may be off, in its own unit.
+    """Return a bound of the error of each result by the closed form, in its own unit.
 
     Parameters
     ----------
@@ -162,8 +164,8 @@ def result_bounds(columns: Mapping[str, Any]) -> dict[str, Floats]:
     Returns
     -------
     dict of str to ndarray
-        Of every result but COND (an estimate) and STATUS (bits): above its error; infinite or NaN
-        where nothing can be said.
+        For every result but COND (an estimate) and STATUS (bits): a bound of its absolute error;
+        infinite or NaN where there is none.
 
     Notes
     -----
@@ -176,22 +178,24 @@ def result_bounds(columns: Mapping[str, Any]) -> dict[str, Floats]:
     names = [name for name in RESULTS if name not in ("COND", "STATUS")]
     g = {name: np.asarray(x, np.float64) for name, x in columns.items()}
     with np.errstate(all="ignore"):
-        f, moved = solve(columns, names), movements(columns, names)
+        f, change = solve(columns, names), movements(columns, names)
         unit = CLOSED_FORM * DOUBLE
-        bound: dict[str, Floats] = {n: unit * (moved[n] + np.abs(f[n])) for n in names}
-        own = {"VAX": "UX", "VAY": "UY", "VBX": "VX", "VBY": "VY"}
-        others = {"VAX": "VX", "VAY": "VY", "VBX": "UX", "VBY": "UY"}
+        bound: dict[str, Floats] = {n: unit * (change[n] + np.abs(f[n])) for n in names}
+        initial = {"VAX": "UX", "VAY": "UY", "VBX": "VX", "VBY": "VY"}
+        initial_of_other = {"VAX": "VX", "VAY": "VY", "VBX": "UX", "VBY": "UY"}
         pivot = g["MU"] == PIVOT
-        for name, before in own.items():
+        for name, before in initial.items():
             # of a pivot the closed form may go by the common velocity
-            common = np.where(pivot, np.abs(g[others[name]]), 0.0)
+            common = np.where(pivot, np.abs(g[initial_of_other[name]]), 0.0)
             bound[name] = bound[name] + unit * (np.abs(g[before]) + common)
         point = g["M"] == 4
         for body in "AB":
             arm = np.where(point, 0.0, g[f"D{body}"])
-            turned = np.where(arm == 0, 0.0, np.abs(arm) * bound[f"W{body}F"])
+            from_spin = np.where(arm == 0, 0.0, np.abs(arm) * bound[f"W{body}F"])
             for axis in "XY":
-                bound[f"{axis}{body}F"] = bound[f"{axis}{body}F"] + bound[f"V{body}{axis}"] + turned
+                bound[f"{axis}{body}F"] = (
+                    bound[f"{axis}{body}F"] + bound[f"V{body}{axis}"] + from_spin
+                )
         moving = [("MA", "VAX"), ("MA", "VAY"), ("MB", "VBX"), ("MB", "VBY")]
         for inertia, name in (*moving, ("IA", "WAF"), ("IB", "WBF")):
             of_body = np.where(np.isinf(g[inertia]) | (point & (name in _SPINS)), 0.0, g[inertia])
@@ -201,20 +205,20 @@ def result_bounds(columns: Mapping[str, Any]) -> dict[str, Floats]:
         bound["LOSS"] = bound["LOSS"] + 100 * off / f["KI"]
         for name, mass, other in (("EESA", "MA", "MB"), ("EESB", "MB", "MA")):
             part = np.where(np.isinf(g[other]), 2.0, 1.0) / g[mass]
-            least, most = (np.sqrt(part * np.maximum(lost + x, 0.0)) for x in (-off, off))
-            bound[name] = bound[name] + (most - least)
+            least, largest = (np.sqrt(part * np.maximum(lost + x, 0.0)) for x in (-off, off))
+            bound[name] = bound[name] + (largest - least)
         return {name: np.asarray(bound[name]) for name in names}
 
 
 def sensitivity(columns: Mapping[str, Any]) -> Floats:
-    """For every scene, the largest of its `movements`, relative to the largest of its group (the
-    four velocities, the two spins); at least 1."""
+    """Return each scene's largest of `movements`, relative to the largest of its group (the four
+    velocities, the two spins); at least 1."""
     present = solve(columns, FINAL_VELOCITIES)
-    moved = movements(columns)
+    movement = movements(columns)
     worst = np.ones_like(present["VAX"])
     for group in _GROUPS:
         scale = np.max([np.abs(present[name]) for name in group], axis=0)
-        change = np.max([moved[name] for name in group], axis=0)
+        change = np.max([movement[name] for name in group], axis=0)
         with np.errstate(invalid="ignore", divide="ignore"):
             worst = np.fmax(worst, change / scale)
     return worst

@@ -24,14 +24,14 @@ except ImportError:
     ) from None
 
 DIGITS = 50
-"""Those promised: 20 more than are written, and three times a double's, whose errors they judge."""
+"""Correct digits of the reference: 20 more than are printed, and three times a double's."""
 WRITTEN = 30
-"""Of the digits, in an oracle's answer: as many as the chapter's reference cases have."""
+"""Digits in an oracle's answer: as many as the chapter's reference cases have."""
 GUARD = 15
-"""Working digits beyond those promised, besides what the spread of a scene's numbers may cost: with
-twice as many none of 1,560 results of five populations changes in 30 digits."""
+"""Working digits beyond `DIGITS`, besides those for the spread of a scene's numbers: with twice as
+many none of 1,560 results of five populations changes in 30 digits."""
 LONGEST_EXPONENT = 3
-"""Digits of the largest exponents that are computed with."""
+"""Digits of an exponent; scenes with longer ones are refused."""
 
 ANGLES = ("GA", "PA", "PB", "TA", "TB")
 
@@ -39,13 +39,13 @@ Number = Any  # mpmath.mpf, which has no usable type
 
 
 def number(value: object) -> Number:
-    """Decimal text or an int exactly (to the working precision), a float with its exact value."""
+    """Convert decimal text or an int to the working precision, a float with its exact value."""
     return mpmath.mpf(value if isinstance(value, (int, str)) else float(value))  # type: ignore[arg-type]
 
 
 def working(scene: Mapping[str, Any]) -> Any:
-    """A context in which arithmetic has the digits a scene takes: those promised, `GUARD`, and
-    three for each power of ten between its smallest and its largest number."""
+    """Return a context with the working digits a scene needs: `DIGITS`, `GUARD`, and three
+    for each power of ten between its smallest and its largest number."""
     with mpmath.workdps(GUARD):
         sizes = [
             abs(number(value)) for name, value in scene.items() if name not in (*ANGLES, "M", "MU")
@@ -56,8 +56,8 @@ def working(scene: Mapping[str, Any]) -> Any:
 
 
 def total(*terms: Number) -> Number:
-    """The sum of some terms; zero where they cancel beyond all digits promised, because then what
-    is left is the noise of the digits beyond."""
+    """Return the sum of some terms; zero where they cancel to less than `DIGITS` digits, since the
+    remainder is rounding error."""
     result = sum(terms[1:], terms[0])
     noise = max(abs(term) for term in terms) * mpmath.mpf(10) ** -DIGITS
     return result if abs(result) > noise else mpmath.mpf(0)
@@ -73,10 +73,12 @@ class Exact(Terms):
         point = number(scene.get("M", DEFAULT_M)) == 4
         super().__init__(g, point, g["MU"] == PIVOT, mpmath.mpf(0))
         s, c = self.s, self.c
-        # what A's and B's spin add to the relative contact velocity: an, at, bn, bt
+        # relative contact velocity per unit of A's and of B's spin: an, at, bn, bt
         self.arms = (
-            *(total(self.D3 * c, -self.D4 * s), total(-self.D4 * c, -self.D3 * s)),
-            *(total(self.D1 * c, -self.D2 * s), total(-self.D2 * c, -self.D1 * s)),
+            total(self.D3 * c, -self.D4 * s),
+            total(-self.D4 * c, -self.D3 * s),
+            total(self.D1 * c, -self.D2 * s),
+            total(-self.D2 * c, -self.D1 * s),
         )
         # 1/MA 1/MB 1/IA 1/IB; 0 of an infinite body, and of a point mass's inertia
         moved = ("MA", "MB") if point else ("MA", "MB", "IA", "IB")
@@ -94,7 +96,7 @@ class Exact(Terms):
 
 
 def _determinant(rows: Sequence[Sequence[Number]]) -> Number:
-    """Of two or three rows; 0 where its terms cancel beyond all digits promised."""
+    """Return the determinant of two or three rows; 0 where its terms cancel (see `total`)."""
     orders = zip(permutations(range(len(rows))), (1, -1, -1, 1, 1, -1), strict=False)
     return total(
         *(
@@ -105,21 +107,23 @@ def _determinant(rows: Sequence[Sequence[Number]]) -> Number:
 
 
 def _solve(A: Sequence[Sequence[Number]], b: Sequence[Number]) -> list[Number] | None:
-    """By Cramer's rule, which in so many digits is as good as any."""
+    """Solve two or three equations by Cramer's rule, accurate enough in so many digits; None where
+    they are singular."""
     divisor = _determinant(A)
     if not divisor:
         return None
-    replaced = (
+    replacements = (
         [[*row[:j], right, *row[j + 1 :]] for row, right in zip(A, b, strict=True)]
         for j in range(len(b))
     )
-    return [_determinant(rows) / divisor for rows in replaced]
+    return [_determinant(rows) / divisor for rows in replacements]
 
 
 def impulse(t: Exact) -> list[Number] | None:
-    """What acts on A along n, along t, and as a moment: Equations 15, 16 (or no slip) and 18 in the
-    unknowns Pn, Pt and M; 13, 14 and 17 hold because the same impulse acts on both bodies. None if
-    they are singular."""
+    """Return the impulse on A along n, along t, and its moment; None if the equations are singular.
+
+    They are Equations 15, 16 (or no slip) and 18 in the unknowns Pn, Pt and M; 13, 14 and 17 hold
+    because the same impulse acts on both bodies."""
     (ma, mb, ia, ib), (an, at, bn, bt) = t.inverses, t.arms
     across = total(ia * an * at, ib * bn * bt)
     turn_n, turn_t = total(ia * an, -ib * bn), total(ia * at, -ib * bt)
@@ -141,7 +145,7 @@ def impulse(t: Exact) -> list[Number] | None:
 
 
 def velocities(t: Exact, P: Sequence[Number]) -> list[Number]:
-    """The velocities that an impulse leaves, in the order of `ORDER`."""
+    """Return the velocities after an impulse, in the order of `ORDER`."""
     (ma, mb, ia, ib), (an, at, bn, bt) = t.inverses, t.arms
     s, c, (pn, pt, m) = t.s, t.c, P
     changes = [
@@ -156,8 +160,9 @@ def velocities(t: Exact, P: Sequence[Number]) -> list[Number]:
 
 
 def thirty_digits(scene: Mapping[str, str]) -> dict[str, str]:
-    """Result name -> 30 digits; empty when the equations are singular or make no sense. What is no
-    number (LOSS where nothing moves, MUC where a pivot feels no impulse) is not in it."""
+    """Return result name -> 30 digits; empty when the equations are singular or make no sense.
+    Results without a value (LOSS where nothing moves, MUC where a pivot feels no impulse) are left
+    out."""
     exponents = (text.upper().replace(" ", "").partition("E")[2] for text in scene.values())
     if any(len(exponent.lstrip("+-0")) > LONGEST_EXPONENT for exponent in exponents):
         return {}  # a number of thousands of digits is no measurement
@@ -174,8 +179,9 @@ def thirty_digits(scene: Mapping[str, str]) -> dict[str, str]:
 
 
 def fifty_digits(scene: Mapping[str, str | float]) -> dict[str, Any]:
-    """Result name -> mpf; empty when the equations are singular. ``scene``: decimal texts, or
-    floats with their exact values."""
+    """Return result name -> mpf; empty when the equations are singular.
+
+    ``scene``: decimal texts, or floats with their exact values."""
     texts = {
         name: value.replace(" ", "") or "0" if isinstance(value, str) else value
         for name, value in scene.items()
@@ -232,9 +238,9 @@ def _energies(t: Exact, P: Sequence[Number], after: list[Number]) -> dict[str, N
         wa = wb = mpmath.mpf(0)
     normal = total(c * ax, s * ay, -c * bx, -s * by, an * wa, bn * wb)
     sliding = total(c * ay, -s * ax, -c * by, s * bx, at * wa, bt * wb)
-    moved = normal, sliding, total(wa, -wb)
+    sums = normal, sliding, total(wa, -wb)
     # the impulse's work is half of its product with the sum of the velocities before and after
-    losses = [-p * v / 2 for p, v in zip(P, moved, strict=True)]
+    losses = [-p * v / 2 for p, v in zip(P, sums, strict=True)]
     values |= dict(zip(("ELN", "ELT", "ELM"), losses, strict=True))
     loss = total(*losses)
     if initial:

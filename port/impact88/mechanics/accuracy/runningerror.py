@@ -1,4 +1,4 @@
-"""How far the listing's arithmetic may lie off: a running error bound, scene by scene.
+"""Running error bound of the listing's arithmetic, scene by scene.
 
 `Bounded` numbers carry, beside a double, how far the 1988 program's number may be from the exact
 one: what its operands are off, and what the operation rounds, always at their worst. Lines 300 to
@@ -18,15 +18,15 @@ from ...names import DEFAULT_M, PIVOT
 from .elimination import LISTING_PI, ORDER, Terms, eliminate, listing_rows
 
 UNIT = 2.0**-32
-"""What rounding a number to five bytes changes of it, at most."""
+"""Unit roundoff of five-byte numbers: the largest relative change by rounding."""
 PI_ERROR = abs(LISTING_PI / math.pi - 1)
 SMALLEST_PIVOT = 1e-9
 """Line 1080's."""
 WORST_DIVISOR = 0.25
 """Relative error of a divisor from which the first order says nothing; twice as much is unsafe."""
 TWO_BYTES = 2.0**-16
-"""What is below a mantissa's top byte is less, in that byte's units, where its second and third
-byte are zero."""
+"""A mantissa whose second and third byte are zero exceeds its top byte by less than this, in units
+of that byte."""
 
 
 class Uncertain(ArithmeticError):
@@ -58,7 +58,7 @@ class Bounded:
         return Bounded(v, own + (2 * UNIT + defects) * abs(v))
 
     def defect(self) -> float:
-        """What the ROM's multiplication may lose of a product, relatively, when this number's
+        """Return the relative loss of the ROM's multiplication when this number's
         second and third byte are zero: half of what the bytes below are worth."""
         if not self.v:
             return 0.0
@@ -131,8 +131,8 @@ def _read(text: str) -> Bounded:
 def listing_errors(
     scene: Mapping[str, str], solved: Mapping[str, float]
 ) -> dict[str, float] | None:
-    """How far each final velocity and spin that the 1988 program finds may be off, in the scene's
-    units: rounding, its pi, and what its elimination gets wrong where a column is below 1E-9.
+    """Return error bounds of the 1988 program's final velocities and spins, in the scene's units:
+    rounding, its pi, and what its elimination gets wrong where a column is below 1E-9.
 
     ``scene``: texts, M among them; ``solved``: the final velocities and spins in double precision,
     by the closed form. None where nothing can be said: uncertain divisors, ZERO DETERMINANT.

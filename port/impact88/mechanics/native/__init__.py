@@ -1,7 +1,7 @@
-"""The compiled machine for plans, where it was built: `machine.c`, loaded by ctypes.
+"""The compiled library, where it was built: `machine.c` and its kernels, loaded by ctypes.
 
-It is optional. Where no compiler was there when the package was installed, or where the
-environment variable IMPACT88_ACCELERATED is 0, `library` is None and numpy computes the same bits.
+It is optional. Where no compiler was found when the package was installed, or where the environment
+variable IMPACT88_ACCELERATED is 0, `library` is None and numpy computes the same bits.
 """
 
 import ctypes
@@ -23,50 +23,50 @@ def _load() -> ctypes.CDLL | None:
         path = Path(__file__).with_name(f"_machine{suffix}")
         if path.exists():
             try:
-                return _declared(ctypes.CDLL(str(path)))
+                return _declare_functions(ctypes.CDLL(str(path)))
             except (OSError, AttributeError):  # built for another machine, or from older sources
                 continue
     return None
 
 
-def _declared(found: ctypes.CDLL) -> ctypes.CDLL:
-    """The library, with what its functions take and return. Raises AttributeError for one that has
-    not all of them."""
+def _declare_functions(loaded: ctypes.CDLL) -> ctypes.CDLL:
+    """Declare argument and result types of the library's functions and return it. Raises
+    AttributeError where one is missing."""
     number, address = ctypes.c_int64, ctypes.c_void_p
-    found.find_extremes.argtypes = [address, number, number, number, address]
-    found.run_program.argtypes, found.run_program.restype = [address], None
-    found.solve_impacts.argtypes, found.solve_impacts.restype = [address, number, number], None
-    found.solve_prepared.argtypes = [*[address] * 4, number]
-    found.solve_prepared_part.argtypes = [*[address] * 4, *[number] * 3]
-    found.solve_bound.argtypes = [address]
-    for function in (found.solve_prepared, found.solve_prepared_part, found.solve_bound):
+    loaded.find_extremes.argtypes = [address, number, number, number, address]
+    loaded.run_program.argtypes, loaded.run_program.restype = [address], None
+    loaded.solve_impacts.argtypes, loaded.solve_impacts.restype = [address, number, number], None
+    loaded.solve_prepared.argtypes = [*[address] * 4, number]
+    loaded.solve_prepared_part.argtypes = [*[address] * 4, *[number] * 3]
+    loaded.solve_bound.argtypes = [address]
+    for function in (loaded.solve_prepared, loaded.solve_prepared_part, loaded.solve_bound):
         function.restype = None
-    found.kernel_of.argtypes, found.kernel_of.restype = [number, ctypes.c_uint64], address
-    found.formulas.restype = ctypes.c_char_p
-    found.read_numbers.argtypes = [ctypes.c_char_p, number, address, address]
-    found.write_numbers.argtypes = [address, number, address, address]
-    found.instructions.restype = found.operations.restype = ctypes.c_char_p
-    for counts in (found.strip, found.most_places):
+    loaded.kernel_of.argtypes, loaded.kernel_of.restype = [number, ctypes.c_uint64], address
+    loaded.formulas.restype = ctypes.c_char_p
+    loaded.read_numbers.argtypes = [ctypes.c_char_p, number, address, address]
+    loaded.write_numbers.argtypes = [address, number, address, address]
+    loaded.instructions.restype = loaded.operations.restype = ctypes.c_char_p
+    for counts in (loaded.strip, loaded.most_places):
         counts.restype = number
-    return found
+    return loaded
 
 
 library: Any = _load()
-"""What was loaded, or None: asked at every call, so that it may be switched off meanwhile."""
+"""The loaded library, or None. Read it at every call: `switched_off` may change it."""
 STRIP: int = library.strip() if library else 0
-"""Scenes the machine takes at a time."""
+"""Scenes that the compiled code computes at a time."""
 
 
 accelerated: str | None = library.instructions().decode() if library else None
-"""Which instructions of this processor the compiled machine uses; None where numpy does it all."""
+"""Instruction set that the compiled kernels use; None where numpy computes everything."""
 
 
 @contextmanager
 def switched_off() -> Iterator[None]:
-    """Everything by numpy, in all threads, as long as this lasts."""
+    """Use numpy alone, in all threads, for the length of a ``with`` block."""
     global library
-    kept, library = library, None
+    original, library = library, None
     try:
         yield
     finally:
-        library = kept
+        library = original

@@ -49,7 +49,7 @@ class Expression:
     value: float | str | None
 
     def is_constant(self, number: float) -> bool:
-        """Whether this is the known constant ``number``."""
+        """Return True for the constant ``number``."""
         return self.operation == "constant" and self.value == number
 
     @property
@@ -82,12 +82,12 @@ class Expression:
         return self.table.combine("not", self)
 
     def any(self) -> bool:
-        """Whether a condition may hold in some scene."""
+        """Return True: a condition may hold in some scene."""
         return True
 
 
 class ExpressionTable:
-    """Where the expressions of one plan are kept, each once."""
+    """The expressions of one program, each stored once."""
 
     def __init__(self) -> None:
         self._kept: dict[Key, Expression] = {}
@@ -99,7 +99,7 @@ class ExpressionTable:
         value: float | str | None = None,
         varies: bool | None = None,
     ) -> Expression:
-        """Any operation: conditions, too, which are 1 where they hold, else 0."""
+        """Return the expression of an operation; a condition is 1 where it holds, else 0."""
         key: Key = (operation, value, *map(id, operands))
         if key not in self._kept:
             if varies is None:
@@ -113,7 +113,7 @@ class ExpressionTable:
     def column(self, name: str, varies: bool) -> Expression:
         return self.combine("column", value=name, varies=varies)
 
-    # -- arithmetic; the rules of leaving out stand here and nowhere else
+    # -- arithmetic; every rule of pruning is here
 
     def add(self, a: Expression, b: Expression) -> Expression:
         if a.is_zero:
@@ -138,12 +138,12 @@ class ExpressionTable:
     def multiply(self, a: Expression, b: Expression) -> Expression:
         if a.is_zero or b.is_zero:
             return self.constant(0.0)
-        for factor, other in ((a, b), (b, a)):
+        for factor, cofactor in ((a, b), (b, a)):
             if factor.is_constant(1.0):
-                return other
+                return cofactor
             if factor.is_constant(-1.0):
-                return self.negative(other)
-        # a sign is taken outwards, where a sum or another sign takes it up
+                return self.negative(cofactor)
+        # signs move outwards, where a sum or another sign absorbs them
         if a.operation == "negative":
             return self.negative(self.multiply(a.operands[0], b))
         if b.operation == "negative":
@@ -186,8 +186,8 @@ class ExpressionTable:
         if degrees.operation == "negative":
             sine, cosine = self.sine_and_cosine(degrees.operands[0])
             return self.negative(sine), cosine
-        both = self.combine("sine_and_cosine", degrees)
-        return self.combine("sine", both), self.combine("cosine", both)
+        pair = self.combine("sine_and_cosine", degrees)
+        return self.combine("sine", pair), self.combine("cosine", pair)
 
     def against(self, value: Expression, slip: Expression) -> Expression:
         """``value`` with its sign changed where ``slip`` > 0 (the rule of listing line 400)."""

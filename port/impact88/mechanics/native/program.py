@@ -1,4 +1,4 @@
-"""Programs for the compiled machine."""
+"""Programs for the compiled interpreter (`machine.c`)."""
 
 from collections.abc import Iterable, Mapping
 from functools import cached_property
@@ -13,7 +13,7 @@ Addresses = NDArray[np.int64]
 
 
 class Program(Schedule):
-    """Steps that the compiled machine runs."""
+    """Steps in the form that the compiled interpreter runs."""
 
     @cached_property
     def code(self) -> NDArray[np.int32]:
@@ -25,21 +25,21 @@ class Program(Schedule):
 
     @cached_property
     def width(self) -> Addresses:
-        """Bytes of a number of each column and result."""
+        """Bytes per number of each column and result."""
         widths = [2 if ending == "BITS" else 8 for ending in self.endings]
         return np.array([8] * len(self.columns) + widths, np.int64)
 
     @property
     def digest(self) -> int:
-        """Digest of everything a program says."""
+        """Digest of columns, results, constants and steps."""
         from hashlib import blake2b  # OpenSSL takes 4 ms to load
 
         text = repr((self.columns, self.results, self.scalars, self.steps)).encode()
         return int.from_bytes(blake2b(text, digest_size=8).digest())
 
     @cached_property
-    def _rooms(self) -> list["Room"]:
-        """Those that no thread uses."""
+    def _free_rooms(self) -> list["Room"]:
+        """Working memories that no thread is using."""
         return []
 
     def run(
@@ -50,16 +50,16 @@ class Program(Schedule):
         circle: int = 0,
         fixed: Mapping[str, float] = {},
     ) -> None:
-        """Run it over ``count`` scenes of float64 columns and results (uint16: bits), in the
-        program's order; ``fixed``: the columns that do not vary; ``circle``: see
-        `closedform.impactprograms`."""
-        room = self._rooms.pop() if self._rooms else Room(self)
+        """Compute ``count`` scenes. ``columns``, ``results``: addresses in the program's order, of
+        float64 (of uint16 for a result that ends in BITS); ``fixed``: values of the columns that do
+        not vary; ``circle``: `closedform.impactprograms.CIRCLE`, or 0 without sines."""
+        room = self._free_rooms.pop() if self._free_rooms else Room(self)
         room.moving[: len(columns)] = columns
         room.moving[len(columns) :] = results
         if fixed:
             room.values[:] = [fixed[x] if isinstance(x, str) else x for x in self.scalars]
         room.run(count, circle)
-        self._rooms.append(room)
+        self._free_rooms.append(room)
 
 
 class Room:
@@ -72,10 +72,17 @@ class Room:
         start = self._block.ctypes.data + -self._block.ctypes.data % 64  # of a cache line
         self._kept = code, width = program.code, program.width
         call = (
-            *(code.ctypes.data, program.once, len(code)),
-            *(self.moving.ctypes.data, width.ctypes.data, len(program.columns), program.moving),
-            *(self.values.ctypes.data, len(self.values)),
-            *(start, program.places),
+            code.ctypes.data,
+            program.once,
+            len(code),
+            self.moving.ctypes.data,
+            width.ctypes.data,
+            len(program.columns),
+            program.moving,
+            self.values.ctypes.data,
+            len(self.values),
+            start,
+            program.places,
         )
         self._call = np.array([*call, 0, 0], np.int64)
         self._at = self._call.ctypes.data
@@ -87,5 +94,5 @@ class Room:
 
 
 def addresses(arrays: Iterable[NDArray[np.generic]]) -> Addresses:
-    """Where arrays begin in memory."""
+    """Return the addresses of arrays."""
     return np.array([array.ctypes.data for array in arrays], np.int64)

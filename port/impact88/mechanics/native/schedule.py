@@ -1,9 +1,9 @@
-"""Expressions as steps: in the order of the formulas, each value in a place for as long as needed.
+"""Steps that compute expressions, in the order of the formulas, each value in a numbered place.
 
 An expression has an ``operation``, ``operands``, and says whether it ``varies`` from scene to
 scene; a column or constant has a ``value``. Each operation becomes a step, with its rounding. A
 product that only one sum needs is taken together with that sum, each still rounded by itself. The
-same steps are run by the compiled machine, by numpy, and as lines of Python.
+same steps are run by the compiled library, by numpy, and as lines of Python.
 """
 
 from collections import Counter
@@ -11,22 +11,22 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 PROJECTIONS = ("sine", "cosine")
-"""The two values that sine_and_cosine makes."""
+"""The two values of a sine_and_cosine step."""
 _APART = ("sine_and_cosine", "real_multiply")
 """Operations that must not write over an operand."""
 
 
 def in_order(results: Sequence[Any]) -> list[Any]:
-    """All expressions the results depend on, operands before what is made of them."""
-    seen: set[int] = set()
+    """Return all expressions the results depend on, each after its operands."""
+    visited: set[int] = set()
     order: list[Any] = []
     stack = [(e, False) for e in reversed(results)]
     while stack:
         e, ready = stack.pop()
-        if id(e) in seen:
+        if id(e) in visited:
             continue
         if ready:
-            seen.add(id(e))
+            visited.add(id(e))
             order.append(e)
         else:
             stack.append((e, True))
@@ -40,8 +40,8 @@ class Schedule:
 
     Places: first the varying ``columns``, then the results (up to ``moving``), ``scalars``
     (constants, and the names of columns that do not vary), then values in between. ``steps``: the
-    operation, and the places of its operands and of what it makes; the ``once`` first ones are of
-    values that do not vary.
+    operation, and the places of its operands and of its value; the first ``once`` compute values
+    that do not vary.
     """
 
     def __init__(self, results: Mapping[str, Any], endings: Sequence[str]) -> None:
@@ -69,38 +69,38 @@ class Schedule:
             self.steps.append((ending, (self._place[id(e)], to)))
 
     def _write(self, work: Sequence[Any], kept: Sequence[Any]) -> None:
-        """Append the steps for ``work``, each value in a place of its own for as long as it is
-        needed; for good if it is one of ``kept``."""
-        fused = _with_products(work, kept)
-        joined = {id(e) for _, products in fused.values() for e in products}
-        steps = [e for e in work if id(e) not in joined and e.operation not in PROJECTIONS]
+        """Append the steps for the expressions ``work``. The place of a value is used again after
+        its last use, except for the expressions ``kept``."""
+        fused = _fuse_products(work, kept)
+        products_fused = {id(e) for _, products in fused.values() for e in products}
+        steps = [e for e in work if id(e) not in products_fused and e.operation not in PROJECTIONS]
         last = {id(operand): id(e) for e in steps for operand in _operands(e, fused)}
-        needed = {id(e) for e in kept}
-        own: dict[int, int] = {}
+        permanent = {id(e) for e in kept}
+        reusable: dict[int, int] = {}
 
         def release(values: Iterable[Any], after: Any) -> None:
             for value in {id(v): v for v in values}:
-                mine = last.get(value) in (None, id(after)) and value in own
-                if mine and value not in needed:
-                    self._free.append(own.pop(value))
+                mine = last.get(value) in (None, id(after)) and value in reusable
+                if mine and value not in permanent:
+                    self._free.append(reusable.pop(value))
 
         for e in steps:
             operands = _operands(e, fused)
             places = [self._place[id(operand)] for operand in operands]
-            made = [e]
+            values = [e]
             if e.operation == "sine_and_cosine":
-                made = [e.table.combine(half, e) for half in PROJECTIONS]
+                values = [e.table.combine(half, e) for half in PROJECTIONS]
             elif e.operation not in _APART:
                 release(operands, e)
-            for value in made:
+            for value in values:
                 place = self._free.pop() if self._free else self.places
                 self.places = max(self.places, place + 1)
-                self._place[id(value)] = own[id(value)] = place
+                self._place[id(value)] = reusable[id(value)] = place
                 places.append(place)
             name = fused[id(e)][0] if id(e) in fused else e.operation.upper()
             self.steps.append((name, tuple(places)))
             if e.operation in _APART:
-                release([*operands, *(v for v in made if id(v) not in last)], e)
+                release([*operands, *(v for v in values if id(v) not in last)], e)
 
 
 Fused = dict[int, tuple[str, tuple[Any, ...]]]
@@ -108,13 +108,14 @@ Fused = dict[int, tuple[str, tuple[Any, ...]]]
 
 
 def _operands(e: Any, fused: Fused) -> list[Any]:
-    """What a step reads: the factors of the products that are taken with it."""
+    """Return a step's operands, with the factors of the products that are fused into it."""
     products = fused[id(e)][1] if id(e) in fused else ()
     factors = [factor for product in products for factor in product.operands]
     return factors + [operand for operand in e.operands if operand not in products]
 
 
-def _with_products(work: Sequence[Any], kept: Sequence[Any]) -> Fused:
+def _fuse_products(work: Sequence[Any], kept: Sequence[Any]) -> Fused:
+    """Return the sums that can take products with them: those of products used nowhere else."""
     uses = Counter(id(operand) for e in work for operand in e.operands)
     uses.update({id(e): 2 for e in kept})
     mine = {id(e) for e in work}
