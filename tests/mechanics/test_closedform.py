@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from passes import passes
 
 from impact88.mechanics.closedform.plan import Plan
-from impact88.mechanics.closedform.statusbits import undecided
+from impact88.mechanics.closedform.statusbits import needs_full_kernel
 from impact88.mechanics.native.formulas import ExpressionTable
 from impact88.mechanics.native.schedule import Schedule
 
@@ -135,7 +135,7 @@ def test_only_a_regular_scene_is_decided_without_its_velocities(magnitude: float
     size = np.float64(magnitude)
     for condition, expected in ((2.0**24, False), (2.0**26, True), (np.inf, True)):
         absolute_sum = condition / 3 * abs(size)
-        assert undecided(size, absolute_sum, 1.0, 2.0) == expected
-    assert undecided(np.float64(1e-101), 1e-101, 1.0, 2.0)
-    assert undecided(size, abs(size), 1e151, 2.0)
-    assert undecided(size, abs(size), 0.0, 0.0)
+        assert needs_full_kernel(size, absolute_sum, 1.0, 2.0) == expected
+    assert needs_full_kernel(np.float64(1e-101), 1e-101, 1.0, 2.0)
+    assert needs_full_kernel(size, abs(size), 1e151, 2.0)
+    assert needs_full_kernel(size, abs(size), 0.0, 0.0)
