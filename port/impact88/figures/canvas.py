@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 FORMATS = ("svg", "png", "pdf")
 DOTS_PER_INCH = 300
-"""Of PNG: what print is usually asked for."""
+"""Resolution of PNG: the usual one for print."""
 FONTS = "'DejaVu Sans', Verdana, Arial, sans-serif"
 HALO = "halo"
 """Class of the white text behind each text."""

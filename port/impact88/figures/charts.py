@@ -22,20 +22,25 @@ from .drawing import BLACK, GREY, ROW, TEXT, Box, Drawing, Path, Text, short
 if TYPE_CHECKING:
     from ..uncertainty.boundstable import Bounds
 
-MOST_PANELS, MOST_BARS, BINS, SWEEP, WIDEST_SWEEP = 12, 8, 60, 801, 5.0
-"""Panels that fit a page, bars that fit a panel; bars of a histogram, two a millimetre; points of a
-sweep, ten a millimetre; the largest friction coefficient swept."""
-_LEFT, _TOP, _BELOW, _DASHED, _DOTTED = 13.0, 6.0, 3.3, (1.3, 0.8), (0.4, 0.6)
-"""In mm: room for the numbers left of a panel and the name above it; from the axis down to the
-numbers' baseline; dashes told apart in print."""
-_CLEAR, _APART, _EDGE = 2.0, 1.2, 0.6
-"""In mm, at least: from an axis's name to the page's edge; between the numbers of an axis; from a
-number to the page's edge."""
+MOST_PANELS = 12  # panels that fit a page
+MOST_BARS = 8  # bars that fit a panel
+BINS = 60  # bars of a histogram, two a millimetre
+SWEEP = 801  # points of a sweep, ten a millimetre
+WIDEST_SWEEP = 5.0  # largest friction coefficient swept
+# in mm
+_LEFT = 13.0  # for the numbers left of a panel
+_TOP = 6.0  # for the name above a panel
+_BELOW = 3.3  # from the axis down to the baseline of its numbers
+_DASHED = (1.3, 0.8)
+_DOTTED = (0.4, 0.6)
+_CLEAR = 2.0  # least distance of an axis's name from the page's edge
+_APART = 1.2  # least distance of the numbers of an axis
+_EDGE = 0.6  # least distance of a number from the page's edge
 _FLAT = 1e-9  # values that differ by less, as a fraction of the largest, are drawn as one
 _SQUEEZED = 3.0
-"""Where the whole range of a result is so many times that of its physical part, the axis is that of
-the physical part."""
-_UNPHYSICAL, _PALE = "#f7dfae", "#c6dff0"
+"""An axis shows only the physical part of a result whose whole range is this many times that."""
+_UNPHYSICAL = "#f7dfae"
+_PALE = "#c6dff0"
 
 MARKS = {"o": (24, 0), "s": (4, 45), "D": (4, 0), "^": (3, 90), "v": (3, -90), ">": (3, 0)}
 MARKS |= {"P": (5, 90), "_": (2, 0)}
@@ -59,7 +64,7 @@ class Axis(NamedTuple):
 
 
 def span(values: Any, margin: float = 0.05) -> tuple[float, float]:
-    """From the smallest to the largest finite value, and a share of that beyond both."""
+    """Return the range of the finite values, extended at both ends by a fraction of it."""
     values = np.asarray(values, float).ravel()
     values = values[np.isfinite(values)]
     low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
@@ -291,8 +296,11 @@ def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
         left = _LEFT + column * wide - 3 * column
         box = Box(left, upper - 18, left + wide - _LEFT + (1 if column else -1), upper)
         panel = Panel(
-            *(drawing, box, span([*edges, bound.lower, bound.upper])),
-            *((0.0, 1.08 * heights.max()), _label(name, units)),
+            drawing,
+            box,
+            span([*edges, bound.lower, bound.upper]),
+            (0.0, 1.08 * heights.max()),
+            _label(name, units),
             "% of draws" if column == 0 else "",
             x_ticks=4 if columns == 2 else 8,
         )
@@ -555,7 +563,12 @@ def force_and_impulse() -> Drawing:
         (50.0, mean, "F_A", "b. average force", [0, 0, 1, 1], [0, mean, mean, 0]),
     ):
         panel = Panel(
-            *(drawing, Box(left, top - 28, left + 33, top), (0, 1.15), (0, 1.18), "time", title),
+            drawing,
+            Box(left, top - 28, left + 33, top),
+            (0, 1.15),
+            (0, 1.18),
+            "time",
+            title,
             x_ticks=[(0, "0"), (1, "t_f")],
             y_ticks=[(level, name)],
         )

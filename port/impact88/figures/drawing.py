@@ -23,12 +23,17 @@ DRAWABLE = 1e100
 """The largest number that is drawn: products of some must be doubles too."""
 COLUMN = 85.0
 """Width in millimetres of a column in print."""
-MM_PER_POINT, TEXT, ROW = 25.4 / 72, 6.5, 3.4
-"""Of type; the size of most texts in points, and the distance of their lines in mm."""
+MM_PER_POINT = 25.4 / 72
+TEXT = 6.5  # size of most texts, in points
+ROW = 3.4  # distance of their lines, in mm
 
 # Okabe and Ito's colours, which stay apart for every common kind of colour blindness
-BLACK, GREY, WHITE = "#000000", "#666666", "#ffffff"
-BLUE, VERMILION, ORANGE = "#0072b2", "#d55e00", "#e69f00"
+BLACK = "#000000"
+GREY = "#666666"
+WHITE = "#ffffff"
+BLUE = "#0072b2"
+VERMILION = "#d55e00"
+ORANGE = "#e69f00"
 
 _ASCII = """318 401 460 838 637 951 780 275 391 391 500 838 318 361 318 337 637 637 637 637 637 637
 637 637 637 637 337 337 838 838 838 531 1000 685 687 699 771 632 576 775 752 295 295 656 558 863
@@ -39,22 +44,36 @@ _WIDTHS = dict(zip(map(chr, range(32, 127)), map(int, _ASCII.split()), strict=Tr
 _WIDTHS |= {"Δ": 685, "Ω": 765, "…": 1000, **_OTHERS, **dict.fromkeys("ω×→±−", 838)}
 """Advances in thousandths of the size."""
 BOLD = 1.15
-"""A bold character is at most about so much wider."""
-ASCENT, DESCENT, SUBSCRIPT_SIZE, SUBSCRIPT_DROP = 0.78, 0.24, 0.7, 0.2
-"""Of the size: capitals above and tails below the baseline; subscripts, as usual in print."""
+"""Largest width of a bold character, relative to the regular one."""
+# as fractions of the size of type, as usual in print
+ASCENT = 0.78
+DESCENT = 0.24
+SUBSCRIPT_SIZE = 0.7
+SUBSCRIPT_DROP = 0.2
 
-DIRECTIONS, GAP, STEP, LEADER_FROM = 24, 0.9, 0.4, 3.6
-"""Directions tried for a label; in mm, least distance of two texts, distance of the points that
-lines are looked at by, distance from which on a thin line leads to the point. Of 323 labels in 24
-drawings 1 covers a line: none with twice the directions, 2 with half, 4 with twice the step."""
+# Placing of labels: of 323 labels in 24 drawings 1 covers a line; none with twice the directions,
+# 2 with half, 4 with twice the step
+DIRECTIONS = 24  # directions tried
+GAP = 0.9  # least distance of two texts, in mm
+STEP = 0.4  # distance of the points at which a line is sampled, in mm
+LEADER_FROM = 3.6  # distance from which on a thin line leads to the point, in mm
 REACHES = (0.9, 2.0, 3.4, 5.0, 7.0, 10.0, 14.0, 20.0)
 """Distances in mm tried between the point named and the nearest edge of the text; doubled, 4."""
 WEIGHTS = {
-    **{"glass": 0.4, "heading": 1.5, "body": 0.0, "after": 2.5, "impulse": 2.5, "head": 2.5},
-    **{"spin": 2.0, "moment": 2.5, "before": 2.0, "angle": 1.5, "change": 1.5},
+    "glass": 0.4,
+    "heading": 1.5,
+    "body": 0.0,
+    "after": 2.5,
+    "impulse": 2.5,
+    "head": 2.5,
+    "spin": 2.0,
+    "moment": 2.5,
+    "before": 2.0,
+    "angle": 1.5,
+    "change": 1.5,
 }
-"""What covering a line of the role ending so costs, against 1 for any other: doubled, 2 labels
-move; without them, 4 labels cover lines."""
+"""Cost of covering a line whose role ends so, 1 for any other: doubled, 2 labels move; without
+them, 4 labels cover lines."""
 
 
 class Path(NamedTuple):
@@ -111,7 +130,7 @@ class Box(NamedTuple):
 
     @property
     def corners(self) -> tuple[complex, ...]:
-        """From the lower left one counterclockwise."""
+        """The corners, counterclockwise from the lower left one."""
         left, bottom, right, top = self
         points = (left, bottom), (right, bottom), (right, top), (left, top)
         return tuple(complex(*point) for point in points)
@@ -122,7 +141,7 @@ class Box(NamedTuple):
 
 
 class View(NamedTuple):
-    """Where points of a plan are on paper."""
+    """Map from points of a plan to paper."""
 
     origin: complex
     scale: float

@@ -22,8 +22,8 @@ from ..program.scene import numbers_of
 from ..status import sentences
 from .drawing import check_drawable, degrees, unit
 
-PROPORTION, WALL = 2.6, 1e4
-"""Length over width; the ratio of masses from which on the heavier one is a wall."""
+PROPORTION = 2.6  # length over width of a vehicle
+WALL = 1e4  # ratio of masses from which on the heavier body is drawn as a wall
 
 
 class Motion(NamedTuple):

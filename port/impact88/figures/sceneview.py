@@ -25,9 +25,12 @@ ARROWS: dict[str, tuple[str, tuple[float, tuple[float, ...]], float]] = {
     "change": ("ΔV", (0.3, (0.4, 0.5)), 1.8),
 }
 """Velocities of a vehicle: symbol, width and dashes of the arrow, and its head."""
-FIELD, _MARGIN = 70.0, 6.0
-"""Largest height in mm of the drawing proper, and what labels need beside it."""
-_SPEED, _LENGTH, _SPIN, _IMPULSE = "length/time", "length", "rad/time", "mass·length/time"
+FIELD = 70.0  # largest height of the drawing proper, in mm
+_MARGIN = 6.0  # room for labels beside it, in mm
+_SPEED = "length/time"
+_LENGTH = "length"
+_SPIN = "rad/time"
+_IMPULSE = "mass·length/time"
 
 
 def scene_drawing(
@@ -345,8 +348,12 @@ def _key(drawing: Drawing, field: _Field, y: float, units: System, left_edge: fl
 
 
 _COLUMNS = {
-    **{"speed before": 17.2, "after": 28.8, "ΔV": 40.4},
-    **{"force from": 53.4, "spin before": 68.0, "spin after": 83.0},
+    "speed before": 17.2,
+    "after": 28.8,
+    "ΔV": 40.4,
+    "force from": 53.4,
+    "spin before": 68.0,
+    "spin after": 83.0,
 }
 """The table's headings and where its columns end, in mm of a drawing one column wide."""
 

@@ -15,10 +15,15 @@ from .drawing import ROW, Box, Drawing, Label, Path, Text, View, place
 from .scenegeometry import Motion, Plan, Vehicle, plan
 from .sceneview import COLOURS, IMPULSE, PLANE, TINTS, draw_axes, name_label
 
-_GAP, _PANEL_GAP, _TITLE, _PAD = 6.0, 4.0, 5.0, 3.5
-"""In mm: between the views of a strip, between panels, of a panel's title, within a panel."""
-_ANGLE, _MARGIN, _TALLEST, _MOMENT = "#444444", 7.5, 95.0, 3.4
-"""Of free bodies: colour of angles; in mm, beside the drawing, its height, radius of a moment."""
+# in mm
+_GAP = 6.0  # between the views of a strip
+_PANEL_GAP = 4.0  # between panels
+_TITLE = 5.0  # height of a panel's title
+_PAD = 3.5  # within a panel
+_MARGIN = 7.5  # beside a free body
+_TALLEST = 95.0  # height of a free body
+_MOMENT = 3.4  # radius of a moment's arrow
+_ANGLE = "#444444"  # colour of angles
 
 
 def strip_drawing(
