@@ -15,7 +15,7 @@ from impact88.collision.fields import ANGLES, FIELDS
 from impact88.errors import UserError
 from impact88.verification.reading import glyphs
 from impact88.verification.reading.numerals import candidates
-from impact88.verification.reading.plaintext import decoded
+from impact88.verification.reading.plaintext import decode
 from impact88.verification.reading.printout import read_printouts
 
 
@@ -196,7 +196,7 @@ def test_encodings(encoding: str) -> None:
 def test_two_bytes_a_character_are_seen_without_their_mark(encoding: str) -> None:
     """Typographic signs, too, whose bytes hold no zero."""
     page = SAMPLE.replace("-", "−")
-    assert decoded(page.encode(encoding), "page") == page
+    assert decode(page.encode(encoding), "page") == page
 
 
 def test_a_minus_may_belong_to_the_label_only_where_the_label_has_no_equals_sign() -> None:
