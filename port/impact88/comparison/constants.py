@@ -3,6 +3,7 @@
 It is fitted to all rows and reported as a number, with the known constant that it is near to.
 """
 
+import math
 from collections.abc import Iterator
 from math import pi
 from typing import Any, NamedTuple
@@ -112,7 +113,10 @@ class _Target(NamedTuple):
 
     def sides(self, constant: float) -> dict[str, Sides]:
         """Return the statements with the constant."""
-        inverse = 1 / constant if self.operation == FACTOR else -constant
+        if self.operation == FACTOR:
+            inverse = 1 / constant if constant else math.inf  # where all results are zero
+        else:
+            inverse = -constant
         sides: dict[str, Sides] = {}
         for key, side in self.direct.items():
             sides[key] = ((self.operation, side, constant),)
