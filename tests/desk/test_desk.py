@@ -612,7 +612,7 @@ def coded(data: bytes) -> str:
 )
 def test_a_paper_is_judged_as_the_command_judges_it(data: bytes, tmp_path: Path, own: Own) -> None:
     (tmp_path / "page.txt").write_bytes(data)
-    told = paper.judged("page.txt", data)
+    told = paper.judge("page.txt", data)
     objects = [json.loads(line) for line in own("verify", "--json", "page.txt").splitlines()]
     assert json.loads(json.dumps(told["objects"])) == objects
     assert told["problem"] == objects[0].get("error")
@@ -647,7 +647,7 @@ def test_a_papers_name_is_a_name_and_nothing_else(name: str, base: str) -> None:
 
 def test_what_is_no_file_is_refused_before_it_is_read() -> None:
     with pytest.raises(UserError, match="is larger than"):
-        paper.judged("page.txt", b" " * (paper.LARGEST_FILE + 1))
+        paper.judge("page.txt", b" " * (paper.LARGEST_FILE + 1))
     with pytest.raises(UserError, match="nothing to report"):
         paper.report([], {})
     with pytest.raises(UserError, match=r"^case: has more than 200"):
@@ -665,18 +665,18 @@ def hocr(text: str) -> bytes:
 
 
 def test_words_with_their_places_are_read_as_the_page_they_make() -> None:
-    told = paper.judged("page.hocr", hocr(RUN1.decode()))
+    told = paper.judge("page.hocr", hocr(RUN1.decode()))
     assert told["printouts"][0]["title"].startswith("IDENTICAL")
     assert "ocrx" not in told["text"]
     for check in told["objects"][0]["fields"]:
         assert check["start"] is None or told["text"][check["start"] : check["stop"]].strip()
-    assert "PDF" in paper.judged("page.pdf", b"%PDF-")["problem"]
+    assert "PDF" in paper.judge("page.pdf", b"%PDF-")["problem"]
 
 
 def test_a_scan_is_read_itself() -> None:
     pytest.importorskip("PIL", reason="the scan extra is not installed")
     scan = ROOT / "golden/scans/clean-001.png"
-    told = paper.judged(scan.name, scan.read_bytes())
+    told = paper.judge(scan.name, scan.read_bytes())
     assert [words["title"] for words in told["printouts"]] == ["IDENTICAL"]
     assert "VAX=" in told["text"]
     for check in told["objects"][0]["fields"]:
@@ -685,7 +685,7 @@ def test_a_scan_is_read_itself() -> None:
 
 @pytest.mark.long
 def test_half_a_megabyte_of_one_letter_is_no_printout() -> None:
-    assert "no printout" in paper.judged("page.txt", b"x" * 500_000)["problem"]
+    assert "no printout" in paper.judge("page.txt", b"x" * 500_000)["problem"]
 
 
 # --- processes ---------------------------------------------------------------------------------

@@ -20,7 +20,7 @@ from impact88.errors import UserError
 from impact88.program.run import run
 from impact88.program.scene import sample
 from impact88.verification.judging import beside
-from impact88.verification.judging.judgement import Status, settled
+from impact88.verification.judging.judgement import Status, is_reader_error
 from impact88.verification.reading import alignment, printout
 from impact88.verification.reading.numerals import printable
 from impact88.verification.reading.printout import Printout, read_printouts
@@ -235,9 +235,9 @@ def test_settled_by_its_own_rule() -> None:
     assert shown.machine_read
     assert not read_printouts(SAMPLE)[0].machine_read
     checks = verify(shown).fields
-    assert settled(checks, [])
+    assert is_reader_error(checks, [])
     checks[3].status = Status.NOT_READ
-    assert not settled(checks, [])
+    assert not is_reader_error(checks, [])
 
 
 @pytest.mark.parametrize("elsewhere", range(4))

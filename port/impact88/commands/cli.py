@@ -1,7 +1,7 @@
 """The command line: which command, imported only then, and what happens to errors.
 
 Exit status: 0 done (``ZERO DETERMINANT`` is a normal END), 1 done with an adverse result, 2
-unusable input, 3 a bug of this project; control-C, a broken pipe and a signal to leave end with the
+unusable input, 3 an internal error; control-C, a broken pipe and a signal to leave end with the
 shell's 130, 141 and 128 + signal. There is no traceback, unless IMPACT88_DEBUG=1 asks for a bug's.
 """
 
@@ -210,7 +210,7 @@ def _reason(error: Exception) -> str | None:
 
 
 def _report_bug(called: str | None, error: Exception, debug: bool) -> None:
-    """One line on a bug of ours and where it is; the whole traceback on request."""
+    """Report an internal error and its place in one line; the whole traceback on request."""
     if debug:
         import traceback
 
@@ -221,4 +221,4 @@ def _report_bug(called: str | None, error: Exception, debug: bool) -> None:
         step = step.tb_next
     description = one_line(f"{type(error).__name__}{f': {error}' if str(error) else ''}", 200)
     advice = "" if debug else " (IMPACT88_DEBUG=1 prints the traceback)"
-    note(called, f"a bug of impact88, not of your input: {description}{place}{advice}")
+    note(called, f"internal error; please report it: {description}{place}{advice}")

@@ -78,7 +78,7 @@ def overview() -> str:
         "two vehicles, digit for digit, and the same mechanics for today's work.\n\n"
         f"{groups}\n\nimpact88 help COMMAND lists a command's options."
     )
-    status = "exit status: 0 done, 1 adverse result, 2 unusable input, 3 a bug of impact88"
+    status = "exit status: 0 done, 1 adverse result, 2 unusable input, 3 internal error"
     width = terminal_width()
     return f"{wrap_text(text, width)}\n{wrap_text(status, width)}"
 

@@ -34,9 +34,13 @@ from .forms import digits, filled_in
 from .guard import HEADERS, LARGEST_BODY, refusal
 from .workers import Bench, BrokenError, SupersededError
 
-BENCHES = {"edit": "paper", "paper": "paper", "bounds": "collision"}
-BENCHES["reconstruction"] = "reconstruction"
-"""What takes long, and the module that does it; the text being edited overtakes papers waiting."""
+BENCHES = {
+    "edit": "paper",
+    "paper": "paper",
+    "bounds": "collision",
+    "reconstruction": "reconstruction",
+}
+"""Kinds of slow work, and the module that does each; an edited text overtakes waiting papers."""
 _FORM = ("values", "units")
 
 GROUPS = {
@@ -62,7 +66,7 @@ MORE_GROUPS = {
     "Energy": "KI KF EL LOSS",
 }
 ALWAYS_KNOWN = frozenset("MA IA DA PA TA MB IB DB PB TB GA M".split())
-"""What a reconstruction cannot do without."""
+"""Inputs that a reconstruction requires."""
 
 SYSTEMS = {"us": "lb, mph, ft", "chapter": "slug, ft/s, ft"}
 SYSTEMS |= {"metric": "kg, km/h, m", "si": "kg, m/s, m"}
@@ -98,11 +102,11 @@ def unit(label: str) -> str:
 
 
 def drivers(bound: Mapping[str, Any]) -> str:
-    """The two inputs that move a result most, each with how far."""
+    """Return the two inputs that change a result most, each with its swing."""
     swings = {n: (d["highest"] or 0) - (d["lowest"] or 0) for n, d in bound["drives"].items()}
     least = 1e-9 * abs((bound["upper"] or 0) - (bound["lower"] or 0))
-    ranked = sorted(swings.items(), key=lambda entry: -entry[1])[:2]
-    return ", ".join(f"{name} {number(swing, 3)}" for name, swing in ranked if swing > least)
+    ranking = sorted(swings.items(), key=lambda entry: -entry[1])[:2]
+    return ", ".join(f"{name} {number(swing, 3)}" for name, swing in ranking if swing > least)
 
 
 class FiniteJSONProvider(DefaultJSONProvider):
@@ -156,7 +160,7 @@ def application(desk: Desk, port: int, token: str) -> Flask:
 
 
 def _problem(error: Exception) -> Any:
-    """An error as JSON, in the words a command would use."""
+    """Return an error as JSON, in the words a command would use."""
     if isinstance(error, UserError):
         return {"problem": str(error)}, 400
     if isinstance(error, SupersededError):
@@ -165,7 +169,7 @@ def _problem(error: Exception) -> Any:
         too_large = f"more than {LARGEST_BODY:,} bytes, the limit here"
         return {"problem": too_large if error.code == 413 else error.name}, error.code or 500
     detail = str(error) if isinstance(error, BrokenError) else f"{type(error).__name__}: {error}"
-    return {"problem": f"a fault of impact88 {__version__}, not of your input: {detail}"}, 500
+    return {"problem": f"internal error of impact88 {__version__}; please report it: {detail}"}, 500
 
 
 def _addresses(desk: Desk) -> Blueprint:
@@ -174,7 +178,7 @@ def _addresses(desk: Desk) -> Blueprint:
     def sender() -> str:
         return request.headers.get("X-Desk-Page", "")[:64]
 
-    def asked(bench: str, function: str, **arguments: Any) -> Any:
+    def ask(bench: str, function: str, **arguments: Any) -> Any:
         return desk.benches[bench].ask(sender(), function, **arguments)
 
     def table(macro: str, content: Any) -> str:
@@ -212,14 +216,14 @@ def _addresses(desk: Desk) -> Blueprint:
     @routes.post("/judge")
     def judge() -> Any:
         bench = "edit" if request.args.get("bench") == "edit" else "paper"
-        given = {name: request.args.get(name, "") for name in ("name", "seed")}
-        return asked(bench, "judged", data=request.get_data(), **given)
+        query = {name: request.args.get(name, "") for name in ("name", "seed")}
+        return ask(bench, "judge", data=request.get_data(), **query)
 
     @routes.post("/published/<name>")
-    def published(name: str) -> Response:
+    def published_printout(name: str) -> Response:
         if name not in PUBLISHED:
             abort(404)
-        return _saved(packaged_text("impact88.legacy", name), "text/plain", name)
+        return _download(packaged_text("impact88.legacy", name), "text/plain", name)
 
     @routes.post("/report")
     def report() -> Response:
@@ -229,8 +233,8 @@ def _addresses(desk: Desk) -> Blueprint:
                 b64decode(paper.get("data", "?"), validate=True)
         except ValueError:
             raise UserError("'data' of a paper is not base 64") from None
-        written = asked("edit", "report", **parts)
-        return _saved(written, "text/html", "report.html")
+        document = ask("edit", "report", **parts)
+        return _download(document, "text/html", "report.html")
 
     @routes.post("/collision")
     def collision_answer() -> Any:
@@ -242,13 +246,13 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/figure")
     def figure() -> Response:
-        drawn = collision.figure(**_parts(*_FORM, "title"))
-        return Response(drawn, content_type="image/svg+xml")
+        drawing = collision.figure(**_parts(*_FORM, "title"))
+        return Response(drawing, content_type="image/svg+xml")
 
     @routes.post("/bounds")
     def bounds() -> Any:
-        found = asked("bounds", "bounds_answer", **_parts(*_FORM))
-        return {"found": found, "table": table("bounds", found)}
+        document = ask("bounds", "bounds_answer", **_parts(*_FORM))
+        return {"found": document, "table": table("bounds", document)}
 
     def file_of(view: str) -> tuple[str, str]:
         if view == "collision":
@@ -260,13 +264,13 @@ def _addresses(desk: Desk) -> Blueprint:
     @routes.post("/file/<view>")
     def file(view: str) -> Response:
         text, name = file_of(view)
-        return _saved(text, "application/toml", name)
+        return _download(text, "application/toml", name)
 
     @routes.post("/case-report/<view>")
     def case_report(view: str) -> Response:
         text, name = file_of(view)
-        written = asked("bounds", "case_report", text=text, name=name)
-        return _saved(written, "text/html", "case.html")
+        document = ask("bounds", "case_report", text=text, name=name)
+        return _download(document, "text/html", "case.html")
 
     def file_read(names: Collection[str]) -> Any:
         return filled_in(request.get_data(), request.args.get("name", "the file")[:200], names)
@@ -276,7 +280,7 @@ def _addresses(desk: Desk) -> Blueprint:
 
     @routes.post("/reconstruct")
     def reconstruct() -> Any:
-        answer = asked("reconstruction", "answer", **_parts(*_FORM))
+        answer = ask("reconstruction", "answer", **_parts(*_FORM))
         return {**answer, "tables": table("solutions", answer["solutions"])}
 
     @routes.post("/stop/<bench>")
@@ -289,8 +293,8 @@ def _addresses(desk: Desk) -> Blueprint:
     return routes
 
 
-def _saved(text: str, kind: str, name: str) -> Response:
-    """A file to be saved by the browser under a name."""
+def _download(text: str, kind: str, name: str) -> Response:
+    """Return a file that the browser saves under a name."""
     headers = {"Content-Disposition": f'attachment; filename="{name}"'}
     return Response(text.encode(), content_type=f"{kind}; charset=utf-8", headers=headers)
 

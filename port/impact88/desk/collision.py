@@ -25,11 +25,12 @@ from .forms import entries, spoken_direction, units_shown, without_rounding
 
 DRAWS = 20_000
 """Random draws for the bounds' quantiles: half a second at most with every value a range."""
-_NOMINAL_DIGITS, _DIGITS, _ANSWER_DIGITS = 9, 12, 4
-"""Of a range's nominal value, as many as Applesoft prints; of an exact result, as many as double
-precision is sure of; of the answer, more than the inputs of any collision are known to."""
+_NOMINAL_DIGITS = 9  # of a range's nominal value: as many as Applesoft prints
+_DIGITS = 12  # of an exact result: as many as are certain in double precision
+_ANSWER_DIGITS = 4  # of the answer: more than the inputs of any collision are known to
 _ROUNDING = 1e-14
-"""Share of the largest value of its kind below which a result shows as 0: a hundred roundings."""
+"""Fraction of the largest value of its kind below which a result shows as 0: a hundred
+roundings."""
 _ANSWER = (
     ("Velocity change ΔV", "DVA", "DVB"),
     ("forward, along the vehicle", "DVAF", "DVBF"),
@@ -205,8 +206,8 @@ def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
 
 
 def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
-    """What `impact88 bounds --json` prints for the form's ranges, with fewer draws. Raises
-    UserError, also for a form without ranges."""
+    """Return the object that `impact88 bounds --json` prints for the form's ranges, with fewer
+    draws. Raises UserError, also for a form without ranges."""
     from ..uncertainty.bounds import bounds
     from ..uncertainty.boundstable import as_json, in_units
     from ..uncertainty.ranges import read_inputs
@@ -215,12 +216,12 @@ def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     if not form.case or not form.scene or not form.ranges:
         raise UserError("there are no ranges to explore")
     inputs = read_inputs(form.case)
-    answered = bounds(inputs.values, correlations=inputs.correlations, samples=DRAWS)
-    return with_schema("bounds", as_json(in_units(answered, form.system)))
+    result = bounds(inputs.values, correlations=inputs.correlations, samples=DRAWS)
+    return with_schema("bounds", as_json(in_units(result, form.system)))
 
 
 def scene_file(values: Mapping[str, str], title: str, units: str = "") -> str:
-    """The form as a scene file, its texts as they were typed. Raises UserError."""
+    """Return the form as a scene file, its texts as they were typed. Raises UserError."""
     form = read(values, units, title)
     for problem in form.problems.values():
         raise UserError(problem)
@@ -228,13 +229,13 @@ def scene_file(values: Mapping[str, str], title: str, units: str = "") -> str:
 
 
 def sample_scene(which: int) -> dict[str, Any]:
-    """A published run as a file is read. Raises UserError."""
+    """Return a published run in the form of a file that was read. Raises UserError."""
     scene = sample(which)
     return {"values": dict(scene), "title": scene.title or "", "units": scene.units}
 
 
 def case_report(text: str, name: str) -> str:
-    """The page that `impact88 report` writes for the text of a file. Raises UserError."""
+    """Return the page that `impact88 report` writes for the text of a file. Raises UserError."""
     from ..report.findings import report
 
     case = Case(toml_texts(text, name), name)

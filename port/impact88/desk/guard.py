@@ -1,4 +1,4 @@
-"""Who may ask the desk, and what goes with every answer.
+"""Access control of the desk, and the headers of every answer.
 
 Other pages in the same browser, and other users of the machine, can reach it too. Against them: a
 random token that begins every path, the exact Host (a foreign name pointed at 127.0.0.1 fails), the

@@ -15,27 +15,28 @@ MAX_WAITING = 64
 
 
 class Channel(HTTPChannel):  # type: ignore[misc]
-    """A connection that knows since when it has been sending a request."""
+    """A connection with the time since which it has been sending a request."""
 
-    since, served = 0.0, False
+    since = 0.0
+    served = False
 
     def received(self, data: bytes) -> bool:
         if self.request is None:
             self.since = time.time()
-        taken: bool = super().received(data)
+        result: bool = super().received(data)
         self.served |= bool(self.requests)
-        return taken
+        return result
 
     def overdue(self, now: float) -> bool:
         if self.requests or self.total_outbufs_len:
             return False
         if self.request is None:  # nothing was sent, or nothing since the last answer
             return not self.served and now - self.creation_time > HEADER_SECONDS
-        allowed = BODY_SECONDS if self.request.headers_finished else HEADER_SECONDS
-        return now - self.since > allowed
+        limit = BODY_SECONDS if self.request.headers_finished else HEADER_SECONDS
+        return now - self.since > limit
 
 
-def guarded(server: Any) -> None:
+def close_stalled(server: Any) -> None:
     """Let a waitress ``server`` close connections that send no whole request."""
     accept, maintain = server.handle_accept, server.maintenance
 
@@ -44,7 +45,7 @@ def guarded(server: Any) -> None:
         channels = server.active_channels.values()
         waiting = [c for c in channels if not (c.requests or c.total_outbufs_len)]
         if len(waiting) > MAX_WAITING:
-            # whoever was served before: a refusal is an answer too, and anybody can have one
+            # even one that was served before: a refusal is an answer too, and anybody can get one
             min(waiting, key=lambda channel: channel.last_activity).handle_close()
 
     def maintenance(now: float) -> None:

@@ -18,16 +18,20 @@ from ..names import FINAL_STATE, SCENE, VELOCITIES, check_names, quantity
 from ..program.scene import sample
 from .forms import digits, entries, spoken_direction, units_shown, without_rounding
 
-DRAWS, _DIGITS, _DIGITS_TO_GO_ON = 20_000, 6, 12
-"""Random draws for the quantiles, as many as for a collision's bounds; digits of a value shown, as
-the command prints, and of one that goes on into another computation."""
+DRAWS = 20_000  # random draws for the quantiles, as for a collision's bounds
+_DIGITS = 6  # digits shown of a value, as the command prints
+_DIGITS_TO_GO_ON = 12  # digits of a value that enters another computation
 _COLUMNS = {
-    **{"±": (3, "spread"), "5 %": (6, "0.05"), "95 %": (6, "0.95"), "lower": (6, "lower")},
-    **{"upper": (6, "upper"), "error amplified": (3, "amplified")},
+    "±": (3, "spread"),
+    "5 %": (6, "0.05"),
+    "95 %": (6, "0.95"),
+    "lower": (6, "lower"),
+    "upper": (6, "upper"),
+    "error amplified": (3, "amplified"),
 }
-"""Columns of a table, the digits shown, and what stands there."""
+"""Columns of a table: the digits shown, and the key of the value."""
 _ROUNDING = 1e-9
-"""Share of the largest value of its kind below which a value is shown as 0: values go on with
+"""Fraction of the largest value of its kind below which a value is shown as 0: values go on with
 twelve digits, and the published runs amplify errors up to 300 times."""
 _ASKED = ("DVA", "DVB", "PDOFA", "PDOFB", "LOSS")
 """Shown first, and then what was solved for."""
@@ -39,11 +43,11 @@ def warm() -> None:
 
 
 def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
-    """The solutions for what is known: ``problems`` by name; ``waiting``, why there is none;
-    ``units`` as `units_shown`; ``object``, what `impact88 reconstruct --json` prints;
-    ``solutions``, each with the command's text (``printed``), the verdict on the ``evidence``,
-    what of physics it breaks (``impossible``), ``rows`` and ``columns`` of a table, ``adjusted``
-    values, ``warnings`` and the ``scene`` (texts by name, or None)."""
+    """Return the solutions for the known values: ``problems`` by name; ``waiting``, why there is
+    none; ``units`` as `units_shown`; ``object``, what `impact88 reconstruct --json` prints;
+    ``solutions``, each with the command's text (``printed``), the verdict on the ``evidence``, what
+    of physics it breaks (``impossible``), ``rows`` and ``columns`` of a table, ``adjusted`` values,
+    ``warnings`` and the ``scene`` (texts by name, or None)."""
     from ..reconstruction import adjustment
     from ..reconstruction.reconstructedtable import Measured
     from ..reconstruction.solutiontable import Exact, Impact
@@ -56,32 +60,33 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
             known[name] = _read(name, text, system.name or None)
         except UserError as error:
             problems[name] = str(error)
-    answered: dict[str, Any] = {"problems": problems, "units": units_shown(system)}
-    answered |= {"waiting": "", "object": None, "solutions": []}
-    answered["remarks"] = list(case.remarks.values()) if case else []
+    reply: dict[str, Any] = {"problems": problems, "units": units_shown(system)}
+    reply |= {"waiting": "", "object": None, "solutions": []}
+    reply["remarks"] = list(case.remarks.values()) if case else []
     try:
         if problems or case is None:
             raise UserError(f"To be corrected: {' '.join(problems)}.")
         known, friction = adjustment.resolve_friction(known)
         if friction:
-            answered["remarks"].append(friction)
-        found: Sequence[Impact]
+            reply["remarks"].append(friction)
+        impacts: Sequence[Impact]
         if adjustment.needs_adjustment(known):
             first, *more = adjustment.reconstruct(known)
             best = Measured(first, DRAWS)
-            found = [best, *(Measured(solution, DRAWS, like=best) for solution in more)]
+            impacts = [best, *(Measured(solution, DRAWS, like=best) for solution in more)]
         else:
-            found = Exact.all_of({name: item.nominal for name, item in known.items()})
+            impacts = Exact.all_of({name: item.nominal for name, item in known.items()})
         solutions = [
-            (impact.as_json(system), impact.as_text(system), impact.impossible) for impact in found
+            (impact.as_json(system), impact.as_text(system), impact.impossible)
+            for impact in impacts
         ]
     except UserError as error:
-        return {**answered, "waiting": str(error)}
-    answered["object"] = with_schema(
+        return {**reply, "waiting": str(error)}
+    reply["object"] = with_schema(
         "reconstruct", {"solutions": [numbers for numbers, *_ in solutions]}
     )
-    answered["solutions"] = [_solution(case, known, *solution) for solution in solutions]
-    return answered
+    reply["solutions"] = [_solution(case, known, *solution) for solution in solutions]
+    return reply
 
 
 def _read(name: str, text: str, units: str | None) -> Uncertain:

@@ -98,7 +98,7 @@ def _run(listener: socket.socket, port: int, token: str) -> None:
     from waitress.server import create_server  # type: ignore[import-untyped]
 
     from .app import Desk, application
-    from .halfopen import guarded
+    from .halfopen import close_stalled
 
     # Windows lets any program change what a suffix means, and a browser runs no script that is
     # said to be plain text
@@ -118,7 +118,7 @@ def _run(listener: socket.socket, port: int, token: str) -> None:
         cleanup_interval=1,
         clear_untrusted_proxy_headers=True,
     )
-    guarded(server)
+    close_stalled(server)
     try:
         server.run()
     finally:

@@ -32,16 +32,16 @@ def report(
     case: str | None = None,
     examiner: str | None = None,
 ) -> str:
-    """The page as HTML. ``date``, ``case``, ``examiner``: the user's own, shown as given. Raises
-    UserError where jinja2 is not installed."""
+    """Return the page as HTML. ``date``, ``case``, ``examiner``: the user's own, shown as given.
+    Raises UserError where jinja2 is not installed."""
     results = [result for file in examined for result in file.results]
     read: list[list[str]] = []
     for file in examined:
-        where = files.display_name(file.file)
-        read += [[where, "–", "NOT READ", file.error]] if file.error else []
+        file_name = files.display_name(file.file)
+        read += [[file_name, "–", "NOT READ", file.error]] if file.error else []
         for result in file.results:
-            what, title = f"{result.number} ({result.where})", TITLES[result.verdict]
-            read.append([where, what, title, counts(result.fields)])
+            printout, title = f"{result.number} ({result.where})", TITLES[result.verdict]
+            read.append([file_name, printout, title, counts(result.fields)])
     digests = [(files.display_name(file.file), file.sha256 or "not read") for file in examined]
     return render(
         "verification.html",
@@ -82,7 +82,7 @@ def _printout(result: Verification) -> dict[str, Any]:
 
 
 def _drawing(result: Verification) -> str:
-    """The scene from above; none of a scene that was guessed at."""
+    """Return the drawing of the scene from above; empty for a scene that was partly guessed."""
     scene = result.complete_scene
     if not scene or result.guessed or result.verdict is Verdict.INCOMPLETE:
         return ""
@@ -96,15 +96,15 @@ def _drawing(result: Verification) -> str:
 
 
 def _as_read(result: Verification) -> Iterator[tuple[str, str]]:
-    """The text as it was read, in pieces: text, and how it is marked."""
+    """Yield the text as it was read, in pieces: text, and the kind of mark on it."""
     place = result.start
     for start, stop, look in sorted(_marks(result)):
         if place <= start < result.stop:
             yield _visible(result.text[place:start]), ""
             yield _visible(result.text[start:stop]) or "_", look
             place = max(stop, start)
-    if rest := _visible(result.text[place : result.stop]):
-        yield rest, ""
+    if remainder := _visible(result.text[place : result.stop]):
+        yield remainder, ""
 
 
 def _visible(text: str) -> str:
@@ -112,7 +112,7 @@ def _visible(text: str) -> str:
 
 
 def _marks(result: Verification) -> Iterator[tuple[int, int, str]]:
-    """Where the text is marked, and as what."""
+    """Yield the marked places in the text: start, stop, kind of mark."""
     for check in [*result.fields, *result.replies]:
         if check.start is None or check.stop is None or check.status == Status.READ:
             continue

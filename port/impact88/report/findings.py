@@ -31,21 +31,59 @@ DRIVERS = 3
 FORWARD = ("SAF", "SBF", "VAX", "VAY", "WAF", "VBX", "VBY", "WBF", "DVA", "DVB", "LOSS")
 """Results of a scene that the answer shows; its ranges are followed to all but the speeds."""
 INVERSE = (
-    *("SA", "HA", "SB", "HB", "UX", "UY", "WA", "VX", "VY", "WB", "SAF", "SBF", "DVA", "DVB"),
-    *("LOSS", "E", "MUP", "EM"),
+    "SA",
+    "HA",
+    "SB",
+    "HB",
+    "UX",
+    "UY",
+    "WA",
+    "VX",
+    "VY",
+    "WB",
+    "SAF",
+    "SBF",
+    "DVA",
+    "DVB",
+    "LOSS",
+    "E",
+    "MUP",
+    "EM",
 )
 """Results of a reconstruction that the answer shows, where they were not known."""
 ESTIMATED = ("SA", "SB", "SAF", "SBF", "DVA", "DVB")
-"""Of these those known within limits, too: what is measured is adjusted."""
+"""Results shown also where they were known within limits: measured values are adjusted."""
 _SPREAD: tuple[str, ...] = ("value", "sd", "5 %", "95 %", "lower bound", "upper bound")
 _CAPTION = (
     "sd: standard deviation; 5 and 95 %: of the draws; bounds: attained within the limits of the "
     "inputs, not proven to be the farthest"
 )
 _CONSEQUENCES = (
-    *("SA", "HA", "SAF", "HAF", "DVA", "DVAF", "DVAR", "PDOFA"),
-    *("SB", "HB", "SBF", "HBF", "DVB", "DVBF", "DVBR", "PDOFB"),
-    *("P", "E", "MUP", "MUC", "EM", "KI", "KF", "EL", "LOSS"),
+    "SA",
+    "HA",
+    "SAF",
+    "HAF",
+    "DVA",
+    "DVAF",
+    "DVAR",
+    "PDOFA",
+    "SB",
+    "HB",
+    "SBF",
+    "HBF",
+    "DVB",
+    "DVBF",
+    "DVBR",
+    "PDOFB",
+    "P",
+    "E",
+    "MUP",
+    "MUC",
+    "EM",
+    "KI",
+    "KF",
+    "EL",
+    "LOSS",
 )
 
 
@@ -60,7 +98,8 @@ class Table(NamedTuple):
 
 
 class Spread(NamedTuple):
-    """How uncertain a result is, in base units, NaN for what is not known; and what drives it."""
+    """Uncertainty of a result: standard deviation, 5 and 95 % quantiles and bounds, in base units,
+    NaN where unknown; and the inputs that drive it."""
 
     deviation: float = math.nan
     low: float = math.nan
@@ -71,11 +110,31 @@ class Spread(NamedTuple):
 
 
 class Findings(NamedTuple):
-    """An impact's ``values`` with all that follows, the ``spreads`` of its ``main`` results,
-    ``remarks`` in sentences, and the ``scene`` that is drawn; ``inverse``: whether it was
-    reconstructed; the verdict on the ``evidence``, whether it is that the values are
-    ``contradictory``, and each measured value beside its adjusted one; what of physics the impact
-    breaks, if any (``impossible``)."""
+    """Findings on one impact.
+
+    Parameters
+    ----------
+    inverse : bool
+        True if it was reconstructed.
+    values : mapping of str to float
+        All results, in base units.
+    main : sequence of str
+        Names of the results that the answer shows.
+    spreads : mapping of str to Spread
+        Uncertainties of the main results.
+    remarks : sequence of str
+        Remarks, in sentences.
+    scene : mapping of str to float
+        The scene that is drawn.
+    evidence : str
+        Verdict on the evidence.
+    contradictory : bool
+        True if the given values contradict one another.
+    adjusted : sequence of Adjusted
+        Each measured value beside its adjusted one.
+    impossible : str
+        The law of physics that the impact breaks; empty if none.
+    """
 
     inverse: bool
     values: Mapping[str, float]
@@ -100,41 +159,43 @@ def report(
     title: str = "",
     paper: str = "",
 ) -> tuple[str, list[Table]]:
-    """The page of what a file (``source``, its bytes ``data``) says of a collision: forward for
-    a whole scene with nothing after the impact, else reconstructed; and its tables. Raises
-    UserError."""
+    """Return the report page on a collision, and its tables.
+
+    ``source`` is the name of the case's file and ``data`` its bytes. A complete scene with nothing
+    known after the impact is computed forward, any other reconstructed. Raises UserError.
+    """
     units = case.system
-    given = {n for n, text in case.values.items() if text.strip()}
-    scene = coordinate_names(SCENE, given)
-    forward = set(scene) - {"M"} <= given <= {*scene, *MOVES}
-    check_names(given, coordinate_names((*KNOWABLE, *MOVES), given), "name used here", source)
-    found = (_forward if forward else _inverse)(case, source, samples, seed, units)
+    names = {n for n, text in case.values.items() if text.strip()}
+    scene = coordinate_names(SCENE, names)
+    forward = set(scene) - {"M"} <= names <= {*scene, *MOVES}
+    check_names(names, coordinate_names((*KNOWABLE, *MOVES), names), "name used here", source)
+    findings = (_forward if forward else _inverse)(case, source, samples, seed, units)
     drawing = None
-    tables = [_answer(found, units), *_details(found, case, units)]
+    tables = [_answer(findings, units), *_details(findings, case, units)]
     paper = paper or ("letter" if units.name in ("us", "chapter", "") else "a4")
-    summary, answer = _summary(found, case, units), _sentences(found, units)
-    remarks = [*case.remarks.values(), *found.remarks]
-    if set(SCENE) <= set(found.scene):  # what is not determined cannot be drawn
+    summary, answer = _summary(findings, case, units), _sentences(findings, units)
+    remarks = [*case.remarks.values(), *findings.remarks]
+    if set(SCENE) <= set(findings.scene):  # what is not determined cannot be drawn
         look = (DRAWN, "", units, case.outlines)
-        verdicts = [text for text in (found.impossible, found.evidence) if text]
+        verdicts = [text for text in (findings.impossible, findings.evidence) if text]
         room = _room(paper, [*summary, *answer], verdicts, remarks)
-        drawing = scene_drawing(found.scene, found.values, *look, tallest=room)
+        drawing = scene_drawing(findings.scene, findings.values, *look, tallest=room)
     page = render(
         "collision.html",
         title=title or case.title or "Planar impact of two vehicles",
         case=number or case.case or "",
         paper=paper,
         files=[(source, data)],
-        found=found,
+        found=findings,
         draws=f"{samples:,} random draws, seed {seed}."
-        if any(spread.low == spread.low for spread in found.spreads.values())
+        if any(spread.low == spread.low for spread in findings.spreads.values())
         else "",
         base=base_of(units),
-        units=_used(units),
+        units=_units_text(units),
         summary=summary,
-        figures=_figures(found, units),
+        figures=_figures(findings, units),
         answer=answer,
-        validated=_validated(),
+        validated=_validation_text(),
         tables=tables,
         drawing=svg(drawing) if drawing else "",
         room=FIRST_PAGE[paper],
@@ -178,26 +239,26 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
     spreads: dict[str, Spread] = {}
     remarks = sentences(int(results["STATUS"]), {**nominal, **results})
     if any(item.varies for item in inputs.values.values()):
-        drawn: dict[str, Any] = {"samples": samples, "seed": seed, "keep_draws": True}
-        found = bounds(inputs.values, FORWARD[2:], correlations=inputs.correlations, **drawn)
+        options: dict[str, Any] = {"samples": samples, "seed": seed, "keep_draws": True}
+        bounded = bounds(inputs.values, FORWARD[2:], correlations=inputs.correlations, **options)
         for vehicle in "AB":
-            speeds = np.hypot(found.draws[f"V{vehicle}X"], found.draws[f"V{vehicle}Y"])
+            speeds = np.hypot(bounded.draws[f"V{vehicle}X"], bounded.draws[f"V{vehicle}Y"])
             speeds = speeds[np.isfinite(speeds)]
             low, high = quantiles_of(speeds, (0.05, 0.95))
             spreads[f"S{vehicle}F"] = Spread(float(speeds.std(ddof=1)), low, high)
-        for name, bound in found.bounds.items():
-            spread = found.spreads[name]
+        for name, bound in bounded.bounds.items():
+            spread = bounded.spreads[name]
             limits = spread.quantiles[0.05], spread.quantiles[0.95], bound.lower, bound.upper
-            ranked = sorted(found.drives[name].items(), key=lambda entry: -entry[1].swing)
+            ranking = sorted(bounded.drives[name].items(), key=lambda entry: -entry[1].swing)
             drivers = [
                 f"{source} {number(drive.swing * units.factor(name), 3)} {units.unit(name)}".strip()
-                for source, drive in ranked[:DRIVERS]
+                for source, drive in ranking[:DRIVERS]
                 if drive.swing > 0
             ]
             spreads[name] = Spread(spread.deviation, *limits, drivers)
         remarks += [
             f"{100 * share:.3g} % of the draws carry the warning {name}"
-            for name, share in found.warnings.items()
+            for name, share in bounded.warnings.items()
         ]
     scene = {name: float(nominal[name]) for name in SCENE}
     return Findings(False, values, FORWARD, spreads, remarks, scene)
@@ -212,11 +273,11 @@ def _inverse(case: Case, source: str, samples: int, seed: int, units: System) ->
     texts.setdefault("M", DEFAULT_M)
     known = {n: read(t, f"{source}: {n}", units=units.name or None) for n, t in texts.items()}
     try:
-        found = reconstruct(known)
+        solutions = reconstruct(known)
     except UserError as error:
         raise UserError(str(error), source) from None
     sought = [n for n in INVERSE if n not in known or (n in ESTIMATED and known[n].varies)]
-    spread = Measured(found[0], samples, seed, sought)
+    spread = Measured(solutions[0], samples, seed, sought)
     values = without_noise(spread.values)
     spreads = {}
     for name in spread.names:
@@ -232,32 +293,41 @@ def _inverse(case: Case, source: str, samples: int, seed: int, units: System) ->
         deviation = float(spread.deviations[name])
         spreads[name] = Spread(deviation, low, high, lower, upper, drivers)
     remarks = spread.warnings(units)
-    if len(found) > 1:
-        remarks.append(f"{len(found)} impacts agree with what is known; this is the first of them")
+    if len(solutions) > 1:
+        remarks.append(
+            f"{len(solutions)} impacts agree with what is known; this is the first of them"
+        )
     scene = {n: values[n] for n in SCENE if n in values}
     scene.setdefault("M", float(DEFAULT_M))
     if scene["M"] == 4 or "EM" not in scene:
         scene["EM"] = 0.0  # which nothing drawn depends on
     evidence = spread.evidence
     if evidence.contradictory:  # what the verdict says is not said twice
-        told = evidence.text(units)
-        remarks = [line for line in remarks if not line.startswith(told)]
-        if not found[0].assumed:
-            widened = (
+        verdict_text = evidence.text(units)
+        remarks = [line for line in remarks if not line.startswith(verdict_text)]
+        if not solutions[0].assumed:
+            widening_text = (
                 f"standard deviations are widened {number(evidence.widening, 3)} times, by as much "
                 "as the values contradict one another"
             )
-            remarks.insert(0, widened)
-    whole = values, sought, spreads, remarks, scene
-    told = evidence.text(units)
+            remarks.insert(0, widening_text)
+    values_and_spreads = values, sought, spreads, remarks, scene
+    verdict_text = evidence.text(units)
     broken = spread.impossible
     if broken:  # what the first line says is not said twice
         remarks[:] = [line for line in remarks if line not in broken]
-    return Findings(True, *whole, told, evidence.contradictory, found[0].adjusted, broken)
+    return Findings(
+        True,
+        *values_and_spreads,
+        verdict_text,
+        evidence.contradictory,
+        solutions[0].adjusted,
+        broken,
+    )
 
 
-def _used(units: System) -> str:
-    """The units in words."""
+def _units_text(units: System) -> str:
+    """Return the units in words."""
     if units.is_bare:
         return "any consistent set"
     rules = ("length", "mass", "length/time", "rad/time")
@@ -265,13 +335,13 @@ def _used(units: System) -> str:
 
 
 DRAWN = 150.0
-"""Width in mm of the drawing, which the page enlarges to its own."""
+"""Width of the drawing in mm, before the page enlarges it."""
 _NOTE = 7.0  # in mm: height of the note below it
 _BETWEEN = {"letter": 182.0, "a4": 176.0}  # in mm: between the margins
-_LINE, _SMALL = 4.9, 3.9
-"""Height in mm of a line of a paragraph and of a remark."""
+_LINE = 4.9  # in mm: height of a line of a paragraph
+_SMALL = 3.9  # in mm: height of a line of a remark
 _CHARACTERS = {"letter": (104, 118), "a4": (100, 114)}
-"""What such a line holds."""
+"""Characters in a line of a paragraph and of a remark."""
 
 
 def _room(
@@ -283,14 +353,14 @@ def _room(
     def lines(texts: Sequence[str], most: int) -> int:
         return sum(-(-len(text) // most) for text in texts)
 
-    used = _LINE * lines(sentences, wide) + 1.05 * _LINE * lines(verdicts, int(0.82 * wide))
-    used += _SMALL * lines(remarks, small) + (8.0 if remarks else 0.0) + 30.0
-    left = (FIRST_PAGE[paper] - used) * DRAWN / _BETWEEN[paper]
-    return min(max(left - _NOTE, 42.0), 110.0)
+    height = _LINE * lines(sentences, wide) + 1.05 * _LINE * lines(verdicts, int(0.82 * wide))
+    height += _SMALL * lines(remarks, small) + (8.0 if remarks else 0.0) + 30.0
+    remaining = (FIRST_PAGE[paper] - height) * DRAWN / _BETWEEN[paper]
+    return min(max(remaining - _NOTE, 42.0), 110.0)
 
 
 def _amount(name: str, value: float, units: System, like: float = math.nan) -> str:
-    """A value as it is shown: two digits of its standard deviation, or five of itself."""
+    """Return a value as it is shown: two digits of its standard deviation, or five of itself."""
     amount = float(units.display(name, float(value)))
     if math.isnan(amount):
         return ""
@@ -307,7 +377,7 @@ def _deviation(name: str, value: float, units: System) -> str:
 
 
 def _sentences(found: Findings, units: System) -> list[str]:
-    """The answer, in a sentence for each vehicle."""
+    """Return the answer, in a sentence for each vehicle."""
 
     lines = []
     for vehicle in "AB":
@@ -329,7 +399,7 @@ FIRST_PAGE = {"letter": 208, "a4": 226}
 MAIN_FORWARD = ("DVA", "DVB", "LOSS")
 """The three numbers of the first page, of a scene."""
 MAIN_INVERSE = ("SA", "SB", "DVA", "DVB", "LOSS")
-"""The same of a reconstruction: the first three that were not given."""
+"""Candidates for the numbers of the first page of a reconstruction: the first three not given."""
 
 
 def _spoken(found: Findings, name: str, units: System) -> str:
@@ -346,18 +416,18 @@ def _spoken(found: Findings, name: str, units: System) -> str:
 
 
 def _is_aside(found: Findings, name: str) -> bool:
-    """Whether what fits best lies outside 90 % of the draws, so that ± would mislead."""
+    """Return True if the best fit lies outside 90 % of the draws, so that ± would mislead."""
     spread, value = found.spreads.get(name, Spread()), found.values[name]
-    drawn = math.isfinite(spread.low) and math.isfinite(spread.high)
-    return drawn and not spread.low <= value <= spread.high
+    has_quantiles = math.isfinite(spread.low) and math.isfinite(spread.high)
+    return has_quantiles and not spread.low <= value <= spread.high
 
 
 def _chosen(found: Findings) -> list[str]:
     main = MAIN_INVERSE if found.inverse else MAIN_FORWARD
     names = [n for n in main if math.isfinite(found.values.get(n, math.nan))]
     if found.inverse:
-        given = {item.name for item in found.adjusted}
-        names = [n for n in names if n in found.main and n not in given]
+        input_names = {item.name for item in found.adjusted}
+        names = [n for n in names if n in found.main and n not in input_names]
         # what exact values settle by themselves is no finding beside what is uncertain
         open_ones = [n for n in names if math.isfinite(found.spreads.get(n, Spread()).deviation)]
         names = open_ones or names
@@ -370,10 +440,10 @@ def _figures(found: Findings, units: System) -> list[tuple[str, str, str]]:
     for name in _chosen(found):
         spread = found.spreads.get(name, Spread())
         ends = [_amount(name, x, units, spread.deviation) for x in (spread.low, spread.high)]
-        told = all(ends) and not found.contradictory
+        has_limits = all(ends) and not found.contradictory
         span = f"{ends[0]} to {ends[1]} {_unit(name, units)}".strip()
-        limits = f"90 % within {span}" if told else ""
-        if told and _is_aside(found, name):
+        limits = f"90 % within {span}" if has_limits else ""
+        if has_limits and _is_aside(found, name):
             limits = f"90 % of the draws; {_amount(name, found.values[name], units)} fits best"
         figures.append((quantity(name).meaning, _spoken(found, name, units), limits))
     return figures
@@ -381,18 +451,18 @@ def _figures(found: Findings, units: System) -> list[tuple[str, str, str]]:
 
 def _summary(found: Findings, case: Case, units: System) -> list[str]:
     """Return the two paragraphs of the first page: what was asked, what was found and how sure."""
-    given = [n for n, text in case.given.items() if text.strip() and n not in ABOUT]
+    given_names = [n for n, text in case.given.items() if text.strip() and n not in ABOUT]
     uncertain = [a.name for a in found.adjusted]
     if found.inverse:
-        asked = (
+        question = (
             "Asked: how two vehicles moved before and after they struck one another, as far as it "
-            f"follows from {len(given)} known values"
+            f"follows from {len(given_names)} known values"
         )
-        asked += f", {len(uncertain)} of them known within limits" if uncertain else ""
+        question += f", {len(uncertain)} of them known within limits" if uncertain else ""
     else:
-        asked = (
+        question = (
             "Asked: how two vehicles moved after they struck one another, and what their "
-            f"velocities changed by, from {len(given)} given values"
+            f"velocities changed by, from {len(given_names)} given values"
         )
     parts = [f"{quantity(n).meaning} {_spoken(found, n, units)}" for n in _chosen(found)]
     answer = "Found: " + "; ".join(parts) if parts else "Found: none of the results asked for"
@@ -413,11 +483,12 @@ def _summary(found: Findings, case: Case, units: System) -> list[str]:
         )
     else:
         sure = "No limits were given with the inputs, so how sure this is was not computed"
-    return [asked + ".", f"{answer}. {sure}."]
+    return [question + ".", f"{answer}. {sure}."]
 
 
-def _validated() -> str:
-    """Return what the equations were held against, and how near they came."""
+def _validation_text() -> str:
+    """Return a sentence on the tests that the equations were validated against, and the
+    differences."""
     from ..chapter.validation import IIHS, NHTSA, checks, medians
 
     rows = {(row[0], row[1]): row for row in medians(checks())}
@@ -444,11 +515,11 @@ def _exists(found: Findings, name: str) -> bool:
 
 
 def _answer(found: Findings, units: System) -> Table:
-    drawn = any(math.isfinite(spread.low) for spread in found.spreads.values())
-    heads = _SPREAD if drawn else _SPREAD[: 2 if found.spreads else 1]
+    has_draws = any(math.isfinite(spread.low) for spread in found.spreads.values())
+    heads = _SPREAD if has_draws else _SPREAD[: 2 if found.spreads else 1]
     caption = (
         "sd: standard deviation"
-        if not drawn
+        if not has_draws
         else _CAPTION + "; none are sought for speeds after" * (not found.inverse)
     )
     rows = []
@@ -465,8 +536,8 @@ def _answer(found: Findings, units: System) -> Table:
                 cells[1] = _deviation(name, spread.deviation, units)
             rows.append([name, quantity(name).meaning, *cells, _unit(name, units)])
     headings = ["", "result", *heads, "unit"]
-    left = (0, 1, len(headings) - 1)
-    return Table("Answer", headings, rows, left, caption if found.spreads else "")
+    left_columns = (0, 1, len(headings) - 1)
+    return Table("Answer", headings, rows, left_columns, caption if found.spreads else "")
 
 
 def _details(found: Findings, case: Case, units: System) -> list[Table]:
@@ -482,7 +553,7 @@ def _details(found: Findings, case: Case, units: System) -> list[Table]:
     headings = ["", "input", "given", "unit", "source"]
     tables = []
     if found.adjusted:
-        measured = [
+        measured_rows = [
             [
                 item.name,
                 quantity(item.name).meaning,
@@ -495,7 +566,7 @@ def _details(found: Findings, case: Case, units: System) -> list[Table]:
         ]
         heads = ["", "value", "measured", "adjusted", "moved, sd", "unit"]
         caption = "moved: adjusted less measured, in standard deviations of what was measured"
-        tables.append(Table("Measured and adjusted", heads, measured, (0, 1, 5), caption))
+        tables.append(Table("Measured and adjusted", heads, measured_rows, (0, 1, 5), caption))
     tables.append(Table("Inputs as given", headings, rows, (0, 1, 3, 4)))
     rows = [
         [name, quantity(name).meaning, ", ".join(spread.drivers)]

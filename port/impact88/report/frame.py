@@ -31,8 +31,8 @@ def render(
     files: Sequence[tuple[str, bytes]] = (),
     **content: Any,
 ) -> str:
-    """The page that ``template`` makes of ``content``, in the frame (frame.html). ``title`` and
-    ``case`` stand on every printed page; ``files``: names and bytes of what was read. Raises
+    """Return the page that ``template`` makes of ``content``, in the frame (frame.html). ``title``
+    and ``case`` stand on every printed page; ``files``: names and bytes of what was read. Raises
     UserError where jinja2 is not installed."""
     jinja2 = library("jinja2", "report", "a report")
     environment = jinja2.Environment(
@@ -41,7 +41,7 @@ def render(
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
-        finalize=_printed,
+        finalize=_escape_text,
     )
     title, case = printable(title), printable(case)
     running = f"Case {case}" if case else title
@@ -62,8 +62,8 @@ def render(
 MOST_RUNNING = 70  # characters at the foot of a page, beside the page's number
 
 
-def _printed(value: Any) -> Any:
-    """Return a text of the user's with escapes for what does not print; markup as it is."""
+def _escape_text(value: Any) -> Any:
+    """Return a user's text with unprintable characters escaped; markup as it is."""
     return printable(value, "\n\t") if type(value) is str else value
 
 

@@ -1,8 +1,8 @@
-"""A page as evidence: the numbers on it, and which of them a cause leaves unexplained.
+"""A page as evidence: its numbers, and the numbers that a cause leaves unexplained.
 
 A cause predicts a range for each number, of one value where it says what is printed. Bits and
-limits of this room were chosen on the classes of tests/support/slippedpages.py; what doubling one
-does was seen on 37 of their pages.
+limits in this package were chosen on the classes of tests/support/slippedpages.py; the effect of
+doubling one was measured on 37 of their pages.
 """
 
 import math
@@ -25,13 +25,15 @@ from ..recovery.slips import Change
 
 Range = tuple[float, float]
 
-LABELS_EXCHANGED, LABEL_WRONG = "labels exchanged", "another label"
+LABELS_EXCHANGED = "labels exchanged"
+LABEL_WRONG = "another label"
 NOT_APPLESOFT = "then this program on an Apple II did not print it"
-_ALL_BUT = 0.15
-"""A cause that leaves more than this part of what differs is none; doubled, one page changes."""
-_ENERGY_DIGITS, _ENERGY_UNITS = 9, 2
-"""The kinetic energy is printed to so many digits; other arithmetics end within so many units of
-the last of them. Doubled, none changes; without, one in IEEE double is not told."""
+MAX_LEFT_FRACTION = 0.15
+"""Largest fraction of the differing numbers that a cause may leave; doubled, one page changes."""
+_ENERGY_DIGITS = 9  # digits that the kinetic energy is printed with
+_ENERGY_UNITS = 2
+"""Units of the energy's last digit by which other arithmetics may differ. Doubled, no page changes;
+with none, one page of IEEE doubles is not recognized."""
 
 
 @dataclass
@@ -104,16 +106,17 @@ class Cause:
 
 
 class PageEvidence:
-    """A judged page. ``base``: the names of what differs, ``reply UX`` and ``label UX`` for those;
-    ``results``: by name what a result may read, the likeliest first; ``texts``: the numbers that
-    are read clean; ``most_left``: how many numbers a cause may leave unexplained."""
+    """A judged page. ``base``: the names of all that differs (``reply UX`` for a reply, ``label
+    UX`` for a label); ``results``: by name, the possible values of a result, the likeliest first;
+    ``texts``: the numbers read clean; ``max_left``: the number of differences that a cause may
+    leave unexplained."""
 
     def __init__(self, found: Judged) -> None:
         self.found, self.paper, self.recovered = found, found.paper, found.recovered
         self.checks = {check.name: check for check in found.fields}
         self.checks |= {f"reply {check.name}": check for check in found.replies}
         self.base = differing(found)
-        self.most_left = int(_ALL_BUT * len(self.base))
+        self.max_left = int(MAX_LEFT_FRACTION * len(self.base))
         self.results = {
             expected.name: [
                 float(text)
@@ -133,11 +136,11 @@ class PageEvidence:
         self._contradicted = {name: value for name, value in printed.items() if name in self.base}
 
     def decimals(self, name: str) -> int:
-        """How many decimals a number has on the page."""
+        """Return the number of decimals of a field on the page."""
         return decimals_of(self.texts.get(name, ""))
 
-    def far(self, found: Mapping[str, Any], count: int) -> Any:
-        """How far off results are, arrays of ``count`` by name: relatively, their median."""
+    def median_error(self, found: Mapping[str, Any], count: int) -> Any:
+        """Return the median relative error of ``count`` sets of results (arrays by name)."""
         rows = [
             np.nan_to_num(np.abs(column - number) / (abs(number) + 0.1), nan=1.0)
             for name, column in found.items()
@@ -146,9 +149,11 @@ class PageEvidence:
         return np.median(rows, axis=0) if rows else np.zeros(count)
 
     def fits(self, found: Mapping[str, Any], count: int, units: float, part: float) -> Any:
-        """Where so few results, arrays of ``count`` by name in double precision, are off by more
-        than so many units of their last place and such a part of them that a cause may explain
-        the page."""
+        """Return a mask of the sets of results that may explain the page.
+
+        ``found`` has arrays of ``count`` results in double precision by name. A result fits within
+        ``units`` of its last place plus the fraction ``part`` of its value.
+        """
         misfits = np.zeros(count, int)
         mu = double(self.recovered.scene["MU"])
         if abs(mu) >= -PIVOT != -mu:  # double precision does not follow line 510 past the pivot's
@@ -156,9 +161,9 @@ class PageEvidence:
         for name, column in found.items():
             unit = 10.0 ** -min(FIELDS[name].places or 9, self.decimals(name))
             numbers = self.results.get(name, [])
-            near = [np.abs(column - x) <= units * unit + part * abs(x) for x in numbers]
-            misfits += ~np.any(near, axis=0) if near else 0
-        return misfits <= self.most_left
+            matches = [np.abs(column - x) <= units * unit + part * abs(x) for x in numbers]
+            misfits += ~np.any(matches, axis=0) if matches else 0
+        return misfits <= self.max_left
 
     def left(
         self,
@@ -168,19 +173,22 @@ class PageEvidence:
         otherwise: Mapping[str, Range] | None = None,
         spared: frozenset[str] = frozenset(),
     ) -> frozenset[str]:
-        """What a scene leaves unexplained: results that are not as its outcome has them, or
-        ``otherwise``; printed inputs but those that are ``spared``, or that a change puts
-        ``right``; the ending; replies that are not its values."""
-        predicted = {**as_printed(outcome), **(otherwise or {})}
+        """Return the names that a scene leaves unexplained.
+
+        These are results outside the ranges of its outcome (or of ``otherwise``, where given),
+        printed inputs that differ (but not those in ``spared`` or corrected by ``right``), the
+        ending, and replies that are not its values.
+        """
+        ranges = {**as_printed(outcome), **(otherwise or {})}
         inputs = set(INPUTS) - {change.field for change in right}
         wrong = self.base & inputs - {"MUP"}
-        compared = self.results.keys() | self.texts.keys() & predicted.keys() & inputs - spared
-        for name in compared:
-            low, high = predicted.get(name, (math.nan, math.nan))
+        names = self.results.keys() | self.texts.keys() & ranges.keys() & inputs - spared
+        for name in names:
+            low, high = ranges.get(name, (math.nan, math.nan))
             if not any(low <= number <= high for number in self.numbers[name]):
                 wrong |= {name}
         # what contradicts the program's number contradicts a cause that predicts the same
-        wrong |= {n for n, value in self._contradicted.items() if predicted.get(n, value) == value}
+        wrong |= {n for n, value in self._contradicted.items() if ranges.get(n, value) == value}
         wrong |= {"ENDING"} if self.paper.ending not in (None, outcome.ending) else set()
         for check in self.found.replies:
             read = check.status in (Status.READ, Status.CONTRADICTED)
@@ -190,7 +198,7 @@ class PageEvidence:
 
     @cached_property
     def only_last_places(self) -> bool:
-        """Whether nothing differs but results, in their last places."""
+        """True if only results differ, in their last places."""
         return all(
             name in self.checks
             and name not in INPUTS
@@ -200,7 +208,7 @@ class PageEvidence:
 
 
 def differing(found: Judged) -> frozenset[str]:
-    """The names of what differs; replies and labels are marked as such."""
+    """Return the names of all that differs; replies and labels are marked as such."""
     replies = set(map(id, found.replies))
     return frozenset(
         [f"{'reply ' * (id(check) in replies)}{check.name}" for check in found.contradicted]
@@ -209,25 +217,25 @@ def differing(found: Judged) -> frozenset[str]:
 
 
 def as_printed(outcome: Outcome) -> dict[str, Range]:
-    """What a run prints, as ranges of one number."""
+    """Return the printed fields of a run as ranges of one number."""
     return {name: (float(text), float(text)) for name, text in outcome.fields.items()}
 
 
 def decimals_of(text: str) -> int:
-    """The decimals of a number; 0 of none."""
+    """Return the number of decimals in a text; 0 if it is no number."""
     value = value_of(text)
     return 0 if value is None else max(0, -int(value.as_tuple().exponent))
 
 
 def digits_of(text: str | None) -> int:
-    """The digits of a number; 0 of none."""
+    """Return the number of digits in a text; 0 if it is no number."""
     value = value_of(text or "")
     return 0 if value is None else len(value.normalize().as_tuple().digits)
 
 
 def in_last_places(name: str, printed: str | None, other: str | None) -> bool:
-    """Whether a result is another by no more than other arithmetics leave open: one in the last
-    place it is floored to, or the last of the digits of the kinetic energy."""
+    """Return True if two texts of a result differ by no more than other arithmetics may: one unit
+    of the last place it is floored to, or two of the last digit of the kinetic energy."""
     first, second = value_of(printed or ""), value_of(other or "")
     if first is None or second is None or name not in FIELDS:
         return False

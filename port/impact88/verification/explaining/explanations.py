@@ -1,10 +1,10 @@
-"""Explaining a printout that differs: causes, each tested by replay, the likeliest first.
+"""Explanations of a printout that differs: causes, each tested by replay, the likeliest first.
 
 A cause is an edit: of what is printed (slips, labels), of the inputs or results as a whole (the
-rows of ``hypotheses.txt``), of the machine or its printing, or of one line of the listing. Each
-asks for some bits to be believed, and for as many more as every number that it leaves unexplained
-would take as a slip of its own; the fewest bits come first. A cause is offered only when it
-explains nearly all that differs. Causes that ask for about as much and leave the same unexplained
+rows of ``hypotheses.txt``), of the machine or its printing, or of one line of the listing. Each has
+an improbability in bits, plus the bits of a slip for every number that it leaves unexplained; the
+fewest bits come first. A cause is offered only when it
+explains nearly all that differs. Causes of about equal bits that leave the same unexplained
 share a rank: the page cannot tell them apart.
 """
 
@@ -35,163 +35,175 @@ from .causes import (
 )
 from .hypotheses import Rows, other_programs
 
-MOST = 6
-"""Explanations given at most."""
-_LEFT = 14.0
-"""Bits of a number that a cause leaves unexplained: more than of a slip besides (10 to 13.5), so
+MAX_EXPLANATIONS = 6
+UNEXPLAINED_BITS = 14.0
+"""Bits of a number that a cause leaves unexplained: more than an additional slip (10 to 13.5), so
 that a cause with the slip comes before the one without. Doubled, one page lists fewer."""
-_ALIKE = 8.0
-"""Causes that leave the same unexplained and ask for no more bits than these more share a rank; of
-two pages the first rank grows when it is doubled."""
-_WORSE = 15.0
-"""What asks for so many bits more than the best is no cause; doubled, three pages list more."""
-_ENOUGH = 26.0
-"""Causes that take longer are tried where none asks for so few bits: two slips (21 to 25). Doubled,
-none changes; halved, five do."""
-_MOST_BITS = 50.0
-"""What asks for more is no explanation: four slips of the likelier kinds. Twice as much names slips
-on a page that nothing explains."""
-_BY_COPY = 12
-"""Slips, of each kind of ranking, that are tried in a copy of the listing."""
-_LAST_PLACE = 8.0
-"""Bits more for a result misread by one in its last place, where another arithmetic is likelier;
-and for misread inputs on a page on which nothing worse is wrong. Doubled, one page has another
-first."""
-_SLIP = min(slips.BITS.values())
-"""Bits of a slip besides, at least."""
+SAME_RANK_BITS = 8.0
+"""Difference in bits up to which causes that leave the same unexplained share a rank; doubled, the
+first rank of two pages grows."""
+MAX_EXCESS_BITS = 15.0
+"""Bits above the best cause beyond which none is listed; doubled, three pages list more."""
+GOOD_BITS = 26.0
+"""Slower causes are tried only if none has fewer bits: two slips have 21 to 25. Doubled, no page
+changes; halved, five do."""
+MAX_BITS = 50.0
+"""Bits beyond which a cause is no explanation: four slips of the likelier kinds. Twice as many name
+slips on a page that nothing explains."""
+MAX_SLIPS_BY_COPY = 12  # slips of each ranking that are tried in a copy of the listing
+LAST_PLACE_BITS = 8.0
+"""Bits added for a result misread by one in its last place, where another arithmetic is likelier;
+and for misread inputs on a page with no larger difference. Doubled, one page has another first."""
+MIN_SLIP_BITS = min(slips.BITS.values())
 
 
 @np.errstate(all="ignore")  # a cause tried may leave a double's range, and then explains nothing
 def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) -> list[Cause]:
-    """Causes that make more of a differing printout agree, those that ask least first.
-    ``rereading``: slips in its inputs; ``in_time``: whether more causes may still be tried."""
+    """Return causes that make more of a differing printout agree, fewest bits first.
+
+    ``rereading`` searches for slips in its inputs; ``in_time`` returns True while slower causes may
+    still be tried.
+    """
     page = PageEvidence(found)
-    causes = [*_slipped(page, (), page.base, found.recovered.outcome.fields), *_labels(page)]
+    causes = [*_slip_causes(page, (), page.base, found.recovered.outcome.fields), *_labels(page)]
     if not found.recovered.missing and any(not name.startswith("label ") for name in page.base):
         rows = Rows(page)
         causes += [
-            *_reread(page, rereading.best(single=True)),
+            *_input_slips(page, rereading.best(single=True)),
             *rows.causes(),
             *machines.causes(page),
         ]
-        for more in (
-            lambda: _reread(page, rereading.best()),
-            lambda: (*rows.searched(), *_exchanged_and_slipped(page, rows, rereading)),
+        for try_more in (
+            lambda: _input_slips(page, rereading.best()),
+            lambda: (*rows.unit_causes(), *_exchanges_with_slips(page, rows, rereading)),
             lambda: other_programs(page),
         ):
             costs = [cause.bits for cause in causes if not cause.left]
-            if in_time() and min(costs, default=math.inf) > _ENOUGH:
-                causes += more()
+            if in_time() and min(costs, default=math.inf) > GOOD_BITS:
+                causes += try_more()
         longer = any(page.decimals(name) > (FIELDS[name].places or 9) for name in page.texts)
-        accused = any(_accuses(cause) and not cause.left for cause in causes)
-        if page.only_last_places and len(page.base) > 1 and not longer and not accused:
-            bits = slips.BITS[slips.DIGIT] + _LAST_PLACE  # as one of them misread
+        machine_accused = any(_accuses(cause) and not cause.left for cause in causes)
+        if page.only_last_places and len(page.base) > 1 and not longer and not machine_accused:
+            bits = slips.BITS[slips.DIGIT] + LAST_PLACE_BITS  # as one of them misread
             note = f"all that differs is off by one in its last place; {NOT_APPLESOFT}"
             causes.append(Cause("another arithmetic", note, bits, frozenset()))
-    return _ranked(page, causes)
+    return _rank_causes(page, causes)
 
 
 @np.errstate(all="ignore")
 def explain_copy(
-    found: Judged, put_right: Callable[[Judged, Mapping[str, str]], Judged | None]
+    found: Judged, rejudge: Callable[[Judged, Mapping[str, str]], Judged | None]
 ) -> list[Cause]:
-    """The same of a page held against a copy of the listing: slips, those nearest to its results
-    first. ``put_right``: the printout judged by the copy with other inputs printed."""
+    """Return the slips that explain a page compared with a copy of the listing.
+
+    Slips whose results are nearest to the page's are tried first. ``rejudge`` judges the printout
+    by the copy with corrected inputs (texts by field).
+    """
     page = PageEvidence(found)
-    causes = [*_slipped(page, (), page.base, found.recovered.outcome.fields), *_labels(page)]
+    causes = [*_slip_causes(page, (), page.base, found.recovered.outcome.fields), *_labels(page)]
     if not found.recovered.missing:
         rereading = Rereading(found.recovered)
-        tried = [reread.changes for reread in rereading.best()[:_BY_COPY]]
-        nearest = _nearest_slips(page, rereading)[:_BY_COPY]
-        for changes in filter(None, dict.fromkeys([*nearest, *tried])):
-            other = put_right(found, {change.field: change.would_be for change in changes})
-            if other is not None:
-                causes += _slipped(page, changes, differing(other), other.recovered.outcome.fields)
-    return _ranked(page, causes)
+        reread_changes = [reread.changes for reread in rereading.best()[:MAX_SLIPS_BY_COPY]]
+        nearest = _nearest_slips(page, rereading)[:MAX_SLIPS_BY_COPY]
+        for changes in filter(None, dict.fromkeys([*nearest, *reread_changes])):
+            judgement = rejudge(found, {change.field: change.would_be for change in changes})
+            if judgement is not None:
+                causes += _slip_causes(
+                    page, changes, differing(judgement), judgement.recovered.outcome.fields
+                )
+    return _rank_causes(page, causes)
 
 
 # --- slips and labels ---
 
 
 def _labels(page: PageEvidence) -> Iterator[Cause]:
-    """Labels that stand in each other's place, or name another number, where the number is what
-    the program prints."""
+    """Yield a cause of labels that are exchanged or wrong, where the numbers are the program's."""
     wrong = [
         label
         for label in page.paper.mislabelled
         if label.name in page.checks and page.checks[label.name].same
     ]
     if wrong:
-        read, printed = (sorted(map(attrgetter(name), wrong)) for name in ("read", "printed"))
-        kind = LABELS_EXCHANGED if read == printed else LABEL_WRONG
+        read, printed_labels = (
+            sorted(map(attrgetter(name), wrong)) for name in ("read", "printed")
+        )
+        kind = LABELS_EXCHANGED if read == printed_labels else LABEL_WRONG
         changes = tuple(Change(kind, label.name, label.read, label.printed) for label in wrong)
-        left = page.base - {f"label {label.name}" for label in wrong}
+        unexplained = page.base - {f"label {label.name}" for label in wrong}
         note, bits = "the numbers are what the program prints there", slips.BITS[slips.DIGIT]
-        yield Cause(kind, note, bits, left, changes)
+        yield Cause(kind, note, bits, unexplained, changes)
 
 
-def _reread(page: PageEvidence, rereads: Iterable[Reread]) -> Iterator[Cause]:
-    """Inputs put right, with what results are then still a slip away."""
+def _input_slips(page: PageEvidence, rereads: Iterable[Reread]) -> Iterator[Cause]:
+    """Yield corrected inputs as causes, with the results that are then a slip away."""
     best = math.inf
     for changes, run in rereads:
-        least = sum(map(_believed, changes)) + _SLIP * (len(run.wrong) - page.most_left)
-        if changes and least <= min(best + _WORSE, _MOST_BITS):
-            left = page.left(run.scene, run.outcome, changes) | run.wrong & set(INPUTS)
-            for cause in _slipped(page, changes, left, run.outcome.fields):
-                best = min(best, _weight(cause))
+        least = sum(map(_bits_of, changes)) + MIN_SLIP_BITS * (len(run.wrong) - page.max_left)
+        if changes and least <= min(best + MAX_EXCESS_BITS, MAX_BITS):
+            unexplained = page.left(run.scene, run.outcome, changes) | run.wrong & set(INPUTS)
+            for cause in _slip_causes(page, changes, unexplained, run.outcome.fields):
+                best = min(best, _total_bits(cause))
                 yield cause
 
 
-def _exchanged_and_slipped(page: PageEvidence, rows: Rows, rereading: Rereading) -> Iterator[Cause]:
-    """Inputs of a side or an axis exchanged, and a slip in another."""
-    for row, exchanged in rows.exchanges():
-        texts = {change.field: change.would_be for change in exchanged}
+def _exchanges_with_slips(page: PageEvidence, rows: Rows, rereading: Rereading) -> Iterator[Cause]:
+    """Yield causes of two kinds together: exchanged inputs of a side or an axis, and one slip."""
+    for row, exchange in rows.exchanges():
+        texts = {change.field: change.would_be for change in exchange}
         for reread in rereading.best(single=True, exchanged=texts):
-            changes = (*exchanged, *reread.changes)
-            bits = row.bits + sum(map(_believed, reread.changes))
+            changes = (*exchange, *reread.changes)
+            bits = row.bits + sum(map(_bits_of, reread.changes))
             run = reread.scored
-            left = page.left(run.scene, run.outcome, changes) | run.wrong & set(INPUTS)
-            for cause in _slipped(page, changes, left):
+            unexplained = page.left(run.scene, run.outcome, changes) | run.wrong & set(INPUTS)
+            for cause in _slip_causes(page, changes, unexplained):
                 yield replace(cause, bits=bits, note=row.note)
 
 
 def _nearest_slips(page: PageEvidence, rereading: Rereading) -> list[tuple[Change, ...]]:
-    """The single slips of printed inputs, those first whose results are nearest to the page's by
-    double precision; that differs from what the program prints as in the scene recovered."""
+    """Return single slips of printed inputs, those first whose results are nearest to the page's.
+
+    Results are computed in double precision, and corrected by its difference from the program's
+    for the recovered scene.
+    """
     scene, fields = page.recovered.scene, page.recovered.outcome.fields
-    tried = [change for change in rereading.single() if change.kind != slips.TWO_DIGITS]
-    columns = {name: np.full(len(tried) + 1, double(text)) for name, text in scene.items()}
-    for row, change in enumerate(tried, 1):
-        turned = change.field == "MUP" and mu_turned(scene["MU"], change.printed)
-        columns[scene_name(change.field)][row] = double(change.would_be) * (-1 if turned else 1)
-    found = {
+    candidates = [
+        change for change in rereading.single_changes() if change.kind != slips.TWO_DIGITS
+    ]
+    columns = {name: np.full(len(candidates) + 1, double(text)) for name, text in scene.items()}
+    for row, change in enumerate(candidates, 1):
+        mu_reversed = change.field == "MUP" and mu_turned(scene["MU"], change.printed)
+        columns[scene_name(change.field)][row] = double(change.would_be) * (
+            -1 if mu_reversed else 1
+        )
+    results = {
         name: column - column[0] + double(fields[name])
         for name, column in in_doubles(columns, [n for n in page.results if n in fields]).items()
     }
-    order = np.argsort(page.far(found, len(tried) + 1)[1:], kind="stable")
-    return [(tried[index],) for index in order]
+    order = np.argsort(page.median_error(results, len(candidates) + 1)[1:], kind="stable")
+    return [(candidates[index],) for index in order]
 
 
-def _slipped(
+def _slip_causes(
     page: PageEvidence,
     changes: tuple[Change, ...],
     left: frozenset[str],
     outcome: Mapping[str, str] | None = None,
 ) -> Iterator[Cause]:
-    """Slips as a cause; ``outcome``: what is then printed: numbers and replies may be one slip away
-    from it, too."""
-    if outcome and len(left - page.base) <= page.most_left:
+    """Yield the slips ``changes`` as a cause. With ``outcome``, the fields then printed, numbers
+    and replies that are one slip away from it are included."""
+    if outcome and len(left - page.base) <= page.max_left:
         for name in sorted(left & page.checks.keys() & page.base):
-            printed = page.checks[name].printed or ""
-            known = page.recovered.scene if name.startswith("reply ") else outcome
-            should = known.get(name.removeprefix("reply "), "")
-            if printed and should and (kind := slips.slip(printed, should)):
-                changes = (*changes, Change(kind, name, printed, should))
+            page_text = page.checks[name].printed or ""
+            texts = page.recovered.scene if name.startswith("reply ") else outcome
+            program_text = texts.get(name.removeprefix("reply "), "")
+            if page_text and program_text and (kind := slips.slip(page_text, program_text)):
+                changes = (*changes, Change(kind, name, page_text, program_text))
     if not changes:
         return
-    bits = sum(map(_believed, changes))
+    bits = sum(map(_bits_of, changes))
     if all(change.field in INPUTS for change in changes) and page.only_last_places:
-        bits += _LAST_PLACE
+        bits += LAST_PLACE_BITS
     note = ""
     if changes[0].field.startswith("reply "):
         note = "in the typed reply"
@@ -201,50 +213,54 @@ def _slipped(
     yield Cause(kind, note, bits, left - {change.field for change in changes}, changes)
 
 
-def _believed(change: Change) -> float:
+def _bits_of(change: Change) -> float:
     last = change.field not in INPUTS and in_last_places(*change[1:])
-    return change.bits + _LAST_PLACE * last
+    return change.bits + LAST_PLACE_BITS * last
 
 
-# --- which are offered, and in what order ---
+# --- selection and ranking ---
 
 
-def _ranked(page: PageEvidence, causes: Iterable[Cause]) -> list[Cause]:
-    """Those that explain nearly all, the least to believe first, with ranks; none that only adds
-    to a simpler one, or says it again."""
-    nearly = [c for c in causes if len(c.left) <= page.most_left and page.base - c.left]
-    offered = sorted((c for c in nearly if _weight(c) <= _MOST_BITS), key=_weight)
+def _rank_causes(page: PageEvidence, causes: Iterable[Cause]) -> list[Cause]:
+    """Return the causes that explain nearly all, fewest bits first, with ranks.
+
+    A cause that only adds to a simpler one, or repeats it, is dropped.
+    """
+    nearly = [c for c in causes if len(c.left) <= page.max_left and page.base - c.left]
+    candidates = sorted((c for c in nearly if _total_bits(c) <= MAX_BITS), key=_total_bits)
     chosen: list[Cause] = []
-    for cause in offered:
-        near = _weight(cause) <= _weight(offered[0]) + _WORSE
-        if near and not any(_adds_to(cause, other) for other in chosen):
+    for cause in candidates:
+        is_plausible = _total_bits(cause) <= _total_bits(candidates[0]) + MAX_EXCESS_BITS
+        if is_plausible and not any(_adds_to(cause, other) for other in chosen):
             chosen.append(cause)
-    # a misreading that would do is not left out where another machine is named
+    # where another machine is named, the best misreading is always listed, too
     innocent = next((cause for cause in chosen if not _accuses(cause)), None)
-    if innocent in chosen[MOST:]:
-        chosen[MOST - 1] = innocent
+    if innocent in chosen[MAX_EXPLANATIONS:]:
+        chosen[MAX_EXPLANATIONS - 1] = innocent
     leaders: list[Cause] = []
-    ranked = []
-    for cause in chosen[:MOST]:
-        # that another program or machine made the page is said beside no misreading that explains
-        # it better
+    explanations = []
+    for cause in chosen[:MAX_EXPLANATIONS]:
+        # another program or machine never shares the rank of a misreading that explains the
+        # page better
         alike = (
             rank
             for rank, other in enumerate(leaders, 1)
             if cause.left == other.left
-            and _weight(cause) <= _weight(other) + _ALIKE
+            and _total_bits(cause) <= _total_bits(other) + SAME_RANK_BITS
             and (_accuses(other) or not _accuses(cause))
         )
         rank = next(alike, len(leaders) + 1)
         leaders += [cause] * (rank > len(leaders))
-        changes = [_described(page, change) for change in cause.right]
-        found = len(page.base - cause.left), len(page.base), changes, rank
-        ranked.append(Cause(cause.kind, cause.note, cause.bits, cause.left, cause.right, *found))
-    return sorted(ranked, key=lambda cause: (cause.rank, _weight(cause)))
+        changes = [_change_as_json(page, change) for change in cause.right]
+        details = len(page.base - cause.left), len(page.base), changes, rank
+        explanations.append(
+            Cause(cause.kind, cause.note, cause.bits, cause.left, cause.right, *details)
+        )
+    return sorted(explanations, key=lambda cause: (cause.rank, _total_bits(cause)))
 
 
-def _weight(cause: Cause) -> float:
-    return cause.bits + _LEFT * len(cause.left)
+def _total_bits(cause: Cause) -> float:
+    return cause.bits + UNEXPLAINED_BITS * len(cause.left)
 
 
 def _accuses(cause: Cause) -> bool:
@@ -252,19 +268,21 @@ def _accuses(cause: Cause) -> bool:
 
 
 def _adds_to(cause: Cause, other: Cause) -> bool:
-    """Whether a cause puts right what a likelier one does and more, or the same numbers in the
-    same way, or says the same."""
+    """Return True if a cause corrects all that a likelier one does and more, or the same numbers in
+    the same way, or repeats its sentence."""
     if not other.right:
         return not cause.right and (cause.kind, cause.note) == (other.kind, other.note)
-    rights, others = ({(c.field, c.would_be) for c in each.right} for each in (cause, other))
-    if cause.kind == other.kind and dict(rights).keys() == dict(others).keys():
-        return len(cause.left) > len(other.left) or rights == others
-    return others < rights
+    rights, other_rights = (
+        {(c.field, c.would_be) for c in member.right} for member in (cause, other)
+    )
+    if cause.kind == other.kind and dict(rights).keys() == dict(other_rights).keys():
+        return len(cause.left) > len(other.left) or rights == other_rights
+    return other_rights < rights
 
 
-def _described(page: PageEvidence, change: Change) -> dict[str, Any]:
-    """A number put right, where it stands, and what to ask of the paper there."""
-    kind, name, printed, would_be = change
+def _change_as_json(page: PageEvidence, change: Change) -> dict[str, Any]:
+    """Return a corrected number as JSON: its place, and the question to ask of the paper there."""
+    kind, name, page_text, would_be = change
     readings = page.paper.replies if name.startswith("reply ") else page.paper.fields
     name = name.removeprefix("reply ")
     reading = readings.get(name)
@@ -273,14 +291,16 @@ def _described(page: PageEvidence, change: Change) -> dict[str, Any]:
     line, column = (place.line, place.column) if place else (None, None)
     look = ""
     if place and (label or kind in slips.BITS):
-        at, asked = (line, column), f"{printed} or {would_be}"
+        at, alternatives = (line, column), f"{page_text} or {would_be}"
         if kind == slips.DIGIT and reading is not None:
-            index = next(at for at in range(len(printed)) if printed[at] != would_be[at])
-            asked = f"{printed[index]} {'an' if would_be[index] == '8' else 'a'} {would_be[index]}"
+            index = next(at for at in range(len(page_text)) if page_text[at] != would_be[at])
+            alternatives = (
+                f"{page_text[index]} {'an' if would_be[index] == '8' else 'a'} {would_be[index]}"
+            )
             if index < len(reading.region):
                 at = page.paper.page.place(reading.region[index].offset)
-        look = f"line {at[0]}, column {at[1]}: is this {asked}?"
+        look = f"line {at[0]}, column {at[1]}: is this {alternatives}?"
     return {
-        "kind": kind, "field": name, "printed": printed, "would_be": would_be,
+        "kind": kind, "field": name, "printed": page_text, "would_be": would_be,
         "line": line, "column": column, "look": look,
     }  # fmt: skip

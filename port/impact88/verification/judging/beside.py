@@ -1,8 +1,8 @@
-"""What stands beside a verdict and never changes it: exact values, warnings, and what the page
-cannot show.
+"""Information beside a verdict, which never changes it: exact values, warnings, and errors that the
+page could not reveal.
 
 Exact means the mechanics of Equations 13 to 18 in double precision by the closed form, with exact
-pi, for the recovered scene: what the program would print had its arithmetic cost nothing.
+pi, for the recovered scene: the results without the program's rounding errors.
 
 An input that nothing else printed depends on may be misread on a page that agrees with itself, so
 no verdict covers it. With M = 4 that is a third of all inputs. Angles that enter only as a sum are
@@ -27,39 +27,41 @@ from ..recovery.replays import run_columns
 from ..recovery.typedtext import mu_turned, opposite
 from .judgement import FieldCheck
 
-_DIGITS = 12
-"""Digits an exact value is shown with: as many as double precision is sure of."""
+EXACT_DIGITS = 12
+"""Digits shown of an exact value: as many as are certain in double precision."""
 _SUMS = (("PA", "TA"), ("PB", "TB"))
-_LAST_PLACES = 2.0
-"""Angles of the same sum may enter with other last bits: results agree within so many units."""
-_TURN = 360
-"""Degrees."""
+MAX_LAST_PLACES = 2.0
+"""Units of the last place within which results agree: equal sums of angles may differ in last
+bits."""
+_TURN = 360  # degrees
 _MANY_TURNS = 1_000_000
-"""Degrees from which 32 bits hold the angle in radians to 4e-6 or worse."""
+"""Size in degrees from which 32 bits hold the angle in radians to 4e-6 or worse."""
 _DEPENDENT = tuple(name for name in FIELDS if name not in INPUTS or name == "MUP")
-"""What is printed that other inputs than itself may change: MU's sign is chosen."""
+"""Printed fields that may change with other inputs: the results, and MU, whose sign is chosen."""
 
 Scene = Mapping[str, str]
 Program = Callable[[Sequence[Scene], Sequence[str]], tuple[list[str], dict[str, Any]]]
-"""What a program prints for some scenes, as `run_columns` has it."""
+"""A function that runs a program on scenes and returns what `run_columns` does."""
 
 
 def add_exact_values(scene: Scene, checks: Sequence[FieldCheck]) -> None:
     """Set ``exact`` and ``difference`` (printed less exact) of every check of a result."""
-    wanted = [check for check in checks if check.name in RESULTS and check.name not in INPUTS]
-    values = solve(doubles_of(scene), [check.name for check in wanted])
-    for check in wanted:
+    result_checks = [
+        check for check in checks if check.name in RESULTS and check.name not in INPUTS
+    ]
+    values = solve(doubles_of(scene), [check.name for check in result_checks])
+    for check in result_checks:
         if math.isnan(value := values[check.name]):
             continue
-        check.exact = f"{value + 0.0:.{_DIGITS}g}"
-        if (printed := value_of(check.printed or "")) is not None:
-            difference = printed - Decimal(check.exact)
+        check.exact = f"{value + 0.0:.{EXACT_DIGITS}g}"
+        if (number := value_of(check.printed or "")) is not None:
+            difference = number - Decimal(check.exact)
             check.difference = f"{difference:+.3g}" if difference else "0"
 
 
 def warnings(scene: Scene) -> list[str]:
-    """What is unphysical about a scene (the bits of STATUS), and which of the program's known traps
-    it steps into, one sentence each."""
+    """Return a sentence for each unphysical trait of a scene (a bit of STATUS) and for each known
+    fault of the program that the scene triggers."""
     values: dict[str, Any] = dict(doubles_of(scene))
     values |= solve(values, ["STATUS", "MUC", "MUP", "XA", "YA", "XB", "YB"])
     bits = int(values["STATUS"])
@@ -95,12 +97,12 @@ def _whole_turns(scene: Scene) -> Iterator[str]:
         yield f"{name} = {text}, a whole turn or more: {same}"
 
 
-# --- what the page cannot show ---
+# --- errors that the page could not reveal ---
 
 
 class _Trial(NamedTuple):
-    """A scene with other inputs, and their names; ``place``: of the one digit that is another;
-    ``near``: whether it is the last, and another by one."""
+    """A scene with changed inputs, and their names. Where one digit was changed, ``place`` is its
+    index, and ``near`` is True if it is the last digit, changed by one."""
 
     names: tuple[str, ...]
     scene: Scene
@@ -109,14 +111,14 @@ class _Trial(NamedTuple):
 
 
 def unseen(scene: Scene, printed: Mapping[str, str], program: Program = run_columns) -> list[str]:
-    """What the results that a program prints for a scene do not depend on, one sentence each.
-    ``printed``: what it prints, by field."""
+    """Return a sentence for each input, sum or digit on which no printed result depends.
+    ``printed``: the program's fields for the scene, by name."""
     trials = [*_other_values(scene)]
     alike = zip(trials, _same(program, scene, trials), strict=True)
     shows = {trial.names for trial, same in alike if not same}
     alone = [name for name in INPUTS if (name,) not in shows]
     digits = [trial for trial in _other_digits(scene, printed) if trial.names in shows]
-    if program is not run_columns:  # those that the listing does not show, and the likeliest
+    if program is not run_columns:  # a copy is slow: only digits likely to be unseen are tried
         alike = zip(digits, _same(run_columns, scene, digits), strict=True)
         digits = [trial for trial, same in alike if same or trial.near]
     sentences = []
@@ -137,28 +139,29 @@ def unseen(scene: Scene, printed: Mapping[str, str], program: Program = run_colu
         text = printed[name]
         faint.setdefault(scene_name(name), [*text])[at] = f"({text[at]})"
     if faint:
-        marked = [f"{name} {''.join(text).replace(')(', '')}" for name, text in faint.items()]
+        faint_texts = [f"{name} {''.join(text).replace(')(', '')}" for name, text in faint.items()]
         sentences.append(
             "any one digit in brackets may be another with all else on the page the same: "
-            + ", ".join(marked)
+            + ", ".join(faint_texts)
         )
     return sentences
 
 
 def _other_values(scene: Scene) -> Iterator[_Trial]:
-    """Other values of each input, not near any symmetry, and other angles of the same sum."""
+    """Yield scenes with another value of each input, away from any symmetry, and with other angles
+    of the same sum."""
     for name in INPUTS:
         value = double(scene[scene_name(name)])
-        others = [value * 1.37 + 0.53]
+        replacements = [value * 1.37 + 0.53]
         if name in ANGLES:
-            others = [value + 11, value - 23]
+            replacements = [value + 11, value - 23]
         elif name == "E":
-            others = [value * 0.7 + 0.11]
-        for other in others:
-            yield _Trial((name,), {**scene, scene_name(name): _short(other)})
+            replacements = [value * 0.7 + 0.11]
+        for replacement in replacements:
+            yield _Trial((name,), {**scene, scene_name(name): _short(replacement)})
     for first, second in _SUMS:
-        turned = (_short(double(scene[first]) + 7), _short(double(scene[second]) - 7))
-        angles = dict(zip((first, second), turned, strict=True))
+        angle_texts = (_short(double(scene[first]) + 7), _short(double(scene[second]) - 7))
+        angles = dict(zip((first, second), angle_texts, strict=True))
         yield _Trial((first, second), {**scene, **angles})
 
 
@@ -167,33 +170,35 @@ def _short(value: float) -> str:
 
 
 def _other_digits(scene: Scene, printed: Mapping[str, str]) -> Iterator[_Trial]:
-    """Inputs as printed, with one other digit."""
+    """Yield scenes in which one digit of one printed input is changed."""
     for name in INPUTS:
-        text, own = printed.get(name, ""), scene_name(name)
-        turned = name == "MUP" and text and mu_turned(scene[own], text)
+        text, scene_key = printed.get(name, ""), scene_name(name)
+        mu_reversed = name == "MUP" and text and mu_turned(scene[scene_key], text)
         places = [at for at, char in enumerate(text.partition("E")[0]) if char.isdigit()]
         for place, new in product(places, "0123456789"):
-            other = text[:place] + new + text[place + 1 :]
-            if other != text and printable(other):
-                near = place == places[-1] and abs(int(new) - int(text[place])) == 1
-                typed = opposite(other) if turned else other
-                yield _Trial((name,), {**scene, own: typed}, place, near)
+            variant = text[:place] + new + text[place + 1 :]
+            if variant != text and printable(variant):
+                is_nearest = place == places[-1] and abs(int(new) - int(text[place])) == 1
+                typed_text = opposite(variant) if mu_reversed else variant
+                yield _Trial((name,), {**scene, scene_key: typed_text}, place, is_nearest)
 
 
 def _same(program: Program, scene: Scene, trials: Sequence[_Trial]) -> list[bool]:
-    """Whether a program prints the same for each as for the scene, but for what was changed; nearly
-    the same where that is a sum."""
+    """Return, for each trial, True if the program prints the same as for the scene, apart from the
+    changed input; for angles of the same sum, nearly the same."""
     endings, columns = program([scene, *(trial.scene for trial in trials)], _DEPENDENT)
     differ = {name: texts != texts[0] for name, texts in columns.items()}
     count = sum(differ.values()) + (np.array(endings) != endings[0])
     alike = []
     for row, trial in enumerate(trials, 1):
-        others = [name for name in _DEPENDENT if differ[name][row]] if len(trial.names) > 1 else []
-        same = count[row] == len(others) + (trial.names[0] == "MUP" and differ["MUP"][row])
-        for name in others:
-            text, other = columns[name][0], columns[name][row]
+        rounding_names = (
+            [name for name in _DEPENDENT if differ[name][row]] if len(trial.names) > 1 else []
+        )
+        same = count[row] == len(rounding_names) + (trial.names[0] == "MUP" and differ["MUP"][row])
+        for name in rounding_names:
+            text, variant = columns[name][0], columns[name][row]
             unit = 10.0 ** -(FIELDS[name].places or 0)
-            near = _LAST_PLACES * unit + 1e-6 * abs(float(text or "nan"))
-            same = same and abs(float(text or "nan") - float(other or "nan")) <= near
+            tolerance = MAX_LAST_PLACES * unit + 1e-6 * abs(float(text or "nan"))
+            same = same and abs(float(text or "nan") - float(variant or "nan")) <= tolerance
         alike.append(bool(same))
     return alike

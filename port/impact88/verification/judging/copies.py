@@ -1,4 +1,4 @@
-"""A printout held against an office's own copy of the listing.
+"""Comparison of a printout with an office's own copy of the listing.
 
 The scene is recovered as always, from what the restored listing prints. The copy may print another
 sign of MU or an angle otherwise, so the few texts that may have been typed are tried in it, and the
@@ -29,12 +29,11 @@ from ..recovery.replays import Outcome
 from ..recovery.typedtext import opposite, texts_that_print, with_opposite_mu
 from .judgement import FieldCheck, Judged, Status, judge
 
-_TEXTS = 4
-"""Texts that are tried for an angle: as printed, rounded, and two that the Apple prints so."""
-_CONVERTED = 1e-3
-"""Relative difference from which on a copy prints another number than was typed."""
-_TYPED_DIGITS = 9
-"""Digits that are tried for what was typed."""
+MAX_ANGLE_TEXTS = 4
+"""Texts tried for an angle: as printed, rounded, and two that the Apple prints so."""
+CONVERSION_RTOL = 1e-3
+"""Relative difference above which a copy counts as printing another number than was typed."""
+MAX_TYPED_DIGITS = 9  # digits tried for a typed number
 _OPTIONAL = re.compile(r"ENTER THE INITIAL|\*+$")
 """Lines that a page on a picture may lack: prompts, and rows of asterisks."""
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]+)?")
@@ -48,18 +47,18 @@ class CopyPages:
         self.copy = copy
         copy.check_variables()
         restored, own = run(sample(1)).page, copy.run(sample(1)).page
-        self._order, self._own_order = _labelled(restored), _labelled(own)
+        self._order, self._own_order = _label_lines(restored), _label_lines(own)
         kinds = [{_plain(line, "#") for line in page.split("\n")} for page in (restored, own)]
         self._besides = kinds[1] - kinds[0]
-        text, *_ = self.prepared(own)
+        text, *_ = self.prepare(own)
         printed = read_printouts(text, copy.file)[0]
         self._labels = {label.name: label.read for label in printed.labels}
         self._as_listed = _texts(printed) == outcome_fields(text)
 
-    def prepared(self, text: str) -> tuple[str, list[int], dict[int, str]]:
-        """A text as `read_printouts` takes it: its lines in the restored listing's order, those
-        left empty that only the copy prints; for every line the number, from 1, that it had; and
-        the lines left empty, by their numbers now."""
+    def prepare(self, text: str) -> tuple[str, list[int], dict[int, str]]:
+        """Return a text for `read_printouts`: its lines in the restored listing's order, with
+        blanks for those that only the copy prints; the original number, from 1, of each line; and
+        the lines left out, by their new numbers."""
         lines = text.split("\n")
         besides = {at for at, line in enumerate(lines) if _plain(line, "#") in self._besides}
         order = list(range(len(lines)))
@@ -67,30 +66,30 @@ class CopyPages:
         for at, line in enumerate(lines if self._own_order != self._order else ()):
             words = _letters(line)
             if words in self._order and at not in besides:
-                if any(_letters(lines[other]) == words for other in groups[-1]):
+                if any(_letters(lines[member]) == words for member in groups[-1]):
                     groups.append([])
                 groups[-1].append(at)
         for group in groups:
             by_order = sorted(group, key=lambda at: self._order.index(_letters(lines[at])))
             for place, at in zip(group, by_order, strict=True):
                 order[place] = at
-        kept = "\n".join("" if at in besides else lines[at] for at in order)
-        return kept, [at + 1 for at in order], {at + 1: lines[at] for at in besides}
+        reordered = "\n".join("" if at in besides else lines[at] for at in order)
+        return reordered, [at + 1 for at in order], {at + 1: lines[at] for at in besides}
 
     def run_columns(
         self, scenes: Sequence[Mapping[str, str]], names: Sequence[str]
     ) -> tuple[list[str], dict[str, Any]]:
-        """What the copy prints for each scene, as `replays.run_columns` has it."""
-        found = [self._run(scene)[0] for scene in scenes]
+        """Run the copy on scenes and return what `replays.run_columns` does."""
+        outcomes = [self._run(scene)[0] for scene in scenes]
         columns = {
-            name: np.array([outcome.fields.get(name, "") for outcome in found]) for name in names
+            name: np.array([outcome.fields.get(name, "") for outcome in outcomes]) for name in names
         }
-        return [outcome.ending or "" for outcome in found], columns
+        return [outcome.ending or "" for outcome in outcomes], columns
 
     def _run(self, scene: Mapping[str, str]) -> tuple[Outcome, list[str]]:
-        """What the copy prints for a scene: by field, and its lines."""
-        done = self.copy.run(scene)
-        text, *_ = self.prepared(done.page)
+        """Run the copy on a scene; return the outcome and the lines of its page."""
+        copy_run = self.copy.run(scene)
+        text, *_ = self.prepare(copy_run.page)
         if self._as_listed:
             fields = outcome_fields(text)
         else:
@@ -98,80 +97,83 @@ class CopyPages:
                 fields = _texts(read_printouts(text)[0])
             except UserError:  # it ended before it printed any
                 fields = {}
-        ending = ZERO_DETERMINANT if ZERO_DETERMINANT in done.printout else done.error
-        return Outcome(fields, ending), done.page.split("\n")
+        ending = ZERO_DETERMINANT if ZERO_DETERMINANT in copy_run.printout else copy_run.error
+        return Outcome(fields, ending), copy_run.page.split("\n")
 
     def outcomes(self, scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
         """Return what the copy prints for each scene, by field."""
         return [self._run(scene)[0] for scene in scenes]
 
     def check_layout(self) -> None:
-        """Raise UserError where a line of the listing's page stands otherwise on the copy's, on
-        which no picture is divided into labels and numbers; its prompts, rows of asterisks and
-        lines of the copy's own may."""
+        """Raise UserError where a line of the listing's page is laid out otherwise on the copy's.
+
+        A picture of such a page cannot be divided into labels and numbers. Prompts, rows of
+        asterisks and lines of the copy's own may differ.
+        """
         for spins in ("6", "4"):
             scene = {**sample(1), "M": spins}
-            own = iter([*_layout(self.copy.run(scene).page)])
+            all_lines = [*_layout(self.copy.run(scene).page)]
+            following = iter(all_lines)
             for line in _layout(run(scene).page):
-                if _OPTIONAL.match(line) or line in own:
+                if _OPTIONAL.match(line) or line in following:
                     continue
-                lines = [*_layout(self.copy.run(scene).page)]
-                said = (
+                problem = (
                     f"prints its lines in another order than the listing: {line!r}"
-                    if line in lines
+                    if line in all_lines
                     else f"prints no line laid out like the listing's {line!r}"
                 )
                 raise UserError(
-                    f"{said}; expected for a picture the listing's layout (pages as text may have "
-                    "another)",
+                    f"{problem}; expected for a picture the listing's layout (pages as text may "
+                    "have another)",
                     self.copy.file,
                 )
 
     def prints(self, line: str, scene: Mapping[str, str]) -> bool:
         """Return whether a line is one that only the copy prints, and for this scene. Blanks do not
         count, and a question mark in the copy's may be unread (``?``)."""
-        read = "".join(line.split())
-        for own in self._run(scene)[1] if read else ():
-            if _plain(own, "#") in self._besides:
-                expected = "".join(own.split())
-                if len(expected) == len(read) and all(
-                    a == b or a == "?" for a, b in zip(expected, read, strict=True)
+        squeezed = "".join(line.split())
+        for copy_line in self._run(scene)[1] if squeezed else ():
+            if _plain(copy_line, "#") in self._besides:
+                letters = "".join(copy_line.split())
+                if len(letters) == len(squeezed) and all(
+                    a == b or a == "?" for a, b in zip(letters, squeezed, strict=True)
                 ):
                     return True
         return False
 
-    def judged(self, paper: Printout, recovered: Recovered, besides: Mapping[int, str]) -> Judged:
-        """The printout judged by the copy's page for the scene that comes nearest. ``besides``: its
-        lines that only the copy prints."""
+    def judge(self, paper: Printout, recovered: Recovered, besides: Mapping[int, str]) -> Judged:
+        """Judge the printout by the copy's page for the scene that comes nearest. ``besides``:
+        lines of the printout that only the copy prints, by number."""
 
-        def wrong(found: Judged) -> int:
-            return sum(check.status != Status.READ for check in [*found.fields, *found.replies])
+        def count_wrong(judgement: Judged) -> int:
+            checks = [*judgement.fields, *judgement.replies]
+            return sum(check.status != Status.READ for check in checks)
 
         best = None
-        printed = {name: text for name in INPUTS if (text := paper.text(name)) is not None}
+        input_texts = {name: text for name in INPUTS if (text := paper.text(name)) is not None}
         replies = {name: reply.text for name, reply in paper.replies.items() if reply.clean}
-        for scene in self.typed_scenes(recovered.scene, printed, replies):
-            found = self._judged(paper, recovered, scene, besides)
-            if best is None or wrong(found) < wrong(best):
-                best = found
-            if not wrong(best):
+        for scene in self.typed_scenes(recovered.scene, input_texts, replies):
+            candidate = self._judge_scene(paper, recovered, scene, besides)
+            if best is None or count_wrong(candidate) < count_wrong(best):
+                best = candidate
+            if not count_wrong(best):
                 break
         assert best is not None
         return best
 
-    def put_right(self, found: Judged, right: Mapping[str, str]) -> Judged | None:
-        """A printout, judged before, judged again with other inputs printed, by field; None where
-        the copy prints them for no text that is tried."""
+    def rejudge(self, found: Judged, right: Mapping[str, str]) -> Judged | None:
+        """Judge a printout again with corrected inputs (printed texts by field). Return None if no
+        text that is tried makes the copy print them."""
         choices = [_typed_texts(name, text) for name, text in right.items()]
         for texts in product(*choices):
-            typed = dict(zip(map(scene_name, right), texts, strict=True))
-            scene = {**found.recovered.scene, **found.recovered.typed, **typed}
-            own = [check for check in found.replies if check.name.startswith("line ")]
-            besides = {check.line or 0: check.printed or "" for check in own}
-            other = self._judged(found.paper, found.recovered, scene, besides)
-            printed = other.recovered.outcome.fields
-            if all(printed.get(name) == text for name, text in right.items()):
-                return other
+            typed_texts = dict(zip(map(scene_name, right), texts, strict=True))
+            scene = {**found.recovered.scene, **found.recovered.typed, **typed_texts}
+            copy_checks = [check for check in found.replies if check.name.startswith("line ")]
+            besides = {check.line or 0: check.printed or "" for check in copy_checks}
+            judgement = self._judge_scene(found.paper, found.recovered, scene, besides)
+            printed_fields = judgement.recovered.outcome.fields
+            if all(printed_fields.get(name) == text for name, text in right.items()):
+                return judgement
         return None
 
     def typed_scenes(
@@ -182,60 +184,67 @@ class CopyPages:
         others that print so, where the copy prints those otherwise. ``printed``: inputs on the
         page, by field; ``replies``: those to its prompts, by scene name."""
         scene = {**scene}
-        either = [scene, *with_opposite_mu(scene)]
-        yield from either
-        yield from self._converted(scene, printed, replies)
-        for typed in either:
-            fields = self._run(typed)[0].fields
+        both_signs = [scene, *with_opposite_mu(scene)]
+        yield from both_signs
+        yield from self._unconverted_scenes(scene, printed, replies)
+        for variant in both_signs:
+            fields = self._run(variant)[0].fields
             angles = {
                 name: printed[name]
                 for name in ANGLES
                 if name in printed and fields.get(name) != printed[name]
             }
-            for rank in range(_TEXTS if angles else 0):
+            for rank in range(MAX_ANGLE_TEXTS if angles else 0):
                 texts = {name: _typed_texts(name, text)[rank:] for name, text in angles.items()}
-                yield {**typed, **{name: some[0] for name, some in texts.items() if some}}
+                yield {
+                    **variant,
+                    **{name: options[0] for name, options in texts.items() if options},
+                }
 
-    def _converted(
+    def _unconverted_scenes(
         self, scene: dict[str, str], inputs: Mapping[str, str], replies: Mapping[str, str]
     ) -> Iterator[dict[str, str]]:
-        """The scene with what was typed where the copy converts it before it prints it: the replies
-        on the page, and numbers of few digits that print as the page has them."""
+        """Yield the scene with typed texts for inputs that the copy converts before printing: the
+        replies on the page, or numbers of few digits that print as on the page."""
         fields = self._run(scene)[0].fields
-        printed = {
+        converted = {
             scene_name(name): text
             for name, text in inputs.items()
             if name != "MUP" and _is_converted(scene[scene_name(name)], fields.get(name))
         }
-        if not printed:
+        if not converted:
             return
-        typed = {name: text for name, text in replies.items() if name in printed}
-        if len(typed) == len(printed):
-            yield from ({**other, **typed} for other in (scene, *with_opposite_mu(scene)))
+        typed_texts = {name: text for name, text in replies.items() if name in converted}
+        if len(typed_texts) == len(converted):
+            yield from ({**variant, **typed_texts} for variant in (scene, *with_opposite_mu(scene)))
         scales = {
-            name: double(scene[name]) / double(fields[name]) for name in printed if fields.get(name)
+            name: double(scene[name]) / double(fields[name])
+            for name in converted
+            if fields.get(name)
         }
-        for digits in range(1, _TYPED_DIGITS + 1):
+        for digits in range(1, MAX_TYPED_DIGITS + 1):
             trial = {
-                name: f"{float(f'{double(text) * scales[name]:.{digits}g}'):.{_TYPED_DIGITS}G}"
-                for name, text in printed.items()
-                if name not in typed and name in scales
+                name: f"{float(f'{double(text) * scales[name]:.{digits}g}'):.{MAX_TYPED_DIGITS}G}"
+                for name, text in converted.items()
+                if name not in typed_texts and name in scales
             }
-            shown = self._run({**scene, **typed, **trial})[0].fields
-            typed |= {
-                name: text for name, text in trial.items() if shown.get(name) == printed[name]
+            trial_fields = self._run({**scene, **typed_texts, **trial})[0].fields
+            typed_texts |= {
+                name: text
+                for name, text in trial.items()
+                if trial_fields.get(name) == converted[name]
             }
-        yield from ({**other, **typed} for other in (scene, *with_opposite_mu(scene)))
+        yield from ({**variant, **typed_texts} for variant in (scene, *with_opposite_mu(scene)))
 
-    def _judged(
+    def _judge_scene(
         self,
         paper: Printout,
         recovered: Recovered,
         scene: dict[str, str],
         besides: Mapping[int, str],
     ) -> Judged:
-        """The printout judged by what the copy prints for a scene. The copy's own labels are exact;
-        a line that only the copy prints must have its numbers, too."""
+        """Judge the printout by the copy's page for one scene. The copy's own labels count as
+        exact; the numbers of a line that only the copy prints are compared, too."""
         outcome, lines = self._run(scene)
         labels = [
             label._replace(state=LabelState.EXACT, doubt=False)
@@ -244,7 +253,7 @@ class CopyPages:
             for label in paper.labels
         ]
         paper = replace(paper, labels=labels)
-        own = set(map(_plain, lines))
+        plain_lines = set(map(_plain, lines))
         of_kind = {_plain(line, "#"): line.strip() for line in lines}
         wrong = [
             FieldCheck(
@@ -252,12 +261,12 @@ class CopyPages:
                 Status.CONTRADICTED, line=number,
             )
             for number, line in besides.items()
-            if _plain(line) not in own
+            if _plain(line) not in plain_lines
         ]  # fmt: skip
-        typed = converted_inputs(scene, outcome.fields)
+        conversions = converted_inputs(scene, outcome.fields)
         scene = as_printed(scene, outcome.fields)
-        judged = replace(recovered, scene=scene, outcome=outcome, typed=typed)
-        return judge(paper, judged, wrong)
+        copy_recovered = replace(recovered, scene=scene, outcome=outcome, typed=conversions)
+        return judge(paper, copy_recovered, wrong)
 
 
 def converted_inputs(typed: Mapping[str, str], printed: Mapping[str, str]) -> dict[str, str]:
@@ -275,15 +284,15 @@ def as_printed(typed: Mapping[str, str], printed: Mapping[str, str]) -> dict[str
 
 
 pages_of = lru_cache(maxsize=1)(CopyPages)
-"""The pages of the copy that was asked for last: many files are held against one."""
+"""Cached `CopyPages`: many files are compared with one copy."""
 
 
 def _is_converted(typed: str, printed: str | None) -> bool:
-    """Whether a copy prints another number for an input than was typed; not one in its last
-    places, as a copy with another pi does."""
+    """Return True if a copy prints another number for an input than was typed. Last places do not
+    count: a copy with another pi changes them."""
     if not printed or not double(printed):
         return False
-    return abs(double(typed) - double(printed)) > _CONVERTED * abs(double(printed))
+    return abs(double(typed) - double(printed)) > CONVERSION_RTOL * abs(double(printed))
 
 
 def _texts(printed: Printout) -> dict[str, str]:
@@ -294,8 +303,8 @@ def _letters(line: str) -> str:
     return "".join(filter(str.isalpha, _NUMBER.sub("", line.upper())))
 
 
-def _labelled(printed: str) -> list[str]:
-    """The letters of each line that holds labels, in the order of the page."""
+def _label_lines(printed: str) -> list[str]:
+    """Return the letters of each line that holds labels, in the order of the page."""
     body = printed[max(printed.find("MA="), 0) :]
     return [letters for line in body.split("\n") if (letters := _letters(line)) and "=" in line]
 
@@ -308,20 +317,20 @@ def _layout(page: str) -> Iterator[str]:
 
 
 def _plain(line: str, number: str = "") -> str:
-    """A line without blanks, its numbers by value or as one mark."""
+    """Return a line without blanks, its numbers normalized or replaced by ``number``."""
 
-    def said(found: re.Match[str]) -> str:
-        value = value_of(found[0])
+    def replacement(match: re.Match[str]) -> str:
+        value = value_of(match[0])
         return number or (f"{value.normalize()}" if value else "0")
 
-    return _NUMBER.sub(said, "".join(line.split()))
+    return _NUMBER.sub(replacement, "".join(line.split()))
 
 
 def _typed_texts(name: str, printed: str) -> list[str]:
-    """Texts that may have been typed where this is printed."""
+    """Return texts that may have been typed for a printed text."""
     if name == "MUP":
         return [printed, opposite(printed)]
     if name not in ANGLES:
         return [next(iter(texts_that_print(printed)), printed)]
     short = f"{float(printed):.6g}"
-    return list(dict.fromkeys([printed, short, *texts_that_print(printed, True)]))[:_TEXTS]
+    return list(dict.fromkeys([printed, short, *texts_that_print(printed, True)]))[:MAX_ANGLE_TEXTS]

@@ -1,4 +1,4 @@
-"""Judging: every number on the paper against the program's page for the recovered scene.
+"""Judgement of every number on the paper by the program's page for the recovered scene.
 
 Each number is read exactly, doubtful (look-alikes, illegible or stray glyphs, but what the program
 prints fits them), contradicted (cleanly read, and not what the program prints) or not read. The
@@ -16,7 +16,7 @@ from ..reading.fieldlabels import LabelState
 from ..reading.glyphs import Region
 from ..reading.numerals import Doubt, Match, Spot, compare, cut_as, note_start
 from ..reading.printout import Piece, Printout, Reading, reading_of
-from ..recovery.recovered import Recovered, reply_ways, without_mark
+from ..recovery.recovered import Recovered, reply_candidates, without_mark
 from ..recovery.slips import Rereading
 from ..recovery.typedtext import stored_and_printed
 
@@ -36,7 +36,7 @@ class Verdict(StrEnum):
 
 
 class Status(StrEnum):
-    """What became of one number."""
+    """Result of comparing one number."""
 
     READ = "read"
     DOUBTFUL = "doubtful"
@@ -138,8 +138,8 @@ class FieldCheck:
 
 @dataclass
 class Judged:
-    """A printout held against the page of the scene that was recovered: every number, the replies,
-    the ending, and the verdict. ``notes``: text typed beside a number that was read exactly."""
+    """A printout compared with the page of the recovered scene: every number, the replies, the
+    ending, and the verdict. ``notes``: text typed beside a number that was read exactly."""
 
     paper: Printout
     recovered: Recovered
@@ -152,20 +152,23 @@ class Judged:
     @property
     def contradicted(self) -> list[FieldCheck]:
         """The numbers and the ending that are not what the program prints."""
-        every = [*self.fields, *self.replies, self.ending]
-        return [check for check in every if check.status == Status.CONTRADICTED]
+        all_checks = [*self.fields, *self.replies, self.ending]
+        return [check for check in all_checks if check.status == Status.CONTRADICTED]
 
 
 def judge(paper: Printout, recovered: Recovered, others: Sequence[FieldCheck] = ()) -> Judged:
-    """The printout, judged. ``others``: replies that were compared elsewhere."""
+    """Compare a printout with the recovered scene's page. ``others``: replies compared
+    elsewhere."""
     replies = [_reply(paper, recovered, name, reading) for name, reading in paper.replies.items()]
     checks, notes = _fields(paper, recovered)
     if all(check.status != Status.CONTRADICTED for check in checks):
         _doubt_damaged_replies(paper, replies)
     ending = _ending(paper, recovered)
-    found = Judged(paper, recovered, checks, [*replies, *others], ending, Verdict.IDENTICAL, notes)
-    found.verdict = _verdict(found)
-    return found
+    judgement = Judged(
+        paper, recovered, checks, [*replies, *others], ending, Verdict.IDENTICAL, notes
+    )
+    judgement.verdict = _verdict(judgement)
+    return judgement
 
 
 def _verdict(found: Judged) -> Verdict:
@@ -179,8 +182,10 @@ def _verdict(found: Judged) -> Verdict:
     if unread or found.ending.same is None or missing or paper.fragment_of_run or paper.unread:
         return Verdict.INCOMPLETE
     doubtful = any(check.status != Status.READ for check in [*found.fields, *found.replies])
-    beside = any(piece.beside for piece in paper.left_over) or bool(found.notes or paper.remarks)
-    if doubtful or beside or any(label.doubt for label in paper.labels):
+    extra_text = any(piece.beside for piece in paper.left_over) or bool(
+        found.notes or paper.remarks
+    )
+    if doubtful or extra_text or any(label.doubt for label in paper.labels):
         return Verdict.IDENTICAL_AS_READ
     return Verdict.IDENTICAL
 
@@ -189,28 +194,28 @@ def _verdict(found: Judged) -> Verdict:
 
 
 def _fields(paper: Printout, recovered: Recovered) -> tuple[list[FieldCheck], list[Piece]]:
-    """Every field that is printed or should be, in the order of the printout; and the notes typed
-    beside numbers that were read."""
+    """Return a check of every field that is printed or should be, in the order of the printout; and
+    the notes typed beside numbers that were read."""
     checks, notes = [], []
     row = _angle_row(paper, recovered)
     for name in FIELDS:
         text = recovered.outcome.fields.get(name)
         reading = reading_of(paper.page, row[name]) if name in row else paper.fields.get(name)
         if reading is None and text is None:
-            expected = recovered.missing and not paper.ending
-            if not expected or (name in FINAL_SPINS and recovered.scene["M"] != "6"):
+            depends_on_missing = recovered.missing and not paper.ending
+            if not depends_on_missing or (name in FINAL_SPINS and recovered.scene["M"] != "6"):
                 continue
         check = _check(name, reading, text)
         if reading is None:
             check.status = Status.NOT_READ
         elif text is not None:
-            noted = note_start(reading.region)
-            if noted < len(reading.region) and reading.region[:noted]:
-                own = compare(reading.region[:noted], text)
-                if not own.contradicts:
-                    notes.append(_note(paper, reading.region[noted:]))
-                    check.stop = reading.region[noted - 1].offset + 1
-                    reading = replace(reading, region=reading.region[:noted], stop=check.stop)
+            note_at = note_start(reading.region)
+            if note_at < len(reading.region) and reading.region[:note_at]:
+                number_match = compare(reading.region[:note_at], text)
+                if not number_match.contradicts:
+                    notes.append(_note(paper, reading.region[note_at:]))
+                    check.stop = reading.region[note_at - 1].offset + 1
+                    reading = replace(reading, region=reading.region[:note_at], stop=check.stop)
             match = compare(reading.region, text, reading.cut, reading.sign_free)
             if name in row and name != ANGLES[0] and not reading.region[0].gap:
                 match = match._replace(spots=(Spot(0, "", "", Doubt.BLANK), *match.spots))
@@ -221,22 +226,21 @@ def _fields(paper: Printout, recovered: Recovered) -> tuple[list[FieldCheck], li
             elif check.printed == text or (
                 check.status is Status.CONTRADICTED and not reading.clean
             ):
-                check.printed = _as_it_stands(paper, reading)
+                check.printed = _paper_text(paper, reading)
         elif not recovered.missing:
             check.status = Status.CONTRADICTED
         checks.append(check)
     return checks, notes
 
 
-_SHOWN = 30
-"""Characters of a number's place that are shown."""
+MAX_SHOWN = 30  # characters shown of the text in a number's place
 
 
-def _as_it_stands(paper: Printout, reading: Reading) -> str:
+def _paper_text(paper: Printout, reading: Reading) -> str:
     """Return the text in a number's place, as it stands on the paper."""
     end = reading.region[-1].offset + 1
     text = " ".join(paper.page.text[reading.start : end].split())
-    return text if len(text) <= _SHOWN else text[: _SHOWN - 3] + "..."
+    return text if len(text) <= MAX_SHOWN else text[: MAX_SHOWN - 3] + "..."
 
 
 def _note(paper: Printout, region: Region) -> Piece:
@@ -254,7 +258,7 @@ def _check(name: str, reading: Reading | None, text: str | None) -> FieldCheck:
 
 
 def _status(match: Match, region: Region, text: str) -> Status:
-    """What a number is, by how its glyphs are explained by what the program prints."""
+    """Return the status of a number from the match of its glyphs with the program's text."""
     if not match.spots:
         return Status.READ
     if any(spot.doubt is Doubt.CUT for spot in match.spots) and not match.contradicts:
@@ -275,7 +279,8 @@ def _hardly_read(match: Match, text: str) -> bool:
 
 
 def _angle_row(paper: Printout, recovered: Recovered) -> dict[str, Region]:
-    """Where the angles stand in a row that blanks alone do not cut; none where it is plain."""
+    """Return the regions of the angles in a row that blanks alone do not divide; empty where they
+    do."""
     texts = tuple(recovered.outcome.fields.get(name, "") for name in ANGLES)
     cuts = cut_as(paper.angle_row, texts) if paper.angle_row and all(texts) else ()
     pairs = zip(ANGLES, cuts, strict=bool(cuts))
@@ -294,8 +299,8 @@ def _doubts(paper: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Do
 
 
 def _reply(paper: Printout, recovered: Recovered, name: str, reading: Reading) -> FieldCheck:
-    """A reply shown at a prompt against the velocity of the scene, as a number; laid beside its
-    text as typed or as printed, with or without its first glyph, whichever explains it best."""
+    """Compare a reply at a prompt with the scene's velocity, by value; then with its text as typed
+    or as printed, with or without the first glyph, whichever matches best."""
     value = recovered.typed.get(name, recovered.scene[name])
     if name in recovered.missing:
         return _check(name, reading, None)
@@ -303,20 +308,20 @@ def _reply(paper: Printout, recovered: Recovered, name: str, reading: Reading) -
     if reading.clean and same_value(reading.text, value):
         check.status = Status.READ
         return check
-    seen = stored_and_printed(value)
-    texts = sorted({value, seen[1]} if seen else {value})
+    stored = stored_and_printed(value)
+    texts = sorted({value, stored[1]} if stored else {value})
     parts = filter(None, (reading, without_mark(reading)))
     matches = [(part, compare(part.region, text)) for part in parts for text in texts]
     part, match = min(matches, key=lambda pair: pair[1].cost)
     check.status, how = Status.NOT_READ, Doubt.ILLEGIBLE
-    if any(same_value(text, value) for text, _, _ in reply_ways(reading)):
+    if any(same_value(text, value) for text, _, _ in reply_candidates(reading)):
         check.status, how = Status.DOUBTFUL, Doubt.LOOK_ALIKE
     elif reading.clean or (match.contradicts and not _hardly_read(match, value)):
         check.status, check.doubts = Status.CONTRADICTED, _doubts(paper, part, match.spots)
         return check
     place = reading.line, reading.column, reading.start
-    shown = reading.text if reading.text != value else _as_it_stands(paper, reading)
-    check.doubts = [Doubtful(*place, shown, value, str(how))]
+    reply_text = reading.text if reading.text != value else _paper_text(paper, reading)
+    check.doubts = [Doubtful(*place, reply_text, value, str(how))]
     return check
 
 
@@ -326,25 +331,29 @@ def _doubt_damaged_replies(paper: Printout, replies: Sequence[FieldCheck]) -> No
     misread = {label.name for label in paper.labels if label.state is LabelState.DAMAGED}
     by_name = {check.name: check for check in replies}
     for side, names in REPLIES.items():
-        own = [by_name[name] for name in names if name in by_name]
-        mark = own and own[0].name == names[0] and own[0].status is Status.DOUBTFUL
+        side_checks = [by_name[name] for name in names if name in by_name]
+        mark = (
+            side_checks
+            and side_checks[0].name == names[0]
+            and side_checks[0].status is Status.DOUBTFUL
+        )
         mark = mark or names[0] in paper.misread_prompts
-        for check in own if mark or f"REPLY_{side}" in misread else ():
+        for check in side_checks if mark or f"REPLY_{side}" in misread else ():
             if check.status is Status.CONTRADICTED:
                 check.status = Status.DOUBTFUL
                 place = check.line or 0, check.column or 0, check.start or 0
-                read, printed = check.printed or "", check.recomputed or ""
-                check.doubts = [Doubtful(*place, read, printed, str(Doubt.LOOK_ALIKE))]
+                reply_text, program_text = check.printed or "", check.recomputed or ""
+                check.doubts = [Doubtful(*place, reply_text, program_text, str(Doubt.LOOK_ALIKE))]
 
 
 def same_value(text: str, other: str) -> bool:
-    """Whether two typed texts are the same real."""
-    seen, expected = stored_and_printed(text), stored_and_printed(other)
-    return seen is not None and expected is not None and seen[0] == expected[0]
+    """Return True if two typed texts are stored as the same number."""
+    first, second = stored_and_printed(text), stored_and_printed(other)
+    return first is not None and second is not None and first[0] == second[0]
 
 
 def _ending(paper: Printout, recovered: Recovered) -> FieldCheck:
-    """How the printout ends against how the replay does; one that is cut off shows no message."""
+    """Compare the printout's ending with the replay's; one that is cut off shows no message."""
     recomputed = recovered.outcome.ending
     unsure = recovered.missing or paper.ending is None
     status = Status.NOT_COMPARED if unsure else Status.CONTRADICTED
@@ -352,41 +361,44 @@ def _ending(paper: Printout, recovered: Recovered) -> FieldCheck:
     return FieldCheck("ENDING", paper.ending, recomputed, status)
 
 
-# --- looking past a reader's mistakes ------------------------------------------------------------
+# --- errors attributed to the reader ------------------------------------------------------------
 
-_AS_WELL = 1.0
-"""Scenes that cost so little more than the best explain the page as well; doubled or halved, of 95
-readings that differ none is settled otherwise."""
-_LOST_AND_ADDED = 3
-"""So many numbers with a glyph lost or added may be put down to a reader; doubled, 1 of 95 more is
-settled, and with one 1 of 10 less."""
+TIE_COST = 1.0
+"""Cost above the best up to which scenes explain the page as well; doubled or halved, the result of
+none of 95 differing readings changes."""
+MAX_GLYPH_ERRORS = 3
+"""Numbers with a lost or added glyph that may be attributed to a reader; doubled, 1 of 95 more is
+attributed, and with one 1 of 10 fewer."""
 
 
-def looked_past(found: Judged, rereading: Rereading) -> Judged | None:
-    """The printout judged with its reader's slips put right; None where they are not its alone.
+def attribute_to_reader(found: Judged, rereading: Rereading) -> Judged | None:
+    """Judge the printout with its reader's errors corrected. Return None unless every difference
+    can be attributed to the reader.
 
-    Scenes with slips put right are judged as if they were the printout's own; what is still wrong
-    must be the reader's. Of 110 readings of genuine pages 6 are settled so.
-    The scene that explains most decides, and every other that explains the page as well must
-    bear it out: a digit altered in one angle can be made good by a sign of the angle beside it.
+    Scenes with corrected slips are judged as if they were the printout's own; what still differs
+    must be the reader's error. Of 110 readings of genuine pages, 6 are decided here. The scene
+    that explains most decides, and every other that explains the page as well must confirm it: a
+    digit altered in one angle can be compensated by a sign of the angle beside it.
     """
-    paper, recovered = found.paper, found.recovered
+    paper, base = found.paper, found.recovered
     no_reader = not paper.machine_read or paper.fragment_of_run or paper.ending or paper.unread
-    if no_reader or recovered.missing:
+    if no_reader or base.missing:
         return None
-    apart = set(recovered.apart)
-    tried = [r for r in rereading.best() if apart.isdisjoint(change.field for change in r.changes)]
-    runs = [reread.scored for reread in tried]
-    runs.append(recovered.search.replayed_scene(recovered.scene, recovered.assumed))
+    apart = set(base.apart)
+    rereads = [
+        r for r in rereading.best() if apart.isdisjoint(change.field for change in r.changes)
+    ]
+    runs = [reread.scored for reread in rereads]
+    runs.append(base.search.replayed_scene(base.scene, base.assumed))
     runs.sort(key=lambda run: run.cost)
     best = None
     for run in runs:
-        if run.cost <= runs[0].cost + _AS_WELL:
-            scene = replace(recovered, scene=run.scene, assumed=run.assumed, outcome=run.outcome)
-            judged = judge(paper, scene)
-            if not settled(judged.fields, judged.replies):
+        if run.cost <= runs[0].cost + TIE_COST:
+            scene = replace(base, scene=run.scene, assumed=run.assumed, outcome=run.outcome)
+            judgement = judge(paper, scene)
+            if not is_reader_error(judgement.fields, judgement.replies):
                 return None
-            best = best or judged
+            best = best or judgement
     assert best is not None
     for check in [*best.fields, *best.replies]:
         if check.status == Status.CONTRADICTED:
@@ -395,29 +407,29 @@ def looked_past(found: Judged, rereading: Rereading) -> Judged | None:
     return best
 
 
-def settled(checks: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> bool:
-    """Whether all that a machine-read page contradicts is its reader's doing.
+def is_reader_error(checks: Sequence[FieldCheck], replies: Sequence[FieldCheck]) -> bool:
+    """Return True if all differences of a machine-read page can be attributed to its reader.
 
     A reader loses and adds signs and points, and a digit of a number here and there, and where it
     takes one digit for another it does so in more places than one. A digit altered on the paper
-    stands alone: a digit cleanly read as another is not looked past unless the page shows the
-    same mistake again.
+    stands alone: a digit cleanly read as another is attributed to the reader only if the page
+    shows the same misreading elsewhere.
     """
-    every = [*checks, *replies]
+    all_checks = [*checks, *replies]
     if any(check.status in (Status.NOT_READ, Status.NOT_COMPARED) for check in checks):
         return False
-    wrong = [check for check in every if check.status == Status.CONTRADICTED]
-    swapped = Counter(pair for check in every for pair in check.swapped())
+    wrong = [check for check in all_checks if check.status == Status.CONTRADICTED]
+    swap_counts = Counter(pair for check in all_checks for pair in check.swapped())
     return (
-        1 not in swapped.values()
+        1 not in swap_counts.values()
         and all(_digits_lost_or_added(check) <= 1 for check in wrong)
-        and sum(not check.swapped() for check in wrong) <= _LOST_AND_ADDED
+        and sum(not check.swapped() for check in wrong) <= MAX_GLYPH_ERRORS
     )
 
 
 def _digits_lost_or_added(check: FieldCheck) -> int:
-    """How many digits of a number were not read, or read where none is printed; all that is lost
-    behind a point is lost in one piece, for the program ends no number so."""
+    """Return the number of digits that were not read, or read where none is printed. Digits lost
+    behind a final point count as one, for the program ends no number with a point."""
     wrong = [doubt for doubt in check.doubts if doubt.how == Doubt.CONTRADICTS]
     if check.printed and check.printed.endswith(".") and not any(doubt.read for doubt in wrong):
         return 1

@@ -1,4 +1,4 @@
-"""Trials: what the faithful program prints for scenes that a printout may have come from.
+"""Replays: results that the faithful program prints for scenes a printout may have come from.
 
 Few scenes go through the port itself, many through the array replay, which gives the same digits.
 """
@@ -14,23 +14,23 @@ from ...program.run import run
 
 
 class Outcome(NamedTuple):
-    """What a run prints: the fields by name, and the error or ``ZERO DETERMINANT`` that ended it
-    (None: it ended normally)."""
+    """Results of a run: the printed fields by name, and the error or ``ZERO DETERMINANT`` that
+    ended it (None: it ended normally)."""
 
     fields: dict[str, str]
     ending: str | None
 
 
 def run_once(scene: Mapping[str, str], arithmetic: str | Arithmetic = "applesoft") -> Outcome:
-    """The outcome of one scene in the port."""
+    """Run one scene in the port and return its outcome."""
     return run_whole(scene, arithmetic)[0]
 
 
 def run_whole(
     scene: Mapping[str, str], arithmetic: str | Arithmetic = "applesoft"
 ) -> tuple[Outcome, dict[str, float]]:
-    """The outcome of one scene in the port, and the values of lines 660 to 760 before they are
-    floored (none when the run does not reach its end)."""
+    """Run one scene in the port. Return its outcome, and the values of lines 660 to 760 before they
+    are floored (none when the run does not reach its end)."""
     ported = run(scene, arithmetic)
     ending = ZERO_DETERMINANT if ported.zero_determinant else ported.error
     outcome = Outcome(outcome_fields(ported.printout), ending)
@@ -56,7 +56,7 @@ def run_whole(
 
 
 def run_all(scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
-    """The outcome of each scene, in order."""
+    """Run scenes and return their outcomes, in order."""
     if len(scenes) <= 6:  # the port is as quick as the replay, and needs no numpy
         return [run_once(scene) for scene in scenes]
     endings, columns = run_columns(scenes, tuple(FIELDS))
@@ -71,16 +71,16 @@ def run_all(scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
 def run_columns(
     scenes: Sequence[Mapping[str, str]], names: Sequence[str]
 ) -> tuple[list[str], dict[str, Any]]:
-    """The ending of each scene ("" for a normal one), and for each of ``names`` the printed fields
-    as an array of texts ("" where the run does not get as far)."""
+    """Replay scenes. Return their endings ("" for a normal one), and for each of ``names`` the
+    printed field as an array of texts ("" where the run does not get as far)."""
     from ...program.vectorized import replay
 
     scene_columns = {}
     for name in SCENE:
         column = [scene[name] for scene in scenes]
-        same = column.count(column[0]) == len(column)
+        is_constant = column.count(column[0]) == len(column)
         # a list of one keeps the result an array however much the scenes share
-        scene_columns[name] = column[0] if same and name != "M" else column
+        scene_columns[name] = column[0] if is_constant and name != "M" else column
     replayed = replay(scene_columns)
     replayed.write_fields(names)
     endings = replayed.error.tolist()

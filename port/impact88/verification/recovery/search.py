@@ -2,8 +2,8 @@
 
 Each input has a few texts that the page may show, with what each costs to believe. Combinations are
 screened in double precision (the kinetic energy first, which few inputs enter, then all results),
-and the best of them are replayed in the Apple's own arithmetic. What a scene costs is what its
-inputs cost to believe plus what every printed result then costs.
+and the best of them are replayed in the Apple's own arithmetic. A scene's cost is the prior penalty
+of its inputs plus a mismatch penalty per printed result.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -28,35 +28,36 @@ from .typedtext import mu_turned, opposite, texts_that_print
 
 Floats = NDArray[np.float64]
 Picks = NDArray[np.intp]
-"""Combinations: a row each, the index of the option taken in every column."""
+"""Combinations, one per row: the index of the option taken in every column."""
 
 MISMATCH = 3.0
-"""What a printed result costs that the program does not print."""
+"""Penalty of a legible printed result that the program does not print."""
 AGREES = 1.5
-"""Below this a result counts as explained."""
+"""A result with a smaller penalty counts as explained."""
 _UNREAD = 0.6
-"""What a result costs of which hardly anything was read, or that the page does not have."""
-_OTHER_BITS = 0.02
-"""What it costs that a number was typed with zeros that do not show, by the rank of that text."""
-_MOST = 160  # combinations that are replayed
-_ROOM = 30_000
-"""Combinations of the rest tried with the likeliest of masses and velocities."""
-_CLOSELY = 5_000
-"""Of more combinations, four results are looked at first; these are then looked at closely."""
+"""Penalty of a result that is hardly legible, or that the page lacks."""
+_UNSEEN_ZEROS = 0.02
+"""Penalty, times the rank of the text, of a number typed with zeros that do not print."""
+MAX_REPLAYED = 160  # combinations replayed in the Apple's arithmetic
+MAX_COMBINATIONS = 30_000
+"""Combinations of the other inputs tried with the likeliest masses and velocities."""
+MAX_RESCORED = 5_000
+"""Combinations left by a first screening on four results, which is done from four times as many."""
 KINETIC = frozenset(("MA", "MB", "IA", "IB", "UX", "UY", "WA", "VX", "VY", "WB"))
 """The inputs that enter the kinetic energy."""
-_TELLING = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "XAF", "YAF", "XBF", "YBF", "LOSS")
+KEY_RESULTS = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "XAF", "YAF", "XBF", "YBF", "LOSS")
 _SPINS = (("IA", "WA"), ("IB", "WB"))
-_ENERGIES = 60
-"""Combinations of masses and velocities that are tried with the rest."""
-_ROUGH = 4e-7
+MAX_ENERGIES = 60
+"""Combinations of masses and velocities that are tried with the other inputs."""
+SCREENING_RTOL = 4e-7
 """Relative error allowed to the Apple's arithmetic in screening."""
 
 
 @dataclass
 class Column:
-    """What an input, or the row of angles, may be: the fields, and the texts that may be printed
-    for them (``typed``: that may have been typed), each with what it costs, cheapest first."""
+    """Candidate texts of one input, or of the row of angles: the field names, and for each option
+    its texts and prior penalty, smallest penalty first. The texts are printed ones, or with
+    ``typed`` those that were typed."""
 
     names: tuple[str, ...]
     options: list[tuple[tuple[str, ...], float]]
@@ -64,7 +65,7 @@ class Column:
 
     @cached_property
     def costs(self) -> Floats:
-        """What each option costs."""
+        """Prior penalty of each option."""
         return np.array([cost for _, cost in self.options])
 
     @cached_property
@@ -76,9 +77,9 @@ class Column:
         }
 
 
-def column_of(name: str, ways: Iterable[tuple[str, float]], typed: bool = False) -> Column:
-    """What one input may be."""
-    return Column((name,), [((text,), cost) for text, cost in ways], typed)
+def column_of(name: str, options: Iterable[tuple[str, float]], typed: bool = False) -> Column:
+    """Return the column of one input: ``options`` are its texts with their prior penalties."""
+    return Column((name,), [((text,), cost) for text, cost in options], typed)
 
 
 Columns = Sequence[Column]
@@ -86,8 +87,8 @@ Names = Collection[str]
 
 
 class Scored(NamedTuple):
-    """A scene tried: what it and its results cost, the texts typed, the texts assumed printed, what
-    it prints, and the names in which that is not what the page says."""
+    """A replayed scene: its cost, the texts typed, the texts assumed printed (by field), what it
+    prints, and the names of the fields on which the page says otherwise."""
 
     cost: float
     scene: dict[str, str]
@@ -97,20 +98,21 @@ class Scored(NamedTuple):
 
 
 class Expected(NamedTuple):
-    """A printed result as read: the texts it may be, with what each costs."""
+    """A printed result as read: its possible texts with their penalties, and the penalty of any
+    other text (``default``)."""
 
     name: str
     texts: dict[str, float]
     default: float
 
     def mismatch(self, values: Floats) -> Floats:
-        """What each unfloored value costs."""
+        """Penalty of each unfloored value: that of the cheapest text which it may be printed as."""
         costs: Floats = np.full(values.shape, self.default)
         places = FIELDS[self.name].places
         unit = 0.0 if places is None else 10.0**-places
         for text, cost in self.texts.items():
             number = _number(text)
-            slack = _ROUGH * abs(number) + max(0.05 * unit, 1e-9)
+            slack = SCREENING_RTOL * abs(number) + max(0.05 * unit, 1e-9)
             fits = (values >= number - slack) & (values < number + unit + slack)
             costs = np.where(fits, np.minimum(costs, cost), costs)
         return costs
@@ -120,7 +122,7 @@ _cost = attrgetter("cost")
 
 
 class Search:
-    """The search for one printout's scene. ``typed``: by field what was typed for a printed text,
+    """Search for one printout's scene. ``typed``: by field, the text typed for a printed text,
     where the page or a scene file says so."""
 
     def __init__(self, shown: Printout, typed: Mapping[str, Mapping[str, str]]) -> None:
@@ -137,75 +139,114 @@ class Search:
         self._lost_inputs = set(INPUTS) - set(shown.fields)
 
     def best(self, columns: Columns) -> Scored:
-        """The scene of least cost that the columns allow."""
-        best = min(self.replayed(columns, combinations(columns, 2)), key=_cost)
+        """Return the scene of least cost among combinations of the columns' options.
+
+        The two most plausible combinations are replayed first; only if neither explains the page
+        does the search by kinetic energy follow.
+        """
+        best = min(self.replay(columns, combinations(columns, 2)), key=_cost)
         if best.wrong or best.cost >= 0.05:
-            tried = self.replayed(columns, self.promising(columns, _ROOM))
-            best = min([best, *tried], key=_cost)
+            picks = self.find_candidates(columns, MAX_COMBINATIONS)
+            best = min([best, *self.replay(columns, picks)], key=_cost)
         return self._other_bits(best) if best.wrong else best
 
-    def promising(
-        self, columns: Columns, room: int, most: int = _MOST, limit: float = inf, wrong: Names = ()
+    def find_candidates(
+        self,
+        columns: Columns,
+        max_combinations: int,
+        count: int = MAX_REPLAYED,
+        max_penalty: float = inf,
+        wrong: Names = (),
     ) -> Picks:
-        """The most promising combinations: those whose kinetic energy is the printed one first, the
-        better they are with the more of the rest, ``room`` for the best. ``limit``: what all inputs
-        may cost to believe, and the energy; ``wrong``: results that tell most."""
+        """Return the combinations that are worth replaying, best first.
+
+        All combinations of all options are too many. The kinetic energy (line 320) depends on ten
+        inputs only, so combinations of these are ranked by how well they explain the printed energy
+        and the best ``MAX_ENERGIES`` are kept. Each is completed with the most plausible
+        combinations of the other inputs: ``max_combinations`` for the first, a fourth of that for
+        the second, a ninth for the third, two at least. `screen` then picks ``count`` of them by
+        all results in double precision.
+
+        ``max_penalty`` bounds the prior penalty of all inputs plus the energy's mismatch.
+        ``wrong`` names results that the best scene so far does not explain: they are screened
+        first.
+        """
+        kinetic = self._kinetic_columns(columns)
+        others = [place for place in range(len(columns)) if place not in kinetic]
+        picks, penalties = self._rank_energies(columns, kinetic, max_combinations, max_penalty)
+        rest_columns = [columns[place] for place in others]
+        rest_limit = max_penalty - penalties.min()
+        rest = combinations(rest_columns, max_combinations, rest_limit)
+        rest_penalties = _prior_penalty(rest_columns, rest)
+        parts = []
+        for rank, (pick, penalty) in enumerate(zip(picks, penalties, strict=True), 1):
+            affordable = int(np.searchsorted(rest_penalties, max_penalty - penalty, side="right"))
+            size = min(affordable, max(2, max_combinations // rank**2))
+            part = np.zeros((size, len(columns)), np.intp, "F")
+            part[:] = pick
+            part[:, others] = rest[:size]
+            parts.append(part)
+        return self.screen(columns, np.concatenate(parts), count, wrong)
+
+    def _kinetic_columns(self, columns: Columns) -> list[int]:
+        """Places of the columns that enter the kinetic energy. The inertia of a vehicle that does
+        not spin does not."""
         first = dict(
             pair
             for column in columns
             for pair in zip(column.names, column.options[0][0], strict=True)
         )
-        # the energy says nothing of the inertia of what does not spin
         moving = KINETIC - {inertia for inertia, spin in _SPINS if not _number(first[spin])}
-        kinetic = [place for place, column in enumerate(columns) if moving & set(column.names)]
-        others = [place for place in range(len(columns)) if place not in kinetic]
-        some = combinations([columns[place] for place in kinetic], room, limit)
+        return [place for place, column in enumerate(columns) if moving & set(column.names)]
+
+    def _rank_energies(
+        self, columns: Columns, kinetic: Sequence[int], max_combinations: int, max_penalty: float
+    ) -> tuple[Picks, Floats]:
+        """Combinations of the columns at ``kinetic``, the first option elsewhere, by how well they
+        explain the printed energy; and the penalty of each, its mismatch included. The most
+        plausible combination stays first, in case the energy itself was misread."""
+        some = combinations([columns[place] for place in kinetic], max_combinations, max_penalty)
         picks = np.zeros((len(some), len(columns)), np.intp, "F")
         picks[:, kinetic] = some
-        costs = np.zeros(len(picks))
+        mismatches = np.zeros(len(picks))
         for expected in self.expected:
             if expected.name == "KI":
-                costs = expected.mismatch(kinetic_energy(_values(columns, picks)))
-        order = np.argsort(np.append(-1.0, costs[1:]), kind="stable")[:_ENERGIES]
-        spent = (_believing(columns, picks) + costs)[order]
-        rest = combinations([columns[place] for place in others], room, limit - spent.min())
-        beliefs = _believing([columns[place] for place in others], rest)
-        parts = []
-        for rank, (pick, before) in enumerate(zip(picks[order], spent, strict=True), 1):
-            count = int(np.searchsorted(beliefs, limit - before, side="right"))
-            part = np.zeros((min(count, max(2, room // rank**2)), len(columns)), np.intp, "F")
-            part[:] = pick
-            part[:, others] = rest[: len(part)]
-            parts.append(part)
-        return self.screened(columns, np.concatenate(parts), most, wrong)
+                mismatches = expected.mismatch(kinetic_energy(_values(columns, picks)))
+        order = np.argsort(np.append(-1.0, mismatches[1:]), kind="stable")[:MAX_ENERGIES]
+        return picks[order], (_prior_penalty(columns, picks) + mismatches)[order]
 
-    def screened(self, columns: Columns, picks: Picks, most: int, wrong: Names = ()) -> Picks:
-        """The ``most`` combinations that explain most, by double precision."""
-        telling = sorted(_TELLING, key=lambda name: name not in wrong)[:4]
-        few = [
+    def screen(self, columns: Columns, picks: Picks, count: int, wrong: Names = ()) -> Picks:
+        """Return the ``count`` combinations of least cost in double precision. Very many are
+        thinned out by four results first, those in ``wrong`` before others."""
+        key_names = sorted(KEY_RESULTS, key=lambda name: name not in wrong)[:4]
+        key_results = [
             result
             for result in self.expected
-            if result.default == MISMATCH and result.name in telling
+            if result.default == MISMATCH and result.name in key_names
         ]
-        for count, enough, expected in ((_CLOSELY, 4 * _CLOSELY, few), (most, most, self.expected)):
-            if len(picks) > enough:
+        rounds = (
+            (MAX_RESCORED, 4 * MAX_RESCORED, key_results),
+            (count, count, self.expected),
+        )
+        for size, threshold, expected in rounds:
+            if len(picks) > threshold:
                 value = _values(columns, picks)
                 value["MU"] = self._typed_mu(value)
-                costs = _believing(columns, picks)
+                costs = _prior_penalty(columns, picks)
                 results = in_doubles(value, [result.name for result in expected])
                 for result in expected:
                     cost = result.mismatch(results[result.name])
                     spun = result.name not in FINAL_SPINS or value["M"] == 6
                     costs = costs + np.where(spun, cost, MISMATCH)
-                picks = picks[np.argsort(costs, kind="stable")[:count]]
+                picks = picks[np.argsort(costs, kind="stable")[:size]]
         return picks
 
-    def replayed(self, columns: Columns, picks: Picks) -> list[Scored]:
-        """Combinations, replayed in the Apple's arithmetic, in their order."""
+    def replay(self, columns: Columns, picks: Picks) -> list[Scored]:
+        """Replay combinations in the Apple's arithmetic; return their scores in the same order."""
         value = _values(columns, picks)
-        turned = self._typed_mu(value) != value["MU"]
+        mu_signs = self._typed_mu(value) != value["MU"]
         scenes: list[tuple[dict[str, str], dict[str, str], float]] = []
-        for pick, turn in zip(picks.tolist(), turned.tolist(), strict=True):
+        for pick, turn in zip(picks.tolist(), mu_signs.tolist(), strict=True):
             scene: dict[str, str] = {}
             assumed: dict[str, str] = {}
             cost = 0.0
@@ -215,56 +256,59 @@ class Search:
                 for name, text in zip(column.names, texts, strict=True):
                     scene[scene_name(name)] = text
                     if not column.typed:
-                        known = self._typed.get(name, {}).get(text)
-                        first = next(iter(texts_that_print(text, name in ANGLES)), text)
-                        scene[scene_name(name)] = known or first
+                        reply = self._typed.get(name, {}).get(text)
+                        shortest = next(iter(texts_that_print(text, name in ANGLES)), text)
+                        scene[scene_name(name)] = reply or shortest
                         if name in self._on_page:
                             assumed[name] = text
             if turn:
                 scene["MU"] = opposite(scene["MU"])
             scenes.append((scene, assumed, cost))
-        found = [*self._scored(scenes)]
+        scores = [*self._score(scenes)]
         # where double precision does not tell which way the contact slides
         for row, (scene, assumed, cost) in enumerate(scenes):
-            if "MUP" in found[row].wrong:
-                again = [({**scene, "MU": opposite(scene["MU"])}, assumed, cost)]
-                found[row] = min(found[row], *self._scored(again), key=_cost)
-        return found
+            if "MUP" in scores[row].wrong:
+                turned = [({**scene, "MU": opposite(scene["MU"])}, assumed, cost)]
+                scores[row] = min(scores[row], *self._score(turned), key=_cost)
+        return scores
 
     def _typed_mu(self, value: Mapping[str, Floats]) -> Floats:
-        """What was typed where MU is printed so: line 400 turns its sign or not, whatever it is."""
+        """Return MU as typed, given MU as printed: line 400 turns its sign or leaves it, whichever
+        sign it has."""
         mu = value["MU"]
         if "MUP" not in self._on_page:
             return mu
         return np.where(in_doubles(value, ["MUP"])["MUP"] == -mu, -mu, mu)
 
     def _other_bits(self, best: Scored) -> Scored:
-        """The same printed inputs, typed in other ways that enter the equations with other bits."""
+        """Return the best scene over other typed texts of the same printed inputs: zeros that do
+        not print may change a value's last bit (see `typedtext`)."""
         columns = []
         for name, typed in best.scene.items():
             printed = best.assumed.get("MUP" if name == "MU" else name, "")
             texts = texts_that_print(printed, name in ANGLES)
             if name == "MU" and texts and mu_turned(typed, printed):
                 texts = tuple(map(opposite, texts))
-            ways = enumerate(dict.fromkeys((typed, *texts)))
-            columns.append(column_of(name, [(text, _OTHER_BITS * rank) for rank, text in ways]))
-        picks = combinations(columns, _CLOSELY)
+            ranks = enumerate(dict.fromkeys((typed, *texts)))
+            columns.append(column_of(name, [(text, _UNSEEN_ZEROS * rank) for rank, text in ranks]))
+        picks = combinations(columns, MAX_RESCORED)
         extra = best.cost - self.replayed_scene(best.scene, best.assumed).cost
         scenes = []
-        for pick, cost in zip(picks.tolist(), _believing(columns, picks), strict=True):
+        for pick, cost in zip(picks.tolist(), _prior_penalty(columns, picks), strict=True):
             taken = zip(columns, pick, strict=True)
             scene = {column.names[0]: column.options[index][0][0] for column, index in taken}
             scenes.append((scene, best.assumed, extra + float(cost)))
-        return min([best, *self._scored(scenes)], key=_cost)
+        return min([best, *self._score(scenes)], key=_cost)
 
     def replayed_scene(self, scene: dict[str, str], assumed: dict[str, str]) -> Scored:
-        """One scene, replayed."""
-        return next(self._scored([(scene, assumed, 0.0)]))
+        """Replay one scene; the prior penalty of its inputs is not counted."""
+        return next(self._score([(scene, assumed, 0.0)]))
 
-    def _scored(
+    def _score(
         self, scenes: Sequence[tuple[dict[str, str], dict[str, str], float]]
     ) -> Iterator[Scored]:
-        """Scenes, each with the texts assumed printed and what it costs to believe, replayed."""
+        """Replay scenes, each given with the texts assumed printed and its prior penalty, and yield
+        their scores."""
         outcomes = replays.run_all([scene for scene, _, _ in scenes])
         for (scene, assumed, cost), outcome in zip(scenes, outcomes, strict=True):
             costs = dict.fromkeys((result.name for result in self.expected), MISMATCH)
@@ -285,27 +329,28 @@ class Search:
             yield Scored(total, scene, assumed, outcome, differing)
 
 
-def combinations(columns: Columns, most: int, limit: float = inf) -> Picks:
-    """The combinations of one option each, cheapest first, up to ``most`` and up to a cost."""
+def combinations(columns: Columns, count: int, max_penalty: float = inf) -> Picks:
+    """Return the ``count`` combinations of least prior penalty, smallest first, none of more than
+    ``max_penalty``. Columns are joined one at a time, keeping the best ``count`` at each step."""
     steps = []
     costs: Floats = np.zeros(1)
     for column in columns:
         options = column.costs
-        # both are sorted: with option j none but the first most / (j + 1) are among the cheapest
+        # both are sorted: with option j none but the first count / (j + 1) are among the cheapest
         counts = np.minimum(
-            most // np.arange(1, len(options) + 1),
-            np.searchsorted(costs, limit - options, side="right"),
+            count // np.arange(1, len(options) + 1),
+            np.searchsorted(costs, max_penalty - options, side="right"),
         )
         before = np.concatenate([np.arange(count) for count in counts])
         option = np.repeat(np.arange(len(counts)), counts)
         every = costs[before] + options[option]
-        if len(every) > most:
-            kept = np.argpartition(every, most - 1)[:most]
-            kept = kept[np.argsort(every[kept], kind="stable")]
+        if len(every) > count:
+            order = np.argpartition(every, count - 1)[:count]
+            order = order[np.argsort(every[order], kind="stable")]
         else:
-            kept = np.argsort(every, kind="stable")
-        costs = every[kept]
-        steps.append((before[kept], option[kept]))
+            order = np.argsort(every, kind="stable")
+        costs = every[order]
+        steps.append((before[order], option[order]))
     picks = np.empty((len(costs), len(columns)), np.intp, "F")
     at = np.arange(len(costs))
     for place in reversed(range(len(columns))):
@@ -315,7 +360,7 @@ def combinations(columns: Columns, most: int, limit: float = inf) -> Picks:
 
 
 def one_each(columns: Columns) -> Picks:
-    """The cheapest combination, and every one that departs from it in one column."""
+    """Return the cheapest combination, and each that departs from it in one column."""
     picks = [np.zeros((1, len(columns)), np.intp)]
     for place, column in enumerate(columns):
         some = np.zeros((len(column.options) - 1, len(columns)), np.intp)
@@ -331,8 +376,8 @@ def _number(text: str) -> float:
         return float("nan")
 
 
-def _believing(columns: Columns, picks: Picks) -> Floats:
-    """What the options themselves cost."""
+def _prior_penalty(columns: Columns, picks: Picks) -> Floats:
+    """Return the prior penalty of each combination, the sum over its options."""
     costs: Floats = np.zeros(len(picks))
     for column, pick in zip(columns, picks.T, strict=True):
         costs += column.costs[pick]
@@ -340,7 +385,7 @@ def _believing(columns: Columns, picks: Picks) -> Floats:
 
 
 def _values(columns: Columns, picks: Picks) -> dict[str, Floats]:
-    """The values of combinations as columns of doubles; of MU the printed one."""
+    """Return the inputs of combinations as columns of doubles, by name; MU as printed."""
     return {
         name: numbers[pick]
         for column, pick in zip(columns, picks.T, strict=True)
@@ -349,7 +394,7 @@ def _values(columns: Columns, picks: Picks) -> dict[str, Floats]:
 
 
 def kinetic_energy(value: Mapping[str, Floats]) -> Floats:
-    """Line 320 in double precision."""
+    """Return the kinetic energy (line 320) in double precision."""
     with np.errstate(all="ignore"):
         energy: Floats = closed_form.kinetic_energy(
             [value[name] for name in ("MA", "MB", "IA", "IB")], [value[n] for n in VELOCITIES]
@@ -358,7 +403,7 @@ def kinetic_energy(value: Mapping[str, Floats]) -> Floats:
 
 
 def in_doubles(value: Mapping[str, Floats], names: Sequence[str]) -> dict[str, Floats]:
-    """What the program prints, unfloored, in double precision.
+    """Return the results that the program prints, unfloored, in double precision.
 
     With M = 4 the closed form leaves the spins out of both energies; the listing counts the initial
     ones (line 320) and, having no final ones, none after (lines 580, 590)."""

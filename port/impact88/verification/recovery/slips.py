@@ -1,5 +1,5 @@
-"""Slips: what a printed or typed number may really have been, and which slips in the inputs, put
-right, make the page agree with itself.
+"""Slips of a reader or typist: texts one slip away from a number, and the slips in the inputs that,
+when corrected, make the page agree with itself.
 
 One digit taken for another, two adjacent digits swapped, a sign or a decimal point lost, added or
 moved, one digit lost or doubled, two digits of one number. Nothing here is a verdict: `explaining`
@@ -28,23 +28,25 @@ COUNT = "digit lost or added"
 TWO_DIGITS = "two digits misread"
 
 BITS = {SIGN: 9.5, DIGIT: 10.0, POINT: 10.5, SWAP: 11.0, COUNT: 12.5, TWO_DIGITS: 19.0}
-"""What it takes to believe each kind: a digit misread is one of 9 others of some 200 on a page, and
-the other kinds about as likely by their number; chosen so that the given slips are named first."""
-_UNLIKE = 0.4
-"""Bits more for each rank in the likeness of two digits' shapes."""
-_TWO_SLIPS = 6.05
-"""What two slips may cost: two digits misread as those least like them (3.02 each)."""
-_REPLAYED = 60  # combinations of slips that are replayed
+"""Improbability of each kind, in bits: a misread digit is one of 9 others at one of some 200 places
+on a page, and the other kinds are about as likely by their number; chosen so that the slips of the
+test pages are named first."""
+UNLIKE_SHAPE_BITS = 0.4
+"""Bits added for each rank of dissimilarity between two digits' shapes."""
+MAX_TWO_SLIPS_PENALTY = 6.05
+"""Prior penalty of the rarest two slips: two digits misread as those least like them, 3.02 each."""
+MAX_REPLAYED_SLIPS = 60  # combinations of slips that are replayed
+MAX_SLIP_COMBINATIONS = 100_000  # combinations of slips that are screened
 _ALIKE = {
     text[0]: text[1:]
     for text in "0869 1742 2713 3859 4917 5638 6805 7129 83069 94807".split()
 }  # fmt: skip
-"""For each digit those it is most easily taken for."""
+"""For each digit, the digits it is most easily taken for, most alike first."""
 
 
 class Change(NamedTuple):
-    """One input put right: the kind of slip, the field, its text as printed or given apart, the
-    true one."""
+    """One corrected input: the kind of slip, the field, its text as printed or given separately,
+    and the corrected text."""
 
     kind: str
     field: str
@@ -53,26 +55,26 @@ class Change(NamedTuple):
 
     @property
     def bits(self) -> float:
-        """What it takes to believe it; nothing for a change that is no slip."""
+        """Improbability of the change in bits; 0 for a change that is not a slip."""
         bits = BITS.get(self.kind, 0.0)
         if self.kind == DIGIT:
-            bits += _UNLIKE * _unlikeness(self.printed, self.would_be)
+            bits += UNLIKE_SHAPE_BITS * _unlikeness(self.printed, self.would_be)
         if bits and self.field in ANGLES and abs(double(self.would_be)) > 360:
             bits += BITS[DIGIT]  # nobody types more than a full turn
         return bits
 
 
 class Reread(NamedTuple):
-    """A scene with some inputs put right."""
+    """A replayed scene with some inputs corrected."""
 
     changes: tuple[Change, ...]
     scored: Scored
 
 
 class Rereading:
-    """The slips of one printout's inputs, tried. ``apart``: those in inputs that stand nowhere on
-    the page and were given apart, too; they are slips of what was typed there, as INPUT reads it:
-    blanks and small letters make no difference."""
+    """Search for slips in one printout's inputs. With ``apart``, inputs that are not on the page
+    but were given separately may have slips, too; their texts are taken as INPUT reads them,
+    without blanks and in capitals."""
 
     def __init__(self, recovered: Recovered, apart: bool = False) -> None:
         self._recovered = recovered
@@ -83,22 +85,30 @@ class Rereading:
     def best(
         self, single: bool = False, exchanged: Mapping[str, str] | None = None
     ) -> list[Reread]:
-        """Return scenes with up to two inputs put right, those that explain most first.
+        """Return scenes with up to two corrected inputs, those of least cost first.
 
-        ``single``: with one input put right; ``exchanged``: texts printed in place of others, by
-        field, and not to be put right."""
+        ``single``: correct one input only; ``exchanged``: texts that replace printed ones, by
+        field, and are not corrected further.
+        """
         columns = [*self._columns]
         for name, text in (exchanged or {}).items():
             place = INPUTS.index(name)
             columns[place] = column_of(name, [(text, 0.0)], columns[place].typed)
         search = self._recovered.search
         if single:
-            picks = search.screened(columns, one_each(columns), 2 if exchanged else _REPLAYED)
+            count = 2 if exchanged else MAX_REPLAYED_SLIPS
+            picks = search.screen(columns, one_each(columns), count)
         else:
             wrong = self._recovered.wrong
-            picks = search.promising(columns, 100_000, _REPLAYED, _TWO_SLIPS, wrong)
+            picks = search.find_candidates(
+                columns,
+                MAX_SLIP_COMBINATIONS,
+                MAX_REPLAYED_SLIPS,
+                MAX_TWO_SLIPS_PENALTY,
+                wrong,
+            )
         rereads = []
-        for pick, scored in zip(picks.tolist(), search.replayed(columns, picks), strict=True):
+        for pick, scored in zip(picks.tolist(), search.replay(columns, picks), strict=True):
             taken = zip(INPUTS, pick, strict=False)
             changes = tuple(self._slips[name][at - 1][1] for name, at in taken if at)
             rereads.append(Reread(changes, scored))
@@ -106,7 +116,7 @@ class Rereading:
 
     @cached_property
     def _columns(self) -> list[Column]:
-        """Every input as it is, and with its slips."""
+        """Options of every input: its text as it is, then the texts one slip away."""
         scene, columns = self._recovered.scene, []
         for name in INPUTS:
             text = self._base.get(name, scene[scene_name(name)])
@@ -115,14 +125,14 @@ class Rereading:
             columns.append(column_of(name, [(text, 0.0), *slips], apart))
         return [*columns, column_of("M", [(scene["M"], 0.0)], True)]
 
-    def single(self) -> Iterator[Change]:
-        """Every slip in one input."""
+    def single_changes(self) -> Iterator[Change]:
+        """Return every correction of one slip in one input."""
         return (slip for slips in self._slips.values() for _, slip in slips)
 
     @cached_property
     def _slips(self) -> dict[str, list[tuple[float, Change]]]:
-        """The slips of every input with what each costs, cheapest first. One is cheaper (2.7) than
-        a result that differs (3.0), two are dearer."""
+        """Corrections of every input with their prior penalties, smallest first. One slip (2.7) is
+        cheaper than a result that differs (3.0), two are dearer."""
         slips = {}
         for name, text in self._base.items():
             possible = printable if name in self._recovered.assumed else is_number
@@ -135,7 +145,7 @@ class Rereading:
 
 
 def misreadings(text: str) -> dict[str, str]:
-    """The texts one slip away, with the likeliest kind of each."""
+    """Return the texts one slip away, with the likeliest kind of each."""
     kinds: dict[str, str] = {text: ""}
     for kind, other in _slips_of(text):
         kinds.setdefault(other, kind)
@@ -144,7 +154,7 @@ def misreadings(text: str) -> dict[str, str]:
 
 
 def slip(text: str, other: str) -> str | None:
-    """The kind of slip that makes one text of the other, None when one slip is not enough."""
+    """Return the kind of slip that turns one text into the other; None if one is not enough."""
     if len(text) == len(other):
         near = sum(map(ne, text, other)) <= 2 or text.replace(".", "") == other.replace(".", "")
     else:
@@ -154,14 +164,14 @@ def slip(text: str, other: str) -> str | None:
 
 
 def _unlikeness(text: str, other: str) -> int:
-    """How unlike two texts that differ in one digit look: 0 most alike, 4 not."""
+    """Return the dissimilarity of two texts that differ in one digit: 0 most alike, 4 not alike."""
     old, new = next(pair for pair in zip(text, other, strict=True) if pair[0] != pair[1])
     place = _ALIKE.get(old, "").find(new)
     return place if place >= 0 else 4
 
 
 def _slips_of(text: str) -> Iterator[tuple[str, str]]:
-    """The texts one slip away, each with its kind, some more than once; commoner kinds first."""
+    """Yield the texts one slip away with their kinds, commoner kinds first; some repeat."""
     places = [index for index, glyph in enumerate(text) if glyph.isdigit()]
     for place in places:
         for digit in "0123456789":

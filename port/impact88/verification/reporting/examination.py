@@ -1,7 +1,7 @@
-"""Verifying a printout: recover the scene it prints, replay it bit for bit, compare every digit.
+"""Verification of a printout: recover the scene, replay it bit for bit, compare every digit.
 
-The verdict rests on printed digits alone; what exact arithmetic gives and physical warnings stand
-beside it and never change it.
+The verdict rests on printed digits alone; exact values and physical warnings are reported beside it
+and never change it.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from ...collision.mappings import texts
 from ...errors import UserError, quoted
 from ...messages.arguments import explains_arguments
 from ..judging import beside
-from ..judging.judgement import Judged, Status, Verdict, judge, looked_past
-from ..judging.readings import judged_together, matching
+from ..judging.judgement import Judged, Status, Verdict, attribute_to_reader, judge
+from ..judging.readings import judge_together, matching_readings
 from ..reading.plaintext import decode
 from ..reading.printout import LARGEST_FILE, Printout, read_printouts
 from ..recovery.recovered import recover, without_angles
@@ -33,14 +33,14 @@ if TYPE_CHECKING:
     from ..judging.copies import CopyPages
 
 PICTURE_STARTS = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"II*\x00", b"MM\x00*", b"%PDF-")
-"""How PNG, JPEG, TIFF (of either byte order) and PDF files begin."""
-LARGEST_PICTURE = 100_000_000
-"""Bytes of the largest picture or PDF that is read."""
+"""First bytes of PNG, JPEG, TIFF (of either byte order) and PDF files."""
+LARGEST_PICTURE = 100_000_000  # bytes of a picture or PDF
 MOST_ALTERED = 2
-"""Changes that are an alteration, on a page that a machine read: 28 of 28 readings of given pages
-with one altered digit are explained by so many, 10 of 17 genuine ones that differed by none."""
+"""Changes up to which an explanation counts as an alteration, on a machine-read page: it holds for
+28 of 28 readings of test pages with one altered digit; 10 of 17 genuine ones that differed have no
+such explanation."""
 BUDGET = 2.0
-"""Seconds of processor time after which no slower causes are tried; the slowest of 471 given scans
+"""Seconds of processor time after which no slower causes are tried; the slowest of 471 test scans
 takes 1.9."""
 
 __all__ = ["Examined", "Verdict", "Verification", "Verifications", "examine", "verify"]
@@ -53,14 +53,30 @@ def examine(
     seed: str | Sequence[str] = "",
     data: bytes | None = None,
 ) -> Examined:
-    """A file (``-``: standard input), every printout in it judged; what cannot be read is told.
-    ``given``: texts of inputs by scene name, known from elsewhere; ``copy``: the listing it is held
-    against, in place of the restored one; ``seed``: what other readers made of it, of a picture or
-    of the paper that a text is a reading of; ``data``: the file's bytes where they are known."""
-    examined = Examined(path, None)
+    """Verify every printout in a file.
+
+    Parameters
+    ----------
+    path : str
+        Name of the file, ``-`` for standard input.
+    given : mapping of str to str, optional
+        Texts of inputs known from elsewhere, by scene name.
+    copy : ListingCopy, optional
+        Copy of the listing to compare with, in place of the restored one.
+    seed : str or sequence of str
+        Other readings of the picture, or of the paper that the text is a reading of.
+    data : bytes, optional
+        The file's bytes, where they are known.
+
+    Returns
+    -------
+    Examined
+        The verifications, or the error that kept the file from being read.
+    """
+    examination = Examined(path, None)
     try:
         data = files.read_bytes(path, LARGEST_PICTURE) if data is None else data
-        examined.sha256 = sha256(data).hexdigest()
+        examination.sha256 = sha256(data).hexdigest()
         picture = data.startswith(PICTURE_STARTS)
         if picture and given:
             raise UserError(
@@ -71,64 +87,68 @@ def examine(
             raise UserError(
                 "other readings go without a copy of the listing", files.display_name(path)
             )
-        found = (
-            _pictured(path, data, copy, seeds)
+        verifications = (
+            _verify_picture(path, data, copy, seeds)
             if picture
-            else _printed(path, data, given, copy, seeds)
+            else _verify_text(path, data, given, copy, seeds)
         )
-        for result in found:
-            result.sha256 = examined.sha256
-            examined.results.append(result)
+        for result in verifications:
+            result.sha256 = examination.sha256
+            examination.results.append(result)
     except UserError as error:
-        return Examined(path, examined.sha256, error=str(error))
-    return examined
+        return Examined(path, examination.sha256, error=str(error))
+    return examination
 
 
-def _pictured(
+def _verify_picture(
     path: str, data: bytes, copy: ListingCopy | None, seeds: Sequence[str]
 ) -> Iterator[Verification]:
     try:
-        from .scanned import verified
+        from .scanned import verify_pages
     except ImportError as error:
-        said = f"pictures need {error.name}, which is not installed; pip install 'impact88[scan]'"
-        raise UserError(said, files.display_name(path)) from None
+        problem = (
+            f"pictures need {error.name}, which is not installed; pip install 'impact88[scan]'"
+        )
+        raise UserError(problem, files.display_name(path)) from None
     if not copy:
-        return map(completed, verified(path, data, seeds))
+        return map(add_information, verify_pages(path, data, seeds))
     from ..judging.copies import pages_of
 
     pages = pages_of(copy)
     pages.check_layout()
-    return (_of_copy(result, pages) for result in verified(path, data, seeds, pages))
+    return (_add_copy(result, pages) for result in verify_pages(path, data, seeds, pages))
 
 
-def _printed(
+def _verify_text(
     path: str,
     data: bytes,
     given: Mapping[str, str] | None,
     copy: ListingCopy | None,
     seeds: Sequence[str],
 ) -> Iterator[Verification]:
-    where = files.display_name(path)
+    file_name = files.display_name(path)
     if len(data) > LARGEST_FILE:
-        raise UserError(f"is larger than {LARGEST_FILE:,} bytes of text", where)
-    text = decode(data, where)
+        raise UserError(f"is larger than {LARGEST_FILE:,} bytes of text", file_name)
+    text = decode(data, file_name)
     if copy:
         from ..judging.copies import pages_of
 
         pages = pages_of(copy)
-        text, lines, besides = pages.prepared(text)
-    every = read_printouts(text, where)
-    others = [_readings(other) for other in seeds]
-    for number, paper in enumerate(every, 1):
+        text, lines, besides = pages.prepare(text)
+    printouts = read_printouts(text, file_name)
+    other_readings = [_readings(other_text) for other_text in seeds]
+    for number, paper in enumerate(printouts, 1):
         if copy:
-            end = paper.page.place(paper.stop)[0] if number < len(every) else len(lines)
-            own = {line: besides.pop(line) for line in sorted(besides) if line <= end}
-            result = _against(pages, pages.judged(paper, recover(paper, given), own))
+            end = paper.page.place(paper.stop)[0] if number < len(printouts) else len(lines)
+            copy_lines = {line: besides.pop(line) for line in sorted(besides) if line <= end}
+            result = _verify_by_copy(pages, pages.judge(paper, recover(paper, given), copy_lines))
             result.renumber(lines)
         else:
-            result = _verified(paper, given)
+            result = _verify_printout(paper, given)
             if seeds and result.verdict is not Verdict.IDENTICAL:
-                result = _by_all(result, [paper, *matching(paper, others)], given)
+                result = _verify_by_readings(
+                    result, [paper, *matching_readings(paper, other_readings)], given
+                )
         result.file, result.number = path, number
         yield result
 
@@ -179,40 +199,42 @@ def verify(
     >>> [found.verdict.name for found in impact88.verify(page)]
     ['IDENTICAL']
     """
-    known = None if given is None else texts(given)
+    given_texts = None if given is None else texts(given)
     if isinstance(printout, Printout):
-        return _verified(printout, known)
+        return _verify_printout(printout, given_texts)
     if isinstance(printout, str) and "\n" in printout:
         printout = printout.encode("utf-8", files.ESCAPED)
     if isinstance(printout, bytes):
-        found = examine("text", known, data=printout)
+        examination = examine("text", given_texts, data=printout)
     elif isinstance(printout, str | os.PathLike):
-        found = examine(os.fspath(printout), known)
+        examination = examine(os.fspath(printout), given_texts)
     else:
         raise UserError(f"{quoted(printout)}: expected a printout's text, a file's name or bytes")
-    if found.error:
-        raise UserError(found.error)
-    return Verifications(found.results)
+    if examination.error:
+        raise UserError(examination.error)
+    return Verifications(examination.results)
 
 
-def _verified(paper: Printout, given: Mapping[str, str] | None) -> Verification:
-    """The verdict on one printout, with explanations where it differs."""
-    begun, recovered = process_time(), recover(paper, given)
-    in_doubt = recovered.row_in_doubt
-    rereading = Rereading(recovered, apart=True)
-    found, better = judge(paper, recovered), None
-    wrong = in_doubt or found.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE)
-    if wrong and not paper.mislabelled:
-        better = looked_past(found, rereading)
-    if in_doubt and not better:
-        found = judge(paper, without_angles(recovered))
-    result = _result(better or found)
+def _verify_printout(paper: Printout, given: Mapping[str, str] | None) -> Verification:
+    """Return the verification of one printout, with explanations where it differs."""
+    start_time, scene = process_time(), recover(paper, given)
+    in_doubt = scene.row_in_doubt
+    rereading = Rereading(scene, apart=True)
+    judgement, attributed = judge(paper, scene), None
+    is_open = in_doubt or judgement.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE)
+    if is_open and not paper.mislabelled:
+        attributed = attribute_to_reader(judgement, rereading)
+    if in_doubt and not attributed:
+        judgement = judge(paper, without_angles(scene))
+    result = _result(attributed or judgement)
     if result.verdict is Verdict.DIFFERS:
         from ..explaining.explanations import explain
 
-        result.explanations = explain(found, rereading, lambda: process_time() - begun < BUDGET)
-        altered = any(len(cause.changes) <= MOST_ALTERED for cause in result.explanations[:1])
-        if paper.machine_read and not altered and not paper.mislabelled:
+        result.explanations = explain(
+            judgement, rereading, lambda: process_time() - start_time < BUDGET
+        )
+        is_alteration = any(len(cause.changes) <= MOST_ALTERED for cause in result.explanations[:1])
+        if paper.machine_read and not is_alteration and not paper.mislabelled:
             result.verdict, result.explanations = Verdict.INCOMPLETE, []
     if result.verdict is Verdict.INCOMPLETE and paper.machine_read and result.differing:
         result.remarks.append(
@@ -220,76 +242,76 @@ def _verified(paper: Printout, given: Mapping[str, str] | None) -> Verification:
             "the page is read too poorly to separate alterations from misreadings"
         )
     result.findings = [
-        *(verification.put_down(better) if better else ()),
-        *verification.findings(better or found),
-        *verification.given_apart(given or {}, result),
+        *(verification.attributed_digits(attributed) if attributed else ()),
+        *verification.findings(attributed or judgement),
+        *verification.given_findings(given or {}, result),
     ]
-    return completed(result)
+    return add_information(result)
 
 
 def _readings(text: str) -> list[Printout]:
-    """The printouts in another reading; none where it holds none."""
+    """Return the printouts in another reading; empty if it has none."""
     try:
         return read_printouts(text)
     except UserError:
         return []
 
 
-def _by_all(
+def _verify_by_readings(
     result: Verification, papers: Sequence[Printout], given: Mapping[str, str] | None
 ) -> Verification:
-    """The verdict on a printout by several readings of it. It is accused only where each accuses it
-    by itself."""
-    found = judged_together(papers, given)
-    if found is None:
+    """Return the verification of a printout by several readings: DIFFERS only if each reading by
+    itself does."""
+    judgement = judge_together(papers, given)
+    if judgement is None:
         if len(papers) < 2:
             result.remarks.append("no other reading given holds this printout")
         return result
-    if found.verdict is Verdict.DIFFERS:
-        alone = [result, *(_verified(paper, given) for paper in papers[1:])]
-        if all(other.verdict is Verdict.DIFFERS for other in alone):
+    if judgement.verdict is Verdict.DIFFERS:
+        alone = [result, *(_verify_printout(paper, given) for paper in papers[1:])]
+        if all(verification_alone.verdict is Verdict.DIFFERS for verification_alone in alone):
             return result
-        found.verdict = Verdict.INCOMPLETE
-    together = _result(found)
+        judgement.verdict = Verdict.INCOMPLETE
+    together = _result(judgement)
     together.findings = [
         f"read {len(papers)} times: what one reading supports, another does not contradict",
-        *verification.findings(found),
-        *verification.given_apart(given or {}, together),
+        *verification.findings(judgement),
+        *verification.given_findings(given or {}, together),
     ]
-    return completed(together)
+    return add_information(together)
 
 
-def _against(pages: CopyPages, found: Judged) -> Verification:
-    """The verdict on a printout as a page of an office's copy of the listing."""
+def _verify_by_copy(pages: CopyPages, found: Judged) -> Verification:
+    """Return the verification of a printout as a page of an office's copy of the listing."""
     result = _result(found)
     if result.verdict is Verdict.DIFFERS:
         from ..explaining.explanations import explain_copy
 
-        result.explanations = explain_copy(found, pages.put_right)
+        result.explanations = explain_copy(found, pages.rejudge)
     result.converted = bool(found.recovered.typed)
-    return _of_copy(result, pages)
+    return _add_copy(result, pages)
 
 
-def _of_copy(result: Verification, pages: CopyPages) -> Verification:
-    """The same with what the copy is, and what stands beside the verdict."""
+def _add_copy(result: Verification, pages: CopyPages) -> Verification:
+    """Add the copy of the listing, and the information beside the verdict."""
     copy = pages.copy
-    result.findings += verification.of_copy(copy, result)
-    changed = [line._asdict() for line in copy.changed_lines()]
-    result.copy = {"file": copy.file, "sha256": copy.sha256, "lines": changed}
+    result.findings += verification.copy_findings(copy, result)
+    changed_lines = [line._asdict() for line in copy.changed_lines()]
+    result.copy = {"file": copy.file, "sha256": copy.sha256, "lines": changed_lines}
     if result.converted:  # the scene is as printed, and the copy asks for it as typed
-        return completed(result)
-    return completed(result, pages.run_columns)
+        return add_information(result)
+    return add_information(result, pages.run_columns)
 
 
 def _result(found: Judged) -> Verification:
     paper, scene = found.paper, found.recovered.scene_or_missing()
-    read = {scene_name(check.name) for check in found.fields if check.status == Status.READ}
-    guessed = [
-        name for name, text in scene.items() if text is not None and name not in {"M", *read}
+    read_names = {scene_name(check.name) for check in found.fields if check.status == Status.READ}
+    guessed_names = [
+        name for name, text in scene.items() if text is not None and name not in {"M", *read_names}
     ]
     return Verification(
         "-", 1, paper.line, found.verdict, scene, found.fields, found.replies, found.ending,
-        missing=found.recovered.missing, guessed=guessed,
+        missing=found.recovered.missing, guessed=guessed_names,
         remarks=[*map(str, paper.remarks), *paper.notes, *filter(None, [paper.unread])],
         left_over=sorted([*paper.left_over, *found.notes], key=attrgetter("start")),
         labels=paper.labels, start=paper.start, stop=paper.stop,
@@ -297,12 +319,12 @@ def _result(found: Judged) -> Verification:
     )  # fmt: skip
 
 
-def completed(result: Verification, *program: beside.Program) -> Verification:
-    """The same with what stands beside the verdict: what the page cannot show of what ``program``,
-    by default the restored listing, prints, exact values and warnings."""
+def add_information(result: Verification, *program: beside.Program) -> Verification:
+    """Add the information beside the verdict: errors that the page could not reveal, exact values
+    and warnings. ``program``: the program that printed it, by default the restored listing."""
     if scene := result.complete_scene:
-        printed = {check.name: check.recomputed or "" for check in result.fields}
-        result.unseen = beside.unseen(scene, printed, *program)
+        program_fields = {check.name: check.recomputed or "" for check in result.fields}
+        result.unseen = beside.unseen(scene, program_fields, *program)
         beside.add_exact_values(scene, result.fields)
         result.warnings = beside.warnings(scene)
     return result

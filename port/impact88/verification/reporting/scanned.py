@@ -29,39 +29,39 @@ from ..scan.typeface import BLANK
 from .verification import Verification
 
 
-def verified(
+def verify_pages(
     path: str, data: bytes, seed: str | Sequence[str] = "", copy: CopyPages | None = None
 ) -> Iterator[Verification]:
-    """Each printout in a picture or PDF. ``seed``: what other readers made of it; their scenes
-    are tried, and they decide nothing; ``copy``: the listing that prints it, in place of the
-    restored one. Raises UserError when no printout is found."""
+    """Yield the verification of each printout in a picture or PDF. ``seed``: other readings, whose
+    scenes are tried without deciding anything; ``copy``: the listing that prints it, in place of
+    the restored one. Raises UserError when no printout is found."""
     results: list[Verification] = []
     without, causes = list[int](), ""
     texts = [seed] if isinstance(seed, str) else seed
     seeds = [scene for text in texts for scene in scenes_in(text)]
     with progress(None, "pages read", "page") as meter:
         for page in pages_of(data, path):
-            found: list[Verification] = []
+            page_results: list[Verification] = []
             unread = 0
             for paper in papers_of(page.picture):
-                tried = [*seeds, *scenes_in(page.text)]
-                seen = read_page(paper.grey, tried, paper.coloured, copy)
-                unread += not seen.leaves
-                causes = causes or ("" if seen.leaves else "; ".join(paper.remarks))
-                for leaf in seen.leaves:
-                    number = len(results) + len(found) + 1
+                scenes = [*seeds, *scenes_in(page.text)]
+                reading = read_page(paper.grey, scenes, paper.coloured, copy)
+                unread += not reading.leaves
+                causes = causes or ("" if reading.leaves else "; ".join(paper.remarks))
+                for leaf in reading.leaves:
+                    number = len(results) + len(page_results) + 1
                     result = _verification(path, number, page, paper, leaf, copy)
-                    result.exhibit = partial(exhibit, paper.grey, seen.leaves, leaf)
-                    result.remarks += [f"page {page.number}: {said}" for said in paper.remarks]
-                    found.append(result)
-            if found and unread:
-                said = f"no printout was found on {unread} of the sheets it shows"
-                found[0].remarks.append(f"page {page.number}: {said}")
+                    result.exhibit = partial(exhibit, paper.grey, reading.leaves, leaf)
+                    result.remarks += [f"page {page.number}: {remark}" for remark in paper.remarks]
+                    page_results.append(result)
+            if page_results and unread:
+                remark = f"no printout was found on {unread} of the sheets it shows"
+                page_results[0].remarks.append(f"page {page.number}: {remark}")
             if page.text.strip():
-                _layered(found, page.text)
-            if not found:
+                _compare_text_layer(page_results, page.text)
+            if not page_results:
                 without.append(page.number)
-            results += found
+            results += page_results
             meter.update(1)
     if not results:
         raise UserError(
@@ -74,9 +74,9 @@ def verified(
     yield from results
 
 
-def _layered(results: list[Verification], text: str) -> None:
-    """Holds a PDF's text layer against what its picture shows: one that says another number is
-    told, and nothing is settled."""
+def _compare_text_layer(results: list[Verification], text: str) -> None:
+    """Compare a PDF's text layer with its picture: one that has another number is reported, and
+    leaves the verdict open."""
     try:
         layer = [printout for printout in read_printouts(text) if not printout.fragment]
     except UserError:
@@ -86,15 +86,15 @@ def _layered(results: list[Verification], text: str) -> None:
             result.remarks.append(f"page {result.page}: no such printout is in its text layer")
         return
     for result, page in zip(results, layer, strict=True):
-        other = [
+        disagreements = [
             f"{check.name} {page.text(check.name)} for {check.printed}"
             for check in result.fields
             if page.text(check.name) is not None and page.text(check.name) != check.printed
         ]
-        if other:
+        if disagreements:
             result.remarks.append(
                 f"page {result.page}: its text layer does not agree with its picture: "
-                + ", ".join(other)
+                + ", ".join(disagreements)
             )
             if result.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ):
                 result.verdict = Verdict.INCOMPLETE
@@ -103,25 +103,25 @@ def _layered(results: list[Verification], text: str) -> None:
 def _verification(
     path: str, number: int, page: Page, paper: Paper, leaf: Leaf, copy: CopyPages | None
 ) -> Verification:
-    settled = leaf.judged.verdict is not Verdict.INCOMPLETE
-    known = {name: _printed(cells) for name, cells in leaf.by_name.items()} if settled else {}
-    text, starts = leaf.read.page(known)
-    printed = leaf.found.outcome.fields if leaf.found else {}
+    is_decided = leaf.judged.verdict is not Verdict.INCOMPLETE
+    texts = {name: _cells_text(cells) for name, cells in leaf.by_name.items()} if is_decided else {}
+    text, starts = leaf.read.page(texts)
+    program_fields = leaf.found.outcome.fields if leaf.found else {}
     scene: dict[str, str | None] = dict.fromkeys(SCENE)
-    converted = False
-    if leaf.found and settled:
+    is_converted = False
+    if leaf.found and is_decided:
         scene |= {name: leaf.found.scene[name] for name in SCENE}
         if copy:
-            scene |= as_printed(leaf.found.scene, printed)
-            converted = bool(converted_inputs(leaf.found.scene, printed))
+            scene |= as_printed(leaf.found.scene, program_fields)
+            is_converted = bool(converted_inputs(leaf.found.scene, program_fields))
     fields = [
-        _check(leaf, name, printed.get(name), leaf.by_name.get(name, []))
+        _check(leaf, name, program_fields.get(name), leaf.by_name.get(name, []))
         for name in FIELDS
-        if name in printed or name in leaf.read.costs
+        if name in program_fields or name in leaf.read.costs
     ]
     line = min((row.start for row in leaf.read.sheet.rows.values()), default=0) + 1
     result = Verification(path, number, line, leaf.judged.verdict, scene, fields)
-    result.converted = converted
+    result.converted = is_converted
     result.replies, result.page = [*_replies(leaf)], page.number
     result.text, result.stop, result.basis = text, len(text), sentences()
     for check in result.fields:
@@ -129,11 +129,11 @@ def _verification(
             check.start = starts[check.name]
             check.stop = check.start + len(check.printed)
     result.cells = [
-        _described(cell, page, paper, leaf.grid)
-        for cell in leaf.cells  # blanks and labels that hold are not told
+        _cell_as_json(cell, page, paper, leaf.grid)
+        for cell in leaf.cells  # blanks and matching labels are left out
         if (cell.name and cell.predicted != BLANK) or state(cell) != "holds"
     ]
-    result.marks = [_marked(mark, page, paper, leaf.grid) for mark in leaf.marks]
+    result.marks = [_mark_as_json(mark, page, paper, leaf.grid) for mark in leaf.marks]
     if leaf.judged.reason:
         result.remarks.append(f"page {page.number}: {leaf.judged.reason}")
     result.findings += [
@@ -173,14 +173,14 @@ def _check(leaf: Leaf, name: str, recomputed: str | None, cells: Sequence[Cell])
         for cell in cells
         if state(cell) == "doubtful"
     ]
-    check = FieldCheck(name, _printed(cells) or None, recomputed, status, doubts=doubts)
+    check = FieldCheck(name, _cells_text(cells) or None, recomputed, status, doubts=doubts)
     if cells:
         check.line, check.column = cells[0].place.line + 1, cells[0].place.cell + 1
     return check
 
 
-def _printed(cells: Sequence[Cell]) -> str:
-    """What stands in cells that were held against the page."""
+def _cells_text(cells: Sequence[Cell]) -> str:
+    """Return the text in cells that were compared with the page."""
     return "".join(cell.other if state(cell) == "differs" else cell.predicted for cell in cells)
 
 
@@ -203,8 +203,8 @@ def _box(corners: Floats, page: Page, paper: Paper, turns: int) -> list[float]:
     return [round(float(v), 1) for v in (x.min(), y.min(), x.max(), y.max())]
 
 
-def _marked(mark: Mark, page: Page, paper: Paper, grid: Grid) -> dict[str, Any]:
-    """A mark as JSON; ``line`` and ``cell`` from 1, where it stands on the grid."""
+def _mark_as_json(mark: Mark, page: Page, paper: Paper, grid: Grid) -> dict[str, Any]:
+    """Return a mark as JSON; ``line`` and ``cell`` from 1, where it is on the grid."""
     return {
         "page": page.number,
         "box": _box(mark.corners, page, paper, grid.turns),
@@ -219,8 +219,9 @@ def _marked(mark: Mark, page: Page, paper: Paper, grid: Grid) -> dict[str, Any]:
     }
 
 
-def _described(cell: Cell, page: Page, paper: Paper, grid: Grid) -> dict[str, Any]:
-    """A cell as JSON; ``box``: left, top, right, bottom in the picture as it lies, in pixels."""
+def _cell_as_json(cell: Cell, page: Page, paper: Paper, grid: Grid) -> dict[str, Any]:
+    """Return a cell as JSON; ``box``: left, top, right, bottom in the picture as it lies, in
+    pixels."""
     return {
         "page": page.number,
         "box": _box(grid.around(*cell.place), page, paper, grid.turns),

@@ -1,6 +1,6 @@
-"""What a verification holds, for one printout and for one file; and what is said of it.
+"""Verifications of one printout and of one file, and their wording.
 
-`sections` is all that is said in words, whatever the form: text, a page, the desk.
+`sections` returns all sentences, whatever the form they are shown in: text, a page, the desk.
 """
 
 from __future__ import annotations
@@ -42,9 +42,10 @@ MEANINGS = {
     Verdict.DIFFERS: "something on the paper contradicts every scene that its inputs allow",
     Verdict.INCOMPLETE: "numbers are missing or could not be read; what could be compared agrees",
 }
-"""What a verdict says."""
+"""Sentence that explains each verdict."""
 
-DOUBTFUL, NOTES = "doubtful places", "notes on the reading"
+DOUBTFUL = "doubtful places"
+NOTES = "notes on the reading"
 MARKS = "on the page and not printed by the program"
 EXPLAINED = "possible explanations, best first"
 
@@ -222,13 +223,30 @@ class Verifications(list[Verification]):
     """
 
     def _repr_html_(self) -> str:
-        return notebook.preformatted_html("\n".join(line for one in self for line in lines(one)))
+        return notebook.preformatted_html(
+            "\n".join(line for result in self for line in lines(result))
+        )
 
 
 _IN_JSON = (
-    *("file", "sha256", "line", "verdict", "scene", "guessed", "fields", "replies", "ending"),
-    *("missing", "not_read", "labels", "left_over", "unseen", "explanations", "findings"),
-    *("warnings", "remarks"),
+    "file",
+    "sha256",
+    "line",
+    "verdict",
+    "scene",
+    "guessed",
+    "fields",
+    "replies",
+    "ending",
+    "missing",
+    "not_read",
+    "labels",
+    "left_over",
+    "unseen",
+    "explanations",
+    "findings",
+    "warnings",
+    "remarks",
 )
 
 
@@ -242,7 +260,8 @@ def _plain(value: Any) -> Any:
 
 @dataclass
 class Examined:
-    """One file: what was found in it, or why it could not be read. ``sha256``: of its bytes."""
+    """One file: its verifications, or the error that kept it from being read. ``sha256``: hash of
+    its bytes."""
 
     file: str
     sha256: str | None
@@ -250,7 +269,7 @@ class Examined:
     error: str | None = None
 
     def as_json(self) -> list[dict[str, Any]]:
-        """The objects `impact88 verify --json` prints for the file."""
+        """Return the objects that `impact88 verify --json` prints for the file."""
         if self.error is None:
             return [result.as_json() for result in self.results]
         refused = {"file": self.file, "sha256": self.sha256, "error": self.error}
@@ -261,47 +280,53 @@ class Examined:
 
 
 def summary(result: Verification) -> list[str]:
-    """What a verdict rests on: counts, and by name what is missing."""
+    """Return the sentences that support a verdict: counts, and the names of missing inputs."""
     verdict, fields, missing = result.verdict, result.fields, result.missing
-    said = [counts(fields)]
+    sentences = [counts(fields)]
     if verdict is Verdict.IDENTICAL:
-        who = f"the copy {result.copy['file']}" if result.copy else "the program"
-        said = [f"all {len(fields)} printed numbers are what {who} prints, digit for digit"]
+        source = f"the copy {result.copy['file']}" if result.copy else "the program"
+        sentences = [f"all {len(fields)} printed numbers are what {source} prints, digit for digit"]
     elif verdict is Verdict.DIFFERS:
-        compared = sum(check.same is not None for check in fields)
-        said = [*_of_another_copy(result)]
-        said.append(f"{compared} printed numbers compared, {len(result.differing)} differ")
+        compared_count = sum(check.same is not None for check in fields)
+        sentences = [*_of_another_copy(result)]
+        sentences.append(
+            f"{compared_count} printed numbers compared, {len(result.differing)} differ"
+        )
         replies = sum(check.same is False for check in result.replies)
         if replies:
             noun = "reply at a prompt differs" if replies == 1 else "replies at prompts differ"
-            said.append(f"{replies} {noun} from the velocities printed")
+            sentences.append(f"{replies} {noun} from the velocities printed")
         if wrong := sum(label.state is LabelState.CONTRADICTORY for label in result.labels):
-            said.append("1 label contradicts" if wrong == 1 else f"{wrong} labels contradict")
+            sentences.append("1 label contradicts" if wrong == 1 else f"{wrong} labels contradict")
         if lines := sum(bool(mark["contradicts"]) for mark in result.marks):
             verb = "1 typed line gives" if lines == 1 else f"{lines} typed lines give"
-            said.append(f"{verb} numbers that are not the page's")
+            sentences.append(f"{verb} numbers that are not the page's")
     elif verdict is Verdict.IDENTICAL_AS_READ:
-        said.append(MEANINGS[verdict])
+        sentences.append(MEANINGS[verdict])
     if result.page is None and verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ):
-        said.append(_examined(result))
+        sentences.append(_extent(result))
     if missing:
         verb, it = ("is", "it") if len(missing) == 1 else ("are", "them")
-        said.append(f"{', '.join(missing)} {verb} missing: what depends on {it} was not compared")
+        sentences.append(
+            f"{', '.join(missing)} {verb} missing: what depends on {it} was not compared"
+        )
     not_read = [name for name in result.not_read if name not in missing]
     if not_read and verdict is not Verdict.IDENTICAL_AS_READ:
-        said.append(f"not read: {', '.join(not_read)}")
-    known = missing or not_read or result.page or result.differing
-    if verdict is Verdict.INCOMPLETE and not known:
-        said.append("the results are missing, or the page ends before them")
+        sentences.append(f"not read: {', '.join(not_read)}")
+    is_explained = missing or not_read or result.page or result.differing
+    if verdict is Verdict.INCOMPLETE and not is_explained:
+        sentences.append("the results are missing, or the page ends before them")
     ending = result.ending
     if ending is not None and ending.same is not True and (ending.printed or ending.recomputed):
-        printed, recomputed = (text or "no error" for text in (ending.printed, ending.recomputed))
-        said.append(f"ends with {printed}, recomputed: {recomputed}")
-    return said
+        page_text, program_text = (
+            text or "no error" for text in (ending.printed, ending.recomputed)
+        )
+        sentences.append(f"ends with {page_text}, recomputed: {program_text}")
+    return sentences
 
 
 def counts(fields: Sequence[FieldCheck]) -> str:
-    """How many numbers were read exactly, doubtful, contradicted, not read."""
+    """Return the numbers of fields read exactly, doubtful, contradicted and not read, in words."""
     number = Counter(check.status for check in fields)
     words = {
         Status.DOUBTFUL: "read doubtfully",
@@ -310,34 +335,34 @@ def counts(fields: Sequence[FieldCheck]) -> str:
         Status.NOT_COMPARED: "not compared",
     }
     exact = f"{number[Status.READ]} of {len(fields)} printed numbers read exactly and as the "
-    others = [f"{number[status]} {word}" for status, word in words.items() if number[status]]
-    return ", ".join([exact + "program prints them", *others])
+    other_counts = [f"{number[status]} {word}" for status, word in words.items() if number[status]]
+    return ", ".join([exact + "program prints them", *other_counts])
 
 
 def sections(result: Verification) -> dict[str, list[str]]:
-    """All that is said below the verdict and beside the table, in any form: headings, in order, and
-    the lines of each; a line that begins with blanks belongs to the one above it."""
+    """Return the headings below the verdict, in order, with their lines, for any form of output. A
+    line that begins with blanks belongs to the one above it."""
     doubtful = _labels(result.labels)
     for check in [*result.fields, *result.replies]:
         if check.status == Status.DOUBTFUL:
             doubtful += _doubts(check)
             suffix = f" ({check.name}: the program prints {check.recomputed})"
-            doubtful += [where + suffix for where in look(check)]
+            doubtful += [place + suffix for place in look(check)]
     notes = [
         f"{check.name}: the reply {check.printed} is not the {check.recomputed} used"
         for check in result.replies
         if check.same is False
     ]
-    every = {
+    entries_by_heading = {
         DOUBTFUL: doubtful,
         MARKS: list(_marks(result.marks)),
-        EXPLAINED: _explained(result),
-        "the page cannot show": result.unseen,
-        "what the page shows besides": result.findings,
+        EXPLAINED: _explanation_lines(result),
+        "Errors this page could not reveal": result.unseen,
+        "Other findings": result.findings,
         "beside the verdict": result.warnings,
         NOTES: [*notes, *result.remarks, *_left_over(result.left_over)],
     }
-    return {heading: said for heading, said in every.items() if said}
+    return {heading: entries for heading, entries in entries_by_heading.items() if entries}
 
 
 _MARK_WORDS = {
@@ -354,17 +379,20 @@ _COUNTED = {"straight line": "lines", "hole": "holes", "edge of the sheet": "dar
 
 
 def _marks(marks: Sequence[Mapping[str, Any]]) -> Iterator[str]:
-    """What the program does not print: what bears on the verdict each by itself."""
+    """Yield a sentence for each mark that the program does not print; marks that do not bear on the
+    verdict are counted."""
     for mark in marks:
         if mark["bears"] or mark["kind"] not in _COUNTED:
             x, y, _, _ = mark["box"]
             place = f"line {mark['line']}, cell {mark['cell']}" if mark["line"] else ""
             place = place or f"{x:.0f} pixels from the left, {y:.0f} from the top"
-            said = f"page {mark['page']}, {place}: {_MARK_WORDS[mark['kind']].format(**mark)}"
-            beside = mark["beside"] and not mark["line"] and not mark["touches"]
-            said += ", in or beside a line of the printout" if beside else ""
+            sentence = f"page {mark['page']}, {place}: {_MARK_WORDS[mark['kind']].format(**mark)}"
+            is_in_margin = mark["beside"] and not mark["line"] and not mark["touches"]
+            sentence += ", in or beside a line of the printout" if is_in_margin else ""
             touches = ", ".join(mark["touches"])
-            yield said + (f"; touches {touches}" if touches and mark["kind"] not in _TYPED else "")
+            yield sentence + (
+                f"; touches {touches}" if touches and mark["kind"] not in _TYPED else ""
+            )
     for kind, words in _COUNTED.items():
         if count := sum(mark["kind"] == kind and not mark["bears"] for mark in marks):
             yield f"{count} {words if count > 1 else kind}, away from the printed lines"
@@ -388,18 +416,18 @@ def _doubts(check: FieldCheck) -> Iterator[str]:
     for doubt in check.doubts:
         if doubt.how in _DOUBTS:
             words = {**doubt._asdict(), "program": check.recomputed or "", "whole": check.printed}
-            said = _DOUBTS[doubt.how].format(**words)
-            yield f"line {doubt.line}, column {doubt.column}: {check.name} {said}"
+            sentence = _DOUBTS[doubt.how].format(**words)
+            yield f"line {doubt.line}, column {doubt.column}: {check.name} {sentence}"
 
 
 def look(check: FieldCheck) -> Iterator[str]:
-    """Where to look on the paper for a misread digit."""
+    """Yield the places to look at on the paper for a misread digit."""
     for doubt in check.doubts:
         if doubt.how == Doubt.CONTRADICTS:
-            printed = f"{'an' if doubt.printed[:1] == '8' else 'a'} {doubt.printed}"
-            question = f"is {printed} missing here"
+            digit = f"{'an' if doubt.printed[:1] == '8' else 'a'} {doubt.printed}"
+            question = f"is {digit} missing here"
             if doubt.read:
-                part = printed if doubt.printed else "part of the number"
+                part = digit if doubt.printed else "part of the number"
                 question = f"is this {doubt.read} {part}"
             yield f"line {doubt.line}, column {doubt.column}: {question}?"
 
@@ -412,7 +440,7 @@ _LABELS = {
 
 
 def _labels(checks: Sequence[LabelCheck]) -> list[str]:
-    """The labels that are not the program's, those that contradict first."""
+    """Return the labels that are not the program's, contradictory ones first."""
     return [
         f"line {label.line}: " + text.format(read=printable(label.read), printed=label.printed)
         for state, text in _LABELS.items()
@@ -421,69 +449,74 @@ def _labels(checks: Sequence[LabelCheck]) -> list[str]:
     ]
 
 
-_MOST_LINES = 12
-"""Lines that do not belong to the program's page are shown up to this many."""
+MAX_FOREIGN_LINES = 12  # lines listed that do not belong to the program's page
 
 
 def _left_over(pieces: Sequence[Piece]) -> Iterator[str]:
-    """What belongs to no number and no label: beside a number, or a whole line."""
+    """Yield a sentence for each text that belongs to no number and no label: beside a number, or a
+    whole line."""
     for piece in pieces:
         if not piece.whole:
             text = piece.text if len(piece.text) <= 40 else piece.text[:37] + "..."
-            where = f"line {piece.line}, column {piece.column}"
-            yield f"{where}: {text!r} left over{' beside a number' * piece.beside}"
+            location = f"line {piece.line}, column {piece.column}"
+            yield f"{location}: {text!r} left over{' beside a number' * piece.beside}"
     lines = sorted((piece for piece in pieces if piece.whole), key=lambda piece: not piece.beside)
-    for piece in sorted(lines[:_MOST_LINES], key=lambda piece: piece.line):
+    for piece in sorted(lines[:MAX_FOREIGN_LINES], key=lambda piece: piece.line):
         yield f"line {piece.line} does not belong to the program's page: {printable(piece.text)}"
-    if len(lines) > _MOST_LINES:
-        yield f"and {len(lines) - _MOST_LINES} more lines that do not belong to the program's page"
+    if len(lines) > MAX_FOREIGN_LINES:
+        count = len(lines) - MAX_FOREIGN_LINES
+        yield f"and {count} more lines that do not belong to the program's page"
 
 
-def _explained(result: Verification) -> list[str]:
-    """The explanations, best first, and where to look on the paper; of a picture its cells say what
-    differs."""
+def _explanation_lines(result: Verification) -> list[str]:
+    """Return the explanations, best first, and the places to look at on the paper; empty for a
+    picture, whose cells show the differences."""
     if result.verdict is not Verdict.DIFFERS or result.page is not None:
         return []
-    said: list[str] = []
-    before = 0
+    entries: list[str] = []
+    last_rank = 0
     for cause in result.explanations:
-        if cause.rank != before:
-            said.append(f"{cause.rank}. {cause}; explains {cause.explains} of {cause.differing}")
+        if cause.rank != last_rank:
+            entries.append(f"{cause.rank}. {cause}; explains {cause.explains} of {cause.differing}")
         else:
-            said.append(f"   or, equally well on this page: {cause}")
-        before = cause.rank
-        said += [f"   look at {where}" for where in cause.look[:4]]
-    return said or ["no single slip explains this"]
+            entries.append(f"   or, equally well on this page: {cause}")
+        last_rank = cause.rank
+        entries += [f"   look at {place}" for place in cause.look[:4]]
+    return entries or ["no single slip explains this"]
 
 
-def _examined(result: Verification) -> str:
-    """Return what of a text was examined, in one sentence."""
+def _extent(result: Verification) -> str:
+    """Return one sentence on the extent of the examination of a text."""
     replies = len(result.replies)
-    what = f"{len(result.fields)} numbers and their labels"
+    examined = f"{len(result.fields)} numbers and their labels"
     if replies:
-        what += f", {replies} replies at the prompts"
-    rest = "nothing else stands on the page"
+        examined += f", {replies} replies at the prompts"
+    remainder = "nothing else stands on the page"
     if result.left_over:
-        rest = "what else stands on the page is listed below"
-    return f"examined: {what}; {rest}"
+        remainder = "what else stands on the page is listed below"
+    return f"examined: {examined}; {remainder}"
 
 
 def _of_another_copy(result: Verification) -> Iterator[str]:
-    """In words, where every number agrees and only replies or labels are not the listing's: what
-    may have printed such a page."""
+    """Yield sentences on another copy of the listing that may have printed a page on which every
+    number agrees and only replies or labels are not the listing's."""
     if result.differing or result.copy or result.page is not None or not result.complete_scene:
         return
-    wrong = [check for check in result.replies if check.same is False]
+    wrong_replies = [check for check in result.replies if check.same is False]
     labels = [label for label in result.labels if label.state is LabelState.CONTRADICTORY]
-    if not wrong and not labels:
+    if not wrong_replies and not labels:
         return
-    what = "what was typed at the prompts is not what it computed with"
-    if not wrong:
-        what = "its labels are not the listing's"
-    ratios = [_ratio(check) for check in wrong]
-    if len(wrong) > 1 and all(ratios) and max(ratios) - min(ratios) <= 1e-3 * abs(max(ratios)):
-        what += f" (each velocity printed is {ratios[0]:.6g} times the reply)"
-    yield f"the numbers agree, but {what}"
+    finding = "what was typed at the prompts is not what it computed with"
+    if not wrong_replies:
+        finding = "its labels are not the listing's"
+    ratios = [_ratio(check) for check in wrong_replies]
+    if (
+        len(wrong_replies) > 1
+        and all(ratios)
+        and max(ratios) - min(ratios) <= 1e-3 * abs(max(ratios))
+    ):
+        finding += f" (each velocity printed is {ratios[0]:.6g} times the reply)"
+    yield f"the numbers agree, but {finding}"
     yield (
         "another copy of the listing may have printed this page: if so, verify it with "
         "--listing COPY"
@@ -491,76 +524,83 @@ def _of_another_copy(result: Verification) -> Iterator[str]:
 
 
 def _ratio(check: FieldCheck) -> float:
-    printed, typed = value_of(check.recomputed or ""), value_of(check.printed or "")
-    return float(printed / typed) if printed and typed else 0.0
+    velocity, reply = value_of(check.recomputed or ""), value_of(check.printed or "")
+    return float(velocity / reply) if velocity and reply else 0.0
 
 
-# --- what a page shows besides its numbers -------------------------------------------------------
+# --- other findings -----------------------------------------------------------------------------
 
 
 def findings(found: Judged) -> Iterator[str]:
-    """Forms the program never prints, and which M a page without final spins is read as."""
-    recovered = found.recovered
-    retyped = [
+    """Yield forms that the program never prints, and the M that a page without final spins is read
+    as."""
+    scene = found.recovered
+    retyped_names = [
         check.name
         for check in found.fields
         if any(doubt.how == Doubt.RETYPED for doubt in check.doubts)
     ]
-    if retyped:
+    if retyped_names:
         yield (
-            f"{', '.join(retyped)} in a form Applesoft never prints (a zero before the point or at "
-            "the end, a plus sign): retyped, or made by another program"
+            f"{', '.join(retyped_names)} in a form Applesoft never prints (a zero before the "
+            "point or at the end, a plus sign): retyped, or made by another program"
         )
     regions = [reading.region[:-1] for reading in found.paper.fields.values()]
     text = "".join(glyph.char for region in regions for glyph in region)
     if text.count(",") >= 3 and "." not in text:
         yield "decimal commas throughout: retyped, or made by another program"
-    m = recovered.scene["M"]
-    if recovered.m_unknown and not recovered.missing:
+    m = scene.scene["M"]
+    if scene.m_unknown and not scene.missing:
         yield (
             f"no line of final spins: read as M = {m}; with M = {'6' if m == '4' else '4'} the "
             "program prints the same numbers but for that line"
         )
-    elif m == "4" and "M" not in recovered.missing and not found.paper.has_final_spins:
+    elif m == "4" and "M" not in scene.missing and not found.paper.has_final_spins:
         yield "no line of final spins: the results are those of M = 4, not of M = 6"
 
 
 _MISREADINGS = (Doubt.LOOK_ALIKE, Doubt.ILLEGIBLE, Doubt.CONTRADICTS)
 
 
-def put_down(found: Judged) -> Iterator[str]:
-    """That digits which were cleanly read as others are put down to the page's reader."""
-    others = [
-        f"{check.name} ({read} for {printed})"
+def attributed_digits(found: Judged) -> Iterator[str]:
+    """Report digits attributed to misreading by the page's reader."""
+    misread_digits = [
+        f"{check.name} ({read} for {program_digit})"
         for check in [*found.fields, *found.replies]
-        for printed, read in check.swapped()
+        for program_digit, read in check.swapped()
     ]
-    misread = sum(
+    misread_count = sum(
         any(doubt.how in _MISREADINGS and doubt.read != doubt.printed for doubt in check.doubts)
         for check in found.fields
     )
-    if others:
+    if misread_digits:
         yield (
-            f"read as another digit than the program prints: {', '.join(others)}; put down to the "
-            f"reader of the page, who misread {misread} of {len(found.fields)} numbers: if the "
-            "paper shows one of these digits as it was read, it differs from the program's page"
+            "read as another digit than the program prints: "
+            f"{', '.join(misread_digits)}; attributed to the reader of the page, who misread "
+            f"{misread_count} of {len(found.fields)} numbers: if the paper shows one of these "
+            "digits as it was read, it differs from the program's page"
         )
 
 
-def of_copy(copy: ListingCopy, result: Verification) -> list[str]:
-    """What an office's copy of the listing prints, and in which lines it is another program."""
+def copy_findings(copy: ListingCopy, result: Verification) -> list[str]:
+    """Return sentences on an office's copy of the listing: results that differ from the restored
+    listing's, and the changed lines."""
     scene = result.complete_scene
-    restored = run_once(scene).fields if scene else {}
+    restored_fields = run_once(scene).fields if scene else {}
     agrees = result.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
-    others = ", ".join(
-        f"{check.name} {restored.get(check.name, 'nothing')}"
+    differences = ", ".join(
+        f"{check.name} {restored_fields.get(check.name, 'nothing')}"
         for check in result.fields
-        if check.recomputed != restored.get(check.name)
+        if check.recomputed != restored_fields.get(check.name)
     )
-    beside = f"; the restored listing prints {others or 'the same numbers'}" if scene else ""
-    said = "" if agrees else "not certainly " if result.verdict is Verdict.INCOMPLETE else "not "
+    comparison = (
+        f"; the restored listing prints {differences or 'the same numbers'}" if scene else ""
+    )
+    negation = (
+        "" if agrees else "not certainly " if result.verdict is Verdict.INCOMPLETE else "not "
+    )
     return [
-        f"this page is {said}what the copy {copy.file} prints{beside}",
+        f"this page is {negation}what the copy {copy.file} prints{comparison}",
         *(
             f"line {line.line}: the copy has {line.copy or 'nothing'} | "
             f"the restored listing {line.restored or 'nothing'}"
@@ -569,9 +609,9 @@ def of_copy(copy: ListingCopy, result: Verification) -> list[str]:
     ]
 
 
-def given_apart(given: Mapping[str, str], result: Verification) -> Iterator[str]:
-    """Of inputs given separately: those that the page lacks, and how its results compare with them;
-    and those that it has otherwise."""
+def given_findings(given: Mapping[str, str], result: Verification) -> Iterator[str]:
+    """Yield findings on inputs given separately: those that the page lacks, with the agreement of
+    its results; and those that differ from the page."""
     absent, otherwise = [], []
     for check in result.fields:
         name = scene_name(check.name)
@@ -581,16 +621,18 @@ def given_apart(given: Mapping[str, str], result: Verification) -> Iterator[str]
         if check.printed is None:
             absent.append(name)
             continue
-        typed, own = (stored_and_printed(each, name in ANGLES) for each in (text, by_page))
-        if typed is None or own is None or typed[1] != own[1]:
+        given_forms, page_forms = (
+            stored_and_printed(value, name in ANGLES) for value in (text, by_page)
+        )
+        if given_forms is None or page_forms is None or given_forms[1] != page_forms[1]:
             otherwise.append(f"{name} {text} (by the page {by_page})")
     if absent:
-        compared = [check.same for check in result.fields if check.same is not None]
-        agree = f"all {len(compared)} numbers read are what the program prints for them"
-        if not compared:
+        comparisons = [check.same for check in result.fields if check.same is not None]
+        agree = f"all {len(comparisons)} numbers read are what the program prints for them"
+        if not comparisons:
             agree = "no number was read to be compared"
-        elif wrong := compared.count(False):
-            agree = f"{wrong} of {len(compared)} numbers read are not what it prints for them"
+        elif wrong := comparisons.count(False):
+            agree = f"{wrong} of {len(comparisons)} numbers read are not what it prints for them"
         names = ", ".join(absent)
         yield f"not on the page; taken from the scene given separately: {names}; {agree}"
     if otherwise:
@@ -608,25 +650,27 @@ def lines(result: Verification, brief: bool = False) -> Iterator[str]:
 
 
 def _lines(result: Verification, brief: bool) -> Iterator[str]:
-    where = f"{one_line(display_name(result.file))}, printout {result.number} ({result.where})"
-    yield f"{where}: {TITLES[result.verdict]}"
+    heading_line = (
+        f"{one_line(display_name(result.file))}, printout {result.number} ({result.where})"
+    )
+    yield f"{heading_line}: {TITLES[result.verdict]}"
     parts = sections(result)
     doubtful, notes = parts.pop(DOUBTFUL, []), parts.pop(NOTES, [])
-    yield from (f"  {line}" for line in [*summary(result), *_some(doubtful, brief)])
+    yield from (f"  {line}" for line in [*summary(result), *_first_lines(doubtful, brief)])
     if checks := result.differing if brief else result.fields:
         yield ""
         yield from (f"  {line}" for line in _table(checks, exact=not brief))
-    for heading, said in parts.items():
-        if not brief or said is not result.warnings:
+    for heading, entries in parts.items():
+        if not brief or entries is not result.warnings:
             yield from ("", f"  {heading}:")
             mark = "" if heading == EXPLAINED else "- "
-            yield from (f"  {mark}{line}" for line in said)
-    yield from (f"  note: {line}" for line in _some(notes, brief))
+            yield from (f"  {mark}{line}" for line in entries)
+    yield from (f"  note: {line}" for line in _first_lines(notes, brief))
     if not brief:
         yield ""
 
 
-def _some(said: list[str], brief: bool) -> list[str]:
+def _first_lines(said: list[str], brief: bool) -> list[str]:
     if not brief or len(said) <= 4:
         return said
     return [*said[:3], f"and {len(said) - 3} more places"]
@@ -635,7 +679,7 @@ def _some(said: list[str], brief: bool) -> list[str]:
 def _table(checks: Sequence[FieldCheck], exact: bool) -> list[str]:
     rows = [["", "printed", "recomputed", *["exact", "printed-exact"] * exact, ""]]
     for check in checks:
-        beside = [check.exact or "", check.difference or ""] * exact
+        exact_cells = [check.exact or "", check.difference or ""] * exact
         numbers = [check.printed or "-", check.recomputed or "-"]
-        rows.append([check.name, *numbers, *beside, check.mark])
+        rows.append([check.name, *numbers, *exact_cells, check.mark])
     return table(rows, left=(0, len(rows[0]) - 1))

@@ -99,9 +99,9 @@ def sentences(counts: tuple[Count, ...] = COUNTS) -> str:
         f"passed AS FAR AS READ and {altered.identical} passed as IDENTICAL. "
         "All these pages, and the alterations, were drawn by a computer, and limits of this "
         "program were chosen on some of them: the figures are no probability that the page at hand "
-        "is genuine or altered, and an error that occurred on no page can still, at 95 % "
-        f"confidence, befall up to 1 in {genuine.pages // _BOUND_95} such genuine pages or 1 in "
-        f"{altered.pages // _BOUND_95} such altered ones."
+        f"is genuine or altered. 0 failures in {genuine.pages} genuine pages bound the failure "
+        f"rate at 1 in {genuine.pages // _BOUND_95}, 0 failures in {altered.pages} altered pages "
+        f"at 1 in {altered.pages // _BOUND_95} (95 % confidence)."
     )
 
 
