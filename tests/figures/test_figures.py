@@ -438,7 +438,7 @@ class TestCanvas:
 
         # as files are written
         monkeypatch.setitem(matplotlib.rcParams, "text.hinting", "no_hinting")
-        figure = canvas.painted(drawing)
+        figure = canvas.make_figure(drawing)
         assert figure.get_size_inches() * 25.4 == pytest.approx([85, drawing.height])
         figure.canvas.draw()
         boxes = [text_box(text) for text in drawing.texts()]

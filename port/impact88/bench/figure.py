@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..figures.charts import Panel, key, powers
-from ..figures.drawing import GREY, ORANGE, VERMILION, Box, Drawing, Text, wrapped
+from ..figures.drawing import GREY, ORANGE, VERMILION, Box, Drawing, Text, wrap_text
 from ..mechanics.accuracy.errorbound import APPLESOFT, DOUBLE, relative_bounds
 from .measure import Row
 from .methods import METHODS
@@ -80,7 +80,7 @@ def work_precision(rows: Sequence[Row], roof: float) -> Drawing:
         panel = _panel(
             drawing,
             Box(left, upper - 38, left + 44, upper),
-            [name, *wrapped(POPULATIONS[name].meaning, 52, 6)],
+            [name, *wrap_text(POPULATIONS[name].meaning, 52, 6)],
             (_TIMES, "time per scene, s", powers(1e-9, 1e-2, 2)),
             (_ERRORS, "" if column else _LABEL, _ERROR_TICKS),
         )

@@ -151,7 +151,7 @@ def _quiet() -> Any:
         logger.setLevel(level)
 
 
-def painted(drawing: Drawing) -> Figure:
+def make_figure(drawing: Drawing) -> Figure:
     """The drawing as a matplotlib figure of exactly its size, tied to no screen."""
     from matplotlib.figure import Figure
     from matplotlib.patches import PathPatch
@@ -216,6 +216,6 @@ def save(drawing: Drawing, path: str) -> None:
         matplotlib.rcParams.update(
             {"font.family": "DejaVu Sans", "pdf.fonttype": 42, "text.hinting": "no_hinting"}
         )
-        figure = painted(drawing)
+        figure = make_figure(drawing)
         with replacing(path, "wb") as file:
             figure.savefig(file, format=ending, dpi=DOTS_PER_INCH, metadata=about)

@@ -126,7 +126,7 @@ def label_lines(drawing: Drawing, box: Box, label: str) -> list[str]:
     """Return the lines of the name below an axis: in its middle, and clear of the page's edges."""
     middle = (box.left + box.right) / 2
     beside = min(middle, drawing.width - middle) - _CLEAR
-    return d.wrapped(label, min(box.width + 8, 2 * beside))
+    return d.wrap_text(label, min(box.width + 8, 2 * beside))
 
 
 class Panel:
@@ -258,8 +258,11 @@ def _check_count(outputs: Sequence[str]) -> None:
         raise UserError(f"{len(outputs)} results do not fit a page; expected {MOST_PANELS} at most")
 
 
-def _begun(result: Bounds, outputs: Sequence[str] | None, title: str) -> tuple[list[str], Drawing]:
-    """The results that are drawn, and a drawing that says their nominal values and bounds."""
+def _start_drawing(
+    result: Bounds, outputs: Sequence[str] | None, title: str
+) -> tuple[list[str], Drawing]:
+    """Return the names of the results drawn, and a drawing that says their nominal values and
+    bounds."""
     names, units = list(outputs or result.bounds), system_of(result.units)
     for name in names:
         if name not in result.bounds:
@@ -277,12 +280,12 @@ def _begun(result: Bounds, outputs: Sequence[str] | None, title: str) -> tuple[l
 def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
     """The draws of up to twelve results, with quantiles, nominal value and bounds. ``result`` must
     have been made with ``keep_draws=True``. Raises UserError for a result it lacks, or too many."""
-    names, drawing = _begun(result, outputs, "Results of the draws")
+    names, drawing = _start_drawing(result, outputs, "Results of the draws")
     units = system_of(result.units)
     columns = 1 if len(names) == 1 else 2
     wide = (d.COLUMN - 2) / columns
     top = drawing.heading()
-    labels = [d.wrapped(_label(name, units), wide - _LEFT + 4) for name in names]
+    labels = [d.wrap_text(_label(name, units), wide - _LEFT + 4) for name in names]
     tallest = max(map(len, labels))
     for place, name in enumerate(names):
         row, column = divmod(place, columns)
@@ -319,10 +322,12 @@ def histograms(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
 
 
 def tornado(result: Bounds, outputs: Sequence[str] | None = None) -> Drawing:
-    """How far each input alone takes each result, longest first; one panel a result. Bars end at
+    """Draw the range of each result over each input alone, longest first; one panel per result.
+
+    Bars end at
     the results of the input's limits, whiskers where the result goes in between. Raises UserError
     for a result it lacks."""
-    names, drawing = _begun(result, outputs, "What drives the results")
+    names, drawing = _start_drawing(result, outputs, "What drives the results")
     units = system_of(result.units)
     bars = min(len(result.inputs), MOST_BARS)
     texts = {}

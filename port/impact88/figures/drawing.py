@@ -193,7 +193,7 @@ class Drawing:
     def heading(self) -> float:
         """Write the title in bold at the top; returns where what follows goes on."""
         # a user's words: no symbols with subscripts
-        lines = wrapped(self.title.replace("_", r"\_"), (self.width - 4) / BOLD, 7)
+        lines = wrap_text(self.title.replace("_", r"\_"), (self.width - 4) / BOLD, 7)
         for count, line in enumerate(lines, 1):
             self.add(Text(complex(2, -ROW * count), line, 7, bold=True, role="title"))
         return -ROW * len(lines)
@@ -222,7 +222,7 @@ def text_width(text: str, size: float, bold: bool = False) -> float:
     return thousandths / 1000 * size * MM_PER_POINT * (BOLD if bold else 1.0)
 
 
-def wrapped(text: str, room: float, size: float = TEXT) -> list[str]:
+def wrap_text(text: str, room: float, size: float = TEXT) -> list[str]:
     """The words of a text in lines at most ``room`` mm wide, where a word is not wider itself."""
     lines = [""]
     for word in text.split(" "):
@@ -275,10 +275,10 @@ def arrow(tail: complex, tip: complex, *look: Any, head: float = 2.0, role: str 
     if length == 0:
         return []
     along = min(head, 0.6 * length) * (tip - tail) / length
-    return _headed((tail, tip - 0.85 * along), tip, along, look or (BLACK, 0.35), role)
+    return _add_head((tail, tip - 0.85 * along), tip, along, look or (BLACK, 0.35), role)
 
 
-def _headed(
+def _add_head(
     shaft: tuple[complex, ...], tip: complex, along: complex, look: tuple[Any, ...], role: str
 ) -> list[Path]:
     head = (tip, tip - along * (1 - 0.36j), tip - along * (1 + 0.36j))
@@ -294,7 +294,7 @@ def turning_arrow(
     points = arc(center, gap + sense * (360 - span) / 2, sense * span, radius)
     # the head's tip goes on a little along the tangent, its back sits on the arc
     along = min(1.7, radius) * sense * 1j * (points[-1] - center) / radius
-    return _headed(points, points[-1] + 0.6 * along, along, look, role)
+    return _add_head(points, points[-1] + 0.6 * along, along, look, role)
 
 
 def arc(center: complex, first: float, turn: float, radius: float) -> tuple[complex, ...]:

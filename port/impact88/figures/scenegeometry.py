@@ -58,7 +58,8 @@ class Vehicle(NamedTuple):
         return self.after.velocity - self.before.velocity if self.after else None
 
     def pdof(self, impulse: complex) -> float:
-        """Where the force comes from, in degrees clockwise from the front, of the impulse on A."""
+        """Return the principal direction of force, in degrees clockwise from the front, of the
+        impulse on A."""
         source = -impulse if self.name == "A" else impulse
         return -degrees(self.front.conjugate() * source)
 
@@ -79,7 +80,7 @@ class Plan(NamedTuple):
 
     @property
     def closing(self) -> float:
-        """How fast the centers of gravity move relative to each other before the impact."""
+        """The relative speed of the centers of gravity before the impact."""
         a, b = self.vehicles
         return abs(a.before.velocity - b.before.velocity)
 
@@ -91,9 +92,11 @@ class Plan(NamedTuple):
 def plan(
     scene: Any, result: Mapping[str, Any] | None = None, outlines: Mapping[str, float] | None = None
 ) -> Plan:
-    """Where everything is. ``scene``: texts or numbers by the listing's names; ``result``: VAX,
-    VAY, VBX, VBY, WAF and WBF unless of point masses, STATUS where known; without it, or where it
-    is not finite, there is nothing after the impact. Raises UserError for a value that is not a
+    """Return the scene in plan.
+
+    ``scene``: texts or numbers by the listing's names; ``result``: VAX, VAY, VBX, VBY, WAF and WBF
+    unless of point masses, STATUS where known; without it, or where it is not finite, there is
+    nothing after the impact. Raises UserError for a value that is not a
     finite number, or too large to draw."""
     values, outlines = numbers_of(scene), outlines or {}
     for name, value in values.items():
@@ -129,7 +132,7 @@ def plan(
             center + front[name] * complex(i * length, j * width) / 2 for i, j in corners
         )
         cut = _depth(center, inward) > 0.15 * width
-        kept = _clipped(outline, inward) if cut else outline
+        kept = _clip_outline(outline, inward) if cut else outline
         heavy, light = (abs(values[f"M{which}"]) for which in (name, "B" if name == "A" else "A"))
         wall = heavy >= WALL * light and before[name] == (0, 0)
         motions = before[name], after.get(name)
@@ -146,7 +149,7 @@ def plan(
 
 
 def _depth(point: complex, inward: complex) -> float:
-    """How far a point lies to the ``inward`` side of the contact plane."""
+    """Return the distance of a point to the ``inward`` side of the contact plane."""
     return (point * inward.conjugate()).real
 
 
@@ -172,8 +175,8 @@ def _sizes(
     return sizes
 
 
-def _clipped(outline: Sequence[complex], inward: complex) -> tuple[complex, ...]:
-    """What of a convex outline lies on the ``inward`` side of the line through the origin."""
+def _clip_outline(outline: Sequence[complex], inward: complex) -> tuple[complex, ...]:
+    """Return the part of a convex outline on the ``inward`` side of the line through the origin."""
     result: list[complex] = []
     for start, end in pairwise((*outline, outline[0])):
         first, second = _depth(start, inward), _depth(end, inward)

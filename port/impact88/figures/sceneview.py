@@ -46,14 +46,14 @@ def scene_drawing(
     before the impact end at the center of gravity, those after it start there, in one scale.
     ``tallest``: height in mm of what is drawn, of a page that has the numbers and the remarks
     beside it, which the drawing then leaves out."""
-    shapes, units = planned(scene, result, units, outlines)
+    shapes, units = plan_with_units(scene, result, units, outlines)
     drawing = Drawing(width, title, description(shapes, units))
     if tallest:
         field = _Field(shapes, width - _SECOND, 0.0, tallest)
         field.draw(drawing, mirrored=units.is_turned("UY"))
         low = _key(drawing, field, -2 * ROW, units, width - _SECOND + 2.0)
         y = min(low, field.frame.bottom) - ROW
-        for text in d.wrapped(_notes(shapes, units)[0], width - 4):
+        for text in d.wrap_text(_notes(shapes, units)[0], width - 4):
             drawing.add(Text(complex(2, y - 0.9), text, colour=d.GREY, role="note"))
             y -= ROW
         drawing.height = 0.9 - y
@@ -66,7 +66,7 @@ def scene_drawing(
     return drawing
 
 
-def planned(
+def plan_with_units(
     scene: Any,
     result: Mapping[str, Any] | None,
     units: System | None,
@@ -299,8 +299,8 @@ def with_unit(value: float, rule: str, units: System) -> str:
 
 
 def _key(drawing: Drawing, field: _Field, y: float, units: System, left_edge: float = 0.0) -> float:
-    """What the lines mean, and their scales, in two columns, or in one from ``left_edge`` on;
-    returns the last line's place."""
+    """Draw the key: the meaning of the lines and their scales, in two columns, or in one from
+    ``left_edge`` on; return the last line's place."""
     shapes, sample = field.shapes, 8.0
 
     def velocity(kind: str) -> list[Path]:
@@ -374,7 +374,7 @@ def table_and_notes(drawing: Drawing, shapes: Plan, y: float, units: System) -> 
     line = 1j * (y + 2.0)
     drawing.add(Path((2 + line, drawing.width - 2 + line), d.GREY, 0.2))
     for note in _notes(shapes, units):
-        for text in d.wrapped(note, drawing.width - 4):
+        for text in d.wrap_text(note, drawing.width - 4):
             drawing.add(Text(complex(2, y - 0.9), text, colour=d.GREY, role="note"))
             y -= ROW
     drawing.height = 0.9 - y

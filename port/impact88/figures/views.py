@@ -33,7 +33,7 @@ def strip_drawing(
     turn for the time in which the faster one goes its own length, or up to three times that until
     they are drawn apart. Arguments as `scene_drawing`. Raises UserError without final
     velocities."""
-    shapes, units = view.planned(scene, result, None, None)
+    shapes, units = view.plan_with_units(scene, result, None, None)
     if not all(vehicle.after for vehicle in shapes.vehicles):
         raise UserError("there are no velocities after the impact to draw")
     bodies = shapes.bodies
@@ -43,9 +43,9 @@ def strip_drawing(
     longer = (once * factor for factor in (1.0, 1.5, 2.0, 2.5, 3.0))
     time = next((time for time in longer if _are_apart(bodies, time)), once)
     frames = {
-        "before": [_carried(v, v.before, -time) for v in bodies],
+        "before": [_move_vehicle(v, v.before, -time) for v in bodies],
         "impact": bodies,
-        "after": [_carried(v, v.after, time) for v in bodies if v.after],
+        "after": [_move_vehicle(v, v.after, time) for v in bodies if v.after],
     }
     boxes = {
         kind: d.extent(p for v in moved for p in (*v.outline, _tip(v, kind, 0.5 * time)))
@@ -79,7 +79,7 @@ def strip_drawing(
     return drawing
 
 
-def _carried(vehicle: Vehicle, motion: Motion, time: float) -> Vehicle:
+def _move_vehicle(vehicle: Vehicle, motion: Motion, time: float) -> Vehicle:
     """A vehicle, uncrushed, after it has moved and turned for a time, which may be negative."""
     center = vehicle.center + time * motion.velocity
     turn = cmath.rect(1.0, motion.spin * time)
@@ -89,8 +89,10 @@ def _carried(vehicle: Vehicle, motion: Motion, time: float) -> Vehicle:
 
 
 def _are_apart(vehicles: Sequence[Vehicle], time: float) -> bool:
-    """Whether no outline covers another ``time`` after the impact, nor before it: some side has all
-    corners of the other beyond it."""
+    """Return whether no outline covers another ``time`` after the impact, nor before it.
+
+    Some side then has all corners of the other beyond it.
+    """
     if len(vehicles) < 2:
         return True
 
@@ -106,7 +108,7 @@ def _are_apart(vehicles: Sequence[Vehicle], time: float) -> bool:
 
     for sign in (-1.0, 1.0):
         a, b = (
-            _carried(v, v.after if sign > 0 and v.after else v.before, sign * time)
+            _move_vehicle(v, v.after if sign > 0 and v.after else v.before, sign * time)
             for v in vehicles
         )
         if not (beyond(a, b) or beyond(b, a)):
@@ -164,7 +166,7 @@ def configurations() -> Drawing:
 
 
 def _tail(vehicle: Vehicle, shapes: Plan, arrow: float) -> complex:
-    """Where the arrow of a vehicle's velocity starts; the fastest one's is ``arrow`` long."""
+    """Return the start of the arrow of a vehicle's velocity, the longest of ``arrow``."""
     fastest = max(other.before.speed for other in shapes.vehicles)
     return vehicle.center - arrow / fastest * vehicle.before.velocity
 

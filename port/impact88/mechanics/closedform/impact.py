@@ -87,12 +87,12 @@ def impact(
 
     s, c = table.sine_and_cosine(GA)
 
-    def turned(x: Expression, y: Expression) -> tuple[Expression, Expression]:
-        """From along x and y to along n and t."""
+    def to_contact_axes(x: Expression, y: Expression) -> tuple[Expression, Expression]:
+        """Return the components along n and t of a vector along x and y."""
         return c * x + s * y, c * y - s * x
 
-    def turned_back(n: Expression, t: Expression) -> tuple[Expression, Expression]:
-        """From along n and t to along x and y."""
+    def to_fixed_axes(n: Expression, t: Expression) -> tuple[Expression, Expression]:
+        """Return the components along x and y of a vector along n and t."""
         return c * n - s * t, s * n + c * t
 
     def arms(distance: Expression, angle: Expression) -> Sequence[Expression]:
@@ -116,12 +116,12 @@ def impact(
     # point; the parts of A's and B's spin in the mean
 
     dx, dy = UX - VX, UY - VY
-    cn, ct = turned(dx, dy)
+    cn, ct = to_contact_axes(dx, dy)
     gn, gt, gw = cn + an * WA + bn * WB, ct + at * WA + bt * WB, WA - WB
     of_a, of_b = weight_a * WA, (ia * Ired) * WB
     mean = of_a + of_b
 
-    def crossed(a: Expression, b: Expression) -> Expression:
+    def cross_with_spins(a: Expression, b: Expression) -> Expression:
         """Ired X = Ired (b omega_a/Ib - a omega_b/Ia) of arms a and b in one direction."""
         return b * of_a - a * of_b
 
@@ -153,7 +153,7 @@ def impact(
     def friction() -> list[Expression]:
         w = E * gn + cn
         a, b = an + mu * at, bn + mu * bt
-        em_kappa, J_sigma, X = EM * kn, J * (a + b), crossed(a, b)
+        em_kappa, J_sigma, X = EM * kn, J * (a + b), cross_with_spins(a, b)
         twist = Ired * (a * ia - b * ib)
         determinant = z * (R + J_sigma * sn) - twist * em_kappa
         Pn = (em_kappa * turn - z * (w + sn * mean)) / determinant
@@ -186,7 +186,7 @@ def impact(
     rebound = E * (c * (dx + ax * WA + bx * WB) + s * (dy + ay * WA + by * WB))
     rx, ry = c * rebound, s * rebound
     wx, wy = dx + rx, dy + ry
-    Xx, Xy = crossed(ax, bx), crossed(ay, by)
+    Xx, Xy = cross_with_spins(ax, bx), cross_with_spins(ay, by)
     # a x b = Ired kappa x sigma, without the difference of products whose digits are lost in kappa
     # already; times (Ia + Ib) and times J/R
     cross, R_inverse = ax * by - ay * bx, 1.0 / R
@@ -205,10 +205,10 @@ def impact(
     y = EM * (turn_R * ky - lever * Xx - tx * k_across) - masses * (ry + sy * mean)
     x, y = x + sy * along, y - sx * along
     RPx, RPy = x - masses * dx, y - masses * dy
-    critical_denominator, critical_numerator = turned(RPx, RPy)
+    critical_denominator, critical_numerator = to_contact_axes(RPx, RPy)
     divisor = R * pivot_determinant
     pivot_x, pivot_y = RPx / divisor, RPy / divisor
-    pivot_n, pivot_t = turned(pivot_x, pivot_y)
+    pivot_n, pivot_t = to_contact_axes(pivot_x, pivot_y)
 
     def no_slip() -> list[Expression]:
         """In `friction`'s order."""
@@ -238,10 +238,19 @@ def impact(
         straight = R + J * (sx * sx + sy * sy)
         condition = absolute(z) * straight + absolute(EM) * twisting
         return [
-            *(pivot_determinant, pivot_n, pivot_t, pivot_x, pivot_y),
+            pivot_determinant,
+            pivot_n,
+            pivot_t,
+            pivot_x,
+            pivot_y,
             unless_point(moment / pivot_determinant),
-            *(spin_a / pivot_determinant, spin_b / pivot_determinant),
-            *(*velocities[::2], *velocities[1::2], zero, table.constant(PIVOT), zero),
+            spin_a / pivot_determinant,
+            spin_b / pivot_determinant,
+            *velocities[::2],
+            *velocities[1::2],
+            zero,
+            table.constant(PIVOT),
+            zero,
             condition,
         ]
 
@@ -262,7 +271,7 @@ def impact(
     # The contact points part by the rebound along n and the slip along t. Where the terms of the
     # one are smaller, with those of the slip, the other is found from it: of the terms of a car
     # that stops at a barrier, or of a long arm that hits, little is left.
-    part_x, part_y = turned_back(-(E * gn), slip)
+    part_x, part_y = to_fixed_axes(-(E * gn), slip)
     slipping = absolute(ct) + absolute(gt) + absolute(R * PT)
     if not isinstance(pivot, bool):
         slipping = table.choose(pivot, zero, slipping)
@@ -276,8 +285,11 @@ def impact(
         parting: Expression,
         along_t: Expression,
     ) -> tuple[Expression, Expression]:
-        """Of A and B, along x or y: of both centers' velocities and of what their spins add;
-        ``along_t``: a unit vector's component."""
+        """Return the contact points' velocities of A and B along x or y.
+
+        ``before`` and ``after``: the centers' velocities; ``turned``: what the spins add;
+        ``parting``: the relative velocity after; ``along_t``: t's component.
+        """
         terms = [absolute(x) + absolute(y) for x, y in zip(before, after, strict=True)]
         terms_a, terms_b = (x + absolute(y) for x, y in zip(terms, turned, strict=True))
         a, b = (x + y for x, y in zip(after, turned, strict=True))
@@ -333,7 +345,8 @@ def impact(
         return own * table.root(inverse_mass)
 
     def change_size(inverse_mass: Expression) -> Expression:
-        """Of a center's velocity, by operations that every machine rounds alike."""
+        """Return the size of a center's velocity change, by operations that every machine rounds
+        alike."""
         x, y = inverse_mass * Px, inverse_mass * Py
         return table.root(x * x + y * y)
 
@@ -376,16 +389,42 @@ def impact(
         repeated = needs_full_kernel(determinant, absolute_sum, lost, KI)
         bits.append(repeated * float(UNDECIDED))
     return {
-        **{"gn": gn, "gt": gt, "determinant": determinant, "PN": PN, "PT": PT, "PM": PM},
-        **{"critical_denominator": critical_denominator, "VC": -gn, "VS": E * -gn},
-        **{"VAX": VAX, "VAY": VAY, "VBX": VBX, "VBY": VBY, "WAF": WAF, "WBF": WBF},
+        "gn": gn,
+        "gt": gt,
+        "determinant": determinant,
+        "PN": PN,
+        "PT": PT,
+        "PM": PM,
+        "critical_denominator": critical_denominator,
+        "VC": -gn,
+        "VS": E * -gn,
+        "VAX": VAX,
+        "VAY": VAY,
+        "VBX": VBX,
+        "VBY": VBY,
+        "WAF": WAF,
+        "WBF": WBF,
         # lines 340, 700 and 710
-        **{"XA": UX + D3 * WA, "YA": UY - D4 * WA, "XB": VX - D1 * WB, "YB": VY + D2 * WB},
-        **{"XAF": XAF, "YAF": YAF, "XBF": XBF, "YBF": YBF},
-        **{"KI": KI, "KF": KF, "LOSS": (50.0 * all_lost) / KI, "COND": COND, "MUP": MUP},
-        **{"MUC": critical_numerator / critical_denominator},
-        **{"ELN": -0.5 * crushed, "ELT": -0.5 * rubbed, "ELM": -0.5 * twisted},
-        **{"EESA": equivalent_speed(ma, MB), "EESB": equivalent_speed(mb, MA)},
-        **{"DVA": change_size(ma), "DVB": change_size(mb)},
+        "XA": UX + D3 * WA,
+        "YA": UY - D4 * WA,
+        "XB": VX - D1 * WB,
+        "YB": VY + D2 * WB,
+        "XAF": XAF,
+        "YAF": YAF,
+        "XBF": XBF,
+        "YBF": YBF,
+        "KI": KI,
+        "KF": KF,
+        "LOSS": (50.0 * all_lost) / KI,
+        "COND": COND,
+        "MUP": MUP,
+        "MUC": critical_numerator / critical_denominator,
+        "ELN": -0.5 * crushed,
+        "ELT": -0.5 * rubbed,
+        "ELM": -0.5 * twisted,
+        "EESA": equivalent_speed(ma, MB),
+        "EESB": equivalent_speed(mb, MA),
+        "DVA": change_size(ma),
+        "DVB": change_size(mb),
         "STATUS": sum(bits[1:], bits[0]),
     }
