@@ -18,6 +18,7 @@ from impact88.errors import UserError
 from impact88.mechanics.closedform.solve import solve
 from impact88.mechanics.state import State
 from impact88.program.scene import Scene, sample
+from impact88.reconstruction import adjustment
 from impact88.reconstruction.adjustment import reconstruct, refine, solve_gauss_newton
 from impact88.reconstruction.reconstructed import draws, ranges
 from impact88.reconstruction.reconstructedtable import Measured
@@ -654,6 +655,20 @@ class TestOneList:
         assert not solution.assumed
         assert solution.values["WA"] == pytest.approx(0.148654)
         assert solution.values["MUP"] == -0.571402
+
+    def test_each_sign_is_searched_once_where_only_a_fit_exists(self, monkeypatch):
+        searches = []
+
+        class CountedSearch(adjustment._Search):
+            def __init__(self, *args):
+                searches.append(self)
+                super().__init__(*args)
+
+        monkeypatch.setattr(adjustment, "_Search", CountedSearch)
+        collision = collisions()[0]
+        (solution,) = reconstruct({**collision.scene, **collision.measured, "MU": 0.5})
+        assert solution.assumed
+        assert [search.system.nominal["MUP"] for search in searches] == [0.5, -0.5]
 
     @pytest.mark.parametrize("course", [0.0, read("0 +- 3", "HA")])
     def test_the_only_impact_against_a_course_is_named(self, course):

@@ -788,15 +788,19 @@ def reconstruct(
     solutions: list[Reconstruction] = []
     failure: UserError | None = None
     searches: list[_Search] = []
-    # values that are contradictory for one sign of MU may agree for the other
+    for reading in readings:
+        try:
+            searches.append(_Search(reading, progress))
+        except UserError as error:
+            failure = error
+    # values that are contradictory for one sign of MU may agree for the other: fits are sought last
     for is_fit in (False, True):
-        for reading in readings:
+        for search in [item for item in searches if item.assumed == is_fit]:
             try:
-                search = _Search(reading, progress)
-                solutions += search.run() if search.assumed == is_fit else []
-                searches.append(search)
+                solutions += search.run()
             except UserError as error:
                 failure = error
+                searches.remove(search)
         agreeing = [s for s in solutions if mu is None or _agrees(s, mu.nominal)]
         if agreeing:
             return _sort_solutions(agreeing, searches, mu)
