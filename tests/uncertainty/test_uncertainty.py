@@ -482,7 +482,7 @@ class TestRefusals:
         ("changes", "options", "says"),
         [
             ({"M": read("4 .. 6", "M")}, {}, "M: expected 6"),
-            ({"MU": read("-12 .. 1", "MU")}, {}, "MU: a range must keep off -10"),
+            ({"MU": read("-12 .. 1", "MU")}, {}, "MU: a range must not include -10"),
             ({"XX": fixed_value(1)}, {}, "'XX' is not a value"),
             ({}, {"outputs": ["FOO"]}, "'FOO' is not a result"),
             ({}, {"outputs": []}, "no result is asked for"),

@@ -53,16 +53,16 @@ Floats = NDArray[np.float64]
 Progress = Callable[[int], object]
 
 # The search for every impact
-BATCH_SIZE = 240  # random starts
+BATCH_SIZE = 240  # random starts in a batch of the search for exact impacts
 MAX_IDLE_BATCHES = 4  # without a new impact; the rarest of 80 problems are found once in 200 starts
 MAX_BATCHES = 16
-FIT_BATCH_SIZE = 120  # random starts where exact values contradict and a fit is sought
+FIT_BATCH_SIZE = 120  # random starts in a batch of the search for fits
 MAX_OMITTED_SETS = 8  # sets of redundant measurements left out to find starts of a fit
 RESTART_SPREAD = 0.3  # relative spread of starts around impacts already found
 DISTINCT_TOL = 1e-6  # impacts whose scaled variables differ by less are the same
 CONTINUATION_STARTS = 4  # starts from which tolerances are tightened step by step
-# ... where nothing is found from these, or not all is determined. Twice as many find the same in
-# 75 problems.
+# Starts in all, the first ones included, where those find nothing or leave something undetermined.
+# Twice as many find the same in 75 problems.
 MORE_CONTINUATION_STARTS = 12
 MAX_OPEN_ENDS = 8  # end points polished where something is undetermined
 
@@ -70,10 +70,10 @@ MAX_OPEN_ENDS = 8  # end points polished where something is undetermined
 MAX_ITERATIONS = 50  # Gauss-Newton and Newton; Levenberg-Marquardt takes twice as many
 MAX_STEP = 2.0  # relative step length
 XTOL = 1e-14  # relative step at convergence
-TOLERANCE_FACTOR = 0.1  # tolerances are tightened by this factor at a time ...
-MIN_TOLERANCE = 1e-12  # ... down to this, in scaled variables
+TOLERANCE_FACTOR = 0.1  # tolerances are tightened by this factor at a time
+MIN_TOLERANCE = 1e-12  # tightest tolerance, in scaled variables
 COARSE_FTOL = 0.1  # least relative decrease of the sum of squares while tolerances are tightened
-FTOL = 1e-9  # and at last
+FTOL = 1e-9  # least relative decrease of the sum of squares once tolerances are tightest
 CONSTRAINT_WEIGHT = 100.0  # penalty weight of conditions relative to the tightest observation
 CANDIDATE_TOL = 1e-3  # largest scaled residual of conditions where Newton's method is started
 RESIDUAL_TOL = 1e-10  # largest scaled residual of conditions that hold
@@ -231,7 +231,10 @@ def refine(system: System, x: Floats) -> tuple[Floats, float]:
         if not step_size < MAX_POLISH_SHIFT * point_size:
             return x, np.inf
         x = x + step[:, None]
-        if step_size < XTOL * point_size or 1e-9 * point_size > step_size > 0.5 * previous_size:
+        # a tiny step that is more than half of the one before is rounding: Newton's method would
+        # have shrunk it by far more
+        is_rounding = 1e-9 * point_size > step_size > 0.5 * previous_size
+        if step_size < XTOL * point_size or is_rounding:
             break
         previous_size = step_size
     else:
@@ -472,7 +475,7 @@ NOT_SEARCHED = Searched()
 
 
 SHOWN = ("SA", "SB", "DVA", "DVB", "LOSS")
-"""Results that a reconstruction is told by in a session."""
+"""Results shown in the repr of a `Reconstruction`."""
 
 
 @dataclass(frozen=True)
@@ -564,7 +567,18 @@ class Reconstruction:
 
     @cached_property
     def folded(self) -> tuple[str, ...]:
-        """Quantities without a first-order limit, where two branches of impacts nearly meet."""
+        """Quantities whose first-order deviations mean nothing, as two branches of impacts nearly
+        meet there.
+
+        The Jacobian then has weak directions w, of singular values near 0, along which the
+        residuals r change only to second order. With a distance h, x + h w and x - h w give
+
+            even = r(x + h w) + r(x - h w) - 2 r(x),    about h^2 w^T r'' w,
+            odd  = r(x + h w) - r(x - h w),             about 2 h r' w.
+
+        A direction with even > odd is a fold. With odd > even the residuals change to first order:
+        the direction is only poorly determined. Quantities are named whose gradient has a part
+        along a fold."""
         rows = self.system.jacobian(self.x)
         sizes = np.abs(rows).max(axis=1, initial=0.0)
         rows = rows[sizes > 0] / sizes[sizes > 0, None]
@@ -574,7 +588,6 @@ class Reconstruction:
         weak = vt[(singular > FOLD_TOL * singular[0]).sum() :].T
         if not weak.shape[1]:
             return ()
-        # at a fold residuals change alike to both sides; along a weak direction they do not
         ahead, center, behind = (
             self.system.residuals(self.system.state(self.x + side * weak))
             for side in (FOLD_OFFSET, 0, -FOLD_OFFSET)
@@ -809,7 +822,7 @@ def reconstruct(
         return _sort_solutions(fits, searches, None)
     raise failure or UnsolvableError(
         "neither sign of MU agrees with the sliding it leads to (line 400): no friction that "
-        "opposes the sliding joins what is known"
+        "opposes the sliding is consistent with the known values"
     )
 
 
@@ -849,10 +862,15 @@ def _sort_solutions(
     # a solution that contradicts the measurements, such as standstill, is dropped if others agree
     agreeing = [s for s in forward_solutions if not s.evidence.contradictory] or forward_solutions
     possible = [s for s in agreeing if not s.impossible]
+    # A possible impact is compared with the possible ones only: an impossible one that fits better
+    # must not displace it. An impossible one has to compete with all.
+    least_possible = min((s.squares for s in possible), default=0.0)
+    least_of_all = min((s.squares for s in agreeing), default=0.0)
     likely = []
-    for group in (possible, [s for s in agreeing if s.impossible]):
-        least = min((s.squares for s in (group if group is possible else agreeing)), default=0.0)
-        likely += [s for s in group if s.squares <= max(MAX_SQUARES_RATIO * least, 1e-9)]
+    for solution in [*possible, *(s for s in agreeing if s.impossible)]:
+        least = least_of_all if solution.impossible else least_possible
+        if solution.squares <= max(MAX_SQUARES_RATIO * least, 1e-9):
+            likely.append(solution)
 
     def order(solution: Reconstruction) -> tuple[float, ...]:
         squares = float(f"{max(solution.squares, 1e-9):.6e}")
@@ -1083,8 +1101,8 @@ class _Search:
             raise np.linalg.LinAlgError("not finite")
         if has_candidates and not (self.solutions or self.open_solutions):
             raise UnsolvableError(
-                "the search for the impact nearest to what is known came to no end; expected wider "
-                "tolerances, or fewer values"
+                "the search for the impact nearest to the known values did not converge; expected "
+                "wider tolerances, or fewer values"
             )
         if not (self.solutions or self.open_solutions):
             known = self.system.known
@@ -1190,7 +1208,12 @@ def _describe(system: System, x: Floats, assumed: bool) -> Reconstruction:
     """Return the solution at ``x``: every quantity that is determined there, and the adjustments.
 
     A quantity is undetermined where its gradient has a component in the null space of the
-    Jacobian."""
+    Jacobian, unless the impact is isolated (`_is_fold`). Two kinds need more than their gradient:
+
+    - A course does not change with the speed along it, so that its gradient may be zero; where a
+      component of the velocity is undetermined, the vehicle could also drive the other way, 180°
+      off.
+    - The direction of the impulse is undetermined where P_n is."""
     state, rows = system.state(x), system.jacobian(x)
     adjustments = system.residuals(state)[len(system.conditions) :, 0]
     _, null = pseudo_inverse(rows)
@@ -1206,12 +1229,12 @@ def _describe(system: System, x: Floats, assumed: bool) -> Reconstruction:
             continue
         is_known = name in COEFFICIENTS and name in system.known
         if name == "MUP" and "MUC" in system.constants:
-            is_known = False  # a fraction of this impact's own critical friction
+            # MUP is then known as a fraction of MUC only, which differs from impact to impact
+            is_known = False
         amount = to_float(state.values[name] if is_known else state[name])
         largest = np.abs(gradient).max(initial=0.0)
         is_open = not is_fold and np.abs(gradient @ null).max(initial=0.0) > NULL_TOL * largest
         if name in COURSES and name not in system.known:
-            # along an axis a course does not change with the speed, until it turns round
             is_open |= bool({*undetermined} & {*SPEEDS[COURSES[name]]})
         if name in FORCES and name not in system.known:
             is_open |= "PN" not in values
@@ -1276,7 +1299,9 @@ def resolve_friction(known: Mapping[str, Uncertain]) -> tuple[dict[str, Uncertai
     if item.varies:
         spread = abs(item.deviation * scale)
         friction = replace(item, nominal=value, low=low, high=high, deviation=spread, share=False)
-    if varies and scale:  # a condition of each impact: Equation 16 with its own critical friction
+    # Where anything varies, so does MUC: each impact then has the condition P_t = fraction MUC P_n,
+    # with its own MUC. ``critical`` is the nominal one, to turn ``friction`` into the fraction.
+    if varies and scale:
         friction = replace(friction, critical=scale)
     return {**other_values, name: friction}, text
 

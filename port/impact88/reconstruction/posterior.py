@@ -37,37 +37,46 @@ Progress = Callable[[int], object]
 
 # The sampler
 PARTICLES = 8000
-PROPOSAL_FACTOR = 12  # times as many at first, so that thin parts of the distribution are found
-MOVES_PER_STAGE = 8
+PROPOSAL_FACTOR = 12  # proposals per particle, so that thin parts of the distribution are found
+MOVES_PER_STAGE = 8  # moves of every particle after each hardening of the limits
 # Moves before the first draws are taken. With 24, the rarer of two branches is 5 % too rare.
 BURN_IN_MOVES = 60
 THINNING = 6  # moves between one set of draws and the next
-MAX_STAGES = 80  # of hardening limits; if these do not do, no impact lies within them
+MAX_STAGES = 80  # hardenings of the limits; if these do not suffice, no impact lies within limits
 MIN_EFFECTIVE = 0.5  # fraction of particles that stay effective from stage to stage
 MAX_HARDNESS = 40.0  # logarithm of the hardness where limits count as hard
-JUMP_PROBABILITY = 0.1  # of a step by a full difference of two particles, to another branch
+# Probability of a step by the full difference of two particles, which leads to another branch
+JUMP_PROBABILITY = 0.1
 _GRID = 1e-7  # grid of coordinates, relative to the spread of the proposals
 _CHUNK = 1 << 13  # impacts at a time, bounds the memory
 
 # The proposals: Student's t about every impact found
 PROPOSAL_WIDTH = 3.0  # relative to first-order standard deviations
 DEGREES_OF_FREEDOM = 4.0
-BROAD_WIDTH = 1.5  # of the broad proposals that find what else there is, in the largest known speed
+BROAD_WIDTH = (
+    1.5  # width of the broad proposals, which find other branches, in largest known speeds
+)
 BROAD_FRACTION = 0.4  # fraction of particles drawn from these
 
 # Limits
 SIGMAS = 3.0  # cut-off of unbounded normal values in standard deviations, for draws and bounds
-MAX_VELOCITY = 20.0  # of velocities before the impact, in the largest known speed
-MAX_COEFFICIENT = 20.0  # of unknown coefficients, either sign
+# The flat prior ends at these two limits, or the distribution could not be normalized where the
+# known values leave something open. There results depend on them.
+MAX_VELOCITY = 20.0  # largest velocity before the impact, in largest known speeds
+MAX_COEFFICIENT = 20.0  # largest magnitude of an unknown coefficient
 LIMIT_TOL = 1e-9  # a value beyond a limit by less, in half-widths, is at it
-BEYOND_DRAWS = 2.0  # bounds are searched for this far beyond the draws, in their ranges
+BEYOND_DRAWS = 2.0  # bounds are searched for up to this many ranges of the draws beyond them
 STANDSTILL_STEPS = 25  # Newton steps to a speed of 0
 STANDSTILL_TOL = 1e-9  # relative to a typical speed
 
 # Rank decisions
 RANK_TOL = 1e-10  # singular values below, relative to the largest, count as zero
-DETERMINED_TOL = 1e-9  # least ratio of singular values where everything is determined
-MAX_NEIGHBOURS = 12  # points tried, nearer and nearer to the solution, to decide that
+# Least ratio of the smallest singular value to the largest, of a Jacobian with columns of length 1,
+# where everything is determined
+DETERMINED_TOL = 1e-9
+# Points tried for this test, each at half the distance from the solution, until the quadratic
+# condition has a solution
+MAX_NEIGHBOURS = 12
 
 # Quantities one of which may be an exact condition: along a line its equation is quadratic
 QUADRATIC = (*SPEEDS, "DVA", "DVB", *ENERGIES)

@@ -1,4 +1,4 @@
-"""Draws and bounds of a reconstruction: its uncertainty beyond the first order.
+"""Uncertainty of a reconstruction beyond the first order: random draws and bounds.
 
 As many of the values with limits as determine the impact are coordinates, the tightest first: each
 point of the box that their limits span is an impact, solved by the chord method with the inverse
@@ -37,15 +37,15 @@ Progress = Callable[[int], object]
 # its range, unless noted, and draws change only where their density is improper.
 NORMAL_CUTOFF = 6.0  # where all values are taken as normal, in standard deviations
 CHUNK = 1 << 14  # draws at a time, bounds the memory
-MAX_CHORD_ITERATIONS = 8  # with twice as many no further draw is solved
-MAX_NEWTON_ITERATIONS = 12  # nor with twice these
+MAX_CHORD_ITERATIONS = 8  # twice as many solve no further draw
+MAX_NEWTON_ITERATIONS = 12  # twice as many solve no further draw
 RESIDUAL_TOL = 1e-11  # scaled residual of conditions that hold
 BOX_POINTS = 1024  # random points of the box, half of them on faces
 FEASIBILITY_SEARCHES = 48  # points from which a feasible one is searched for
 STARTS = 4  # searches for each extreme, each from the best of a part of all points
-MIN_GAIN = 1e-7  # of a quantity's range: a search stops below
+MIN_GAIN = 1e-7  # a search stops at a gain below this fraction of the quantity's range
 STANDSTILL_STARTS = 16  # slowest draws, from which a standstill is searched for
-LEVEL_DRAWS = 2000  # points spread evenly over all impacts within limits
+LEVEL_DRAWS = 2000  # points spread evenly over all impacts within limits, to search bounds from
 SINGULAR_TOL = 1e-12  # singular values below, relative to the largest, count as zero
 
 # Markov chains

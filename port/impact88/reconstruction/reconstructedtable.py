@@ -190,7 +190,7 @@ class Measured(Impact):
         if solution.against_sign:
             lines.append(
                 "neither sign of MU is the one that line 400 gives it: no friction that opposes "
-                "the sliding before the impact joins what is known"
+                "the sliding before the impact is consistent with the known values"
             )
         if solution.assumed:
             unit = f" {units.label('length')}" if not units.is_bare else ""

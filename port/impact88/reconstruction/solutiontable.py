@@ -33,7 +33,7 @@ _WIDTH = 100
 # A value smaller than this fraction of the largest of its unit is rounding, and printed as 0. Twice
 # as much prints the same for 100 solutions.
 NOISE = 1e-9
-ROUNDING = 1e-13  # the same for programs (JSON)
+ROUNDING = 1e-13  # fraction below which a value is rounding, and 0, in JSON
 _COEFFICIENT_NOISE = 1e-13  # a coefficient below is rounding
 _ROWS = (
     ("x", "length/time", ("UX", "VAX", "VX", "VBX")),

@@ -78,7 +78,7 @@ def bounds(
     outputs : sequence of str, or str, optional
         Result names; for a reconstruction also UX ... WB, SA and SB (speeds). All by default.
     problem : str, default "forward"
-        The problem: "forward", or a reconstruction.
+        ``"forward"`` or ``"reconstruction"``.
     samples : int, default 100000
         Random draws.
     seed : int, default 0
@@ -90,8 +90,8 @@ def bounds(
     quantiles : sequence of float, optional
         Quantiles of the draws.
     exclude : sequence of str, optional
-        Warnings (names of `WARNINGS`) whose scenes are left out of bounds and draws alike, sweeps
-        excepted.
+        Warnings (names of `WARNINGS`) whose scenes are left out of the bounds and draws, but not of
+        the sweeps.
     keep_draws : bool, default False
         Keep the draws.
     progress : callable, optional
@@ -256,7 +256,7 @@ class _Box:
         self.limits = {name: item.limits(sigmas) for name, item in self.inputs.items()}
         for name, (low, high) in self.limits.items():
             if not high - low < float("inf"):
-                raise UserError("its limits are too far apart for double precision", name)
+                raise UserError("the range is too wide for double precision", name)
         self.forward = problem == "forward"
         self.model = forward_model if self.forward else reconstruction_model
         check_names(exclude, WARNINGS, "warning")
@@ -290,9 +290,9 @@ class _Box:
             return self.piece(None).extremes(count, rng)
         slip = Piece(lambda points: self.slip(points)[:, None], 1).extremes(count, rng)
         (lowest, highest), pieces = slip.bound[:, 0], []
-        for sign in (1.0, -1.0):
-            # kept where gt <= 0, changed where gt > 0
-            if lowest <= 0 if sign > 0 else highest > 0:
+        # line 400 keeps MU's sign where gt <= 0 and changes it where gt > 0
+        for sign, is_reached in ((1.0, lowest <= 0), (-1.0, highest > 0)):
+            if is_reached:
                 pieces.append(self.piece(sign).extremes(count, rng, slip.at[:, 0]))
         extremes = merge(pieces)
         return extremes._replace(evaluations=extremes.evaluations + slip.evaluations)
@@ -300,7 +300,9 @@ class _Box:
     def piece(self, sign: float | None) -> Piece:
         """Return the outputs as a `Piece` with MU's sign kept (+1) or changed (-1) throughout,
         limited to where line 400 does that. None: everywhere, with the sign that each scene
-        gives."""
+        gives.
+
+        The outputs are followed by the model's denominators, where the outputs may have poles."""
         names = (*self.outputs, "STATUS") if self.excluded else self.outputs
 
         def values(points: Array) -> Array:
@@ -318,7 +320,9 @@ class _Box:
             return np.stack(all_columns, axis=1)
 
         def margin(points: Array) -> Array:
-            slip = self.slip(points)  # at gt = 0 the sign is kept
+            # A point belongs to the piece where the margin is >= 0. At gt = 0 the sign is kept:
+            # less the smallest subnormal number, only gt > 0 counts as changed.
+            slip = self.slip(points)
             return slip - math.ulp(0.0) if sign == -1.0 else -slip
 
         return Piece(values, len(self.outputs), None if sign is None else margin)
@@ -371,7 +375,7 @@ def _check_values(values: Mapping[str, Uncertain], problem: str) -> None:
     name = "MU" if problem == "forward" else "MUP"
     friction = values[name]
     if friction.varies and friction.low <= -10 <= friction.high and friction.kind != "normal":
-        raise UserError("a range must keep off -10, the pivot's sign", name)
+        raise UserError("a range must not include -10, the code for the pivot", name)
     if problem != "forward":
         _check_invertible(values)
 
@@ -389,8 +393,8 @@ def _check_invertible(values: Mapping[str, Uncertain]) -> None:
             continue
         if values[name].low <= 0 <= values[name].high and values[name].kind != "normal":
             raise UserError(
-                f"there is no reconstruction at {name} = 0, and near it the bounds are endless; "
-                "expected a range that keeps off 0",
+                f"there is no reconstruction at {name} = 0, and near it the bounds become infinite; "
+                "expected a range that does not include 0",
                 name,
             )
 
