@@ -53,9 +53,8 @@ _CHUNK = 1 << 13  # impacts at a time, bounds the memory
 # The proposals: Student's t about every impact found
 PROPOSAL_WIDTH = 3.0  # relative to first-order standard deviations
 DEGREES_OF_FREEDOM = 4.0
-BROAD_WIDTH = (
-    1.5  # width of the broad proposals, which find other branches, in largest known speeds
-)
+# Width of the broad proposals, which find other branches, in largest known speeds
+BROAD_WIDTH = 1.5
 BROAD_FRACTION = 0.4  # fraction of particles drawn from these
 
 # Limits

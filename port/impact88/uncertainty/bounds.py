@@ -393,8 +393,8 @@ def _check_invertible(values: Mapping[str, Uncertain]) -> None:
             continue
         if values[name].low <= 0 <= values[name].high and values[name].kind != "normal":
             raise UserError(
-                f"there is no reconstruction at {name} = 0, and near it the bounds become infinite; "
-                "expected a range that does not include 0",
+                f"there is no reconstruction at {name} = 0, and near it the bounds become "
+                "infinite; expected a range that does not include 0",
                 name,
             )
 
