@@ -31,11 +31,11 @@ from impact88.verification.scan.grid import _distinct
 from impact88.verification.scan.holding import (
     FOREIGN,
     KIND,
-    MOST_MISREAD,
-    MOST_SPECKS,
+    MAX_MISREAD_COST,
+    MAX_SPECKS,
     Cell,
-    Judged,
-    judge,
+    CellJudgement,
+    judge_cells,
     state,
 )
 from impact88.verification.scan.layout import Place, Sheet
@@ -249,7 +249,7 @@ def test_a_picture_larger_than_is_read_has_its_boxes_in_the_pixels_of_its_file(m
 @pytest.mark.parametrize("beside", [Verdict.IDENTICAL, Verdict.INCOMPLETE])
 def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, beside):
     """Printouts on a page share their mean characters, and one misplaced spoils them for all."""
-    given = iter([Judged(Verdict.DIFFERS), Judged(beside)])
+    given = iter([CellJudgement(Verdict.DIFFERS), CellJudgement(beside)])
     monkeypatch.setattr(
         sheets,
         "read_numbers",
@@ -257,7 +257,7 @@ def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, be
     )
     monkeypatch.setattr(sheets, "scene_of", lambda *given: object())
     monkeypatch.setattr(sheets, "compare_cells", lambda grid, known: [[] for one in known])
-    monkeypatch.setattr(sheets, "judge", lambda *given_: next(given))
+    monkeypatch.setattr(sheets, "judge_cells", lambda *given_: next(given))
     monkeypatch.setattr(sheets, "confirm_inputs", lambda one, *_: one)
     grid = SimpleNamespace(odds=lambda: [np.zeros(8)], clarity=0.9)
     leaves = sheets._leaves(grid, [Sheet(gain=1000.0), Sheet(gain=1000.0)], [])
@@ -347,7 +347,7 @@ def read_again(page: Any) -> Verification:
 def test_a_glyph_of_the_page_in_a_blank_at_a_number_differs(added: str, side: int) -> None:
     """At three numbers at once: each is told by itself. So many points may be specks."""
     page, cells = genuine()
-    names = ("VBY", "KI", "DB")[: MOST_SPECKS if added == "." else 3]
+    names = ("VBY", "KI", "DB")[: MAX_SPECKS if added == "." else 3]
     source = next(cell for cell in cells if cell["predicted"] == added)
     targets = {}
     for name in names:
@@ -647,7 +647,7 @@ def test_a_text_layer_must_agree_and_another_readers_words_decide_nothing(monkey
     wrong = right.text.replace(number, number[:-1] + "1379"[number[-1] == "1"])
     pages = [Page(1, np.full((300, 400), 255, np.uint8)), Page(2, grey, wrong)]
     monkeypatch.setattr(scanned, "pages_of", lambda data, path: pages)
-    (result,) = scanned.verified("page.pdf", b"", right.text)
+    (result,) = scanned.verify_pages("page.pdf", b"", right.text)
     assert result.verdict is Verdict.INCOMPLETE
     assert any("does not agree" in remark and "KI" in remark for remark in result.remarks)
     assert any("page 1" in remark for remark in result.remarks)
@@ -692,14 +692,14 @@ def test_a_page_whose_results_are_underlined_is_read() -> None:
     assert found.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
 
 
-def cell(name: str, *, distance: float, other_distance: float, hand: str = "") -> Cell:
+def cell(name: str, *, distance: float, other_distance: float, digit: str = "") -> Cell:
     """A cell that is clearly not what is predicted, and as far as given from that and another."""
     predicted, other = ("3", "8") if name else ("V", "U")
-    return Cell(Place(0, 0), name, predicted, 2.0, other, distance, other_distance, 5, 5, hand)
+    return Cell(Place(0, 0), name, predicted, 2.0, other, distance, other_distance, 5, 5, digit)
 
 
 @pytest.mark.parametrize(
-    ("other_distance", "hand", "expected"),
+    ("other_distance", "digit", "expected"),
     [
         (FOREIGN - 1, "", "differs"),
         (FOREIGN + 1, "", "doubtful"),  # like nothing: a blot
@@ -707,9 +707,9 @@ def cell(name: str, *, distance: float, other_distance: float, hand: str = "") -
     ],
 )
 def test_a_digit_of_another_hand_differs_and_a_blot_does_not(
-    other_distance: float, hand: str, expected: str
+    other_distance: float, digit: str, expected: str
 ) -> None:
-    assert state(cell("TB", distance=100, other_distance=other_distance, hand=hand)) == expected
+    assert state(cell("TB", distance=100, other_distance=other_distance, digit=digit)) == expected
 
 
 @pytest.mark.parametrize("away", [-1, 1])
@@ -720,7 +720,7 @@ def test_a_digit_like_nothing_on_the_page_settles_nothing(monkeypatch, away: flo
     monkeypatch.setattr(Sheet, "whole", True)
     candidate = Candidate({}, SimpleNamespace(fields={}, ending=None), 0.0)  # type: ignore[arg-type]
     expected = Verdict.INCOMPLETE if away > 0 else Verdict.IDENTICAL
-    assert judge(Sheet(rows={}), candidate, [odd]).verdict is expected
+    assert judge_cells(Sheet(rows={}), candidate, [odd]).verdict is expected
 
 
 @pytest.mark.parametrize("beyond", [-1.0, 1.0])
@@ -729,11 +729,11 @@ def test_a_page_read_otherwise_in_more_places_than_differ_accuses_nobody(
 ) -> None:
     """What the first reading contradicts of the scene, less what the cells that differ explain."""
     monkeypatch.setattr(Sheet, "whole", True)
-    cost = MAX_CELL_COST + MOST_MISREAD + beyond
+    cost = MAX_CELL_COST + MAX_MISREAD_COST + beyond
     candidate = Candidate({}, SimpleNamespace(fields={}, ending=None), cost)  # type: ignore[arg-type]
     differs = cell("TB", distance=100.0, other_distance=FOREIGN - 1)
     expected = Verdict.INCOMPLETE if beyond > 0 else Verdict.DIFFERS
-    assert judge(Sheet(rows={}), candidate, [differs]).verdict is expected
+    assert judge_cells(Sheet(rows={}), candidate, [differs]).verdict is expected
 
 
 def test_another_letter_is_near_to_that_letters_mean() -> None:
@@ -751,7 +751,9 @@ def test_the_rates_count_every_page_that_was_offered() -> None:
     assert f"{genuine[3]} were wrongly said to differ" in said
     assert f"of {altered.sum()} altered pages, {altered[3]} were found to differ" in said
     assert f"{altered[0]} passed as IDENTICAL" in said
-    assert f"up to 1 in {genuine.sum() // 3} such genuine pages" in said
+    assert (
+        f"{genuine.sum()} genuine pages bound the failure rate at 1 in {genuine.sum() // 3}" in said
+    )
     assert "no probability" in said
     assert "drawn by a computer" in said
     assert sum(row[2] for row in table()) == genuine.sum() + altered.sum()

@@ -1,1 +1,4 @@
-"""Reading: a text as labelled numbers, each with the ways it may be read."""
+"""Reading: a text as labelled numbers, each with the ways it may be read.
+
+Entry: `printout` (`read_printouts`).
+"""

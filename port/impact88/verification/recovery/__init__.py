@@ -1,1 +1,4 @@
-"""Recovery: the scene whose page explains the paper at the least cost."""
+"""Recovery: the scene whose page explains the paper at the least cost.
+
+Entry: `recovered` (`recover`).
+"""

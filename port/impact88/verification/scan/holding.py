@@ -1,4 +1,7 @@
-"""A page's cells compared with what the program prints there, and the verdict on the page.
+"""Verdicts on the cells of a page and on each printout: does the page hold what the program prints?
+
+`compare_cells` compares each cell with the character that the program prints there, `state` says
+whether the cell holds it, differs or is doubtful, and `judge_cells` gives the printout's verdict.
 
 The mean glyphs are made under the *predicted* names, each cell left out of its own mean. With d the
 squared distance of a cell from a mean glyph and D that of two means, the cell's margin is
@@ -38,8 +41,8 @@ from .typeface import (
 )
 
 _MIN_STEP = 3.0
-"""Smallest separation of two means in a margin's denominator, in usual distances; doubled, 5
-verdicts of 5 stay."""
+"""Smallest separation of two means in a margin's denominator, in usual distances. Doubling it
+changes none of 5 verdicts."""
 _MIN_NOISE = 0.1
 """Smallest usual distance of a cell from its mean, in units of the root of its energy: that of an
 excellent scan. Pages drawn by a program have 0.01 to 0.04, and there any other typeface is a
@@ -51,10 +54,10 @@ _EVEN = 0.8
 """Strength of ink, 1 for the page's usual, that 99 % of the cells exceed on evenly inked paper:
 0.82 and more on seven pages of which a digit was erased, 0.4 to 0.75 on those that lost some."""
 INKED = 0.35  # margin of a blank cell from which it holds a character
-INKED_SMALL = 0.5  # the same for a point, a comma or a dash, which are as light as specks
+INKED_SMALL = 0.5  # margin from which it holds a point, a comma or a dash, as light as specks
 ERASED = 2.0  # margin from which a sign is not faint but gone; no genuine page exceeds 1
 SPECK = 0.25  # margin of a blank from which a speck is seen in it
-MOST_SPECKS = 2  # on a page on which a mark as small as a point counts as one
+MAX_SPECKS = 2  # specks in a printout, above which a mark as small as a point may be one, too
 FIT = 0.6  # smallest fraction of the ink in a blank that the character explains
 _SMALL = frozenset(".,-:'`*")
 # The next five were chosen on 314 pages that were settled: 160 scans and photographs, and 154 drawn
@@ -66,13 +69,14 @@ DIFFERS = 0.3  # margin of a number's cell from which it is another character
 LABEL = 0.1  # margin of a label's cell below which it holds
 FOREIGN = 20.0  # usual distances from a mean beyond which no cell is of that type
 KIND = 15.0  # usual distances from another letter's mean within which a label's cell is that letter
-MOST_DOUBTFUL = 4
-"""Doubtful cells on a page that is settled; with more it was the reading that went wrong."""
-MOST_DIFFERING = 4
-"""Cells that differ on a page that is accused; with more it was the reading that went wrong."""
-MOST_MISREAD = 2 * MAX_CELL_COST
-"""Largest cost of the first reading against the scene beyond the cells that differ: 240 of 245
-altered pages stay within, three genuine ones that had been accused had 20 to 36."""
+MAX_DOUBTFUL = 4
+"""Most doubtful cells with which a printout can be identical as read. More suggest a misreading."""
+MAX_DIFFERING = 4
+"""Most differing cells with which a printout can differ. More suggest a misreading."""
+MAX_MISREAD_COST = 2 * MAX_CELL_COST
+"""Largest cost of the first reading that the differing cells do not explain, with which a printout
+can differ: 240 of 245 altered pages stay within; three genuine pages, wrongly found to differ
+before this limit, had 20 to 36."""
 _MARKS = frozenset(".,-")
 """Characters of so little ink that a speck, or a faint pin, makes or unmakes them."""
 
@@ -83,7 +87,7 @@ class Added(Enum):
     NOTHING = 0
     CHARACTER = 1
     """In a line, or at its end: it changes a number or a label."""
-    TYPE = 2
+    BESIDE = 2
     """Typed text beside a line, or at a reply."""
     MARK = 3
     """Ink like no character of the page."""
@@ -107,8 +111,9 @@ class Cell:
     distance, other_distance : float
         Squared distances from the two means, 1 for what is usual on this page.
     count, other_count : int
-        Cells of which each mean was made.
-    hand : str
+        Cells of which each mean was made; ``other_count`` is 0 where ``other`` is a digit in
+        another typeface of which this page has no mean.
+    foreign_digit : str
         The digit that the cell is in another known typeface, "" for none. Asked only of cells that
         are far from the predicted mean, or alone with their character.
     cut : bool
@@ -130,7 +135,7 @@ class Cell:
     other_distance: float
     count: int
     other_count: int
-    hand: str = ""
+    foreign_digit: str = ""
     cut: bool = False
     lost: bool = False
     fit: float = 0.0
@@ -145,7 +150,7 @@ def predicted_characters(read: Read, candidate: Candidate) -> Iterator[tuple[str
             printed = candidate.outcome.fields.get(name, "") if name else text
             if name.startswith("REPLY"):
                 printed = reply_of(read, name, candidate.scene)
-            if line in SPACED:  # its gaps are what they are
+            if line in SPACED:  # this line's spacing is not fixed
                 column = row.column(places[0]) if places else column
                 column += read.shift(name, printed) if name else 0
             if not name and not text.strip():
@@ -167,17 +172,18 @@ def _blanks(grid: Grid, sheet: Sheet, inked: set[Place]) -> Iterator[tuple[str, 
 def reply_of(read: Read, name: str, scene: dict[str, str]) -> str:
     """Return what was typed at a prompt to give the scene's velocities.
 
-    Of the ways to write them the one that fits the cells best, in cost plus one for each character
-    more or less than stands there.
+    It is the spelling with the least cost of its characters in the cells, plus 1 for each character
+    that it has more or less than the reply on the page.
     """
     spellings = [_spellings(scene[symbol]) for symbol in REPLIES[name[-1]]]
-    ways = [comma.join(three) for three in product(*spellings) for comma in (",", ", ")]
+    replies = [comma.join(three) for three in product(*spellings) for comma in (",", ", ")]
     length = len(read.costs[name])
-    return min(ways, key=lambda way: read.cost(name, way) + abs(len(way) - length))
+    return min(replies, key=lambda reply: read.cost(name, reply) + abs(len(reply) - length))
 
 
 def _spellings(text: str) -> list[str]:
-    """Return a number as people type it: with or without the 0 before the point, 0s after."""
+    """Return the spellings of a number, ``text`` first: with and without the 0 before the point and
+    zeros at the end."""
     if "E" in text:
         return [text, *_spellings(format(Decimal(text), "f"))]
     sign, digits = ("-", text[1:]) if text.startswith("-") else ("", text)
@@ -185,12 +191,12 @@ def _spellings(text: str) -> list[str]:
     if not point:
         return [text, f"{text}.0"]
     wholes, short = {whole, whole.lstrip("0"), whole or "0"}, part.rstrip("0")
-    ways = {
+    spellings = {
         f"{sign}{w}.{p}" if p else f"{sign}{w or '0'}"
         for w in wholes
         for p in (part, short, f"{short}0")
     }
-    return sorted(ways, key=lambda way: (way != text, way))
+    return sorted(spellings, key=lambda spelling: (spelling != text, spelling))
 
 
 class _Target(NamedTuple):
@@ -330,7 +336,7 @@ def compare_cells(grid: Grid, known: Sequence[tuple[Read, Candidate]]) -> list[l
             other_distance=float(beyond),
             count=measured.counts[measured.own[at]],
             other_count=measured.counts[other] if name == characters[other] else 0,
-            hand=digit,
+            foreign_digit=digit,
             cut=is_cut[at],
             lost=measured.is_uneven and characters[other] == BLANK,
             fit=fit,
@@ -384,7 +390,7 @@ def _measure(sample: Sample, typeface: Typeface, names: NDArray[np.str_]) -> _Di
     relative = to_own / scale
     of_means = relative[is_inked & ~is_alone]
     level = max(float(np.median(of_means)), _MIN_NOISE)
-    # a cell without a mean of its own is taken to be as far from it as a poor one of the page
+    # a cell without a mean of its own is assumed as far from its mean as a poor cell on this page
     to_own[is_alone] = float(np.percentile(of_means, 75)) * scale[is_alone]
     return _Distances(
         characters,
@@ -419,7 +425,14 @@ def _foreign_digits(
 def _find_added(cells: Sequence[Cell]) -> None:
     """Set ``added`` of the blanks of a printout that hold ink.
 
-    Characters within a line, or at its end, are added to it; others are text beside it.
+    A run of blanks with ink like characters of the page is an addition to its line
+    (`Added.CHARACTER`) if all of these hold, otherwise text beside the line (`Added.BESIDE`):
+
+    - it lies between printed characters of its line or next to one;
+    - it has at most `MAX_DIFFERING` cells;
+    - it is more than small marks, or the printout has at most `MAX_SPECKS` specks;
+    - it does not touch a reply, which was typed, not printed;
+    - it does not lie just before a line that begins with a label.
     """
     blanks = [cell for cell in cells if cell.predicted == BLANK and not (cell.name or cell.cut)]
     characters = {cell.place: cell for cell in blanks if _is_typed(cell)}
@@ -434,17 +447,18 @@ def _find_added(cells: Sequence[Cell]) -> None:
         sides = [inked.get(Place(line, side)) for side in (at - 1, at + len(run))]
         names = [side.name for side in sides if side and side.name]
         is_within = bool(columns) and min(columns) < at < max(columns)
-        is_added = (is_within or any(sides)) and len(run) <= MOST_DIFFERING
-        is_small = all(cell.other in _SMALL for cell in run)
-        is_added = is_added and not (is_small and specks > MOST_SPECKS)
-        is_reply = any(name.startswith("REPLY") for name in names)
-        if is_added and not is_reply and (is_within or names or at > min(columns)):
+        touches_line = is_within or any(sides)
+        is_short = len(run) <= MAX_DIFFERING
+        may_be_specks = specks > MAX_SPECKS and all(cell.other in _SMALL for cell in run)
+        touches_reply = any(name.startswith("REPLY") for name in names)
+        is_added = touches_line and is_short and not may_be_specks and not touches_reply
+        if is_added and (is_within or names or at > min(columns)):
             for cell in run:
                 cell.added = Added.CHARACTER
                 cell.name = names[0] if names else ""
         else:
             for cell in run:
-                cell.added = Added.TYPE
+                cell.added = Added.BESIDE
 
 
 def _is_typed(cell: Cell) -> bool:
@@ -466,8 +480,8 @@ def _runs(cells: Mapping[Place, Cell]) -> Iterator[tuple[Place, list[Cell]]]:
 
 
 @dataclass
-class Judged:
-    """A verdict with its reasons.
+class CellJudgement:
+    """Verdict on a printout from its cells, with its reasons.
 
     Attributes
     ----------
@@ -484,7 +498,7 @@ class Judged:
     reason: str = ""
 
 
-def judge(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> Judged:
+def judge_cells(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> CellJudgement:
     """Return the verdict on one printout, from its cells as compared with the scene's page."""
     differing = [cell for cell in cells if state(cell) == "differs"]
     doubtful = [cell for cell in cells if state(cell) == "doubtful"]
@@ -492,23 +506,23 @@ def judge(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> Judged:
     reason = ""
     if not sheet.whole:
         reason = "lines of the printout were not found"
-    elif len(differing) + len(doubtful) > MOST_DIFFERING + MOST_DOUBTFUL:
-        reason = "too little was read for certain"
+    elif len(differing) + len(doubtful) > MAX_DIFFERING + MAX_DOUBTFUL:
+        reason = "too few characters could be read with certainty"
     elif candidate.outcome.ending is not None or spins is not (13 in sheet.rows):
         reason = "the final spins were not found"
     elif differing and all(_is_retyped(cell, [*differing, *doubtful]) for cell in differing):
-        reason = "a reply is typed otherwise than was expected"
+        reason = "a reply was typed differently than expected"
     if reason:
-        return Judged(Verdict.INCOMPLETE, differing, doubtful, reason)
+        return CellJudgement(Verdict.INCOMPLETE, differing, doubtful, reason)
     verdict, only_slight = Verdict.IDENTICAL, all(map(_is_slight, doubtful))
     if differing:
         misread = candidate.cost - MAX_CELL_COST * len(differing)
-        sure = only_slight and len(differing) <= MOST_DIFFERING and misread <= MOST_MISREAD
+        sure = only_slight and len(differing) <= MAX_DIFFERING and misread <= MAX_MISREAD_COST
         verdict = Verdict.DIFFERS if sure else Verdict.INCOMPLETE
     elif doubtful:
-        only_slight = only_slight and len(doubtful) <= MOST_DOUBTFUL
+        only_slight = only_slight and len(doubtful) <= MAX_DOUBTFUL
         verdict = Verdict.IDENTICAL_AS_READ if only_slight else Verdict.INCOMPLETE
-    return Judged(verdict, differing, doubtful)
+    return CellJudgement(verdict, differing, doubtful)
 
 
 def state(cell: Cell) -> str:
@@ -519,7 +533,8 @@ def state(cell: Cell) -> str:
         if cell.added is Added.CHARACTER:
             return "differs"
         return "doubtful" if cell.name and cell.margin > INKED else "holds"
-    if (cell.hand and cell.count < 2) or (cell.lost and cell.margin > HOLDS):
+    # a digit in another typeface is in doubt where no other cell has the predicted character
+    if (cell.foreign_digit and cell.count < 2) or (cell.lost and cell.margin > HOLDS):
         return "doubtful"
     if not cell.name:
         if cell.margin < LABEL:
@@ -533,7 +548,7 @@ def state(cell: Cell) -> str:
     if cell.margin < DIFFERS or (cell.predicted in _MARKS and cell.other in f"{BLANK}.,-"):
         return "doubtful"
     # a blot is like nothing, a digit in another typeface like that of a known one
-    return "differs" if cell.other_distance < FOREIGN or cell.hand else "doubtful"
+    return "differs" if cell.other_distance < FOREIGN or cell.foreign_digit else "doubtful"
 
 
 def _is_retyped(cell: Cell, questioned: Sequence[Cell]) -> bool:
@@ -559,4 +574,7 @@ def _is_slight(cell: Cell) -> bool:
         return True
     if not cell.name or cell.predicted == BLANK or (is_mark and cell.other in _MARKS):
         return cell.margin < 0.5
-    return (is_mark or cell.distance < FOREIGN) and not cell.hand and cell.margin < HOLDS
+    # Digits are left, and marks that may be digits. With a margin below HOLDS, `state` doubts them
+    # because they are beyond an edge of the picture, which is slight, or far from their mean, which
+    # is slight for a mark only.
+    return (is_mark or cell.distance < FOREIGN) and not cell.foreign_digit and cell.margin < HOLDS

@@ -32,7 +32,7 @@ _NEAR = 10  # pixels between parts of one mark
 _MIN_TYPED = 3  # characters of a line of type
 _MIN_ALIKE = 0.5  # fraction of a typed line's cells that are like a character of the page
 _LONG = 0.4  # fraction of the sheet's side from which a thin mark is a straight line
-_TYPED_CELLS = (Added.CHARACTER, Added.TYPE)
+_TYPED_CELLS = (Added.CHARACTER, Added.BESIDE)
 _MAX_MARKS = 40  # listed on a page; more are counted
 
 

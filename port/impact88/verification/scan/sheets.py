@@ -1,4 +1,5 @@
-"""A page's picture, from ink to verdict: the steps of this room in their order."""
+"""A page's picture, from ink to verdict. `read_page` is the entry of this package: it takes the
+steps of the other modules in their order."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -13,7 +14,7 @@ from ..judging.judgement import Verdict
 from ..reading.alignment import MAY_BE_MISSING
 from .claims import claims, is_of_a_printout
 from .grid import FEWEST_POINTS, Grid, grids_of
-from .holding import Added, Cell, Judged, compare_cells, judge, state
+from .holding import Added, Cell, CellJudgement, compare_cells, judge_cells, state
 from .ink import Floats, Image, Points, ink_of, points_of, without_pen
 from .layout import Sheet, sheets_of
 from .residue import Explained, Kind, Mark, Residue, residue_of
@@ -47,7 +48,7 @@ class Leaf:
         The grid that it stands on.
     read : Read
         Its lines and numbers.
-    judged : Judged
+    judged : CellJudgement
         The verdict with its reasons.
     found : Candidate, optional
         The scene that was found.
@@ -59,7 +60,7 @@ class Leaf:
 
     grid: Grid
     read: Read
-    judged: Judged
+    judged: CellJudgement
     found: Candidate | None = None
     cells: list[Cell] = field(default_factory=list)
     marks: list[Mark] = field(default_factory=list)
@@ -251,9 +252,9 @@ def _leaves(
     """Return the printouts of a grid with their verdicts."""
     if sheets and grid.clarity < _MIN_CLARITY:
         likeliest = max(sheets, key=lambda sheet: sheet.gain)
-        unread = Judged(Verdict.INCOMPLETE, reason="its type stands in no clear columns")
+        unread = CellJudgement(Verdict.INCOMPLETE, reason="its type stands in no clear columns")
         return [Leaf(grid, Read(likeliest, {}), unread)]
-    unread = Judged(Verdict.INCOMPLETE, reason="no scene was found")
+    unread = CellJudgement(Verdict.INCOMPLETE, reason="no scene was found")
     leaves = [Leaf(grid, Read(sheet, {}), unread) for sheet in sheets]
     legible = [leaf for leaf in leaves if leaf.read.sheet.gain > _LEGIBLE_GAIN]
     costs = read_numbers(grid, [leaf.read.sheet for leaf in legible])
@@ -276,7 +277,7 @@ def _leaves(
             candidate = leaf.found
             if excess := _division_cost(leaf):
                 candidate = candidate._replace(cost=candidate.cost - excess)
-            leaf.judged = judge(leaf.read.sheet, candidate, leaf.cells)
+            leaf.judged = judge_cells(leaf.read.sheet, candidate, leaf.cells)
     # the printouts of a page share their mean characters: one misplaced spoils them for all
     if any(leaf.judged.verdict is Verdict.INCOMPLETE for leaf in leaves):
         for leaf in leaves:
