@@ -137,7 +137,7 @@ class TestOut:
             ({"VAX": [0.0] * 4}, "out, VAX: is <class 'list'>"),
             ({"VAX": np.empty(8)[::2]}, "not contiguous"),
             ({"VAX": np.empty(33, np.uint8)[1:].view(np.float64)}, "not aligned"),
-            ({"VBX": np.empty(4)}, "is not a result asked for"),
+            ({"VBX": np.empty(4)}, "is not among the requested results"),
         ],
     )
     def test_refused(self, out: Any, says: str) -> None:

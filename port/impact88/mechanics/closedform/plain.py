@@ -184,7 +184,7 @@ def check_output_arrays(
         place = f"out, {name}"
         if name not in wanted:
             raise UserError(
-                f"is not a result asked for; expected some of {' '.join(wanted)}", place
+                f"is not among the requested results; expected some of {' '.join(wanted)}", place
             )
         dtype = _BITS if name == "STATUS" else _FLOATS
         if not isinstance(array, np.ndarray) or array.dtype != dtype or array.shape != shape:

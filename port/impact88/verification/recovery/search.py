@@ -106,7 +106,8 @@ class Expected(NamedTuple):
     default: float
 
     def mismatch(self, values: Floats) -> Floats:
-        """Penalty of each unfloored value: that of the cheapest text which it may be printed as."""
+        """Return the penalty of each value, as computed before the program floors it: that of the
+        cheapest text it may be printed as."""
         costs: Floats = np.full(values.shape, self.default)
         places = FIELDS[self.name].places
         unit = 0.0 if places is None else 10.0**-places
@@ -148,7 +149,7 @@ class Search:
         if best.wrong or best.cost >= 0.05:
             picks = self.find_candidates(columns, MAX_COMBINATIONS)
             best = min([best, *self.replay(columns, picks)], key=_cost)
-        return self._other_bits(best) if best.wrong else best
+        return self._other_spellings(best) if best.wrong else best
 
     def find_candidates(
         self,
@@ -181,6 +182,7 @@ class Search:
         parts = []
         for rank, (pick, penalty) in enumerate(zip(picks, penalties, strict=True), 1):
             affordable = int(np.searchsorted(rest_penalties, max_penalty - penalty, side="right"))
+            # 1 / rank^2 sums to 1.6 at most, so that the total stays near ``max_combinations``
             size = min(affordable, max(2, max_combinations // rank**2))
             part = np.zeros((size, len(columns)), np.intp, "F")
             part[:] = pick
@@ -189,8 +191,8 @@ class Search:
         return self.screen(columns, np.concatenate(parts), count, wrong)
 
     def _kinetic_columns(self, columns: Columns) -> list[int]:
-        """Places of the columns that enter the kinetic energy. The inertia of a vehicle that does
-        not spin does not."""
+        """Return the places of the columns that enter the kinetic energy. The inertia of a vehicle
+        that does not spin does not."""
         first = dict(
             pair
             for column in columns
@@ -202,9 +204,10 @@ class Search:
     def _rank_energies(
         self, columns: Columns, kinetic: Sequence[int], max_combinations: int, max_penalty: float
     ) -> tuple[Picks, Floats]:
-        """Combinations of the columns at ``kinetic``, the first option elsewhere, by how well they
-        explain the printed energy; and the penalty of each, its mismatch included. The most
-        plausible combination stays first, in case the energy itself was misread."""
+        """Return combinations of the columns at ``kinetic``, the first option elsewhere, in the
+        order of how well they explain the printed energy, and the penalty of each, its mismatch
+        included. The most plausible combination stays first, in case the energy itself was
+        misread."""
         some = combinations([columns[place] for place in kinetic], max_combinations, max_penalty)
         picks = np.zeros((len(some), len(columns)), np.intp, "F")
         picks[:, kinetic] = some
@@ -212,12 +215,17 @@ class Search:
         for expected in self.expected:
             if expected.name == "KI":
                 mismatches = expected.mismatch(kinetic_energy(_values(columns, picks)))
-        order = np.argsort(np.append(-1.0, mismatches[1:]), kind="stable")[:MAX_ENERGIES]
+        # `combinations` puts the most plausible one first; -1, below every penalty, keeps it there
+        keys = np.append(-1.0, mismatches[1:])
+        order = np.argsort(keys, kind="stable")[:MAX_ENERGIES]
         return picks[order], (_prior_penalty(columns, picks) + mismatches)[order]
 
     def screen(self, columns: Columns, picks: Picks, count: int, wrong: Names = ()) -> Picks:
-        """Return the ``count`` combinations of least cost in double precision. Very many are
-        thinned out by four results first, those in ``wrong`` before others."""
+        """Return the ``count`` combinations of least cost in double precision.
+
+        There are two passes: more than 4 `MAX_RESCORED` combinations are first reduced to
+        `MAX_RESCORED` by four results only, those in ``wrong`` before others; the rest are then
+        ranked by all results. ``count`` combinations or fewer are returned as they are."""
         key_names = sorted(KEY_RESULTS, key=lambda name: name not in wrong)[:4]
         key_results = [
             result
@@ -273,16 +281,16 @@ class Search:
         return scores
 
     def _typed_mu(self, value: Mapping[str, Floats]) -> Floats:
-        """Return MU as typed, given MU as printed: line 400 turns its sign or leaves it, whichever
-        sign it has."""
+        """Return the MU that was typed, given the printed one: undo the sign change of line 400,
+        where it made one."""
         mu = value["MU"]
         if "MUP" not in self._on_page:
             return mu
         return np.where(in_doubles(value, ["MUP"])["MUP"] == -mu, -mu, mu)
 
-    def _other_bits(self, best: Scored) -> Scored:
-        """Return the best scene over other typed texts of the same printed inputs: zeros that do
-        not print may change a value's last bit (see `typedtext`)."""
+    def _other_spellings(self, best: Scored) -> Scored:
+        """Return the best scene over other spellings of the same printed inputs: typed zeros that
+        do not print may change a value's last bit (see `typedtext`)."""
         columns = []
         for name, typed in best.scene.items():
             printed = best.assumed.get("MUP" if name == "MU" else name, "")
@@ -403,7 +411,7 @@ def kinetic_energy(value: Mapping[str, Floats]) -> Floats:
 
 
 def in_doubles(value: Mapping[str, Floats], names: Sequence[str]) -> dict[str, Floats]:
-    """Return the results that the program prints, unfloored, in double precision.
+    """Return the results that the program prints, in double precision, before it floors them.
 
     With M = 4 the closed form leaves the spins out of both energies; the listing counts the initial
     ones (line 320) and, having no final ones, none after (lines 580, 590)."""
