@@ -15,9 +15,9 @@ _PRINTOUTS = "printouts"
 _COLLISIONS = "collisions"
 _PROGRAMS = "programs"
 _APPLE = "the Apple"
-_PAGE = "the page"
+_BROWSER = "browser"
 _CHAPTER = "the chapter"  # its commands follow ``impact88 chapter``
-_BELOW = ""  # below a line, at the end of the page
+_OTHER = "other"
 
 # in the order of the help: the rows of a group stand together
 ROWS = (
@@ -29,20 +29,20 @@ ROWS = (
     Command("reconstruct", _COLLISIONS, "solve the equations for any unknowns, with tolerances"),
     Command("figure", _COLLISIONS, "draw a scene, its bounds or a figure of the chapter"),
     Command("report", _COLLISIONS, "a page for the case file: answer, drawing, inputs, method"),
-    Command("oracle", _PROGRAMS, "answer scenes with all that is known of them"),
+    Command("oracle", _PROGRAMS, "compute reference answers for scenes"),
     Command("compare", _PROGRAMS, "say where another program's results differ, and why"),
     Command("selfcheck", _PROGRAMS, "replay captures of a real Apple II Plus: pass or fail"),
     Command("witness", _PROGRAMS, "let your own Apple II Plus ROM judge this project"),
     Command("basic", _APPLE, "the ] prompt with the listing, or any Applesoft program"),
-    Command("desk", _PAGE, "a local web interface, reachable from this computer only"),
+    Command("desk", _BROWSER, "a local web interface, reachable from this computer only"),
     Command("colinear", _CHAPTER, "the direct colinear impact, Equations 1 to 12"),
     Command("barrier", _CHAPTER, "the impact of one vehicle on a rigid barrier"),
     Command("delta-v", _CHAPTER, "velocity changes from speeds, masses, energy loss: Equation 19"),
     Command("staged", _CHAPTER, "eleven staged collisions: Tables 1 and 2 recomputed and fitted"),
     Command("example", _CHAPTER, "Section VII's reconstruction, step by step"),
-    Command("schema", _BELOW, "the forms of what --json prints, and the conventions"),
-    Command("bench", _BELOW, "run time against error of every method, on this machine"),
-    Command("completion", _BELOW, "a script that completes options in bash, zsh or tcsh"),
+    Command("schema", _OTHER, "the forms of what --json prints, and the conventions"),
+    Command("bench", _OTHER, "run time against error of every method, on this machine"),
+    Command("completion", _OTHER, "a script that completes options in bash, zsh or tcsh"),
 )
 COMMANDS = {command.name: command.summary for command in ROWS}
 """Command -> one line of help."""
@@ -62,7 +62,7 @@ def _group_commands() -> dict[str, tuple[str, ...]]:
 
 
 GROUPS = _group_commands()
-"""Group -> its commands, as the first page of the help shows them; "" is below a line."""
+"""Group -> its commands, as the first page of the help shows them."""
 
 
 def module_of(command: str) -> str:

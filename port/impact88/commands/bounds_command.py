@@ -12,12 +12,13 @@ In a file: MU = "0.7 .. 0.9". Correlated values, in the file: correlations = "UX
 (the correlation of a Gaussian copula); they shape the draws, not the bounds.
 
 The bounds are the extremes over all inputs within their limits (a normal without limits: --sigmas
-standard deviations), sought at the corners, on faces and inside. Every bound is attained: --json
-gives the inputs that do. The true bound lies no closer; that it lies no farther is not proven.
-Share of draws with a warning: see impact88.status. Units are those of the scene; angles in degrees.
+standard deviations), searched for at the corners, on faces and inside. Each bound is reached by
+actual inputs (in --json), so the true range is at least this wide; it is not proven to be no wider.
+The output gives the fraction of draws with each warning; meanings: impact88.status. Units are those
+of the scene; angles are in degrees.
 
 CX and CY move the contact point along x and y, in both vehicles at once: --range CX="+- 1". (DA PA
-DB PB varied apart would tear it in two.)
+DB PB varied separately would give A and B different contact points.)
 
 --reconstruct goes from final to initial velocities: the file (or --range) gives VAX VAY VBX VBY WAF
 WBF and MUP, the signed P_t/P_n; if it gives none, those of the scene's forward solution are taken.

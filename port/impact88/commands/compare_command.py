@@ -1,14 +1,17 @@
 """THEIRS is a table of another program's results, in any form that solve reads (CSV, JSON Lines, a
-JSON array, .npz, Parquet, Excel): a row a scene, with columns named as the scene's (impact88 scene
-lists them; M may be missing) and any of the results: VAX VAY VBX VBY WAF WBF, contact velocities XA
-YA XB YB before and XAF YAF XBF YBF after, VC VS KI KF LOSS DVA DVB PN PT PM MUP MUC. Names may be
-in small letters and have units (VAX [mph]); JSON may hold inputs and outputs in objects of their
-own. How a table was read is told on standard error. Each result agrees to the double, to the digits
-it is written with, as closely as plain elimination in double precision can in that scene, or not.
-Rows that disagree are explained: every small mistake in the equations, some 38,000 in nine
-spellings of them, and other conventions are made here too, alone and two together, and the one that
-gives their numbers is named, with the rows that bear it out. What could not be compared is listed
-on standard error.
+JSON array, .npz, Parquet, Excel): a row per scene, with columns named as the scene's (impact88
+scene lists them; M may be missing) and any of the results: VAX VAY VBX VBY WAF WBF, contact
+velocities XA YA XB YB before and XAF YAF XBF YBF after, VC VS KI KF LOSS DVA DVB PN PT PM MUP MUC.
+Names may be in small letters and have units (VAX [mph]); JSON may hold inputs and outputs in
+objects of their own. A note on standard error says how the table was read. Each result agrees
+
+  exactly                  to the last bit of the double
+  to the printed digits    to the digits it is written with
+  within rounding          as closely as plain elimination in double precision can in that scene
+
+or it disagrees. For rows that disagree, compare tries about 38,000 small errors, in nine ways of
+writing the equations, and other conventions, singly and in pairs, and names the one that reproduces
+the numbers and the rows supporting it. What could not be compared is listed on standard error.
 
 With --kit DIR the table is judged as answers to the vectors of that kit (impact88 oracle --kit):
 every id once, its inputs bit for bit, all final velocities, an answer where one is due and no

@@ -70,9 +70,7 @@ def _wrap(line: str, width: int, indent: int) -> list[str]:
 
 def overview() -> str:
     """Return the first page: every command in its group."""
-    groups = "\n\n".join(
-        f"{group or '-' * 11}\n{_command_lines(GROUPS[group])}" for group in GROUPS
-    )
+    groups = "\n\n".join(f"{group}\n{_command_lines(GROUPS[group])}" for group in GROUPS)
     text = (
         "usage: impact88 COMMAND [options]\n\nR. M. Brach's 1988 program for the planar impact of "
         "two vehicles, digit for digit, and the same mechanics for today's work.\n\n"

@@ -14,24 +14,25 @@ GA PA PB TA TB MA MB IA IB) must be known; then any of
 Each is a number, exact, or known within limits: "41 +- 2", "0.7 .. 0.9", "normal 41 1.5" (impact88
 bounds --help). Equations 13 to 18 always hold. With more known than needed the values with limits
 are adjusted (adjustment of observations with conditions, weighted by their tolerances): the table
-shows each as measured, as adjusted, and how many tolerances it moved. With exact values alone, what
-the equations do not determine is refused with the reason; --outputs asks for some names only.
-Uncertainties stand side by side: first order, random draws, bounds that are attained.
+shows each as measured, as adjusted, and how many tolerances it moved. If all values are exact and
+the equations do not determine a result, the command stops and says why; --outputs asks for some
+names only. Three uncertainty estimates are shown: first order, random draws, bounds that are
+attained.
 
-MU is the number of line 280: friction opposes the sliding (line 400). Where the velocities before
-are unknown, both signs are tried and every solution that agrees with itself is shown. MUP is the
-signed P_t/P_n instead. Units: any consistent set; angles in degrees, spins in rad per unit of time;
-or values with units, "-25 +- 2 mph", "3091 lb", "3.5 ft", or units = "us" (or metric, chapter, si)
-in the file, for bare numbers: results are then in the same. A yaw inertia that was not measured is
-IA = "estimate +- 20%" (impact88 scene --help says from what).
+MU is the magnitude entered on line 280; friction opposes the sliding (line 400). Where the
+velocities before impact are unknown, both signs are tried and every self-consistent solution is
+shown. MUP is the signed P_t/P_n instead. Units: any consistent set; angles in degrees, spins in rad
+per unit of time; or values with units, "-25 +- 2 mph", "3091 lb", "3.5 ft", or units = "us" (or
+metric, chapter, si) in the file, for bare numbers: results are then in the same units. A yaw
+inertia that was not measured is IA = "estimate +- 20%" (impact88 scene --help says from what).
 PDOF: where the force comes from, clockwise from the vehicle's front (A faces TA + 180, B faces TB).
 A vehicle that skids to rest: SAF = "skid 62 ft at 0.7 +- .05" is the speed v = sqrt(2 MU g D).
 
-EM says how much of the relative spin, as the impulse alone would make it, the moment at C leaves
-(Equation 18): 0, none, the vehicles spin alike after the impact; -1, a third of it, in the same
-direction (nothing is reversed; RR0 in the results is that part); +1, all, there is no moment.
-Typical values, fitted to eleven staged collisions (Table 2, Section V; speed changes and energy
-lost depend little on EM):
+EM sets the moment at C (Equation 18). RR0 in the results is the fraction of the relative spin that
+remains after the contact moment acts, compared with the relative spin the impulse alone would
+produce. EM = 0: RR0 = 0 (equal spins). EM = -1: RR0 = 1/3 (not reversed). EM = +1: RR0 = 1 (no
+moment). Typical values, fitted to eleven staged collisions (Table 2, Section V; speed changes and
+energy lost depend little on EM):
 
   E     0 to .26, half of them below .075
   EM    near -.5 front to front and front to rear; -.43 to -.91 front to side

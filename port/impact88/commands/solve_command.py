@@ -1,12 +1,12 @@
-"""CASES is a table with a column for each of the scene's names (impact88 scene lists them; M may be
-missing and is 6 then). In JSON the scene may be an object inside (inputs); of a workbook the row
+"""CASES is a table with a column for each of the scene's names (impact88 scene lists them; M is
+optional, default 6). In JSON the scene may be an object inside (inputs); in a workbook the row
 with most of the names has the headings. Names in small letters, semicolons and decimal commas are
-understood, 1,234.5 too; a comma that may be either (1,234) is asked about. A unit behind a name (UX
-[mph], MA (lb)) or in a cell ("-25 mph") is converted, and results come in the same system with
-headings that say so (DVA [mph]); --units is for columns without any. All its columns are passed
-through, and the results follow. Rows are read and written in blocks: memory does not grow with the
-file (but with .npz and .xlsx that are written). A scene file (.toml) is a table of one row, or with
---sweep of as many as the ranges LOW:HIGH:COUNT have combinations.
+understood, 1,234.5 too; an ambiguous comma (1,234) is rejected with a request to clarify. A unit
+after a name (UX [mph], MA (lb)) or in a cell ("-25 mph") is converted, and results come in the same
+system with headings that say so (DVA [mph]); --units is for columns without any. All the table's
+columns are passed through, and the results follow. Rows are read and written in blocks: memory does
+not grow with the file (except when writing .npz or .xlsx). A scene file (.toml) is a table of one
+row, or with --sweep one row for each combination of the ranges LOW:HIGH:COUNT.
 
 Formats, by the ending of the file's name or by --from and --to:
 {formats}

@@ -1,22 +1,24 @@
-"""A printout is read as text, typed in or from a scanner: it is aligned with the program's page, so
-that damaged labels, borders and notes cost little, and every character ends up in a number, a label
-or left over. The scene is recovered, replayed in the Apple's arithmetic, and every digit compared.
-What exact arithmetic gives and physical warnings stand beside the verdict and do not change it.
-A scan or photograph (PNG, JPEG, TIFF, PDF; pip install 'impact88[scan]') is read cell by cell: each
-is held against the mean glyph that the page itself has for the character the program prints.
+"""A printout is read as text, typed in or from a scanner, and aligned with the program's page:
+damaged labels, borders and notes do little harm, and every character is assigned to a number or
+label, or reported as unassigned. The scene is recovered, replayed in the Apple's arithmetic, and
+every digit compared. The values of exact arithmetic and physical warnings are shown with the
+verdict and do not change it. A scan or photograph (PNG, JPEG, TIFF, PDF; pip install
+'impact88[scan]') is read cell by cell: each character is compared with the page's own average image
+of the expected character.
 
 verdicts:
   IDENTICAL                 every number was read, and is what the program prints; no other text
-                            on the page holds a figure or a label
+                            on the page has a digit or a label
   IDENTICAL AS FAR AS READ  the program's page explains the paper; doubts are listed
-  DIFFERS                   something contradicts every scene that the inputs allow
+  DIFFERS                   no set of inputs consistent with the page gives
+                            all its numbers
   INCOMPLETE                numbers are missing; what could be compared agrees
 
 examples:
   impact88 verify printout.txt                      verdict, fields, explanations
   impact88 verify scan.png                          the same from the picture of a page
-  impact88 verify --brief box7/*.txt                a few lines a printout
-  impact88 verify --json printout.txt               one JSON object a printout
+  impact88 verify --brief box7/*.txt                a few lines per printout
+  impact88 verify --json printout.txt               one JSON object per printout
   impact88 verify results.txt --scene crash.toml    inputs from a file
   impact88 verify printout.txt --listing office.bas
   impact88 verify printout.txt --report case.html --case 17/88
@@ -39,7 +41,7 @@ _ON_REPORT = ("date", "case", "examiner")
 
 ARGUMENTS = (
     options.reads("printouts", "PRINTOUT", "text, picture or PDF", nargs="+"),
-    options.flag("--json", "print one JSON object a printout"),
+    options.flag("--json", "print one JSON object per printout"),
     options.OUTPUT,
     options.flag("--brief", "only verdicts and what differs"),
     options.reads("--scene", "FILE.toml", "the inputs, for a page that has only results"),
@@ -47,8 +49,8 @@ ARGUMENTS = (
     options.reads(
         "--text-from",
         "WORDS",
-        "another reading of the same paper, any number of times: tesseract's TSV, hOCR, ALTO or "
-        "text; of a picture its inputs are tried",
+        "output of another OCR program for the same page (repeatable): tesseract's TSV, hOCR, ALTO "
+        "or text. For a picture, its input values are tried too",
         action="append",
         default=[],
     ),
