@@ -111,12 +111,12 @@ def draws(
         if len(signs):
             value_rows = posterior.values(sampled_points, signs, names)
             return Draws(dict(zip(names, value_rows, strict=True)), 0.0, sampled_points.T, signs)
-    box = _Box(solution, names, progress)
+    box = _ImpactBox(solution, names, progress)
     if box.redundant and box.coordinates:  # something varies, with redundancy
         points, functions = _sample_chains(box, count, rng)
         if not len(points):
             _, functions = _sample_chains(
-                _Box(solution, names, progress, keep_limits=False), count, rng
+                _ImpactBox(solution, names, progress, keep_limits=False), count, rng
             )
     else:
         parts = [box.draw(rng, min(CHUNK, count - first)) for first in range(0, count, CHUNK)]
@@ -140,7 +140,7 @@ def ranges(
     posterior = Posterior(solution, progress)
     if posterior.determined:
         return _ranges_over_branches(posterior, solution, names, seed, drawn, progress)
-    box = _Box(solution, names, progress)
+    box = _ImpactBox(solution, names, progress)
     points = box.inside(random_numbers(seed, 0))
     if drawn is not None and drawn.points.shape[1] == points.shape[1]:
         points = np.concatenate([points, drawn.points])
@@ -190,7 +190,7 @@ def _ranges_over_branches(
     (lower, upper), ends, states, converged = extremes(
         region, region.fractions(points), signs, random_numbers(seed, 2)
     )
-    box = _Box(solution, names, progress)
+    box = _ImpactBox(solution, names, progress)
     unbounded = _unbounded_names(box, solution.system.known, names)
     unbounded |= {n for i, n in enumerate(region.ratios, len(names)) if lower[i] < 0 < upper[i]}
     free_coordinates = slice(0, posterior.free)
@@ -216,7 +216,7 @@ def _ranges_over_branches(
     return results | {name: Range(-np.inf, np.inf, {}, {}) for name in unbounded if name in results}
 
 
-class _Box:
+class _ImpactBox:
     """The impacts within limits, as an `ascent.SearchProblem`.
 
     The k coordinates are known values, from 0 to 1 between their limits. Functions: the quantities
@@ -548,7 +548,7 @@ class _Surrogate:
         return np.concatenate([np.ones((len(u), 1)), offsets, squares], axis=1)
 
 
-def _sample_chains(box: _Box, count: int, rng: np.random.Generator) -> tuple[Floats, Floats]:
+def _sample_chains(box: _ImpactBox, count: int, rng: np.random.Generator) -> tuple[Floats, Floats]:
     """Return ``count`` random points within all constraints, by Markov chain Monte Carlo, and the
     functions there; nothing where no point lies within them.
 
@@ -602,7 +602,7 @@ def _sample_chains(box: _Box, count: int, rng: np.random.Generator) -> tuple[Flo
 
 
 def _chain_starts(
-    box: _Box, feasible: Floats, chain_count: int, rng: np.random.Generator
+    box: _ImpactBox, feasible: Floats, chain_count: int, rng: np.random.Generator
 ) -> Floats:
     """Return points that chains may start from: draws without regard to constraints, random means
     of four feasible points, as few steps lead out of a corner, and the feasible points."""
@@ -613,7 +613,7 @@ def _chain_starts(
 
 
 def _start_weights(
-    box: _Box, starts: Floats, constraints: Floats, density: Floats, feasible_count: int
+    box: _ImpactBox, starts: Floats, constraints: Floats, density: Floats, feasible_count: int
 ) -> Floats:
     """Return importance weights of the starts: exact density over that of the free draws. No weight
     is so large that all chains would start at one point."""
@@ -701,7 +701,9 @@ def _rank(rows: Floats) -> int:
     return int(rows.shape[1] - pseudo_inverse(rows)[1].shape[1])
 
 
-def _unbounded_names(box: _Box, known: Mapping[str, Uncertain], names: Sequence[str]) -> set[str]:
+def _unbounded_names(
+    box: _ImpactBox, known: Mapping[str, Uncertain], names: Sequence[str]
+) -> set[str]:
     """Return the quantities that nothing determines when E is 0, if E may be 0."""
     if "E" not in box.system.laws or not known["E"].low <= 0 <= known["E"].high:
         return set()
