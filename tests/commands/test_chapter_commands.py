@@ -119,7 +119,8 @@ def test_reconstruct_flags_what_errors_do(after: str, capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize(
-    ("setting", "law"), [("E=0", "restitution is missed by 9.166"), ("EM=0", "moment")]
+    ("setting", "law"),
+    [("E=0", "restitution does not hold: the error is 9.166"), ("EM=0", "moment")],
 )
 def test_reconstruct_says_which_law_exact_values_miss(
     setting: str, law: str, after: str, capsys: pytest.CaptureFixture[str]

@@ -73,6 +73,9 @@ class TestSet:
     def test_no_name(self, command: str, capsys: pytest.CaptureFixture[str]) -> None:
         assert "'MASS' is not a name used here" in self.refused(command, capsys, "mass=1")
 
+    def test_letter_typed_twice(self, command: str, capsys: pytest.CaptureFixture[str]) -> None:
+        assert "did you mean MU?" in self.refused(command, capsys, "MUU=3")
+
     @pytest.mark.parametrize("text", ["1_0", "nan", "much", "M=1 2x"])
     def test_no_number(self, command: str, text: str, capsys: pytest.CaptureFixture[str]) -> None:
         assert " is no" in self.refused(command, capsys, f"MA={text}")

@@ -743,7 +743,7 @@ class TestCommand:
         ("arguments", "says"),
         [
             (["scene", "-o", "x.svg"], "expected one scene"),
-            (["scene", "--sample", "1", "-o", "x.bmp"], "no picture ends so"),
+            (["scene", "--sample", "1", "-o", "x.bmp"], "unsupported picture format .bmp"),
             (["scene", "--sample", "1", "-o", "/nowhere/at/all/x.png"], "cannot be written"),
             (["scene", "--sample", "1", "--range", "MU=1 .. 2", "-o", "x.svg"], "--set changes"),
             (["staged", "--sample", "1", "-o", "x.svg"], "takes no scene"),

@@ -103,7 +103,7 @@ def test_the_command_names_the_law_though_much_is_not_determined(capsys):
     arguments = [f"--set={n}={v!r}" for n, v in {**values, "VAX": values["VAX"] + 3}.items()]
     main(["reconstruct", *arguments, "--samples", "0"])
     out = capsys.readouterr().out
-    assert "momentum along n is missed by 372.8" in " ".join(out.split())
+    assert "momentum along n does not balance: the error is 372.8" in " ".join(out.split())
     main(["reconstruct", *[f"--set={n}={v!r}" for n, v in values.items()], "--samples", "0"])
     ends = capsys.readouterr()
     assert "missed" not in ends.out + ends.err
@@ -118,7 +118,9 @@ def test_a_program_reads_no_rounding(capsys):
     numbers = {n: v for n, v in solution["values"].items() if v}
     assert [n for n, v in numbers.items() if abs(v) < 1e-13] == []
     assert {row["name"]: row["adjusted"] for row in solution["adjusted"]}["UY"] == 0
-    assert solution["evidence"]["laws_missed"][0].startswith("momentum along n is missed by")
+    assert solution["evidence"]["laws_missed"][0].startswith(
+        "momentum along n does not balance: the error is"
+    )
 
 
 def kinetic_energy(v, late):

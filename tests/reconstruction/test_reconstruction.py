@@ -596,7 +596,7 @@ class TestCommand:
         status, out, _ = self.run(capsys, "reconstruct", str(path), "--samples", "500")
         assert status == 0
         text = " ".join(out.split())
-        assert "! ill-posed: UX has a standard deviation of" in text
+        assert "! poorly determined: UX has a standard deviation of" in text
         assert "E = 0.005 divides: errors after the impact grow 1/E = 200" in text
 
     def test_exact_values_that_contradict_are_adjusted_with_equal_tolerances(

@@ -218,7 +218,7 @@ def _entry(
         lines = [entry]
     else:
         meaning = "signed P_t/P_n, in place of MU" if quotes and name == "MUP" else row.meaning
-        symbol = f"{row.symbol}: "
+        symbol = f"{row.symbol}: " if row.symbol else ""
         lines = [f"{entry:<{width}} # {symbol}{meaning} [{system.label(row.unit)}]"]
     if name + SOURCE in texts:
         lines.append(f"{name}{SOURCE} = {_toml_string(texts[name + SOURCE])}")

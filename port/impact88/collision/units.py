@@ -375,7 +375,9 @@ def check_unit(unit: str, rule: str, what: str, source: str) -> None:
     """Raise UserError, which names ``what``, if a unit does not have the dimension of ``rule``."""
     if size_of(unit, rule) is None:
         measures = "a ratio" if rule == NUMBER else rule.replace("·", " ")
-        raise UserError(f"{what}: {unit} is not a unit of {measures}", source)
+        units = dict.fromkeys(s.usual[rule] for s in SYSTEMS.values() if rule in s.usual)
+        expected = f"; expected {', '.join(units)}" if units else ""
+        raise UserError(f"{what}: {unit} is not a unit of {measures}{expected}", source)
 
 
 def display_values(values: Mapping[str, float], system: System) -> dict[str, float]:
@@ -578,8 +580,9 @@ class _Value:
             bare = not amount.units and common is None
             if bare and strict and self.rule not in _UNITLESS and _fraction(amount.parts[0][0]):
                 raise UserError(
-                    f"{self.entry} has no unit, and others have; expected one, or the system of "
-                    f'bare numbers: units = "{system.name}" (--units {system.name})',
+                    f"some values have units and {self.entry} does not; add a unit, or name a "
+                    f'system for numbers without units: units = "{system.name}" '
+                    f"(--units {system.name})",
                     self.source,
                 )
             numbers.append(self._number(amount, common or system.usual.get(self.rule, ""), system))

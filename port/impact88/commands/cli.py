@@ -59,10 +59,11 @@ def _dispatch(arguments: Sequence[str]) -> int:
     if name == "help" and arguments_left:  # help COMMAND is COMMAND --help
         name, *arguments_left = [*arguments_left, "--help"]
     commands = [*COMMANDS, "chapter"]
+    listed = [command for command in COMMANDS if command not in CHAPTER] + ["chapter"]
     page = "overview" if name in ("-h", "--help", "help") else ""
     if name == "chapter":
         name, *arguments_left = arguments_left or ["--help"]
-        commands = [*CHAPTER]
+        commands = listed = [*CHAPTER]
         page = "chapter_overview" if name in ("-h", "--help") else ""
     if page:
         print(getattr(import_module(".helptext", __package__), page)())
@@ -72,7 +73,7 @@ def _dispatch(arguments: Sequence[str]) -> int:
         return _run(name, arguments_left)
     else:
         hint = did_you_mean(name, commands)
-        raise UserError(f"{name!r} is not a command{hint} (expected one of: {' '.join(commands)})")
+        raise UserError(f"{name!r} is not a command{hint} (expected one of: {' '.join(listed)})")
     return 0
 
 

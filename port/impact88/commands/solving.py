@@ -102,7 +102,9 @@ def solve_table(args: options.Args) -> int:
                 if name in constants and f"M{name[1]}" in source.names
             }
         points = constants.get("M", "4" if "M" in source.names else "6") == "4"
-        check_scene_columns({*source.names, *constants}, points)
+        check_scene_columns(
+            {*source.names, *constants}, points, where=display_name(path or "--sample")
+        )
         if swept:  # the rest is the same in every row
             source.names = [name for name in source.names if name in swept]
         elif units.strict:

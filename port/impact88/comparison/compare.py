@@ -357,7 +357,7 @@ def compare(
             hint = f" ({', '.join(hints)}?)" if hints else ""
             says = f"no column of results{hint}; expected some of {' '.join(RESULTS)}, beside the "
             raise UserError(f"{says}scene's", where)
-        check_scene_columns({*reader.names, *values})
+        check_scene_columns({*reader.names, *values}, where=where)
         comparison.tallies = {name: Tally() for name in wanted}
         with progress(reader.total, "compare", "B") as meter:
             before = 0

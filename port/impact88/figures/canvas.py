@@ -190,7 +190,8 @@ def check_ending(path: str) -> str:
     """The format the ending of ``path`` asks for. Raises UserError for any other."""
     ending = path.rpartition(".")[2].lower()
     if ending not in FORMATS:
-        raise UserError(f"no picture ends so; expected .{', .'.join(FORMATS)}", path)
+        form = f"format .{ending}" if "." in path else "format (no file extension)"
+        raise UserError(f"unsupported picture {form}; expected .{', .'.join(FORMATS)}", path)
     return ending
 
 

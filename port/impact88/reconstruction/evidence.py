@@ -164,7 +164,7 @@ class Evidence:
             parts.append(f"{meaning} {item.name} ({measured} {word}, {adjusted} adjusted)")
         text = "most at odds: " + "; ".join(parts)
         if len(self.at_odds) > 1:
-            text += ", each as much"
+            text += ", equally"
         if not self.exact and self.at_odds and all(item.without >= STRAIN for item in self.at_odds):
             any_one = "any one of them" if len(self.at_odds) > 1 else "it"
             text += f"; without {any_one} the others agree"

@@ -63,12 +63,19 @@ class MissedLaw:
             return NAMES[self.law]
         return f"{self.law} ({quantity(self.law).meaning})"
 
+    @property
+    def _failure(self) -> str:
+        """The law and that it fails; the amount follows."""
+        verb = "balance" if self.law in ("n", "t", "angular") else "hold"
+        return f"{self.name} does not {verb}: the error is"
+
     def text(self, units: System = RULES) -> str:
         """Return the law and by how much it is missed."""
         unit = units.unit(self.like)
         amount = f"{number(self.amount * abs(units.factor(self.like)), 4)} {unit}".rstrip()
-        text = f"{self.name} is missed by {amount}"
+        text = f"{self._failure} {amount}"
         if self.law not in NAMES:
+            text = f"{self.name} is missed by {amount}"
             present, given = (
                 number(units.display_unwrapped(self.law, x), 6) for x in (self.present, self.given)
             )
@@ -81,7 +88,7 @@ class MissedLaw:
     def relative_text(self) -> str:
         """Return the law and by how much it is missed, in percent of its largest term."""
         percent = number(100 * self.fraction, 2)
-        return f"{self.name} is missed by {percent} % of its largest term"
+        return f"{self._failure} {percent} % of its largest term"
 
 
 def describe_laws(missed: tuple[MissedLaw, ...], units: System | None = None) -> str:

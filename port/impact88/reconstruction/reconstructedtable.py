@@ -296,12 +296,12 @@ class Measured(Impact):
                 driver, part = self.drivers[name][0]
                 size = f"{number(deviation * units.factor(name), 3)} {units.unit(name)}".rstrip()
                 lines.append(
-                    f"ill-posed: {name} has a standard deviation of {size}, "
+                    f"poorly determined: {name} has a standard deviation of {size}, "
                     f"{100 * fraction:.0f} % of the largest speed; {100 * part:.0f} % "
                     f"of its variance comes from {driver}"
                 )
         e = self.solution.values.get("E")
-        ill_posed = any(line.startswith("ill-posed") for line in lines)
+        ill_posed = any(line.startswith("poorly determined") for line in lines)
         if ill_posed and e and "E" in system.known and abs(e) < ILL_POSED:
             lines.append(
                 f"E = {number(e, 3)} divides: errors after the impact grow 1/E = {1 / e:.3g} times"

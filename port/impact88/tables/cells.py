@@ -77,8 +77,8 @@ class TableUnits:
                 names = [n for n, s in SYSTEMS.items() if s.base == self.system.base]
                 meant = " or ".join(f"{n} ({_measures(n)})" for n in names)
                 raise UserError(
-                    f"column {bare[0]} has no unit, and others have, such as "
-                    f"{heading(foreign[0])}; expected {bare[0]} [{usual}], or --units {meant} for "
+                    f"some columns have units, such as {heading(foreign[0])}, and {bare[0]} does "
+                    f"not; expected {bare[0]} [{usual}], or --units {meant} for "
                     "what has none",
                     where,
                 )
@@ -166,15 +166,19 @@ def _units_in_cells(rows: Rows) -> list[tuple[str, str]]:
 
 
 def check_scene_columns(
-    names: Collection[str], points: bool = False, advice: str = "--set NAME=VALUE"
+    names: Collection[str],
+    points: bool = False,
+    advice: str = "--set NAME=VALUE",
+    where: str | None = None,
 ) -> None:
     """Raise UserError unless ``names`` are a scene; ``points``: of point masses only."""
     optional = ("M", *(UNUSED_BY_POINTS if points else ()))
     missing = [name for name in SCENE if name not in names and name not in optional]
     if missing:
         raise UserError(
-            f"no column {' '.join(missing)}; expected columns named {' '.join(SCENE)} "
-            f"(M may be missing; {advice} gives one value for all rows)"
+            f"no column {' '.join(missing)} (M may be missing; {advice} gives one value "
+            "for all rows)",
+            where,
         )
 
 
@@ -243,7 +247,7 @@ def _numbers(
             if not isinstance(number, str):
                 values[index] = units.turned(name, number * factor)
                 if bare_refused and number:
-                    raise UserError(f"{cell} has no unit, and others have")
+                    raise UserError(f"some values have units and {cell} does not; add a unit")
             elif isinstance(cell, str) and any(map(str.isdigit, cell)):
                 values[index] = doubles.double(units.cell(name, cell))
                 cells[index] = f"{units.turned(name, values[index]) / factor:.15g}"

@@ -167,8 +167,8 @@ def _check_units(
             if bare and cell == cell and float(cell):
                 system = units.system.name
                 raise UserError(
-                    f"{name} = {cell} has no unit, and others have; expected one, or "
-                    f'units="{system}" for bare numbers (--units {system})'
+                    f"some values have units and {name} = {cell} does not; add a unit, or name a "
+                    f'system for numbers without units: units="{system}" (--units {system})'
                 )
 
 

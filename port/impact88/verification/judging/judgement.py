@@ -289,10 +289,15 @@ def _angle_row(paper: Printout, recovered: Recovered) -> dict[str, Region]:
 
 def _doubts(paper: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Doubtful]:
     starts = [*(glyph.offset for glyph in reading.region), reading.stop]
-    return [
-        Doubtful(*paper.page.place(starts[spot.at]), starts[spot.at], *spot[1:3], str(spot.doubt))
-        for spot in spots
-    ]
+    doubts = []
+    for spot in spots:
+        start = starts[spot.at]
+        _, read, printed, doubt = spot
+        # glyphs are capitals; the page may have a small letter here
+        typed = paper.page.text[start : start + len(read)]
+        read = typed if typed.upper() == read else read
+        doubts.append(Doubtful(*paper.page.place(start), start, read, printed, str(doubt)))
+    return doubts
 
 
 # --- replies, and the ending ---------------------------------------------------------------------

@@ -13,7 +13,10 @@ from typing import NamedTuple
 
 from ...errors import UserError
 
-_PICTURE = "is a picture; expected text: tesseract FILE out --psm 6 makes it"
+_PICTURE = (
+    "is a picture, not text, and not a readable PNG, JPEG or TIFF (damaged?); expected an intact "
+    "one, or text: tesseract FILE out --psm 6 makes it"
+)
 _NO_TEXT = {
     b"%PDF": "is a PDF; expected text: pdftotext -layout FILE.pdf makes it, or, of a scan, "
     "ocrmypdf --sidecar FILE.txt",

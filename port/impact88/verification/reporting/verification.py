@@ -289,9 +289,11 @@ def summary(result: Verification) -> list[str]:
     elif verdict is Verdict.DIFFERS:
         compared_count = sum(check.same is not None for check in fields)
         sentences = [*_of_another_copy(result)]
-        sentences.append(
-            f"{compared_count} printed numbers compared, {len(result.differing)} differ"
-        )
+        count = f"{compared_count} printed numbers compared, {len(result.differing)} differ"
+        left_out = [check.name for check in fields if check.same is None]
+        if 0 < len(left_out) <= MAX_LEFT_OUT:
+            count += f"; not compared: {', '.join(left_out)}"
+        sentences.append(count)
         replies = sum(check.same is False for check in result.replies)
         if replies:
             noun = "reply at a prompt differs" if replies == 1 else "replies at prompts differ"
@@ -449,6 +451,7 @@ def _labels(checks: Sequence[LabelCheck]) -> list[str]:
     ]
 
 
+MAX_LEFT_OUT = 6  # numbers that were not compared, named in one line
 MAX_FOREIGN_LINES = 12  # lines listed that do not belong to the program's page
 
 

@@ -70,6 +70,8 @@ def pages_of(data: bytes, path: str) -> Iterator[Page]:
         raise
     except Exception as error:  # a library's, of whatever kind, on a file that is damaged
         message = str(error).splitlines()[0] if str(error) else "damaged"
+        if "<_io." in message:  # Pillow names the stream, which is nothing to the user
+            message = "unknown format, or damaged"
         raise UserError(f"{name}: is not a picture that can be read: {message}") from None
 
 
