@@ -74,7 +74,7 @@ class TestSet:
         assert "'MASS' is not a name used here" in self.refused(command, capsys, "mass=1")
 
     def test_letter_typed_twice(self, command: str, capsys: pytest.CaptureFixture[str]) -> None:
-        assert "did you mean MU?" in self.refused(command, capsys, "MUU=3")
+        assert "did you mean MA?" in self.refused(command, capsys, "MAA=3")
 
     @pytest.mark.parametrize("text", ["1_0", "nan", "much", "M=1 2x"])
     def test_no_number(self, command: str, text: str, capsys: pytest.CaptureFixture[str]) -> None:

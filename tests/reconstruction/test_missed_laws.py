@@ -181,5 +181,7 @@ def test_where_nothing_is_unknown_the_laws_missed_are_told():
     known = {**{n: v for n, v in scene.items() if n != "MU"}, **after}
     with pytest.raises(UserError, match="nothing is unknown; leave out"):
         solve_for(known)
-    with pytest.raises(UserError, match=r"nothing is unknown, and .* momentum along n is missed"):
+    with pytest.raises(
+        UserError, match=r"nothing is unknown, and .* momentum along n does not balance"
+    ):
         solve_for({**known, "VAX": known["VAX"] + 1})
