@@ -1,4 +1,4 @@
-"""Ranges and distributions, the search for extremes, bounds, draws and drivers."""
+"""Ranges and distributions, bounds, draws and drivers."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from impact88.errors import UserError
 from impact88.mechanics.closedform.solve import quantities
 from impact88.mechanics.outcome import forward_model, reconstruction_model
 from impact88.names import FINAL_VELOCITIES, SCENE, VELOCITIES, quantity
-from impact88.optimization.extremes import Piece
 from impact88.program.scene import sample
 from impact88.status import Status
 from impact88.uncertainty.bounds import RECONSTRUCTED, _ranks, bounds
@@ -291,62 +290,6 @@ class TestCopula:
         with pytest.raises(UserError, match=r"UX, VX, VY contradict .* -0\.8\)"):
             uncertain.correlation_root(pairs, inputs)
         uncertain.correlation_root({**pairs, ("VX", "VY"): 0.9}, inputs)
-
-
-class TestExtremes:
-    RNG = 7
-
-    def found(self, function, coordinates):
-        count = function(np.full((1, coordinates), 0.5)).size
-        piece = Piece(lambda u: function(u).reshape(len(u), -1), count)
-        return piece.extremes(coordinates, np.random.default_rng(self.RNG))
-
-    def test_inside(self):
-        top = np.array([0.3, 0.71, 0.5])
-        found = self.found(lambda u: 4 - np.square(u - top).sum(axis=1), 3)
-        assert found.bound[1, 0] == pytest.approx(4, abs=1e-8)
-        assert found.at[1, 0] == pytest.approx(top, abs=1e-4)
-        assert found.corner[1, 0] < 3.7
-        assert found.bound[0, 0] == found.corner[0, 0] == 4 - (0.49 + 0.71**2 + 0.25)
-
-    def test_corner_among_more_than_are_tried(self):
-        weights = np.linspace(-1, 1, 16)
-        found = self.found(lambda u: u @ weights, 16)
-        assert found.bound[1, 0] == pytest.approx(weights[weights > 0].sum(), abs=1e-12)
-        assert found.bound[0, 0] == pytest.approx(weights[weights < 0].sum(), abs=1e-12)
-
-    def test_along_a_narrow_curved_ridge(self):
-        # the banana: the top of its ridge is at (0.8, 0.64)
-        found = self.found(
-            lambda u: -(500 * (u[:, 1] - u[:, 0] ** 2) ** 2) - (u[:, 0] - 0.8) ** 2, 2
-        )
-        assert found.bound[1, 0] == pytest.approx(0, abs=5e-5)  # 1e-7 of its range
-
-    def test_jump_across_the_box(self):
-        # the height falls off at an oblique edge: the best lies on it, at its upper end
-        found = self.found(
-            lambda u: np.where(u[:, 0] + 0.7 * u[:, 1] < 0.9, u[:, 0] + 0.9 * u[:, 1], -1), 2
-        )
-        assert found.bound[1, 0] == pytest.approx(0.2 + 0.9, abs=2e-3)
-
-    def test_points_without_value(self):
-        found = self.found(lambda u: np.where(u[:, 0] > 0.5, np.nan, u[:, 0]), 2)
-        assert found.bound[1, 0] == pytest.approx(0.5, abs=1e-6)
-        assert found.bound[0, 0] == 0
-
-    def test_no_value_anywhere(self):
-        found = self.found(lambda u: np.full(len(u), np.nan), 2)
-        assert np.isnan(found.bound[1, 0])
-        assert np.isnan(found.bound[0, 0])
-
-    def test_several_functions_at_once(self):
-        found = self.found(lambda u: np.stack([u[:, 0], -u[:, 1], u[:, 0] * 0], axis=1), 2)
-        assert found.bound[1].tolist() == [1, 0, 0]
-        assert found.bound[0].tolist() == [0, -1, 0]
-
-    def test_nothing_varies(self):
-        found = self.found(lambda u: np.full(len(u), 3.0), 0)
-        assert (found.bound[0, 0], found.bound[1, 0]) == (3, 3)
 
 
 RANGES = {"MU": "0.6 .. 1.2", "GA": "+- 10", "UX": "+- 10%"}
