@@ -406,6 +406,14 @@ def test_fields_written_together_or_one_by_one(awkward: list[dict[str, Any]]) ->
     same(impact88.replay(columns, fields=True), impact88.replay(columns), len(awkward))
 
 
+def test_a_stored_zero_is_a_float_without_a_sign() -> None:
+    """YA of the first published run is 0, reached as a difference and a product."""
+    result = impact88.replay(impact88.sample(1))
+    for name in result.names:
+        zeros = result.floats(name) == 0
+        assert not np.signbit(result.floats(name)[zeros]).any(), name
+
+
 def test_published_run() -> None:
     """The Appendix's first run: XB and YB are a hundredth short of what was typed."""
     replayed = impact88.replay(impact88.sample(1))

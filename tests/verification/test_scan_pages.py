@@ -752,8 +752,12 @@ def test_the_rates_count_every_page_that_was_offered() -> None:
     assert f"of {altered.sum()} altered pages, {altered[3]} were found to differ" in said
     assert f"{altered[0]} passed as IDENTICAL" in said
     assert (
-        f"{genuine.sum()} genuine pages bound the failure rate at 1 in {genuine.sum() // 3}" in said
+        f"0 failures (wrongly said to differ) in {genuine.sum()} genuine pages bound the failure "
+        f"rate at 1 in {genuine.sum() // 3} (95 % confidence)" in said
     )
+    worse = sentences((*COUNTS, COUNTS[-1]._replace(alteration="added", identical=2)))
+    assert "2 failures (passed as IDENTICAL) in " in worse
+    assert worse.count("bound the failure rate") == 1
     assert "no probability" in said
     assert "drawn by a computer" in said
     assert sum(row[2] for row in table()) == genuine.sum() + altered.sum()

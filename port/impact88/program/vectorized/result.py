@@ -145,7 +145,8 @@ class Replay:
         KeyError
             For an unknown name.
         """
-        return np.where(self.present(name), self._values[name], np.nan)
+        # a stored zero has no sign: 0.0 is added to make every zero the positive one
+        return np.where(self.present(name), self._values[name] + 0.0, np.nan)
 
     def reals(self, name: str) -> Packed:
         """Return a result as the five bytes that the Apple stored.

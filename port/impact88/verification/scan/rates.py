@@ -99,10 +99,18 @@ def sentences(counts: tuple[Count, ...] = COUNTS) -> str:
         f"passed AS FAR AS READ and {altered.identical} passed as IDENTICAL. "
         "All these pages, and the alterations, were drawn by a computer, and limits of this "
         "program were chosen on some of them: the figures are no probability that the page at hand "
-        f"is genuine or altered. 0 failures in {genuine.pages} genuine pages bound the failure "
-        f"rate at 1 in {genuine.pages // _BOUND_95}, 0 failures in {altered.pages} altered pages "
-        f"at 1 in {altered.pages // _BOUND_95} (95 % confidence)."
+        "is genuine or altered. "
+        f"{_bound(genuine.differs, 'wrongly said to differ', genuine.pages, 'genuine')}; "
+        f"{_bound(altered.identical, 'passed as IDENTICAL', altered.pages, 'altered')}."
     )
+
+
+def _bound(failures: int, kind: str, pages: int, pages_kind: str) -> str:
+    """Return a rate of failures in words, with the bound that none in so many pages gives it."""
+    text = f"{failures} failures ({kind}) in {pages} {pages_kind} pages"
+    if failures:
+        return text
+    return f"{text} bound the failure rate at 1 in {pages // _BOUND_95} (95 % confidence)"
 
 
 def _sum(counts: Iterator[Count]) -> Count:
