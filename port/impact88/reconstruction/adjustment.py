@@ -567,10 +567,9 @@ class Reconstruction:
 
     @cached_property
     def folded(self) -> tuple[str, ...]:
-        """Quantities whose first-order deviations mean nothing, as two branches of impacts nearly
-        meet there.
+        """Quantities whose first-order deviations mean nothing near a fold.
 
-        The Jacobian then has weak directions w, of singular values near 0, along which the
+        Two branches of impacts nearly meet there. The Jacobian then has weak directions w, of singular values near 0, along which the
         residuals r change only to second order. With a distance h, x + h w and x - h w give
 
             even = r(x + h w) + r(x - h w) - 2 r(x),    about h^2 w^T r'' w,
@@ -578,7 +577,8 @@ class Reconstruction:
 
         A direction with even > odd is a fold. With odd > even the residuals change to first order:
         the direction is only poorly determined. Quantities are named whose gradient has a part
-        along a fold."""
+        along a fold.
+        """
         rows = self.system.jacobian(self.x)
         sizes = np.abs(rows).max(axis=1, initial=0.0)
         rows = rows[sizes > 0] / sizes[sizes > 0, None]
