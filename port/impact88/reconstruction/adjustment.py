@@ -569,8 +569,9 @@ class Reconstruction:
     def folded(self) -> tuple[str, ...]:
         """Quantities whose first-order deviations mean nothing near a fold.
 
-        Two branches of impacts nearly meet there. The Jacobian then has weak directions w, of singular values near 0, along which the
-        residuals r change only to second order. With a distance h, x + h w and x - h w give
+        Two branches of impacts nearly meet there. The Jacobian then has weak directions w, of
+        singular values near 0, along which the residuals r change only to second order. With a
+        distance h, x + h w and x - h w give
 
             even = r(x + h w) + r(x - h w) - 2 r(x),    about h^2 w^T r'' w,
             odd  = r(x + h w) - r(x - h w),             about 2 h r' w.
