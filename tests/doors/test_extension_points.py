@@ -214,7 +214,7 @@ def main(args: options.Args) -> None:
         ),
         Step(
             f"{PACKAGE}/commands/__init__.py",
-            '    Command("hello", _BELOW, "greet somebody"),\n',
+            '    Command("hello", _OTHER, "greet somebody"),\n',
             '    Command("schema", ',
             "next step: its row in ROWS of commands/__init__.py",
         ),
