@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from impact88.optimization import widening
 from impact88.optimization.extremes import Piece
 
 SEED = 7
@@ -69,3 +70,28 @@ def test_several_functions_at_once():
 def test_nothing_varies():
     extremes = extremes_of(lambda u: np.full(len(u), 3.0), 0)
     assert (extremes.bound[0, 0], extremes.bound[1, 0]) == (3, 3)
+
+
+class Needle:
+    """A function of the unit square that is 0, but 1 at one point; every point is feasible."""
+
+    def __init__(self, point):
+        self.point = point
+
+    def evaluate(self, u, states):
+        values = (u == self.point).all(axis=1).astype(float)[:, None]
+        return states[0], values, np.full((len(u), 1), 0.5), np.ones(len(u), bool)
+
+
+def test_points_given_stay_where_they_are_while_others_are_spread():
+    """Bounds take in every draw, the last as well: no search finds a needle again."""
+    points = np.random.default_rng(SEED).random((3000, 2))
+    given = points.copy()
+    for row in (0, 2999):
+        pool, _ = widening._evaluate(Needle(points[row].copy()), points, np.zeros(3000))
+        tail = pool[-widening.SPREAD_POINTS :]
+        problem, rng = Needle(points[row].copy()), np.random.default_rng(SEED)
+        spread = widening._spread_points(problem, tail, rng)
+        assert np.array_equal(points, given)
+        assert pool.functions.sum() == 1
+        assert (spread.u != tail.u).any()

@@ -154,7 +154,8 @@ def extremes(
 
 def _spread_points(problem: SearchProblem, points: _Pool, rng: np.random.Generator) -> _Pool:
     """Return the points spread over the feasible region, by steps along differences of one
-    another."""
+    another; the points given stay where they are."""
+    points = _Pool(points.u.copy(), points.x, points.functions.copy())
     dimensions = points.u.shape[1]
     for _ in range(SPREAD_STEPS):
         first, second = rng.integers(len(points.u), size=(2, len(points.u)))
