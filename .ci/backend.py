@@ -62,14 +62,14 @@ PROGRAMS = Path("golden/programs")
 def programs_archived():
     """Within, the 600 captured programs are one archive beside their folder, for the wheel."""
     archive = PROGRAMS.with_suffix(".zip")
-    with zipfile.ZipFile(archive, "w") as packed:
-        for file in sorted(PROGRAMS.iterdir()):
-            entry = zipfile.ZipInfo(file.name)  # of 1980: the bytes depend on the files alone
-            packed.writestr(entry, file.read_bytes(), zipfile.ZIP_DEFLATED, 9)
     try:
+        with zipfile.ZipFile(archive, "w") as packed:
+            for file in sorted(PROGRAMS.iterdir()):
+                entry = zipfile.ZipInfo(file.name)  # of 1980: the bytes depend on the files alone
+                packed.writestr(entry, file.read_bytes(), zipfile.ZIP_DEFLATED, 9)
         yield
     finally:
-        archive.unlink()
+        archive.unlink(missing_ok=True)
 
 
 if os.environ.get("IMPACT88_PURE") == "1":  # a wheel for every machine, without the compiled part
