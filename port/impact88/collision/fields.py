@@ -63,7 +63,8 @@ _LABELS = {
     **{name: f"{name[:-1]}=" for name in ("XAF", "YAF", "XBF", "YBF", *FINAL_SPINS)},
 }
 """Labels that differ from the field's name."""
-_VALUE = r"[^ )\n\0\a?][^ )\n\0\a]*"
+_VALUE = re.compile(r"[ \n]*([^ )\n\0\a?][^ )\n\0\a]*)")
+"""A printed value, with the blanks before it."""
 
 
 def label(name: str) -> str:
@@ -79,8 +80,13 @@ def outcome_fields(printed: str) -> dict[str, str]:
     texts: dict[str, str] = {}
     place = printed.find("MA= ")
     for name in FIELDS if place >= 0 else ():
-        before = "" if name in ANGLES[1:] else f".*?{re.escape(label(name))}"
-        value = re.compile(f"(?>{before}[ \n]*)({_VALUE})", re.DOTALL).match(printed, place)
+        if name not in ANGLES[1:]:
+            text = label(name)
+            start = printed.find(text, place)
+            if start < 0:
+                break
+            place = start + len(text)
+        value = _VALUE.match(printed, place)
         if value is None:
             break
         texts[name], place = value[1], value.end()

@@ -211,16 +211,21 @@ def check_files(parser: argparse.ArgumentParser, args: Args) -> None:
     for action in parser._actions:
         value = getattr(args, action.dest, None)
         if action.type is InputPath and isinstance(value, list):
-            from glob import glob
-
-            there = os.path.exists
-            value[:] = [p for v in value for p in ((not there(v) and sorted(glob(v))) or [v])]
+            if not all(map(os.path.exists, value)):
+                value[:] = [path for name in value for path in _paths_of(name)]
             inputs += value
         elif action.type is InputPath and value is not None:
             inputs.append(value)
         elif action.type is OutputPath:
             outputs[action.option_strings[0]] = value
     check_apart(inputs, outputs)
+
+
+def _paths_of(name: str) -> list[str]:
+    """Return the files that a name stands for: itself, or those that match a pattern."""
+    from glob import glob
+
+    return (not os.path.exists(name) and sorted(glob(name))) or [name]
 
 
 @contextmanager

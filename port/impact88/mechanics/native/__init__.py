@@ -9,7 +9,6 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.machinery import EXTENSION_SUFFIXES
-from pathlib import Path
 from typing import Any
 
 VARIABLE = "IMPACT88_ACCELERATED"
@@ -20,10 +19,10 @@ def _load() -> ctypes.CDLL | None:
     if os.environ.get(VARIABLE, "1") == "0":
         return None
     for suffix in (*EXTENSION_SUFFIXES, ".abi3.so", ".so"):  # free-threaded has no abi3
-        path = Path(__file__).with_name(f"_machine{suffix}")
-        if path.exists():
+        path = os.path.join(os.path.dirname(__file__), f"_machine{suffix}")
+        if os.path.exists(path):  # pathlib takes 4 ms to import
             try:
-                return _declare_functions(ctypes.CDLL(str(path)))
+                return _declare_functions(ctypes.CDLL(path))
             except (OSError, AttributeError):  # built for another machine, or from older sources
                 continue
     return None
