@@ -18,20 +18,16 @@ _APART = ("sine_and_cosine", "real_multiply")
 
 def in_order(results: Sequence[Any]) -> list[Any]:
     """Return all expressions the results depend on, each after its operands."""
-    visited: set[int] = set()
-    order: list[Any] = []
-    stack = [(e, False) for e in reversed(results)]
+    order: dict[Any, None] = {}
+    stack = list(reversed(results))
     while stack:
-        e, ready = stack.pop()
-        if id(e) in visited:
-            continue
-        if ready:
-            visited.add(id(e))
-            order.append(e)
+        e = stack[-1]
+        waiting = () if e in order else [x for x in reversed(e.operands) if x not in order]
+        if waiting:
+            stack += waiting
         else:
-            stack.append((e, True))
-            stack.extend((operand, False) for operand in reversed(e.operands))
-    return order
+            order[stack.pop()] = None
+    return list(order)
 
 
 class Schedule:
@@ -52,8 +48,8 @@ class Schedule:
         self.columns = [str(e.value) for e in columns]
         self.scalars: list[float | str] = [e.value for e in leaves]
         self.moving = len(columns) + len(results)
-        self._place = {id(e): number for number, e in enumerate(columns)}
-        self._place |= {id(e): number for number, e in enumerate(leaves, self.moving)}
+        self._place = {e: number for number, e in enumerate(columns)}
+        self._place |= {e: number for number, e in enumerate(leaves, self.moving)}
         self.places = self.moving + len(leaves)
         self._free: list[int] = []
         self.steps: list[tuple[str, tuple[int, ...]]] = []
@@ -66,27 +62,30 @@ class Schedule:
         self.once = len(self.steps)
         self._write(often, list(results.values()))
         for to, (e, ending) in enumerate(zip(results.values(), endings, strict=True), len(columns)):
-            self.steps.append((ending, (self._place[id(e)], to)))
+            self.steps.append((ending, (self._place[e], to)))
 
     def _write(self, work: Sequence[Any], kept: Sequence[Any]) -> None:
         """Append the steps for the expressions ``work``. The place of a value is used again after
         its last use, except for the expressions ``kept``."""
         fused = _fuse_products(work, kept)
-        products_fused = {id(e) for _, products in fused.values() for e in products}
-        steps = [e for e in work if id(e) not in products_fused and e.operation not in PROJECTIONS]
-        last = {id(operand): id(e) for e in steps for operand in _operands(e, fused)}
-        permanent = {id(e) for e in kept}
-        reusable: dict[int, int] = {}
+        products_fused = {e for _, products in fused.values() for e in products}
+        steps = {
+            e: _operands(e, fused)
+            for e in work
+            if e not in products_fused and e.operation not in PROJECTIONS
+        }
+        last = {operand: e for e, operands in steps.items() for operand in operands}
+        permanent = set(kept)
+        reusable: dict[Any, int] = {}
 
         def release(values: Iterable[Any], after: Any) -> None:
-            for value in {id(v): v for v in values}:
-                mine = last.get(value) in (None, id(after)) and value in reusable
+            for value in dict.fromkeys(values):
+                mine = last.get(value, after) is after and value in reusable
                 if mine and value not in permanent:
                     self._free.append(reusable.pop(value))
 
-        for e in steps:
-            operands = _operands(e, fused)
-            places = [self._place[id(operand)] for operand in operands]
+        for e, operands in steps.items():
+            places = [self._place[operand] for operand in operands]
             values = [e]
             if e.operation == "sine_and_cosine":
                 values = [e.table.combine(half, e) for half in PROJECTIONS]
@@ -95,43 +94,43 @@ class Schedule:
             for value in values:
                 place = self._free.pop() if self._free else self.places
                 self.places = max(self.places, place + 1)
-                self._place[id(value)] = reusable[id(value)] = place
+                self._place[value] = reusable[value] = place
                 places.append(place)
-            name = fused[id(e)][0] if id(e) in fused else e.operation.upper()
+            name = fused[e][0] if e in fused else e.operation.upper()
             self.steps.append((name, tuple(places)))
             if e.operation in _APART:
-                release([*operands, *(v for v in values if id(v) not in last)], e)
+                release([*operands, *(v for v in values if v not in last)], e)
 
 
-Fused = dict[int, tuple[str, tuple[Any, ...]]]
-"""Sums that take products with them: id -> (operation, products)."""
+Fused = dict[Any, tuple[str, tuple[Any, ...]]]
+"""Sums that take products with them: expression -> (operation, products)."""
 
 
 def _operands(e: Any, fused: Fused) -> list[Any]:
     """Return a step's operands, with the factors of the products that are fused into it."""
-    products = fused[id(e)][1] if id(e) in fused else ()
+    if e not in fused:
+        return list(e.operands)
+    products = fused[e][1]
     factors = [factor for product in products for factor in product.operands]
     return factors + [operand for operand in e.operands if operand not in products]
 
 
 def _fuse_products(work: Sequence[Any], kept: Sequence[Any]) -> Fused:
     """Return the sums that can take products with them: those of products used nowhere else."""
-    uses = Counter(id(operand) for e in work for operand in e.operands)
-    uses.update({id(e): 2 for e in kept})
-    mine = {id(e) for e in work}
+    uses = Counter(operand for e in work for operand in e.operands)
+    uses.update(dict.fromkeys(kept, 2))
+    mine = set(work)
     fused: Fused = {}
     for e in work:
         if e.operation not in ("add", "subtract"):
             continue
         products = tuple(
-            x
-            for x in e.operands
-            if x.operation == "multiply" and uses[id(x)] == 1 and id(x) in mine
+            x for x in e.operands if x.operation == "multiply" and uses[x] == 1 and x in mine
         )
         ending = "PLUS" if e.operation == "add" else "MINUS"
         if len(products) == 2:
-            fused[id(e)] = f"PRODUCTS_{ending}", products
+            fused[e] = f"PRODUCTS_{ending}", products
         elif products:
             minus = ending == "MINUS" and products[0] is e.operands[1]
-            fused[id(e)] = "MINUS_PRODUCT" if minus else f"PRODUCT_{ending}", products
+            fused[e] = "MINUS_PRODUCT" if minus else f"PRODUCT_{ending}", products
     return fused
