@@ -12,6 +12,7 @@ import math
 from collections import namedtuple
 from collections.abc import Mapping
 from contextlib import suppress
+from functools import cached_property
 from types import MappingProxyType
 
 from ..errors import BEYOND_DOUBLES, UserError, quoted
@@ -21,6 +22,8 @@ from .doubles import BARE, double, is_number
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Self
+
+    from .units import Convention, System
 
 VALUE_LIMIT = 70
 """Characters of the longest value: three with their commas fit the 239 that INPUT keeps."""
@@ -99,8 +102,6 @@ class Case:
         headings: str | None = None,
         single: bool = False,
     ) -> None:
-        from .units import convention_named, in_listing_axes, system_of
-
         check_mapping(texts)
         if not isinstance(source, str):
             raise UserError(f"source is {quoted(source)}; expected what messages call the scene")
@@ -120,13 +121,16 @@ class Case:
         self.title, self.case = entries.get("title"), entries.get("case")
         self.correlations = entries.get("correlations", "")
         axes, headings = entries.get("axes", axes), entries.get("headings", headings)
-        convention = convention_named(axes, headings, source)
+        self._convention: Convention | None = None
+        if axes or headings:
+            from .units import convention_named
+
+            self._convention = convention_named(axes, headings, source)
         amounts = {n: t for n, t in entries.items() if n not in ABOUT or n == "units"}
         base_texts, self.units = in_base_units(amounts, source, units)
-        self.system = system_of(self.units)
-        if convention:
-            self.system = self.system._replace(convention=convention)
-        if convention:
+        if self._convention:
+            from .units import in_listing_axes
+
             base_texts = in_listing_axes(base_texts, self.system, source)
         self._based: Mapping[str, str] = MappingProxyType(dict(base_texts))
         self.estimated: dict[str, str] = {}
@@ -134,6 +138,14 @@ class Case:
         self.remarks: dict[str, str] = {}
         self.values = {**base_texts, "M": base_texts.get("M", DEFAULT_M)}
         self._resolve()
+
+    @cached_property
+    def system(self) -> System:
+        """The units and directions that values are shown in."""
+        from .units import system_of
+
+        system = system_of(self.units)
+        return system._replace(convention=self._convention) if self._convention else system
 
     def _resolve(self) -> None:
         """Replace ranges if asked, estimate inertias, and compute DA PA DB PB."""
@@ -173,7 +185,8 @@ class Case:
 
                 with suppress(ValueError):  # reported by the code that reads the entry
                     numbers[name] = double(nominal(name, text, self.source))
-        new_remarks = plausibility.remarks(numbers, self.given, self.system, self.outlines)
+        system = self.system if self.units else None
+        new_remarks = plausibility.remarks(numbers, self.given, system, self.outlines)
         for name, text in new_remarks.items():
             earlier = self.remarks.get(name)
             self.remarks[name] = f"{earlier}; {text}" if earlier else text

@@ -44,7 +44,7 @@ MEASURES = {
 def remarks(
     numbers: Mapping[str, float],
     texts: Mapping[str, str],
-    system: System,
+    system: System | None,
     outlines: Mapping[str, float],
 ) -> dict[str, str]:
     """Return remarks on implausible values, by name.
@@ -56,13 +56,13 @@ def remarks(
     texts
         The entries as written.
     system
-        Units the values are shown in; magnitudes are checked only if it has units.
+        Units the values are shown in, None without units: magnitudes are not checked then.
     outlines
         LA BA LB BB, in base units.
     """
     return {
-        **({} if system.is_bare else _sizes(numbers, texts, system, outlines)),
-        **_directions(numbers, system),
+        **({} if system is None or system.is_bare else _sizes(numbers, texts, system, outlines)),
+        **_directions(numbers),
         **_moment(numbers, texts),
     }
 
@@ -138,7 +138,7 @@ def rule_of_name(name: str) -> str:
     return rule
 
 
-def _directions(numbers: Mapping[str, float], system: System) -> dict[str, str]:
+def _directions(numbers: Mapping[str, float]) -> dict[str, str]:
     """Return remarks on vehicles that move sideways or backwards."""
     remarks_by_name: dict[str, str] = {}
     for vehicle, (x, y, speed, course) in SPEEDS.items():

@@ -461,14 +461,14 @@ def parse(text: str) -> Notation:
     words = " ".join(text.replace("⁻¹", "^-1").replace("⁻²", "^-2").translate(_MEANT).split())
     if "..." in words or any(c.isdecimal() and not c.isascii() for c in words):
         raise ValueError(text)  # INPUT reads ASCII digits only
+    if is_number(words) and not re.search(r"\d \d", words):
+        return Notation("fixed", (Amount("", ((words, ""),)),))
     for kind, pattern, counts, layout in _FORMS:
         if match := re.fullmatch(pattern, words):
             amounts: list[Amount | None] = []
             for part, count in zip(match.groups(), counts, strict=True):
                 amounts += _split(part, count) if part or kind != "around" else [None]
             return Notation(kind, tuple(amounts), layout.endswith("%"), layout)
-    if is_number(words) and not re.search(r"\d \d", words):
-        return Notation("fixed", (Amount("", ((words, ""),)),))
     return Notation("fixed", (_amount(words),))
 
 
