@@ -27,29 +27,19 @@ examples:
   impact88 figure staged -o figure5.pdf
 """
 
-from collections.abc import Callable
 from typing import Any
 
-from ..chapter.barrier import BARRIER, VEHICLE, barrier
 from ..errors import UserError
-from ..figures import charts
 from ..figures.canvas import check_ending, save
 from ..figures.drawing import Drawing
 from ..figures.sceneview import scene_drawing
-from ..figures.views import colinear, configurations, planar, strip_drawing
 from ..mechanics.closedform.solve import solve
 from ..names import FINAL_VELOCITIES, RESULTS, missing
 from ..program.scene import Scene, numbers_of
-from ..tables.sweep import read_ranges
 from . import options
 
 OF_RANGES = ("histogram", "tornado")
-OF_NOTHING: dict[str, Callable[[], Drawing]] = {
-    "staged": charts.figure_5,
-    "force": charts.force_and_impulse,
-    "colinear": colinear,
-    "configurations": configurations,
-}
+OF_NOTHING = ("staged", "force", "colinear", "configurations")
 KINDS = ("scene", "strip", "friction", "sweep", "barrier", *OF_RANGES, "planar", *OF_NOTHING)
 
 ARGUMENTS = (
@@ -82,8 +72,10 @@ def _draw(args: options.Args) -> Drawing:
     if kind in OF_NOTHING:
         if scene_source or args.ranges:
             raise UserError(f"{kind} is drawn from the chapter alone and takes no scene")
-        return OF_NOTHING[kind]()
+        return _of_nothing(kind)
     if kind in OF_RANGES:
+        from ..figures import charts
+
         draw = charts.histograms if kind == "histogram" else charts.tornado
         outputs = args.outputs
         if kind == "tornado" and not outputs:
@@ -98,20 +90,38 @@ def _draw(args: options.Args) -> Drawing:
         )
     if kind == "barrier":
         return _barrier(args)
-    if kind == "planar" and not scene_source:
-        return planar(None)
-    scene = options.one_scene(args)
-    if kind == "planar":
+    scene = options.one_scene(args) if kind != "planar" or scene_source else None
+    if kind == "planar" or scene is None:
+        from ..figures.views import planar
+
         return planar(scene)
     if kind == "friction":
-        return charts.friction_sweep(scene)
+        from ..figures.charts import friction_sweep
+
+        return friction_sweep(scene)
     if kind == "strip":
+        from ..figures.views import strip_drawing
+
         return strip_drawing(scene, solved(scene), scene.title or "Before, impact and after")
     return scene_drawing(scene, solved(scene), title=scene.title or "Scene from above")
 
 
+def _of_nothing(kind: str) -> Drawing:
+    """A figure of the chapter, which takes no scene."""
+    from ..figures import charts, views
+
+    return {
+        "staged": charts.figure_5,
+        "force": charts.force_and_impulse,
+        "colinear": views.colinear,
+        "configurations": views.configurations,
+    }[kind]()
+
+
 def _barrier(args: options.Args) -> Drawing:
     """A vehicle against a barrier, its approach and its rebound."""
+    from ..chapter.barrier import BARRIER, VEHICLE, barrier
+
     names = (*VEHICLE, "M")
     case = options.known_case(args, names, single=True)
     values = {name: item.nominal for name, item in options.read_known(case, names).items()}
@@ -132,6 +142,9 @@ def _barrier(args: options.Args) -> Drawing:
 
 def _swept(args: options.Args) -> Drawing:
     """One result a panel, along the one value swept."""
+    from ..figures.charts import swept
+    from ..tables.sweep import read_ranges
+
     if args.ranges:
         raise UserError("sweep takes --sweep NAME=LOW:HIGH:COUNT, not --range")
     scene = options.one_scene(args)
@@ -140,7 +153,7 @@ def _swept(args: options.Args) -> Drawing:
         raise UserError("expected one --sweep NAME=LOW:HIGH:COUNT, such as --sweep MU=0:1:51")
     ((name, run),) = ranges.items()
     outputs = options.names_given(args.outputs, tuple(RESULTS), "--outputs")
-    return charts.swept(scene, name, run.values(), outputs or ["LOSS", "DVA", "DVB"])
+    return swept(scene, name, run.values(), outputs or ["LOSS", "DVA", "DVB"])
 
 
 def solved(scene: Scene) -> dict[str, Any]:

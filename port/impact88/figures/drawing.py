@@ -9,8 +9,9 @@ wide as any likely to stand in for it, so texts that do not overlap here overlap
 import cmath
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache, partial
 from itertools import groupby, pairwise
 from typing import Any, NamedTuple
 
@@ -18,6 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import UserError, printable
+
+Floats = NDArray[np.float64]
+Points = NDArray[np.complex128]
+Places = NDArray[np.intp]
 
 DRAWABLE = 1e100
 """The largest number that is drawn: products of some must be doubles too."""
@@ -369,21 +374,15 @@ def place(drawing: Drawing, frame: Box) -> None:
         middles = label.at + (reach + inner) * along
         low, high = middles[:, None] - half, middles[:, None] + half
         wish = label.towards / abs(label.towards) if label.towards else 0j
-        cost = 0.6 * reach + 1.5 * (1 - (wish.conjugate() * along).real) + (reach > LEADER_FROM)
+        own_cost = 0.6 * reach + 1.5 * (1 - (wish.conjugate() * along).real) + (reach > LEADER_FROM)
         left, bottom, right, top = np.array(taken).reshape(-1, 4).T
         near = (low.real < right + GAP) & (high.real > left - GAP)
         near &= (low.imag < top + GAP) & (high.imag > bottom - GAP)
         inside = (low.real >= frame.left) & (high.real <= frame.right)
         inside &= (low.imag >= frame.bottom) & (high.imag <= frame.top)
-        within = (low.real.min() < x) & (x < high.real.max())
-        within &= (low.imag.min() < y) & (y < high.imag.max())
-        across, up = x[within], y[within]
-        covered = (low.real.copy() < across) & (across < high.real.copy())
-        covered &= (low.imag.copy() < up) & (up < high.imag.copy())
-        # einsum: a product by BLAS would wake its threads, which then spin
-        covering = np.einsum("ij,j->i", covered, weights[within])
-        cost += 1e4 * near.sum(1) + 1e3 * ~inside[:, 0] + 1.5 * covering
-        best = int(np.argmin(cost))
+        misplaced = 1e4 * near.sum(1) + 1e3 * ~inside[:, 0]
+        covering = partial(_covering, low, high, x, y, weights)
+        best = _cheapest_place(own_cost, misplaced, covering)
         text = text._replace(at=complex(low[best, 0]) - complex(box.left, box.bottom))
         box = text_box(text)
         if reach[best] > LEADER_FROM:
@@ -398,12 +397,51 @@ def place(drawing: Drawing, frame: Box) -> None:
     drawing.labels.clear()
 
 
-def _samples(path: Path) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+def _cheapest_place(own: Floats, misplaced: Floats, covering: Callable[[Places], Floats]) -> int:
+    """Return the first of the cheapest places.
+
+    Its cost is its own, that of being misplaced, and that of the lines it covers. Lines only add to
+    a cost: a place that costs more without them than another one with them is not compared with
+    them.
+    """
+    uncovered = own + misplaced
+
+    def cost(places: Places) -> Floats:
+        return np.asarray(own[places] + (misplaced[places] + 1.5 * covering(places)))
+
+    limit = cost(np.array([uncovered.argmin()]))
+    places = np.flatnonzero(~(uncovered > limit))
+    return int(places[cost(places).argmin()])
+
+
+def _covering(
+    low: Points, high: Points, x: Floats, y: Floats, weights: Floats, places: Places
+) -> Floats:
+    """Return what the lines cost that boxes at some places cover: the sum of their points' weights.
+
+    ``low``, ``high``: lower left and upper right corners of all boxes, in a column."""
+    low, high = low[places], high[places]
+    within = (low.real.min() < x) & (x < high.real.max())
+    within &= (low.imag.min() < y) & (y < high.imag.max())
+    across, up = x[within], y[within]
+    covered = (low.real.copy() < across) & (across < high.real.copy())
+    covered &= (low.imag.copy() < up) & (up < high.imag.copy())
+    # einsum: a product by BLAS would wake its threads, which then spin
+    return np.asarray(np.einsum("ij,j->i", covered, weights[within]))
+
+
+@lru_cache(maxsize=256)
+def _fractions(count: int) -> Floats:
+    """Return that many numbers from 0 to 1, evenly spaced."""
+    return np.linspace(0, 1, count)
+
+
+def _samples(path: Path) -> tuple[Points, Floats]:
     """Points along a path, and what covering each costs."""
     weight = WEIGHTS.get(path.role.rpartition(" ")[2], 1.0)
     ends = (*path.points, path.points[0]) if path.fill else path.points
     runs = [
-        start + (end - start) * np.linspace(0, 1, int(abs(end - start) / STEP) + 2)
+        start + (end - start) * _fractions(int(abs(end - start) / STEP) + 2)
         for start, end in pairwise(ends)
         if weight
     ]
