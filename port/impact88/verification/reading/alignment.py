@@ -145,7 +145,7 @@ def _min_plus(first: NDArray[np.int32], second: NDArray[np.int32]) -> NDArray[np
     return least
 
 
-def _passing_costs() -> NDArray[np.int32]:
+def _passing_costs() -> Costs:
     """Return the cost of having passed state j after a glyph of state i: shape (states, states).
 
     It is the least of: passing over each state from i + 1 to j, which costs its `_skip_cost`; the
@@ -155,7 +155,8 @@ def _passing_costs() -> NDArray[np.int32]:
     size = len(STATES)
     between = [place for place, state in enumerate(STATES) if state.kind == "between"]
     cumulative = np.cumsum([_skip_cost(state) for state in STATES], dtype=np.int32)
-    one_by_one = np.where(np.tri(size, k=-1), _INFINITE, cumulative[None] - cumulative[:, None])
+    one_by_one = cumulative[None] - cumulative[:, None]
+    one_by_one[np.tri(size, k=-1, dtype=bool)] = _INFINITE
     line_costs = [
         COSTS["line may be missing" if line in _OPTIONAL else "line"] for line in range(len(_ROWS))
     ]
@@ -167,10 +168,11 @@ def _passing_costs() -> NDArray[np.int32]:
     starts = [0, *between]
     to_line = _min_plus(one_by_one[:, starts], by_line[starts][:, between])
     passing: NDArray[np.int32] = np.minimum(one_by_one, _min_plus(to_line, one_by_one[between]))
-    ends = np.array([COSTS["ends"] if _may_end(state) else _INFINITE for state in STATES])
+    end_costs = [COSTS["ends"] if _may_end(state) else _INFINITE for state in STATES]
+    ends = np.array(end_costs, np.int32)
     passing = np.minimum(passing, ends[:, None] + passing[0])
     passing[:, 0] = np.minimum(passing[:, 0], ends)
-    return passing
+    return np.minimum(passing, _INFINITE).astype(np.int16)
 
 
 @lru_cache(maxsize=1)
@@ -182,25 +184,26 @@ def _transitions() -> _Transitions:
     into = np.roll(passing, 1, axis=1)
     optional = [place for place, state in enumerate(STATES) if state.kind in ("outside", "between")]
     into[:, optional] = passing[:, optional]
-    jumps = np.array([into] * len(Gap))
+    jumps = np.repeat(into[None], len(Gap), axis=0)
     staying = np.zeros((len(Gap), len(STATES)), np.int16)
     numbers = np.flatnonzero([state.kind == "number" for state in STATES])
+    numbers_of: dict[int, list[int]] = {}
+    labels_of: dict[int, list[int]] = {}
     for place, state in enumerate(STATES):
-        if state.name == "=" or (state.kind == "letter" and state.name.isalpha()):
-            of_line = [number for number in numbers if STATES[number].line == state.line]
-            jumps[Gap.NONE, of_line, place] += COSTS["label without gap"]
-        elif state.kind == "number":
+        if state.kind == "number":
+            numbers_of.setdefault(state.line, []).append(place)
             _add_gap_costs(place, numbers, jumps, staying)
+        elif state.name == "=" or (state.kind == "letter" and state.name.isalpha()):
+            labels_of.setdefault(state.line, []).append(place)
+    for line, places in labels_of.items():
+        if line in numbers_of:
+            jumps[Gap.NONE][np.ix_(numbers_of[line], places)] += COSTS["label without gap"]
     may_end = [place for place, state in enumerate(STATES) if _may_end(state) or not place]
     ending = passing[:, may_end].min(axis=1)
-    return _Transitions(
-        np.minimum(jumps, _INFINITE).astype(np.int16), staying, ending.astype(np.int16)
-    )
+    return _Transitions(np.minimum(jumps, _INFINITE, out=jumps), staying, ending)
 
 
-def _add_gap_costs(
-    place: int, numbers: NDArray[np.intp], jumps: NDArray[np.int32], staying: Costs
-) -> None:
+def _add_gap_costs(place: int, numbers: NDArray[np.intp], jumps: Costs, staying: Costs) -> None:
     """Add to a number's transitions what the gap before a glyph costs.
 
     ``place``: the number's state; ``numbers``: the states of all numbers.
@@ -233,20 +236,22 @@ def _may_end(state: State) -> bool:
 
 
 @lru_cache(maxsize=1)
-def _cost_classes() -> list[tuple[State, bool, list[int]]]:
-    """Return the states grouped by what glyphs cost in them.
+def _cost_classes() -> tuple[list[tuple[State, bool]], NDArray[np.intp]]:
+    """Return the classes of states in which glyphs cost the same, and the class of each state.
 
-    Each group is one of its states, True if they are numbers behind an ``=``, and their places.
+    A class is one of its states, and True if they are numbers behind an ``=``.
     """
-    groups: dict[tuple[str, str, bool, bool], list[int]] = {}
+    classes: dict[tuple[str, str, bool, bool], tuple[State, bool]] = {}
+    keys = []
     for place, state in enumerate(STATES):
         is_number = state.kind == "number"
         kind = "letter" if state.kind == "loose" else state.kind
         follows_sign = is_number and STATES[place - 1].name == "="
         is_reply = is_number and state.line < PROMPTS
-        key = kind, "" if is_number else state.name, is_reply, follows_sign
-        groups.setdefault(key, []).append(place)
-    return [(STATES[places[0]], key[-1], places) for key, places in groups.items()]
+        keys.append((kind, "" if is_number else state.name, is_reply, follows_sign))
+        classes.setdefault(keys[-1], (state, follows_sign))
+    numbers = {key: number for number, key in enumerate(classes)}
+    return list(classes.values()), np.array([numbers[key] for key in keys])
 
 
 @lru_cache(maxsize=2000)
@@ -262,8 +267,9 @@ def _glyph_costs(char: str, broken: bool = False) -> tuple[Costs, Costs]:
     """
     at_line_start = COSTS["letter opens number on a new line"] * (broken and char.isalpha())
     inserted = COSTS["inserted figure" if char.isdigit() else "inserted"]
-    firsts, furthers = np.empty((2, len(STATES)), np.int16)
-    for state, follows_sign, places in _cost_classes():
+    classes, class_of = _cost_classes()
+    firsts, furthers = [], []
+    for state, follows_sign in classes:
         if state.kind in ("outside", "between"):
             figure = COSTS["figure between"] * (char.isdigit() and state.kind == "between")
             first = further = (COSTS[state.kind] + figure) * bool(char)
@@ -274,8 +280,9 @@ def _glyph_costs(char: str, broken: bool = False) -> tuple[Costs, Costs]:
             first = further + at_line_start * follows_sign
         else:
             first, further = label_cost(state.name, char), inserted
-        firsts[places], furthers[places] = first, further
-    return firsts, furthers
+        firsts.append(first)
+        furthers.append(further)
+    return np.array(firsts, np.int16)[class_of], np.array(furthers, np.int16)[class_of]
 
 
 def _in_number(char: str, reply: bool) -> int:
