@@ -29,7 +29,7 @@ from ..collision.uncertain import (
     random_numbers,
 )
 from ..errors import UserError
-from ..mechanics.closedform.solve import quantities, share_typed
+from ..mechanics.closedform.solve import quantities, share_typed, solve
 from ..mechanics.outcome import forward_model, reconstruction_model
 from ..messages.arguments import explains_arguments
 from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, VELOCITIES, check_names, split_names
@@ -273,7 +273,10 @@ class _Box:
 
     def solve(self, columns: Mapping[str, Array], outputs: Sequence[str]) -> dict[str, Array]:
         """Return the outputs for n sets of inputs, n each (one number where nothing varies)."""
-        return self.model(self.scenes(columns), outputs, None)[0]
+        scenes = self.scenes(columns)
+        if self.forward:  # without the model's divisors there are compiled kernels for it
+            return solve(scenes, outputs)
+        return self.model(scenes, outputs, None)[0]
 
     def scenes(self, columns: Mapping[str, Array]) -> Mapping[str, Array | float]:
         """Return all values of the scenes with these inputs, MU as a number."""
