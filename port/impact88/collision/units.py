@@ -214,6 +214,15 @@ MIRRORED = frozenset(
 PDOF are relative to the vehicle and do not change."""
 
 
+@lru_cache(maxsize=256)
+def _scale(base: tuple[Fraction, Fraction], rule: str) -> Fraction:
+    """Return `System.scale` for base units of these sizes."""
+    if rule == ANGLE:
+        return _DEGREE
+    length, mass, _, _ = _dimension(rule)
+    return Fraction(base[0] ** length * base[1] ** mass)
+
+
 class System(NamedTuple):
     """A consistent system of units and directions.
 
@@ -238,10 +247,7 @@ class System(NamedTuple):
 
     def scale(self, rule: str) -> Fraction:
         """Return the size of the base unit of ``rule`` in m, kg, s and radians."""
-        if rule == ANGLE:
-            return _DEGREE
-        length, mass, _, _ = _dimension(rule)
-        return Fraction(self.base[0] ** length * self.base[1] ** mass)
+        return _scale(self.base, rule)
 
     def label(self, rule: str) -> str:
         """Return the unit in which values of a rule ("length/time") are shown."""
@@ -810,10 +816,17 @@ def shown_text(name: str, text: str, system: System) -> str:
     factor = system.factor(name)
     if factor == 1 or not is_number(text):
         return text
-    value, shortest = double(text), ""
+    rule = quantity(name).unit
+    size = size_of(system.usual[rule], rule)
+    assert size is not None  # otherwise the factor is 1
+    value, shortest, ratio = double(text), "", size[0] / system.scale(rule)
     for places in (15, 16, 17):
         shortest = f"{value * factor:.{places}g}".upper()
-        if double(text_in_base(name, shortest, system)) == value:
+        try:
+            is_same = float(_fraction(shortest) * ratio) == value
+        except OverflowError:
+            raise UserError(f"{name} = {shortest}: too large for a double; {ACCEPTED}") from None
+        if is_same:
             break
     return shortest
 
