@@ -22,8 +22,6 @@ examples:
 exit status: 0 written; 2 bad input
 """
 
-import csv
-
 from ..collision.case import Case
 from ..collision.scenefile import MAX_TOML_BYTES, template, toml_texts
 from ..errors import UserError
@@ -74,6 +72,8 @@ def main(args: options.Args) -> None:
     with replacing(args.output) as out:
         out.write(page)
     if args.csv:
+        import csv
+
         rows = [r for table in tables for r in ([table.title], table.headings, *table.rows, [])]
         with replacing(args.csv) as out:
             csv.writer(out, lineterminator="\n").writerows(rows)

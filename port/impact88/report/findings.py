@@ -226,8 +226,6 @@ def _cell(text: str) -> float | str | None:
 def _forward(case: Case, source: str, samples: int, seed: int, units: System) -> Findings:
     from ..mechanics.closedform.solve import share_typed, solve
     from ..reconstruction.solutiontable import with_derived_values
-    from ..uncertainty.bounds import bounds
-    from ..uncertainty.boundstable import quantiles_of
     from ..uncertainty.ranges import read_inputs
 
     inputs = read_inputs(case)
@@ -239,6 +237,9 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
     spreads: dict[str, Spread] = {}
     remarks = sentences(int(results["STATUS"]), {**nominal, **results})
     if any(item.varies for item in inputs.values.values()):
+        from ..uncertainty.bounds import bounds
+        from ..uncertainty.boundstable import quantiles_of
+
         options: dict[str, Any] = {"samples": samples, "seed": seed, "keep_draws": True}
         bounded = bounds(inputs.values, FORWARD[2:], correlations=inputs.correlations, **options)
         for vehicle in "AB":

@@ -10,7 +10,6 @@ import sys
 from collections.abc import Sequence
 from functools import lru_cache
 from hashlib import sha256
-from importlib import resources
 from typing import Any
 
 from ..errors import UserError, library, printable
@@ -82,6 +81,8 @@ def check_page_name(path: str) -> None:
 def hashes() -> dict[str, str]:
     """SHA-256 of the restored listing that is packaged, and over all packaged captures of the real
     ROM: of the lines ``hash  path``, sorted by path, as `sha256sum` prints them."""
+    from importlib import resources
+
     listing = resources.files("impact88.legacy").joinpath("impact.bas").read_bytes()
     captures = "".join(f"{digest}  {path}\n" for path, digest in capture_hashes())
     return {
@@ -92,6 +93,8 @@ def hashes() -> dict[str, str]:
 
 def capture_hashes() -> list[tuple[str, str]]:
     """Path in golden/ and SHA-256 of each packaged capture, sorted by path."""
+    from importlib import resources
+
     golden = resources.files("impact88.golden")
     files = [(name, golden.joinpath(name)) for name in ("scenes.jsonl.gz", "fuzz.jsonl.gz")]
     for folder in ("arithmetic", "programs"):
