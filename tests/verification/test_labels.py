@@ -316,3 +316,127 @@ def test_a_dash_in_front_of_one_line_is_no_list() -> None:
     assert one(SAMPLE.replace(" -19.8", "- -19.8")).verdict is Verdict.IDENTICAL_AS_READ
     items = "\n".join(f"- {line.strip()}" if line.strip() else "" for line in SAMPLE.split("\n"))
     assert one(items.replace("- -19.8", "-19.8")).verdict is not Verdict.DIFFERS
+
+
+# --- marks beside labels, and the words of the prompts --------------------------------------------
+
+PROMPTS = """\
+ENTER THE INITIAL VELOCITY COMPONENTS OF MA :Vax,Vay,Wa ?-29.04,0,0
+
+ENTER THE INITIAL VELOCITY COMPONENTS OF MB :Vbx,Vby,Wb ?14.52,25.15,0
+
+"""
+TRANSCRIPT = PROMPTS + SAMPLE
+
+
+def test_each_mark_that_the_page_lacks_is_told() -> None:
+    """In one line, and nothing else is: no number is accused."""
+    assert one(TRANSCRIPT).verdict is Verdict.IDENTICAL
+    lost = [match.span() for match in re.finditer("[=()%:?]|,(?=V|W)", TRANSCRIPT)]
+    assert len(lost) == 36 + 8
+    for start, stop in lost:
+        mark = TRANSCRIPT[start:stop]
+        result = one(TRANSCRIPT[:start] + TRANSCRIPT[stop:])
+        assert result.verdict is Verdict.IDENTICAL_AS_READ, mark
+        assert not result.differing
+        line = TRANSCRIPT.count("\n", 0, start) + 1
+        said = [row.strip() for row in lines(result) if "where the program prints it" in row]
+        assert len(said) == 1
+        assert said[0].startswith(f"line {line}: no {mark!r} of ")
+
+
+@pytest.mark.parametrize("word", ["ENTER", "THE", "INITIAL", "VELOCITY", "COMPONENTS", "OF", "MB"])
+def test_each_word_that_a_prompt_lacks_is_told(word: str) -> None:
+    first, second = TRANSCRIPT.split("\n\n", 1)
+    result = one(f"{first}\n\n{second.replace(word, '', 1)}")
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert not result.differing
+    (said,) = [row for row in lines(result) if "where the program prints" in row]
+    assert said.startswith("  line 3: ")
+    assert word in said
+    assert "prompt" in said
+
+
+def test_a_lost_percent_sign_is_told_with_its_number_and_in_json() -> None:
+    result = one(SAMPLE.replace(" %", ""))
+    assert "  line 14: no '%' of LOSS, where the program prints it" in lines(result)
+    described = result.as_json()
+    assert described["verdict"] == "identical_as_read"
+    (mark,) = [label for label in described["labels"] if label["printed"] == "%"]
+    assert (mark["name"], mark["state"], mark["read"]) == ("LOSS", "missing", "")
+
+
+def test_a_page_retyped_without_any_equals_sign_is_told_once() -> None:
+    """As tables are; one sign that is there makes the others missing."""
+    page = SAMPLE.replace("=", "")
+    result = one(page)
+    assert result.verdict is Verdict.IDENTICAL
+    assert "retyped in another form: the page has no '='" in result.remarks
+    assert not any("where the program prints" in row for row in lines(result))
+    result = one(page.replace("VAX", "VAX="))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert "line 1: no '=' of MA, '=' of MB, " in "\n".join(lines(result))
+    result = one(page.replace("(", "").replace(" %", ""))
+    assert "retyped in another form: the page has no '=', '%', '('" in result.remarks
+
+
+@pytest.mark.parametrize("read", ["-", "~", "Q"])
+def test_a_glyph_that_no_reader_takes_for_the_printed_mark_is_told(read: str) -> None:
+    result = one(SAMPLE.replace("MB=", f"MB {read}", 1))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert f"line 1: {read!r} where the program prints '=' of MB" in "\n".join(lines(result))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("%", "#", "line 14: # for %"),
+        ("%", "S", "line 14: S for %"),
+        ("MB=", "MB:", "line 1: : for ="),
+        ("MB=", "MBS", "line 1: S for ="),
+        ("15.91)", "15.91/", "line 18: / for )"),
+    ],
+)
+def test_a_look_alike_of_a_mark_is_the_readers(old: str, new: str, told: str) -> None:
+    result = one(SAMPLE.replace(old, new, 1))
+    assert result.verdict is Verdict.IDENTICAL
+    assert any(told in remark for remark in result.remarks)
+
+
+@pytest.mark.parametrize("read", ["X", "°/o", "o/o", "percent", "%%"])
+def test_whatever_stands_for_the_percent_sign_accuses_no_number(read: str) -> None:
+    result = one(SAMPLE.replace("%", read))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert not result.differing
+    assert any("line 14" in row for row in lines(result))
+
+
+def test_a_heading_that_the_page_lacks_is_told_in_one_line() -> None:
+    result = one(SAMPLE.replace(f" {HEADING}\n", ""))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    said = "line 5: no labels before the numbers where the program prints PA, PB, TA, TB, GA"
+    assert [row.strip() for row in lines(result)].count(said) == 1
+
+
+@pytest.mark.parametrize("heading", [f"{HEADING} (DEG)", "PA(DEG) PB TA TB GA"])
+def test_units_in_the_heading_are_told_and_accuse_nothing(heading: str) -> None:
+    result = one(SAMPLE.replace(HEADING, heading))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert "left over" in "\n".join(lines(result))
+
+
+@pytest.mark.parametrize(
+    ("page", "told"),
+    [
+        (SAMPLE.replace("*****", "****", 1), "4 of 5 above the final velocities"),
+        (SAMPLE.replace("*****\n\n", "", 1), "0 of 5 above the final velocities"),
+        (SAMPLE.rstrip("*\n"), "0 of 5 below them"),
+        (SAMPLE.replace("*****", "***"), "3 of 5 above the final velocities, 3 of 5 below them"),
+    ],
+)
+def test_asterisks_that_the_page_lacks_are_counted(page: str, told: str) -> None:
+    """Readers lose them on pages that are exact otherwise, and books leave them out."""
+    result = one(page)
+    assert result.verdict is Verdict.IDENTICAL
+    assert f"asterisks read: {told}" in result.remarks
+    assert not any("asterisks" in remark for remark in one(SAMPLE).remarks)

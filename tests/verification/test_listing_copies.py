@@ -140,6 +140,16 @@ def test_rounding_on_one_line_comes_before_a_misread_digit(tmp_path: Path) -> No
 
 
 @pytest.mark.usefixtures("verdicts_alone")
+def test_a_mark_that_the_copy_does_not_print_is_not_missed(tmp_path: Path) -> None:
+    copy = copy_of(changed((690, line(690).removesuffix(';" %"'))), tmp_path)
+    page = copy.run(sample(1)).page
+    assert "%" not in page
+    assert verdicts(page, copy) == {Verdict.IDENTICAL}
+    assert verdicts(page, None) == {Verdict.IDENTICAL_AS_READ}
+    assert verdicts(page.replace("MA= ", "MA "), copy) == {Verdict.IDENTICAL_AS_READ}
+
+
+@pytest.mark.usefixtures("verdicts_alone")
 @pytest.mark.captures
 def test_what_only_the_copy_prints_is_part_of_its_page(tmp_path: Path) -> None:
     """Its prompts, and the replies to them, to the digit."""

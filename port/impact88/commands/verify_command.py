@@ -7,8 +7,8 @@ verdict and do not change it. A scan or photograph (PNG, JPEG, TIFF, PDF; pip in
 of the expected character.
 
 verdicts:
-  IDENTICAL                 every number was read, and is what the program prints; no other text
-                            on the page has a digit or a label
+  IDENTICAL                 every number was read, and is what the program prints, and so are the
+                            marks beside them; no other text on the page has a digit or a label
   IDENTICAL AS FAR AS READ  the program's page explains the paper; doubts are listed
   DIFFERS                   no set of inputs consistent with the page gives
                             all its numbers

@@ -52,7 +52,7 @@ class CopyPages:
         self._besides = kinds[1] - kinds[0]
         text, *_ = self.prepare(own)
         printed = read_printouts(text, copy.file)[0]
-        self._labels = {label.name: label.read for label in printed.labels}
+        self._labels = {(label.name, label.printed): label.read for label in printed.labels}
         self._as_listed = _texts(printed) == outcome_fields(text)
 
     def prepare(self, text: str) -> tuple[str, list[int], dict[int, str]]:
@@ -248,7 +248,7 @@ class CopyPages:
         outcome, lines = self._run(scene)
         labels = [
             label._replace(state=LabelState.EXACT, doubt=False)
-            if self._labels.get(label.name, label.printed) == label.read
+            if self._labels.get((label.name, label.printed), label.printed) == label.read
             else label
             for label in paper.labels
         ]

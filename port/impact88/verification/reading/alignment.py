@@ -56,14 +56,17 @@ MAY_BE_MISSING = (0, 1, 10, 13, 14)
 """Lines that genuine pages lack: the prompts, rows of asterisks, the final spins where M = 4."""
 _LABELLED = "PA={PA}PB={PB}TA={TA}TB={TB}GA={GA}"
 """The angles as some people retype them."""
-_ROWS = [line.replace(" ", "").upper() for line in (*LINES[:6], _LABELLED, *LINES[6:])]
-# Indices of lines in `_ROWS`, which has the retyped angles as its line 6.
+ROWS = (*LINES[:6], _LABELLED, *LINES[6:])
+"""Lines that pages have: the program's, and the retyped angles as line 6."""
+# Indices of lines in `ROWS`.
 PROMPTS = 2  # the lines before this one are prompts
 HEADING = 4
 ANGLE_ROW = 5
+RETYPED_ANGLES = 6
+FIRST_STARS = 11
 SPINS = 14
 STARS = 15
-_OPTIONAL = (0, 1, HEADING, 6, 11, SPINS, STARS)
+_OPTIONAL = (0, 1, HEADING, RETYPED_ANGLES, FIRST_STARS, SPINS, STARS)
 _LOOSE_WORDS = {"INITIALKE=": 7, "KELOSS=": 2}
 """Number of a label's first letters that retyped pages leave out, as they do prompts."""
 _INFINITE: int = np.iinfo(np.int16).max // 3
@@ -81,7 +84,7 @@ class State(NamedTuple):
     name : str
         The letter of a label, or a number's field.
     line : int
-        Line of `_ROWS`, -1 outside.
+        Line of `ROWS`, -1 outside.
     """
 
     kind: str
@@ -93,9 +96,10 @@ def _page() -> tuple[list[State], list[tuple[str, list[int]]]]:
     """Return `STATES` and `LABELS`."""
     states = [State("outside", "", -1)]
     labels = []
-    for number, line in enumerate(_ROWS):
+    for number, line in enumerate(ROWS):
         states.append(State("between", "", number))
-        for text, name in re.findall(r"([^{]*)(?:{(\w+)}|$)", line):
+        squeezed = line.replace(" ", "").upper()
+        for text, name in re.findall(r"([^{]*)(?:{(\w+)}|$)", squeezed):
             loose = len(text) if number < PROMPTS else _LOOSE_WORDS.get(text, 0)
             fields = ANGLES if number == HEADING and text else [name] if text and name else []
             letters_at = [len(states) + at for at, letter in enumerate(text) if letter.isalpha()]
@@ -158,7 +162,7 @@ def _passing_costs() -> Costs:
     one_by_one = cumulative[None] - cumulative[:, None]
     one_by_one[np.tri(size, k=-1, dtype=bool)] = _INFINITE
     line_costs = [
-        COSTS["line may be missing" if line in _OPTIONAL else "line"] for line in range(len(_ROWS))
+        COSTS["line may be missing" if line in _OPTIONAL else "line"] for line in range(len(ROWS))
     ]
     by_line = np.where(np.eye(size), 0, _INFINITE).astype(np.int32)
     for line, start in enumerate(between):

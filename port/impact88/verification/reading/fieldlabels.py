@@ -5,6 +5,7 @@ two must agree. A label that reads as another of the program's, or as a word tha
 contradicts. One that is damaged within the reach of the glyph table, or missing, leaves a doubt.
 """
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import StrEnum
 from functools import lru_cache
@@ -38,14 +39,14 @@ class LabelState(StrEnum):
 
 
 class LabelCheck(NamedTuple):
-    """One label compared with the program's.
+    """One label, or a mark beside it, compared with the program's.
 
     Parameters
     ----------
     name : str
-        The field that the label names.
+        The field that the label names, or that the mark belongs to.
     printed, read : str
-        The letters that the program prints, and those read.
+        The letters or the mark that the program prints, and what was read.
     state : LabelState
         EXACT, DAMAGED, CONTRADICTORY or MISSING.
     doubt : bool
@@ -64,6 +65,11 @@ class LabelCheck(NamedTuple):
     column: int
     start: int
     stop: int
+
+    @property
+    def is_mark(self) -> bool:
+        """True for a mark beside a label, and for a word of a prompt (`labelmarks`)."""
+        return not self.printed.isalpha() or self.name not in FIELDS
 
 
 Found = Sequence[tuple[str, str, Sequence[int]]]
@@ -138,15 +144,14 @@ def _labels_read(
         return letters(page.glyphs[index] for index in at)
 
     words = words_before(page, slots)
-    of_angles = [label for label in found if label[0] in ANGLES]
+    of_angles = [place for place, (name, _, _) in enumerate(found) if name in ANGLES]
     heading, row = of_angles[: len(ANGLES)], of_angles[len(ANGLES) :]
-    heading_at = [index for _, _, at in heading for index in at]
+    heading_at = [index for place in heading for index in found[place][2]]
     if heading_at:
         yield from _heading(page, min(heading_at), max(heading_at))
-    for label in found:
-        name, letters_printed, at = label
-        is_retyped = bool(heading_at) or any(at for _, _, at in row)
-        if (label in heading and (is_retyped or name not in slots)) or (label in row and not at):
+    is_named = bool(heading_at) or any(found[place][2] for place in row)
+    for place, (name, letters_printed, at) in enumerate(found):
+        if (place in heading and is_named) or (place in row and not at):
             continue
         word = range(*words.get(name, (0, 0)))
         if word and read(at[-len(word) :]) != read(word):
@@ -161,6 +166,13 @@ def _labels_read(
 def _heading(page: Page, first: int, last: int) -> Iterator[tuple[str, str, int, int, str]]:
     """Yield the five labels of the heading, by its words or, if these are not five, in pairs."""
     glyphs, end = page.glyphs, last + 1
+    outside = _outside_brackets(page, last)
+    starts = [at for at in outside if at == outside[0] or glyphs[at].gap or at - 1 not in outside]
+    if len(starts) == len(ANGLES):
+        for name, start, stop in zip(ANGLES, starts, [*starts[1:], outside[-1] + 1], strict=True):
+            word = [at for at in outside if start <= at < stop]
+            yield name, name, *page.span(start, word[-1] + 1), letters(glyphs[at] for at in word)
+        return
     while first and glyphs[first].gap is not Gap.LINE and glyphs[first - 1].char.isalpha():
         first -= 1
     while end < len(glyphs) and glyphs[end].gap is not Gap.LINE and glyphs[end].char.isalpha():
@@ -175,6 +187,15 @@ def _heading(page: Page, first: int, last: int) -> Iterator[tuple[str, str, int,
             yield name, name, *page.span(start, stop), letters(glyphs[start:stop])
         else:
             yield name, name, *page.span(first, end), name if exact else ""
+
+
+def _outside_brackets(page: Page, last: int) -> list[int]:
+    """Return the glyphs of a line that stand outside brackets such as ``(DEG)``; none if it has no
+    brackets."""
+    line = next(line for line in page.lines if last in line)
+    text = letters(page.glyphs[line.start : line.stop])
+    inside = {at for match in re.finditer(r"\([^()]*\)", text) for at in range(*match.span())}
+    return [at for at in line if at - line.start not in inside] if inside else []
 
 
 def _state(kind: str, printed: str, read: str, others: set[str]) -> tuple[LabelState, bool]:

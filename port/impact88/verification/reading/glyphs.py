@@ -198,6 +198,11 @@ def label_cost(printed: str, read: str) -> int:
     return cost + COSTS["figure for =" if printed == "=" else "figure unseen"]
 
 
+def is_look_alike(printed: str, read: str) -> bool:
+    """Return True if readers or typists take a glyph of a label for another, or if both are one."""
+    return printed == read or read in _OF_LABELS.get(printed, (0, {}))[1]
+
+
 @lru_cache(maxsize=1024)
 def printed_for(read: str) -> dict[str, float]:
     """Return the printed glyphs that a foreign glyph may stand for, with their costs.

@@ -32,6 +32,7 @@ from .alignment import (
 )
 from .fieldlabels import MIN_READER_MARKS, LabelCheck, LabelState, label_checks, words_before
 from .glyphs import ILLEGIBLE, Gap, Page, Region, label_cost, letters, plain_glyphs
+from .labelmarks import asterisk_note, mark_checks, retyping_note
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
@@ -384,7 +385,7 @@ class Printout:
         return stop
 
     def check_labels(self) -> None:
-        """Set ``labels`` and ``misread_letters``: the number that each label names."""
+        """Set ``labels`` and ``misread_letters``: the number that each label names, and marks."""
         read = {name: self._slots[name] for name in self.fields if name in self._slots}
         marks = (
             self.marks + self._misread("*")
@@ -400,6 +401,8 @@ class Printout:
             for name, own in LABELS
         ]
         self.labels = label_checks(self.page, label_glyphs, read, marks)
+        replies = {name: slot for name, slot in self._slots.items() if name not in FIELDS}
+        self.labels += mark_checks(self.page, self._states, read | replies, self.labels)
         wrong = {label.name for label in self.mislabelled}
         self.misread_letters = self._misread("*ABCDEFGHIJKLMNOPQRSTUVWXYZ", wrong)
 
@@ -632,6 +635,8 @@ def _read_column(text: str) -> tuple[list[Printout], str]:
         printout.check_labels()
         printout.notes += _character_notes(page.text[printout.start : printout.stop])
         printout.notes += printout.read_otherwise()
+        printout.notes += retyping_note(printout.labels)
+        printout.notes += asterisk_note({*printout._states.values()}, printout.fields)
     return printouts, reason
 
 
@@ -695,7 +700,8 @@ def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
 
     A line belongs to a page if a number stands on it, half of its glyphs are letters as printed, or
     it is a row of asterisks; of such lines the rest is left over, of others all. Text beside a
-    number may bear on the page, and so may another line that holds a number or a label.
+    number may bear on the page, and so may a word beside labels, and another line that holds a
+    number or a label.
     """
     roles = {index: role for printout in found for index, role in printout.roles().items()}
     for line in page.lines:
@@ -716,7 +722,8 @@ def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
                 label_words = {
                     word.upper() if len(word) > 2 else word for word in words
                 } & _LABEL_WORDS
-                is_beside = has_number or figure or bool(label_words)
+                is_word = not (is_whole or stars) and re.search("[A-Za-z]{2}", text)
+                is_beside = has_number or figure or bool(label_words or is_word)
                 above = [printout for printout in found if printout.line <= number] or found[:1]
                 above[-1].left_over.append(Piece(text, number, column, *span, is_beside, is_whole))
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from ...collision.fields import ANGLES, INPUTS, scene_name
+from ...collision.fields import ANGLES, FIELDS, INPUTS, scene_name
 from ...errors import one_line, printable
 from ...files import display_name
 from ...messages import notebook
@@ -437,18 +437,57 @@ def look(check: FieldCheck) -> Iterator[str]:
 _LABELS = {
     LabelState.CONTRADICTORY: "labelled {read} where the program prints {printed}",
     LabelState.DAMAGED: "the label {printed} is read {read}",
-    LabelState.MISSING: "no label before the number where the program prints {printed}",
 }
 
 
 def _labels(checks: Sequence[LabelCheck]) -> list[str]:
-    """Return the labels that are not the program's, contradictory ones first."""
+    """Return the labels and marks that are not the program's, contradictory labels first."""
+    doubted = [check for check in checks if check.doubt or check.state is LabelState.CONTRADICTORY]
+    labels = [check for check in doubted if not check.is_mark]
+    marks = [check for check in doubted if check.is_mark]
     return [
-        f"line {label.line}: " + text.format(read=printable(label.read), printed=label.printed)
-        for state, text in _LABELS.items()
-        for label in checks
-        if label.state is state and (state is LabelState.CONTRADICTORY or label.doubt)
+        *(
+            f"line {label.line}: " + text.format(read=printable(label.read), printed=label.printed)
+            for state, text in _LABELS.items()
+            for label in labels
+            if label.state is state
+        ),
+        *_missing_labels([label for label in labels if label.state is LabelState.MISSING]),
+        *_missing_marks([mark for mark in marks if mark.state is LabelState.MISSING]),
+        *_other_marks([mark for mark in marks if mark.state is LabelState.DAMAGED]),
     ]
+
+
+def _missing_labels(labels: Sequence[LabelCheck]) -> Iterator[str]:
+    """Yield a sentence on the labels that each line lacks."""
+    for line in dict.fromkeys(label.line for label in labels):
+        names = [label.printed for label in labels if label.line == line]
+        nouns = "label before the number" if len(names) == 1 else "labels before the numbers"
+        yield f"line {line}: no {nouns} where the program prints {', '.join(names)}"
+
+
+def _missing_marks(marks: Sequence[LabelCheck]) -> Iterator[str]:
+    """Yield a sentence on the marks that the page lacks, by line."""
+    by_line = [
+        f"line {line}: no {', '.join(_of_number(mark) for mark in marks if mark.line == line)}"
+        for line in dict.fromkeys(mark.line for mark in marks)
+    ]
+    if by_line:
+        it = "it" if len(marks) == 1 else "them"
+        yield f"{'; '.join(by_line)}, where the program prints {it}"
+
+
+def _other_marks(marks: Sequence[LabelCheck]) -> Iterator[str]:
+    """Yield a sentence on the marks in place of which something else was read."""
+    if marks:
+        yield "; ".join(
+            f"line {mark.line}: {mark.read!r} where the program prints {_of_number(mark)}"
+            for mark in marks
+        )
+
+
+def _of_number(mark: LabelCheck) -> str:
+    return f"{mark.printed!r} of {mark.name if mark.name in FIELDS else 'the prompt'}"
 
 
 MAX_LEFT_OUT = 6  # numbers that were not compared, named in one line
