@@ -50,11 +50,11 @@ class Scenes:
         self.plain = {**scenes("casework", count, 3), "M": 6.0}
         for name in ("WA", "WB"):
             self.plain[name] = self._rng.uniform(-2, 2, count)
-        drawn, mu = self._rng.random(count), self.plain["MU"]
-        self._mu = {share: np.where(drawn < share / 100, PIVOT, mu) for share in PIVOTS}
+        self._drawn = self._rng.random(count)
 
     def of(self, constants, pivots, unusable):
-        g = {**self.plain, "MU": self._mu[pivots], **CONSTANTS[constants]}
+        mu = np.where(self._drawn < pivots / 100, PIVOT, self.plain["MU"])
+        g = {**self.plain, "MU": mu, **CONSTANTS[constants]}
         if unusable:
             name = next(name for name in ("UX", "UY") if np.ndim(g[name]))
             g[name] = g[name].copy()

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from passes import passes
 
 from impact88.mechanics.closedform.plan import Plan
-from impact88.mechanics.closedform.statusbits import needs_full_kernel
 from impact88.mechanics.native.formulas import ExpressionTable
 from impact88.mechanics.native.schedule import Schedule
 
@@ -125,17 +124,3 @@ def test_sign_rule_keeps_the_sign_on_either_zero(zero):
     columns = [np.array([1.5, -1.5, 2.0]), np.array([zero, zero, 5e-324])]
     Plan(plan).run(columns, found, {}, 3)
     assert found["x"].tolist() == [1.5, -1.5, -2.0]
-
-
-@pytest.mark.parametrize("magnitude", [-1.0, 1e-90, 3e20])
-def test_only_a_regular_scene_is_decided_without_its_velocities(magnitude: float) -> None:
-    """A scene is SINGULAR from a condition of 2^26 on; one of a quarter of that is certainly not.
-
-    The kernels compile this formula, so that a change of it is first seen here."""
-    size = np.float64(magnitude)
-    for condition, expected in ((2.0**24, False), (2.0**26, True), (np.inf, True)):
-        absolute_sum = condition / 3 * abs(size)
-        assert needs_full_kernel(size, absolute_sum, 1.0, 2.0) == expected
-    assert needs_full_kernel(np.float64(1e-101), 1e-101, 1.0, 2.0)
-    assert needs_full_kernel(size, abs(size), 1e151, 2.0)
-    assert needs_full_kernel(size, abs(size), 0.0, 0.0)

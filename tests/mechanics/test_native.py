@@ -282,7 +282,7 @@ def test_barriers_as_constants_and_as_columns(change, mu, constant):
 
 @pytest.mark.parametrize("mu", [0.3, -10.0])
 @pytest.mark.parametrize("size", [1.0, 1e14, 1e16, 1e60])
-def test_a_hurried_kernel_leaves_undecided_what_it_cannot_tell(mu, size):
+def test_a_filter_leaves_undecided_what_it_cannot_tell(mu, size):
     """SINGULAR and NOT_FINITE, on both sides of where it is certain that they are clear."""
     rng = np.random.default_rng(38)
     count = 1000

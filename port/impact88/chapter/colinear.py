@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..collision.mappings import columns
 from ..errors import UserError
-from ..mechanics.closedform.statusbits import bits, findings
+from ..mechanics.closedform.statusbits import bits, findings, forward_friction
 from ..messages.arguments import explains_arguments
 from ..names import missing
 
@@ -150,8 +150,9 @@ def report(
         e=e,
         em=zero,
         friction_mu=mu,
+        forward=forward_friction(mu, critical * pn),
         pivot_pn=pn,
-        pivot_pt=critical * pn,
+        limit=abs(critical * pn),
         # without arms the normal impulse does not reverse the sliding
         gt=zero,
         turning=zero,

@@ -12,17 +12,16 @@ import math
 import textwrap
 from pathlib import Path
 
-from impact88.mechanics.closedform.statusbits import UNDECIDED
-
 from . import native
 from .closedform.impactprograms import (
     ALL,
     BODIES,
     COLUMNS,
-    HURRIED,
+    FILTERS,
     KERNELS,
     program_for,
 )
+from .closedform.statusfilter import UNDECIDED
 from .native.program import Program
 
 HEAD = """\
@@ -34,6 +33,13 @@ HEAD = """\
 ARITHMETIC = ("ADD", "MULTIPLY", "PRODUCT_PLUS", "PRODUCTS_PLUS")
 CONDITIONS = ("EQUAL", "LESS", "LESS_OR_EQUAL", "EITHER", "BOTH", "NOT")
 
+COSTS = {
+    **dict.fromkeys(("PRODUCT_PLUS", "PRODUCT_MINUS", "MINUS_PRODUCT"), 2),
+    **dict.fromkeys(("PRODUCTS_PLUS", "PRODUCTS_MINUS"), 3),
+    **{"SINE_AND_COSINE": 24, "DIVIDE": 8, "SQRT": 16},
+}
+"""Operation -> how many additions it takes as long as, where that is not one."""
+
 
 def text() -> str:
     """Return the text of kernels.h."""
@@ -42,9 +48,17 @@ def text() -> str:
 
 
 def programs() -> dict[str, Program]:
-    """Return the program of every body."""
+    """Return the program of every body, of the results that its kernels keep."""
+    kept: dict[str, set[str]] = {name: set() for name in BODIES}
+    for name, results in KERNELS:
+        kept[name].update(results)
+    source_of = {name: source for name, (_, source) in FILTERS.items()}
     return {
-        name: program_for(kinds, ALL, hurried=name in HURRIED.values())
+        name: program_for(
+            kinds,
+            tuple(result for result in ALL if result in kept[name]),
+            status_from=source_of.get(name, "results"),
+        )
         for name, kinds in BODIES.items()
     }
 
@@ -68,12 +82,21 @@ def _places() -> list[str]:
     ]
 
 
+def _cost(name: str, results: tuple[str, ...]) -> int:
+    """Return the cost of a kernel in operations."""
+    source = FILTERS[name][1] if name in FILTERS else "results"
+    steps = program_for(BODIES[name], results, status_from=source).steps
+    return sum(COSTS.get(operation, 1) for operation, _ in steps)
+
+
 def _table() -> str:
-    """Return the kernels: number and name of the body, and the results each keeps, as bits."""
+    """Return the kernels: number and name of the body, the results each keeps, as bits, and its
+    cost."""
     rows = []
     for place, (name, results) in enumerate(KERNELS):
         mask = sum(1 << ALL.index(result) for result in results)
-        rows.append(f"X({place}, {list(BODIES).index(name)}, {name}, {mask:#x})")
+        number, cost = list(BODIES).index(name), _cost(name, results)
+        rows.append(f"X({place}, {number}, {name}, {mask:#x}, {cost})")
     return " \\\n    ".join(["#define KERNELS(X)", *rows])
 
 
@@ -83,19 +106,22 @@ def _body(name: str, program: Program) -> str:
         [
             f"static inline ALWAYS_INLINE void {name}(",
             "    const double *const *in, double *const *out, const circle *circle,",
-            "    int64_t eights, const uint64_t wanted)",
+            "    const double *const *ahead, int64_t eights, const uint64_t wanted)",
             "{",
             *(f"    {line}" for line in _pointers(program)),
             f"    double {', '.join(f'{x}[STRIP]' for x in sines)};",
-            *_loop(angles),
-            *_loop(lines),
+            *_loop([], angles),
+            *_loop([f"FETCH({column})" for column in program.columns], lines),
             "}\n",
         ]
     )
 
 
-def _loop(lines: list[str]) -> list[str]:
-    return ["    EACH_OF_EIGHTS {", *(f"        {line}" for line in lines), "    }"]
+def _loop(fetches: list[str], lines: list[str]) -> list[str]:
+    """Write a loop over the scenes, eight at a time; ``fetches`` once for each eight."""
+    heads = textwrap.wrap(" ".join(fetches), 92, initial_indent=" " * 8, subsequent_indent=" " * 8)
+    body = [f"            {line}" for line in lines]
+    return ["    EACH_EIGHT {", *heads, "        EACH_OF_EIGHT {", *body, "        }", "    }"]
 
 
 def _numbers(operation: str, operands: list[str], conditions: set[str]) -> list[str]:
@@ -107,7 +133,7 @@ def _numbers(operation: str, operands: list[str], conditions: set[str]) -> list[
 
 def _pointers(program: Program) -> list[str]:
     columns = [f"COLUMN({column})" for column in program.columns]
-    results = [f"RESULT_AT({name}, {place})" for place, name in enumerate(ALL)]
+    results = [f"RESULT_AT({name}, {ALL.index(name)})" for name in program.results]
     return [
         line.replace("~", " ")
         for line in textwrap.wrap(" ".join([*columns, *results]).replace(", ", ",~"), 92)
@@ -155,9 +181,10 @@ def _lines(program: Program) -> tuple[list[str], list[str], list[str]]:
             product, addends = f"({texts[0]} ? {texts[1]} : 0.0)", texts[2:]
             formula = f"ADD({product}, {_numbers('ADD', addends, conditions)[0]})"
         if operation in ("RESULT", "RESULT_OR_INFINITE", "BITS"):
-            result = to - first
+            result = program.results[to - first]
             keeps = formula if operation != "BITS" else texts[0]
-            lines[f"if (wanted >> {result} & 1) to_{ALL[result]}[i] = {keeps};"] = None
+            place = ALL.index(result)
+            lines[f"if (wanted >> {place} & 1) to_{result}[i] = {keeps};"] = None
         else:
             kind = "int64_t" if operation in CONDITIONS else "double"
             values[to] = name = f"v{number}"

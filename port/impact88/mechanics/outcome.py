@@ -29,7 +29,7 @@ from ..errors import UserError
 from ..names import FINAL_STATE, PIVOT, SCENE, VELOCITIES
 from ..status import Status
 from .closedform.solve import quantities, solve
-from .closedform.statusbits import bits, findings
+from .closedform.statusbits import bits, findings, forward_friction
 from .state import CHANGES, CONTACT, COURSES, FORCES, SPEEDS, State
 
 Array = NDArray[Any]
@@ -101,6 +101,8 @@ def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Ar
     complete = all(name in pivot for name in SCENE if name != "M")
     names = ("PN", "PT")
     pivot_impulse = quantities(pivot, names) if complete else dict.fromkeys(names, np.nan)
+    pivot_pt = np.asarray(pivot_impulse["PT"])
+    friction_mu = np.where(mu == PIVOT, 0.0, mu)
     with np.errstate(all="ignore"):
         lost, initial = 2 * state.energy_lost, state.initial_energy
         normal_slip, slip, _ = state.relative_before
@@ -117,9 +119,10 @@ def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Ar
             initial=np.where(np.isnan(initial), 1.0, initial),
             e=e,
             em=np.where(here.point, 0.0, em),
-            friction_mu=np.where(mu == PIVOT, 0.0, mu),
+            friction_mu=friction_mu,
+            forward=forward_friction(friction_mu, pivot_pt),
             pivot_pn=pivot_impulse["PN"],
-            pivot_pt=pivot_impulse["PT"],
+            limit=abs(pivot_pt),
             gt=slip,
             turning=turning,
             yielding=yielding,

@@ -41,14 +41,17 @@ quantity is an `Expression`: what nobody asks for is noted and never computed.
 from collections.abc import Mapping, Sequence
 from math import inf
 from sys import float_info
+from typing import Literal
 
 from ...names import PIVOT
 from ...status import Status
 from ..native.formulas import Expression, ExpressionTable
 from .energy import kinetic_energy
-from .statusbits import UNDECIDED, findings, needs_full_kernel
+from .statusbits import findings
+from .statusfilter import Impulse, filtered_status
 
 LARGEST = float_info.max
+StatusFrom = Literal["results", "impulse", "estimate"]
 
 
 def impact(
@@ -58,7 +61,7 @@ def impact(
     point: bool | Expression,
     infinite: bool,
     sign: float | None = None,
-    hurried: bool = False,
+    status_from: StatusFrom = "results",
 ) -> dict[str, Expression]:
     """The results of an impact by name, of the expressions of a scene's columns; beside them ``gn``
     and ``gt``, ``determinant``, which is zero where the equations have no solution, and
@@ -66,8 +69,8 @@ def impact(
 
     ``pivot``: True when MU = -10 throughout, False when nowhere, else the condition where it is.
     ``point``: the same for M = 4. ``infinite``: whether a body may be. ``sign``: what MU is
-    multiplied with instead of the sign rule. ``hurried``: STATUS has `statusbits.UNDECIDED` instead
-    of what takes the final velocities to decide.
+    multiplied with instead of the sign rule. ``status_from``: what STATUS is found from; with
+    "impulse" and "estimate" by a filter, which marks scenes `statusfilter.UNDECIDED`.
     """
     zero, absolute = table.constant(0.0), table.absolute
 
@@ -372,8 +375,9 @@ def impact(
         em=EM,
         friction_mu=sliding,
         # only signs and ratios of the pivot's impulse count: its numerators will do
+        forward=table.against(sliding, -(critical_numerator * sign_of_pivot)),
         pivot_pn=critical_denominator * sign_of_pivot,
-        pivot_pt=critical_numerator * sign_of_pivot,
+        limit=absolute(critical_numerator),
         gt=gt,
         turning=turning,
         yielding=yielding,
@@ -382,12 +386,32 @@ def impact(
     )
     if pivot is True:  # of friction none is at fault
         del status[Status.FRICTION_ABOVE_CRITICAL], status[Status.FRICTION_WRONG_DIRECTION]
-    if hurried:
-        del status[Status.SINGULAR], status[Status.NOT_FINITE]
     bits = [condition * float(bit) for bit, condition in status.items()]
-    if hurried:
-        repeated = needs_full_kernel(determinant, absolute_sum, lost, KI)
-        bits.append(repeated * float(UNDECIDED))
+    STATUS = sum(bits[1:], bits[0])
+    if status_from != "results":
+        impulse = None
+        if status_from == "impulse":
+            impulse = Impulse(determinant, PN, turning, yielding, lost)
+        STATUS = filtered_status(
+            table,
+            pivot,
+            impulse,
+            e=E,
+            em=EM,
+            mu=sliding,
+            da=DA,
+            db=DB,
+            wa=WA,
+            wb=WB,
+            dx=dx,
+            dy=dy,
+            gn=gn,
+            gt=gt,
+            arms=(an, at, bn, bt),
+            inverses=(R, ia, ib),
+            reduced=Ired,
+            initial=KI,
+        )
     return {
         "gn": gn,
         "gt": gt,
@@ -426,5 +450,5 @@ def impact(
         "EESB": equivalent_speed(mb, MA),
         "DVA": change_size(ma),
         "DVB": change_size(mb),
-        "STATUS": sum(bits[1:], bits[0]),
+        "STATUS": STATUS,
     }

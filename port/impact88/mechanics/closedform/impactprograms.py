@@ -15,7 +15,7 @@ from ...names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE
 from ..native.formulas import Expression, ExpressionTable
 from ..native.program import Program
 from .columns import INERTIAS, UNUSED_BY_POINTS
-from .impact import impact
+from .impact import StatusFrom, impact
 
 Kinds = tuple[str, ...]
 """Kind of each column, see `closedform.columns.Block`."""
@@ -38,12 +38,15 @@ CIRCLE = _CIRCLE.ctypes.data
 
 @lru_cache(maxsize=1024)
 def program_for(
-    kinds: Kinds, wanted: tuple[str, ...], sign: float | None = None, hurried: bool = False
+    kinds: Kinds,
+    wanted: tuple[str, ...],
+    sign: float | None = None,
+    status_from: StatusFrom = "results",
 ) -> Program:
     """Return the program that computes ``wanted`` of columns of these kinds.
 
-    ``sign``, ``hurried``: see `impact`. No result is a negative zero. A result that is not finite
-    is NaN, except that COND may be infinite.
+    ``sign``, ``status_from``: see `impact`. No result is a negative zero. A result that is not
+    finite is NaN, except that COND may be infinite.
     """
     table = ExpressionTable()
     kind = dict(zip(SCENE, kinds, strict=True))
@@ -60,19 +63,17 @@ def program_for(
     if kind["M"] == "mixed":
         point = table.equals(scene["M"], 4.0)
     infinite = any("inf" in text for text in kinds)
-    results = impact(table, scene, pivot, point, infinite, sign, hurried)
+    results = impact(table, scene, pivot, point, infinite, sign, status_from)
     endings = {"COND": "RESULT_OR_INFINITE", "STATUS": "BITS"}
     return Program({x: results[x] for x in wanted}, [endings.get(x, "RESULT") for x in wanted])
 
 
-def varying(pivot: bool, point: bool, infinite: bool = False, zeros: Iterable[str] = ()) -> Kinds:
-    """The kinds where every column varies but M, MU of pivots, and those that are 0; ``infinite``:
-    inertias may be."""
-    kinds = {"M": "4" if point else "6", **dict.fromkeys(zeros, "0")}
+def varying(mu: str, point: bool, infinite: bool = False, zeros: Iterable[str] = ()) -> Kinds:
+    """The kinds where every column varies but M, MU of pivots, and those that are 0; ``mu``: the
+    kind of MU; ``infinite``: inertias may be."""
+    kinds = {"M": "4" if point else "6", "MU": mu, **dict.fromkeys(zeros, "0")}
     if infinite:
         kinds |= dict.fromkeys(INERTIAS, "array with infinities")
-    if pivot:
-        kinds["MU"] = "pivot"
     if point:
         kinds |= dict.fromkeys(UNUSED_BY_POINTS, "unused")
     return tuple(kinds.get(name, "array") for name in SCENE)
@@ -80,47 +81,66 @@ def varying(pivot: bool, point: bool, infinite: bool = False, zeros: Iterable[st
 
 ALL = tuple(RESULTS)
 COLUMNS = tuple(SCENE)
-FORMULAS = "8793c187d9ea6cef"
+FORMULAS = "251a31ad04a15720"
 """Digest of the bodies' programs (`mechanics.kernelsource`): the library has the same formulas."""
 
+SOURCES: tuple[StatusFrom, ...] = ("estimate", "impulse")
+"""What filters find STATUS from, see `statusfilter`."""
+FILTERED = {"friction": "array", "pivot": "pivot", "mixed": "mixed"}
+"""Bodies that have filters, and the kind of MU in them."""
+FILTERS: dict[str, tuple[str, StatusFrom]] = {
+    f"{body}_status_from_{source}": (body, source) for body in FILTERED for source in SOURCES
+}
+"""Body of a filter -> the body it stands for, and what it finds STATUS from."""
 BODIES: dict[str, Kinds] = {
-    "friction": varying(False, False, True),
-    "pivot": varying(True, False, True),
-    "point": varying(False, True, True),
-    "point_pivot": varying(True, True, True),
-    "friction_without_moment": varying(False, False, True, ["EM"]),
-    "smooth": varying(False, False, True, ["MU"]),
-    "friction_without_arms": varying(False, False, True, ["DA", "DB"]),
-    "friction_hurried": varying(False, False, True),
-    "pivot_hurried": varying(True, False, True),
+    "friction": varying("array", False, True),
+    "pivot": varying("pivot", False, True),
+    "point": varying("array", True, True),
+    "point_pivot": varying("pivot", True, True),
+    "mixed": varying("mixed", False, True),
+    "friction_without_moment": varying("array", False, True, ["EM"]),
+    "smooth": varying("array", False, True, ["MU"]),
+    "friction_without_arms": varying("array", False, True, ["DA", "DB"]),
+    **{name: varying(FILTERED[body], False, True) for name, (body, _) in FILTERS.items()},
 }
 """Name -> kinds of columns of each body: the formulas of one kind of scene as a C function, made by
 `mechanics.kernelsource`. A kernel is a body that keeps some of its results.
 
-The first four serve all scenes. The next three are shorter, for calls all of whose scenes have a 0
-in these columns. The hurried bodies compute STATUS without the final velocities, and mark the
-scenes that a full kernel has to compute again (see `statusbits`)."""
-HURRIED = {"friction": "friction_hurried", "pivot": "pivot_hurried"}
-_MOTION = ("VC", "VS", "XA", "YA", "XB", "YB", "KI", "MUP")
+The first four serve all scenes, the next one friction and pivots beside each other. Three are
+shorter, for calls all of whose scenes have a 0 in these columns. The filters compute STATUS in less
+time, but for scenes that they mark for the full kernel."""
+_BEFORE = ("VC", "VS", "XA", "YA", "XB", "YB", "KI", "MUP")
 _IMPULSES = ("PN", "PT", "PM", "MUP", "DVA", "DVB", "VC", "VS")
-_WITH_STATUS = (("STATUS",), ("LOSS", "DVA", "DVB", "STATUS"))
+_ENERGIES = ("ELN", "ELT", "ELM")
+_CRUSH = ("EESA", "EESB")
+_CONTACTS = ("XAF", "YAF", "XBF", "YBF")
+_WITH_STATUS = ("LOSS", "DVA", "DVB", "STATUS")
 _SETS = (
     FINAL_VELOCITIES,
-    _MOTION,
+    _BEFORE,
     _IMPULSES,
-    ("LOSS", "KI", "ELN", "ELT", "ELM", "EESA", "EESB", *_IMPULSES),
+    ("LOSS", "KI"),
+    _ENERGIES,
+    _CRUSH,
+    ("LOSS", "KI", *_ENERGIES, *_CRUSH, *_IMPULSES),
     ("MUC", "MUP"),
     ("COND", "MUP"),
-    ("XAF", "YAF", "XBF", "YBF", *FINAL_VELOCITIES),
+    _CONTACTS,
+    (*_CONTACTS, *FINAL_VELOCITIES),
+    ("KI", "KF"),
     ("KI", "KF", *FINAL_VELOCITIES),
-    *_WITH_STATUS,
-    ("LOSS", "DVA", "DVB", "STATUS", *FINAL_VELOCITIES),
+    ("STATUS",),
+    _WITH_STATUS,
+    (*_WITH_STATUS, *FINAL_VELOCITIES),
     ALL,
 )
 KERNELS = [
-    *((body, results) for body in ("friction", "pivot") for results in _SETS),
+    *((body, results) for body in ("friction", "pivot", "mixed") for results in _SETS),
     *((body, results) for body in ("point", "point_pivot") for results in (FINAL_VELOCITIES, ALL)),
-    *((body, FINAL_VELOCITIES) for body in list(BODIES)[4:7]),
-    *((body, results) for body in HURRIED.values() for results in _WITH_STATUS),
+    *((body, FINAL_VELOCITIES) for body in list(BODIES)[5:8]),
+    *(
+        (body, ("STATUS",) if source == "estimate" else _WITH_STATUS)
+        for body, (_, source) in FILTERS.items()
+    ),
 ]
 """Body and results of each kernel, the cheapest first: the first with all results wanted is run."""

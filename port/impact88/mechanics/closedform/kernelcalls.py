@@ -3,6 +3,7 @@
 A `Call` is the argument block of the C function; one thread uses it at a time.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
@@ -14,18 +15,19 @@ from .. import native
 from ..native.processors import run_in_threads, workers
 from ..native.program import Addresses
 from .columns import INERTIAS, ORDINARY
-from .impactprograms import ALL, BODIES, CIRCLE, COLUMNS, FORMULAS, HURRIED
-from .statusbits import MODERATE
+from .impactprograms import ALL, BODIES, CIRCLE, COLUMNS, FILTERS, FORMULAS
+from .statusfilter import LARGEST_E, MODERATE
 
 MIN_SCENES_PER_THREAD = 32768
 """Chosen so that starting a thread takes a fifth of the half millisecond that its scenes take; with
 half as many it takes two fifths, with twice as many calls with 65,536 scenes have one thread."""
 _LARGEST = np.finfo(np.float64).max
 # least and largest number of each column that needs no look at single scenes: by all kernels, and
-# by the hurried ones
+# by filters
 _LIMITS = np.array([{**ORDINARY, "MU": (-_LARGEST, _LARGEST)}[name] for name in COLUMNS])
 _SIZES = np.array([(-MODERATE, MODERATE)] * len(COLUMNS))
 _SIZES[[COLUMNS.index(name) for name in INERTIAS], 0] = 1 / MODERATE
+_SIZES[COLUMNS.index("E")] = -LARGEST_E, LARGEST_E
 _MODERATE = np.stack([np.maximum(_LIMITS, _SIZES)[:, 0], np.minimum(_LIMITS, _SIZES)[:, 1]], axis=1)
 _WITHOUT = {
     "friction_without_moment": (COLUMNS.index("EM"),),
@@ -33,7 +35,11 @@ _WITHOUT = {
     "friction_without_arms": (COLUMNS.index("DA"), COLUMNS.index("DB")),
 }
 """Body -> the columns that are 0 in it; see `impactprograms.BODIES`."""
-_KINDS = list(BODIES)[:4]
+COLLECTING = 500
+"""Operations that collecting a scene, and putting its results in place, takes as long as."""
+SCANNING = 40
+"""The same for looking at a scene of a strip in which there are scenes to collect."""
+_KINDS = list(BODIES)[:5]
 _KERNELS = 2 * len(COLUMNS) + len(ALL)
 """Index of the first kernel in the argument block."""
 
@@ -54,7 +60,7 @@ def _of_these_formulas() -> bool:
 @lru_cache(maxsize=1024)
 def _kernels(wanted: tuple[str, ...], without: str | None) -> list[int]:
     """Return the addresses of the kernels that compute ``wanted``, one for each kind of scene, then
-    those of the hurried ones (see `statusbits`), 0 where there is none.
+    those of the filters (see `statusfilter`), 0 where there is none; last `_mixed_from`.
 
     ``without``: body for scenes with friction in which some columns are 0.
     """
@@ -63,11 +69,30 @@ def _kernels(wanted: tuple[str, ...], without: str | None) -> list[int]:
     kernels = [kernel_of(bodies.index(kind), bits) for kind in _KINDS]
     if without is not None:
         kernels[0] = kernel_of(bodies.index(without), bits) or kernels[0]
-    hurried_kernels = [0] * len(_KINDS)
+    filters = [0] * len(_KINDS)
     if "STATUS" in wanted:
-        for kind, body in HURRIED.items():
-            hurried_kernels[_KINDS.index(kind)] = kernel_of(bodies.index(body), bits) or 0
-    return kernels + hurried_kernels
+        for body, (kind, _) in FILTERS.items():
+            place = _KINDS.index(kind)
+            filters[place] = filters[place] or kernel_of(bodies.index(body), bits) or 0
+    return kernels + filters + _mixed_from(bits)
+
+
+def _mixed_from(bits: int) -> list[int]:
+    """Return the least number of pivots among a strip's scenes with friction, and of such scenes
+    among pivots, for which the kernel that computes both for every scene costs less than collecting
+    those of the rarer kind."""
+    cost_of, bodies = native.library.cost_of, list(BODIES)
+    costs = {}
+    for kind in ("friction", "pivot", "mixed"):
+        filters = [body for body, (of, _) in FILTERS.items() if of == kind]
+        found = (cost_of(bodies.index(body), bits) for body in [*filters, kind])
+        costs[kind] = next(filter(None, found))
+    least = []
+    for common, rarer in (("friction", "pivot"), ("pivot", "friction")):
+        more = costs["mixed"] - costs[common] - SCANNING
+        share = more / (COLLECTING + costs[rarer])
+        least.append(max(1, math.ceil(share * native.STRIP)))
+    return least
 
 
 class Call:
@@ -76,7 +101,7 @@ class Call:
 
     def __init__(self, wanted: tuple[str, ...]) -> None:
         self._wanted = wanted
-        self.block = np.zeros(_KERNELS + 2 * len(_KINDS) + 3, np.int64)
+        self.block = np.zeros(_KERNELS + 2 * len(_KINDS) + 5, np.int64)
         self._at = self.block.ctypes.data
         self.columns = self.block[: len(COLUMNS)]
         self.steps = self.block[len(COLUMNS) : 2 * len(COLUMNS)]

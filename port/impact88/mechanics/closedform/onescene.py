@@ -107,4 +107,6 @@ def _function(
     names = [name for name in NAMES if not (point and name in UNUSED_BY_POINTS)]
     unusable = [f"not {name} > 0.0" for name in INERTIAS if name in names]
     unusable.append(f"not isfinite({' + '.join(names)})")
-    return compile_function(program_for(varying(pivot, point), wanted), " or ".join(unusable))
+    return compile_function(
+        program_for(varying("pivot" if pivot else "array", point), wanted), " or ".join(unusable)
+    )

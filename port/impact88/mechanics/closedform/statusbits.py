@@ -2,10 +2,6 @@
 
 The rules are comparisons joined by & | ~, so that the same code serves arrays and `Expression`s. A
 comparison with NaN is false: a bit that cannot be decided stays clear.
-
-A *hurried* kernel is a compiled kernel that computes STATUS without the final velocities, which
-takes less time. It does not decide SINGULAR and NOT_FINITE: it sets `UNDECIDED` in the few
-scenes where these may be set, and those scenes are computed again by the full kernel.
 """
 
 from math import inf
@@ -25,11 +21,6 @@ last digit anyone gives."""
 SIDE_TOLERANCE = 1e-9
 """A center this far beyond the contact plane, as a fraction of its distance to the contact point,
 is still on its own side."""
-MODERATE = 1e15
-"""Largest size of a scene's numbers for a hurried kernel; the least inertia is its inverse."""
-UNDECIDED = 0x8000
-"""Bit beside STATUS's, set by a hurried kernel where `needs_full_kernel` holds; no caller sees
-it."""
 LISTING_MISREADS = PIVOT
 """Line 510 takes any MU up to this for a pivot."""
 
@@ -38,8 +29,9 @@ def friction_faults(
     gn: Any,
     pn: Any,
     mu: Any,
+    forward: Any,
     pivot_pn: Any,
-    pivot_pt: Any,
+    limit: Any,
     gt: Any = 0.0,
     turning: Any = 0.0,
     yielding: Any = 0.0,
@@ -47,8 +39,9 @@ def friction_faults(
     """Return (above critical, wrong direction): where friction cannot make an impact.
 
     ``gn``: normal relative velocity before, ``pn``: normal impulse on A, ``mu``: P_t/P_n with its
-    sign, 0 for a pivot; ``pivot_pn``, ``pivot_pt``: the impulse on A if the sliding ended at
-    separation; ``gt``, ``turning``, ``yielding``: see `slides_forth_and_back`. They broadcast.
+    sign, 0 for a pivot; ``forward``: the same with the sign of the pivot's P_t; ``pivot_pn``,
+    ``limit``: P_n and the size of P_t on A if the sliding ended at separation; ``gt``, ``turning``,
+    ``yielding``: see `slides_forth_and_back`. They broadcast.
 
     In an approach (gn < 0, Pn > 0) friction is admissible from 0 to what ends the sliding, the
     pivot's P_t/P_n, MUC; with more it is reversed. The direction of the sliding before the impact
@@ -57,18 +50,24 @@ def friction_faults(
     would pull, no friction ends the sliding, and any in the pivot's direction is admissible. Where
     MUC is 0, none is admissible.
     """
-    tolerance = FRICTION_TOLERANCE
-    approach, pivot_pushes, down = (gn < 0) & (pn > 0), pivot_pn > 0, pivot_pt < 0
-    limit = abs(pivot_pt)
-    # mu in the direction of pivot_pt, less the tolerance, and times pivot_pn
-    forward_down, forward_up = (-mu - tolerance) * pivot_pn, (mu - tolerance) * pivot_pn
-    backward = approach & (down & (mu > tolerance) | ~down & (mu < -tolerance))
-    frictionless = pivot_pushes & (limit <= tolerance * pivot_pn)
-    above = approach & pivot_pushes & (down & (forward_down > limit) | ~down & (forward_up > limit))
-    above = above | backward & frictionless
-    wrong = backward & ~frictionless & (limit > 0)
+    above, wrong = one_way_faults(gn, pn, forward, pivot_pn, limit)
     possible = slides_forth_and_back(pn, mu, gt, turning, yielding)
     return above & ~possible, wrong & ~possible
+
+
+def forward_friction(mu: Any, pivot_pt: Any) -> Any:
+    """Return mu along the pivot's P_t, ``pivot_pt``; of arrays."""
+    return mu * (1 - 2 * (pivot_pt < 0))
+
+
+def one_way_faults(gn: Any, pn: Any, forward: Any, pivot_pn: Any, limit: Any) -> tuple[Any, Any]:
+    """Return (above critical, wrong direction) of friction that acts one way throughout; the
+    arguments are those of `friction_faults`."""
+    approach, pivot_pushes = (gn < 0) & (pn > 0), pivot_pn > 0
+    backward = approach & (forward < -FRICTION_TOLERANCE)
+    frictionless = pivot_pushes & (limit <= FRICTION_TOLERANCE * pivot_pn)
+    above = approach & pivot_pushes & ((forward - FRICTION_TOLERANCE) * pivot_pn > limit)
+    return above | backward & frictionless, backward & ~frictionless & (limit > 0)
 
 
 def slides_forth_and_back(pn: Any, mu: Any, gt: Any, turning: Any, yielding: Any) -> Any:
@@ -111,8 +110,9 @@ def findings(
     e: Any,
     em: Any,
     friction_mu: Any,
+    forward: Any,
     pivot_pn: Any,
-    pivot_pt: Any,
+    limit: Any,
     gt: Any,
     turning: Any,
     yielding: Any,
@@ -126,11 +126,11 @@ def findings(
     ``arm_a``, ``arm_b``: the tangential lever arms, minus the distances of A's and B's center from
     the contact plane, each towards its own side; ``da``, ``db``: the distances to the contact
     point; ``twice_lost`` and ``initial``: energies; ``friction_mu``: MU with its sign, 0 for a
-    pivot; ``pivot_pn``, ``pivot_pt``, ``gt``, ``turning``, ``yielding``: see `friction_faults`;
-    ``condition``: COND. They broadcast.
+    pivot; ``forward``, ``pivot_pn``, ``limit``, ``gt``, ``turning``, ``yielding``: see
+    `friction_faults`; ``condition``: COND. They broadcast.
     """
     sliding = gt, turning, yielding
-    above, wrong = friction_faults(gn, pn, friction_mu, pivot_pn, pivot_pt, *sliding)
+    above, wrong = friction_faults(gn, pn, friction_mu, forward, pivot_pn, limit, *sliding)
     # velocities that cancel in the sum are infinite in the energies and their quotients
     finite = abs(sum_of_velocities) < inf
     finite = finite & (abs(initial - 0.5 * twice_lost) < inf) & (abs(twice_lost / initial) < inf)
@@ -149,19 +149,6 @@ def findings(
         Status.FRICTION_ABOVE_CRITICAL: above,
         Status.FRICTION_WRONG_DIRECTION: wrong,
     }
-
-
-def needs_full_kernel(determinant: Any, absolute_sum: Any, twice_lost: Any, initial: Any) -> Any:
-    """Return where SINGULAR and NOT_FINITE are not certain to be clear, without the velocities.
-
-    ``absolute_sum``: the determinant's with absolute values, COND/3 times its size. The scene's
-    numbers are at most `MODERATE` in size, inertias at least its inverse (or infinite, of a rigid
-    barrier). No product in a velocity's numerator then exceeds 1e160, so that a determinant above
-    1e-100 leaves every velocity finite; the last comparison decides on the energies.
-    """
-    size = abs(determinant)
-    regular = absolute_sum < (SINGULAR_FROM / 6) * size
-    return ~((size > 1e-100) & regular & (abs(twice_lost) < 1e150 * initial))
 
 
 def bits(conditions: dict[Status, Any]) -> Any:

@@ -41,6 +41,7 @@ def _declare_functions(loaded: ctypes.CDLL) -> ctypes.CDLL:
     for function in (loaded.solve_prepared, loaded.solve_prepared_part, loaded.solve_bound):
         function.restype = None
     loaded.kernel_of.argtypes, loaded.kernel_of.restype = [number, ctypes.c_uint64], address
+    loaded.cost_of.argtypes, loaded.cost_of.restype = [number, ctypes.c_uint64], number
     loaded.formulas.restype = ctypes.c_char_p
     loaded.read_numbers.argtypes = [ctypes.c_char_p, number, address, address]
     loaded.write_numbers.argtypes = [address, number, address, address]

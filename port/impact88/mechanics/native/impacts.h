@@ -6,26 +6,40 @@
    are collected until they fill a strip, then computed by their own kernel, and put in place. A scene
    whose numbers cannot be used is NaN. Constants are strips filled once. */
 
-#define EACH_OF_EIGHTS INDEPENDENT for (int64_t i = 0; i < 8 * eights; i++)
+/* Eight scenes fill a cache line of each column: one vector, or a few, and one line to fetch. */
+#define EACH_EIGHT for (int64_t eight = 0; eight < 8 * eights; eight += 8)
+#define EACH_OF_EIGHT INDEPENDENT for (int64_t i = eight; i < eight + 8; i++)
+#ifdef __GNUC__
+#define FETCH(name) __builtin_prefetch(ahead[AT_##name] + eight, 0, 2);
+#define FETCH_RESULT(address) __builtin_prefetch(address, 1, 2)
+#else
+#define FETCH(name)
+#define FETCH_RESULT(address)
+#endif
+
+/* ``ahead``: the columns of later scenes, fetched into the second-level cache while these are computed. */
 typedef void (*kernel)(
-    const double *const *in, double *const *out, const circle *circle, int64_t eights);
+    const double *const *in, double *const *out, const circle *circle, const double *const *ahead,
+    int64_t eights);
 
 #include "kernels.h"
 
 /* A body with the results it keeps: the compiler leaves out what these do not need. */
-#define KERNEL(number, kind, body, results) \
+#define KERNEL(number, kind, body, results, cost) \
     static CLONES void kernel_##number( \
-        const double *const *in, double *const *out, const circle *circle, int64_t eights) \
+        const double *const *in, double *const *out, const circle *circle, \
+        const double *const *ahead, int64_t eights) \
     { \
-        body(in, out, circle, eights, results##u); \
+        body(in, out, circle, ahead, eights, results##u); \
     }
 KERNELS(KERNEL)
 
-#define ROW(number, kind, body, results) {kind, results##u, kernel_##number},
+#define ROW(number, kind, body, results, cost) {kind, results##u, kernel_##number, cost},
 static const struct {
     int64_t body;
     uint64_t results;
     kernel run;
+    int64_t cost;
 } kernels[] = {KERNELS(ROW)};
 
 /* The first kernel of a body that has all results wanted, or 0. */
@@ -33,6 +47,14 @@ EXPORT kernel kernel_of(int64_t body, uint64_t wanted)
 {
     for (size_t k = 0; k < sizeof kernels / sizeof *kernels; k++)
         if (kernels[k].body == body && !(wanted & ~kernels[k].results)) return kernels[k].run;
+    return 0;
+}
+
+/* Its cost in operations, or 0. */
+EXPORT int64_t cost_of(int64_t body, uint64_t wanted)
+{
+    for (size_t k = 0; k < sizeof kernels / sizeof *kernels; k++)
+        if (kernels[k].body == body && !(wanted & ~kernels[k].results)) return kernels[k].cost;
     return 0;
 }
 
@@ -46,6 +68,12 @@ EXPORT const char *formulas(void) { return FORMULAS; }
 #define AT_ONCE 16
 #endif
 
+/* Strips of results fetched ahead of those that are written. */
+#define RESULTS_AHEAD 4
+
+/* Strips that go to the full kernels after one in which a filter left too many scenes undecided. */
+#define UNFILTERED 15
+
 #define UNUSED_BY_POINTS \
     (1u << AT_DA | 1u << AT_DB | 1u << AT_PA | 1u << AT_PB | 1u << AT_TA | 1u << AT_TB \
      | 1u << AT_IA | 1u << AT_IB | 1u << AT_EM)
@@ -53,16 +81,18 @@ EXPORT const char *formulas(void) { return FORMULAS; }
 #define ANGLES (1u << AT_GA | 1u << AT_PA | 1u << AT_PB | 1u << AT_TA | 1u << AT_TB)
 #define LARGE_ANGLE 720.0 /* as in closedform/written.py */
 #define NOT_FINITE 64     /* of STATUS */
-enum kind { FRICTION, PIVOT, POINT, POINT_PIVOT, REFUSED, KINDS };
+/* MIXED: the kernel of friction and pivots beside each other, which is no scene's kind. */
+enum kind { FRICTION, PIVOT, POINT, POINT_PIVOT, REFUSED, KINDS, MIXED = REFUSED };
 
 /* ``column``: a number for each scene, or one for all where ``step`` is 0. ``result``: 0 where it is
    not wanted. ``limits``: the least and the most of each column that is ordinary; ``moderate``: that a
-   hurried kernel takes. */
+   filter takes. */
 typedef struct {
     const double *column[COLUMNS];
     int64_t step[COLUMNS];
     void *result[RESULTS];
-    kernel kernels[REFUSED], hurried[REFUSED];
+    kernel kernels[KINDS], filters[KINDS];
+    int64_t mixed_from[2];
     const double *limits, *moderate;
     const circle *circle;
 } impacts;
@@ -154,8 +184,27 @@ static int64_t find_odd_constants(
     return bodies == 3;
 }
 
+/* The kernel of a kind over ``eights``, of which ``many`` scenes count: its filter where ``skipped`` is
+   given and 0. More than ``bearable`` scenes that this leaves undecided go to the full kernel at once,
+   and so do the next strips. How many are left. */
+static inline ALWAYS_INLINE int64_t run_kernel(
+    const impacts *c, int k, int64_t *skipped, int64_t bearable, const double *const *in,
+    double *const *out, const double *const *ahead, int64_t eights, int64_t many)
+{
+    int64_t undecided = 0;
+    if (skipped && c->filters[k] && !skipped[k]) {
+        c->filters[k](in, out, c->circle, ahead, eights);
+        for (int64_t i = 0; i < many; i++) undecided += out[STATUS_AT][i] >= UNDECIDED;
+        if (undecided <= bearable) return undecided;
+        skipped[k] = UNFILTERED;
+    } else if (skipped && skipped[k])
+        skipped[k]--;
+    c->kernels[k](in, out, c->circle, ahead, eights);
+    return 0;
+}
+
 /* Scenes of one kind from anywhere, computed once there are enough of them: copied side by side while
-   their strip is in cache. ``slowly``: not by a hurried kernel. */
+   their strip is in cache. ``slowly``: not by a filter. */
 typedef struct {
     int64_t many, slowly, place[2 * STRIP];
     double copy[COLUMNS][2 * STRIP];
@@ -201,12 +250,8 @@ static inline ALWAYS_INLINE void solve_collected(
         for (int64_t i = n; i < padded; i++) y[i] = y[0]; /* only where none are left */
     }
     for (int r = 0; r < RESULTS; r++) finds[r] = found[r];
-    int64_t undecided = of->slowly || !c->hurried[k];
-    if (!undecided) {
-        c->hurried[k](copies, finds, c->circle, padded / 8);
-        for (int64_t i = 0; i < n; i++) undecided |= found[STATUS_AT][i] >= UNDECIDED;
-    }
-    if (undecided) c->kernels[k](copies, finds, c->circle, padded / 8);
+    int64_t never[KINDS] = {0};
+    run_kernel(c, k, of->slowly ? 0 : never, 0, copies, finds, copies, padded / 8, n);
     for (int r = 0; r < RESULTS; r++) {
         if (!c->result[r]) continue;
         if (r == STATUS_AT) {
@@ -230,10 +275,11 @@ EXPORT CLONES void solve_impacts(const impacts *its, int64_t start, int64_t stop
 {
     const impacts c = *its;
     double fixed[COLUMNS][STRIP], found[RESULTS][STRIP];
-    const double *in[COLUMNS], *copies[COLUMNS];
+    const double *in[COLUMNS], *copies[COLUMNS], *ahead[COLUMNS];
     double near[COLUMNS][AT_ONCE * STRIP + 8], *out[RESULTS];
     int64_t together = stop - start <= AT_ONCE * STRIP, first = start;
     collection collected[REFUSED];
+    int64_t skipped[KINDS] = {0};
     int64_t large_always, large_somewhere = 0, large, odd_always, odd, looked = start, only_points;
     int64_t lanes = stop - start < STRIP ? (stop - start + 7) / 8 * 8 : STRIP;
 
@@ -245,11 +291,11 @@ EXPORT CLONES void solve_impacts(const impacts *its, int64_t start, int64_t stop
         for (int64_t i = 0; i < lanes; i++) fixed[k][i] = y;
         in[k] = copies[k] = fixed[k];
     }
-    /* where a hurried kernel may run, what is large is looked for first, then what is odd among it */
-    int64_t hurry = c.hurried[FRICTION] || c.hurried[PIVOT];
-    const double *limits = hurry ? c.moderate : c.limits;
+    /* where a filter may run, what is large is looked for first, then what is odd among it */
+    int64_t filtering = c.filters[FRICTION] || c.filters[PIVOT];
+    const double *limits = filtering ? c.moderate : c.limits;
     large_always = find_odd_constants(&c, limits, only_points, fixed);
-    odd_always = hurry ? find_odd_constants(&c, c.limits, only_points, fixed) : large_always;
+    odd_always = filtering ? find_odd_constants(&c, c.limits, only_points, fixed) : large_always;
     for (int k = 0; k < REFUSED; k++) collected[k].many = collected[k].slowly = 0;
 
     for (int64_t at = start; at < stop; at += STRIP) {
@@ -263,12 +309,18 @@ EXPORT CLONES void solve_impacts(const impacts *its, int64_t start, int64_t stop
         }
         large = large_always || (large_somewhere && find_odd(&c, limits, only_points, at, at + many));
         odd = large;
-        if (large && hurry) odd = odd_always || find_odd(&c, c.limits, only_points, at, at + many);
+        if (large && filtering) odd = odd_always || find_odd(&c, c.limits, only_points, at, at + many);
         for (int k = 0; k < COLUMNS; k++)
             if (c.step[k]) in[k] = together ? c.column[k] + at : near[k] + (at - first);
+        int64_t later = at + AT_ONCE * STRIP;
+        for (int k = 0; k < COLUMNS; k++)
+            ahead[k] = c.step[k] && !together && later + STRIP <= stop ? c.column[k] + later : in[k];
         /* what is not wanted goes where nobody looks */
         for (int r = 0; r < RESULTS; r++)
             out[r] = c.result[r] && r != STATUS_AT ? (double *)c.result[r] + at : found[r];
+        for (int r = 0; r < RESULTS; r++)
+            if (c.result[r] && r != STATUS_AT && !together && at + (RESULTS_AHEAD + 1) * STRIP <= stop)
+                for (int64_t i = 0; i < STRIP; i += 8) FETCH_RESULT(out[r] + RESULTS_AHEAD * STRIP + i);
         uint16_t *status = c.result[STATUS_AT] ? (uint16_t *)c.result[STATUS_AT] + at : 0;
 
         int64_t kind[STRIP], turned[STRIP], numbers[KINDS] = {0}, pivots = 0, most = FRICTION;
@@ -304,25 +356,20 @@ EXPORT CLONES void solve_impacts(const impacts *its, int64_t start, int64_t stop
             if (numbers[k] > numbers[most]) most = k;
 
         int64_t done = numbers[most] ? 8 * whole : 0, undecided = 0;
-        if (done) {
-            int64_t hurried = !large && c.hurried[most];
-            (hurried ? c.hurried : c.kernels)[most](in, out, c.circle, whole);
-            for (int64_t i = 0; i < done && status; i++) status[i] = BITS(found[STATUS_AT][i]);
-            for (int64_t i = 0; i < done && hurried; i++) undecided += status[i] / UNDECIDED;
-            if (undecided > STRIP / 8) {
-                c.kernels[most](in, out, c.circle, whole);
-                for (int64_t i = 0; i < done; i++) status[i] = BITS(found[STATUS_AT][i]);
-                undecided = 0;
-            }
-        }
+        int64_t rarer = 2 * pivots > many, mixed = !apart && !only_points && done == many;
+        mixed = mixed && (rarer ? many - pivots : pivots) >= c.mixed_from[rarer];
+        if (done)
+            undecided = run_kernel(
+                &c, mixed ? MIXED : most, large ? 0 : skipped, STRIP / 8, in, out, ahead, whole, done);
+        for (int64_t i = 0; i < done && status; i++) status[i] = BITS(found[STATUS_AT][i]);
         uint8_t flags[STRIP + 8] = {0};
-        if (undecided) {
+        for (int k = most & 2; undecided && k < (most & 2) + 2; k++) {
             for (int64_t i = 0; i < done; i++) {
-                int64_t here = apart ? kind[i] == most : (in[AT_MU][i] == -10) == (most & 1);
-                flags[i] = here & (status[i] / UNDECIDED);
+                int64_t here = apart ? kind[i] == k : (in[AT_MU][i] == -10) == (k & 1);
+                flags[i] = here & (k == most || mixed) & (status[i] / UNDECIDED);
             }
-            collect(&c, collected + most, in, flags, at, done);
-            collected[most].slowly = 1;
+            collect(&c, collected + k, in, flags, at, done);
+            collected[k].slowly = 1;
         }
         /* the rest of the strip, and what is of another kind */
         if (apart) {
@@ -338,7 +385,7 @@ EXPORT CLONES void solve_impacts(const impacts *its, int64_t start, int64_t stop
                     if (r == STATUS_AT) status[i] = NOT_FINITE;
                     else out[r][i] = NAN;
                 }
-        } else {
+        } else if (!mixed) {
             for (int kind_of_mu = 0; kind_of_mu < 2; kind_of_mu++) {
                 int k = (most & 2) | kind_of_mu;
                 int64_t from = k == most ? done : 0;
