@@ -35,7 +35,15 @@ from ..tables.cells import (
 from ..tables.remarks import Remark, remarks
 from ..tables.rows import BadCell, Rows, shortest
 from ..tables.sweep import estimates, read_ranges, read_sweep
-from ..tables.table import format_of, may_wait, open_reader, open_writer, read_ahead, write_behind
+from ..tables.table import (
+    format_of,
+    is_short,
+    may_wait,
+    open_reader,
+    open_writer,
+    read_ahead,
+    write_behind,
+)
 from . import options
 
 Results = dict[str, NDArray[Any]]
@@ -116,9 +124,10 @@ def solve_table(args: options.Args) -> int:
         write = stack.enter_context(writer)
         complain = stack.enter_context(_complaints(args.errors))
         meter = stack.enter_context(progress(source.total, "solve", "B"))
-        if not may_wait(args.output):
+        in_threads = bool(swept) if one_scene else not is_short(path)
+        if in_threads and not may_wait(args.output):
             write = stack.enter_context(write_behind(write))
-        if not may_wait(path or ""):
+        if in_threads and not may_wait(path or ""):
             blocks = stack.enter_context(read_ahead(blocks))
         units.based = constants
         noted_names = [*case.at_nominal().remarks] if one_scene else []

@@ -27,15 +27,17 @@ examples:
 exit status: 0 identical; 1 any other verdict; 2 unreadable; of several files the highest
 """
 
+from __future__ import annotations
+
 import sys
 
 from .. import files
 from ..errors import UserError, note
-from ..verification.reading.plaintext import decode
-from ..verification.reading.printout import LARGEST_FILE
-from ..verification.reporting.examination import Examined, Verdict, examine
-from ..verification.reporting.verification import lines
 from . import options
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from ..verification.reporting.examination import Examined
 
 _ON_REPORT = ("date", "case", "examiner")
 
@@ -73,6 +75,10 @@ def main(args: options.Args) -> int:
         from ..report.frame import check_page_name
 
         check_page_name(args.report)
+    from ..verification.reading.plaintext import decode
+    from ..verification.reading.printout import LARGEST_FILE
+    from ..verification.reporting.examination import Verdict, examine
+
     has_inputs = args.scene or args.sample or args.set
     inputs = dict(options.one_scene(args)) if has_inputs else None
     copy = None
@@ -105,6 +111,8 @@ def _show(file: Examined, args: options.Args) -> None:
         for record in file.as_json():
             options.print_json("verify", record)
     else:
+        from ..verification.reporting.verification import lines
+
         for result in file.results:
             print("\n".join(lines(result, args.brief)))
     sys.stdout.flush()

@@ -95,6 +95,16 @@ def may_wait(path: str) -> bool:
     return path == "-" or (os.path.exists(path) and not os.path.isfile(path))
 
 
+WORTH_THREADS = 1 << 20
+"""Bytes of a file from which threads that read ahead and write behind are worth importing them,
+which takes 5 ms."""
+
+
+def is_short(path: str) -> bool:
+    """Return whether ``path`` is a file too short for threads."""
+    return os.path.isfile(path) and os.path.getsize(path) < WORTH_THREADS
+
+
 @contextmanager
 def read_ahead(blocks: Iterable[Any]) -> Iterator[Iterator[Any]]:
     """Yield the blocks, each read by a thread while the one before it is in use.
@@ -102,7 +112,7 @@ def read_ahead(blocks: Iterable[Any]) -> Iterator[Iterator[Any]]:
     An error of reading is raised when its block is asked for. pyarrow and numpy release the GIL, so
     that a second processor is of use.
     """
-    from concurrent.futures import ThreadPoolExecutor  # 8 ms, which a short table is spared
+    from concurrent.futures import ThreadPoolExecutor
 
     iterator = iter(blocks)
     with ThreadPoolExecutor(1, "read") as pool:

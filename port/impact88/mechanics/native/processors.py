@@ -1,7 +1,6 @@
 """Number of usable processors, and work divided among threads."""
 
 import os
-import threading
 from collections.abc import Callable
 
 
@@ -20,6 +19,11 @@ def workers(count: int, threads: int | None, share: int) -> int:
 def run_in_threads(work: Callable[[int, int], None], count: int, workers: int) -> None:
     """Call ``work(start, stop)`` for all of ``count`` scenes, an equal part on each thread. Raises
     the first exception of any of them."""
+    if workers == 1:
+        work(0, count)
+        return
+    import threading
+
     size = -(-count // workers)
     failures: list[BaseException] = []
 
