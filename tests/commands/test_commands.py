@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 
@@ -436,6 +437,67 @@ def test_running_the_1988_program_loads_little() -> None:
     loads += "print(*sorted(set(sys.modules) - known))"
     done = subprocess.run([sys.executable, "-c", loads], capture_output=True, text=True, check=True)
     assert not {"numpy", "matplotlib", "typing", "dataclasses"} & set(done.stdout.split())
+
+
+NEVER = ("pathlib", "urllib.parse", "concurrent.futures", "threading", "importlib.resources")
+"""Modules of the standard library that no command of `NOT_IMPORTED` needs."""
+NOT_IMPORTED = {
+    "run --sample 1": ("numpy", *NEVER),
+    "run plain.toml": ("numpy", "fractions", "impact88.collision.units", *NEVER),
+    "verify page.txt": ("fractions", "glob", "impact88.collision.units", *NEVER),
+    "figure scene --sample 1 -o scene.svg": (
+        "matplotlib",
+        "impact88.figures.charts",
+        "impact88.tables",
+        *NEVER,
+    ),
+    "solve one.csv": ("pyarrow", "pandas", *NEVER),
+    "help verify": ("numpy", *NEVER),
+}
+"""Command -> modules that it does without: each takes part of a short command's time."""
+
+
+@pytest.mark.parametrize("words", NOT_IMPORTED)
+def test_a_command_imports_nothing_that_it_does_without(tmp_path: Path, words: str) -> None:
+    scene = sample(1)
+    (tmp_path / "page.txt").write_text(impact88.run(scene).page)
+    (tmp_path / "plain.toml").write_text("".join(f'{n} = "{text}"\n' for n, text in scene.items()))
+    (tmp_path / "one.csv").write_text(f"{','.join(scene)}\n{','.join(scene.values())}\n")
+    code = (
+        "import sys\n"
+        "from impact88.commands.cli import main\n"
+        "known = set(sys.modules)\n"
+        "status = main(sys.argv[1:])\n"
+        "print(status, *sorted(set(sys.modules) - known), file=sys.stderr)\n"
+    )
+    command_line = [sys.executable, "-c", code, *words.split()]
+    done = subprocess.run(command_line, cwd=tmp_path, capture_output=True, text=True, check=True)
+    status, *imported = done.stderr.splitlines()[-1].split()
+    assert status == "0"
+    of_numpy = _imported_by_numpy() - {"numpy"} if "numpy" in imported else set()
+    assert not set(NOT_IMPORTED[words]) & set(imported) - of_numpy
+
+
+@cache
+def _imported_by_numpy() -> set[str]:
+    code = "import numpy, sys; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return set(done.stdout.split())
+
+
+def test_garbage_of_a_process_of_its_own_is_collected_seldom() -> None:
+    """And that of a caller within Python as the caller has it."""
+    code = (
+        "import gc, sys\n"
+        "from impact88.commands.cli import main\n"
+        "usual = gc.get_threshold()\n"
+        "main(['--version'])\n"
+        "assert gc.get_threshold() == usual and not gc.get_freeze_count()\n"
+        "sys.argv = ['impact88', '--version']\n"
+        "main()\n"
+        "assert gc.get_threshold()[0] > usual[0] and gc.get_freeze_count()\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
 
 
 def test_help_of_a_command_and_the_version_in_short() -> None:
