@@ -23,23 +23,31 @@ of gyration, or one body far lighter than the other. What of the spins is left a
 X = Ired (b omega_a/Ib - a omega_b/Ia), and a x b = an bt - at bn, which is Ired kappa x sigma. The
 moment impulse is (1 - em) H/em by Equation 18.
 
-Single spins are no sums of mean and H either, which may cancel: in Cramer's numerators of both, the
-terms of R, of w and of X are added by themselves, with p = Ired (z/Ib - em/Ia), q = 1 - em, and,
-for friction, a = an + mu at and b = bn + mu bt along the impulse::
+Single spins are no sums of mean and H either, which may cancel: they are sums of what both spins
+would be without the other body's inertia, weighed with p = Ired (z/Ib - em/Ia) and q = (1 - em)
+Ired/Ia, and of X's terms, with a = an + mu at and b = bn + mu bt along the impulse of friction::
 
-    Omega_a D = R [p omega_a + q omega_b Ired/Ia] - w [a p + b q Ired/Ib]/Ia
+    Omega_a D = p [R omega_a - w a/Ia] + q [R omega_b - w b/Ib]
                 + em bn [a omega_b/Ia - b omega_a/Ib]
 
-and with a and b (p with its inertias) exchanged for B. At em = 0 both are the same sums, and so the
-same bits. The pivot's, divided by R, has w as a vector, and as its last line
+and with a and b (p and q with their inertias) exchanged for B. At em = 0 both are the same sums,
+and so the same bits. The pivot's, divided by R, has w as a vector, and as its last line
 em [a.b omega_b/Ia - b.b omega_a/Ib - (a x b)(b x w)/(Ia Ib R)].
+
+A velocity after is no sum of the one before and its change where the change takes away most of it:
+the centers' relative velocity after has numerators of its own, in which what was taken away is no
+term. Friction's along n, with levers for what the arms give of D::
+
+    D (cn + R Pn) = levers cn - z R (e gn + sigma_n mean) + em R kappa_n Ired (omega_a - omega_b)
+
+A pivot's, along x and y, are next to its velocities.
 
 Axes: n = (cos GA, sin GA), t = (-sin GA, cos GA), A on the +n side; P acts on A, -P on B. Every
 quantity is an `Expression`: what nobody asks for is noted and never computed.
 """
 
 from collections.abc import Mapping, Sequence
-from math import inf
+from math import inf, pi
 from sys import float_info
 from typing import Literal
 
@@ -50,8 +58,11 @@ from .energy import kinetic_energy
 from .statusbits import findings
 from .statusfilter import Impulse, filtered_status
 
-LARGEST = float_info.max
+LARGEST, RADIAN = float_info.max, pi / 180
 StatusFrom = Literal["results", "impulse", "estimate"]
+MOST = 2 / 3
+"""Fraction of a center's velocity that an impact without rebound takes away. Above it, the velocity
+after is computed from the other body's."""
 
 
 def impact(
@@ -137,14 +148,10 @@ def impact(
     sn_, st_ = an_ + bn_, at_ + bt_
     kn_, kt_ = an_ * ia + bn_ * ib, at_ * ia + bt_ * ib
 
-    # of a final spin times the determinant: what of both spins R multiplies, and what w multiplies
-    # along the own arm and along the other's
-    other = 1.0 - EM
-    weight_b = ia * Ired
-    kept_a = (z * weight_a - EM * weight_b) * WA + (other * weight_b) * WB
-    kept_b = (z * weight_b - EM * weight_a) * WB + (other * weight_a) * WA
-    own_a, own_b = z * J - EM * (ia * weight_b), z * J - EM * (ib * weight_a)
-    shared = other * J
+    # what a body's own state and the other's weigh in its final spin times the determinant
+    weight_b, other = ia * Ired, 1.0 - EM
+    own_a, own_b = z * weight_a - EM * weight_b, z * weight_b - EM * weight_a
+    other_a, other_b = other * weight_a, other * weight_b
 
     # a x b, which is Ired kappa x sigma without the difference of products whose digits are lost in
     # kappa already, times (Ia + Ib): of arms along n and t, and along x and y, of which each kind
@@ -154,23 +161,50 @@ def impact(
     # -- friction: everything along the direction (1, mu) of the impulse
 
     def friction() -> list[Expression]:
-        w = E * gn + cn
+        rebound = E * gn
+        w = rebound + cn
         a, b = an + mu * at, bn + mu * bt
         em_kappa, J_sigma, X = EM * kn, J * (a + b), cross_with_spins(a, b)
-        twist = Ired * (a * ia - b * ib)
-        determinant = z * (R + J_sigma * sn) - twist * em_kappa
-        Pn = (em_kappa * turn - z * (w + sn * mean)) / determinant
+        a_ia, b_ib = a * ia, b * ib
+        twist = Ired * (a_ia - b_ib)
+        levers = z * (J_sigma * sn) - twist * em_kappa
+        determinant = z * R + levers
+        inverse, turned = 1.0 / determinant, em_kappa * turn
+        Pn = (turned - z * (w + sn * mean)) / determinant
         Pt = mu * Pn
-        Px, Py = c * Pn - s * Pt, s * Pn + c * Pt
-        moment = unless_point((twist * w - turn * R - sn * X) / determinant)
-        cross = a * (ia * WB) - b * (ib * WA)
-        spin_a = (R * kept_a - w * (a * own_a + b * shared) + (EM * bn) * cross) / determinant
-        spin_b = (R * kept_b - w * (b * own_b + a * shared) - (EM * an) * cross) / determinant
+        along_x, along_y = to_fixed_axes(table.constant(1.0), mu)
+        Px, Py = along_x * Pn, along_y * Pn
+        moment = unless_point((twist * w - turn * R - sn * X) * inverse)
+        cross = EM * (a * (ia * WB) - b * (ib * WA))
+        state_a, state_b = R * WA - w * a_ia, R * WB - w * b_ib
+        spin_a = (own_a * state_a + other_b * state_b + bn * cross) * inverse
+        spin_b = (own_b * state_b + other_a * state_a - an * cross) * inverse
         # by Cramer's rule, too: of ct and of what the impulse changes of it little may be left
         kept = z * (R * ((ct + st * mean) - mu * (w + sn * mean)) + J_sigma * (ct * sn - st * w))
         traded = twist * (kt * w - kn * ct) + (turn * R) * (mu * kn - kt) + crossing * X
         slip = (kept + EM * traded) / determinant
-        velocities = [UX + ma * Px, UY + ma * Py, VX - mb * Px, VY - mb * Py]
+        # Where the impulse takes away most of a light body's velocity along x or y, that is found
+        # from the other's and the relative one after, of which no term is taken away again.
+        taken_x, taken_y = c * along_x, s * along_y  # 1 together
+        parting = (R * (turned - z * (rebound + sn * mean)) + levers * cn) * inverse
+        parting = unless_point(parting, -rebound)
+        relative_x = dx * taken_y + along_x * (parting - s * dy)
+        relative_y = dy * taken_x + along_y * (parting - c * dx)
+        of_masses, much_of_a, much_of_b = z * inverse, MOST * MA, MOST * MB
+        taken_x, taken_y = of_masses * taken_x, of_masses * taken_y
+
+        def of_light(
+            taken: Expression, much: Expression, instead: Expression, velocity: Expression
+        ) -> Expression:
+            return velocity if taken.is_zero else table.choose(taken > much, instead, velocity)
+
+        VAX, VAY, VBX, VBY = UX + ma * Px, UY + ma * Py, VX - mb * Px, VY - mb * Py
+        velocities = [
+            of_light(taken_x, much_of_a, VBX + relative_x, VAX),
+            of_light(taken_y, much_of_a, VBY + relative_y, VAY),
+            of_light(taken_x, much_of_b, VAX - relative_x, VBX),
+            of_light(taken_y, much_of_b, VAY - relative_y, VBY),
+        ]
         size = absolute(mu)
         straight = R * (1.0 + size) + J * (sn_ * (sn_ + size * st_))
         twisting = absolute(EM) * (Ired * (kn_ * (kn_ + size * kt_)))
@@ -204,8 +238,9 @@ def impact(
     # R P times the determinant, along x and y: at first without the approach of the mass centers,
     # which is -z R times it; of bodies without arms only the rebound is left
     turn_R, along = turn * R, zJ * s_across
-    x = EM * (turn_R * kx + lever * Xy + ty * k_across) - masses * (rx + sx * mean)
-    y = EM * (turn_R * ky - lever * Xx - tx * k_across) - masses * (ry + sy * mean)
+    of_turn_x, of_turn_y = turn_R * kx + lever * Xy, turn_R * ky - lever * Xx
+    x = EM * (of_turn_x + ty * k_across) - masses * (rx + sx * mean)
+    y = EM * (of_turn_y - tx * k_across) - masses * (ry + sy * mean)
     x, y = x + sy * along, y - sx * along
     RPx, RPy = x - masses * dx, y - masses * dy
     critical_denominator, critical_numerator = to_contact_axes(RPx, RPy)
@@ -220,22 +255,30 @@ def impact(
         crossing = lever * (J * R_inverse)
         turned_a = a_b * (ia * WB) - bb * (ib * WA) - crossing * (bx * wy - by * wx)
         turned_b = a_b * (ib * WA) - aa * (ia * WB) + crossing * (ax * wy - ay * wx)
-        push_a = (ax * own_a + bx * shared) * wx + (ay * own_a + by * shared) * wy
-        push_b = (bx * own_b + ax * shared) * wx + (by * own_b + ay * shared) * wy
-        spin_a = R * kept_a - push_a + EM * turned_a
-        spin_b = R * kept_b - push_b + EM * turned_b
-        # Of a light body that keeps little of its velocity the change has rounding errors of the
-        # size of what it lost; the common velocity and a share of the final relative one have not,
-        # but spoil a small change by long arms. Sizes, for both are negative where EM > 1/2.
-        short = absolute(levers) < absolute(masses)
-        part = table.choose(short, levers, -masses)
+        state_a = R * WA - ia * (ax * wx + ay * wy)
+        state_b = R * WB - ib * (bx * wx + by * wy)
+        spin_a = own_a * state_a + other_b * state_b + EM * turned_a
+        spin_b = own_b * state_b + other_a * state_a + EM * turned_b
+        # What the impact takes away and what it leaves of the mass centers' approach along x and y,
+        # times the determinant: of a small rest nothing that was taken away is a term. Of a light
+        # body that keeps little of its velocity the change has rounding errors of the size of what
+        # it lost; the common velocity and a share of the final relative one have not, but spoil a
+        # small change by long arms. Sizes, for both are negative where EM > 1/2.
+        zJx = zJ * sx
+        xx, yy = zJx * sx - EM * (tx * kx), (zJ * sy) * sy - EM * (ty * ky)
+        xy, crossed = zJx * sy - EM * (tx * ky), EM * (lever * lever_J)
         share_a, share_b = ma * R_inverse, mb * R_inverse
         velocities = []
-        for u, v, d, rest in ((UX, VX, dx, x), (UY, VY, dy, y)):
+        for u, v, d, turned, mean_part, crosswise, rebounding, taken, left in (
+            (UX, VX, dx, of_turn_x, sx * mean, xy * wy, rx, masses + yy, xx - crossed),
+            (UY, VY, dy, of_turn_y, sy * mean, xy * wx, ry, masses + xx, yy - crossed),
+        ):
+            little = absolute(left) < absolute(taken)
             common = share_b * u + share_a * v
-            change = (rest + part * d) / pivot_determinant
-            velocities.append(table.choose(short, common, u) + share_a * change)
-            velocities.append(table.choose(short, common, v) - share_b * change)
+            rest = EM * turned - masses * mean_part + crosswise - taken * rebounding
+            change = (rest + table.choose(little, left, -taken) * d) / pivot_determinant
+            velocities.append(table.choose(little, common, u) + share_a * change)
+            velocities.append(table.choose(little, common, v) - share_b * change)
         twisting = Ired * (kn_ * kn_ + kt_ * kt_)
         twisting = twisting + absolute(lever_J) * (spins * (an_ * bt_ + at_ * bn_))
         straight = R + J * (sx * sx + sy * sy)
@@ -273,7 +316,8 @@ def impact(
 
     # The contact points part by the rebound along n and the slip along t. Where the terms of the
     # one are smaller, with those of the slip, the other is found from it: of the terms of a car
-    # that stops at a barrier, or of a long arm that hits, little is left.
+    # that stops at a barrier, or of a long arm that hits, little is left. An arm has the rounding
+    # errors of its angle, too, times the component across.
     part_x, part_y = to_fixed_axes(-(E * gn), slip)
     slipping = absolute(ct) + absolute(gt) + absolute(R * PT)
     if not isinstance(pivot, bool):
@@ -285,24 +329,33 @@ def impact(
         before: tuple[Expression, Expression],
         after: tuple[Expression, Expression],
         turned: tuple[Expression, Expression],
+        rounded: tuple[Expression, Expression],
         parting: Expression,
         along_t: Expression,
     ) -> tuple[Expression, Expression]:
         """Return the contact points' velocities of A and B along x or y.
 
         ``before`` and ``after``: the centers' velocities; ``turned``: what the spins add;
-        ``parting``: the relative velocity after; ``along_t``: t's component.
+        ``rounded``: the derivative by the arm's angle, times that; ``parting``: the relative
+        velocity after; ``along_t``: t's component.
         """
         terms = [absolute(x) + absolute(y) for x, y in zip(before, after, strict=True)]
-        terms_a, terms_b = (x + absolute(y) for x, y in zip(terms, turned, strict=True))
+        terms_a, terms_b = (
+            x + absolute(y) + absolute(z) for x, y, z in zip(terms, turned, rounded, strict=True)
+        )
         a, b = (x + y for x, y in zip(after, turned, strict=True))
         of_slip = absolute(along_t) * slipping
         of_a = table.choose(terms_b + of_slip < terms_a, b + parting, a)
         of_b = table.choose(terms_a + of_slip < terms_b, a - parting, b)
         return unless_point(of_a, after[0]), unless_point(of_b, after[1])
 
-    XAF, XBF = contacts((UX, VX), (VAX, VBX), (D3 * spin_a, -(D1 * spin_b)), part_x, s)
-    YAF, YBF = contacts((UY, VY), (VAY, VBY), (-(D4 * spin_a), D2 * spin_b), part_y, c)
+    # in an order of their own: a kernel has the sums whose sines it takes in another loop
+    angle_a, angle_b = scene["PA"] + scene["TA"], scene["PB"] + scene["TB"]
+    arc_a, arc_b = (RADIAN * angle_a) * spin_a, (RADIAN * angle_b) * spin_b
+    turned_x, turned_y = (D3 * spin_a, -(D1 * spin_b)), (-(D4 * spin_a), D2 * spin_b)
+    rounded_x, rounded_y = (D4 * arc_a, D2 * arc_b), (D3 * arc_a, D1 * arc_b)
+    XAF, XBF = contacts((UX, VX), (VAX, VBX), turned_x, rounded_x, part_x, s)
+    YAF, YBF = contacts((UY, VY), (VAY, VBY), turned_y, rounded_y, part_y, c)
 
     def finite(inertia: Expression) -> Expression:
         """An infinite body is at rest, exactly, before and after: times 0 any number will do."""

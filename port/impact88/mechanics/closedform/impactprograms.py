@@ -81,7 +81,7 @@ def varying(mu: str, point: bool, infinite: bool = False, zeros: Iterable[str] =
 
 ALL = tuple(RESULTS)
 COLUMNS = tuple(SCENE)
-FORMULAS = "251a31ad04a15720"
+FORMULAS = "7933860435509944"
 """Digest of the bodies' programs (`mechanics.kernelsource`): the library has the same formulas."""
 
 SOURCES: tuple[StatusFrom, ...] = ("estimate", "impulse")
