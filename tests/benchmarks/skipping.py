@@ -46,19 +46,22 @@ class Scenes:
     """A plain population, and what becomes of it."""
 
     def __init__(self, count):
-        self._rng = np.random.default_rng(5)
+        rng = np.random.default_rng(5)
         self.plain = {**scenes("casework", count, 3), "M": 6.0}
         for name in ("WA", "WB"):
-            self.plain[name] = self._rng.uniform(-2, 2, count)
-        self._drawn = self._rng.random(count)
+            self.plain[name] = rng.uniform(-2, 2, count)
+        drawn, mu = rng.random(count), self.plain["MU"]
+        self._mu = {share: np.where(drawn < share / 100, PIVOT, mu) for share in PIVOTS}
+        self._unusable = {}
+        for name in ("UX", "UY"):
+            self._unusable[name] = self.plain[name].copy()
+            self._unusable[name][count // 3] = np.nan
 
     def of(self, constants, pivots, unusable):
-        mu = np.where(self._drawn < pivots / 100, PIVOT, self.plain["MU"])
-        g = {**self.plain, "MU": mu, **CONSTANTS[constants]}
+        g = {**self.plain, "MU": self._mu[pivots], **CONSTANTS[constants]}
         if unusable:
             name = next(name for name in ("UX", "UY") if np.ndim(g[name]))
-            g[name] = g[name].copy()
-            g[name][len(g[name]) // 3] = np.nan
+            g[name] = self._unusable[name]
         return g
 
 

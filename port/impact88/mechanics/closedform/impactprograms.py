@@ -81,7 +81,7 @@ def varying(mu: str, point: bool, infinite: bool = False, zeros: Iterable[str] =
 
 ALL = tuple(RESULTS)
 COLUMNS = tuple(SCENE)
-FORMULAS = "7933860435509944"
+FORMULAS = "927a52ef50da6c29"
 """Digest of the bodies' programs (`mechanics.kernelsource`): the library has the same formulas."""
 
 SOURCES: tuple[StatusFrom, ...] = ("estimate", "impulse")
@@ -98,6 +98,7 @@ BODIES: dict[str, Kinds] = {
     "point": varying("array", True, True),
     "point_pivot": varying("pivot", True, True),
     "mixed": varying("mixed", False, True),
+    "point_mixed": varying("mixed", True, True),
     "friction_without_moment": varying("array", False, True, ["EM"]),
     "smooth": varying("array", False, True, ["MU"]),
     "friction_without_arms": varying("array", False, True, ["DA", "DB"]),
@@ -106,7 +107,7 @@ BODIES: dict[str, Kinds] = {
 """Name -> kinds of columns of each body: the formulas of one kind of scene as a C function, made by
 `mechanics.kernelsource`. A kernel is a body that keeps some of its results.
 
-The first four serve all scenes, the next one friction and pivots beside each other. Three are
+The first four serve all scenes, the next two friction and pivots beside each other. Three are
 shorter, for calls all of whose scenes have a 0 in these columns. The filters compute STATUS in less
 time, but for scenes that they mark for the full kernel."""
 _BEFORE = ("VC", "VS", "XA", "YA", "XB", "YB", "KI", "MUP")
@@ -134,10 +135,22 @@ _SETS = (
     (*_WITH_STATUS, *FINAL_VELOCITIES),
     ALL,
 )
+_SETS_OF_POINTS = (
+    FINAL_VELOCITIES,
+    _BEFORE,
+    _IMPULSES,
+    ("LOSS", "KI", *_ENERGIES, *_CRUSH, *_IMPULSES),
+    ("STATUS",),
+    ALL,
+)
 KERNELS = [
     *((body, results) for body in ("friction", "pivot", "mixed") for results in _SETS),
-    *((body, results) for body in ("point", "point_pivot") for results in (FINAL_VELOCITIES, ALL)),
-    *((body, FINAL_VELOCITIES) for body in list(BODIES)[5:8]),
+    *(
+        (body, results)
+        for body in ("point", "point_pivot", "point_mixed")
+        for results in _SETS_OF_POINTS
+    ),
+    *((body, FINAL_VELOCITIES) for body in list(BODIES)[6:9]),
     *(
         (body, ("STATUS",) if source == "estimate" else _WITH_STATUS)
         for body, (_, source) in FILTERS.items()

@@ -39,7 +39,7 @@ COLLECTING = 500
 """Operations that collecting a scene, and putting its results in place, takes as long as."""
 SCANNING = 40
 """The same for looking at a scene of a strip in which there are scenes to collect."""
-_KINDS = list(BODIES)[:5]
+_KINDS = list(BODIES)[:4]
 _KERNELS = 2 * len(COLUMNS) + len(ALL)
 """Index of the first kernel in the argument block."""
 
@@ -58,39 +58,43 @@ def _of_these_formulas() -> bool:
 
 
 @lru_cache(maxsize=1024)
-def _kernels(wanted: tuple[str, ...], without: str | None) -> list[int]:
-    """Return the addresses of the kernels that compute ``wanted``, one for each kind of scene, then
-    those of the filters (see `statusfilter`), 0 where there is none; last `_mixed_from`.
+def _kernels(wanted: tuple[str, ...], without: str | None, points: bool) -> list[int]:
+    """Return the addresses of the kernels that compute ``wanted``, one for each kind of scene and
+    the one of both friction and pivots, then those of the filters (see `statusfilter`), 0 where
+    there is none; last `_mixed_from`.
 
-    ``without``: body for scenes with friction in which some columns are 0.
+    ``without``: body for scenes with friction in which some columns are 0; ``points``: whether all
+    scenes are point masses.
     """
     bits = sum(1 << ALL.index(name) for name in wanted)
     kernel_of, bodies = native.library.kernel_of, list(BODIES)
-    kernels = [kernel_of(bodies.index(kind), bits) for kind in _KINDS]
+    kinds = [*_KINDS, "point_mixed" if points else "mixed"]
+    kernels = [kernel_of(bodies.index(kind), bits) for kind in kinds]
     if without is not None:
         kernels[0] = kernel_of(bodies.index(without), bits) or kernels[0]
-    filters = [0] * len(_KINDS)
-    if "STATUS" in wanted:
+    filters = [0] * len(kinds)
+    if "STATUS" in wanted and not points:
         for body, (kind, _) in FILTERS.items():
-            place = _KINDS.index(kind)
+            place = kinds.index(kind)
             filters[place] = filters[place] or kernel_of(bodies.index(body), bits) or 0
-    return kernels + filters + _mixed_from(bits)
+    both = ("point", "point_pivot", "point_mixed") if points else ("friction", "pivot", "mixed")
+    return kernels + filters + _mixed_from(both, bits)
 
 
-def _mixed_from(bits: int) -> list[int]:
+def _mixed_from(kinds: tuple[str, str, str], bits: int) -> list[int]:
     """Return the least number of pivots among a strip's scenes with friction, and of such scenes
-    among pivots, for which the kernel that computes both for every scene costs less than collecting
-    those of the rarer kind."""
+    among pivots, for which the kernel that computes both for every scene, the last of ``kinds``,
+    costs less than collecting those of the rarer kind."""
     cost_of, bodies = native.library.cost_of, list(BODIES)
-    costs = {}
-    for kind in ("friction", "pivot", "mixed"):
+    costs = []
+    for kind in kinds:
         filters = [body for body, (of, _) in FILTERS.items() if of == kind]
         found = (cost_of(bodies.index(body), bits) for body in [*filters, kind])
-        costs[kind] = next(filter(None, found))
+        costs.append(next(filter(None, found)))
+    *alone, mixed = costs
     least = []
-    for common, rarer in (("friction", "pivot"), ("pivot", "friction")):
-        more = costs["mixed"] - costs[common] - SCANNING
-        share = more / (COLLECTING + costs[rarer])
+    for common, rarer in (alone, alone[::-1]):
+        share = (mixed - common - SCANNING) / (COLLECTING + rarer)
         least.append(max(1, math.ceil(share * native.STRIP)))
     return least
 
@@ -101,7 +105,7 @@ class Call:
 
     def __init__(self, wanted: tuple[str, ...]) -> None:
         self._wanted = wanted
-        self.block = np.zeros(_KERNELS + 2 * len(_KINDS) + 5, np.int64)
+        self.block = np.zeros(_KERNELS + 2 * (len(_KINDS) + 1) + 5, np.int64)
         self._at = self.block.ctypes.data
         self.columns = self.block[: len(COLUMNS)]
         self.steps = self.block[len(COLUMNS) : 2 * len(COLUMNS)]
@@ -112,10 +116,11 @@ class Call:
 
     def choose_kernels(self, numbers: dict[int, float]) -> None:
         """Choose kernels by the constants, place among the columns -> number: those without
-        friction, moment or arms where these are 0 in all scenes."""
+        friction, moment or arms where these are 0 in all scenes, and those of point masses."""
         zeros = {place for place, number in numbers.items() if number == 0.0}
         fit = (name for name, places in _WITHOUT.items() if zeros.issuperset(places))
-        kernels = _kernels(self._wanted, next(fit, None) if zeros else None)
+        without = next(fit, None) if zeros else None
+        kernels = _kernels(self._wanted, without, numbers.get(COLUMNS.index("M")) == 4.0)
         self.block[_KERNELS : _KERNELS + len(kernels)] = kernels
 
     def run(self, results: Addresses | Sequence[int], count: int, threads: int | None = 1) -> None:

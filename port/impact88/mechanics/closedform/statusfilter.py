@@ -76,7 +76,9 @@ def _far_apart(terms: tuple[Any, Any, Any], bound: Any, margin: Any) -> Any:
     size = abs(turning)
     excess = abs(gt) + abs(gt) - size
     gap, rest = excess - across, excess - 3.0 * size
-    far = (size > margin) & (abs(excess) > margin) & (abs(rest) > margin) & (abs(gap) > margin)
+    # where the sign of the turning is not certain, it is too slight to reverse the sliding
+    far = (size + abs(gt) > 5.0 * margin) & (abs(excess) > margin)
+    far = far & (abs(rest) > margin) & (abs(gap) > margin)
     return far & (abs(gap * gap - 4.0 * (size * across)) > 200.0 * (margin * bound))
 
 

@@ -203,6 +203,32 @@ static inline ALWAYS_INLINE int64_t run_kernel(
     return 0;
 }
 
+/* Some scenes of a strip, a bit for each. */
+#define WORDS (STRIP / 64)
+typedef struct {
+    uint64_t words[WORDS];
+} subset;
+
+/* Those of the first ``count`` scenes for whose number ``i`` the condition holds. */
+#define FIND_SUBSET(some, count, condition) \
+    for (int w = 0; w < WORDS; w++) { \
+        uint64_t word = 0; \
+        int64_t first = 64 * w, end = (count) - first < 64 ? (count) : first + 64; \
+        for (int64_t i = first; i < end; i++) word |= (uint64_t)!!(condition) << (i - first); \
+        (some).words[w] = word; \
+    }
+
+static inline ALWAYS_INLINE int64_t lowest_bit(uint64_t word)
+{
+#ifdef __GNUC__
+    return __builtin_ctzll(word);
+#else
+    int64_t place = 0;
+    while (!(word >> place & 1)) place++;
+    return place;
+#endif
+}
+
 /* Scenes of one kind from anywhere, computed once there are enough of them: copied side by side while
    their strip is in cache. ``slowly``: not by a filter. */
 typedef struct {
@@ -210,22 +236,14 @@ typedef struct {
     double copy[COLUMNS][2 * STRIP];
 } collection;
 
-/* Add the scenes of the strip ``x`` from ``at`` on whose flags are 1, of ``count`` and as many 0 as
-   fill eights. */
+/* Add the scenes ``some`` of the strip ``x``, which is from ``at`` on. */
 static inline ALWAYS_INLINE void collect(
-    const impacts *c, collection *into, const double *const *x, const uint8_t *flags, int64_t at,
-    int64_t count)
+    const impacts *c, collection *into, const double *const *x, const subset *some, int64_t at)
 {
     int64_t many = into->many, first = many;
-    for (int64_t i = 0; i < count; i += 8) {
-        uint64_t eight;
-        memcpy(&eight, flags + i, 8);
-        if (!eight) continue;
-        for (int64_t k = i; k < i + 8; k++) {
-            into->place[many] = at + k;
-            many += flags[k];
-        }
-    }
+    for (int w = 0; w < WORDS; w++)
+        for (uint64_t rest = some->words[w]; rest; rest &= rest - 1)
+            into->place[many++] = at + 64 * w + lowest_bit(rest);
     into->many = many;
     for (int k = 0; k < COLUMNS && first < many; k++)
         for (int64_t i = first; i < many && c->step[k]; i++) into->copy[k][i] = x[k][into->place[i] - at];
@@ -356,27 +374,25 @@ EXPORT CLONES void solve_impacts(const impacts *its, int64_t start, int64_t stop
             if (numbers[k] > numbers[most]) most = k;
 
         int64_t done = numbers[most] ? 8 * whole : 0, undecided = 0;
-        int64_t rarer = 2 * pivots > many, mixed = !apart && !only_points && done == many;
+        int64_t rarer = 2 * pivots > many, mixed = !apart && done == many;
         mixed = mixed && (rarer ? many - pivots : pivots) >= c.mixed_from[rarer];
         if (done)
             undecided = run_kernel(
                 &c, mixed ? MIXED : most, large ? 0 : skipped, STRIP / 8, in, out, ahead, whole, done);
         for (int64_t i = 0; i < done && status; i++) status[i] = BITS(found[STATUS_AT][i]);
-        uint8_t flags[STRIP + 8] = {0};
+        subset some;
         for (int k = most & 2; undecided && k < (most & 2) + 2; k++) {
-            for (int64_t i = 0; i < done; i++) {
-                int64_t here = apart ? kind[i] == k : (in[AT_MU][i] == -10) == (k & 1);
-                flags[i] = here & (k == most || mixed) & (status[i] / UNDECIDED);
-            }
-            collect(&c, collected + k, in, flags, at, done);
+            if (k != most && !mixed) continue;
+            FIND_SUBSET(some, done, (status[i] >= UNDECIDED)
+                & (apart ? kind[i] == k : (in[AT_MU][i] == -10) == (k & 1)))
+            collect(&c, collected + k, in, &some, at);
             collected[k].slowly = 1;
         }
         /* the rest of the strip, and what is of another kind */
         if (apart) {
             for (int k = 0; k < REFUSED; k++) {
-                for (int64_t i = 0; i < many; i++)
-                    flags[i] = (kind[i] == k) & ((k != most) | turned[i] | (i >= done));
-                collect(&c, collected + k, in, flags, at, many);
+                FIND_SUBSET(some, many, (kind[i] == k) & ((k != most) | turned[i] | (i >= done)))
+                collect(&c, collected + k, in, &some, at);
                 collected[k].slowly |= large;
             }
             for (int64_t i = 0; i < many && numbers[REFUSED]; i++)
@@ -390,9 +406,8 @@ EXPORT CLONES void solve_impacts(const impacts *its, int64_t start, int64_t stop
                 int k = (most & 2) | kind_of_mu;
                 int64_t from = k == most ? done : 0;
                 if (!numbers[k] || from == many) continue;
-                for (int64_t i = 0; i < many; i++)
-                    flags[i] = ((in[AT_MU][i] == -10) == kind_of_mu) & (i >= from);
-                collect(&c, collected + k, in, flags, at, many);
+                FIND_SUBSET(some, many, ((in[AT_MU][i] == -10) == kind_of_mu) & (i >= from))
+                collect(&c, collected + k, in, &some, at);
                 collected[k].slowly |= large;
             }
         }

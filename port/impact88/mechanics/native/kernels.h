@@ -8,7 +8,7 @@ enum column { AT_E, AT_MU, AT_EM, AT_DA, AT_DB, AT_GA, AT_PA, AT_PB, AT_TA, AT_T
 #define RESULTS 33
 #define STATUS_AT 32
 #define UNDECIDED 32768 /* of STATUS */
-#define FORMULAS "7933860435509944"
+#define FORMULAS "927a52ef50da6c29"
 
 static inline ALWAYS_INLINE void friction(
     const double *const *in, double *const *out, const circle *circle,
@@ -2176,6 +2176,332 @@ static inline ALWAYS_INLINE void mixed(
     }
 }
 
+static inline ALWAYS_INLINE void point_mixed(
+    const double *const *in, double *const *out, const circle *circle,
+    const double *const *ahead, int64_t eights, const uint64_t wanted)
+{
+    COLUMN(MU) COLUMN(MA) COLUMN(MB) COLUMN(UX) COLUMN(VX) COLUMN(GA) COLUMN(E) COLUMN(UY)
+    COLUMN(VY) COLUMN(WA) COLUMN(WB) RESULT_AT(VAX, 0) RESULT_AT(VAY, 1) RESULT_AT(VBX, 2)
+    RESULT_AT(VBY, 3) RESULT_AT(WAF, 4) RESULT_AT(WBF, 5) RESULT_AT(XA, 6) RESULT_AT(YA, 7)
+    RESULT_AT(XB, 8) RESULT_AT(YB, 9) RESULT_AT(XAF, 10) RESULT_AT(YAF, 11) RESULT_AT(XBF, 12)
+    RESULT_AT(YBF, 13) RESULT_AT(VC, 14) RESULT_AT(VS, 15) RESULT_AT(KI, 16) RESULT_AT(KF, 17)
+    RESULT_AT(LOSS, 18) RESULT_AT(ELN, 19) RESULT_AT(ELT, 20) RESULT_AT(ELM, 21)
+    RESULT_AT(EESA, 22) RESULT_AT(EESB, 23) RESULT_AT(DVA, 24) RESULT_AT(DVB, 25)
+    RESULT_AT(PN, 26) RESULT_AT(PT, 27) RESULT_AT(PM, 28) RESULT_AT(MUP, 29) RESULT_AT(MUC, 30)
+    RESULT_AT(COND, 31) RESULT_AT(STATUS, 32)
+    double s26[STRIP], c26[STRIP];
+    EACH_EIGHT {
+        EACH_OF_EIGHT {
+            SINE_AND_COSINE(GA[i], s26[i], c26[i]);
+        }
+    }
+    EACH_EIGHT {
+        FETCH(MU) FETCH(MA) FETCH(MB) FETCH(UX) FETCH(VX) FETCH(GA) FETCH(E) FETCH(UY)
+        FETCH(VY) FETCH(WA) FETCH(WB)
+        EACH_OF_EIGHT {
+            double v0 = ABSOLUTE(0x1.0000000000000p+0);
+            int64_t v1 = LESS(0x0.0p+0, 0x0.0p+0);
+            double v2 = MULTIPLY((v1 ? 1.0 : 0.0), 0x1.0000000000000p+8);
+            double v3 = MULTIPLY((v1 ? 1.0 : 0.0), 0x1.0000000000000p+9);
+            int64_t v4 = LESS(0x0.0p+0, -0x1.0000000000000p+0);
+            int64_t v5 = LESS(0x0.0p+0, 0x1.0000000000000p+0);
+            int64_t v6 = LESS(0x1.0000000000000p+0, 0x0.0p+0);
+            int64_t v7 = EITHER(v5, v6);
+            int64_t v8 = BOTH(v1, v7);
+            int64_t v9 = EITHER(v4, v8);
+            double v10 = MULTIPLY((v9 ? 1.0 : 0.0), 0x1.0000000000000p+10);
+            int64_t v11 = LESS_OR_EQUAL(0x0.0p+0, 0x0.0p+0);
+            int64_t v12 = EQUAL(MU[i], -0x1.4000000000000p+3);
+            double v13 = DIVIDE(0x1.0000000000000p+0, MA[i]);
+            double v14 = DIVIDE(0x1.0000000000000p+0, MB[i]);
+            double v15 = ADD(v13, v14);
+            double v16 = ABSOLUTE(v15);
+            int64_t v17 = LESS(0x0.0p+0, v16);
+            double v18 = DIVIDE(0x1.0000000000000p+0, v15);
+            double v19 = MULTIPLY(v14, v18);
+            double v20 = MULTIPLY(v13, v18);
+            double v21 = PRODUCTS_PLUS(v19, UX[i], v20, VX[i]);
+            double v22 = CHOOSE(v17, v21, UX[i]);
+            double v23 = NEGATIVE(v15);
+            double v24 = CHOOSE(v17, 0x0.0p+0, v23);
+            double v25 = SUBTRACT(UX[i], VX[i]);
+            double v27 = MULTIPLY(c26[i], v25);
+            double v28 = SUBTRACT(UY[i], VY[i]);
+            double v29 = MULTIPLY(s26[i], v28);
+            double v30 = ADD(v27, v29);
+            double v31 = MULTIPLY(E[i], v30);
+            double v32 = MULTIPLY(c26[i], v31);
+            double v33 = MULTIPLY(v15, v32);
+            double v34 = PRODUCT_MINUS(v24, v25, v33);
+            double v35 = DIVIDE(v34, v15);
+            double v36 = PRODUCT_PLUS(v20, v35, v22);
+            double v37 = MULTIPLY(0x1.5555555555555p-1, MA[i]);
+            double v38 = PRODUCTS_MINUS(c26[i], v28, s26[i], v25);
+            double v39 = AGAINST(MU[i], v38);
+            double v40 = MINUS_PRODUCT(s26[i], v39, c26[i]);
+            double v41 = MULTIPLY(c26[i], v40);
+            double v42 = MULTIPLY(v18, v41);
+            int64_t v43 = LESS(v37, v42);
+            double v44 = ADD(v31, v30);
+            double v45 = NEGATIVE(v44);
+            double v46 = DIVIDE(v45, v15);
+            double v47 = MULTIPLY(v40, v46);
+            double v48 = MINUS_PRODUCT(v14, v47, VX[i]);
+            double v49 = PRODUCT_PLUS(c26[i], v39, s26[i]);
+            double v50 = MULTIPLY(s26[i], v49);
+            double v51 = NEGATIVE(v31);
+            double v52 = SUBTRACT(v51, v29);
+            double v53 = PRODUCTS_PLUS(v25, v50, v40, v52);
+            double v54 = ADD(v48, v53);
+            double v55 = PRODUCT_PLUS(v13, v47, UX[i]);
+            double v56 = CHOOSE(v43, v54, v55);
+            double v57 = CHOOSE(v12, v36, v56);
+            double v58 = PRODUCTS_PLUS(v19, UY[i], v20, VY[i]);
+            double v59 = CHOOSE(v17, v58, UY[i]);
+            double v60 = MULTIPLY(s26[i], v31);
+            double v61 = MULTIPLY(v15, v60);
+            double v62 = PRODUCT_MINUS(v24, v28, v61);
+            double v63 = DIVIDE(v62, v15);
+            double v64 = PRODUCT_PLUS(v20, v63, v59);
+            double v65 = MULTIPLY(v18, v50);
+            int64_t v66 = LESS(v37, v65);
+            double v67 = MULTIPLY(v49, v46);
+            double v68 = MINUS_PRODUCT(v14, v67, VY[i]);
+            double v69 = SUBTRACT(v51, v27);
+            double v70 = PRODUCTS_PLUS(v28, v41, v49, v69);
+            double v71 = ADD(v68, v70);
+            double v72 = PRODUCT_PLUS(v13, v67, UY[i]);
+            double v73 = CHOOSE(v66, v71, v72);
+            double v74 = CHOOSE(v12, v64, v73);
+            double v75 = CHOOSE(v17, v21, VX[i]);
+            double v76 = MINUS_PRODUCT(v19, v35, v75);
+            double v77 = MULTIPLY(0x1.5555555555555p-1, MB[i]);
+            int64_t v78 = LESS(v77, v42);
+            double v79 = SUBTRACT(v55, v53);
+            double v80 = CHOOSE(v78, v79, v48);
+            double v81 = CHOOSE(v12, v76, v80);
+            double v82 = CHOOSE(v17, v58, VY[i]);
+            double v83 = MINUS_PRODUCT(v19, v63, v82);
+            int64_t v84 = LESS(v77, v65);
+            double v85 = SUBTRACT(v72, v70);
+            double v86 = CHOOSE(v84, v85, v68);
+            double v87 = CHOOSE(v12, v83, v86);
+            double v88 = NEGATIVE(v30);
+            double v89 = MINIMUM(MA[i], 0x1.fffffffffffffp+1023);
+            double v90 = PRODUCTS_PLUS(UX[i], UX[i], UY[i], UY[i]);
+            double v91 = MINIMUM(MB[i], 0x1.fffffffffffffp+1023);
+            double v92 = PRODUCTS_PLUS(VX[i], VX[i], VY[i], VY[i]);
+            double v93 = PRODUCTS_PLUS(v89, v90, v91, v92);
+            double v94 = MULTIPLY(0x1.0000000000000p-1, v93);
+            double v95 = PRODUCTS_PLUS(v57, v57, v74, v74);
+            double v96 = PRODUCTS_PLUS(v81, v81, v87, v87);
+            double v97 = PRODUCTS_PLUS(v89, v95, v91, v96);
+            double v98 = MULTIPLY(0x1.0000000000000p-1, v97);
+            double v99 = NEGATIVE(v33);
+            double v100 = MINUS_PRODUCT(v15, v25, v99);
+            double v101 = MULTIPLY(v15, v15);
+            double v102 = DIVIDE(v100, v101);
+            double v103 = CHOOSE(v12, v102, v47);
+            double v104 = SUBTRACT(v57, v81);
+            double v105 = ADD(v25, v104);
+            double v106 = MULTIPLY(v103, v105);
+            double v107 = ABSOLUTE(v106);
+            double v108 = NEGATIVE(v61);
+            double v109 = MINUS_PRODUCT(v15, v28, v108);
+            double v110 = DIVIDE(v109, v101);
+            double v111 = CHOOSE(v12, v110, v67);
+            double v112 = SUBTRACT(v74, v87);
+            double v113 = ADD(v28, v112);
+            double v114 = MULTIPLY(v111, v113);
+            double v115 = ABSOLUTE(v114);
+            double v116 = ADD(v107, v115);
+            double v117 = SUBTRACT(0x1.0000000000000p+0, E[i]);
+            double v118 = MULTIPLY(v117, v30);
+            double v119 = PRODUCTS_PLUS(c26[i], v102, s26[i], v110);
+            double v120 = CHOOSE(v12, v119, v46);
+            double v121 = MULTIPLY(v118, v120);
+            double v122 = ABSOLUTE(v121);
+            double v123 = PRODUCTS_MINUS(c26[i], v110, s26[i], v102);
+            double v124 = MULTIPLY(v39, v46);
+            double v125 = CHOOSE(v12, v123, v124);
+            double v126 = MINUS_PRODUCT(v39, v44, v38);
+            double v127 = MULTIPLY(v15, v126);
+            double v128 = DIVIDE(v127, v15);
+            double v129 = CHOOSE(v12, 0x0.0p+0, v128);
+            double v130 = ADD(v38, v129);
+            double v131 = MULTIPLY(v125, v130);
+            double v132 = ABSOLUTE(v131);
+            double v133 = ADD(v122, v132);
+            int64_t v134 = LESS(v116, v133);
+            double v135 = ADD(v106, v114);
+            double v136 = NEGATIVE(v135);
+            double v137 = ADD(v121, v131);
+            double v138 = NEGATIVE(v137);
+            double v139 = CHOOSE(v134, v136, v138);
+            double v140 = CHOOSE(v12, v139, v138);
+            double v141 = MULTIPLY(0x1.9000000000000p+5, v140);
+            double v142 = DIVIDE(v141, v94);
+            double v143 = MULTIPLY(-0x1.0000000000000p-1, v121);
+            double v144 = MULTIPLY(-0x1.0000000000000p-1, v131);
+            int64_t v145 = EQUAL(MB[i], INFINITY);
+            int64_t v146 = LESS(v140, 0x0.0p+0);
+            double v147 = CHOOSE(v146, 0x0.0p+0, v140);
+            double v148 = SQRT(v147);
+            double v149 = MULTIPLY(0x1.0000000000000p-1, v147);
+            double v150 = SQRT(v149);
+            double v151 = CHOOSE(v145, v148, v150);
+            double v152 = SQRT(v13);
+            double v153 = MULTIPLY(v151, v152);
+            int64_t v154 = EQUAL(MA[i], INFINITY);
+            double v155 = CHOOSE(v154, v148, v150);
+            double v156 = SQRT(v14);
+            double v157 = MULTIPLY(v155, v156);
+            double v158 = MULTIPLY(v13, v103);
+            double v159 = MULTIPLY(v13, v111);
+            double v160 = PRODUCTS_PLUS(v158, v158, v159, v159);
+            double v161 = SQRT(v160);
+            double v162 = MULTIPLY(v14, v103);
+            double v163 = MULTIPLY(v14, v111);
+            double v164 = PRODUCTS_PLUS(v162, v162, v163, v163);
+            double v165 = SQRT(v164);
+            double v166 = CHOOSE(v12, -0x1.4000000000000p+3, v39);
+            double v167 = PRODUCTS_MINUS(c26[i], v109, s26[i], v100);
+            double v168 = PRODUCTS_PLUS(c26[i], v100, s26[i], v109);
+            double v169 = DIVIDE(v167, v168);
+            double v170 = MULTIPLY(v0, v15);
+            double v171 = ABSOLUTE(v39);
+            double v172 = ADD(0x1.0000000000000p+0, v171);
+            double v173 = MULTIPLY(v15, v172);
+            double v174 = MULTIPLY(v0, v173);
+            double v175 = CHOOSE(v12, v170, v174);
+            double v176 = DIVIDE(v175, v16);
+            double v177 = MULTIPLY(0x1.8000000000000p+1, v176);
+            int64_t v178 = LESS_OR_EQUAL(0x0.0p+0, v30);
+            int64_t v179 = LESS(v120, 0x0.0p+0);
+            double v180 = ADD((v179 ? 0x1.0000000000000p+1 : 0.0), (v178 ? 1.0 : 0.0));
+            double v181 = MULTIPLY(0x1.19799812dea11p-39, v94);
+            int64_t v182 = LESS(v181, v137);
+            double v183 = ADD((v182 ? 0x1.0000000000000p+3 : 0.0), v180);
+            int64_t v184 = LESS(E[i], 0x0.0p+0);
+            int64_t v185 = LESS(0x1.0000000000000p+0, E[i]);
+            int64_t v186 = EITHER(v184, v185);
+            double v187 = ADD((v186 ? 0x1.0000000000000p+4 : 0.0), v183);
+            int64_t v188 = LESS(v177, 0x1.0000000000000p+26);
+            int64_t v189 = NOT(v188);
+            double v190 = ADD((v189 ? 0x1.0000000000000p+5 : 0.0), v187);
+            double v191 = ADD(v57, v74);
+            double v192 = ADD(v191, v81);
+            double v193 = ADD(v192, v87);
+            double v194 = ADD(v193, WA[i]);
+            double v195 = ADD(v194, WB[i]);
+            double v196 = ABSOLUTE(v195);
+            int64_t v197 = LESS(v196, INFINITY);
+            double v198 = PRODUCT_PLUS(0x1.0000000000000p-1, v137, v94);
+            double v199 = ABSOLUTE(v198);
+            int64_t v200 = LESS(v199, INFINITY);
+            int64_t v201 = BOTH(v197, v200);
+            double v202 = DIVIDE(v138, v94);
+            double v203 = ABSOLUTE(v202);
+            int64_t v204 = LESS(v203, INFINITY);
+            int64_t v205 = BOTH(v201, v204);
+            int64_t v206 = LESS_OR_EQUAL(v177, INFINITY);
+            int64_t v207 = BOTH(v205, v206);
+            int64_t v208 = NOT(v207);
+            double v209 = ADD((v208 ? 0x1.0000000000000p+6 : 0.0), v190);
+            double v210 = ADD(v209, v2);
+            double v211 = ADD(v210, v3);
+            double v212 = ADD(v211, v10);
+            double v213 = CHOOSE(v12, 0x0.0p+0, v39);
+            int64_t v214 = LESS_OR_EQUAL(v213, -0x1.4000000000000p+3);
+            double v215 = ADD((v214 ? 0x1.0000000000000p+11 : 0.0), v212);
+            int64_t v216 = LESS(v30, 0x0.0p+0);
+            int64_t v217 = LESS(0x0.0p+0, v120);
+            int64_t v218 = BOTH(v216, v217);
+            int64_t v219 = LESS(v15, 0x0.0p+0);
+            double v220 = CHOOSE(v219, -0x1.0000000000000p+0, 0x1.0000000000000p+0);
+            double v221 = MULTIPLY(v168, v220);
+            int64_t v222 = LESS(0x0.0p+0, v221);
+            int64_t v223 = BOTH(v218, v222);
+            double v224 = ABSOLUTE(v167);
+            double v225 = MULTIPLY(v167, v220);
+            double v226 = NEGATIVE(v225);
+            double v227 = AGAINST(v213, v226);
+            double v228 = SUBTRACT(v227, 0x1.12e0be826d695p-30);
+            double v229 = MULTIPLY(v228, v221);
+            int64_t v230 = LESS(v224, v229);
+            int64_t v231 = BOTH(v223, v230);
+            int64_t v232 = LESS(v227, -0x1.12e0be826d695p-30);
+            int64_t v233 = BOTH(v218, v232);
+            double v234 = MULTIPLY(0x1.12e0be826d695p-30, v221);
+            int64_t v235 = LESS_OR_EQUAL(v224, v234);
+            int64_t v236 = BOTH(v222, v235);
+            int64_t v237 = BOTH(v233, v236);
+            int64_t v238 = EITHER(v231, v237);
+            double v239 = MULTIPLY(v213, v38);
+            int64_t v240 = LESS_OR_EQUAL(0x0.0p+0, v239);
+            int64_t v241 = EITHER(v11, v240);
+            double v242 = ABSOLUTE(v38);
+            double v243 = ADD(v242, v242);
+            int64_t v244 = LESS_OR_EQUAL(v243, 0x0.0p+0);
+            int64_t v245 = LESS_OR_EQUAL(0x0.0p+0, v243);
+            int64_t v246 = EITHER(v244, v245);
+            int64_t v247 = EITHER(v241, v246);
+            double v248 = ABSOLUTE(v213);
+            double v249 = SUBTRACT(v248, 0x1.12e0be826d695p-30);
+            double v250 = MULTIPLY(v120, v15);
+            double v251 = MINUS_PRODUCT(v249, v250, v243);
+            int64_t v252 = LESS(v251, 0x0.0p+0);
+            int64_t v253 = EITHER(v247, v252);
+            double v254 = MULTIPLY(v251, v251);
+            int64_t v255 = LESS(v254, 0x0.0p+0);
+            int64_t v256 = EITHER(v253, v255);
+            int64_t v257 = NOT(v256);
+            int64_t v258 = NOT(v257);
+            int64_t v259 = BOTH(v238, v258);
+            double v260 = ADD((v259 ? 0x1.0000000000000p+12 : 0.0), v215);
+            int64_t v261 = NOT(v236);
+            int64_t v262 = BOTH(v233, v261);
+            int64_t v263 = LESS(0x0.0p+0, v224);
+            int64_t v264 = BOTH(v262, v263);
+            int64_t v265 = BOTH(v264, v258);
+            double v266 = ADD((v265 ? 0x1.0000000000000p+13 : 0.0), v260);
+            if (wanted >> 0 & 1) to_VAX[i] = RESULT(v57);
+            if (wanted >> 1 & 1) to_VAY[i] = RESULT(v74);
+            if (wanted >> 2 & 1) to_VBX[i] = RESULT(v81);
+            if (wanted >> 3 & 1) to_VBY[i] = RESULT(v87);
+            if (wanted >> 4 & 1) to_WAF[i] = RESULT(WA[i]);
+            if (wanted >> 5 & 1) to_WBF[i] = RESULT(WB[i]);
+            if (wanted >> 6 & 1) to_XA[i] = RESULT(UX[i]);
+            if (wanted >> 7 & 1) to_YA[i] = RESULT(UY[i]);
+            if (wanted >> 8 & 1) to_XB[i] = RESULT(VX[i]);
+            if (wanted >> 9 & 1) to_YB[i] = RESULT(VY[i]);
+            if (wanted >> 10 & 1) to_XAF[i] = RESULT(v57);
+            if (wanted >> 11 & 1) to_YAF[i] = RESULT(v74);
+            if (wanted >> 12 & 1) to_XBF[i] = RESULT(v81);
+            if (wanted >> 13 & 1) to_YBF[i] = RESULT(v87);
+            if (wanted >> 14 & 1) to_VC[i] = RESULT(v88);
+            if (wanted >> 15 & 1) to_VS[i] = RESULT(v51);
+            if (wanted >> 16 & 1) to_KI[i] = RESULT(v94);
+            if (wanted >> 17 & 1) to_KF[i] = RESULT(v98);
+            if (wanted >> 18 & 1) to_LOSS[i] = RESULT(v142);
+            if (wanted >> 19 & 1) to_ELN[i] = RESULT(v143);
+            if (wanted >> 20 & 1) to_ELT[i] = RESULT(v144);
+            if (wanted >> 21 & 1) to_ELM[i] = RESULT(0x0.0p+0);
+            if (wanted >> 22 & 1) to_EESA[i] = RESULT(v153);
+            if (wanted >> 23 & 1) to_EESB[i] = RESULT(v157);
+            if (wanted >> 24 & 1) to_DVA[i] = RESULT(v161);
+            if (wanted >> 25 & 1) to_DVB[i] = RESULT(v165);
+            if (wanted >> 26 & 1) to_PN[i] = RESULT(v120);
+            if (wanted >> 27 & 1) to_PT[i] = RESULT(v125);
+            if (wanted >> 28 & 1) to_PM[i] = RESULT(0x0.0p+0);
+            if (wanted >> 29 & 1) to_MUP[i] = RESULT(v166);
+            if (wanted >> 30 & 1) to_MUC[i] = RESULT(v169);
+            if (wanted >> 31 & 1) to_COND[i] = RESULT_OR_INFINITE(v177);
+            if (wanted >> 32 & 1) to_STATUS[i] = v266;
+        }
+    }
+}
+
 static inline ALWAYS_INLINE void friction_without_moment(
     const double *const *in, double *const *out, const circle *circle,
     const double *const *ahead, int64_t eights, const uint64_t wanted)
@@ -2778,30 +3104,32 @@ static inline ALWAYS_INLINE void friction_status_from_estimate(
             double v239 = MULTIPLY(0x1.9000000000000p+6, v206);
             double v240 = MULTIPLY(v206, v199);
             double v241 = MULTIPLY(v239, v240);
-            int64_t v242 = LESS(v241, v149);
-            double v243 = ABSOLUTE(v150);
-            int64_t v244 = LESS(v241, v243);
-            int64_t v245 = BOTH(v242, v244);
-            double v246 = SUBTRACT(v150, v152);
-            double v247 = ABSOLUTE(v246);
-            int64_t v248 = LESS(v241, v247);
-            int64_t v249 = BOTH(v245, v248);
-            double v250 = ABSOLUTE(v160);
-            int64_t v251 = LESS(v241, v250);
-            int64_t v252 = BOTH(v249, v251);
-            double v253 = MULTIPLY(v206, v198);
-            double v254 = MULTIPLY(v241, v253);
-            double v255 = MULTIPLY(0x1.9000000000000p+7, v254);
-            double v256 = SUBTRACT(v163, v165);
-            double v257 = ABSOLUTE(v256);
-            int64_t v258 = LESS(v255, v257);
-            int64_t v259 = BOTH(v252, v258);
-            int64_t v260 = EITHER(v238, v259);
-            int64_t v261 = BOTH(v236, v260);
-            int64_t v262 = BOTH(v218, v261);
-            int64_t v263 = NOT(v262);
-            double v264 = ADD((v263 ? 0x1.0000000000000p+15 : 0.0), v177);
-            if (wanted >> 32 & 1) to_STATUS[i] = v264;
+            double v242 = MULTIPLY(0x1.4000000000000p+2, v241);
+            double v243 = ADD(v149, v147);
+            int64_t v244 = LESS(v242, v243);
+            double v245 = ABSOLUTE(v150);
+            int64_t v246 = LESS(v241, v245);
+            int64_t v247 = BOTH(v244, v246);
+            double v248 = SUBTRACT(v150, v152);
+            double v249 = ABSOLUTE(v248);
+            int64_t v250 = LESS(v241, v249);
+            int64_t v251 = BOTH(v247, v250);
+            double v252 = ABSOLUTE(v160);
+            int64_t v253 = LESS(v241, v252);
+            int64_t v254 = BOTH(v251, v253);
+            double v255 = MULTIPLY(v206, v198);
+            double v256 = MULTIPLY(v241, v255);
+            double v257 = MULTIPLY(0x1.9000000000000p+7, v256);
+            double v258 = SUBTRACT(v163, v165);
+            double v259 = ABSOLUTE(v258);
+            int64_t v260 = LESS(v257, v259);
+            int64_t v261 = BOTH(v254, v260);
+            int64_t v262 = EITHER(v238, v261);
+            int64_t v263 = BOTH(v236, v262);
+            int64_t v264 = BOTH(v218, v263);
+            int64_t v265 = NOT(v264);
+            double v266 = ADD((v265 ? 0x1.0000000000000p+15 : 0.0), v177);
+            if (wanted >> 32 & 1) to_STATUS[i] = v266;
         }
     }
 }
@@ -3899,31 +4227,33 @@ static inline ALWAYS_INLINE void mixed_status_from_estimate(
             double v248 = MULTIPLY(0x1.9000000000000p+6, v217);
             double v249 = MULTIPLY(v217, v208);
             double v250 = MULTIPLY(v248, v249);
-            int64_t v251 = LESS(v250, v156);
-            double v252 = ABSOLUTE(v157);
-            int64_t v253 = LESS(v250, v252);
-            int64_t v254 = BOTH(v251, v253);
-            double v255 = SUBTRACT(v157, v159);
-            double v256 = ABSOLUTE(v255);
-            int64_t v257 = LESS(v250, v256);
-            int64_t v258 = BOTH(v254, v257);
-            double v259 = ABSOLUTE(v167);
-            int64_t v260 = LESS(v250, v259);
-            int64_t v261 = BOTH(v258, v260);
-            double v262 = MULTIPLY(v217, v207);
-            double v263 = MULTIPLY(v250, v262);
-            double v264 = MULTIPLY(0x1.9000000000000p+7, v263);
-            double v265 = SUBTRACT(v170, v172);
-            double v266 = ABSOLUTE(v265);
-            int64_t v267 = LESS(v264, v266);
-            int64_t v268 = BOTH(v261, v267);
-            int64_t v269 = EITHER(v247, v268);
-            int64_t v270 = BOTH(v245, v269);
-            int64_t v271 = EITHER(v270, v15);
-            int64_t v272 = BOTH(v229, v271);
-            int64_t v273 = NOT(v272);
-            double v274 = ADD((v273 ? 0x1.0000000000000p+15 : 0.0), v184);
-            if (wanted >> 32 & 1) to_STATUS[i] = v274;
+            double v251 = MULTIPLY(0x1.4000000000000p+2, v250);
+            double v252 = ADD(v156, v154);
+            int64_t v253 = LESS(v251, v252);
+            double v254 = ABSOLUTE(v157);
+            int64_t v255 = LESS(v250, v254);
+            int64_t v256 = BOTH(v253, v255);
+            double v257 = SUBTRACT(v157, v159);
+            double v258 = ABSOLUTE(v257);
+            int64_t v259 = LESS(v250, v258);
+            int64_t v260 = BOTH(v256, v259);
+            double v261 = ABSOLUTE(v167);
+            int64_t v262 = LESS(v250, v261);
+            int64_t v263 = BOTH(v260, v262);
+            double v264 = MULTIPLY(v217, v207);
+            double v265 = MULTIPLY(v250, v264);
+            double v266 = MULTIPLY(0x1.9000000000000p+7, v265);
+            double v267 = SUBTRACT(v170, v172);
+            double v268 = ABSOLUTE(v267);
+            int64_t v269 = LESS(v266, v268);
+            int64_t v270 = BOTH(v263, v269);
+            int64_t v271 = EITHER(v247, v270);
+            int64_t v272 = BOTH(v245, v271);
+            int64_t v273 = EITHER(v272, v15);
+            int64_t v274 = BOTH(v229, v273);
+            int64_t v275 = NOT(v274);
+            double v276 = ADD((v275 ? 0x1.0000000000000p+15 : 0.0), v184);
+            if (wanted >> 32 & 1) to_STATUS[i] = v276;
         }
     }
 }
@@ -4529,15 +4859,29 @@ static inline ALWAYS_INLINE void mixed_status_from_impulse(
     X(49, 4, mixed, 0x10304003f, 1006) \
     X(50, 4, mixed, 0x1ffffffff, 1215) \
     X(51, 2, point, 0x3f, 116) \
-    X(52, 2, point, 0x1ffffffff, 462) \
-    X(53, 3, point_pivot, 0x3f, 109) \
-    X(54, 3, point_pivot, 0x1ffffffff, 426) \
-    X(55, 5, friction_without_moment, 0x3f, 240) \
-    X(56, 6, smooth, 0x3f, 258) \
-    X(57, 7, friction_without_arms, 0x3f, 170) \
-    X(58, 8, friction_status_from_estimate, 0x100000000, 437) \
-    X(59, 9, friction_status_from_impulse, 0x103040000, 553) \
-    X(60, 10, pivot_status_from_estimate, 0x100000000, 321) \
-    X(61, 11, pivot_status_from_impulse, 0x103040000, 706) \
-    X(62, 12, mixed_status_from_estimate, 0x100000000, 447) \
-    X(63, 13, mixed_status_from_impulse, 0x103040000, 1010)
+    X(52, 2, point, 0x2001c3c0, 56) \
+    X(53, 2, point, 0x3f00c000, 120) \
+    X(54, 2, point, 0x3ffdc000, 242) \
+    X(55, 2, point, 0x100000000, 288) \
+    X(56, 2, point, 0x1ffffffff, 462) \
+    X(57, 3, point_pivot, 0x3f, 109) \
+    X(58, 3, point_pivot, 0x2001c3c0, 52) \
+    X(59, 3, point_pivot, 0x3f00c000, 132) \
+    X(60, 3, point_pivot, 0x3ffdc000, 312) \
+    X(61, 3, point_pivot, 0x100000000, 226) \
+    X(62, 3, point_pivot, 0x1ffffffff, 426) \
+    X(63, 5, point_mixed, 0x3f, 169) \
+    X(64, 5, point_mixed, 0x2001c3c0, 58) \
+    X(65, 5, point_mixed, 0x3f00c000, 159) \
+    X(66, 5, point_mixed, 0x3ffdc000, 388) \
+    X(67, 5, point_mixed, 0x100000000, 366) \
+    X(68, 5, point_mixed, 0x1ffffffff, 563) \
+    X(69, 6, friction_without_moment, 0x3f, 240) \
+    X(70, 7, smooth, 0x3f, 258) \
+    X(71, 8, friction_without_arms, 0x3f, 170) \
+    X(72, 9, friction_status_from_estimate, 0x100000000, 439) \
+    X(73, 10, friction_status_from_impulse, 0x103040000, 553) \
+    X(74, 11, pivot_status_from_estimate, 0x100000000, 321) \
+    X(75, 12, pivot_status_from_impulse, 0x103040000, 706) \
+    X(76, 13, mixed_status_from_estimate, 0x100000000, 449) \
+    X(77, 14, mixed_status_from_impulse, 0x103040000, 1010)
