@@ -53,11 +53,29 @@ def evaluate(
     if isinstance(node, tuple):
         if id(node) in cache:
             return cache[id(node)]
-        function = _OPERATIONS.get(node[0]) or getattr(np, node[0])
-        return function(*[evaluate(part, names, cache) for part in node[1:]])
+        name, *parts = node
+        for at, part in enumerate(parts):
+            if isinstance(part, tuple):
+                parts[at] = evaluate(part, names, cache)
+            elif isinstance(part, str):
+                parts[at] = np.pi if part == "pi" else names[part]
+        function = _OPERATIONS.get(name) or getattr(np, name)
+        return function(*parts)
     if isinstance(node, str):
         return np.pi if node == "pi" else names[node]
     return node
+
+
+class _Columns(dict[str, Any]):
+    """The columns of a table as typed, by their prefixed names, and what is computed of them. A
+    column of neighbouring rows (``typed_before_UX``) is made when it is read."""
+
+    def __missing__(self, name: str) -> Any:
+        row, _, column = name.removeprefix(TYPED).partition("_")
+        if row not in NEIGHBOUR_SHIFTS or column not in SCENE:
+            raise KeyError(name)
+        self[name] = np.roll(self[f"{TYPED}{column}"], NEIGHBOUR_SHIFTS[row], -1)
+        return self[name]
 
 
 RESIDUAL = "off_"
@@ -79,10 +97,7 @@ class Run:
         self.spelling = spelling
         self.clamped = {name: np.atleast_2d(column) for name, column in (clamped or {}).items()}
         columns = {name: np.atleast_2d(np.asarray(column, float)) for name, column in scene.items()}
-        for row, shift in NEIGHBOUR_SHIFTS.items():
-            neighbours = {f"{row}_{name}": np.roll(columns[name], shift, -1) for name in SCENE}
-            columns = neighbours | columns
-        self.names: dict[str, Any] = {f"{TYPED}{name}": c for name, c in columns.items()}
+        self.names = _Columns({f"{TYPED}{name}": c for name, c in columns.items()})
         self.size = max(column.shape[-1] for column in columns.values())
         # sides of each statement as it stands, filled by the first run
         self._base_sides: list[Any] = [None] * len(spelling.statements)
@@ -222,16 +237,17 @@ class Run:
             sides[0] if statement.target else np.subtract(*sides) for sides in (base, *values)
         ]
         shape = np.broadcast_shapes((1, self.size), *map(np.shape, results))
-        seen = set[bytes]()
-        for place, sides, result in zip((-1, *places), (base, *values), results, strict=True):
-            numbers = np.empty(shape)
-            numbers[...] = result
-            # compare 33 bits of the mantissa: terms added in another order differ in the last ones;
-            # adding 0.0 makes -0 a 0
-            digits = ((numbers + 0.0).view(np.int64) + (1 << 18) >> 19).tobytes()
-            if digits not in seen and place >= 0:
+        numbers = np.empty((len(results), *shape))
+        for row, result in zip(numbers, results, strict=True):
+            row[...] = result
+        # compare 33 bits of the mantissa: terms added in another order differ in the last ones;
+        # adding 0.0 makes -0 a 0
+        digits = (numbers + 0.0).view(np.int64) + (1 << 18) >> 19
+        seen = {digits[0].tobytes()}
+        for place, sides, row in zip(places, values, digits[1:], strict=True):
+            if (own := row.tobytes()) not in seen:
                 yield place, {key: sides}
-            seen.add(digits)
+                seen.add(own)
 
 
 class _Row(dict[str, Any]):

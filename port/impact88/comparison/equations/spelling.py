@@ -155,8 +155,10 @@ def substitute(node: Expression, names: Mapping[str, Expression]) -> Expression:
     """Return an expression with names replaced by expressions; itself where none occurs."""
     if isinstance(node, str):
         return names.get(node, node)
-    parts = tuple(substitute(part, names) for part in operands(node))
-    return (node[0], *parts) if any(map(is_not, parts, operands(node))) else node
+    if not isinstance(node, tuple):
+        return node
+    parts = [substitute(part, names) for part in node[1:]]
+    return (node[0], *parts) if any(map(is_not, parts, node[1:])) else node
 
 
 def format_statement(target: str, sides: Sides) -> str:
