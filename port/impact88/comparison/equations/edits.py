@@ -21,7 +21,7 @@ from .spelling import (
     SHOWN,
     TYPED,
     Expression,
-    Kin,
+    KinOf,
     Sides,
     Spelling,
     format_statement,
@@ -97,7 +97,7 @@ def _node_edits(spelling: Spelling, places: range) -> Iterator[Edit]:
 
 
 def _variations(
-    node: Expression, kin: Kin, is_whole_side: bool = True
+    node: Expression, kin: KinOf, is_whole_side: bool = True
 ) -> Iterator[tuple[int, Expression]]:
     """Yield an expression with one of its nodes edited, and the edit's rank.
 
@@ -114,7 +114,7 @@ def _variations(
         return
     is_name = isinstance(node, str)
     if is_name:
-        yield from ((LIKELY, twin) for twin in kin.get(node, ()))
+        yield from ((LIKELY, twin) for twin in kin(node))
         yield LESS_LIKELY, 0
     for pattern in ("any", "whole") if is_whole_side or is_name else ("any",):
         for rank, _, templates in rules[pattern]:
@@ -174,7 +174,7 @@ def _equation_edits(spelling: Spelling) -> Iterator[Edit]:
         for name in names:
             if name in (*BOOLEAN_NAMES, "pi", *spelling.unknown):
                 continue
-            for description, changes in _substitutions(name, kin.get(name, ()), names):
+            for description, changes in _substitutions(name, kin(name), names):
                 lines = [
                     spelling.statements[index]
                     for index in places

@@ -1,7 +1,7 @@
 """Parse the mechanics (``mechanics.txt``): the impact as statements, in several spellings."""
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from operator import is_not
@@ -12,6 +12,8 @@ from ...names import RESULTS, SCENE
 
 Kin = Mapping[str, tuple[str, ...]]
 """Name -> the names it may be mistaken for."""
+KinOf = Callable[[str], tuple[str, ...]]
+"""Function of a name that returns the names it may be mistaken for."""
 Expression = Any
 """A name, a number, or an operation and its operands: ``("*", "MA", ("cos", "ga"))``."""
 Sides = tuple[Expression, ...]
@@ -97,15 +99,12 @@ class Spelling:
         """Key -> index of the statement."""
         return {statement.key: i for i, statement in enumerate(self.statements)}
 
-    def kin_at(self, index: int) -> Kin:
-        """Return the kin of each name among the names that a statement may read."""
+    def kin_at(self, index: int) -> KinOf:
+        """Return a function of a name: its kin among the names that a statement may read."""
         defined = {*SCENE, *(statement.target for statement in self.statements[:index])}
         if self.equations and index >= self.equations[0]:
             defined.update(self.unknown)
-        return {
-            name: tuple(twin for twin in twins if twin in defined)
-            for name, twins in self.kin.items()
-        }
+        return lambda name: tuple(twin for twin in self.kin.get(name, ()) if twin in defined)
 
     @cached_property
     def input_output(self) -> dict[str, Expression]:
