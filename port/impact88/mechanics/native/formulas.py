@@ -18,8 +18,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-Key = tuple[object, ...]
-
 
 def _operator(name: str, reflected: bool = False) -> Callable[[Expression, Any], Expression]:
     """The method of an operator; ``reflected``: with the operands the other way round."""
@@ -54,7 +52,7 @@ class Expression:
 
     @property
     def is_zero(self) -> bool:
-        return self.is_constant(0.0)
+        return self.operation == "constant" and self.value == 0.0
 
     __add__ = _operator("add")
     __radd__ = _operator("add", reflected=True)
@@ -90,7 +88,7 @@ class ExpressionTable:
     """The expressions of one program, each stored once."""
 
     def __init__(self) -> None:
-        self._kept: dict[Key, Expression] = {}
+        self._kept: dict[tuple[object, ...], Expression] = {}
 
     def combine(
         self,
@@ -100,12 +98,13 @@ class ExpressionTable:
         varies: bool | None = None,
     ) -> Expression:
         """Return the expression of an operation; a condition is 1 where it holds, else 0."""
-        key: Key = (operation, value, *map(id, operands))
-        if key not in self._kept:
-            if varies is None:
-                varies = any(operand.varies for operand in operands)
-            self._kept[key] = Expression(self, operation, operands, varies, value)
-        return self._kept[key]
+        key = (operation, value, operands)
+        if (kept := self._kept.get(key)) is not None:
+            return kept
+        if varies is None:
+            varies = any(operand.varies for operand in operands)
+        self._kept[key] = expression = Expression(self, operation, operands, varies, value)
+        return expression
 
     def constant(self, number: float) -> Expression:
         return self.combine("constant", value=float(number), varies=False)

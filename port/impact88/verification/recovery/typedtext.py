@@ -50,12 +50,12 @@ def texts_that_print(printed: str, angle: bool = False) -> tuple[str, ...]:
     def prints(text: str) -> bool:
         return (stored_and_printed(text, angle) or ("", ""))[1] == printed
 
-    near = _neighbours(value, printed)
     exact = [text for text in [*_shorter(value, printed), printed] if prints(text)]
-    exact = exact or [text for text in near if prints(text)][:1]
+    exact = exact or [text for text in _neighbours(value, printed) if prints(text)][:1]
     variants = [variant for text in exact for variant in _with_zeros(text)]
     if len(figures) == _PRINTED_DIGITS and exact == [printed]:
-        variants += near  # more digits may have been typed than are printed
+        # more digits may have been typed than are printed
+        variants += _neighbours(value, printed)
     texts: dict[bytes, str] = {}
     for text in [*exact, *filter(prints, variants)]:
         if seen := stored_and_printed(text, angle):
