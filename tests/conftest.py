@@ -33,20 +33,34 @@ LONGEST = (
     "fuzz",
     "figures",
     "verification",
+    "reconstruction",
+    "reading",
+    "labels",
     "listing_copies",
     "replay_scenes",
-    "reconstruction",
+    "native",
+    "collision_report",
+    "solve",
+    "witness",
+    "readme",
+    "stability",
     "oracle",
+    "verdicts",
+    "one_case",
+    "sizes",
+    "every_impact",
+    "tables",
     "files",
     "doors",
     "public",
     "desk_numbers",
-    "uncertainty",
     "schemas",
-    "native",
-    "witness",
+    "uncertainty",
+    "units_everywhere",
+    "prepared",
+    "emulator",
+    "bench",
     "unknowns",
-    "readme",
 )
 """Files of tests that take more than some seconds (``--durations=0`` has the times)."""
 
@@ -105,6 +119,32 @@ def golden_printout(file_regression: FileRegressionFixture) -> Callable[[str, st
         )
 
     return check
+
+
+@pytest.fixture
+def verdicts_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Verifications without what a page cannot show: it takes a good part of the time, and has
+    tests of its own (`verification/test_scan.py`)."""
+    from impact88.verification.judging import beside
+
+    monkeypatch.setattr(beside, "unseen", lambda *given: [])
+
+
+@pytest.fixture
+def brief_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reconstructions draw from a tenth of the points and search from them once: for tests of what
+    doors show and of two doors that must show the same, not of the bounds themselves."""
+    from impact88.optimization import widening
+    from impact88.reconstruction import posterior, reconstructed
+
+    monkeypatch.setattr(posterior, "PARTICLES", 800)
+    monkeypatch.setattr(posterior, "BURN_IN_MOVES", 6)
+    monkeypatch.setattr(reconstructed, "LEVEL_DRAWS", 200)
+    monkeypatch.setattr(widening, "SPREAD_POINTS", 200)
+    monkeypatch.setattr(widening, "SPREAD_STEPS", 3)
+    monkeypatch.setattr(widening, "GENERATIONS", 4)
+    monkeypatch.setattr(widening, "MAX_ROUNDS", 1)
+    monkeypatch.setattr(widening, "STARTS", 1)
 
 
 @pytest.fixture(scope="module", params=["compiled", "numpy"])

@@ -118,6 +118,7 @@ class TestMarks:
         assert "IA = 2175 is estimated: MA (LA² + BA²)/12, a uniform rectangle" in shown.err
         assert "estimated" not in shown.out
 
+    @pytest.mark.usefixtures("brief_search")
     def test_a_reconstruction_takes_an_estimate_with_its_tolerance(self, tmp_path, capsys):
         known = [line for line in scene_text().splitlines() if line[:2] not in ("UX", "VX", "M ")]
         known += ['VAX = "-12.33"', 'VBX = "-6.8"', "LA = 16.5", "BA = 6.4"]

@@ -453,6 +453,7 @@ def check_schema(name: str, whole: Any) -> None:
     jsonschema.validate(json.loads(json.dumps(whole)), json.loads(schemas.text(name)))
 
 
+@pytest.mark.usefixtures("brief_search")
 def test_what_the_page_is_answered_follows_the_published_schemas(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -473,18 +474,19 @@ def toml(values: Mapping[str, str]) -> str:
     return "".join(f'{name} = "{text}"\n' for name, text in values.items())
 
 
+@pytest.mark.usefixtures("brief_search")
 @pytest.mark.parametrize("changes", [{}, {"VAX": "-13.26 +- 0.5", "UY": "0", "VBY": "20 +- 1"}])
 def test_a_reconstruction_is_the_commands_own(
     changes: dict[str, str], tmp_path: Path, own: Own, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(reconstruction, "DRAWS", 400)
+    monkeypatch.setattr(reconstruction, "DRAWS", 100)
     known = {**reconstruction.known_of_sample(1)["values"], "E": "0.3", **changes}
     (tmp_path / "known.toml").write_text(toml(known), encoding="utf-8")
     told = reconstruction.answer(known)
     assert told["problems"] == {}
-    printed = own("reconstruct", "known.toml", "--samples", "400").rstrip("\n")
+    printed = own("reconstruct", "known.toml", "--samples", "100").rstrip("\n")
     assert [one["printed"] for one in told["solutions"]] == [printed]
-    theirs = json.loads(own("reconstruct", "--json", "known.toml", "--samples", "400"))
+    theirs = json.loads(own("reconstruct", "--json", "known.toml", "--samples", "100"))
     assert json.loads(json.dumps(told["object"])) == theirs
     assert bool(told["solutions"][0]["adjusted"]) == bool(changes)
 
@@ -514,6 +516,7 @@ def test_what_a_collision_gave_is_reconstructed_to_the_collision() -> None:
     assert solution["scene"]["MA"] == sample(3)["MA"]
 
 
+@pytest.mark.usefixtures("brief_search")
 @pytest.mark.parametrize(
     ("name", "text", "problem"),
     [
@@ -535,14 +538,15 @@ def test_each_known_value_is_judged_alone(
     assert bool(told["solutions"]) == (problem is None)
 
 
+@pytest.mark.usefixtures("brief_search")
 def test_a_reconstruction_answers_in_its_units(
     tmp_path: Path, own: Own, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(reconstruction, "DRAWS", 400)
+    monkeypatch.setattr(reconstruction, "DRAWS", 100)
     known = {**reconstruction.known_of_sample(3)["values"], "VAX": "-5.1 +- 1"}
     told = reconstruction.answer(known, "us")
     (tmp_path / "known.toml").write_text('units = "us"\n' + toml(known), encoding="utf-8")
-    printed = own("reconstruct", "known.toml", "--samples", "400")
+    printed = own("reconstruct", "known.toml", "--samples", "100")
     assert [one["printed"] for one in told["solutions"]] == [printed.rstrip("\n")]
     rows = {row["name"]: row for row in told["solutions"][0]["rows"]}
     assert rows["UX"]["unit"] == "mph"
@@ -1004,7 +1008,7 @@ def test_a_reconstruction_begins_with_the_evidence_and_velocity_changes(
     client: Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """What is asked first stands first: can it all be true, then ΔV and the force's direction."""
-    monkeypatch.setattr(reconstruction, "DRAWS", 400)
+    monkeypatch.setattr(reconstruction, "DRAWS", 100)
     values = {**reconstruction.known_of_sample(1)["values"], "UX": "-29 +- 1", "VAX": "-13 +- 1"}
     answer = client.post("reconstruct", {"values": values, "units": ""}).get_json()
     best = answer["solutions"][0]

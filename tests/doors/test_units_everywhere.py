@@ -190,6 +190,7 @@ DOORS: list[Door] = [
 ]
 
 
+@pytest.mark.usefixtures("brief_search")
 @pytest.mark.parametrize("door", DOORS, ids=lambda door: door.__name__)
 def test_every_system_gives_the_same(door: Door, tmp_path: Path, capsys: Any) -> None:
     answers = {}
@@ -227,6 +228,7 @@ COMMANDS = {
 }
 
 
+@pytest.mark.usefixtures("brief_search")
 @pytest.mark.parametrize("command", COMMANDS)
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_the_same_file_at_every_door(

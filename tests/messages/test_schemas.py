@@ -177,6 +177,7 @@ def test_bounds(options: tuple[str, ...]) -> None:
     check("bounds", printed("bounds", "--sample", "1", "--samples", "500", "--json", *options))
 
 
+@pytest.mark.usefixtures("brief_search")
 @pytest.mark.parametrize(
     ("unknown", "known"),
     [
@@ -187,7 +188,7 @@ def test_bounds(options: tuple[str, ...]) -> None:
 def test_reconstruct(unknown: tuple[str, ...], known: dict[str, str]) -> None:
     values = {n: text for n, text in sample(3).items() if n not in unknown} | known
     options = [part for n, text in values.items() for part in ("--set", f"{n}={text}")]
-    check("reconstruct", printed("reconstruct", "--samples", "1000", "--json", *options))
+    check("reconstruct", printed("reconstruct", "--samples", "200", "--json", *options))
 
 
 TWO = ["--set=MA=96", "--set=MB=145"]

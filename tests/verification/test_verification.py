@@ -22,6 +22,8 @@ from impact88.verification.recovery.typedtext import stored_and_printed, texts_t
 from impact88.verification.reporting.examination import Verdict, Verification, examine, verify
 from impact88.verification.reporting.verification import lines
 
+pytestmark = pytest.mark.usefixtures("verdicts_alone")
+
 
 def verified(text: str) -> Verification:
     (shown,) = read_printouts(text)
