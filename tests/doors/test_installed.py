@@ -156,6 +156,7 @@ json.dumps([statuses, texts])`));
 """
 
 
+@pytest.mark.long
 def test_in_a_browser(installed: Path, capsys: pytest.CaptureFixture[str]) -> None:
     npm = os.environ.get("IMPACT88_PYODIDE")
     if not npm or not shutil.which("node"):

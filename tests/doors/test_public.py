@@ -79,6 +79,7 @@ CACHE = ROOT / ".mypy_cache" / "consumer"
 MYPY = ["mypy", "--strict", "--follow-imports=silent", "--cache-dir", str(CACHE)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("checker", [MYPY, ["pyright"]], ids=lambda c: c[0])
 def test_type_checkers_see_the_signatures(checker: list[str], tmp_path: Path) -> None:
     """Strict on the script as it is; and a wrong use of each kind is found."""
