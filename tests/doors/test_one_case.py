@@ -339,7 +339,7 @@ COMMANDS = (
     "run {file}",
     "solve {file}",
     "bounds {file} --samples 20 --outputs DVA",
-    "reconstruct {file} --samples 20 --json",
+    "reconstruct {file} --samples 0 --json",  # draws take most of the time; `bounds` has some
     "figure scene {file} -o drawn.svg",
     "figure sweep {file} --sweep EM=-.9:-.5:3 -o drawn.svg",
     "chapter delta-v {file} --like front --json",

@@ -57,7 +57,7 @@ def table(*lines: str) -> bytes:
 READERS: dict[str, tuple[int, Callable[[int], Input]]] = {
     "rows of a CSV": (250, lambda n: (["solve", "t.csv"], table(HEADER, *[ROW] * n))),
     "columns of a CSV": (
-        2000,
+        1000,
         lambda n: (
             ["solve", "t.csv"],
             table(HEADER + "".join(f",n{i}" for i in range(n)), ROW + ",1" * n),
@@ -74,7 +74,7 @@ READERS: dict[str, tuple[int, Callable[[int], Input]]] = {
     ),
     "rows of JSON Lines": (250, lambda n: (["solve", "t.jsonl"], table(*[OBJECT] * n))),
     "keys of a JSON line": (
-        2000,
+        1000,
         lambda n: (
             ["solve", "t.jsonl"],
             table(json.dumps({**VALUES, **{f"n{i}": i for i in range(n)}})),
@@ -114,7 +114,7 @@ READERS: dict[str, tuple[int, Callable[[int], Input]]] = {
     ),
     "a long line typed": (5000, lambda n: (["basic", "t.bas"], table("10 " + "A" * n))),
     "printouts": (1, lambda n: (["verify", "--brief", "t.txt"], table(*[PRINTOUT] * n))),
-    "one letter to verify": (15_000, lambda n: (["verify", "t.txt"], b"x" * n)),
+    "one letter to verify": (5000, lambda n: (["verify", "t.txt"], b"x" * n)),
 }
 TIMED = bool(os.environ.get("IMPACT88_SWEEP"))
 if TIMED:  # seconds for any number of rows

@@ -257,9 +257,10 @@ def run_as_a_person(text: str, replies: list[str], *, dos: bool = False) -> str:
 def test_pages_of_an_office_are_settled_by_its_copy(name: str, tmp_path: Path) -> None:
     text, replies = OFFICES[name]
     page, copy = run_as_a_person(text, replies), copy_of(text, tmp_path)
-    for genuine in (page, page[page.index("MA= ") :]):
-        assert verdicts(genuine, copy) <= set(SETTLED)
-        assert verdicts(genuine.replace("VAY= ", "VAY= 1"), copy) == {Verdict.DIFFERS}
+    without_prompts = page[page.index("MA= ") :]
+    assert verdicts(page, copy) <= set(SETTLED)
+    assert verdicts(without_prompts, copy) <= set(SETTLED)
+    assert verdicts(without_prompts.replace("VAY= ", "VAY= 1"), copy) == {Verdict.DIFFERS}
     assert verdicts(page.replace(replies[0], replies[0] + "5"), copy) == {Verdict.DIFFERS}
 
 
