@@ -191,6 +191,9 @@ def impact(
         relative_x = dx * taken_y + along_x * (parting - s * dy)
         relative_y = dy * taken_x + along_y * (parting - c * dx)
         of_masses, much_of_a, much_of_b = z * inverse, MOST * MA, MOST * MB
+        product = taken_x * taken_y
+        if not product.is_zero:  # but not both taken away and added, by much friction
+            of_masses = table.choose(product > -0.5, of_masses, zero)
         taken_x, taken_y = of_masses * taken_x, of_masses * taken_y
 
         def of_light(
