@@ -101,23 +101,33 @@ typedef struct {
 static inline ALWAYS_INLINE void find_kinds(
     const double *const *x, int64_t many, int64_t *kind, int64_t *turned)
 {
+    int64_t points[STRIP], bad[STRIP], large[STRIP];
     for (int64_t i = 0; i < many; i++) {
-        int64_t point = x[AT_M][i] == 4, bad = !(point | (x[AT_M][i] == 6)), large = 0;
-        for (int c = 0; c < AT_M; c++) {
-            int64_t asked = !point | !(UNUSED_BY_POINTS >> c & 1);
-            double y = x[c][i];
-            bad |= asked & (INERTIAS >> c & 1 ? !(y > 0) : !(fabs(y) <= DBL_MAX));
-            large |= asked & (ANGLES >> c & 1) & (fabs(y) > LARGE_ANGLE);
-        }
+        points[i] = x[AT_M][i] == 4;
+        bad[i] = !(points[i] | (x[AT_M][i] == 6)), large[i] = 0;
+    }
+    for (int c = 0; c < AT_M; c++) {
+        const double *y = x[c];
+        int64_t of_points = !(UNUSED_BY_POINTS >> c & 1);
+        if (INERTIAS >> c & 1)
+            for (int64_t i = 0; i < many; i++) bad[i] |= (of_points | !points[i]) & !(y[i] > 0);
+        else
+            for (int64_t i = 0; i < many; i++)
+                bad[i] |= (of_points | !points[i]) & !(fabs(y[i]) <= DBL_MAX);
+        if (ANGLES >> c & 1)
+            for (int64_t i = 0; i < many; i++)
+                large[i] |= (of_points | !points[i]) & (fabs(y[i]) > LARGE_ANGLE);
+    }
+    for (int64_t i = 0; i < many; i++) {
         /* what is infinite is at rest, and one body at most */
-        int64_t a = x[AT_MA][i] == INFINITY, b = x[AT_MB][i] == INFINITY;
-        int64_t turn_a = !point & (x[AT_IA][i] == INFINITY), turn_b = !point & (x[AT_IB][i] == INFINITY);
-        bad |= a & ((x[AT_UX][i] != 0) | (x[AT_UY][i] != 0));
-        bad |= b & ((x[AT_VX][i] != 0) | (x[AT_VY][i] != 0));
-        bad |= (turn_a & (x[AT_WA][i] != 0)) | (turn_b & (x[AT_WB][i] != 0));
-        bad |= (a | turn_a) & (b | turn_b);
-        kind[i] = bad ? REFUSED : 2 * point + (x[AT_MU][i] == -10);
-        turned[i] = large & !bad;
+        int64_t a = x[AT_MA][i] == INFINITY, b = x[AT_MB][i] == INFINITY, spins = !points[i];
+        int64_t turn_a = spins & (x[AT_IA][i] == INFINITY), turn_b = spins & (x[AT_IB][i] == INFINITY);
+        bad[i] |= a & ((x[AT_UX][i] != 0) | (x[AT_UY][i] != 0));
+        bad[i] |= b & ((x[AT_VX][i] != 0) | (x[AT_VY][i] != 0));
+        bad[i] |= (turn_a & (x[AT_WA][i] != 0)) | (turn_b & (x[AT_WB][i] != 0));
+        bad[i] |= (a | turn_a) & (b | turn_b);
+        kind[i] = bad[i] ? REFUSED : 2 * points[i] + (x[AT_MU][i] == -10);
+        turned[i] = large[i] & !bad[i];
     }
 }
 
