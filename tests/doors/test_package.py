@@ -124,6 +124,12 @@ def test_data_is_found_as_a_resource_of_the_package(package: str, name: str) -> 
     assert files(package).joinpath(name).is_file()
 
 
+def test_the_library_is_built_again_after_a_change_of_any_header(project: dict[str, Any]) -> None:
+    (module,) = project["tool"]["setuptools"]["ext-modules"]
+    folder = (ROOT / module["sources"][0]).parent
+    assert {ROOT / header for header in module["depends"]} == {*folder.glob("*.h")}
+
+
 def test_version_stands_in_one_place(project: dict[str, Any]) -> None:
     assert "version" in project["project"]["dynamic"]
     place = project["tool"]["setuptools"]["dynamic"]["version"]["attr"]
