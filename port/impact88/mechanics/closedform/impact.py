@@ -23,16 +23,18 @@ of gyration, or one body far lighter than the other. What of the spins is left a
 X = Ired (b omega_a/Ib - a omega_b/Ia), and a x b = an bt - at bn, which is Ired kappa x sigma. The
 moment impulse is (1 - em) H/em by Equation 18.
 
-Single spins are no sums of mean and H either, which may cancel: they are sums of what both spins
-would be without the other body's inertia, weighed with p = Ired (z/Ib - em/Ia) and q = (1 - em)
-Ired/Ia, and of X's terms, with a = an + mu at and b = bn + mu bt along the impulse of friction::
+Single spins are no sums of mean and H either, which may cancel: in Cramer's numerators of both, the
+terms of R, of w and of X are added by themselves, with p = Ired (z/Ib - em/Ia), q = 1 - em, and,
+for friction, a = an + mu at, b = bn + mu bt and sigma and kappa = a/Ia - b/Ib along the impulse::
 
-    Omega_a D = p [R omega_a - w a/Ia] + q [R omega_b - w b/Ib]
+    Omega_a D = R [p omega_a + q omega_b Ired/Ia] - w [z J sigma - em Ired kappa/Ia]
                 + em bn [a omega_b/Ia - b omega_a/Ib]
 
-and with a and b (p and q with their inertias) exchanged for B. At em = 0 both are the same sums,
-and so the same bits. The pivot's, divided by R, has w as a vector, and as its last line
-em [a.b omega_b/Ia - b.b omega_a/Ib - (a x b)(b x w)/(Ia Ib R)].
+and with a and b (p with its inertias) exchanged for B, kappa's sign, too. At em = 0 both are the
+same sums, and so the same bits. The pivot's, divided by R, are with w as a vector::
+
+    p [R omega_a - a.w/Ia] + q [R omega_b - b.w/Ib] Ired/Ia
+        + em [a.b omega_b/Ia - b.b omega_a/Ib - (a x b)(b x w)/(Ia Ib R)]
 
 A velocity after is no sum of the one before and its change where the change takes away most of it:
 the centers' relative velocity after has numerators of its own, in which what was taken away is no
@@ -165,9 +167,9 @@ def impact(
         w = rebound + cn
         a, b = an + mu * at, bn + mu * bt
         em_kappa, J_sigma, X = EM * kn, J * (a + b), cross_with_spins(a, b)
-        a_ia, b_ib = a * ia, b * ib
-        twist = Ired * (a_ia - b_ib)
-        levers = z * (J_sigma * sn) - twist * em_kappa
+        twist = Ired * (a * ia - b * ib)
+        push, em_twist = z * J_sigma, EM * twist
+        levers = push * sn - em_twist * kn
         determinant = z * R + levers
         inverse, turned = 1.0 / determinant, em_kappa * turn
         Pn = (turned - z * (w + sn * mean)) / determinant
@@ -176,9 +178,10 @@ def impact(
         Px, Py = along_x * Pn, along_y * Pn
         moment = unless_point((twist * w - turn * R - sn * X) * inverse)
         cross = EM * (a * (ia * WB) - b * (ib * WA))
-        state_a, state_b = R * WA - w * a_ia, R * WB - w * b_ib
-        spin_a = (own_a * state_a + other_b * state_b + bn * cross) * inverse
-        spin_b = (own_b * state_b + other_a * state_a - an * cross) * inverse
+        # what w multiplies is in the determinant, too: sums that cancel have errors in common
+        kept_a, kept_b = own_a * WA + other_b * WB, own_b * WB + other_a * WA
+        spin_a = (R * kept_a - w * (push - ia * em_twist) + bn * cross) * inverse
+        spin_b = (R * kept_b - w * (push + ib * em_twist) - an * cross) * inverse
         # by Cramer's rule, too: of ct and of what the impulse changes of it little may be left
         kept = z * (R * ((ct + st * mean) - mu * (w + sn * mean)) + J_sigma * (ct * sn - st * w))
         traded = twist * (kt * w - kn * ct) + (turn * R) * (mu * kn - kt) + crossing * X
