@@ -321,15 +321,16 @@ def impact(
     WAF, WBF = unless_point(spin_a, scene["WA"]), unless_point(spin_b, scene["WB"])
 
     # The contact points part by the rebound along n and the slip along t. Where the terms of the
-    # one are smaller, with those of the slip, the other is found from it: of the terms of a car
-    # that stops at a barrier, or of a long arm that hits, little is left. An arm has the rounding
-    # errors of its angle, too, times the component across.
+    # one are smaller, with those of rebound and slip, the other is found from it: of the terms of a
+    # car that stops at a barrier, or of a long arm that hits, little is left. An arm has the
+    # rounding errors of its angle, too, times the component across.
     part_x, part_y = to_fixed_axes(-(E * gn), slip)
     slipping = absolute(ct) + absolute(gt) + absolute(R * PT)
     if not isinstance(pivot, bool):
         slipping = table.choose(pivot, zero, slipping)
     elif pivot:
         slipping = zero
+    rebounding = absolute(E) * (absolute(cn) + absolute(an * WA) + absolute(bn * WB))
 
     def contacts(
         before: tuple[Expression, Expression],
@@ -337,22 +338,21 @@ def impact(
         turned: tuple[Expression, Expression],
         rounded: tuple[Expression, Expression],
         parting: Expression,
-        along_t: Expression,
+        of_parting: Expression,
     ) -> tuple[Expression, Expression]:
         """Return the contact points' velocities of A and B along x or y.
 
         ``before`` and ``after``: the centers' velocities; ``turned``: what the spins add;
         ``rounded``: the derivative by the arm's angle, times that; ``parting``: the relative
-        velocity after; ``along_t``: t's component.
+        velocity after, ``of_parting``: the sizes of its terms.
         """
         terms = [absolute(x) + absolute(y) for x, y in zip(before, after, strict=True)]
         terms_a, terms_b = (
             x + absolute(y) + absolute(z) for x, y, z in zip(terms, turned, rounded, strict=True)
         )
         a, b = (x + y for x, y in zip(after, turned, strict=True))
-        of_slip = absolute(along_t) * slipping
-        of_a = table.choose(terms_b + of_slip < terms_a, b + parting, a)
-        of_b = table.choose(terms_a + of_slip < terms_b, a - parting, b)
+        of_a = table.choose(terms_b + of_parting < terms_a, b + parting, a)
+        of_b = table.choose(terms_a + of_parting < terms_b, a - parting, b)
         return unless_point(of_a, after[0]), unless_point(of_b, after[1])
 
     # in an order of their own: a kernel has the sums whose sines it takes in another loop
@@ -360,8 +360,10 @@ def impact(
     arc_a, arc_b = (RADIAN * angle_a) * spin_a, (RADIAN * angle_b) * spin_b
     turned_x, turned_y = (D3 * spin_a, -(D1 * spin_b)), (-(D4 * spin_a), D2 * spin_b)
     rounded_x, rounded_y = (D4 * arc_a, D2 * arc_b), (D3 * arc_a, D1 * arc_b)
-    XAF, XBF = contacts((UX, VX), (VAX, VBX), turned_x, rounded_x, part_x, s)
-    YAF, YBF = contacts((UY, VY), (VAY, VBY), turned_y, rounded_y, part_y, c)
+    terms_x = absolute(s) * slipping + absolute(c) * rebounding
+    terms_y = absolute(c) * slipping + absolute(s) * rebounding
+    XAF, XBF = contacts((UX, VX), (VAX, VBX), turned_x, rounded_x, part_x, terms_x)
+    YAF, YBF = contacts((UY, VY), (VAY, VBY), turned_y, rounded_y, part_y, terms_y)
 
     def finite(inertia: Expression) -> Expression:
         """An infinite body is at rest, exactly, before and after: times 0 any number will do."""

@@ -81,7 +81,7 @@ def varying(mu: str, point: bool, infinite: bool = False, zeros: Iterable[str] =
 
 ALL = tuple(RESULTS)
 COLUMNS = tuple(SCENE)
-FORMULAS = "d4977ed097df96b7"
+FORMULAS = "d43bf4aa99000123"
 """Digest of the bodies' programs (`mechanics.kernelsource`): the library has the same formulas."""
 
 SOURCES: tuple[StatusFrom, ...] = ("estimate", "impulse")
