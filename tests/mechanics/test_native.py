@@ -7,6 +7,7 @@ alone, and where it was, `test_solve` and the tests beside it run both ways.
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -22,6 +23,8 @@ from impact88.mechanics.closedform import solve as solving
 from impact88.mechanics.closedform.impactprograms import ALL, BODIES, FORMULAS, KERNELS
 from impact88.mechanics.closedform.plain import MAX_CONVERTED
 from impact88.mechanics.closedform.solve import TILE, quantities
+from impact88.mechanics.native.formulas import ExpressionTable
+from impact88.mechanics.native.program import Program
 from impact88.names import RESULTS
 from impact88.program.vectorized import blocks
 
@@ -64,6 +67,19 @@ def test_what_is_compiled_as_a_whole_is_what_the_formulas_say(file_regression, r
         f'next step: FORMULAS = "{kernelsource.digest()}" in mechanics/closedform/impactprograms.py'
     )
     assert kernelcalls.usable(), "the library is of other formulas; next step: pip install -e ."
+
+
+def test_an_angle_used_beside_its_sine_is_computed_in_both_loops():
+    table = ExpressionTable()
+    angle = table.column("TA", True) + table.column("PA", True)
+    sine, _ = table.sine_and_cosine(angle - table.column("GA", True))
+    program = Program({"VC": sine * angle, "VS": sine}, ["RESULT", "RESULT"])
+    _, angles, lines = kernelsource._lines(program)
+    for loop in (angles, lines):
+        defined = [line.split(" = ")[0].split()[-1] for line in loop]
+        used = {name for line in loop for name in re.findall(r"\bv\d+\b", line.split(" = ", 1)[-1])}
+        assert used <= set(defined)
+    assert len(set(angles) & set(lines)) == 1  # not what only the sine needs
 
 
 def test_each_kernel_is_of_what_it_says():

@@ -153,7 +153,7 @@ def _lines(program: Program) -> tuple[list[str], list[str], list[str]]:
         values[place] = "INFINITY" if math.isinf(scalar) else scalar.hex()
     sines: list[str] = []
     angles: dict[str, None] = {}
-    lines: dict[str, None] = {}
+    lines: dict[str, list[str]] = {}
     line_of: dict[str, str] = {}
     operands_of: dict[str, list[str]] = {}
 
@@ -162,7 +162,6 @@ def _lines(program: Program) -> tuple[list[str], list[str], list[str]]:
         for operand in operands_of.get(value, ()):
             move(operand)
         if value in line_of:
-            lines.pop(line_of[value], None)
             angles[line_of[value]] = None
 
     for number, (operation, places) in enumerate(program.steps):
@@ -184,15 +183,22 @@ def _lines(program: Program) -> tuple[list[str], list[str], list[str]]:
             result = program.results[to - first]
             keeps = formula if operation != "BITS" else texts[0]
             place = ALL.index(result)
-            lines[f"if (wanted >> {place} & 1) to_{result}[i] = {keeps};"] = None
+            lines[f"if (wanted >> {place} & 1) to_{result}[i] = {keeps};"] = texts
         else:
             kind = "int64_t" if operation in CONDITIONS else "double"
             values[to] = name = f"v{number}"
             if operation in CONDITIONS:
                 conditions.add(name)
             line_of[name], operands_of[name] = f"{kind} {name} = {formula};", texts
-            lines[line_of[name]] = None
-    return sines, list(angles), list(lines)
+            lines[line_of[name]] = texts
+    # an angle may be used beside its sine, too: then it is computed in both loops
+    used: set[str] = set()
+    rest: list[str] = []
+    for line, texts in reversed(lines.items()):
+        if line not in angles or line.split(" = ")[0].split()[-1] in used:
+            rest.append(line)
+            used.update(texts)
+    return sines, list(angles), rest[::-1]
 
 
 def main() -> None:
