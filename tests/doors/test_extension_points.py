@@ -73,7 +73,7 @@ RESULT = Addition(
         Step(
             f"{PACKAGE}/mechanics/closedform/impact.py",
             '        "PS": table.root(Px * Px + Py * Py),\n',
-            '        "STATUS": sum(bits',
+            '        "STATUS": STATUS',
             "next step: 'PS' in what `impact` returns, in mechanics/closedform/impact.py",
         ),
         Step(
@@ -87,7 +87,7 @@ RESULT = Addition(
         Step(
             f"{PACKAGE}/mechanics/closedform/impact.py",
             '        "PS": table.root(Px * Px - Py * Py),\n',
-            '        "STATUS": sum(bits',
+            '        "STATUS": STATUS',
             "PS is off by",
         ),
     ),
@@ -459,7 +459,7 @@ def test_kernels_of_older_formulas_are_made_anew_as_the_test_says(copy: Copy) ->
             )
             assert said
             assert programs.endswith(said[2])
-            with copy.changed([Step(programs, f"{said[1]}\n", "\nBODIES", "")]):
+            with copy.changed([Step(programs, f"{said[1]}\n", "\nSOURCES", "")]):
                 assert "next step: pip install -e ." in copy.test(test, "say").stdout
     finally:
         kernels.write_text(kept, encoding="utf-8")
