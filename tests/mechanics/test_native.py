@@ -69,6 +69,18 @@ def test_what_is_compiled_as_a_whole_is_what_the_formulas_say(file_regression, r
     assert kernelcalls.usable(), "the library is of other formulas; next step: pip install -e ."
 
 
+@pytest.mark.skipif(native.library is None, reason="built without a C compiler")
+@pytest.mark.parametrize("wanted", [("LOSS",), ("DVA",), ("DVA", "DVB", "LOSS")])
+def test_the_cost_of_a_filter_counts_for_status_alone(wanted, monkeypatch):
+    """The kernels that would run decide whether strips with pivots are computed as a whole."""
+    decided = kernelcalls._mixed_from(("friction", "pivot", "mixed"), wanted)
+    with_status = (*wanted, "STATUS")
+    filtered = kernelcalls._mixed_from(("friction", "pivot", "mixed"), with_status)
+    monkeypatch.setattr(kernelcalls, "FILTERS", {})
+    assert kernelcalls._mixed_from(("friction", "pivot", "mixed"), wanted) == decided
+    assert kernelcalls._mixed_from(("friction", "pivot", "mixed"), with_status) != filtered
+
+
 def test_an_angle_used_beside_its_sine_is_computed_in_both_loops():
     table = ExpressionTable()
     angle = table.column("TA", True) + table.column("PA", True)

@@ -52,15 +52,16 @@ def programs() -> dict[str, Program]:
     kept: dict[str, set[str]] = {name: set() for name in BODIES}
     for name, results in KERNELS:
         kept[name].update(results)
-    source_of = {name: source for name, (_, source) in FILTERS.items()}
     return {
-        name: program_for(
-            kinds,
-            tuple(result for result in ALL if result in kept[name]),
-            status_from=source_of.get(name, "results"),
-        )
-        for name, kinds in BODIES.items()
+        name: _program(name, tuple(result for result in ALL if result in kept[name]))
+        for name in BODIES
     }
+
+
+def _program(name: str, results: tuple[str, ...]) -> Program:
+    """Return the program of a body for some results."""
+    source = FILTERS[name][1] if name in FILTERS else "results"
+    return program_for(BODIES[name], results, status_from=source)
 
 
 def digest() -> str:
@@ -84,9 +85,7 @@ def _places() -> list[str]:
 
 def _cost(name: str, results: tuple[str, ...]) -> int:
     """Return the cost of a kernel in operations."""
-    source = FILTERS[name][1] if name in FILTERS else "results"
-    steps = program_for(BODIES[name], results, status_from=source).steps
-    return sum(COSTS.get(operation, 1) for operation, _ in steps)
+    return sum(COSTS.get(operation, 1) for operation, _ in _program(name, results).steps)
 
 
 def _table() -> str:

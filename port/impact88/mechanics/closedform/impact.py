@@ -452,7 +452,7 @@ def impact(
     if status_from != "results":
         impulse = None
         if status_from == "impulse":
-            impulse = Impulse(determinant, PN, turning, yielding, lost)
+            impulse = Impulse(PN, turning, yielding, lost)
         STATUS = filtered_status(
             table,
             pivot,

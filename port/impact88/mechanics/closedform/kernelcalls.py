@@ -73,23 +73,28 @@ def _kernels(wanted: tuple[str, ...], without: str | None, points: bool) -> list
     if without is not None:
         kernels[0] = kernel_of(bodies.index(without), bits) or kernels[0]
     filters = [0] * len(kinds)
-    if "STATUS" in wanted and not points:
-        for body, (kind, _) in FILTERS.items():
-            place = kinds.index(kind)
-            filters[place] = filters[place] or kernel_of(bodies.index(body), bits) or 0
+    if not points:
+        for place, kind in enumerate(kinds):
+            found = (kernel_of(bodies.index(body), bits) for body in _filters(kind, wanted))
+            filters[place] = next(filter(None, found), 0)
     both = ("point", "point_pivot", "point_mixed") if points else ("friction", "pivot", "mixed")
-    return kernels + filters + _mixed_from(both, bits)
+    return kernels + filters + _mixed_from(both, wanted)
 
 
-def _mixed_from(kinds: tuple[str, str, str], bits: int) -> list[int]:
+def _filters(kind: str, wanted: tuple[str, ...]) -> list[str]:
+    """Return the bodies of a kind's filters, the cheapest first; none unless STATUS is wanted."""
+    return [body for body, (of, _) in FILTERS.items() if of == kind and "STATUS" in wanted]
+
+
+def _mixed_from(kinds: tuple[str, str, str], wanted: tuple[str, ...]) -> list[int]:
     """Return the least number of pivots among a strip's scenes with friction, and of such scenes
     among pivots, for which the kernel that computes both for every scene, the last of ``kinds``,
     costs less than collecting those of the rarer kind."""
     cost_of, bodies = native.library.cost_of, list(BODIES)
+    bits = sum(1 << ALL.index(name) for name in wanted)
     costs = []
     for kind in kinds:
-        filters = [body for body, (of, _) in FILTERS.items() if of == kind]
-        found = (cost_of(bodies.index(body), bits) for body in [*filters, kind])
+        found = (cost_of(bodies.index(body), bits) for body in [*_filters(kind, wanted), kind])
         costs.append(next(filter(None, found)))
     *alone, mixed = costs
     least = []

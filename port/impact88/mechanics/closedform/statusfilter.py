@@ -59,7 +59,6 @@ LEAST_LOSS = 1e-60
 class Impulse(NamedTuple):
     """An impulse as far as STATUS depends on it."""
 
-    determinant: Any
     normal: Any
     turning: Any
     yielding: Any
@@ -155,7 +154,7 @@ def filtered_status(
         slip = pick(gt, gt + gt + (Ktt * tangential + turning))
         lost = ((1.0 - e) * gn) * normal + tangential * slip
         lost = -(lost + moment * (gw - (em * of_z) * spinning))
-        impulse = Impulse(determinant, normal, turning, Ktt, lost)
+        impulse = Impulse(normal, turning, Ktt, lost)
         certain = certain & (absolute(numerator) > pick(margin, right_margin))
         growth = largest_determinant * absolute(of_determinant)
         energy_margin = ((8e3 * ROUNDINGS) * ((growth * growth) * growth)) * initial

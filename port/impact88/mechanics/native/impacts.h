@@ -42,20 +42,26 @@ static const struct {
     int64_t cost;
 } kernels[] = {KERNELS(ROW)};
 
-/* The first kernel of a body that has all results wanted, or 0. */
+/* The place of the first kernel of a body that has all results wanted, or -1. */
+static int64_t find_kernel(int64_t body, uint64_t wanted)
+{
+    for (int64_t k = 0; k < (int64_t)(sizeof kernels / sizeof *kernels); k++)
+        if (kernels[k].body == body && !(wanted & ~kernels[k].results)) return k;
+    return -1;
+}
+
+/* That kernel, or 0. */
 EXPORT kernel kernel_of(int64_t body, uint64_t wanted)
 {
-    for (size_t k = 0; k < sizeof kernels / sizeof *kernels; k++)
-        if (kernels[k].body == body && !(wanted & ~kernels[k].results)) return kernels[k].run;
-    return 0;
+    int64_t k = find_kernel(body, wanted);
+    return k < 0 ? 0 : kernels[k].run;
 }
 
 /* Its cost in operations, or 0. */
 EXPORT int64_t cost_of(int64_t body, uint64_t wanted)
 {
-    for (size_t k = 0; k < sizeof kernels / sizeof *kernels; k++)
-        if (kernels[k].body == body && !(wanted & ~kernels[k].results)) return kernels[k].cost;
-    return 0;
+    int64_t k = find_kernel(body, wanted);
+    return k < 0 ? 0 : kernels[k].cost;
 }
 
 EXPORT const char *formulas(void) { return FORMULAS; }
