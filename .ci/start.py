@@ -5,6 +5,6 @@ from multiprocessing import freeze_support
 
 freeze_support()
 
-from impact88.commands.cli import main  # noqa: E402
+from impact88.interface.commands.cli import main  # noqa: E402
 
 sys.exit(main(sys.argv[1:] or ["desk"]))

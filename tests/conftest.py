@@ -124,8 +124,8 @@ def golden_printout(file_regression: FileRegressionFixture) -> Callable[[str, st
 @pytest.fixture
 def verdicts_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """Verifications without what a page cannot show: it takes a good part of the time, and has
-    tests of its own (`verification/test_scan.py`)."""
-    from impact88.verification.judging import beside
+    tests of its own (`printouts/test_scan.py`)."""
+    from impact88.printouts.judging import beside
 
     monkeypatch.setattr(beside, "unseen", lambda *given: [])
 
@@ -134,8 +134,8 @@ def verdicts_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 def brief_search(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reconstructions draw from a tenth of the points and search from them once: for tests of what
     doors show and of two doors that must show the same, not of the bounds themselves."""
-    from impact88.optimization import widening
-    from impact88.reconstruction import posterior, reconstructed
+    from impact88.casework.optimization import widening
+    from impact88.casework.reconstruction import posterior, reconstructed
 
     monkeypatch.setattr(posterior, "PARTICLES", 800)
     monkeypatch.setattr(posterior, "BURN_IN_MOVES", 6)

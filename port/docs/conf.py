@@ -20,7 +20,7 @@ from pygments.lexers.special import TextLexer
 from sphinx.application import Sphinx
 
 import impact88
-from impact88.commands.cli import main
+from impact88.interface.commands.cli import main
 
 project = "impact88"
 author = "the impact88 developers"

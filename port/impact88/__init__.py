@@ -44,70 +44,70 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from . import names as names
     from . import status as status
-    from .chapter.barrier import barrier as barrier
-    from .chapter.colinear import colinear as colinear
-    from .chapter.colinear import colinear_inverse as colinear_inverse
-    from .chapter.deltav import delta_v as delta_v
+    from .apple.emulator.emulator import Applesoft as Applesoft
+    from .casework.chapter.barrier import barrier as barrier
+    from .casework.chapter.colinear import colinear as colinear
+    from .casework.chapter.colinear import colinear_inverse as colinear_inverse
+    from .casework.chapter.deltav import delta_v as delta_v
+    from .casework.figures.canvas import Svg as Svg
+    from .casework.figures.sceneview import scene_svg as scene_svg
+    from .casework.reconstruction.adjustment import Reconstruction as Reconstruction
+    from .casework.reconstruction.reconstructedtable import Reconstructions as Reconstructions
+    from .casework.reconstruction.reconstructedtable import reconstruct as reconstruct
+    from .casework.reconstruction.unknowns import Solution as Solution
+    from .casework.reconstruction.unknowns import solve_for as solve_for
+    from .casework.uncertainty.bounds import bounds as bounds
+    from .casework.uncertainty.boundstable import Bounds as Bounds
     from .collision.uncertain import Uncertain as Uncertain
-    from .comparison.compare import Comparison as Comparison
-    from .comparison.compare import compare as compare
-    from .comparison.oracle import oracle as oracle
-    from .emulator.emulator import Applesoft as Applesoft
+    from .conformance.comparison.compare import Comparison as Comparison
+    from .conformance.comparison.compare import compare as compare
+    from .conformance.comparison.oracle import oracle as oracle
     from .errors import PlausibilityWarning as PlausibilityWarning
     from .errors import UserError as UserError
-    from .figures.canvas import Svg as Svg
-    from .figures.sceneview import scene_svg as scene_svg
     from .mechanics.closedform.prepared import Prepared as Prepared
     from .mechanics.closedform.prepared import prepared as prepared
     from .mechanics.closedform.solve import solve as solve
     from .mechanics.native import accelerated as accelerated
+    from .printouts.reading.printout import Printout as Printout
+    from .printouts.reading.printout import read_printouts as read_printouts
+    from .printouts.reporting.examination import Verification as Verification
+    from .printouts.reporting.examination import Verifications as Verifications
+    from .printouts.reporting.examination import verify as verify
     from .program.run import Run as Run
     from .program.run import run as run
     from .program.scene import Scene as Scene
     from .program.scene import sample as sample
     from .program.vectorized import Replay as Replay
     from .program.vectorized import replay as replay
-    from .reconstruction.adjustment import Reconstruction as Reconstruction
-    from .reconstruction.reconstructedtable import Reconstructions as Reconstructions
-    from .reconstruction.reconstructedtable import reconstruct as reconstruct
-    from .reconstruction.unknowns import Solution as Solution
-    from .reconstruction.unknowns import solve_for as solve_for
     from .tables.frames import solve_frame as solve_frame
-    from .uncertainty.bounds import bounds as bounds
-    from .uncertainty.boundstable import Bounds as Bounds
-    from .verification.reading.printout import Printout as Printout
-    from .verification.reading.printout import read_printouts as read_printouts
-    from .verification.reporting.examination import Verification as Verification
-    from .verification.reporting.examination import Verifications as Verifications
-    from .verification.reporting.examination import verify as verify
 
 _LAZY = {
     name: place
     for place, names_there in {
         "": "names status",
-        "chapter.barrier": "barrier",
-        "chapter.colinear": "colinear colinear_inverse",
-        "chapter.deltav": "delta_v",
-        "comparison.compare": "Comparison compare",
-        "comparison.oracle": "oracle",
+        "casework.chapter.barrier": "barrier",
+        "casework.chapter.colinear": "colinear colinear_inverse",
+        "casework.chapter.deltav": "delta_v",
+        "conformance.comparison.compare": "Comparison compare",
+        "conformance.comparison.oracle": "oracle",
         "mechanics.closedform.prepared": "Prepared prepared",
         "mechanics.closedform.solve": "solve",
-        "emulator.emulator": "Applesoft",
+        "apple.emulator.emulator": "Applesoft",
         "errors": "PlausibilityWarning UserError",
-        "figures.canvas": "Svg",
-        "figures.sceneview": "scene_svg",
+        "casework.figures.canvas": "Svg",
+        "casework.figures.sceneview": "scene_svg",
         "mechanics.native": "accelerated",
         "program.run": "Run run",
-        "verification.reading.printout": "Printout read_printouts",
-        "reconstruction.adjustment": "Reconstruction",
-        "reconstruction.unknowns": "Solution solve_for",
+        "printouts.reading.printout": "Printout read_printouts",
+        "casework.reconstruction.adjustment": "Reconstruction",
+        "casework.reconstruction.unknowns": "Solution solve_for",
         "program.vectorized": "Replay replay",
-        "verification.reporting.examination": "Verification Verifications verify",
+        "printouts.reporting.examination": "Verification Verifications verify",
         "program.scene": "Scene sample",
         "tables.frames": "solve_frame",
-        "uncertainty.bounds": "bounds",
-        "uncertainty.boundstable": "Bounds",
-        "reconstruction.reconstructedtable": "Reconstructions reconstruct",
+        "casework.uncertainty.bounds": "bounds",
+        "casework.uncertainty.boundstable": "Bounds",
+        "casework.reconstruction.reconstructedtable": "Reconstructions reconstruct",
         "collision.uncertain": "Uncertain",
     }.items()
     for name in names_there.split()

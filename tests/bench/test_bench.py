@@ -15,8 +15,8 @@ from impact88.bench import figure, measure, plainc, tables
 from impact88.bench.measure import COMPONENTS
 from impact88.bench.methods import METHODS, reference, relative_errors
 from impact88.bench.populations import BENCHMARK, POPULATIONS, repeat_scenes, scenes, texts
-from impact88.commands.cli import main
-from impact88.figures import canvas
+from impact88.casework.figures import canvas
+from impact88.interface.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
 from impact88.messages.progress import progress
 from impact88.names import FINAL_VELOCITIES

@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 
 import captures
 
-from impact88.emulator.emulator import Applesoft
+from impact88.apple.emulator.emulator import Applesoft
 from impact88.files import packaged_text
 from impact88.program import emulated
 from impact88.program.run import run

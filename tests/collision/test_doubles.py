@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from impact88.applesoft import decimaltext
+from impact88.apple.applesoft import decimaltext
 from impact88.collision import uncertain
 from impact88.collision.case import check_value
 from impact88.collision.doubles import double, doubles, is_number
-from impact88.commands.cli import main
 from impact88.errors import UserError
+from impact88.interface.commands.cli import main
 from impact88.tables.cells import TableUnits, numbers
 from impact88.tables.rows import Rows
 

@@ -6,10 +6,10 @@ import statistics
 
 import pytest
 
-from impact88.chapter.staged import collisions
+from impact88.casework.chapter.staged import collisions
 from impact88.collision.estimates import CARS
-from impact88.commands.cli import main
 from impact88.errors import UserError
+from impact88.interface.commands.cli import main
 from impact88.program.scene import Scene, sample
 
 G = 9.80665 / 0.3048

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from impact88 import solve
+from impact88.casework.uncertainty.bounds import bounds
 from impact88.collision.uncertain import read
 from impact88.collision.units import SYSTEMS, UNITS, in_base, size_of
-from impact88.commands.cli import main
 from impact88.errors import UserError
+from impact88.interface.commands.cli import main
 from impact88.program.scene import Scene, sample
-from impact88.uncertainty.bounds import bounds
 
 G = 9.80665 / 0.3048
 """ft/s²"""

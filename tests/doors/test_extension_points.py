@@ -193,11 +193,11 @@ FORMAT = Addition(
 )
 COMMAND = Addition(
     heading="A command",
-    test="tests/commands/test_commands.py",
+    test="tests/interface/commands/test_commands.py",
     chosen="registered or help_lists or mentioned or hello",
     steps=(
         Step(
-            f"{PACKAGE}/commands/hello_command.py",
+            f"{PACKAGE}/interface/commands/hello_command.py",
             """\
 \"\"\"It greets whoever is named.\"\"\"
 
@@ -210,13 +210,13 @@ def main(args: options.Args) -> None:
     print(f"HELLO {args.name}")
 """,
             "",
-            "next step: commands/hello_command.py with ARGUMENTS and main",
+            "next step: interface/commands/hello_command.py with ARGUMENTS and main",
         ),
         Step(
-            f"{PACKAGE}/commands/__init__.py",
+            f"{PACKAGE}/interface/commands/__init__.py",
             '    Command("hello", _OTHER, "greet somebody"),\n',
             '    Command("schema", ',
-            "next step: its row in ROWS of commands/__init__.py",
+            "next step: its row in ROWS of interface/commands/__init__.py",
         ),
         Step(
             "port/docs/guide/apple.md",
@@ -234,10 +234,10 @@ def main(args: options.Args) -> None:
     ),
     mistakes=(
         Step(
-            f"{PACKAGE}/commands/hello_command.py",
+            f"{PACKAGE}/interface/commands/hello_command.py",
             '"""It greets."""\n\nARGUMENTS = ()\n',
             "",
-            "next step: main in commands/hello_command.py",
+            "next step: main in interface/commands/hello_command.py",
         ),
         Step(
             "port/docs/guide/apple.md",
@@ -252,7 +252,7 @@ def main(args: options.Args) -> None:
 )
 STORED = '10 DIM A(1): STORE A: PRINT "STORED"\n'
 STORE = Step(
-    f"{PACKAGE}/emulator/inputoutput.py",
+    f"{PACKAGE}/apple/emulator/inputoutput.py",
     """\
     def store_(self) -> None:
         \"\"\"STORE: an array, to a tape that is not there.\"\"\"
@@ -264,7 +264,7 @@ STORE = Step(
 )
 STATEMENT = Addition(
     heading="A statement of the emulator",
-    test="tests/emulator/test_emulator.py",
+    test="tests/apple/emulator/test_emulator.py",
     chosen="statement or tape_store",
     steps=(
         STORE,
@@ -287,10 +287,10 @@ STATEMENT = Addition(
     page=STORED,
 )
 SAMPLE = (ROOT / "golden" / "printouts" / "run1.txt").read_text(encoding="utf-8")
-SHAPE = Step(f"{PACKAGE}/verification/reading/channel.txt", "\n8 €", " B&S\n9 PGY", "")
+SHAPE = Step(f"{PACKAGE}/printouts/reading/channel.txt", "\n8 €", " B&S\n9 PGY", "")
 LOOK_ALIKE = Addition(
     heading="A look-alike of `verify`",
-    test="tests/verification/test_reading.py",
+    test="tests/printouts/test_reading.py",
     chosen="alike",
     steps=(SHAPE,),
     mistakes=(

@@ -149,7 +149,7 @@ def test_a_disk_that_fills_up_keeps_the_old_file(folder: Path, line: str) -> Non
     code = (
         "import resource, signal, sys; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (64, 64));"
-        "from impact88.commands.cli import main; sys.exit(main(sys.argv[1:]))"
+        "from impact88.interface.commands.cli import main; sys.exit(main(sys.argv[1:]))"
     )
     done = subprocess.run(
         [sys.executable, "-B", "-c", code, *line.split()],
@@ -235,7 +235,7 @@ def test_the_longest_name_a_file_can_have_is_written(folder: Path, letter: str) 
 _WORKS_ON_CONTROL_C = (
     "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler);"
     "[signal.signal(getattr(signal, n), signal.SIG_DFL) for n in ('SIGTERM', 'SIGHUP')];"
-    "from impact88.commands.cli import main; sys.exit(main(sys.argv[1:]))"
+    "from impact88.interface.commands.cli import main; sys.exit(main(sys.argv[1:]))"
 )
 """A shell's background job ignores control-C, and one behind nohup SIGHUP: so would the commands
 started here, which inherit that."""

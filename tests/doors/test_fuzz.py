@@ -83,7 +83,7 @@ def test_a_case_is_the_same_from_its_seed_and_from_its_file() -> None:
 def test_the_judge_sees_what_it_is_for(
     monkeypatch: pytest.MonkeyPatch, source: str, fault: str
 ) -> None:
-    from impact88.commands import cli
+    from impact88.interface.commands import cli
 
     space: dict[str, object] = {}
     exec(f"def broken(arguments):\n    {source}", space)

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from captures import ROOT
 
-from impact88.commands.cli import main
+from impact88.interface.commands.cli import main
 
 pytest.importorskip("setuptools", "70.1", reason="older ones build no wheel by themselves")
 
@@ -31,10 +31,10 @@ sys.addaudithook(lambda event, told: opened.add(str(told[0])) if event in uses e
 import numpy
 from impact88 import sample
 from impact88.bench.populations import evolved
-from impact88.commands import cli
-from impact88.desk import app
-from impact88.comparison.equations import edits
-from impact88.verification.scan.typeface import prototypes
+from impact88.interface.commands import cli
+from impact88.interface.desk import app
+from impact88.equations import edits
+from impact88.printouts.scan.typeface import prototypes
 from impact88.messages.schemas import NUMBERS, text
 statuses = {}
 def run(*arguments):
@@ -138,7 +138,7 @@ pyodide.FS.mount(pyodide.FS.filesystems.NODEFS, { root: site }, "/site");
 console.log(pyodide.runPython(`
 import contextlib, importlib.util, io, json, sys
 sys.path.insert(0, "/site")
-from impact88.commands.cli import main
+from impact88.interface.commands.cli import main
 statuses, texts = {}, {}
 numpy = ["solve", "verify", "selfcheck"] if importlib.util.find_spec("numpy") else []
 asked = {

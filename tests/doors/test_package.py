@@ -72,7 +72,7 @@ def test_every_package_folder_is_listed(project: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize(
-    "package", ["impact88", "impact88.desk", "impact88.legacy", "impact88.golden"]
+    "package", ["impact88", "impact88.interface.desk", "impact88.legacy", "impact88.golden"]
 )
 def test_every_data_file_matches_a_pattern_of_package_data(
     project: dict[str, Any], package: str
@@ -116,8 +116,8 @@ def test_every_data_file_matches_a_pattern_of_package_data(
         ("impact88.legacy", "ERRATA.md"),
         ("impact88.golden", "scenes.jsonl.gz"),
         ("impact88.golden", "arithmetic/add.tsv.gz"),
-        ("impact88.desk", "templates/desk.html"),
-        ("impact88.desk", "static/desk.css"),
+        ("impact88.interface.desk", "templates/desk.html"),
+        ("impact88.interface.desk", "static/desk.css"),
     ],
 )
 def test_data_is_found_as_a_resource_of_the_package(package: str, name: str) -> None:

@@ -24,7 +24,7 @@ from extras import run_with
 from guide import guide
 from installed import COMMAND, impact88
 
-from impact88.commands.cli import COMMANDS
+from impact88.interface.commands.cli import COMMANDS
 from impact88.names import SCENE
 from impact88.program.scene import sample
 

@@ -87,8 +87,8 @@ def test_the_root_is_a_table_of_contents() -> None:
     assert not packages & public
 
 
-MACHINE = ("impact88.applesoft", "impact88.emulator")
-LOADER = ("impact88.emulator.programfile", "impact88.errors")
+MACHINE = ("impact88.apple.applesoft", "impact88.apple.emulator")
+LOADER = ("impact88.apple.emulator.programfile", "impact88.errors")
 """It reads what a user hands over, and what it tells the user is what all errors are."""
 
 
@@ -104,11 +104,11 @@ def test_applesoft_knows_nothing_of_collisions() -> None:
 
 
 def test_only_commands_import_commands() -> None:
-    upper = ("impact88.commands.", "impact88.commands.cli")
+    upper = ("impact88.interface.commands.", "impact88.interface.commands.cli")
     below = {
         (name, module)
         for name, modules in rooms().items()
-        if not name.startswith((*upper, "impact88.commands", "impact88.__main__"))
+        if not name.startswith((*upper, "impact88.interface.commands", "impact88.__main__"))
         for module in modules
         if module.startswith(upper)
     }
@@ -158,8 +158,8 @@ FAITHFUL = {"impact88.program.listing", "impact88.program.arithmetics"}
 def test_the_faithful_path_needs_no_other_room() -> None:
     """Whatever else this project grows, what prints the 1988 digits stands alone."""
     for name in sorted(FILES):
-        if name in FAITHFUL or name.startswith("impact88.applesoft"):
-            own = {n for n in needed(name) if n.startswith("impact88.applesoft")}
+        if name in FAITHFUL or name.startswith("impact88.apple.applesoft"):
+            own = {n for n in needed(name) if n.startswith("impact88.apple.applesoft")}
             assert needed(name) <= own | FAITHFUL | GROUND, name
 
 

@@ -14,7 +14,7 @@ import pytest
 from unitscenes import SCENE, texts
 
 from impact88.collision.units import SYSTEMS, size_of
-from impact88.commands.cli import main
+from impact88.interface.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_STATE, quantity
 from impact88.program.scene import sample
@@ -157,7 +157,7 @@ def barrier(system: str, path: Path, capsys: Any) -> Amounts:
 
 
 def desk(system: str, path: Path, capsys: Any) -> Amounts:
-    from impact88.desk import collision
+    from impact88.interface.desk import collision
 
     rows = collision.answer(texts(system), system)["results"]
     assert all(row["shown"].endswith(row["label"]) for row in rows)
@@ -165,7 +165,7 @@ def desk(system: str, path: Path, capsys: Any) -> Amounts:
 
 
 def desk_bounds(system: str, path: Path, capsys: Any) -> Amounts:
-    from impact88.desk import collision
+    from impact88.interface.desk import collision
 
     values = {**texts(system), "MU": ".3 .. .5"}
     with pytest.MonkeyPatch.context() as patch:

@@ -11,12 +11,12 @@ import pytest
 
 import impact88
 from impact88 import solve
-from impact88.commands.cli import main
+from impact88.casework.reconstruction.reconstructedtable import Measured
+from impact88.casework.uncertainty.bounds import bounds
+from impact88.casework.uncertainty.ranges import read_inputs
 from impact88.errors import UserError
+from impact88.interface.commands.cli import main
 from impact88.program.scene import Scene, sample
-from impact88.reconstruction.reconstructedtable import Measured
-from impact88.uncertainty.bounds import bounds
-from impact88.uncertainty.ranges import read_inputs
 
 CF11002 = {
     **{"DA": "4.14", "PA": "29", "TA": "0", "GA": "74.6", "MA": "3574.2", "IA": "2336.3"},

@@ -17,7 +17,7 @@ from fiftydigits import exact, listing_elimination, relative_error, split
 from worked_cases import RUN_1
 
 from impact88 import solve
-from impact88.applesoft.operators import Real
+from impact88.apple.applesoft.operators import Real
 from impact88.bench.populations import POPULATIONS, scenes
 from impact88.collision.degrees import sin_cos
 from impact88.collision.sinetable import STEP

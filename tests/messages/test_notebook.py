@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 import impact88
-from impact88.commands.cli import main
-from impact88.verification.reporting.examination import examine
+from impact88.interface.commands.cli import main
+from impact88.printouts.reporting.examination import examine
 
 SCRIPT = "<script>alert('&')</script>"
 

@@ -17,13 +17,13 @@ from installed import impact88 as command
 from tinyrom import rom
 
 import impact88
-from impact88.commands.cli import main
-from impact88.comparison.vectors import published
+from impact88.conformance.comparison.vectors import published
+from impact88.conformance.qualification.selfcheck import checks
 from impact88.errors import UserError
+from impact88.interface.commands.cli import main
 from impact88.messages import schemas
 from impact88.program.run import run
 from impact88.program.scene import sample
-from impact88.qualification.selfcheck import checks
 
 PRINTOUT = str(ROOT / "legacy" / "table3-as-printed.txt")
 SCENE = dict(sample(1))
@@ -147,7 +147,9 @@ def test_compare_right_wrong_and_incomplete(tmp_path) -> None:
 def test_selfcheck(tmp_path, monkeypatch, capsys) -> None:
     """The command on no captures, which is quick: every check fails but the published runs'."""
     (tmp_path / "printouts").symlink_to(ROOT / "golden" / "printouts")
-    monkeypatch.setattr("impact88.commands.selfcheck_command.checks", lambda: checks(tmp_path))
+    monkeypatch.setattr(
+        "impact88.interface.commands.selfcheck_command.checks", lambda: checks(tmp_path)
+    )
     assert main(["selfcheck", "--json"]) == 1
     found = check("selfcheck", capsys.readouterr().out)
     assert [one["name"] for one in found["checks"] if one["passed"]] == [

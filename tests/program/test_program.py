@@ -9,9 +9,9 @@ from importlib.resources import files
 
 import pytest
 
+from impact88.conformance.qualification.captured import session
 from impact88.program.run import run
 from impact88.program.scene import sample
-from impact88.qualification.captured import session
 
 PUBLISHED = [(1, "run1"), (2, "run2"), (3, "table3")]
 

@@ -14,11 +14,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from impact88.applesoft import decimaltext as scalar_text
-from impact88.applesoft import functions as scalar_functions
-from impact88.applesoft import real
-from impact88.applesoft.errorcodes import ApplesoftError
-from impact88.applesoft.real import Number
+from impact88.apple.applesoft import decimaltext as scalar_text
+from impact88.apple.applesoft import functions as scalar_functions
+from impact88.apple.applesoft import real
+from impact88.apple.applesoft.errorcodes import ApplesoftError
+from impact88.apple.applesoft.real import Number
 from impact88.program.vectorized import polynomials, textcolumns
 from impact88.program.vectorized.reals import Reals, compare, from_floats
 from impact88.program.vectorized.unit import Unit

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from guide import guide
 
+from impact88.casework.figures.scenegeometry import plan
 from impact88.collision.scenefile import SIGNS, template
-from impact88.commands.cli import main
 from impact88.errors import UserError
-from impact88.figures.scenegeometry import plan
+from impact88.interface.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import SCENE
 from impact88.program.scene import Scene, published_data, sample

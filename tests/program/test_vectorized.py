@@ -11,7 +11,7 @@ import captures
 import numpy as np
 import pytest
 
-from impact88.applesoft.decimaltext import scan
+from impact88.apple.applesoft.decimaltext import scan
 from impact88.mechanics import native
 from impact88.program.vectorized import compiled, polynomials, textcolumns
 from impact88.program.vectorized.reals import Reals, compare, constant, from_floats

@@ -6,10 +6,10 @@ from typing import Any
 
 import captures
 
+from impact88.conformance.qualification.captured import memory_contents, normalize_zero
 from impact88.program import emulated
 from impact88.program.run import run as run_port
 from impact88.program.scene import Scene
-from impact88.qualification.captured import memory_contents, normalize_zero
 
 NOT_FOLLOWED = {
     "fresh_list_451": "graphics",

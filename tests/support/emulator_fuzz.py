@@ -17,10 +17,10 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import captures
 
-from impact88.applesoft.console import EndOfInput
-from impact88.emulator.emulator import Applesoft
-from impact88.emulator.faults import TooManyStatements
-from impact88.emulator.tokens import FIRST, KEYWORDS
+from impact88.apple.applesoft.console import EndOfInput
+from impact88.apple.emulator.emulator import Applesoft
+from impact88.apple.emulator.faults import TooManyStatements
+from impact88.apple.emulator.tokens import FIRST, KEYWORDS
 
 STATEMENTS = 400
 NAMES = ("A", "B", "I", "N%", "A$", "B$", "A(1)", "A$(2)", "N%(I)", "FN A(I)", "X1")

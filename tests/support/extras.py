@@ -20,7 +20,7 @@ from packaging.requirements import Requirement
 
 import impact88
 
-_RUN = "import sys; from impact88.commands.cli import main; sys.exit(main(sys.argv[1:]))"
+_RUN = "import sys; from impact88.interface.commands.cli import main; sys.exit(main(sys.argv[1:]))"
 
 
 def required(name: str, extras: frozenset[str] = frozenset()) -> set[str]:

@@ -9,7 +9,7 @@ from contextlib import chdir, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 
-from impact88.commands.cli import main
+from impact88.interface.commands.cli import main
 
 COMMAND = str(Path(sys.executable).with_name("impact88"))
 """The command that belongs to the Python running the tests."""

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 import captures
 
 from impact88.collision.fields import ANGLES, FIELDS
-from impact88.verification.judging.judgement import FieldCheck, Status
-from impact88.verification.reading.plaintext import decode
-from impact88.verification.reading.printout import Printout, read_printouts
-from impact88.verification.reporting.examination import Verification
+from impact88.printouts.judging.judgement import FieldCheck, Status
+from impact88.printouts.reading.plaintext import decode
+from impact88.printouts.reading.printout import Printout, read_printouts
+from impact88.printouts.reporting.examination import Verification
 
 SWEEP = int(os.environ.get("IMPACT88_SWEEP") or 0)
 """Set to n: every captured scene, and n changes of each; else a sample that takes seconds. A sweep

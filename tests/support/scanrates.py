@@ -30,7 +30,7 @@ def offered(folder: Path, part: int, parts: int) -> Iterator[dict[str, Any]]:
 
 def run(folder: Path, results: Path, part: int = 0, parts: int = 1) -> None:
     """Verify each page that is not among the results yet, and add it to them."""
-    from impact88.verification.reporting.examination import examine
+    from impact88.printouts.reporting.examination import examine
 
     lines = results.read_text(encoding="utf-8").splitlines() if results.exists() else []
     done = {json.loads(line)["file"] for line in lines}

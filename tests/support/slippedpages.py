@@ -15,10 +15,10 @@ from decimal import Decimal
 from typing import Any, NamedTuple
 
 import machines
-import printouts
 
+import printouts
 from impact88.collision.fields import ANGLES, INPUTS
-from impact88.verification.explaining.causes import Cause
+from impact88.printouts.explaining.causes import Cause
 
 Row = dict[str, Any]
 Named = Callable[[Cause], bool]

@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from impact88.commands.cli import main
+from impact88.interface.commands.cli import main
 from impact88.names import SCENE
 from impact88.program.scene import sample
 from impact88.tables.lines import Lines

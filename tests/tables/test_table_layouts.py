@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import impact88
-from impact88.commands.cli import main
 from impact88.errors import UserError
+from impact88.interface.commands.cli import main
 from impact88.names import SCENE
 from impact88.tables import jsontable
 from impact88.tables.rows import BLOCK_ROWS

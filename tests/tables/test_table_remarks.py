@@ -12,7 +12,7 @@ import pytest
 import impact88
 from impact88.collision.plausibility import remarks as remarks_of_one
 from impact88.collision.units import RULES, SYSTEMS, System
-from impact88.commands.cli import main
+from impact88.interface.commands.cli import main
 from impact88.mechanics import native
 from impact88.names import SCENE
 from impact88.tables import remarks as tables

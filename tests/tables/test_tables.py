@@ -21,8 +21,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from impact88.commands.cli import main
 from impact88.errors import UserError
+from impact88.interface.commands.cli import main
 from impact88.names import SCENE
 from impact88.tables import csvtable, formats
 from impact88.tables.cells import TableUnits, check_scene_columns, numbers
@@ -199,7 +199,7 @@ def test_pyarrow_is_imported_for_large_tables_alone(tmp_path, rows):
     path.write_text(csv_text([{**TEXTS, "note": f"{i:0120}"} for i in range(rows)]))
     script = (
         "import sys\n"
-        "from impact88.commands.cli import main\n"
+        "from impact88.interface.commands.cli import main\n"
         "from impact88.tables import csvtable\n"
         "if sys.argv[1] == 'never': csvtable.arrow_available = lambda: False\n"
         "main(['solve', sys.argv[2], '--outputs', 'LOSS,STATUS'])\n"

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from ..figures.charts import Panel, key, powers
-from ..figures.drawing import GREY, ORANGE, VERMILION, Box, Drawing, Text, wrap_text
+from ..casework.figures.charts import Panel, key, powers
+from ..casework.figures.drawing import GREY, ORANGE, VERMILION, Box, Drawing, Text, wrap_text
 from ..mechanics.accuracy.errorbound import APPLESOFT, DOUBLE, relative_bounds
 from .measure import Row
 from .methods import METHODS

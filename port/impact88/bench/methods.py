@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..applesoft.operators import Real
-from ..figures.drawing import BLACK, BLUE, GREY, ORANGE, VERMILION
+from ..apple.applesoft.operators import Real
+from ..casework.figures.drawing import BLACK, BLUE, GREY, ORANGE, VERMILION
 from ..mechanics import native
 from ..mechanics.accuracy.elimination import ORDER, changes, eliminate, fill, lapack
 from ..mechanics.accuracy.errorbound import APPLESOFT, DOUBLE

@@ -7,7 +7,7 @@ value is the double nearest to the decimal.
 
 from collections.abc import Mapping, Sequence
 
-from ..applesoft import decimaltext
+from ..apple.applesoft import decimaltext
 
 _PLAIN = frozenset("0123456789+-.eE")
 """In texts of these characters alone, whatever Python's float accepts INPUT reads the same."""

@@ -7,10 +7,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
-from ..applesoft import decimaltext, functions
-from ..applesoft.errorcodes import ApplesoftError, division_by_zero, illegal_quantity, overflow
-from ..applesoft.operators import Real
-from ..applesoft.real import ZERO, Number, absolute, floor
+from ..apple.applesoft import decimaltext, functions
+from ..apple.applesoft.errorcodes import (
+    ApplesoftError,
+    division_by_zero,
+    illegal_quantity,
+    overflow,
+)
+from ..apple.applesoft.operators import Real
+from ..apple.applesoft.real import ZERO, Number, absolute, floor
 from ..collision import doubles
 from ..errors import UserError
 

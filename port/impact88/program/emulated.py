@@ -11,10 +11,10 @@ from itertools import chain
 from typing import NamedTuple
 
 from .. import files
-from ..applesoft.console import EndOfInput
-from ..applesoft.errorcodes import ApplesoftError
-from ..emulator.emulator import Applesoft
-from ..emulator.faults import TooManyStatements
+from ..apple.applesoft.console import EndOfInput
+from ..apple.applesoft.errorcodes import ApplesoftError
+from ..apple.emulator.emulator import Applesoft
+from ..apple.emulator.faults import TooManyStatements
 from ..errors import UserError
 from .copyvariables import find_variables, key_of
 from .run import Run

@@ -18,8 +18,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from ..applesoft.arrays import Array
-from ..applesoft.console import Console
+from ..apple.applesoft.arrays import Array
+from ..apple.applesoft.console import Console
 from .arithmetics import Arithmetic
 
 TYPE_CHECKING = False

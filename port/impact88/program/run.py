@@ -9,8 +9,8 @@ from collections import namedtuple
 from collections.abc import Mapping
 from contextlib import nullcontext
 
-from ..applesoft.console import Console
-from ..applesoft.operators import Real
+from ..apple.applesoft.console import Console
+from ..apple.applesoft.operators import Real
 from ..messages import notebook
 from ..messages.arguments import explains_arguments
 from . import arithmetics, listing, stepping

@@ -17,7 +17,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from ..applesoft.decimaltext import scan
+from ..apple.applesoft.decimaltext import scan
 from ..collision import doubles
 from ..errors import UserError, quoted
 from ..files import LONGEST_LINE

@@ -19,9 +19,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 
-from impact88.commands import cli
-from impact88.commands.cli import INTERRUPTED
 from impact88.errors import UserError
+from impact88.interface.commands import cli
+from impact88.interface.commands.cli import INTERRUPTED
 from impact88.program.run import run
 from impact88.program.scene import Scene
 

@@ -18,12 +18,12 @@ import captures
 import emulator_fuzz
 import numpy as np
 
-from impact88.applesoft.decimaltext import is_number
+from impact88.apple.applesoft.decimaltext import is_number
 from impact88.collision.case import VALUE_LIMIT
 from impact88.collision.case import Case as SceneCase
 from impact88.collision.scenefile import template
-from impact88.commands.cli import COMMANDS
 from impact88.errors import UserError
+from impact88.interface.commands.cli import COMMANDS
 from impact88.names import CHAPTER, FINAL_STATE, RESULTS, SCENE
 from impact88.program.scene import sample
 
@@ -540,7 +540,7 @@ def _typed_tables() -> dict[str, bytes]:
     import os
     import tempfile
 
-    from impact88.commands.cli import main
+    from impact88.interface.commands.cli import main
 
     made = {}
     with tempfile.TemporaryDirectory() as folder:

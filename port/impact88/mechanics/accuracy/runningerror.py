@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from ...applesoft.decimaltext import scan
+from ...apple.applesoft.decimaltext import scan
 from ...names import DEFAULT_M, PIVOT
 from .elimination import LISTING_PI, ORDER, Terms, eliminate, listing_rows
 

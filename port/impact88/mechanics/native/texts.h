@@ -101,7 +101,7 @@ static inline int64_t nine_digits(uint32_t n, char *digits)
     return (int64_t)((kept >> 7) * 0x0101010101010101 >> 56);
 }
 
-/* Nine digits times 10^d as PRINT sets them: see applesoft/decimaltext.py, lay_out. */
+/* Nine digits times 10^d as PRINT sets them: see apple/applesoft/decimaltext.py, lay_out. */
 static inline void lay_out(const char *digits, int64_t last, int64_t d, int negative, char *text)
 {
     int64_t plain = d >= -10 && d <= 0, point = plain ? d + 9 : 1, end;

@@ -1,12 +1,12 @@
 """The functions the listing calls, over arrays: the ROM's reductions and polynomials.
 
-Coefficients and order of the steps are those of `impact88.applesoft.functions`. A branch there is a
+Coefficients and order of the steps are those of `impact88.apple.applesoft.functions`. A branch there is a
 selection here, with both sides computed; where one could fail its operand is replaced first.
 """
 
 from collections.abc import Sequence
 
-from ...applesoft import functions as scalar
+from ...apple.applesoft import functions as scalar
 from .reals import ILLEGAL_QUANTITY, ZERO, Reals, constant, from_number, select
 
 _LOG = [from_number(c) for c in scalar.LOG_COEFFICIENTS]

@@ -11,7 +11,7 @@ A 40-bit real, extension included, is exactly a float64: 40 bits of 53, and an e
     bit 63 sign | 52-62 exponent byte + 894 | 21-51 mantissa without its top bit | 13-20 extension
 
 An array known to be all zero costs nothing: x + 0 is x rounded and 0 * x is 0 by the ROM's rules.
-The scalar form of these rules is `impact88.applesoft.real`; the same captures test both.
+The scalar form of these rules is `impact88.apple.applesoft.real`; the same captures test both.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...applesoft.errorcodes import CODES
-from ...applesoft.real import Number, integer
+from ...apple.applesoft.errorcodes import CODES
+from ...apple.applesoft.real import Number, integer
 from .unit import Bools, Unit
 
 Floats = npt.NDArray[np.float64]

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ...applesoft.errorcodes import CODES, ApplesoftError
+from ...apple.applesoft.errorcodes import CODES, ApplesoftError
 from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS
 from ...mechanics import native
 from . import compiled, statements

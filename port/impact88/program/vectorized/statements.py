@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from itertools import groupby
 from typing import Any, NamedTuple
 
-from ...applesoft import decimaltext as scalar
+from ...apple.applesoft import decimaltext as scalar
 from ...collision.fields import ANGLES, FIELDS
 from .polynomials import cos, sin, square
 from .realcolumns import PLACES

@@ -1,6 +1,6 @@
 """Decimal texts to arrays of reals and back, as Applesoft reads numbers and PRINT writes them.
 
-The scalar form of these rules is `impact88.applesoft.decimaltext`; here all numbers of a column are
+The scalar form of these rules is `impact88.apple.applesoft.decimaltext`; here all numbers of a column are
 read and written together, step by step.
 """
 
@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ...applesoft import decimaltext as scalar
+from ...apple.applesoft import decimaltext as scalar
 from ...errors import UserError
 from ...mechanics import native
 from .reals import OVERFLOW, ZERO, Reals, compare, constant, from_number, select

@@ -1,0 +1,10 @@
+"""Casework: what a forensic engineer asks of a collision besides its final velocities.
+
+`reconstruction` works back from what was found to the speeds before; `uncertainty` gives bounds
+and sensitivities, `optimization` their extremes; `chapter` holds the chapter's other problems and
+its data; `figures` draws; `report` writes the page for the case file.
+
+Needs: the core, `tables` (files of known values), `printouts` (a report quotes a verdict).
+In: a collision as `collision.case` resolved it. Out: results with their limits, SVG, HTML.
+Used by: forensic engineers, through `reconstruct`, `bounds`, `chapter`, `figure` and `report`.
+"""

@@ -1,0 +1,517 @@
+"""The eleven staged collisions: Tables 1 and 2 (chapter, Section V) as data, and what they say.
+
+The tables are kept as printed (``legacy/table1.csv``, ``table2.csv``) with every emendation and
+its evidence (``legacy/emendations.csv``). Three ways from Table 1 to Table 2:
+
+- `forward`: the impact solved with Table 2's own e, e_m and μ: energy loss and computed ΔV;
+- `fit`: e, e_m and μ by least squares from the measured velocities;
+- `predicted`: ΔV by Equation 19 (with the factor 2/3, see `chapter.deltav`).
+
+`comparison` puts them beside Table 2, cell by cell.
+
+The fit minimises  Σ(V - V_measured)² + 25 ft² Σ(Ω - Ω_measured)²  over the final velocities,
+0 <= e <= 1, -1 <= e_m <= 0, μ free. The weight is not published; 25 ft² comes closest to Table 2
+(with e_m held at the printed value: rms .006 in e and in μ). For a given e_m the final velocities
+are linear in the impulse; e_m is then searched for alone. Units: ft, s, slug (Table 1).
+"""
+
+import csv
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...collision.geometry import Geometry, resolve_contact_point
+from ...files import packaged_text
+from ...mechanics.closedform.solve import solve
+from ...mechanics.outcome import forces
+from ...mechanics.state import State
+from ...names import FINAL_STATE, VELOCITIES
+from ..reconstruction.unknowns import mu_to_type
+from .deltav import delta_v
+
+Array = NDArray[np.float64]
+
+SPIN_WEIGHT = 25.0
+"""Weight of a squared spin against a squared velocity, ft²."""
+# bounds of the fitted coefficients: the chapter's own ranges
+E_BOUNDS = (0.0, 1.0)
+EM_BOUNDS = (-1.0, 0.0)
+# half of the last digit that Table 2 prints
+_HALF_DIGIT_COEFFICIENT = 0.0005
+_HALF_DIGIT = 0.05  # of loss and velocity changes
+_GRIDS = (201, *[21] * 6)
+"""Points of each grid in e_m, the next one around the best point of the last: to 5e-9 of e_m. The
+first one separates local minima; twice as many points move no fit of the eleven by 1e-7."""
+
+# -- the tables
+
+
+@dataclass(frozen=True)
+class Emendation:
+    """One remark on a cell, or a row (``column`` ``*``): ``kind`` is emended, moved (by the scan),
+    lost, doubtful (kept) or slip (of Table 2: recomputation gives ``emended``)."""
+
+    table: int
+    row: str
+    column: str
+    kind: str
+    printed: str
+    emended: str
+    evidence: str
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell as printed (where it belongs, if the scan moved it) and as emended."""
+
+    table: int
+    row: str
+    column: str
+    printed: str
+    emended: str
+    remark: Emendation | None
+
+
+COLUMNS_1 = ("category", "m", "I", "d", "phi", "theta", "Gamma", "vx", "vy", "Omega", "Vx", "Vy")
+COLUMNS_2 = (
+    "loss",
+    "e",
+    "em",
+    "mu",
+    "dVa_exp",
+    "dVb_exp",
+    "dVa_comp",
+    "dVb_comp",
+    "dVa_pred",
+    "dVb_pred",
+)
+
+
+def _rows(name: str) -> list[dict[str, str]]:
+    return list(csv.DictReader(packaged_text("impact88.legacy", name).splitlines()))
+
+
+@cache
+def emendations() -> tuple[Emendation, ...]:
+    """Return every remark on a cell of Tables 1 and 2, with its evidence."""
+    return tuple(Emendation(table=int(row.pop("table")), **row) for row in _rows("emendations.csv"))
+
+
+@cache
+def cells() -> tuple[Cell, ...]:
+    """Return Tables 1 and 2, cell by cell: as printed, as emended, and the evidence."""
+    keys = {"loss": "loss_percent", "mu": "mu_signed_Pt_over_Pn"}
+    keys |= {column: f"{column}_deg" for column in ("phi", "theta", "Gamma")}
+    result = []
+    for table, columns in ((1, COLUMNS_1), (2, COLUMNS_2)):
+        for row in _rows(f"table{table}.csv"):
+            name = row["row" if table == 1 else "collision"]
+            texts = {column: row[keys.get(column, column)] for column in columns}
+            printed = _printed_1(row) if table == 1 else texts
+            for column, text in texts.items():
+                remark = _remark(table, name, column)
+                emended = remark.emended if remark and table == 2 else text
+                result.append(Cell(table, name, column, printed[column], emended, remark))
+    return tuple(result)
+
+
+def _remark(table: int, row: str, column: str) -> Emendation | None:
+    """Return the remark on a cell, or else on its whole row; None if there is none."""
+    remarks = {e.column: e for e in emendations() if (e.table, e.row) == (table, row)}
+    return remarks.get(column) or remarks.get("*")
+
+
+def _printed_1(row: Mapping[str, str]) -> dict[str, str]:
+    """Return the printed cells by column; a row that the scan shifted is shifted back."""
+    texts = [row[f"printed_cell_{number}"] for number in range(2, 12)]
+    shift = _remark(1, row["row"], "*")
+    if shift and shift.printed == "one cell right":
+        texts = [*texts[1:], ""]
+    elif shift:
+        texts = ["", *texts[:-1]]
+    *first, before, spin, after = (text.replace("- ", "-") for text in texts)
+    values = (*first, *before.split("/"), spin, *(after.split("/") if after else ("", "")))
+    return {name: value.strip() for name, value in zip(COLUMNS_1, values, strict=True)}
+
+
+@dataclass(frozen=True)
+class Collision:
+    """One staged collision, emended: ``scene`` by the listing's names without coefficients (initial
+    spins are 0, as Section V says); ``measured``: final velocities, NaN where lost; ``table2``:
+    Table 2's row as printed, by column."""
+
+    number: int
+    category: str
+    scene: dict[str, float]
+    measured: dict[str, float]
+    table2: dict[str, float]
+
+    @property
+    def coefficients(self) -> dict[str, float]:
+        """Table 2's E, EM and MUP (signed P_t/P_n)."""
+        return {"E": self.table2["e"], "EM": self.table2["em"], "MUP": self.table2["mu"]}
+
+
+def with_8a_reconstructed() -> Collision:
+    """Return collision 8 with A's lost final velocity as Table 2 implies it, -10.2/10.6, each
+    +-0.2. It is a reconstruction, labelled as such wherever it is used, and never data."""
+    collision = next(c for c in collisions() if c.number == 8)
+    return replace(collision, measured=collision.measured | {"VAX": -10.2, "VAY": 10.6})
+
+
+@cache
+def collisions() -> tuple[Collision, ...]:
+    """Return the eleven staged collisions in Table 1's order."""
+    rows: dict[str, dict[str, str]] = {}
+    for cell in cells():
+        # Table 2 is compared as it is printed
+        text = cell.emended if cell.table == 1 else cell.printed
+        rows.setdefault(cell.row, {})[cell.column] = text
+    result = []
+    for number in (name for name in rows if name.isdigit()):
+        scene = {"GA": float(rows[f"{number}/A"]["Gamma"]), "WA": 0.0, "WB": 0.0}
+        measured: dict[str, float] = {}
+        for v, x, y in (("A", "UX", "UY"), ("B", "VX", "VY")):
+            row = rows[f"{number}/{v}"]
+            names = {"M": "m", "I": "I", "D": "d", "P": "phi", "T": "theta"}
+            scene |= {f"{name}{v}": float(row[column]) for name, column in names.items()}
+            scene |= {x: float(row["vx"]), y: float(row["vy"])}
+            after = {f"V{v}X": row["Vx"], f"V{v}Y": row["Vy"], f"W{v}F": row["Omega"]}
+            measured |= {name: float(text or "nan") for name, text in after.items()}
+        table2 = {column: float(text) for column, text in rows[number].items()}
+        category = rows[f"{number}/A"]["category"]
+        result.append(Collision(int(number), category, scene, measured, table2))
+    return tuple(result)
+
+
+# -- forward, experimental, predicted
+
+
+def typed_friction(scene: Mapping[str, Any], signed: Any) -> Array:
+    """Return the MU to type for a signed P_t/P_n: line 400 changes its sign where gt > 0."""
+    state = State.of_known(scene)
+    return mu_to_type(np.asarray(signed, np.float64), state.relative_before[1], state.before)
+
+
+def forward(
+    collision: Collision, coefficients: Mapping[str, Any] | None = None
+) -> dict[str, Array]:
+    """Return all results of `impact88.solve` for a collision.
+
+    ``coefficients``: E, EM and MUP; by default Table 2's.
+    """
+    values = dict(collision.coefficients if coefficients is None else coefficients)
+    mu = typed_friction(collision.scene, values.pop("MUP"))
+    return solve({**collision.scene, **values, "MU": mu})
+
+
+def experimental(collision: Collision) -> dict[str, float]:
+    """Return DVA and DVB from Table 1's measured velocities."""
+    state = State.of_known(collision.scene | collision.measured)
+    return {name: float(state[name]) for name in ("DVA", "DVB")}
+
+
+def predicted(collision: Collision, loss: Any = None) -> dict[str, Array]:
+    """Return DVA and DVB by Equation 19 from the energy loss in percent, by default Table 2's."""
+    scene = collision.scene
+    speeds = {"SA": np.hypot(scene["UX"], scene["UY"]), "SB": np.hypot(scene["VX"], scene["VY"])}
+    loss = collision.table2["loss"] if loss is None else loss
+    return delta_v({**scene, **speeds, "LOSS": loss})
+
+
+def closure(collision: Collision) -> dict[str, float]:
+    """Equations 13, 14 and 17 and the energy of the velocities as measured, nothing fitted: the
+    ``number``, the energy ``loss`` in percent, the change of A's momentum along x and y and of the
+    angular momentum about the origin of Equation 17, and minus B's: equal where momentum is
+    conserved; slug·ft/s and slug·ft²/s, NaN where a velocity is lost."""
+    values = {name: np.asarray(v) for name, v in (collision.scene | collision.measured).items()}
+    state = State.of_known(values)
+    here, (ax, ay, wa, bx, by, wb) = state.here, map(float, state.changes)
+    ma, mb, ia, ib = (float(values[name]) for name in ("MA", "MB", "IA", "IB"))
+    return {
+        "number": collision.number,
+        "loss": float(state["LOSS"]),
+        "x_of_a": ma * ax,
+        "x_of_b": -mb * bx,
+        "y_of_a": ma * ay,
+        "y_of_b": -mb * by,
+        # the impulse acts at (-d4, -d3) from A's center: M = I ΔΩ - r x m ΔV, and on B the opposite
+        "spin_of_a": float(ia * wa - ma * (-here.d4 * ay + here.d3 * ax)),
+        "spin_of_b": float(-ib * wb + mb * (here.d2 * by - here.d1 * bx)),
+    }
+
+
+# -- least squares
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted impact: the coefficients, the sum of squares (ft²/s²) and which sit at a bound."""
+
+    E: float
+    EM: float
+    MUP: float
+    sum_of_squares: float
+    at_bound: tuple[str, ...]
+
+
+def fit(collision: Collision, em: float | None = None, spin_weight: float = SPIN_WEIGHT) -> Fit:
+    """Fit E, MUP and EM by least squares, or E and MUP with EM fixed at ``em``.
+
+    Lost velocities are left out. Raises LinAlgError where the equations overflow.
+    """
+    best_at = _fitter(collision, spin_weight)
+    if em is not None:
+        return best_at(em)
+    low, high = EM_BOUNDS
+    for count in _GRIDS:
+        fits = [best_at(x) for x in np.linspace(low, high, count).tolist()]
+        best = int(np.argmin([candidate.sum_of_squares for candidate in fits]))
+        low, high = fits[max(best - 1, 0)].EM, fits[min(best + 1, count - 1)].EM
+    for bound in EM_BOUNDS:
+        if abs(fits[best].EM - bound) < 1e-6:
+            bounded_fit = best_at(bound)
+            return replace(bounded_fit, at_bound=(*bounded_fit.at_bound, "EM"))
+    return fits[best]
+
+
+def profile(collision: Collision, count: int = 11) -> list[Fit]:
+    """Return the best fits with EM fixed at ``count`` values from -1 to 0; their sums of squares
+    hardly differ."""
+    return [*map(_fitter(collision, SPIN_WEIGHT), np.linspace(*EM_BOUNDS, count).tolist())]
+
+
+def undetermined_range(
+    collision: Collision, spin_weight: float = SPIN_WEIGHT
+) -> tuple[float, float]:
+    """Return the lowest and highest EM whose best fit has an rms misfit within 0.1 ft/s of the
+    least; the data do not determine it more closely."""
+    best_at, grid = _fitter(collision, spin_weight), np.linspace(*EM_BOUNDS, 401)
+    count = np.isfinite([*collision.measured.values()]).sum()
+    misfit = np.sqrt([best_at(em).sum_of_squares / count for em in grid.tolist()])
+    close = grid[misfit <= misfit.min() + 0.1]
+    return float(close.min()), float(close.max())
+
+
+def _fitter(collision: Collision, spin_weight: float) -> Callable[[float], Fit]:
+    """Return the function that gives the best fit for an EM.
+
+    For a given EM the final velocities are linear in the impulse p = (Pn, Pt, M), so that each fit
+    is a linear least-squares problem in Pn and Pt (M follows from Equation 18).
+    """
+    geometry = Geometry(collision.scene)
+    jacobian = np.array([geometry.changes(*unit) for unit in np.eye(3)], float).T
+    directions = np.array(geometry.relative([*np.eye(6)]))
+    before = np.array([collision.scene[name] for name in VELOCITIES])
+    after = np.array([collision.measured[name] for name in FINAL_STATE])
+    known = np.isfinite(after)
+    root_weight = np.sqrt(np.where(known, [1.0, 1.0, spin_weight] * 2, 0.0))
+    change = np.where(known, after - before, 0.0)
+    approach, _, spin_before = directions @ before
+    normal, _, spin = directions @ jacobian
+
+    def best_at(em: float) -> Fit:
+        # Equation 18: (1 - em)(spin·p + spin before) = em·M/Ired, and spin[2] is 1/Ired
+        row = (1 - em) * spin - [0.0, 0.0, em * spin[2]]
+        lift = np.array([[1.0, 0.0], [0.0, 1.0], [-row[0] / row[2], -row[1] / row[2]]])
+        offset = np.array([0.0, 0.0, -(1 - em) * spin_before / row[2]])
+        weighted = root_weight[:, None] * (jacobian @ lift)
+        right = root_weight * (change - jacobian @ offset)
+        if not (np.isfinite(weighted).all() and np.isfinite(right).all()):
+            raise np.linalg.LinAlgError("not finite")  # LAPACK may seek without end
+        free = np.linalg.lstsq(weighted, right, rcond=None)[0]
+        slope = normal @ lift
+        e = -(approach + slope @ free + normal @ offset) / approach
+        bound = min(max(e, E_BOUNDS[0]), E_BOUNDS[1])
+        if bound != e:
+            # on the line of impulses with e at its bound: the sum of squares is convex
+            start = slope * (-(1 + bound) * approach - normal @ offset) / (slope @ slope)
+            along = np.array([-slope[1], slope[0]])
+            step = weighted @ along
+            free = start + along * (step @ (right - weighted @ start)) / (step @ step)
+        misfit = weighted @ free - right
+        at_bound = ("E",) if bound != e else ()
+        return Fit(float(bound), em, float(free[1] / free[0]), float(misfit @ misfit), at_bound)
+
+    return best_at
+
+
+# -- against Table 2
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A cell of Table 2 beside its recomputation. ``low`` ... ``high``: what the rounding of the
+    printed inputs (coefficients, for the predicted values the loss) leaves open; ``agrees``:
+    whether the printed digits lie within that, rounded; ``explanation``: why not."""
+
+    collision: int
+    column: str
+    printed: float
+    value: float
+    low: float
+    high: float
+    agrees: bool
+    explanation: str
+
+
+def comparison() -> list[Compared]:
+    """Compare loss and the three pairs of ΔV of Table 2 with their recomputation."""
+    half, rows = _HALF_DIGIT_COEFFICIENT, []
+    offsets = np.array([*product((-half, 0, half), repeat=3)]).T
+    for collision in collisions():
+        coefficients = {
+            n: x + o for (n, x), o in zip(collision.coefficients.items(), offsets, strict=True)
+        }
+        centre, spread = forward(collision), forward(collision, coefficients)
+        measured = experimental(collision)
+        rounded_loss = collision.table2["loss"] + np.array([0, -_HALF_DIGIT, _HALF_DIGIT])
+        equation_19 = predicted(collision, rounded_loss)
+        values: dict[str, tuple[float, Any]] = {"loss": (float(centre["LOSS"]), spread["LOSS"])}
+        for vehicle, name in (("a", "DVA"), ("b", "DVB")):
+            values[f"dV{vehicle}_exp"] = (measured[name], measured[name])
+            values[f"dV{vehicle}_comp"] = (float(centre[name]), spread[name])
+            values[f"dV{vehicle}_pred"] = (float(equation_19[name][0]), equation_19[name])
+        for column in filter(values.__contains__, COLUMNS_2):
+            value, around = values[column]
+            printed = collision.table2[column]
+            low, high = float(np.min(around)), float(np.max(around))
+            # a printed last digit stands for half a unit either way; 1e-9: its own rounding
+            agrees = low - _HALF_DIGIT - 1e-9 <= printed <= high + _HALF_DIGIT + 1e-9
+            remark = _remark(2, str(collision.number), column)
+            why = "" if agrees else remark.evidence if remark else "not explained"
+            rows.append(
+                Compared(
+                    collision=collision.number,
+                    column=column,
+                    printed=printed,
+                    value=value,
+                    low=low,
+                    high=high,
+                    agrees=bool(agrees),
+                    explanation=why,
+                )
+            )
+    return rows
+
+
+# -- what the chapter claims of its method
+
+GRAVITY = 32.174
+"""ft/s²."""
+CONTACT_TIMES = (0.1, 0.2)
+"""Seconds, Section III."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A claim of the text, what was varied, and the lowest and highest it makes of the
+    front-to-side collisions (``sides``) and the ``others``, in ``unit``."""
+
+    where: str
+    claim: str
+    varied: str
+    sides: tuple[float, float]
+    others: tuple[float, float]
+    unit: str
+    verdict: str
+
+
+def _extent(rule: Callable[[Collision], Array], alike: list[Collision]) -> tuple[float, float]:
+    values = np.concatenate([np.ravel(rule(collision)) for collision in alike])
+    return float(values.min()), float(values.max())
+
+
+@cache
+def claims() -> tuple[Claim, ...]:
+    """Return the chapter's claims, each with the result for the eleven collisions."""
+
+    def solve_changed(c: Collision, changes: Mapping[str, Any]) -> dict[str, Array]:
+        """Solve with Table 2's coefficients and some values changed. Friction keeps the sign of
+        Table 2, whatever the sliding does."""
+        scene = resolve_contact_point({**c.scene, **changes})
+        em = np.asarray(scene.pop("EM", c.coefficients["EM"]))
+        mu = typed_friction(scene, c.coefficients["MUP"])
+        return solve({**scene, "E": c.coefficients["E"], "EM": em, "MU": mu}, ("DVA", "LOSS"))
+
+    def delta_v_change(c: Collision, changes: Mapping[str, Any]) -> Array:
+        """Return the change of ΔV in percent. It is the same for both vehicles, whose ΔV are in the
+        inverse ratio of their masses."""
+        return 100 * (solve_changed(c, changes)["DVA"] / forward(c)["DVA"] - 1)
+
+    def delta_v_turned(c: Collision, degrees: float, *names: str) -> Array:
+        """Return the changes of ΔV, in percent, when each of the angles named is turned either way;
+        a contact point stays where it is on its vehicle."""
+        turns = np.array([-degrees, degrees])
+        return np.concatenate([delta_v_change(c, {n: c.scene[n] + turns}) for n in names])
+
+    def force_over_weight(c: Collision) -> Array:
+        """Return the average contact force over each vehicle's weight."""
+        results = forward(c)
+        average = forces(np.hypot(results["PN"], results["PT"]), np.array(CONTACT_TIMES))["FA"]
+        return np.asarray(average[:, None] / (GRAVITY * np.array([c.scene["MA"], c.scene["MB"]])))
+
+    sides = [c for c in collisions() if "SIDE" in c.category]
+    rest = [c for c in collisions() if "SIDE" not in c.category]
+    around = np.radians(np.arange(0, 360, 5.0))
+    contact = {"CX": np.cos(around), "CY": np.sin(around)}
+    moments = np.linspace(-1, 0, 21)
+    rows: tuple[tuple[str, str, str, Callable[[Collision], Array], str, str], ...] = (
+        (
+            "IV-A",
+            "results not critically sensitive to Γ",
+            "Γ by 10 degrees either way",
+            lambda c: delta_v_turned(c, 10.0, "GA"),
+            "% of ΔV",
+            "false for the side impacts",
+        ),
+        (
+            "IV-A",
+            "nor to the location of point C",
+            "C by 1 ft in any direction",
+            lambda c: delta_v_change(c, contact),
+            "% of ΔV",
+            "true of a foot",
+        ),
+        (
+            "V",
+            "ΔV not very sensitive to e_m",
+            "e_m over its whole range, -1 to 0",
+            lambda c: delta_v_change(c, {"EM": moments}),
+            "% of ΔV",
+            "true",
+        ),
+        (
+            "V",
+            "nor is the energy loss",
+            "e_m over its whole range, -1 to 0",
+            lambda c: solve_changed(c, {"EM": moments})["LOSS"] - forward(c)["LOSS"],
+            "points of loss",
+            "true",
+        ),
+        (
+            "IV-A",
+            "turns during contact below 45 degrees matter little",
+            "one vehicle's heading by 22.5 degrees, half the turn",
+            lambda c: delta_v_turned(c, 22.5, "TA", "TB"),
+            "% of ΔV",
+            "they matter: up to a fifth of ΔV",
+        ),
+        (
+            "III",
+            "average force 5 to 10 times the weight",
+            "contact time .1 to .2 s",
+            force_over_weight,
+            "weights",
+            "the middle of a wider range",
+        ),
+    )
+    return tuple(
+        Claim(where, text, varied, _extent(rule, sides), _extent(rule, rest), unit, verdict)
+        for where, text, varied, rule, unit, verdict in rows
+    )

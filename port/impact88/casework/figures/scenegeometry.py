@@ -1,0 +1,187 @@
+"""The scene from above: what is where, worked out once for every way of drawing it.
+
+The contact point is the origin, axes and signs are the listing's (line 330): it lies at -DA
+(cos, sin)(TA + PA) from A's center of gravity and at DB (cos, sin)(TB + PB) from B's; the normal
+n = (cos GA, sin GA) points to A's side, the tangent is t = (-sin GA, cos GA), and the impulse acts
+on A. So A's front looks along TA + 180 degrees, B's along TB, and on either vehicle the contact
+point stands at the angle PA or PB from the front: all of Table 1 reads so.
+
+A vehicle is drawn as measured (LA BA, LB BB), else as the uniform rectangle of its radius of
+gyration, L² + W² = 12 I/m, at L/W = 2.6, a passenger car's, lengthened or widened where the contact
+point would lie outside. One 10,000 times as heavy as the other and at rest is a wall; point masses
+are moved apart along n until they touch. What reaches beyond the contact plane is crushed.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+from ...names import FINAL_VELOCITIES
+from ...program.scene import numbers_of
+from ...status import sentences
+from .drawing import check_drawable, degrees, unit
+
+PROPORTION = 2.6  # length over width of a vehicle
+WALL = 1e4  # ratio of masses from which on the heavier body is drawn as a wall
+
+
+class Motion(NamedTuple):
+    """Velocity of the center of gravity and spin."""
+
+    velocity: complex
+    spin: float
+
+    @property
+    def speed(self) -> float:
+        return abs(self.velocity)
+
+
+class Vehicle(NamedTuple):
+    """One vehicle in plan, in the scene's units; points are x + iy. ``center``: of gravity;
+    ``front``: unit vector; ``outline``: four corners, the front's two first; ``kept``: the outline
+    on its own side of the contact plane; ``wall``: too heavy to be a vehicle."""
+
+    name: str
+    center: complex
+    front: complex
+    length: float
+    width: float
+    outline: tuple[complex, ...]
+    kept: tuple[complex, ...]
+    wall: bool
+    before: Motion
+    after: Motion | None
+
+    @property
+    def change(self) -> complex | None:
+        return self.after.velocity - self.before.velocity if self.after else None
+
+    def pdof(self, impulse: complex) -> float:
+        """Return the principal direction of force, in degrees clockwise from the front, of the
+        impulse on A."""
+        source = -impulse if self.name == "A" else impulse
+        return -degrees(self.front.conjugate() * source)
+
+
+class Plan(NamedTuple):
+    """A scene in plan. ``normal`` and ``tangent`` are unit vectors; ``impulse`` acts on A;
+    ``apart``: whether point masses were moved apart to be seen; ``measured``: the vehicles whose
+    length and width are known."""
+
+    vehicles: tuple[Vehicle, Vehicle]
+    normal: complex
+    tangent: complex
+    impulse: complex | None
+    apart: bool
+    remarks: tuple[str, ...]
+    numbers: dict[str, float]
+    measured: tuple[str, ...]
+
+    @property
+    def closing(self) -> float:
+        """The relative speed of the centers of gravity before the impact."""
+        a, b = self.vehicles
+        return abs(a.before.velocity - b.before.velocity)
+
+    @property
+    def bodies(self) -> list[Vehicle]:
+        return [vehicle for vehicle in self.vehicles if not vehicle.wall]
+
+
+def plan(
+    scene: Any, result: Mapping[str, Any] | None = None, outlines: Mapping[str, float] | None = None
+) -> Plan:
+    """Return the scene in plan.
+
+    ``scene``: texts or numbers by the listing's names; ``result``: VAX, VAY, VBX, VBY, WAF and WBF
+    unless of point masses, STATUS where known; without it, or where it is not finite, there is
+    nothing after the impact. Raises UserError for a value that is not a
+    finite number, or too large to draw."""
+    values, outlines = numbers_of(scene), outlines or {}
+    for name, value in values.items():
+        check_drawable([value], name)
+    normal = unit(values["GA"])
+    before = {
+        "A": Motion(complex(values["UX"], values["UY"]), values["WA"]),
+        "B": Motion(complex(values["VX"], values["VY"]), values["WB"]),
+    }
+    finals = {name: (result or {}).get(name) for name in FINAL_VELOCITIES}
+    given = {name: float(value) for name, value in finals.items() if value is not None}
+    after: dict[str, Motion] = {}
+    if all(math.isfinite(given.get(name, math.nan)) for name in FINAL_VELOCITIES[:4]):
+        for v in "AB":
+            after[v] = Motion(complex(given[f"V{v}X"], given[f"V{v}Y"]), given.get(f"W{v}F", 0.0))
+    reach = {
+        "A": -values["DA"] * unit(values["TA"] + values["PA"]),
+        "B": values["DB"] * unit(values["TB"] + values["PB"]),
+    }
+    front = {"A": -unit(values["TA"]), "B": unit(values["TB"])}
+    apart = values["DA"] == 0 == values["DB"]
+    contact = {name: 2 * reach[name] * front[name].conjugate() for name in "AB"}
+    sizes = _sizes(values, contact, outlines)
+    vehicles = []
+    for name, inward in (("A", normal), ("B", -normal)):
+        length, width = sizes[name]
+        center = -reach[name]
+        if apart:
+            turned = front[name] * normal.conjugate()
+            center = inward * (abs(turned.real) * length + abs(turned.imag) * width) / 2
+        corners = ((1, -1), (1, 1), (-1, 1), (-1, -1))
+        outline = tuple(
+            center + front[name] * complex(i * length, j * width) / 2 for i, j in corners
+        )
+        cut = _depth(center, inward) > 0.15 * width
+        kept = _clip_outline(outline, inward) if cut else outline
+        heavy, light = (abs(values[f"M{which}"]) for which in (name, "B" if name == "A" else "A"))
+        wall = heavy >= WALL * light and before[name] == (0, 0)
+        motions = before[name], after.get(name)
+        size = length, width, outline, kept
+        vehicles.append(Vehicle(name, center, front[name], *size, wall, *motions))
+    # momentum of the lighter vehicle: a wall's change of velocity has no digits left
+    moved, sense = (vehicles[1], -1) if vehicles[0].wall else (vehicles[0], 1)
+    impulse = None if moved.change is None else sense * values[f"M{moved.name}"] * moved.change
+    known = {**values, **(result or {})}
+    remarks = tuple(sentences(int(known.get("STATUS") or 0), known))
+    measured = tuple(name for name in "AB" if f"L{name}" in outlines)
+    both = vehicles[0], vehicles[1]
+    return Plan(both, normal, 1j * normal, impulse, apart, remarks, values, measured)
+
+
+def _depth(point: complex, inward: complex) -> float:
+    """Return the distance of a point to the ``inward`` side of the contact plane."""
+    return (point * inward.conjugate()).real
+
+
+def _sizes(
+    values: Mapping[str, float], contact: Mapping[str, complex], outlines: Mapping[str, float]
+) -> dict[str, tuple[float, float]]:
+    """Length and width of both vehicles; ``contact``: twice the contact point from each's axes."""
+    lengths: dict[str, float] = {}
+    for name in "AB":
+        mass, inertia, distance = (values[kind + name] for kind in "MID")
+        square = 12 * inertia / mass if mass else math.nan
+        if 0 < square < 1e12 * max(1.0, distance**2):
+            lengths[name] = math.sqrt(square / (1 + PROPORTION**-2))
+        elif distance:
+            lengths[name] = 2.4 * abs(distance)
+    sizes = {}
+    for name in "AB":
+        length = lengths.get(name, max(lengths.values(), default=1.0))
+        along, across = abs(contact[name].real), abs(contact[name].imag)
+        sizes[name] = max(length, along), max(length / PROPORTION, across)
+        if f"L{name}" in outlines:
+            sizes[name] = (outlines[f"L{name}"], outlines[f"B{name}"])
+    return sizes
+
+
+def _clip_outline(outline: Sequence[complex], inward: complex) -> tuple[complex, ...]:
+    """Return the part of a convex outline on the ``inward`` side of the line through the origin."""
+    result: list[complex] = []
+    for start, end in pairwise((*outline, outline[0])):
+        first, second = _depth(start, inward), _depth(end, inward)
+        if first >= 0:
+            result.append(start)
+        if first * second < 0:
+            result.append(start + (end - start) * first / (first - second))
+    return tuple(result)

@@ -1,0 +1,262 @@
+"""The verdict on the evidence: whether the measured values of a reconstruction can all be true.
+
+The sum of squared adjustments, each in standard deviations, of r redundant values follows the
+chi-square distribution with r degrees of freedom if the tolerances are right (Mikhail and
+Ackermann, *Observations and Least Squares*, 1976). Leaving a value out reduces the sum by the
+square of its standardized residual (Baarda, *A Testing Procedure for Use in Geodetic Networks*,
+1968)."""
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ...collision.units import RULES, System
+from ...messages.plaintable import number
+from ...names import quantity
+from .laws import MissedLaw, describe_laws
+
+# Measurements contradict one another if their sum of squares has a smaller probability: one
+# consistent set in a thousand is accused.
+CONTRADICTION = 1e-3
+STRAIN = 0.05  # probability below which they agree poorly
+NAMED_RATIO = 0.9  # squared residual, relative to the largest, from which a value is named with it
+MAX_NAMED = 3  # values at odds that are named
+NOISE = 1e-9  # sums of squares below are rounding
+MIN_PROBABILITY = 1e-12  # smaller ones are printed as "below" this
+AGREE = "agree"
+STRAINED = "agree poorly"
+CONTRADICT = "contradict"
+UNCHECKED = "not checked"
+
+
+@dataclass(frozen=True)
+class AtOdds:
+    """One measured value in contradiction with the others.
+
+    Parameters
+    ----------
+    name : str
+        Name of the quantity.
+    measured, adjusted : float
+        Measured and adjusted value.
+    residual : float
+        Adjustment in standard deviations of that adjustment.
+    without : float
+        Probability of the sum of squares of the other values alone, nan if nothing would be left to
+        check.
+    """
+
+    name: str
+    measured: float
+    adjusted: float
+    residual: float
+    without: float
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Verdict on whether the measured values of a reconstruction can all be true.
+
+    Parameters
+    ----------
+    verdict : str
+        `AGREE`, `STRAINED`, `CONTRADICT`, or `UNCHECKED` if no more is known than needed.
+    squares : float
+        Sum of squared adjustments in standard deviations.
+    redundancy : int
+        Known values more than needed.
+    probability : float
+        Probability of a sum of squares that large or larger, nan if unchecked.
+    at_odds : sequence of AtOdds
+        The values most at odds with the others, the worst first.
+    inside : bool, optional
+        True if some impact lies within all limits at once, None if that was not searched for.
+    exact : bool
+        True if the values are exact, and the standard deviations those of the misfit.
+    laws : tuple of MissedLawLaw
+        The laws that exact values do not satisfy.
+    """
+
+    verdict: str
+    squares: float
+    redundancy: int
+    probability: float
+    at_odds: Sequence[AtOdds]
+    inside: bool | None = None
+    exact: bool = False
+    laws: tuple[MissedLaw, ...] = ()
+
+    @property
+    def contradictory(self) -> bool:
+        """True if the values contradict one another."""
+        return self.verdict == CONTRADICT
+
+    @property
+    def widening(self) -> float:
+        """Factor on the standard deviations of values that contradict one another, else 1.
+
+        It is the square root of the sum of squares over the redundancy.
+        """
+        return math.sqrt(self.squares / self.redundancy) if self.contradictory else 1.0
+
+    @property
+    def sum_text(self) -> str:
+        """The sum of squares as printed, 0 if it is rounding only."""
+        return _format_amount(self.squares if self.squares > NOISE else 0.0, 3)
+
+    def text(self, units: System = RULES) -> str:
+        """Return the verdict in a sentence or two.
+
+        Parameters
+        ----------
+        units : System
+            Units of the numbers in it.
+
+        Returns
+        -------
+        str
+            The verdict, without a full stop.
+        """
+        if self.verdict == UNCHECKED:
+            return "not checked: no more is known than needed, so no measurement tests another"
+        if self.exact:
+            laws = f": {describe_laws(self.laws, units)}" if self.laws else ""
+            at_odds = self.name_values_at_odds(units)
+            return f"these exact values contradict one another{laws}; {at_odds}"
+        sums = (
+            f"sum of squared adjustments, in standard deviations, {self.sum_text} where about "
+            f"{self.redundancy} is expected; probability {_format_probability(self.probability)}"
+        )
+        if not self.contradictory:
+            return f"the measurements {self.verdict}: {sums}"
+        if self.probability >= CONTRADICTION:
+            sums = f"no impact lies within all limits at once; {sums}"
+        return (
+            f"these measurements contradict one another; {self.name_values_at_odds(units)}: {sums}"
+        )
+
+    def name_values_at_odds(self, units: System = RULES) -> str:
+        """Return the values most at odds, each as measured and as adjusted.
+
+        Parameters
+        ----------
+        units : System
+            Units of the numbers.
+
+        Returns
+        -------
+        str
+            The values, in one line.
+        """
+        parts = []
+        for item in self.at_odds:
+            unit = units.unit(item.name)
+            unit = "°" if unit == "deg" else f" {unit}" if unit else ""
+            # the first part of the meaning; the rest is for the tables
+            meaning = re.split("[:;,]| as printed", quantity(item.name).meaning)[0]
+            measured, adjusted = (
+                _format_amount(units.display_unwrapped(item.name, float(x))) + unit
+                for x in (item.measured, item.adjusted)
+            )
+            word = "given" if self.exact else "measured"
+            parts.append(f"{meaning} {item.name} ({measured} {word}, {adjusted} adjusted)")
+        text = "most at odds: " + "; ".join(parts)
+        if len(self.at_odds) > 1:
+            text += ", equally"
+        if not self.exact and self.at_odds and all(item.without >= STRAIN for item in self.at_odds):
+            any_one = "any one of them" if len(self.at_odds) > 1 else "it"
+            text += f"; without {any_one} the others agree"
+        return text
+
+    def as_json(self, units: System = RULES) -> dict[str, Any]:
+        """Return the object that ``impact88 reconstruct --json`` prints for the evidence.
+
+        Parameters
+        ----------
+        units : System
+            Units of the numbers.
+
+        Returns
+        -------
+        dict of str to object
+            The evidence as JSON types.
+        """
+        rows = [
+            {
+                "name": item.name,
+                "measured": units.display_unwrapped(item.name, float(item.measured)),
+                "adjusted": units.display_unwrapped(item.name, float(item.adjusted)),
+                "standardized_residual": item.residual,
+                "probability_without": item.without,
+            }
+            for item in self.at_odds
+        ]
+        return {
+            "verdict": self.verdict,
+            "text": self.text(units),
+            "probability": self.probability,
+            "within_all_limits": self.inside,
+            "most_at_odds": rows,
+            "laws_missed": [law.text(units) for law in self.laws],
+        }
+
+
+def _format_amount(value: float, digits: int = 4) -> str:
+    """Return a number with so many digits, without an exponent up to a billion."""
+    text = number(value, digits)
+    return f"{float(text):,.0f}" if "e+" in text and abs(value) < 1e9 else text
+
+
+def _format_probability(value: float) -> str:
+    """Return a probability with two digits."""
+    return number(value, 2) if value >= MIN_PROBABILITY else f"below {MIN_PROBABILITY:g}"
+
+
+def weigh(
+    squares: float,
+    redundancy: int,
+    values: Mapping[str, tuple[float, float, float, float]],
+    inside: bool | None = None,
+    exact: bool = False,
+    laws: tuple[MissedLaw, ...] = (),
+) -> Evidence:
+    """Return the verdict on adjusted values.
+
+    ``values``: by name the measured and the adjusted value, the adjustment in standard deviations,
+    and the redundancy number (the part of an error of the value that its adjustment shows, 0 to 1).
+    ``inside``: True if some impact lies within all limits, None if that was not searched for.
+    ``exact``: the values are exact and contradict one another; ``laws``: the laws they violate."""
+    if redundancy < 1:
+        return Evidence(UNCHECKED, squares, redundancy, math.nan, (), inside)
+    probability = chi_square_tail(squares, redundancy)
+    items = []
+    for name, (measured, adjusted, adjustment, redundancy_number) in values.items():
+        if redundancy_number > 1e-9:
+            residual = adjustment / math.sqrt(redundancy_number)
+            other_squares = max(squares - residual * residual, 0.0)
+            without = chi_square_tail(other_squares, redundancy - 1) if redundancy > 1 else 1.0
+            items.append(AtOdds(name, measured, adjusted, residual, without))
+    items.sort(key=lambda item: -abs(item.residual))
+    worst = [x for x in items if x.residual**2 >= NAMED_RATIO * items[0].residual ** 2][:MAX_NAMED]
+    verdict = AGREE if probability >= STRAIN else STRAINED
+    if exact or probability < CONTRADICTION or inside is False:
+        verdict = CONTRADICT
+    probability = math.nan if exact else probability
+    return Evidence(verdict, squares, redundancy, probability, tuple(worst), inside, exact, laws)
+
+
+def chi_square_tail(squares: float, freedom: int) -> float:
+    """Return the probability that a chi-square variate with ``freedom`` degrees of freedom, 1 or
+    more, is at least ``squares``: the finite sums of Abramowitz and Stegun 26.4.4 and 26.4.5."""
+    half = squares / 2
+    if half > 700:
+        return 0.0
+    odd = freedom % 2
+    total = math.erfc(math.sqrt(half)) if odd else 0.0
+    term = math.exp(-half) * (2 * math.sqrt(half / math.pi) if odd else 1.0)
+    for step in range((freedom - odd) // 2):
+        total += term
+        term *= half / (step + 1 + odd / 2)
+    return min(total, 1.0)

@@ -1,0 +1,548 @@
+"""A reconstruction with its tolerances, as tables to read and as JSON to process: measured and
+adjusted values, results, and their uncertainty to first order, from draws and as bounds."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ...collision.geometry import within_doubles
+from ...collision.uncertain import Uncertain
+from ...collision.units import RULES, System, display_values
+from ...mechanics.state import COURSES, FORCES, SPEEDS
+from ...messages import notebook
+from ...messages.arguments import explains_arguments
+from ...messages.plaintable import format_fixed, number, paragraph, table
+from ...names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
+from ..uncertainty.boundstable import unbounded_sides
+from . import adjustment
+from .adjustment import Reconstruction, typed_friction
+from .posterior import SIGMAS
+from .reconstructed import MIN_GAIN, Draws, Range, draws, ranges
+from .solutiontable import DRIVERS, NOISE, ROUNDING, Impact, join_texts, with_derived_values
+
+_RESULTS = (
+    *VELOCITIES,
+    *FINAL_STATE,
+    *SPEEDS,
+    *COURSES,
+    "DVA",
+    "DVB",
+    "PDOFA",
+    "PDOFB",
+    "VC",
+    "VS",
+    "LOSS",
+    *COEFFICIENTS,
+)
+_ANSWERS = ("SA", "SB", "DVA", "DVB")  # results of the answer, uncertain even where they are known
+QUANTILES = (0.05, 0.5, 0.95)  # the median and the middle 90 % of the draws
+MAX_CORRELATION_COLUMNS = 7  # as many as 96 characters hold
+FIRST_ORDER_RTOL = 1 / 3  # first-order deviations farther from the draws' are not shown
+MAX_FOLDED_NAMED = 6  # results named where branches meet
+MAX_SEPARATING_DRAWS = 0.005  # fraction of draws that do not approach, above which a remark is made
+ILL_POSED = 0.25  # standard deviation of a velocity, relative to the largest speed
+
+
+def _along_an_axis(solution: Reconstruction, name: str) -> bool:
+    """Return True if a course is along an axis: it is implied by a velocity component that is 0."""
+    components = SPEEDS[COURSES[name]] if name in COURSES else ()
+    known = solution.system.known
+    return any(n in known and known[n].nominal == 0 and not known[n].varies for n in components)
+
+
+def _is_within_limits(solution: Reconstruction) -> bool:
+    """Return True if an impact meets all limits of what is known, normal values within `SIGMAS`."""
+    known = solution.system.known
+    limits = [(item.adjusted, *known[item.name].limits(SIGMAS)) for item in solution.adjusted]
+    return all(low <= value <= high for value, low, high in limits)
+
+
+def _bounds_without_noise(bound: Range) -> tuple[float, float]:
+    """Return the bounds, 0 where they are below the resolution of the search."""
+    width = bound.upper - bound.lower
+    if not math.isfinite(width):
+        return bound.lower, bound.upper
+    lower, upper = (0.0 if abs(x) < MIN_GAIN * width else x for x in (bound.lower, bound.upper))
+    return lower, upper
+
+
+class Measured(Impact):
+    """A reconstruction, everything that follows from it, and the uncertainty of results.
+
+    ``wanted``: the results, by default those that were not known. First-order ``deviations`` and
+    ``correlations``, the ``drivers`` of each result and, for ``samples`` above 0 and given
+    tolerances, ``draws`` and bounds (``ranges``). ``like``: another impact of the same
+    distribution, whose draws and bounds are used."""
+
+    @within_doubles
+    def __init__(
+        self,
+        solution: Reconstruction,
+        samples: int,
+        seed: int = 0,
+        wanted: Sequence[str] | None = None,
+        contact_time: float | None = None,
+        progress: Callable[[int], object] = lambda draws: None,
+        like: "Measured | None" = None,
+    ) -> None:
+        known, values = solution.system.known, dict(solution.values)
+        if "MUP" in values and "UX" in values:
+            values["MU"] = typed_friction(solution.system.state(solution.x), values["MUP"])
+        super().__init__(known, with_derived_values(values, contact_time))
+        self.solution, self.undetermined = solution, solution.undetermined
+        has_alternatives = solution.search.impacts > 1 and not solution.search.possible
+        if any(item.varies for item in known.values()):
+            # other impacts within the limits may be possible
+            self.subject = "the impact that fits best"
+            if has_alternatives:
+                self.subject = "each of the impacts that fit best"
+        elif has_alternatives:
+            self.subject = "every impact that agrees with what is known"
+        self.helpful = solution.helpful if solution.undetermined else ()
+        results = wanted or [
+            n
+            for n in _RESULTS
+            if (n not in known or (n in _ANSWERS and known[n].varies))
+            and not _along_an_axis(solution, n)
+        ]
+        names = [name for name in results if name in solution.values]
+        self.deviations = solution.deviations(names)
+        # results that exact values determine are not uncertain
+        names = [n for n in names if self.deviations[n] > 1e-9 * solution.system.scale(n)]
+        self.names, self.correlations = names, solution.correlations(names)
+        self.draws: Draws | None = None
+        self.ranges: dict[str, Range] = {}
+        self.evidence = solution.evidence
+        infeasible = False
+        if like is not None and like.draws and {*names} <= {*like.draws.values}:
+            # all impacts have one distribution, whichever it was sampled from
+            self.draws, self.ranges = like.draws, {n: like.ranges[n] for n in names}
+        elif samples and names and not self.evidence.contradictory:
+            self.draws = draws(solution, names, samples, seed, progress)
+            self.ranges = ranges(solution, names, seed, self.draws, progress)
+            infeasible = any(math.isnan(bound.lower) for bound in self.ranges.values())
+        elif samples and names and not solution.assumed:
+            bound = ranges(solution, names[:1], seed, None, progress)[names[0]]
+            infeasible = math.isnan(bound.lower)
+        self.not_drawn = infeasible and _is_within_limits(solution)
+        if infeasible:
+            self.draws, self.ranges = None, {}
+            if not self.not_drawn:
+                self.evidence = solution.weigh_evidence(inside=False)
+        if not solution.assumed:
+            widening = max(self.evidence.widening, 1.0)
+            self.deviations = {n: x * widening for n, x in self.deviations.items()}
+        self.first_order: dict[str, float | None] = {**self.deviations}
+        for name in names if self.draws else ():
+            draws_deviation = (
+                float(np.nanstd(self.draws.values[name], ddof=1)) if self.draws else math.nan
+            )
+            if (
+                not abs(self.deviations[name] - draws_deviation)
+                <= FIRST_ORDER_RTOL * draws_deviation
+            ):
+                self.first_order[name], self.deviations[name] = None, draws_deviation
+        for name in {*names} & {*solution.folded}:
+            self.first_order[name] = None
+            if not self.draws:
+                self.deviations[name] = math.nan
+        self.drivers: dict[str, list[tuple[str, float]]] = {}
+        for name, responses in zip(names, solution.responses(names), strict=True):
+            fractions = responses**2 / (np.square(responses).sum() or 1.0)
+            order = np.argsort(-fractions, kind="stable")
+            self.drivers[name] = [(solution.system.observations[i], fractions[i]) for i in order]
+
+    @property
+    def uncertainties(self) -> Mapping[str, float]:
+        """Standard deviations of results and of adjusted values."""
+        known = self.solution.system.known
+        measured = {a.name: known[a.name].standard_deviation for a in self.solution.adjusted}
+        return {**measured, **self.deviations}
+
+    def headline(self, units: System) -> list[tuple[str, str]]:
+        """Return labels and texts to print above the answer: broken physics, the evidence, the
+        search."""
+        broken_rules = [*super().headline(units)]
+        search, evidence = self.solution.search, ("EVIDENCE", self.evidence.text(units))
+        rows = (
+            [evidence, *broken_rules] if self.evidence.contradictory else [*broken_rules, evidence]
+        )
+        if not search.single:
+            rows.append(("SEARCH", search.text()))
+        return rows
+
+    @within_doubles
+    def warnings(self, units: System = RULES) -> list[str]:
+        """Return the warnings, a sentence each."""
+        solution, lines = self.solution, []
+        if solution.undetermined:
+            lines.append(f"not determined by what is known: {' '.join(solution.undetermined)}")
+        for name in solution.backwards:
+            what = "is pushed away from" if name in FORCES else "drives backwards along"
+            lines.append(
+                f"{name[-1]} {what} its known {'PDOF' if name in FORCES else 'course'}: {name} = "
+                f"{number(solution.system.nominal[name], 4)} was given, this impact has "
+                f"{number(solution.values[name], 4)}; none was found that does not "
+                f"({solution.search.text()})"
+            )
+        if solution.against_sign:
+            lines.append(
+                "neither sign of MU is the one that line 400 gives it: no friction that opposes "
+                "the sliding before the impact is consistent with the known values"
+            )
+        if solution.assumed:
+            unit = f" {units.label('length')}" if not units.is_bare else ""
+            lines.append(
+                "the known values contradict one another and none has a tolerance: all known "
+                "velocities were given the same one (spins that divided by the radius of gyration, "
+                f"{number(units.display_value('length', solution.system.gyration), 4)}{unit}); "
+                "deviations are those of the misfit"
+            )
+        elif self.evidence.contradictory:
+            lines.append(
+                f"{self.evidence.text(units)}; standard deviations are widened "
+                f"{number(self.evidence.widening, 3)} times"
+            )
+        if folded_names := [name for name in self.names if name in solution.folded]:
+            texts = []
+            for name in folded_names[:MAX_FOLDED_NAMED]:
+                value, scale = solution.values[name], solution.system.scale(name)
+                value = 0.0 if abs(value) < 1e-6 * scale else value
+                # a direction opposite to the axis is 180, from either side
+                opposite = name in (*COURSES, *FORCES) and value < -179.9995
+                value = 180.0 if opposite else value
+                texts.append(f"{name} about {number(units.display_unwrapped(name, value), 4)}")
+            amounts = ", ".join(texts)
+            both = ", and draws and bounds have both" if self.draws else ""
+            lines.append(
+                f"two branches of impacts meet here ({amounts}): to first order nothing limits "
+                f"these, so no first-order deviation is given{both}"
+            )
+        lines += self._ill_posed_warnings(units)
+        if self.not_drawn:
+            lines.append(
+                "this impact lies within the limits of all known values, but the search for draws "
+                "and bounds found none there: there are neither"
+            )
+        if self.evidence.inside is False:
+            lines.append(
+                "no impact was found that lies within the limits of all known values at once: "
+                "there are neither draws nor bounds"
+            )
+        if separating := self.separating:
+            lines.append(
+                f"{100 * separating:.2g} % of the draws separate already before the impact, which "
+                "meets all known values and is no impact; a course or a closing speed would "
+                "exclude them"
+            )
+        if self.draws and self.draws.signs is None and len(solution.beside) > 1:
+            lines.append(
+                f"draws and bounds are about this impact only, one of {len(solution.beside)} that "
+                "were found; they may be too narrow"
+            )
+        if not_searched := self.not_searched:
+            lines.append(
+                "the search for bounds ended before its time; not searched to the end, and perhaps "
+                f"wider: {' '.join(not_searched)}"
+            )
+        if self.draws and self.draws.failed:
+            lines.append(f"{100 * self.draws.failed:.3g} % of the draws have no solution")
+        return lines + super().warnings()
+
+    @property
+    def not_searched(self) -> list[str]:
+        """Results whose bounds may be wider: the search did not converge."""
+        return [name for name, bound in self.ranges.items() if not bound.searched]
+
+    @property
+    def separating(self) -> float:
+        """Fraction of draws whose contact points do not approach, 0 if it is negligible."""
+        if self.draws is None or "VC" not in self.draws.values:
+            return 0.0
+        fraction = float((self.draws.values["VC"] < 0).mean())
+        return fraction if fraction > MAX_SEPARATING_DRAWS else 0.0
+
+    def _separate_values(self, name: str, deviation: float) -> list[float]:
+        """Return the values of a result in all impacts found, sorted, if draws cover several
+        impacts and these are farther apart than the standard deviation; else an empty list."""
+        if not (self.draws and self.draws.signs is not None):
+            return []
+        values = sorted(
+            float(np.ravel(system.state(x)[name])[0]) for system, x in self.solution.beside
+        )
+        gaps = np.diff(values)
+        return values if len(gaps) and gaps.max() > deviation else []
+
+    def _ill_posed_warnings(self, units: System) -> list[str]:
+        """Return a warning for each velocity that the known values hardly determine, with its
+        deviation and the value that causes it."""
+        system, lines = self.solution.system, []
+        for name in self.names:
+            deviation = self.deviations[name]
+            fraction = deviation / system.scale(name)
+            if name in (*VELOCITIES, *FINAL_STATE) and fraction > ILL_POSED:
+                if alternatives := self._separate_values(name, deviation):
+                    amounts = [
+                        number(units.display_unwrapped(name, value), 3) for value in alternatives
+                    ]
+                    alternatives_text = " or ".join(dict.fromkeys(amounts))
+                    lines.append(
+                        f"{name} is about {alternatives_text} {units.unit(name)}".rstrip()
+                        + ", in another impact each; draws and bounds have all of them"
+                    )
+                    continue
+                driver, part = self.drivers[name][0]
+                size = f"{number(deviation * units.factor(name), 3)} {units.unit(name)}".rstrip()
+                lines.append(
+                    f"poorly determined: {name} has a standard deviation of {size}, "
+                    f"{100 * fraction:.0f} % of the largest speed; {100 * part:.0f} % "
+                    f"of its variance comes from {driver}"
+                )
+        e = self.solution.values.get("E")
+        ill_posed = any(line.startswith("poorly determined") for line in lines)
+        if ill_posed and e and "E" in system.known and abs(e) < ILL_POSED:
+            lines.append(
+                f"E = {number(e, 3)} divides: errors after the impact grow 1/E = {1 / e:.3g} times"
+            )
+        return lines
+
+    def further_tables(self, units: System) -> list[list[str]]:
+        """Return the tables of adjusted values, spreads, correlations and drivers."""
+        return [
+            self._adjustment_table(units),
+            self._spread_table(units),
+            *self._correlation_tables(units),
+        ]
+
+    def _correlations(self, units: System) -> Any:
+        """Return the correlations of results, with the signs of the system of units."""
+        signs = np.array([-1.0 if units.is_turned(name) else 1.0 for name in self.names])
+        return np.asarray(self.correlations) * np.outer(signs, signs) if len(signs) else []
+
+    def _adjustment_table(self, units: System) -> list[str]:
+        """Return the table of measured and adjusted values; empty without redundancy."""
+        count = self.solution.redundancy
+        if not count:
+            return []
+        rows = []
+        for entry in self.solution.adjusted:
+            item = self.solution.system.known[entry.name]
+            half_width = math.nan if item.kind == "normal" else entry.tolerance
+            rounding = abs(entry.adjusted) < NOISE * item.standard_deviation
+            adjusted_value = 0.0 if rounding else entry.adjusted
+            measured_value, shown_value = (
+                units.display_unwrapped(entry.name, float(x))
+                for x in (entry.measured, adjusted_value)
+            )
+            factor = units.factor(entry.name)
+            sizes = [
+                (measured_value, 6),
+                (half_width * factor, 3),
+                (item.standard_deviation * factor, 3),
+            ]
+            cells = [number(x, n) for x, n in (*sizes, (shown_value, 6))]
+            rows.append(
+                [
+                    entry.name,
+                    *cells,
+                    format_fixed(entry.normalized_residual, 2),
+                    units.label(quantity(entry.name).unit),
+                ]
+            )
+        heading = ["known", "measured", "half-width", "sd", "adjusted", "moved, tolerances", "unit"]
+        return [
+            *table(rows, heading, left=(0, 6)),
+            "A tolerance is the half-width of limits, or the sd of a normal value.",
+            *paragraph(
+                "Adjusted by least squares so that Equations 13 to 18 hold exactly (adjustment of "
+                f"observations with conditions): {count} value{'s' if count > 1 else ''} more than "
+                f"needed, sum of squared adjustments {self.evidence.sum_text} (in "
+                f"standard deviations; about {count} where the tolerances are right)"
+            ),
+        ]
+
+    def _spread_table(self, units: System) -> list[str]:
+        """Return the table of results: first-order deviations, and deviations, quantiles and bounds
+        from draws."""
+        heading = ["result", "first order sd"]
+        if self.draws:
+            heading += ["draws sd", *(f"{100 * fraction:g} %" for fraction in QUANTILES)]
+            heading += ["lower bound", "upper bound"]
+        rows = []
+        for name in self.names:
+            factor = units.factor(name)
+            first_order = self.first_order[name]
+            cells = [name, "" if first_order is None else number(factor * first_order, 3)]
+            if self.draws:
+                spread, bound = self.draws.spread(name, QUANTILES), self.ranges[name]
+                cells.append(number(factor * spread.deviation, 3))
+                quantiles = [units.display_unwrapped(name, q) for q in spread.quantiles.values()]
+                quantiles = quantiles[::-1] if units.is_turned(name) else quantiles
+                limits = (*quantiles, *units.ends(name, *_bounds_without_noise(bound)))
+                cells += [number(value, 5) for value in limits]
+            rows.append([*cells, units.label(quantity(name).unit)])
+        lines = table(rows, [*heading, "unit"], left=(0, len(heading))) if rows else []
+        if self.draws and self.draws.signs is not None and rows:
+            lines += paragraph(
+                "Draws and bounds: over every impact that meets all known values, of all branches; "
+                "flat, where nothing is known, over velocities before, e, e_m and P_t/P_n"
+            )
+            if any(self.first_order[n] is None for n in self.names):
+                lines += paragraph(
+                    "The first order is left out where it differs from the draws by more than a "
+                    "third."
+                )
+        return lines
+
+    def _correlation_tables(self, units: System) -> list[list[str]]:
+        """Return the tables of correlations and of drivers."""
+        names = self.names
+        # courses and speeds follow from the components
+        columns_shown = [i for i, n in enumerate(names) if n not in (*SPEEDS, *COURSES)][
+            :MAX_CORRELATION_COLUMNS
+        ]
+        matrix = self._correlations(units)
+        rows = [
+            [names[i], *(f"{matrix[i, k]:.2f}" for k in columns_shown if k <= i)]
+            for i in columns_shown
+        ]
+        correlations = table(rows, ["correlation", *(names[i] for i in columns_shown)])
+        driving = [
+            [
+                name,
+                *(
+                    f"{n} {100 * fraction:.0f} %"
+                    for n, fraction in drivers[:DRIVERS]
+                    if fraction >= 5e-3
+                ),
+            ]
+            for name, drivers in self.drivers.items()
+        ]
+        columns = table(driving, ["uncertain through", *[""] * DRIVERS], left=(0, 1, 2, 3))
+        return [correlations if len(columns_shown) > 1 else [], columns if driving else []]
+
+    def json_items(self, units: System) -> dict[str, Any]:
+        """Return the JSON items of a reconstruction."""
+        solution, adjusted_items = self.solution, []
+        for item in solution.adjusted:
+            deviation = solution.system.known[item.name].standard_deviation
+            is_noise = abs(item.adjusted) < max(
+                ROUNDING * solution.system.scale(item.name), NOISE * deviation
+            )
+            sizes = {
+                "measured": units.display_unwrapped(item.name, float(item.measured)),
+                "tolerance": units.factor(item.name) * item.tolerance,
+                "adjusted": units.display_unwrapped(
+                    item.name, 0.0 if is_noise else float(item.adjusted)
+                ),
+            }
+            adjusted_items.append({"name": item.name, **sizes, "moved": item.normalized_residual})
+        return {
+            "undetermined": solution.undetermined,
+            "adjusted": adjusted_items,
+            "redundancy": solution.redundancy,
+            "sum_of_squares": solution.squares,
+            "evidence": self.evidence.as_json(units),
+            "search": {**solution.search._asdict(), "text": solution.search.text()},
+            "equal_tolerances_assumed": solution.assumed,
+            "uncertainty": {name: self._uncertainty_json(name, units) for name in self.names},
+            "correlations": {"names": self.names, "matrix": self._correlations(units)},
+            "draws_without_solution": self.draws.failed if self.draws else None,
+            "not_searched": self.not_searched,
+        }
+
+    def _uncertainty_json(self, name: str, units: System) -> dict[str, Any]:
+        """Return the uncertainty of one result as JSON."""
+        factor, first_order = units.factor(name), self.first_order[name]
+        record: dict[str, Any] = {
+            "first_order": None if first_order is None else first_order * factor,
+            "drivers": dict(self.drivers[name]),
+        }
+        if self.draws:
+            spread, bound = self.draws.spread(name, QUANTILES), self.ranges[name]
+            lower, upper = units.ends(name, *_bounds_without_noise(bound))
+            points = (bound.at_lower, bound.at_upper)
+            values = [units.display_unwrapped(name, value) for value in spread.quantiles.values()]
+            if units.is_turned(name):  # quantiles stand in pairs about the half
+                points, values = points[::-1], values[::-1]
+            quantiles = dict(zip(spread.quantiles, values, strict=True))
+            record |= {
+                "mean": units.display_unwrapped(name, spread.mean),
+                "deviation": spread.deviation * factor,
+                "quantiles": {f"{q:g}": v for q, v in quantiles.items()},
+                "lower": lower,
+                "upper": upper,
+                "unbounded": unbounded_sides(bound),
+                "at_lower": display_values(points[0], units),
+                "at_upper": display_values(points[1], units),
+            }
+        return record
+
+
+class Reconstructions(list[Reconstruction]):
+    """The impacts that agree with what is known, the likeliest first.
+
+    A list, which a notebook shows as the command prints it.
+
+    Parameters
+    ----------
+    iterable : iterable of Reconstruction, optional
+        The impacts.
+
+    Examples
+    --------
+    >>> known = {name: text for name, text in impact88.sample(1).items() if name != "MU"}
+    >>> impacts = impact88.reconstruct({**known, "VAX": "-13.3 +- 0.5"})
+    >>> [impact.redundancy for impact in impacts]
+    [0]
+    """
+
+    def _repr_html_(self) -> str:
+        """Return the output of `impact88 reconstruct --samples 0` as HTML for a notebook."""
+        return notebook.preformatted_html(join_texts([Measured(impact, 0) for impact in self]))
+
+
+@explains_arguments
+def reconstruct(known: Mapping[str, Uncertain | float | str]) -> Reconstructions:
+    """Return every impact that agrees with what is known of it.
+
+    Equations 13 to 18 hold exactly, and so do exact values. Where more is known than needed, values
+    with a tolerance are adjusted by least squares.
+
+    Parameters
+    ----------
+    known : mapping of str to float, str or Uncertain
+        What is known, by name (``UX`` ... ``WB``, ``VAX`` ... ``WBF``, ``E``, ``EM``, ``MU`` or
+        ``MUP``, ``SA``, ``HA``, ``DVA``, ``PDOFA``, ``EL`` and so on), in one consistent set of
+        units. The vehicles and their geometry must be known. A number is exact; a text such as
+        ``"41 +- 2"`` or an `Uncertain` is known within its tolerance. M is 6 where left out.
+
+    Returns
+    -------
+    Reconstructions
+        A list of `Reconstruction`: possible impacts before those that break physics, each group
+        ordered by the sum of squared adjustments. Each has ``values``, ``adjusted``, ``evidence``
+        (whether the measurements can all be true), ``deviations(names)`` and ``scene()``.
+
+    Raises
+    ------
+    UserError
+        For a name or a value that cannot be used, and for exact values that contradict one another
+        beside others with a tolerance.
+    UnsolvableError
+        Where what is known determines nothing of what is not.
+
+    Notes
+    -----
+    Equations 13 to 18 of the chapter; MU is the size of line 280, whose sign line 400 chooses.
+
+    Examples
+    --------
+    >>> known = {name: text for name, text in impact88.sample(1).items() if name != "MU"}
+    >>> best, *others = impact88.reconstruct({**known, "VAX": "-13.3 +- 0.5"})
+    >>> round(best.values["VAX"], 1)
+    -13.3
+    """
+    return Reconstructions(adjustment.reconstruct(known))

@@ -1,0 +1,222 @@
+"""What is known of impacts as equations, in scaled variables (rows) of n impacts (columns).
+
+Equations 13, 14 and 17 hold by the way an impact is written (`State`). Equations 15, 16 and 18 and
+the exact values are conditions, values with a tolerance are observations. All residuals are divided
+by a typical velocity (impulses by the reduced mass times it, spins by it over the radius of
+gyration). With exact values alone all conditions are linear, except speeds, directions, changes of
+velocity and energies."""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import reduce
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...collision.geometry import GEOMETRY, Geometry
+from ...collision.uncertain import Uncertain
+from ...mechanics.state import (
+    CHANGES,
+    CONTACT,
+    COURSES,
+    CRUSH,
+    DIRECTIONS,
+    ENERGIES,
+    FORCES,
+    QUANTITIES,
+    SPEEDS,
+    State,
+)
+from ...names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES, quantity
+
+Array = NDArray[Any]
+Floats = NDArray[np.float64]
+
+SPINS = ("WA", "WB", "WAF", "WBF")
+# Known values that enter the conditions; all others are quantities computed from a state
+PARAMETERS = (*GEOMETRY, *COEFFICIENTS, *SPEEDS, *DIRECTIONS, *CRUSH)
+MEASURABLE = (*VELOCITIES, *FINAL_STATE, *CHANGES, *ENERGIES, *CONTACT)
+COMPLEX_STEP = 1e-30  # imaginary step of derivatives: without subtraction there is no rounding
+_COURSE_OF = {speed: course for course, speed in COURSES.items()}
+# Quantities whose conditions are not linear: several impacts may have the same
+_NONLINEAR = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES, *CRUSH)
+
+
+class System:
+    """The equations of one reading of what is known.
+
+    ``known``: values by name, friction as MUP; nominal values may be arrays where nothing is
+    adjusted. ``adjusted``: True to adjust values with a tolerance (each a variable or a quantity
+    with an observation), False to take their nominal values as exact (all are conditions).
+    ``progress`` is called with the number of impacts evaluated. ``barrier``: True if a vehicle of
+    infinite mass is at rest."""
+
+    def __init__(
+        self,
+        known: Mapping[str, Uncertain],
+        adjusted: bool,
+        progress: Callable[[int], object] = lambda n: None,
+        barrier: bool = True,
+    ) -> None:
+        self.progress = progress
+        self.known, self.adjusted = dict(known), adjusted
+        self.nominal: dict[str, Any] = {name: item.nominal for name, item in known.items()}
+        self.point = bool(np.all(self.nominal.get("M", 6.0) == 4))
+        geometry = Geometry(self.nominal)
+        # numpy's numbers: beyond the range of doubles they are infinite, where Python's raise
+        self.mass: Any = np.float64(1) / geometry.inverse_mass
+        self.gyration: Any = np.float64(1.0)
+        if not self.point:
+            self.gyration = np.sqrt(geometry.inverse_mass / geometry.inverse_spin_inertia)
+        fixed: tuple[str, ...] = ("WA", "WB", "PM") if self.point else ()
+        for mass_name, names in (("MA", VELOCITIES[:3]), ("MB", VELOCITIES[3:])):
+            if barrier and np.all(np.isinf(self.nominal[mass_name])):
+                fixed += names
+        self.speed: Any = self._typical_speed()
+        speed, mass, length = self.speed, self.mass, self.gyration
+        self.sizes: dict[str, Any] = {
+            "1": 1.0,
+            "percent": 100.0,
+            "degree": np.degrees(1.0),
+            "length": length,
+            "length/time": speed,
+            "rad/time": speed / length,
+            "mass·length/time": mass * speed,
+            "mass·length²/time": mass * speed * length,
+            "mass·length²/time²": mass * speed**2,
+        }
+        uncertain = {n for n, item in known.items() if adjusted and item.varies}
+        parameters = [n for n in known if n in PARAMETERS and n in uncertain]
+        unknown = [n for n in VELOCITIES if n not in fixed and (n not in known or n in uncertain)]
+        self.from_after: tuple[str, ...] = ()
+        after = dict(zip(VELOCITIES, FINAL_STATE, strict=True))
+        if not adjusted:
+            self.from_after = tuple(n for n in unknown if after[n] in known)
+            unknown = [n for n in unknown if n not in self.from_after]
+        impulses = [n for n in IMPULSES if n not in fixed]
+        self.variables = (*unknown, *impulses, *parameters)
+        self.scales = np.array([*np.broadcast_arrays(*map(self.scale, self.variables))])
+        self.constants = {**dict.fromkeys(fixed, 0.0), **self.nominal}
+        if (friction := known.get("MUP")) is not None and friction.critical:
+            self.constants["MUC"] = friction.critical  # a fraction of each impact's own
+        self.laws = [n for n in COEFFICIENTS if n in known and not (self.point and n == "EM")]
+        implied = {after[n] for n in (*fixed, *self.from_after) if n in after}
+        self.exact = [
+            n
+            for n in known
+            if (n in MEASURABLE and n not in (*uncertain, *VELOCITIES, *implied))
+            or n in (*SPEEDS, *DIRECTIONS, "ELA", "EBSA")
+        ]
+        self.conditions = (*self.laws, *self.exact)
+        self.observations = tuple(n for n in known if n in uncertain and n not in fixed)
+        self.geometry = None if set(parameters) & set(GEOMETRY) else geometry
+        self.linear = (
+            not adjusted
+            and "MUC" not in self.constants
+            and not any(n in _NONLINEAR and _COURSE_OF.get(n) not in known for n in known)
+        )
+
+    def _typical_speed(self) -> Any:
+        """Return the largest known velocity: spins times the radius of gyration, energies as the
+        velocity they give the reduced mass; 1 if all are 0."""
+        sizes: list[Any] = [np.float64(0.0)]
+        for name, value in self.nominal.items():
+            rule, size = quantity(name).unit, np.abs(value)
+            if rule == "length/time" or name in SPINS:
+                sizes.append(size * self.gyration if name in SPINS else size)
+            elif rule == quantity("EL").unit:
+                sizes.append(np.sqrt(2 * size / self.mass))
+        largest = reduce(np.maximum, sizes)
+        return np.where(largest == 0, 1.0, largest)[()]
+
+    def scale(self, name: str) -> Any:
+        """Return the size of an ordinary quantity ``name``, in the problem's units."""
+        is_inertia = name in ("MA", "MB", "IA", "IB")
+        return abs(self.nominal[name]) if is_inertia else self.sizes[quantity(name).unit]
+
+    def state(
+        self, x: Array, data: Mapping[str, Array] | None = None, geometry: Geometry | None = None
+    ) -> State:
+        """Return the impact with these variables. ``data`` replaces known values (when nothing is
+        adjusted); ``geometry`` is computed from them where it is not given."""
+        variables = {
+            n: row * scale for n, row, scale in zip(self.variables, x, self.scales, strict=True)
+        }
+        if geometry is None and not (data and set(data) & set(GEOMETRY)):
+            geometry = self.geometry
+        return State({**self.constants, **(data or {}), **variables}, geometry, self.from_after)
+
+    def residuals(self, state: State, targets: Mapping[str, Any] | None = None) -> Array:
+        """Return the scaled residuals of conditions, then of observations: rows, one column an
+        impact. ``targets`` replaces known values."""
+        targets = {**self.nominal, **(targets or {})}
+        rows = [state.law(n) / self.law_scale(n) for n in self.laws]
+        rows += [self.exact_residual(state, n, targets) for n in self.exact]
+        for name in self.observations:
+            deviation = self.observed_value(state, name) - targets[name]
+            rows.append(deviation / self.known[name].standard_deviation)
+        # with the impulse, for the shape where there are none
+        return np.stack(np.broadcast_arrays(state.values["PN"], *rows))[1:]
+
+    def observed_value(self, state: State, name: str) -> Any:
+        """Return the value that an observation is compared with: a variable, or a quantity of the
+        state."""
+        return state.values[name] if name in self.variables else state[name]
+
+    def law_scale(self, coefficient: str) -> Any:
+        """Return the scale of a law's residual: a velocity, a spin for EM, an impulse for MUP (but
+        for the pivot's condition, which is on a velocity)."""
+        if coefficient == "MUP" and not np.all(self.nominal["MUP"] == PIVOT):
+            return self.mass * self.speed
+        return self.speed / (self.gyration if coefficient == "EM" else 1.0)
+
+    def exact_residual(self, state: State, name: str, targets: Mapping[str, Any]) -> Any:
+        """Return the scaled residual of one exact value. A direction's is the component across
+        it."""
+        if name in DIRECTIONS:
+            return state.along_and_across(name)[1] / (
+                self.speed * (self.mass if name in FORCES else 1.0)
+            )
+        if name in CRUSH:
+            parts = state.crush_energy("A") + state.crush_energy("B")
+            return (state["EL"] - parts) / self.scale("EL")
+        if name in SPEEDS:
+            course = _COURSE_OF[name]
+            size = state.along_and_across(course)[0] if course in self.known else state[name]
+            value = state.values[name] if name in self.variables else targets[name]
+            return (size - value) / self.speed
+        return (state[name] - targets[name]) / self.scale(name)
+
+    def linearize(
+        self,
+        x: Array,
+        rows: Callable[[State, Mapping[str, Array] | None], Any],
+        data: Mapping[str, Array] | None = None,
+        targets: Mapping[str, Array] | None = None,
+    ) -> tuple[Floats, Floats]:
+        """Return ``rows(state, targets)`` (rows, impacts) and its derivatives over the scaled
+        variables (rows, variables, impacts), by complex steps. ``data`` as for `state`, ``targets``
+        as for `residuals`, a column an impact."""
+        size, count = len(self.variables), x.shape[1]
+        self.progress(count)
+        offset_points = x[:, None] + 1j * COMPLEX_STEP * np.eye(size)[:, :, None]
+        values = rows(self.state(offset_points, data), targets)
+        values = np.broadcast_to(values, (len(values), size, count))
+        return np.real(values[:, 0]), np.imag(values) / COMPLEX_STEP
+
+    def jacobian(self, x: Array) -> Floats:
+        """Return the derivatives of the residuals over the scaled variables (rows, variables), of
+        one impact."""
+        return self.linearize(x, self.residuals)[1][:, :, 0]
+
+    def gradients(self, x: Array, names: Sequence[str]) -> Floats:
+        """Return the derivatives of quantities, or of known values that are adjusted (rows), over
+        the scaled variables."""
+        adjusted = {*self.variables} - {*QUANTITIES}
+
+        def rows(state: State, _: Any) -> Array:
+            values = (state.values[n] if n in adjusted else state[n] for n in names)
+            # with the impulse, for the shape where there are none
+            return np.stack(np.broadcast_arrays(state.values["PN"], *values))[1:]
+
+        return self.linearize(x, rows)[1][:, :, 0]

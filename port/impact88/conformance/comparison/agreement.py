@@ -1,0 +1,252 @@
+"""Grade the agreement of another program's results with ours, scene by scene.
+
+*To the double*: within the rounding errors of the best programs. *To the digits claimed*: the
+exact value rounded to the digits it is written with. *As elimination does*: within the rounding
+errors of a correct program in any of the spellings (`tolerance`), result by result. Where rounding
+decides which way the contact slides, either way counts as correct. Where rounding may leave no
+correct digit, or too few are written, a number that shares none with ours is not compared.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...collision.doubles import double
+from ...equations.evaluation import NEIGHBOUR_SHIFTS, Run
+from ...equations.spelling import A_IMPULSE, spelling_of
+from ...errors import UserError, quoted
+from ...mechanics.accuracy import errorbound
+from ...mechanics.closedform.solve import solve
+from ...names import FINAL_VELOCITIES, SCENE
+from ...tables.cells import TableUnits, last_digit
+from ...tables.rows import Rows
+from . import tolerance
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Columns = Mapping[str, Floats]
+
+EQUATIONS = {
+    "13": "momentum along x",
+    "14": "momentum along y",
+    "15": "restitution",
+    "16": "friction",
+    "17": "angular momentum",
+    "18": "moment",
+}
+"""Number -> subject."""
+_EQUATION_RTOL = 1e-13  # rounding in evaluating an equation, relative to the sum of its terms
+_NO_RESULT = re.compile(
+    r"|null|none|n/a|#[A-Z]+[/0-9A-Z]*[!?]?|[+-]?(nan|inf|infinity|1\.#[A-Z]+[0-9]*)(\([a-z0-9]*\))?",
+    re.IGNORECASE,
+)
+"""Cells that programs write for no result: spreadsheets' errors, C's -nan(ind), infinity."""
+HALF = 0.5 + 1e-9  # rounding to the last digit written, in units of that digit
+
+COLUMNS = (*SCENE, *(f"{row}_{name}" for row in NEIGHBOUR_SHIFTS for name in SCENE))
+
+# grades of agreement
+ABSENT = 0  # one side has no result
+DOUBLE = 1
+DIGITS = 2
+ELIMINATION = 3
+DIFFER = 4
+LOST = 5  # rounding, or the digits written, leave no digit to compare
+
+NO_DIGIT = 0.1  # relative difference from which a result shares no digit with ours
+
+
+class Case(NamedTuple):
+    """Rows of a table with our results for them: arrays (results, rows), or (rows,).
+
+    ``names``: of the results; ``scene``: each row's columns, and those of the rows before and after
+    (`COLUMNS`); ``values``: the other program's results; ``units``: of the last digit written (0
+    for binary numbers); ``ours``: our results; ``sizes``: errors are relative to them;
+    ``condition``: COND.
+    ``tight``, ``loose``: error bounds in double precision of the best programs, and of a correct
+    one in any spelling (equal to the former where that was enough); ``per_unit``: the largest
+    relative ``loose`` of a row's velocities per unit roundoff; ``no_digit``: relative difference
+    from which a number shares no digit with ours.
+    """
+
+    names: tuple[str, ...]
+    scene: Floats
+    values: Floats
+    units: Floats
+    ours: Floats
+    sizes: Floats
+    condition: Floats
+    tight: Floats
+    loose: Floats
+    per_unit: Floats
+    no_digit: Floats
+
+    def select_rows(self, rows: NDArray[np.intp]) -> "Case":
+        """Return the case of some of the rows."""
+        return Case(self.names, *(column[..., rows] for column in self[1:]))
+
+    @property
+    def columns(self) -> dict[str, Floats]:
+        """The scenes by name."""
+        return dict(zip(COLUMNS, self.scene, strict=True))
+
+    @property
+    def wrong(self) -> Bools:
+        """The rows that disagree."""
+        return np.asarray((self.grade()[0] == DIFFER).any(0))
+
+    def grade(self) -> tuple[NDArray[np.intp], Floats]:
+        """Return the grade of each result and its relative difference, both (results, rows)."""
+        with np.errstate(all="ignore"):
+            off = np.abs(self.values - self.ours)
+            written = self.units * HALF
+            # a size of 0 is no measure: take the other program's number
+            measure = np.where(self.sizes > 0, self.sizes, np.abs(self.values))
+            relative = np.minimum(np.where(off > 0, off / measure, 0.0), np.finfo(float).max)
+            absent = ~(np.isfinite(self.values) & np.isfinite(self.ours))
+            differ = off > written + self.loose
+            lost = relative > self.no_digit
+            within = (absent, differ, lost, off <= self.tight, off <= written + self.tight)
+            grades = np.select(within, (ABSENT, DIFFER, LOST, DOUBLE, DIGITS), ELIMINATION)
+            return grades, relative
+
+
+def concatenate_cases(cases: Sequence[Case]) -> Case:
+    """Return one case of several blocks of a table."""
+    columns = zip(*(case[1:] for case in cases), strict=True)
+    return Case(cases[0].names, *(np.concatenate(column, -1) for column in columns))
+
+
+def make_case(
+    scene: Columns, theirs: Mapping[str, tuple[Floats, Floats]], rtol: float | None = None
+) -> Case:
+    """Compare scenes (columns of n) with another program's results.
+
+    ``theirs``: name -> values and the units of their last digits; ``rtol``: the user's own relative
+    tolerance, for all scenes, in place of the error bounds. Where rounding decides which way the
+    contact slides, our results are those of the sliding that agrees better.
+    """
+    case, undecided = _compare_scenes(scene, theirs, rtol)
+    if undecided.size:
+        part = {name: column[undecided] for name, column in scene.items()}
+        results = {name: (a[undecided], b[undecided]) for name, (a, b) in theirs.items()}
+        reversed_case, _ = _compare_scenes({**part, "MU": -part["MU"]}, results, rtol)
+        differing = (case.select_rows(undecided).grade()[0] == DIFFER).sum(0)
+        better = (reversed_case.grade()[0] == DIFFER).sum(0) < differing
+        for column, replacement in zip(case[4:], reversed_case[4:], strict=True):
+            column[..., undecided[better]] = replacement[..., better]
+    return case
+
+
+@np.errstate(all="ignore")
+def _compare_scenes(
+    scene: Columns, theirs: Mapping[str, tuple[Floats, Floats]], rtol: float | None
+) -> tuple[Case, NDArray[np.intp]]:
+    """Return the case, and the rows in which rounding decides which way the contact slides."""
+    solved = {name: column.astype(float) for name, column in solve(scene).items()}
+    scales = errorbound.scales(scene, solved)
+    columns = np.stack([scene[name] for name in SCENE])
+    neighbours = (np.roll(columns, shift, -1) for shift in NEIGHBOUR_SHIFTS.values())
+    values, units = (np.stack(column) for column in zip(*theirs.values(), strict=True))
+    ours = np.stack([solved[name] for name in theirs])
+    sizes = np.stack([scales[name] for name in theirs])
+    best_bounds, undecided = tolerance.best_error_bounds(scene, solved, scales)
+    tight = np.stack([best_bounds[name] for name in theirs])
+    if rtol is not None:
+        tight = rtol * sizes + 2 * np.spacing(np.abs(ours))
+    loose = tight.copy()
+    per_unit = np.max([best_bounds[name] / scales[name] for name in FINAL_VELOCITIES], 0)
+    beyond = (np.abs(values - ours) > tight + units * HALF).any(0)
+    if rtol is None and (rows := np.flatnonzero(beyond)).size:
+        # these bounds take long: only for rows that are beyond the tight ones
+        part_scene, part_solved, part_scales, part_bounds = (
+            {name: column[rows] for name, column in table.items()}
+            for table in (scene, solved, scales, best_bounds)
+        )
+        bounds = tolerance.largest_error_bounds(
+            part_scene, part_solved, part_scales, part_bounds, theirs
+        )
+        loose[:, rows] = [bounds[name] for name in theirs]
+        relative = [bounds[name] / part_scales[name] for name in FINAL_VELOCITIES]
+        per_unit[rows] = np.max(np.where(np.isfinite(relative), relative, 0.0), axis=0)
+    case = Case(
+        names=tuple(theirs),
+        scene=np.concatenate([columns, *neighbours]),
+        values=values,
+        units=units,
+        ours=ours,
+        sizes=sizes,
+        condition=solved["COND"],
+        tight=tight,
+        loose=loose,
+        per_unit=per_unit / errorbound.DOUBLE,
+        # with the user's own tolerance all numbers are compared
+        no_digit=np.full(len(values[0]), NO_DIGIT if rtol is None else np.inf),
+    )
+    return case, np.flatnonzero(undecided)
+
+
+def read_theirs(rows: Rows, name: str, units: TableUnits) -> tuple[Floats, Floats]:
+    """Return a column of results in base units, and the units of their last digits.
+
+    The unit is 0 for binary numbers. An empty cell is NaN and counts as not given; cells that are
+    not numbers are added to ``rows.bad``. Raises UserError for an array without a number for each
+    row.
+    """
+    column, factor = rows.one_per_row(name), units.factor(name)
+    if isinstance(column, np.ndarray) and column.dtype.kind in "fiu":
+        return column.astype(float) * factor, np.zeros(rows.count)
+    values, last = np.full(rows.count, np.nan), np.zeros(rows.count)
+    for index, cell in enumerate(column):
+        if isinstance(cell, float):  # from a data frame
+            values[index] = cell * factor
+            continue
+        text = "" if cell is None else str(cell).strip()
+        if _NO_RESULT.fullmatch(text):
+            continue
+        try:
+            values[index] = double(text) * factor
+            last[index] = last_digit(text) * factor
+        except ValueError:
+            try:
+                if not any(map(str.isdigit, text)):
+                    raise UserError(f"{quoted(text)} is not a number") from None
+                values[index], last[index] = units.result(name, text)
+            except UserError as error:
+                rows.bad.append((index, name, str(error).removeprefix(": ")))
+    return values, last
+
+
+@np.errstate(all="ignore")
+def violated_equations(case: Case) -> dict[str, Bools]:
+    """Return the rows that violate each of Equations 13 to 18, by the equation's number.
+
+    Empty when the table lacks a final velocity (the spins of point masses are those before the
+    impact, given or not). The equations are evaluated on the other program's results, in a spelling
+    in which none presupposes another. One is violated when its sides differ by more than the digits
+    written and rounding allow; a missing number violates nothing.
+    """
+    spelling, scene = spelling_of(A_IMPULSE), case.columns
+    point = scene["M"] == 4
+    slack = case.units * 0.5 + case.loose
+    theirs = dict(zip(case.names, zip(case.values, slack, strict=True), strict=True))
+    for name in ("WAF", "WBF"):
+        initial = scene[name[:2]]
+        if name in theirs or point.all():
+            value, tol = theirs.get(name, (initial, 0.0))
+            theirs[name] = np.where(point, initial, value), np.where(point, 0.0, tol)
+    if set(spelling.unknown) - theirs.keys():
+        return {}
+    values, tolerances = np.stack([theirs[name] for name in spelling.unknown], 2)[..., None, :]
+    matrices, rights = Run(spelling, scene).linear_systems({})
+    matrix, right = matrices[0], rights[0]
+    terms = matrix * values
+    size = np.abs(terms).sum(2) + np.abs(right)
+    limit = (np.abs(matrix) * tolerances).sum(2) + _EQUATION_RTOL * size
+    violated = np.abs(terms.sum(2) - right) > limit
+    subjects = [spelling.statements[index].subject for index in spelling.equations]
+    rows = {re.findall("[0-9]+", text)[0]: violated[:, row] for row, text in enumerate(subjects)}
+    return {number: rows[number] for number in EQUATIONS}

@@ -1,0 +1,528 @@
+"""Compare another implementation's results with ours, row by row, and explain the differences.
+
+`agreement` grades each result by the scene's condition; `diagnosis` finds causes. Rows that could
+not be compared are counted by reason.
+"""
+
+import os
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...collision.doubles import double
+from ...collision.mappings import texts
+from ...errors import UserError, quoted
+from ...files import display_name
+from ...messages.arguments import explains_arguments
+from ...messages.plaintable import plain
+from ...messages.progress import progress
+from ...names import DEFAULT_M, RESULTS, SCENE
+from ...tables.cells import TableUnits, check_scene_columns, numbers
+from ...tables.formats import FORMATS
+from ...tables.rows import BadCell, Reader, Rows
+from ...tables.table import format_of, open_reader
+from . import agreement
+from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, Case
+from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, Diagnosis, Unexplained
+from .trials import Program
+from .vectors import FAILURE
+
+MAX_ROWS_LISTED = 20  # of those that disagree most, and of those not compared for each reason
+NOT_COMPARED = ("STATUS", "COND")  # result columns
+CARRIED = ("id", "class", "label", "expect", "flags", "comment")
+"""Columns of test vectors that identify the row."""
+
+NO_RESULT = "no result on either side: theirs refuses, and so does the mathematics"
+NOTHING_HERE = "theirs gives numbers where the equations have no solution"
+NOTHING_THERE = "theirs gives nothing where there is a result"
+REFUSED = "theirs refuses a vector of the class failure, as it may"
+UNREADABLE = "the row could not be read"
+NO_DIGIT = "a number shares no digit with ours, where rounding or the digits written leave none"
+REASONS = (UNREADABLE, NO_RESULT, NOTHING_HERE, REFUSED, NO_DIGIT, NOTHING_THERE)
+HARMLESS = (NO_RESULT, REFUSED)
+"""Reasons that are no fault of the program."""
+
+
+class Row(NamedTuple):
+    """A row that disagrees.
+
+    Parameters
+    ----------
+    row, line : int
+        Its number among the rows, from 1, and its line in the file, 0 without one.
+    id : str
+        Its entry in a column ``id``, or "".
+    result, theirs, ours : str, str, float
+        The result that disagrees most, the other program's text and this one's number.
+    relative : float
+        Their difference relative to the scene's largest velocity, spin or energy.
+    cause : str
+        The likely cause.
+    """
+
+    row: int
+    line: int
+    id: str
+    result: str
+    theirs: str
+    ours: float
+    relative: float
+    cause: str
+
+
+@dataclass
+class Tally:
+    """Counts of rows for one result.
+
+    Parameters
+    ----------
+    compared : int
+        Rows compared.
+    double, digits, elimination : int
+        Rows that agree to double precision, to all digits written, and as closely as elimination
+        can.
+    differ : int
+        Rows that disagree.
+    missing : int
+        Rows without the result in the other program's table.
+    largest : float
+        The largest relative difference.
+    """
+
+    compared: int = 0
+    double: int = 0
+    digits: int = 0
+    elimination: int = 0
+    differ: int = 0
+    missing: int = 0
+    largest: float = 0.0
+
+    def add(self, grades: NDArray[np.intp], relative: NDArray[np.float64]) -> None:
+        """Count a block's rows.
+
+        Parameters
+        ----------
+        grades : ndarray of int
+            Grade of agreement of each row.
+        relative : ndarray of float
+            Relative difference of each row.
+        """
+        counts = np.bincount(grades, minlength=LOST + 1).tolist()
+        absent, double, digits, elimination, differ, lost = counts
+        self.compared += grades.size - absent - lost
+        self.double += double
+        self.digits += digits
+        self.elimination += elimination
+        self.differ += differ
+        judged = (grades > ABSENT) & (grades < LOST)
+        self.largest = float(relative.max(initial=self.largest, where=judged))
+
+
+@dataclass
+class Elimination:
+    """Rows that agree only as closely as elimination can.
+
+    Parameters
+    ----------
+    rows : int
+        Their number.
+    worst_row : int
+        The row with the largest difference.
+    worst_relative, worst_condition : float
+        Its relative difference and condition number.
+    """
+
+    rows: int = 0
+    worst_row: int = 0
+    worst_relative: float = 0.0
+    worst_condition: float = 0.0
+
+
+@dataclass
+class Skipped:
+    """Rows not compared for one reason.
+
+    Parameters
+    ----------
+    rows : int
+        Their number.
+    first : list of int
+        The first of them.
+    """
+
+    rows: int = 0
+    first: list[int] = field(default_factory=list)
+
+
+@dataclass
+class Comparison:
+    """The result of `compare`.
+
+    Parameters
+    ----------
+    rows, agreeing, differing : int
+        Rows of the table, those whose results all agree, and those with one that does not.
+    tallies : dict of str to Tally
+        How many rows agree, by result.
+    causes : Counter of str
+        Rows that each likely cause explains.
+    differences : list of Row
+        Every row that disagrees, with its worst result and its likely cause.
+    not_compared : dict of str to Skipped
+        Rows that were not compared, by reason.
+    elimination : Elimination
+        Rows that agree only as closely as elimination can.
+    evidence : list of Cause
+        The rows that support each cause which is a program.
+    programs : list of Program
+        Those programs.
+    equations : dict of str to tuple of int
+        By equation, the rows in which it was checked and those that violate it.
+    unexplained : dict of str to Unexplained
+        Rows without a cause, by kind of scene.
+    bad : list of BadCell
+        Cells that could not be read.
+    unknown : dict of str to str
+        Columns that were not recognised, and the name that was probably meant, or "".
+    place : dict of str to object
+        Of a workbook, the sheet and the row of the headings.
+    remarks : list of str
+        How the headings were understood.
+
+    Examples
+    --------
+    >>> scene = impact88.sample(1).numbers()
+    >>> comparison = impact88.compare([{**scene, "LOSS": 57.0}], causes=False)
+    >>> comparison.differing, comparison.worst[0].result
+    (1, 'LOSS')
+    """
+
+    rows: int = 0
+    agreeing: int = 0
+    differing: int = 0
+    tallies: dict[str, Tally] = field(default_factory=dict)
+    causes: Counter[str] = field(default_factory=Counter)
+    differences: list[Row] = field(default_factory=list)
+    not_compared: dict[str, Skipped] = field(default_factory=dict)
+    elimination: Elimination = field(default_factory=Elimination)
+    evidence: list[Cause] = field(default_factory=list)
+    programs: list[Program] = field(default_factory=list)
+    equations: dict[str, tuple[int, int]] = field(default_factory=dict)
+    unexplained: dict[str, Unexplained] = field(default_factory=dict)
+    bad: list[BadCell] = field(default_factory=list)
+    unknown: dict[str, str] = field(default_factory=dict)
+    place: dict[str, Any] = field(default_factory=dict)
+    remarks: list[str] = field(default_factory=list)
+
+    @property
+    def worst(self) -> list[Row]:
+        """The rows that disagree most, the worst first."""
+        return sorted(self.differences, key=lambda row: -row.relative)[:MAX_ROWS_LISTED]
+
+    @property
+    def silent(self) -> list[str]:
+        """Messages about columns, rows and cells that were not compared."""
+        messages = [f"column {name} not recognised" for name in self.unknown]
+        for reason, skipped in self.not_compared.items():
+            if reason not in HARMLESS:
+                messages.append(f"{skipped.rows} rows not compared: {reason}")
+        for name, tally in self.tallies.items():
+            if tally.missing:
+                messages.append(
+                    f"{tally.missing} cells of {name} are empty where there is a result"
+                )
+        return messages
+
+    @property
+    def summary(self) -> str:
+        """The counts and the commonest cause, in one line."""
+        rows = f"{self.rows} row{'s' if self.rows != 1 else ''}"
+        line = f"{rows}: {self.agreeing} agree, {self.differing} disagree"
+        if skipped := sum(group.rows for group in self.not_compared.values()):
+            line += f", {skipped} not compared"
+        for cause, count in self.causes.most_common(1):
+            line += f"; likely cause of {count}: {cause}"
+        return line
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the object that ``impact88 compare --json`` prints.
+
+        Returns
+        -------
+        dict of str to object
+            The comparison as JSON types, in the form of ``impact88 schema compare``.
+        """
+        equations = {
+            number: {"checked": checked, "violated": violated}
+            for number, (checked, violated) in self.equations.items()
+        }
+        differences = [
+            {"row": row.row, "id": row.id, "cause": row.cause} for row in self.differences
+        ]
+        fields: dict[str, Any] = {
+            "summary": self.summary,
+            "rows": self.rows,
+            "agreeing": self.agreeing,
+            "differing": self.differing,
+            "results": {name: vars(tally) for name, tally in self.tallies.items()},
+            "causes": dict(self.causes.most_common()),
+            "evidence": [cause._asdict() for cause in self.evidence],
+            "equations": equations,
+            "unexplained": {name: kind._asdict() for name, kind in self.unexplained.items()},
+            "worst": [row._asdict() for row in self.worst],
+            "differences": differences,
+            "elimination": vars(self.elimination),
+            "not_compared": {name: vars(skipped) for name, skipped in self.not_compared.items()},
+            "unknown_columns": self.unknown,
+            "bad_rows": list(map(str, self.bad)),
+            "table": self.place,
+            "remarks": self.remarks,
+        }
+        return {name: plain(value) for name, value in fields.items()}
+
+
+@explains_arguments
+def compare(
+    table: Any,
+    form: str | None = None,
+    values: Mapping[str, str] | None = None,
+    rtol: float | None = None,
+    encoding: str | None = None,
+    units: str | None = None,
+    causes: bool = True,
+) -> Comparison:
+    """Compare a table of scenes and results, block by block.
+
+    Parameters
+    ----------
+    table : str, path or frame
+        The table's file, or a DataFrame of pandas or polars, a pyarrow Table, a structured array, a
+        list of dicts or a dict of columns.
+    form : {"csv", "jsonl", "npz", "parquet", "feather", "xlsx"}, optional
+        The file's format, where its name does not say.
+    values : mapping of str to str, optional
+        Values, for all rows, of columns that the table lacks.
+    rtol : float, optional
+        Relative tolerance, as a fraction of the scene's largest velocity, spin or energy. By
+        default, the error bound of rounding in each scene.
+    encoding : str, optional
+        Encoding of a CSV or JSON Lines file that is not UTF-8.
+    units : {"us", "chapter", "metric", "si"}, optional
+        System of units of columns whose heading names no unit.
+    causes : bool, default True
+        Look for causes where rows disagree.
+
+    Returns
+    -------
+    Comparison
+        How many rows agree, and for those that do not the likely causes.
+
+    Raises
+    ------
+    UserError
+        When the table has no result column or does not give a whole scene.
+
+    Examples
+    --------
+    >>> scene = impact88.sample(1).numbers()
+    >>> row = {**scene, "LOSS": float(impact88.solve(scene, ["LOSS"])["LOSS"])}
+    >>> impact88.compare([row]).summary
+    '1 row: 1 agree, 0 disagree'
+    """
+    if values is not None and not isinstance(values, Mapping):
+        raise UserError(f"values is {quoted(values)}; expected a mapping of names to values")
+    values = texts(values or {})
+    if form is not None and form not in FORMATS:
+        raise UserError(f"form is {quoted(form)}; expected one of {' '.join(FORMATS)}")
+    if rtol is not None and not (isinstance(rtol, int | float) and 0 <= rtol < 1):
+        raise UserError(f"rtol is {quoted(rtol)}; expected a share such as 1e-9")
+    for name, text in (("encoding", encoding), ("units", units)):
+        if text is not None and not isinstance(text, str):
+            raise UserError(f"{name} is {quoted(text)}; expected a text")
+    comparison = Comparison()
+    cases: list[Case] = []
+    with _opened(table, form, encoding) as (reader, where):
+        comparison.place, comparison.remarks = reader.place, reader.remarks
+        wanted = [name for name in reader.names if name in RESULTS and name not in NOT_COMPARED]
+        known = {*SCENE, *RESULTS, *CARRIED}
+        comparison.unknown = {name: _meant(name) for name in reader.names if name not in known}
+        if not wanted:
+            hints = [f"{name} for {meant}" for name, meant in comparison.unknown.items() if meant]
+            hint = f" ({', '.join(hints)}?)" if hints else ""
+            says = f"no column of results{hint}; expected some of {' '.join(RESULTS)}, beside the "
+            raise UserError(f"{says}scene's", where)
+        check_scene_columns({*reader.names, *values}, where=where)
+        comparison.tallies = {name: Tally() for name in wanted}
+        with progress(reader.total, "compare", "B") as meter:
+            before = 0
+            measured: TableUnits | None = None
+            for rows in reader:
+                measured = measured or TableUnits(reader.names, units, rows, wanted, where)
+                max_agreeing = max(0, LOOKED_INTO - comparison.agreeing)
+                case = _compare_block(rows, values, comparison, rtol, measured, max_agreeing)
+                cases.append(case)
+                meter.update(rows.place - before)
+                before = rows.place
+    if not any(tally.compared for tally in comparison.tallies.values()):
+        raise UserError("no result could be compared", where)
+    if causes and comparison.differing:
+        _add_causes(comparison, agreement.concatenate_cases(cases))
+    return comparison
+
+
+def _add_causes(comparison: Comparison, case: Case) -> None:
+    """Look for the causes of the differences, and add them to the comparison."""
+    agreeing = np.flatnonzero(~case.wrong)[:LOOKED_INTO]
+    places = np.concatenate([np.flatnonzero(case.wrong), agreeing])
+    diagnosis = Diagnosis(case.select_rows(places))
+    differences = comparison.differences
+    comparison.equations = diagnosis.equations
+    comparison.programs = diagnosis.programs
+    comparison.unexplained = diagnosis.unexplained
+    comparison.evidence = [
+        cause._replace(parts={says: differences[at].row for says, at in cause.parts.items()})
+        for cause in diagnosis.evidence
+    ]
+    comparison.differences = [
+        row._replace(cause=cause) for row, cause in zip(differences, diagnosis.causes, strict=True)
+    ]
+    comparison.causes.update(diagnosis.causes)
+
+
+@contextmanager
+def _opened(table: Any, form: str | None, encoding: str | None) -> Iterator[tuple[Reader, str]]:
+    """Open a table's file or a data frame; yields the reader, and the table's name in messages.
+    Raises UserError."""
+    if isinstance(table, str | os.PathLike):
+        path = os.fspath(table)
+        with open_reader(path, format_of(path, form), encoding, True) as reader:
+            yield reader, display_name(path)
+        return
+    from ...tables.frames import read_frame
+
+    if form is not None or encoding is not None:
+        raise UserError("form and encoding are a file's; a frame has its own")
+    with read_frame(table) as reader:
+        yield reader, ""
+
+
+def _meant(name: str) -> str:
+    """Return the result or scene column that a name probably stands for, "" if none: the same in
+    upper case, before the first character that is no letter, or nearly the same."""
+    columns = (*RESULTS, *SCENE)
+    upper = name.strip().upper()
+    for text in (upper, re.split(r"[^A-Z]", upper)[0]):
+        if text in columns:
+            return text
+    from difflib import get_close_matches  # rarely needed
+
+    return next(iter(get_close_matches(upper, columns, 1, 0.75)), "")
+
+
+@np.errstate(all="ignore")
+def _compare_block(
+    rows: Rows,
+    values: Mapping[str, str],
+    comparison: Comparison,
+    rtol: float | None,
+    units: TableUnits,
+    max_agreeing: int,
+) -> Case:
+    """Compare a block of rows and add it to the comparison.
+
+    Returns the rows in which causes are looked for: those that disagree, and at most
+    ``max_agreeing`` that agree.
+    """
+    constants = {"M": DEFAULT_M, **values}
+    scene = {
+        name: np.full(rows.count, double(text)) for name, text in constants.items() if name in SCENE
+    }
+    scene |= numbers(rows, units)
+    theirs = {name: agreement.read_theirs(rows, name, units) for name in comparison.tallies}
+    readable = np.ones(rows.count, bool)
+    readable[[index for index, *_ in rows.bad]] = False
+    for column, _ in theirs.values():
+        column[~readable] = np.nan
+    case = agreement.make_case(scene, theirs, rtol)
+    grades, relative = case.grade()
+    wrong, lost = (grades == DIFFER).any(0), (grades == LOST).any(0)
+    compared = ((grades > ABSENT) & (grades < LOST)).any(0) & (wrong | ~lost)
+    solved = (grades > ABSENT).any(0) & np.isfinite(case.ours)
+    for place, tally in enumerate(comparison.tallies.values()):
+        tally.add(grades[place], relative[place])
+        tally.missing += int((solved[place] & (grades[place] == ABSENT)).sum())
+    comparison.rows += rows.count
+    comparison.bad += rows.complaints()
+    comparison.agreeing += int((compared & ~wrong).sum())
+    comparison.differing += int(wrong.sum())
+    solvable, answered = np.isfinite(case.ours).any(0), np.isfinite(case.values).any(0)
+    kinds = rows.columns.get("class", [""] * rows.count)
+    refused = solvable & ~answered & np.array([str(kind) == FAILURE for kind in kinds], bool)
+    conditions = (~readable, ~solvable & ~answered, ~solvable, refused, lost)
+    reasons = np.select(conditions, REASONS[:-1], REASONS[-1])
+    for reason in REASONS:
+        if row_numbers := (rows.first + np.flatnonzero(~compared & (reasons == reason))).tolist():
+            skipped = comparison.not_compared.setdefault(reason, Skipped())
+            skipped.rows += len(row_numbers)
+            skipped.first = (skipped.first + row_numbers)[:MAX_ROWS_LISTED]
+    by_elimination = ~wrong & (grades == ELIMINATION)
+    largest_by_row = np.where(by_elimination, relative, 0.0).max(0)
+    elimination = comparison.elimination
+    elimination.rows += int(by_elimination.any(0).sum())
+    if (largest := float(largest_by_row.max(initial=0.0))) > elimination.worst_relative:
+        worst = int(largest_by_row.argmax())
+        elimination.worst_row, elimination.worst_relative = rows.first + worst, largest
+        elimination.worst_condition = float(case.condition[worst])
+    worst_results = np.where(grades == DIFFER, relative, -1.0).argmax(0)
+    places = np.flatnonzero(wrong)
+    comparison.differences += _rows_of(rows, places, worst_results, relative, case)
+    agreeing = np.flatnonzero(compared & ~wrong)[:max_agreeing]
+    return case.select_rows(np.concatenate([places, agreeing]))
+
+
+def _rows_of(
+    rows: Rows, places: NDArray[np.intp], worst: Any, relative: Any, case: Case
+) -> Iterator[Row]:
+    """Yield the rows that disagree, without a cause yet; ``worst``: index of each row's result."""
+    ids = rows.one_per_row("id") if "id" in rows.columns else None
+    written = [rows.one_per_row(name) for name in case.names]
+    for index in places.tolist():
+        result = int(worst[index])
+        yield Row(
+            row=rows.first + index,
+            line=rows.lines[index] if rows.lines else 0,
+            id=str(ids[index]) if ids is not None else "",
+            result=case.names[result],
+            theirs=str(written[result][index]),
+            ours=float(case.ours[result, index]),
+            relative=float(relative[result, index]),
+            cause=UNKNOWN,
+        )
+
+
+def write_junit(path: str, name: str, comparison: Comparison, strict: bool) -> None:
+    """Write the JUnit report that systems for continuous integration read: a failing test for every
+    row that disagrees, one test for those that agree, one for each reason why rows were not
+    compared (failing with ``strict``). Raises UserError when the place cannot be written to."""
+    from .junit import Suite  # XML takes 4 ms to import
+
+    suite = Suite(f"impact88 compare {name}")
+    suite.test(f"{comparison.agreeing} of {comparison.rows} rows agree")
+    for row in comparison.differences:
+        place = f"row {row.row}" + (f", id {row.id}" if row.id else "")
+        difference = f"{row.result} {row.theirs}, here {row.ours:.12g}, off by {row.relative:.2g}"
+        suite.test(place, "failure", f"{difference}; {row.cause}")
+    for bad in comparison.bad:
+        suite.test(f"row {bad.row}", "error", str(bad))
+    for message in comparison.silent:
+        suite.test(message, "failure" if strict else "skipped", message)
+    for reason, skipped in comparison.not_compared.items():
+        if reason in HARMLESS:
+            suite.test(f"{skipped.rows} rows: {reason}", "skipped", reason)
+    suite.write(path)

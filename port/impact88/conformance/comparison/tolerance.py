@@ -1,0 +1,134 @@
+"""Bound, row by row, the difference that rounding can make between a correct program's results and
+ours.
+
+A program counts as correct if its results lie within the rounding errors of any of the nine
+spellings of the mechanics: a running error bound of their statements, and of eliminating their
+equations with the row's own factors (`equations.roundoff`); along any axes, and with B's velocity
+computed from A's change, or A's from B's. No bound takes a norm over quantities of different kinds,
+so none depends on the units of length and mass any more than elimination does. The errors of our
+own results are added.
+"""
+
+from collections.abc import Collection, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...equations.evaluation import evaluate
+from ...equations.roundoff import Bounded, running_errors
+from ...equations.spelling import (
+    A_IMPULSE,
+    IMPULSES,
+    LISTING,
+    parse_expression,
+    spelling_of,
+    spellings,
+)
+from ...mechanics.accuracy import errorbound
+from ...names import FINAL_VELOCITIES, PIVOT, RESULTS
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Columns = Mapping[str, Floats]
+
+_SPELLED = {"VC": "gn", "VS": "gn"}
+"""Result -> name with the same bound in the contact impulses (VS is E times VC)."""
+_BY_MOMENTUM = {
+    "VAX": ("UX", "MB/MA", "VBX", "VX"),
+    "VAY": ("UY", "MB/MA", "VBY", "VY"),
+    "VBX": ("VX", "MA/MB", "VAX", "UX"),
+    "VBY": ("VY", "MA/MB", "VAY", "UY"),
+}
+"""Final velocity = initial one - ratio of masses * (other body's final - initial one)."""
+_VECTORS = (
+    ("VAX", "VAY"),
+    ("VBX", "VBY"),
+    ("XAF", "YAF"),
+    ("XBF", "YBF"),
+    ("PN", "PT"),
+)
+"""Components of one vector: a program may have computed it along other axes."""
+_RATIO_ROUNDINGS = (
+    4.0  # of a ratio of masses times a difference of velocities, in units of roundoff
+)
+
+
+def best_error_bounds(
+    scene: Columns, ours: Columns, sizes: Columns
+) -> tuple[dict[str, Floats], Bools]:
+    """Return the largest differences from ours of results by contact impulses in closed form, by
+    name; and the rows in which rounding decides which way the contact slides."""
+    errors = running_errors(spelling_of(IMPULSES), scene)
+    bounds = {
+        name: 2 * bound + 2 * np.spacing(np.abs(ours[name]))
+        for name, bound in _result_bounds(scene, errors).items()
+    }
+    # this form of the equations gives NaN where a mass is infinite
+    relative = errorbound.relative_bounds(ours["COND"])
+    for name, bound in bounds.items():
+        bounds[name] = np.where(np.isnan(bound), relative * sizes[name], bound)
+    sliding, error = errors["gt"]
+    undecided = np.abs(sliding) <= error * errorbound.DOUBLE
+    return bounds, undecided & (scene["MU"] != PIVOT) & (scene["MU"] != 0)
+
+
+def largest_error_bounds(
+    scene: Columns, ours: Columns, sizes: Columns, best: Columns, wanted: Collection[str]
+) -> dict[str, Floats]:
+    """Return the largest differences from ours of results by any spelling, by name.
+
+    ``best``: the bounds of `best_error_bounds`; ``wanted``: results; the final velocities are
+    always among those returned.
+    """
+    bounds = {name: bound / 2 for name, bound in best.items()}
+    for spelling in spellings().values():
+        if spelling.title != IMPULSES:
+            own = _result_bounds(scene, running_errors(spelling, scene))
+            bounds = {name: np.fmax(bound, own[name]) for name, bound in bounds.items()}
+    if "MUC" in wanted:
+        bounds["MUC"] = np.fmax(bounds["MUC"], _critical_friction_bounds(scene))
+    for pair in _VECTORS:
+        bounds |= dict.fromkeys(pair, np.fmax(*(bounds[name] for name in pair)))
+    by_momentum = {
+        name: bounds[name] + _momentum_bounds(name, scene, ours, bounds) for name in _BY_MOMENTUM
+    }
+    bounds |= {name: np.fmax(bounds[name], bound) for name, bound in by_momentum.items()}
+    # the other results follow from velocities with these errors
+    known = {name: (ours[name], bounds[name] / errorbound.DOUBLE) for name in FINAL_VELOCITIES}
+    own = _result_bounds(scene, running_errors(spelling_of(IMPULSES), scene, known))
+    bounds = {name: np.fmax(bound, own[name]) for name, bound in bounds.items()}
+    if missing := [name for name in wanted if np.isnan(own[name]).all()]:
+        relative = [bounds[name] / sizes[name] for name in FINAL_VELOCITIES]
+        largest = np.max(np.where(np.isfinite(relative), relative, 0.0), 0)
+        bounds |= {name: np.fmax(bounds[name], largest * sizes[name]) for name in missing}
+    return {name: bounds[name] + best[name] / 2 for name in {*wanted, *FINAL_VELOCITIES}}
+
+
+def _result_bounds(scene: Columns, errors: Mapping[str, Bounded]) -> dict[str, Floats]:
+    """Return the error bounds of results, NaN for those that a spelling does not compute."""
+    count = len(next(iter(scene.values())))
+    bounds = {}
+    for name in RESULTS:
+        _, error = errors.get(_SPELLED.get(name, name), (0.0, np.nan))
+        bounds[name] = np.broadcast_to(error, (count,)) * errorbound.DOUBLE
+    return bounds
+
+
+def _critical_friction_bounds(scene: Columns) -> Floats:
+    """Return the error bound of PT/PN where the pivot's equations are solved by elimination."""
+    pivots = {**scene, "MU": np.full_like(scene["MU"], PIVOT)}
+    bounds = []
+    for title in (LISTING, A_IMPULSE):
+        errors = running_errors(spelling_of(title), pivots)
+        (pn, pn_error), (pt, pt_error) = errors["PN"], errors["PT"]
+        bounds.append((pt_error + np.abs(pt / pn) * pn_error) / np.abs(pn))
+    return np.asarray(np.fmax(*bounds) * errorbound.DOUBLE)
+
+
+def _momentum_bounds(name: str, scene: Columns, ours: Columns, bounds: Columns) -> Floats:
+    """Return the error bound of a final velocity computed from the other body's change."""
+    initial, ratio, other_final, other_initial = _BY_MOMENTUM[name]
+    masses = np.asarray(evaluate(parse_expression(ratio), scene))
+    size = np.abs(ours[other_final]) + np.abs(scene[other_initial])
+    unit = _RATIO_ROUNDINGS * errorbound.DOUBLE
+    return masses * (bounds[other_final] + unit * size) + unit * np.abs(scene[initial])

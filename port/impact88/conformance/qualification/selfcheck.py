@@ -1,0 +1,152 @@
+"""Check an installation: repeat the captures of the real machine here, and count agreements.
+
+With hashes and versions, the result is the record a laboratory files to qualify an installation.
+"""
+
+import time
+from collections.abc import Callable, Iterator
+from decimal import Decimal
+from itertools import zip_longest
+from typing import Any, NamedTuple
+
+from ...casework.report import frame
+from ...collision.fields import FIELDS, outcome_fields
+from ...names import FINAL_VELOCITIES, SCENE
+from ...program.run import run
+from ...program.scene import sample
+from . import captured
+
+GOLDEN_RUNS = {1: "run1", 2: "run2", 3: "table3"}
+
+
+class Check(NamedTuple):
+    """Result of one check: its name, what it ``compared``, the ``total`` number of cases and how
+    many were ``right``, the seconds it took, and the first case that was wrong, "" if none."""
+
+    name: str
+    compared: str
+    total: int
+    right: int
+    seconds: float
+    first_wrong: str
+
+    @property
+    def passed(self) -> bool:
+        """True if there was at least one case and all were right."""
+        return self.right == self.total > 0
+
+
+Counted = Iterator[tuple[str, bool]]
+"""Name of each case compared, and whether it was right."""
+
+
+def checks(folder: Any = None) -> Iterator[Check]:
+    """Run all checks, one after the other. ``folder``: path of captures other than the packaged."""
+    golden = folder or captured.golden()
+    for name, (compared, cases) in CHECKS.items():
+        start = time.perf_counter()
+        total, wrong = 0, []
+        try:
+            for case, ok in cases(golden):
+                total += 1
+                wrong += [] if ok else [case]
+        except Exception as error:  # a check that breaks down is a check that fails
+            total += 1
+            wrong.append(f"broke down: {type(error).__name__}: {error}")
+        seconds = time.perf_counter() - start
+        yield Check(name, compared, total, total - len(wrong), seconds, next(iter(wrong), ""))
+
+
+def record(checks: list[Check]) -> dict[str, Any]:
+    """Return the record as one object: verdict, versions, hashes, checks."""
+    return {
+        "passed": all(check.passed for check in checks),
+        "versions": frame.versions(),
+        "hashes": frame.hashes(),
+        "checks": [{**check._asdict(), "passed": check.passed} for check in checks],
+        "seconds": round(sum(check.seconds for check in checks), 2),
+    }
+
+
+def _arithmetic(golden: Any) -> Counted:
+    for rows in captured.calls(golden).values():
+        for row in rows:
+            yield "\t".join(row), captured.call(*row[:4]) == captured.result(row[4])
+
+
+def _port(golden: Any) -> Counted:
+    for row in captured.rows(golden, captured.SCENES):
+        ported = run(row["scene"], dos=False)
+        same = ported.printout == row["printout"]
+        variables = captured.memory_contents(ported.reals, ported.A)
+        yield row["id"], same and variables == captured.memory_contents(row["reals"], row["A"])
+
+
+def _replay(golden: Any) -> Counted:
+    from ...program.vectorized import replay
+
+    rows = captured.rows(golden, captured.SCENES)
+    replayed = replay({name: [row["scene"][name] for row in rows] for name in SCENE})
+    printed = {name: replayed.printed(name).tolist() for name in FIELDS}
+    for index, row in enumerate(rows):
+        fields = {name: column[index] for name, column in printed.items() if column[index]}
+        yield row["id"], fields == outcome_fields(row["printout"])
+
+
+def _programs(golden: Any) -> Counted:
+    for kind, name, texts in captured.programs(golden):
+        keys, blanks = texts.get("in", ""), kind == captured.PROGRAMS
+        _, displayed = captured.session(texts["bas"], keys, blanks=blanks)
+        yield name, displayed == texts.get("out", "")
+
+
+def _published(golden: Any) -> Counted:
+    for number, name in GOLDEN_RUNS.items():
+        expected = golden.joinpath("printouts", f"{name}.txt").read_bytes().decode()
+        yield name, run(sample(number)).printout == expected
+
+
+def _published_elsewhere(golden: Any) -> Counted:
+    """Compare the numbers of a magazine's table, printed by an Apple II, with its program's output
+    in the emulator."""
+    printouts = golden.joinpath("printouts")
+    program, printed = (
+        printouts.joinpath(f"compute1980.{ending}").read_bytes().decode()
+        for ending in ("bas", "txt")
+    )
+    _, displayed = captured.session(program)
+    rows = zip_longest(printed.split(), displayed.split(), fillvalue="")
+    for place, (expected, number) in enumerate(rows, 1):
+        # the magazine adds zeros before the point and at the end
+        same = expected and number and Decimal(expected) == Decimal(number)
+        yield f"number {place} of Table 5", bool(same)
+
+
+def _closed_form(golden: Any) -> Counted:
+    """Check that the closed form conserves linear and angular momentum (Equations 13, 14, 17)."""
+    import numpy as np
+
+    from ...mechanics.closedform.solve import solve
+    from ..comparison import agreement
+
+    rows = captured.rows(golden, captured.SCENES)
+    scenes = {name: np.array([float(row["scene"][name]) for row in rows]) for name in SCENE}
+    solved = solve(scenes)
+    finals = {name: (solved[name], np.zeros(len(rows))) for name in FINAL_VELOCITIES}
+    violated = agreement.violated_equations(agreement.make_case(scenes, finals))
+    broken = violated["13"] | violated["14"] | violated["17"]
+    usable = np.all([np.isfinite(solved[name]) for name in FINAL_VELOCITIES], axis=0)
+    for index in np.flatnonzero(usable).tolist():
+        yield rows[index]["id"], not broken[index]
+
+
+CHECKS: dict[str, tuple[str, Callable[[Any], Counted]]] = {
+    "arithmetic": ("calls of the ROM's arithmetic, every bit", _arithmetic),
+    "port": ("runs of the listing: printout, variables, array", _port),
+    "replay": ("the same runs over arrays: every printed field", _replay),
+    "emulator": ("Applesoft programs: every character displayed", _programs),
+    "published": ("runs published in 1988: every character", _published),
+    "published 1980": ("numbers of COMPUTE!'s Table 5: every digit", _published_elsewhere),
+    "closed form": ("scenes in double precision: momentum conserved", _closed_form),
+}
+"""Name of a check -> what it compares, and its function."""

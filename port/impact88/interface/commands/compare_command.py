@@ -1,0 +1,230 @@
+"""THEIRS is a table of another program's results, in any form that solve reads (CSV, JSON Lines, a
+JSON array, .npz, Parquet, Excel): a row per scene, with columns named as the scene's (impact88
+scene lists them; M may be missing) and any of the results: VAX VAY VBX VBY WAF WBF, contact
+velocities XA YA XB YB before and XAF YAF XBF YBF after, VC VS KI KF LOSS DVA DVB PN PT PM MUP MUC.
+Names may be in small letters and have units (VAX [mph]); JSON may hold inputs and outputs in
+objects of their own. A note on standard error says how the table was read. Each result agrees
+
+  exactly                  to the last bit of the double
+  to the printed digits    to the digits it is written with
+  within rounding          as closely as plain elimination in double precision can in that scene
+
+or it disagrees. For rows that disagree, compare tries about 38,000 small errors, in nine ways of
+writing the equations, and other conventions, singly and in pairs, and names the one that reproduces
+the numbers and the rows supporting it. What could not be compared is listed on standard error.
+
+With --kit DIR the table is judged as answers to the vectors of that kit (impact88 oracle --kit):
+every id once, its inputs bit for bit, all final velocities, an answer where one is due and no
+number where there is none. It prints a result per class and label and one line for a badge.
+
+Conventions (axes, signs, units, how close is close, vector classes): impact88 schema conventions.
+
+examples:
+  impact88 compare theirs.csv
+  impact88 compare theirs.jsonl --json
+  impact88 compare theirs.jsonl --strict --junit results.xml
+  impact88 compare theirs.csv --set EM=1 --set M=6
+  impact88 compare --kit kit theirs.csv --junit conformance.xml
+
+exit status: 0 everything agrees; 1 something does not, or a row could not be read (with --strict:
+or was not compared; with --kit: a vector does not pass); 2 bad input
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator
+
+from ...conformance.comparison.agreement import EQUATIONS
+from ...conformance.comparison.compare import HARMLESS, Comparison, compare, write_junit
+from ...errors import UserError, note, one_line
+from ...mechanics.accuracy.errorbound import DOUBLE
+from ...tables.table import format_of
+from . import options
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from ...conformance.comparison.conformance import Conformance
+
+MAX_BAD_ROWS_LISTED = 20  # one screenful
+MAX_VECTORS_LISTED = 5  # for each reason why some do not pass
+
+ARGUMENTS = (
+    options.reads("theirs", "THEIRS", "the table (- is standard input, CSV)"),
+    options.format_option("--from", "the format, if its name does not show it", dest="form"),
+    options.setting("a value of the scene for all rows, where the table has no such column"),
+    options.value(
+        "--rtol",
+        "SHARE",
+        "relative tolerance, as a fraction of the scene's largest velocity, spin or energy "
+        "(default: what rounding in double precision allows in that scene)",
+        type=float,
+    ),
+    options.flag("--strict", "rows, cells and columns that were not compared are failures"),
+    options.flag("--no-causes", "judge only; look for no causes"),
+    options.reads("--kit", "KIT", "judge as answers to the vectors of this kit, folder or .zip"),
+    options.writes("--junit", "FILE", "write a JUnit report, a test a row (with --kit: a vector)"),
+    options.UNITS,
+    options.ENCODING,
+    options.JSON,
+    options.OUTPUT,
+)
+
+
+def main(args: options.Args) -> int:
+    values = options.settings(args.set, units=args.units)
+    if args.rtol is not None and not 0 <= args.rtol < 1:
+        raise UserError(f"--rtol is {args.rtol}; expected a share such as 1e-9")
+    if args.kit is not None:
+        return _conformance(args)
+    comparison = compare(
+        args.theirs,
+        format_of(args.theirs, args.form),
+        values,
+        args.rtol,
+        args.encoding,
+        args.units,
+        not args.no_causes,
+    )
+    if args.junit:
+        write_junit(args.junit, args.theirs, comparison, args.strict)
+    options.show(args, "compare", comparison.as_json, lambda: _lines(comparison))
+    for line in _notes(comparison):
+        note("compare", line)
+    return int(bool(comparison.differing or comparison.bad or (args.strict and comparison.silent)))
+
+
+def _conformance(args: options.Args) -> int:
+    """Judge the table as answers to a kit's vectors."""
+    from ...conformance.comparison import conformance  # its archives take 10 ms to import
+
+    for option, value in (("--set", args.set), ("--units", args.units), ("--rtol", args.rtol)):
+        if value:
+            raise UserError(f"{option}: a kit's inputs and tolerances are its own; expected none")
+    form = format_of(args.theirs, args.form)
+    conformance_result = conformance.check_conformance(args.kit, args.theirs, form, args.encoding)
+    if args.junit:
+        conformance.write_junit(args.junit, conformance_result)
+    options.show(
+        args,
+        "conformance",
+        conformance_result.as_json,
+        lambda: _conformance_lines(conformance_result),
+    )
+    for remark in conformance_result.remarks:
+        note("compare", remark)
+    for name in conformance_result.unknown[:MAX_BAD_ROWS_LISTED]:
+        note("compare", f"column {name} is not recognised")
+    return int(not conformance_result.conforms)
+
+
+def _conformance_lines(done: Conformance) -> Iterator[str]:
+    from ...conformance.comparison.conformance import REASONS
+
+    yield f"{'class':<30}  passed  failed"
+    for name, count in done.counts("kind").items():
+        yield f"{name:<30}  {count['passed']:>6}  {count['failed']:>6}"
+    yield f"of those that pass, {done.refused} are refused, as they may be"
+    if done.failures:
+        yield f"\n{'label':<30}  passed  failed"
+        for name, count in done.counts("label").items():
+            if count["failed"]:
+                yield f"{name:<30}  {count['passed']:>6}  {count['failed']:>6}"
+    reasons = Counter(verdict.reason for verdict in done.failures)
+    for reason, failures in reasons.most_common():
+        yield f"\n{failures} vectors: {REASONS[reason]}"
+        for verdict in [v for v in done.failures if v.reason == reason][:MAX_VECTORS_LISTED]:
+            place = f"row {verdict.row}" if verdict.row else "no row"
+            detail = f": {one_line(verdict.detail, 100)}" if verdict.detail else ""
+            yield f"  {verdict.vector.id} ({verdict.vector.label}), {place}{detail}"
+    if done.strays:
+        yield f"\n{len(done.strays)} rows are no vector's"
+        yield from (f"  {stray}" for stray in done.strays[:MAX_VECTORS_LISTED])
+    if done.failures:
+        yield "\nimpact88 compare without --kit looks for the cause"
+    yield f"\n{done.badge}"
+
+
+def _notes(comparison: Comparison) -> Iterator[str]:
+    """Yield the notes for stderr: how the table was read, what could not be or was not compared."""
+    yield from comparison.remarks
+    yield from map(str, comparison.bad[:MAX_BAD_ROWS_LISTED])
+    if len(comparison.bad) > MAX_BAD_ROWS_LISTED:
+        yield f"and {len(comparison.bad) - MAX_BAD_ROWS_LISTED} more"
+    for name, suggestion in list(comparison.unknown.items())[:MAX_BAD_ROWS_LISTED]:
+        hint = (
+            f"; did you mean {suggestion}? (a unit stands in brackets: {suggestion} [mph])"
+            * bool(suggestion)
+        )
+        yield f"column {name} is not recognised{hint}"
+    if len(comparison.unknown) > MAX_BAD_ROWS_LISTED:
+        yield f"and {len(comparison.unknown) - MAX_BAD_ROWS_LISTED} more columns are not recognised"
+    for reason, count in comparison.not_compared.items():
+        if reason not in HARMLESS:
+            first = ", ".join(map(str, count.first[:5])) + (", ..." if count.rows > 5 else "")
+            yield f"{count.rows} rows not compared ({first}): {reason}"
+    for name, tally in comparison.tallies.items():
+        if tally.missing:
+            yield f"{tally.missing} cells of {name} are empty where there is a result"
+
+
+def _lines(comparison: Comparison) -> Iterator[str]:
+    yield f"{comparison.summary.partition('; ')[0]}\n"
+    yield (
+        "result  compared  to the double  to digits claimed  as elimination      not  "
+        "largest difference"
+    )
+    for name, tally in comparison.tallies.items():
+        yield (
+            f"{name:<6}  {tally.compared:>8}  {tally.double:>13}  {tally.digits:>17}  "
+            f"{tally.elimination:>14}  {tally.differ:>7}  {tally.largest:>18.2g}"
+        )
+    yield "(difference relative to the scene's largest velocity, spin or energy)"
+    loose = comparison.elimination
+    if loose.rows:
+        lost = max(0, round(math.log10(max(loose.worst_relative, DOUBLE) / DOUBLE)))
+        yield f"\n{loose.rows} rows agree only as closely as plain elimination in double can there;"
+        yield (
+            f"the worst, row {loose.worst_row}, has lost {lost} of 16 digits (the best of programs "
+            f"has condition {loose.worst_condition:.2g} there)"
+        )
+    if comparison.causes:
+        yield "\nrows that disagree, by likely cause:"
+        for cause, count in comparison.causes.most_common():
+            yield f"  {count:>7}  {cause}"
+        for candidate in comparison.evidence:
+            yield (
+                f"\n{candidate.says}: explains {candidate.explains} of "
+                f"{candidate.disagreeing} rows that disagree, gives {candidate.fits} of "
+                f"{candidate.agreeing} that agree (of the rows examined)"
+            )
+            for says, row in candidate.parts.items():
+                yield f"  row {row} shows: {says}"
+            for equivalent in candidate.equivalents:
+                yield f"  or, the same in this table: {equivalent}"
+        if comparison.unexplained:
+            yield "\nrows without a cause, by kind of scene:"
+            for name, kind in comparison.unexplained.items():
+                laws = ", ".join(kind.violated)
+                says = f"; Equations {laws} violated" if laws else ""
+                yield f"  {name}: {kind.unexplained} of {kind.rows}{says}"
+        broken = {number: tally for number, tally in comparison.equations.items() if tally[1]}
+        if broken:
+            yield "\nequations that their final velocities violate:"
+            for number, (row_count, violations) in broken.items():
+                share = f"in {violations} of {row_count} rows that disagree"
+                yield f"  {number} ({EQUATIONS[number]}): {share}"
+        elif comparison.equations:
+            yield "\ntheir final velocities violate none of Equations 13 to 18"
+    if comparison.differing:
+        yield "\nworst first:"
+        for cell in comparison.worst:
+            place = f"row {cell.row}" + (f" (line {cell.line})" if cell.line else "")
+            name = f", id {one_line(cell.id, 40)}" if cell.id else ""
+            yield (
+                f"  {place}{name}: {cell.result} {one_line(cell.theirs, 40)}, "
+                f"here {cell.ours:.12g}, off by {cell.relative:.2g}; {cell.cause}"
+            )
+    for reason, skipped_count in comparison.not_compared.items():
+        yield f"\n{skipped_count.rows} rows not compared: {reason}"

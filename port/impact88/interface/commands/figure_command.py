@@ -1,0 +1,162 @@
+"""kinds:
+  scene            from above: vehicles, contact plane, velocities, impulse
+  strip            before, impact and after side by side, two columns wide
+  barrier          one vehicle against a barrier; FILE.toml as chapter barrier's
+  friction         energy loss and delta-V against MU, with the critical value
+  sweep            results as a value runs through a range (--sweep, --outputs)
+  histogram        the draws of uncertain results; options as impact88 bounds
+  tornado          how far each uncertain input takes each result
+  staged           Figure 5: staged collisions, calculated and measured delta-V
+  force            Figure 1: force between vehicles and its impulse
+  colinear         Figure 2: free bodies, direct colinear impact
+  planar           Figure 3: free bodies, planar impact, of any scene
+  configurations   Figure 4: the staged collisions' configurations
+
+The ending of FILE says how it is written: .svg, .png or .pdf; all but strip are one column (85 mm)
+wide, or --width. .png and .pdf take pip install 'impact88[plot]'. Vehicles are drawn as measured
+where the file gives LA BA, LB BB.
+
+examples:
+  impact88 figure scene --sample 1 -o scene.svg
+  impact88 figure scene crash.toml --set MU=-10 -o pivot.pdf
+  impact88 figure strip crash.toml -o board.pdf --width 900
+  impact88 figure barrier car.toml -o barrier.svg
+  impact88 figure friction --sample 3 -o friction.png
+  impact88 figure sweep --sample 1 --sweep GA=-50:-10:81 -o gamma.svg
+  impact88 figure tornado --sample 1 --range GA="+- 10" -o tornado.pdf
+  impact88 figure staged -o figure5.pdf
+"""
+
+from typing import Any
+
+from ...casework.figures.canvas import check_ending, save
+from ...casework.figures.drawing import Drawing
+from ...casework.figures.sceneview import scene_drawing
+from ...errors import UserError
+from ...mechanics.closedform.solve import solve
+from ...names import FINAL_VELOCITIES, RESULTS, missing
+from ...program.scene import Scene, numbers_of
+from . import options
+
+OF_RANGES = ("histogram", "tornado")
+OF_NOTHING = ("staged", "force", "colinear", "configurations")
+KINDS = ("scene", "strip", "friction", "sweep", "barrier", *OF_RANGES, "planar", *OF_NOTHING)
+
+ARGUMENTS = (
+    options.value("kind", "KIND", "see kinds below", choices=KINDS),
+    options.writes("-o --output", "FILE", "where to write: .svg, .png or .pdf", required=True),
+    *options.EXPLORED,
+    options.MOVE,
+    options.SWEEP,
+    options.names_option("--outputs", "the results wanted"),
+    options.count(
+        "--width",
+        40,
+        3000,
+        "how wide it is written, such as 900 for an exhibit board (default: 85, strip 170)",
+        metavar="MM",
+    ),
+)
+
+
+def main(args: options.Args) -> None:
+    check_ending(args.output)
+    picture = _draw(args)
+    if args.width:
+        picture.enlarged = args.width / picture.width
+    save(picture, args.output)
+
+
+def _draw(args: options.Args) -> Drawing:
+    kind, scene_source = args.kind, args.scene or args.sample or args.set
+    if kind in OF_NOTHING:
+        if scene_source or args.ranges:
+            raise UserError(f"{kind} is drawn from the chapter alone and takes no scene")
+        return _of_nothing(kind)
+    if kind in OF_RANGES:
+        from ...casework.figures import charts
+
+        draw = charts.histograms if kind == "histogram" else charts.tornado
+        outputs = args.outputs
+        if kind == "tornado" and not outputs:
+            outputs = ["SA", "SB", "LOSS"] if args.reconstruct else ["DVA", "DVB", "LOSS"]
+        return draw(options.explore(args, outputs, keep=kind == "histogram"))
+    if kind == "sweep":
+        return _swept(args)
+    if args.ranges or args.outputs:
+        raise UserError(
+            f"{kind} shows one scene as it is; --range and --outputs are for histogram "
+            "and tornado, --set changes a value"
+        )
+    if kind == "barrier":
+        return _barrier(args)
+    scene = options.one_scene(args) if kind != "planar" or scene_source else None
+    if kind == "planar" or scene is None:
+        from ...casework.figures.views import planar
+
+        return planar(scene)
+    if kind == "friction":
+        from ...casework.figures.charts import friction_sweep
+
+        return friction_sweep(scene)
+    if kind == "strip":
+        from ...casework.figures.views import strip_drawing
+
+        return strip_drawing(scene, solved(scene), scene.title or "Before, impact and after")
+    return scene_drawing(scene, solved(scene), title=scene.title or "Scene from above")
+
+
+def _of_nothing(kind: str) -> Drawing:
+    """A figure of the chapter, which takes no scene."""
+    from ...casework.figures import charts, views
+
+    return {
+        "staged": charts.figure_5,
+        "force": charts.force_and_impulse,
+        "colinear": views.colinear,
+        "configurations": views.configurations,
+    }[kind]()
+
+
+def _barrier(args: options.Args) -> Drawing:
+    """A vehicle against a barrier, its approach and its rebound."""
+    from ...casework.chapter.barrier import BARRIER, VEHICLE, barrier
+
+    names = (*VEHICLE, "M")
+    case = options.known_case(args, names, single=True)
+    values = {name: item.nominal for name, item in options.read_known(case, names).items()}
+    if absent := [name for name in VEHICLE if name not in values]:
+        raise UserError(missing(absent), args.scene)
+    outcome = barrier(values, ("VAX", "VAY", "WAF", "STATUS"))
+    result = {name: value.item() for name, value in outcome.items()}
+    # as heavy as a drawing needs it: an infinite mass has no outline
+    wall = {"MB": 1e9 * values["MA"], "IB": 1e9 * values["IA"]}
+    return scene_drawing(
+        {**BARRIER, **values, **wall},
+        {**result, "VBX": 0.0, "VBY": 0.0, "WBF": 0.0},
+        title="Barrier",
+        units=case.system,
+        outlines=case.outlines,
+    )
+
+
+def _swept(args: options.Args) -> Drawing:
+    """One result a panel, along the one value swept."""
+    from ...casework.figures.charts import swept
+    from ...tables.sweep import read_ranges
+
+    if args.ranges:
+        raise UserError("sweep takes --sweep NAME=LOW:HIGH:COUNT, not --range")
+    scene = options.one_scene(args)
+    ranges = read_ranges(options.sweeps(args.sweep), scene.case)
+    if len(ranges) != 1:
+        raise UserError("expected one --sweep NAME=LOW:HIGH:COUNT, such as --sweep MU=0:1:51")
+    ((name, run),) = ranges.items()
+    outputs = options.names_given(args.outputs, tuple(RESULTS), "--outputs")
+    return swept(scene, name, run.values(), outputs or ["LOSS", "DVA", "DVB"])
+
+
+def solved(scene: Scene) -> dict[str, Any]:
+    """The results of one scene as numbers, for a drawing."""
+    results = solve(numbers_of(scene), (*FINAL_VELOCITIES, "STATUS"))
+    return {name: value.item() for name, value in results.items()}

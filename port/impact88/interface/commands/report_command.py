@@ -1,0 +1,81 @@
+"""FILE.toml is a scene or a file for reconstruct (impact88 scene --help, impact88 reconstruct
+--help). A whole scene gives the velocities after the impact; any other file is reconstructed.
+
+The page stands in one file and is made to be printed. The first sheet is for a judge: what was
+asked, what was found and how sure it is, the verdict on the evidence, three numbers, the drawing to
+scale, remarks. Then each measured value beside its adjusted one, inputs as given with tolerances
+and sources, what drives the result, method, validation, versions and hashes, a line to sign.
+In the file, case = "24-117" is the case's number, and UX_source = "event data recorder" (or UX =
+{value = "-25 mph", source = "event data recorder"}) says where a value comes from.
+
+Chromium and Safari print the case number and "page 2 of 4" in the margins. Firefox has no such
+margins: leave its own header and footer on there, which number the pages, or print from another.
+
+The same input, options and version give the same bytes.
+
+examples:
+  impact88 report crash.toml -o case.html
+  impact88 report crash.toml -o case.html --case 24-117 --paper a4 --seed 7
+  impact88 report after.toml -o case.html --csv tables.csv --xlsx tables.xlsx
+  impact88 report crash.toml -o case.html --set MU=.5    a value changed
+
+exit status: 0 written; 2 bad input
+"""
+
+from ...collision.case import Case
+from ...collision.scenefile import MAX_TOML_BYTES, template, toml_texts
+from ...errors import UserError
+from ...files import decode, read_bytes, replacing
+from ...program.scene import sample
+from . import options
+
+ARGUMENTS = (
+    *options.KNOWN,
+    options.SAMPLE,
+    options.writes("-o --output", "FILE.html", "the page", required=True),
+    options.value("--case", "NUMBER", "the case number", default=""),
+    options.value("--title", "TEXT", "the title of the page", default=""),
+    options.choice(
+        "--paper",
+        ("letter", "a4"),
+        "paper size (default: letter for us units, else a4)",
+        default="",
+    ),
+    *options.draws(20_000),
+    options.writes("--csv", "FILE", "write the tables as CSV"),
+    options.writes("--xlsx", "FILE", "write the tables as a workbook"),
+)
+
+
+def main(args: options.Args) -> None:
+    from ...casework.report.findings import report, write_workbook
+    from ...casework.report.frame import check_page_name
+
+    check_page_name(args.output)
+    source = options.source_of(args)
+    if source is None or bool(args.scene) == bool(args.sample):
+        raise UserError(options.ONE_EXPECTED)
+    chosen = (args.units, args.axes, args.headings)
+    if args.sample:
+        case = sample(args.sample).case.shown_in(*chosen)
+        data = template(case).encode()
+    else:
+        data = read_bytes(args.scene, MAX_TOML_BYTES)
+        case = Case(toml_texts(decode(data, source), source), source, *chosen)
+    changes = options.set_pairs(args.set)
+    case = options.change_case(case, changes, "--set")
+    case = case.with_sources({n: "changed with --set" for n in changes if n in case.given})
+    options.note_remarks(case)
+    keywords = {n: getattr(args, n) for n in ("samples", "seed", "title", "paper")}
+    keywords["number"] = args.case
+    page, tables = report(case, source, data, **keywords)
+    with replacing(args.output) as out:
+        out.write(page)
+    if args.csv:
+        import csv
+
+        rows = [r for table in tables for r in ([table.title], table.headings, *table.rows, [])]
+        with replacing(args.csv) as out:
+            csv.writer(out, lineterminator="\n").writerows(rows)
+    if args.xlsx:
+        write_workbook(args.xlsx, tables)

@@ -1,0 +1,32 @@
+"""Axes, sides and signs:
+
+{signs}
+A value may have a unit ("-25 mph", "3,091 lb", "6 ft 6 in", "2000 slug ft2"), and the file units =
+"us", "metric", "si" or "chapter" for those that have none. It may be known within limits ("-31 ..
+-29 mph", "30 mph +- 5 %"); what takes one value takes the middle, with a note. UX_source = "..."
+says where a value comes from, title and case what it belongs to. CAF CAL (forward and to the left
+of A's center of gravity) may stand for DA PA, CBF CBL for DB PB; within limits, bounds and report
+follow them, and reconstruct asks for limits on DA PA. IA = "estimate" has the yaw
+inertia estimated: from the vehicle's length and width where LA BA are given (LB BB for IB), else
+for a car from its weight. Beside a known inertia LA BA are the outline that figures draw.
+
+examples:
+  impact88 scene -o mine.toml       a template to fill in
+  impact88 scene --units us         the same, in mph, lb and ft
+  impact88 scene --sample 2         the scene of the Appendix's second sample run
+"""
+
+from ...collision.scenefile import SIGNS, template
+from ...collision.units import system_named
+from ...program.scene import sample
+from . import options
+
+__doc__ = (__doc__ or "").format(signs=SIGNS)
+
+ARGUMENTS = (options.SAMPLE, options.UNITS, options.OUTPUT)
+
+
+def main(args: options.Args) -> None:
+    system = system_named(args.units, "--units").name if args.units else None
+    case = sample(args.sample).case.shown_in(system) if args.sample else None
+    print(template(case, system), end="")

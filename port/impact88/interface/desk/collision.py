@@ -1,0 +1,242 @@
+"""The answers of the Collision view: 1988 printout, exact results, warnings, bounds, figure.
+
+A text that INPUT takes for a number goes into the program as it stands; of a range
+(`collision.uncertain`) the nominal value does, and the bounds have the rest. What computes is
+imported on first use: the page is shown before numpy is there.
+"""
+
+from collections.abc import Mapping
+from itertools import groupby
+from typing import Any, NamedTuple
+
+from ...apple.emulator.screen import shown_character
+from ...collision import uncertain
+from ...collision.case import Case, check_value
+from ...collision.doubles import double, doubles_of, is_number
+from ...collision.geometry import coordinate_names
+from ...collision.scenefile import template, toml_texts
+from ...collision.units import RULES, System
+from ...errors import UserError
+from ...messages.plaintable import number
+from ...messages.schemas import with_schema
+from ...names import FINAL_VELOCITIES, RESULTS, SCENE, quantity
+from ...program.scene import Scene, sample
+from .forms import entries, spoken_direction, units_shown, without_rounding
+
+DRAWS = 20_000
+"""Random draws for the bounds' quantiles: half a second at most with every value a range."""
+_NOMINAL_DIGITS = 9  # of a range's nominal value: as many as Applesoft prints
+_DIGITS = 12  # of an exact result: as many as are certain in double precision
+_ANSWER_DIGITS = 4  # of the answer: more than the inputs of any collision are known to
+_ROUNDING = 1e-14
+"""Fraction of the largest value of its kind below which a result shows as 0: a hundred
+roundings."""
+_ANSWER = (
+    ("Velocity change ΔV", "DVA", "DVB"),
+    ("forward, along the vehicle", "DVAF", "DVBF"),
+    ("to its right", "DVAR", "DVBR"),
+    ("Force from, clockwise from its front", "PDOFA", "PDOFB"),
+    ("Speed before", "SA", "SB"),
+    ("Speed after", "SAF", "SBF"),
+    ("Course after, from the x axis", "HAF", "HBF"),
+    ("Spin after", "WAF", "WBF"),
+    ("Closing speed along the normal", "VC"),
+    ("Kinetic energy lost", "LOSS"),
+    ("Friction coefficient as printed (-10: pivot)", "MUP"),
+    ("critical friction coefficient", "MUC"),
+)
+"""What is asked of a collision: words, and a name for each vehicle or one for both."""
+
+
+class Form(NamedTuple):
+    """The form as read: its ``case``, and the ``scene`` of it where it is complete; the names given
+    as ``ranges``; ``problems`` by name; the names still ``missing``; how entries were understood
+    (``remarks``)."""
+
+    case: Case | None
+    scene: Scene | None
+    ranges: list[str]
+    problems: dict[str, str]
+    missing: list[str]
+    remarks: list[str]
+
+    @property
+    def system(self) -> System:
+        return self.case.system if self.case else RULES
+
+
+def warm() -> None:
+    answer(dict(sample(1)))
+    figure(dict(sample(1)))
+
+
+def read(values: Mapping[str, str], units: str = "", title: str = "") -> Form:
+    """Return the form as read; ``units``: the system of bare numbers, or nothing."""
+    case, problems = entries(values, units, title)
+    if case is None:
+        empty = [name for name in SCENE if not values.get(name, "").strip()]
+        return Form(None, None, [], problems, empty, [])
+    ranges: list[str] = []
+    for name, text in case.values.items():
+        try:
+            if _varies(name, text):
+                ranges.append(name)
+        except UserError as error:
+            problems[name] = str(error)
+    if double_or_none(case.values["M"]) not in (4, 6):
+        problems["M"] = "M: expected 6, or 4 for point masses"
+    # a form shows the M that it takes
+    given = {n for n in case.values if n != "M" or "M" in case.given}
+    missing = [
+        name for name in coordinate_names(SCENE, given) if name not in given | problems.keys()
+    ]
+    scene = None
+    if not problems and not missing:
+        try:
+            scene = Scene.of(case)
+        except UserError as error:
+            problems["MU"] = str(error)
+    remarks = scene.remarks if scene else case.remarks
+    return Form(case, scene, ranges, problems, missing, list(remarks.values()))
+
+
+def _varies(name: str, text: str) -> bool:
+    """Return whether a value is known within limits. Raises UserError for what is none."""
+    if is_number(text):
+        check_value(name, text, "")
+        return False
+    return uncertain.read(text, name).varies
+
+
+def double_or_none(text: str) -> float | None:
+    """Return the number that a text is, None for another."""
+    return double(text) if is_number(text) else None
+
+
+def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
+    """The answer for a form: ``problems``, ``missing``, ``ranges``, ``remarks`` as `Form`,
+    ``units`` as `units_shown`; for a complete scene also ``answer`` (`_answer`), ``oracle``, what
+    `impact88 oracle` answers, its ``page``, ``results`` and ``warnings``, and the ``screen`` from
+    the emulator's memory."""
+    from ...conformance.comparison.oracle import oracle
+    from ...printouts.judging import beside
+    from ...program.emulated import load_machine, run_machine
+    from ...program.run import page
+
+    form = read(values, units)
+    parts = ("problems", "missing", "ranges", "remarks")
+    found: dict[str, Any] = {part: getattr(form, part) for part in parts}
+    found["units"] = units_shown(form.system)
+    if form.scene:
+        scene = form.scene
+        known = oracle([scene], reference=False)[0]
+        results, system, machine = known["results"], form.system, load_machine(scene)
+        exact = {n: row["double"] for n, row in results.items() if row["double"] is not None}
+        run_machine(machine)
+        found |= {
+            "oracle": with_schema("oracle", {"id": None, "scene": dict(scene), **known}),
+            "answer": _answer(scene, exact, system),
+            "page": page(known["printout"]),
+            "screen": [screen_runs(row) for row in machine.screen_rows()],
+            "results": _rows(results, without_rounding(exact, _ROUNDING), system),
+            "warnings": beside.warnings(scene),
+        }
+    return found
+
+
+def _answer(scene: Scene, exact: Mapping[str, float], system: System) -> list[dict[str, Any]]:
+    """Rows of ``words``, a ``unit``, and ``values``: name, text, and a direction as it is ``said``,
+    one or one for each vehicle."""
+    from ...casework.reconstruction.solutiontable import with_derived_values
+
+    given = {name: double(text) for name, text in scene.items()}
+    values = without_rounding(with_derived_values({**given, **exact}, None), _ROUNDING)
+    rows = []
+    for words, *names in _ANSWER:
+        if not values.keys() >= set(names):
+            continue
+        rule = quantity(names[0]).unit
+        amounts = {name: system.display(name, values[name]) for name in names}
+        texts = [
+            {
+                "name": name,
+                "text": number(value, _ANSWER_DIGITS),
+                "value": value,
+                "said": spoken_direction(name, value, system),
+            }
+            for name, value in amounts.items()
+        ]
+        rows.append({"words": words, "unit": system.label(rule), "values": texts})
+    return rows
+
+
+def screen_runs(row: bytes) -> list[tuple[str, str]]:
+    """A row of screen memory as stretches of one kind, each with its text."""
+    # what the two high bits of a byte on the screen say
+    kinds = groupby(row, lambda code: ("inverse", "flashing", "normal")[min(code >> 6, 2)])
+    return [(kind, "".join(map(shown_character, codes))) for kind, codes in kinds]
+
+
+def _rows(
+    results: Mapping[str, Mapping[str, Any]], doubles: Mapping[str, float], system: System
+) -> list[dict[str, Any]]:
+    """The results as a table's rows; ``shown``, and ``value`` with all its digits: in the units of
+    the form, ``label``."""
+    rows = []
+    for name, exact in doubles.items():
+        if name != "STATUS":
+            value, label = system.display(name, float(exact)), system.unit(name)
+            row = {**RESULTS[name]._asdict(), "printed": results[name]["printed"] or ""}
+            row |= {"exact": number(exact, _DIGITS), "value": value, "label": label}
+            rows.append({**row, "shown": f"{number(value)} {label}" if label else ""})
+    return rows
+
+
+def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
+    """The scene from above as SVG, as `impact88 figure scene` draws it. Raises UserError."""
+    from ...casework.figures.canvas import svg
+    from ...casework.figures.sceneview import scene_drawing
+    from ...mechanics.closedform.solve import solve
+
+    form = read(values, units)
+    if not form.scene:
+        raise UserError("there is no complete scene to draw")
+    result = solve(doubles_of(form.scene), [*FINAL_VELOCITIES, "STATUS"])
+    return svg(scene_drawing(form.scene, result, title=title or "Scene from above"))
+
+
+def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
+    """Return the object that `impact88 bounds --json` prints for the form's ranges, with fewer
+    draws. Raises UserError, also for a form without ranges."""
+    from ...casework.uncertainty.bounds import bounds
+    from ...casework.uncertainty.boundstable import as_json, in_units
+    from ...casework.uncertainty.ranges import read_inputs
+
+    form = read(values, units)
+    if not form.case or not form.scene or not form.ranges:
+        raise UserError("there are no ranges to explore")
+    inputs = read_inputs(form.case)
+    result = bounds(inputs.values, correlations=inputs.correlations, samples=DRAWS)
+    return with_schema("bounds", as_json(in_units(result, form.system)))
+
+
+def scene_file(values: Mapping[str, str], title: str, units: str = "") -> str:
+    """Return the form as a scene file, its texts as they were typed. Raises UserError."""
+    form = read(values, units, title)
+    for problem in form.problems.values():
+        raise UserError(problem)
+    return template(form.case)
+
+
+def sample_scene(which: int) -> dict[str, Any]:
+    """Return a published run in the form of a file that was read. Raises UserError."""
+    scene = sample(which)
+    return {"values": dict(scene), "title": scene.title or "", "units": scene.units}
+
+
+def case_report(text: str, name: str) -> str:
+    """Return the page that `impact88 report` writes for the text of a file. Raises UserError."""
+    from ...casework.report.findings import report
+
+    case = Case(toml_texts(text, name), name)
+    return report(case, name, text.encode(), samples=DRAWS, seed=0)[0]

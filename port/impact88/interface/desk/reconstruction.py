@@ -1,0 +1,196 @@
+"""The answers of the Reconstruction view: what `impact88 reconstruct` finds. What computes is
+imported on first use: the page is shown before numpy is there."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from ...collision import uncertain
+from ...collision.case import Case
+from ...collision.scenefile import known_template
+from ...collision.uncertain import Uncertain
+from ...collision.units import RULES
+from ...errors import UserError
+from ...mechanics.state import KNOWABLE
+from ...messages.plaintable import number
+from ...messages.schemas import with_schema
+from ...names import FINAL_STATE, SCENE, VELOCITIES, check_names, quantity
+from ...program.scene import sample
+from .forms import digits, entries, spoken_direction, units_shown, without_rounding
+
+DRAWS = 20_000  # random draws for the quantiles, as for a collision's bounds
+_DIGITS = 6  # digits shown of a value, as the command prints
+_DIGITS_TO_GO_ON = 12  # digits of a value that enters another computation
+_COLUMNS = {
+    "±": (3, "spread"),
+    "5 %": (6, "0.05"),
+    "95 %": (6, "0.95"),
+    "lower": (6, "lower"),
+    "upper": (6, "upper"),
+    "error amplified": (3, "amplified"),
+}
+"""Columns of a table: the digits shown, and the key of the value."""
+_ROUNDING = 1e-9
+"""Fraction of the largest value of its kind below which a value is shown as 0: values go on with
+twelve digits, and the published runs amplify errors up to 300 times."""
+_ASKED = ("DVA", "DVB", "PDOFA", "PDOFB", "LOSS")
+"""Shown first, and then what was solved for."""
+_SOUGHT = (*VELOCITIES, *FINAL_STATE, "E", "MUP", "EM")
+
+
+def warm() -> None:
+    answer(known_of_sample(1)["values"])
+
+
+def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
+    """Return the solutions for the known values: ``problems`` by name; ``waiting``, why there is
+    none; ``units`` as `units_shown`; ``object``, what `impact88 reconstruct --json` prints;
+    ``solutions``, each with the command's text (``printed``), the verdict on the ``evidence``, what
+    of physics it breaks (``impossible``), ``rows`` and ``columns`` of a table, ``adjusted`` values,
+    ``warnings`` and the ``scene`` (texts by name, or None)."""
+    from ...casework.reconstruction import adjustment
+    from ...casework.reconstruction.reconstructedtable import Measured
+    from ...casework.reconstruction.solutiontable import Exact, Impact
+
+    case, problems = entries(values, units)
+    system = case.system if case else RULES
+    known: dict[str, Uncertain] = {}
+    for name, text in case.values.items() if case else ():
+        try:
+            known[name] = _read(name, text, system.name or None)
+        except UserError as error:
+            problems[name] = str(error)
+    reply: dict[str, Any] = {"problems": problems, "units": units_shown(system)}
+    reply |= {"waiting": "", "object": None, "solutions": []}
+    reply["remarks"] = list(case.remarks.values()) if case else []
+    try:
+        if problems or case is None:
+            raise UserError(f"To be corrected: {' '.join(problems)}.")
+        known, friction = adjustment.resolve_friction(known)
+        if friction:
+            reply["remarks"].append(friction)
+        impacts: Sequence[Impact]
+        if adjustment.needs_adjustment(known):
+            first, *more = adjustment.reconstruct(known)
+            best = Measured(first, DRAWS)
+            impacts = [best, *(Measured(solution, DRAWS, like=best) for solution in more)]
+        else:
+            impacts = Exact.all_of({name: item.nominal for name, item in known.items()})
+        solutions = [
+            (impact.as_json(system), impact.as_text(system), impact.impossible)
+            for impact in impacts
+        ]
+    except UserError as error:
+        return {**reply, "waiting": str(error)}
+    reply["object"] = with_schema(
+        "reconstruct", {"solutions": [numbers for numbers, *_ in solutions]}
+    )
+    reply["solutions"] = [_solution(case, known, *solution) for solution in solutions]
+    return reply
+
+
+def _read(name: str, text: str, units: str | None) -> Uncertain:
+    check_names((name,), KNOWABLE, "name used here", "")
+    return uncertain.read(text, name, units=units)
+
+
+def _solution(
+    case: Case,
+    known: Mapping[str, Uncertain],
+    values: Mapping[str, Any],
+    printed: str,
+    impossible: str,
+) -> dict[str, Any]:
+    system = case.system
+
+    def what(name: str) -> dict[str, Any]:
+        return {**quantity(name)._asdict(), "unit": system.label(quantity(name).unit)}
+
+    found = values["values"]
+    exact = {name: value for name, value in found.items() if value is not None}
+    rounded = without_rounding(exact, _ROUNDING)
+    rows = []
+    for name, value in found.items():
+        spread = values.get("uncertainty", {}).get(name, {})
+        amplified = values.get("amplification", {}).get(name)
+        deviation = spread.get("first_order")
+        if deviation is None:  # the draws contradict it
+            deviation = spread.get("deviation")
+        parts = {**spread, **spread.get("quantiles", {}), "amplified": amplified}
+        parts["spread"] = deviation
+        numbers = {head: parts.get(part) for head, (_, part) in _COLUMNS.items()}
+        row = {**what(name), "value": value, "known": name in values["known"], "numbers": numbers}
+        row["said"] = spoken_direction(name, value, system)
+        row["text"] = digits(rounded.get(name), _DIGITS)
+        row["solved"] = name in values.get("solved_for", _SOUGHT) and not row["known"]
+        row["columns"] = {head: digits(x, _COLUMNS[head][0]) for head, x in numbers.items()}
+        rows.append(row)
+    shown_digits = {"measured": _DIGITS, "tolerance": _COLUMNS["±"][0], "adjusted": _DIGITS}
+    adjusted = [
+        {
+            **what(row["name"]),
+            **{part: digits(row[part], count) for part, count in shown_digits.items()},
+            "moved": f"{round(row['moved'], 2) + 0.0:.2f}",
+        }
+        for row in values.get("adjusted", ())
+        if values["redundancy"]
+    ]
+    asked = [row for name in _ASKED for row in rows if row["name"] == name]
+    evidence = values.get("evidence") or {}
+    # what stands above them is not said twice
+    verdict = f"{evidence.get('text', '')}; "
+    warnings = [line.removeprefix(verdict) for line in values["warnings"] if line not in impossible]
+    return {
+        "printed": printed,
+        "rows": rows,
+        "evidence": evidence.get("text", ""),
+        "contradictory": evidence.get("verdict") == "contradict",
+        "first": asked + [row for row in rows if row["solved"] and row["name"] not in _ASKED],
+        "columns": [head for head in _COLUMNS if any(row["columns"][head] for row in rows)],
+        "adjusted": adjusted,
+        "impossible": impossible,
+        "warnings": warnings,
+        "scene": _scene(case, known, {**found, **rounded}),
+    }
+
+
+def _scene(
+    case: Case, known: Mapping[str, Uncertain], values: Mapping[str, float | None]
+) -> dict[str, str] | None:
+    """Return the impact found as the texts of a scene; what is known exactly as it was typed."""
+    entries: dict[str, str] = {}
+    for name in SCENE:
+        value = values.get(name)
+        if value is None or not math.isfinite(value):
+            return None
+        exact = name in case.given and name in known and not known[name].varies
+        typed = exact and not known[name].share
+        entries[name] = case.given[name] if typed else number(value, _DIGITS_TO_GO_ON)
+    return entries
+
+
+def known_file(values: Mapping[str, str], units: str = "") -> str:
+    """Return what is known as the file that `impact88 reconstruct` reads. Raises UserError."""
+    case, problems = entries(values, units)
+    for problem in problems.values():
+        raise UserError(problem)
+    assert case is not None
+    for name, text in case.values.items():
+        _read(name, text, case.units)
+    return known_template(KNOWABLE, case) + "\n"
+
+
+def known_of_sample(which: int) -> dict[str, Any]:
+    """A published run with its results known and its initial velocities not. Raises UserError."""
+    from ...conformance.comparison.oracle import oracle
+
+    scene = sample(which)
+    results = oracle([scene], reference=False)[0]["results"]
+    after = {
+        name: number(results[name]["double"], _DIGITS_TO_GO_ON)
+        for name in FINAL_STATE
+        if results[name]["double"] is not None
+    }
+    values = {name: text for name, text in scene.items() if name not in (*VELOCITIES, "MU")}
+    values["MUP"] = number(results["MUP"]["double"], _DIGITS_TO_GO_ON)
+    return {"values": {**values, **after}, "title": scene.title or "", "units": scene.units}

@@ -1,0 +1,776 @@
+"""Printouts read from text, typed in or from an optical reader, into named fields.
+
+The text is aligned with the program's page (`alignment`), which says what every glyph belongs to.
+Here each printout's numbers get their names and places, the replies at the prompts are parted, the
+row of angles is cut, and what belongs nowhere is kept as left over.
+"""
+
+import re
+import unicodedata
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import groupby
+from typing import NamedTuple
+
+from ...apple.applesoft.errorcodes import CODES
+from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT
+from ...errors import UserError, printable, quoted
+from ...messages.arguments import explains_arguments
+from . import numerals
+from . import plaintext as pasted
+from .alignment import (
+    LABELS,
+    LINES,
+    PROMPTS,
+    SPINS,
+    STARS,
+    STATES,
+    Budget,
+    align,
+    letter_of,
+)
+from .fieldlabels import MIN_READER_MARKS, LabelCheck, LabelState, label_checks, words_before
+from .glyphs import ILLEGIBLE, Gap, Page, Region, label_cost, letters, plain_glyphs
+from .labelmarks import asterisk_note, mark_checks, retyping_note
+
+LARGEST_FILE = 2_000_000
+"""Bytes of the largest file that is read: some 2,500 printouts."""
+BADLY_READ = 17
+"""Misread letters, asterisks and numbers from which a page is badly read: of the given scans that
+differ 58 of 88 readings of genuine pages have as many, and 2 of 84 of pages with an altered
+digit."""
+MACHINE_READ = 3
+"""Misread letters of labels from which a machine read the page: people do not type PE for PB."""
+_MIN_NUMBERS = 15
+"""Numbers of a page; labels of a smaller piece do not tell which numbers it holds."""
+_MIN_NOTE_LETTERS = 5
+"""Letters of no label, four a number, from which a line is a note: ``BREAK IN 640``.
+The program's labels have three letters a number at most but on the line of the energies."""
+_PROMPT_LETTERS = 25
+"""Letters of a prompt, half of all, from which it counts as read."""
+_TYPED = frozenset("0123456789.,-+EOILQ?")
+_SLOT_COMMAND = re.compile(r"PR#[0-9]")
+"""Output of line 610 where no DOS takes it for a command."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One number as read.
+
+    Parameters
+    ----------
+    text : str
+        The number, with ``?`` for illegible characters.
+    line, column, start, stop : int
+        Its place in the text: line and column from 1, and offsets.
+    region : tuple of Glyph
+        Its glyphs.
+    cut : bool
+        True if it stands at the end of the text, or of a line as wide as the page, so that more of
+        it may be lost.
+    sign_free : bool
+        True if a minus before it may be the damaged equals sign of the label.
+    """
+
+    text: str
+    line: int
+    column: int
+    start: int
+    stop: int
+    region: Region
+    cut: bool = False
+    sign_free: bool = False
+
+    @property
+    def clean(self) -> bool:
+        """True if every character of it was read beyond doubt."""
+        return numerals.clean(self.region) is not None
+
+    def texts(self, most: int) -> dict[str, float]:
+        """Return the texts that it may have been printed as.
+
+        Parameters
+        ----------
+        most : int
+            The largest number of texts.
+
+        Returns
+        -------
+        dict of str to float
+            Penalty of each text, the likeliest first; one text if the number was read cleanly.
+        """
+        ways = numerals.candidates(self.region, most, self.sign_free)
+        if self.clean and (ways or numerals.value_of(self.text) is not None):
+            return dict(ways[:1] or [(self.text, 0.0)])
+        return dict(ways)
+
+
+class Piece(NamedTuple):
+    """Text that belongs to no field and no label.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+    line, column, start, stop : int
+        Its place: line and column from 1, and offsets.
+    beside : bool
+        True if it may bear on a number: it stands beside one, or holds a number or a label.
+    whole : bool
+        True if it is a whole line.
+    """
+
+    text: str
+    line: int
+    column: int
+    start: int
+    stop: int
+    beside: bool
+    whole: bool = False
+
+
+@dataclass(repr=False)
+class Printout:
+    """One printout as read from a text, by `read_printouts`.
+
+    Parameters
+    ----------
+    page : Page
+        The text as glyphs.
+    _states : mapping of int to int
+        The character of the program's page that each glyph was aligned with.
+    line, column : int
+        Line and column of the text, from 1, at which the printout begins.
+    start, stop : int
+        Offsets in the text of its begin and end.
+    fields : dict of str to Reading
+        Every number found, by the field's name.
+    replies : dict of str to Reading
+        The velocities typed at the prompts, where the transcript shows them.
+    angles : list of tuple
+        Where blanks alone do not tell the five angles of a row apart: the ways to part the row, as
+        five texts and a penalty each, the likeliest first.
+    angle_row : tuple of Glyph
+        The glyphs of that row.
+    ending : str, optional
+        ``ZERO DETERMINANT`` or an Applesoft error as printed, with its line.
+    ended : bool
+        True if anything of the last row of asterisks was found.
+    has_final_spins : bool
+        True if the line of the final WA and WB was found, read or not: then M = N.
+    left_over : list of Piece
+        Text that belongs to no field and no label.
+    remarks : list of str
+        What could not be read, and its place.
+    labels : list of LabelCheck
+        How each number is named.
+    notes : list of str
+        What was normalised or passed over.
+    unread : str
+        Why the text was not read to its end, empty if it was.
+    misread_letters : int
+        Letters of labels and asterisks that were read as others.
+    misread_prompts : set of str
+        The first reply of each prompt whose question mark was read as another character.
+
+    Examples
+    --------
+    >>> (printout,) = impact88.read_printouts(impact88.run(impact88.sample(1)).page)
+    >>> printout.fields["VAX"].text, printout.fields["VAX"].line
+    ('-13.263', 25)
+    """
+
+    page: Page = field(repr=False)
+    _states: Mapping[int, int] = field(repr=False)
+    line: int = 0
+    column: int = 0
+    start: int = 0
+    stop: int = 0
+    fields: dict[str, Reading] = field(default_factory=dict)
+    replies: dict[str, Reading] = field(default_factory=dict)
+    angles: list[tuple[tuple[str, ...], float]] = field(default_factory=list)
+    angle_row: Region = ()
+    ending: str | None = None
+    ended: bool = False
+    has_final_spins: bool = False
+    left_over: list[Piece] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)
+    labels: list[LabelCheck] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    unread: str = ""
+    misread_letters: int = 0
+    misread_prompts: set[str] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        glyphs, states = self.page.glyphs, self._states
+        self._slots: dict[str, tuple[int, int]] = {}  # of every number its glyphs
+        for index, state in states.items():
+            if STATES[state].kind == "number":
+                name = STATES[state].name
+                self._slots[name] = (self._slots.get(name, (index, 0))[0], index + 1)
+        # a word that stands apart from the number before it, and is joined to the next by its
+        # equals sign, is no part of either
+        self._words: set[int] = set()
+        for first, sign in words_before(self.page, self._slots).values():
+            self._words.update(range(first, sign))
+            for name, (start, stop) in self._slots.items():
+                if start < first < stop and glyphs[first].gap:
+                    self._slots[name] = (start, first)
+                elif first <= start <= sign < stop - 1:
+                    self._slots[name] = (sign + 1, stop)
+        self._close_numbers()
+        self._end_row()
+        self._exact = {
+            index: STATES[state].line
+            for index, state in self._states.items()
+            if letter_of(state) == glyphs[index].char
+        }
+        self.start, self.stop = self.page.span(min(states), max(states) + 1)
+        self.line, self.column = self.page.place(self.start)
+
+    def _close_numbers(self) -> None:
+        """End numbers at the mark that the program prints right behind them, ``)`` or ``%``."""
+        glyphs = self.page.glyphs
+        for place, state in enumerate(STATES[1:], 1):
+            name = STATES[place - 1].name
+            if state.name not in (")", "%") or name not in self._slots:
+                continue
+            start, stop = self._slots[name]
+            for at in range(start + 1, stop - 1):
+                if glyphs[at].char != state.name:
+                    continue
+                if numerals.clean(glyphs[start:at]):
+                    self._slots[name] = (start, at)
+                    later = [index for index, own in self._states.items() if own == place]
+                    after = dict.fromkeys([*range(at + 1, stop), *later], 0)
+                    self._states = {**self._states, **after, at: place}
+                break
+
+    def _end_row(self) -> None:
+        """End the row of angles at the end of its line, if five clean numbers stand on it."""
+        glyphs = self.page.glyphs
+        places = [index for name in ANGLES for index in self._slots.get(name, ())]
+        starts = places[:1]
+        for index in range(min(places, default=0) + 1, max(places, default=0)):
+            if glyphs[index].gap is Gap.LINE:
+                parts = list(zip(starts, [*starts[1:], index], strict=True))
+                clean = all(numerals.clean(glyphs[i:j]) for i, j in parts)
+                if clean and len(parts) == len(ANGLES):
+                    self._slots.update(zip(ANGLES, parts, strict=True))
+                return
+            if glyphs[index].gap:
+                starts.append(index)
+
+    def __repr__(self) -> str:
+        return f"<Printout at line {self.line}: {len(self.fields)} numbers read>"
+
+    @property
+    def mislabelled(self) -> list[LabelCheck]:
+        """Labels that name another number than the one beside them."""
+        return [label for label in self.labels if label.state is LabelState.CONTRADICTORY]
+
+    @property
+    def marks(self) -> int:
+        """Number of signs of an optical reader on its numbers.
+
+        Counted are numbers that nobody would type so, in pieces or with more than O for 0 and l
+        for 1, and specks beside numbers.
+        """
+        specks = (
+            piece.beside and not piece.whole and len(piece.text) <= 3 for piece in self.left_over
+        )
+        return sum(specks) + sum(
+            any(glyph.gap for glyph in region[1:]) or not _TYPED.issuperset(letters(region))
+            for region in (
+                field.region[: numerals.note_start(field.region)] for field in self.fields.values()
+            )
+        )
+
+    @property
+    def machine_read(self) -> bool:
+        """True if the text shows signs of an optical reader: misread labels, damaged numbers."""
+        return self.misread_letters + self.marks >= MACHINE_READ
+
+    @property
+    def badly_read(self) -> bool:
+        """True if too much was misread to tell an altered digit from a misread one."""
+        return self.misread_letters + self.marks >= BADLY_READ
+
+    @property
+    def fragment(self) -> bool:
+        """True if it holds too few numbers, five at most, to be called a printout."""
+        return len(self.fields) <= 5
+
+    @property
+    def fragment_of_run(self) -> bool:
+        """True if it holds no final velocity of a center and no message that says why."""
+        return self.ending is None and self.fields.keys().isdisjoint(("VAX", "VAY", "VBX", "VBY"))
+
+    def text(self, name: str) -> str | None:
+        """Return the text of a field.
+
+        Parameters
+        ----------
+        name : str
+            Name of the field.
+
+        Returns
+        -------
+        str or None
+            The number as read, None if the field was not read.
+        """
+        reading = self.fields.get(name)
+        return reading.text if reading else None
+
+    def _letter(self, index: int) -> str:
+        return letter_of(self._states.get(index, 0))
+
+    def _line(self, index: int) -> int:
+        return STATES[self._states.get(index, 0)].line
+
+    def read(self) -> bool:
+        """Read the numbers.
+
+        Returns
+        -------
+        bool
+            True if there are enough numbers for a printout, or a prompt.
+        """
+        self._drop_cropped()
+        for name, (start, stop) in self._slots.items():
+            if name in FIELDS:
+                has_sign = self._letter(start - 1) == "=" == self.page.glyphs[start - 1].char
+                sign_free = not has_sign and name not in ANGLES
+                reading = reading_of(self.page, self.page.glyphs[start:stop], sign_free)
+                if reading:
+                    self.fields[name] = reading
+                else:
+                    self._remark(name, start, ": expected a number", self.page.shown(start, stop))
+        if not self._is_worth_reporting():
+            return False
+        self.has_final_spins = [*self._exact.values()].count(SPINS) >= 2
+        for name in () if self.has_final_spins else FINAL_SPINS:  # a footer, a page number
+            self.fields.pop(name, None)
+            self._slots.pop(name, None)
+        for side, names in REPLIES.items():
+            if slot := self._slots.get(f"REPLY_{side}"):
+                self._read_reply(names, slot[0])
+        self._read_angles()
+        self.ended = any(self._line(index) == STARS for index in self._states)
+        return True
+
+    def end(self, message: re.Match[str], text: str) -> int:
+        """End the printout with a message, such as an error of Applesoft.
+
+        Parameters
+        ----------
+        message : re.Match
+            The message in the text of the page's glyphs.
+        text : str
+            The text of the page's glyphs.
+
+        Returns
+        -------
+        int
+            Place of the glyph behind the message.
+        """
+        begin, stop = message.span()
+        self.ending = _ENDINGS[message[1].replace("'", "")]
+        if self.ending != ZERO_DETERMINANT and (line := _IN_LINE.match(text, stop)):
+            self.ending += f" IN {line[1].translate(_DIGITS)}"
+            stop = line.end()
+        self.stop = self.page.span(begin, stop)[1]
+        self._exact |= dict.fromkeys(range(begin, stop), -1)
+        return stop
+
+    def check_labels(self) -> None:
+        """Set ``labels`` and ``misread_letters``: the number that each label names, and marks."""
+        read = {name: self._slots[name] for name in self.fields if name in self._slots}
+        marks = (
+            self.marks + self._misread("*")
+            if len(self.fields) >= _MIN_NUMBERS
+            else MIN_READER_MARKS
+        )
+        label_glyphs = [
+            (
+                name,
+                "".join(map(letter_of, own)),
+                [at for at, state in self._states.items() if state in own],
+            )
+            for name, own in LABELS
+        ]
+        self.labels = label_checks(self.page, label_glyphs, read, marks)
+        replies = {name: slot for name, slot in self._slots.items() if name not in FIELDS}
+        self.labels += mark_checks(self.page, self._states, read | replies, self.labels)
+        wrong = {label.name for label in self.mislabelled}
+        self.misread_letters = self._misread("*ABCDEFGHIJKLMNOPQRSTUVWXYZ", wrong)
+
+    def read_otherwise(self) -> list[str]:
+        """Return a note on misread letters of labels that leave no doubt which number is meant.
+
+        Returns
+        -------
+        list of str
+            One note with the letters by line, or none.
+        """
+        reported = {
+            at for label in self.labels if label.doubt for at in range(label.start, label.stop)
+        }
+        reported |= {at for label in self.mislabelled for at in range(label.start, label.stop)}
+        places: dict[int, list[str]] = {}
+        for index, role in self.roles().items():
+            glyph, letter = self.page.glyphs[index], self._letter(index)
+            if role == "letter" and letter and glyph.offset not in reported:
+                line, _ = self.page.place(glyph.offset)
+                places.setdefault(line, []).append(f"{glyph.char} for {letter}")
+        by_line = [f"line {line}: {', '.join(marks)}" for line, marks in sorted(places.items())]
+        return [f"letters and marks read as others: {'; '.join(by_line)}"] if by_line else []
+
+    def _drop_cropped(self) -> None:
+        """Drop numbers at the beginning of lines if the left margin is cut off.
+
+        It is where most lines that begin with a label lack its first letter, three lines at least.
+        """
+        states_read = set(self._states.values())
+        first = [index for index in self._states if self.page.glyphs[index].gap is Gap.LINE]
+        before = [self._states[at] - 1 for at in first if self._letter(at) not in ("", "*")]
+        lost = sum(bool(letter_of(state)) and state not in states_read for state in before)
+        if lost > max(2, len(before) / 2):
+            for name, (start, _) in [*self._slots.items()]:
+                if start in first:
+                    self._remark(name, start, "begins where the margin is cut off")
+                    del self._slots[name]
+
+    def _misread(self, letters_of: str, wrong: Collection[str] = ()) -> int:
+        """Return how many letters of labels were read as other letters or figures.
+
+        ``letters_of``: the letters and marks that count; ``wrong``: labels that are left out.
+        """
+        excluded = {state for name, own in LABELS if name in wrong for state in own}
+        return sum(
+            self.page.glyphs[index].char != letter and self.page.glyphs[index].char.isalnum()
+            for index, state in self._states.items()
+            if state not in excluded and state != self._states.get(index - 1)
+            and (letter := letter_of(state)) and letter in letters_of
+        )  # fmt: skip
+
+    def _is_worth_reporting(self) -> bool:
+        """Return True if a label and its number, or a prompt, was read."""
+        if sum(line < PROMPTS for line in self._exact.values()) >= _PROMPT_LETTERS:
+            return True
+        numbers = {name for name, field in self.fields.items() if any(map(str.isdigit, field.text))}
+        if not numbers.issuperset(ANGLES[:-1]):
+            numbers -= set(ANGLES)
+        read = {self._states[index] for index in self._exact}
+        labelled = {name for name, own in LABELS if not read.isdisjoint(own)} | {*ANGLES}
+        count = len(numbers & labelled)
+        return count >= 1 and count + len(self._exact) >= 5
+
+    def _remark(self, name: str, index: int, message: str, read: str | None = None) -> None:
+        """Add a remark on a glyph: its place, its field, what it reads, what is wrong."""
+        line, column = self.page.place(self.page.glyphs[index].offset)
+        quoted_text = "" if read is None else repr(read if len(read) <= 30 else read[:27] + "...")
+        self.remarks.append(f"line {line}, column {column}: {name}: {quoted_text}{message}")
+
+    def _read_angles(self) -> None:
+        """Set ``angles`` and ``angle_row`` if blanks alone do not separate the five angles."""
+        glyphs = self.page.glyphs
+        places = [self._slots[name] for name in ANGLES if name in self._slots]
+        clean = all(name in self.fields and self.fields[name].clean for name in ANGLES)
+        if not places or (clean and all(glyphs[start].gap for start, _ in places[1:])):
+            return
+        start, stop = min(places)[0], max(stop for _, stop in places)
+        self.angle_row = glyphs[start:stop]
+        self.angles = numerals.cut_in_five(self.angle_row)
+        if not self.angles and len(places) < len(ANGLES):
+            row = self.page.shown(start, stop)
+            self._remark("PA", start, ": expected five angles, PA PB TA TB GA", row)
+
+    def _read_reply(self, names: Sequence[str], start: int) -> None:
+        """Read the three numbers typed at a prompt, after any that INPUT refused."""
+        stop, line, glyphs = start, self._line(start), self.page.glyphs
+        other_starts = {begin for begin, _ in self._slots.values()} - {
+            start
+        }  # one may lack its label
+        while (
+            stop not in other_starts
+            and self._states.get(stop)
+            and (not self._letter(stop) or self._line(stop) == line)
+        ):
+            stop += 1
+        parts = _reply_parts(glyphs[start:stop])
+        # a prompt's end whose mark was not read, before what is printed below
+        value = numerals.value_of(self.text(names[0]) or "")
+        first = letters(parts[0])
+        for at in range(1, min(len("Wa ?"), len(first))):
+            if value is not None and numerals.value_of(first[at:]) == value:
+                if glyphs[start - 1].char != "?":
+                    self.misread_prompts.add(names[0])
+                    self._remark("reply", start, " before the first number", first[:at])
+                    parts[0] = parts[0][at:]
+                break
+        if len(parts) > len(names) and all(map(numerals.clean, parts[:3])):
+            extra = "".join(map(letters, parts[3:]))
+            self._remark("reply", start, " after the third number", extra)
+            parts = parts[:3]
+        if len(parts) == len(names):
+            for name, region in zip(names, parts, strict=True):
+                reading = reading_of(self.page, region)
+                if reading is not None and ILLEGIBLE not in reading.text:
+                    self.replies[name] = reading
+        elif parts != [()]:
+            self._remark("reply", start, " is not three numbers", self.page.shown(start, stop))
+
+    def roles(self) -> dict[int, str]:
+        """Return the role of each glyph that belongs to the program's page.
+
+        Returns
+        -------
+        dict of int to str
+            ``"number"``, ``"exact"`` (a letter of a label, as the program prints it) or
+            ``"letter"`` (a misread one) by the glyph's place on the page. Glyphs between the lines
+            or inserted into labels are left out.
+        """
+        roles = dict.fromkeys(self._exact, "exact")
+        for index, state in self._states.items():
+            letter, figure = letter_of(state), self.page.glyphs[index].char.isdigit()
+            is_inserted = state == self._states.get(index - 1) or (letter in "%()=" and figure)
+            if letter and is_inserted:
+                roles.pop(index, None)
+            elif letter:
+                roles.setdefault(index, "letter")
+        roles = dict.fromkeys(self._words, "letter") | roles
+        for span in self._slots.values():
+            roles |= dict.fromkeys(range(*span), "number")
+        return roles
+
+
+def reading_of(page: Page, region: Region, sign_free: bool = False) -> Reading | None:
+    """Return a region of a page as a number, None if it holds nothing of one."""
+    text = numerals.taken_for(region, sign_free)
+    if text is None:
+        return None
+    begin, end = region[0].offset, region[-1].offset + 1
+    cut = region[-1].offset == page.glyphs[-1].offset and end == len(page.text)
+    cut = cut or page.place(end - 1)[1] == page.width
+    return Reading(text, *page.place(begin), begin, end, region, cut, sign_free)
+
+
+def _reply_parts(region: Region) -> list[Region]:
+    """Return the glyphs of a reply, divided at its commas and where INPUT asked for more.
+
+    Numbers that INPUT refused before it, or ignored behind it, are left out.
+    """
+    match = re.search(r"(?:.*REENTER)?\?*(.*?)(?:\?EXTRAIGNORED|PR#|$)", letters(region))
+    region = region[slice(*match.span(1))] if match else ()
+    parts: list[Region] = [()]
+    for place, glyph in enumerate(region):
+        is_next = glyph.gap is Gap.LINE and letters(region[place : place + 2]) == "??"
+        if glyph.char in ",;" or is_next:
+            parts.append(())
+        elif not (glyph.char == "?" and place and region[place - 1].char == "?"):
+            parts[-1] += (glyph,)
+    return parts
+
+
+@explains_arguments
+def read_printouts(text: str, where: str = "text") -> list[Printout]:
+    """Return the printouts in a text, in order.
+
+    Parameters
+    ----------
+    text : str
+        A page, or several, as typed in or as an OCR engine read them.
+    where : str, default "text"
+        What messages call the text.
+
+    Returns
+    -------
+    list of Printout
+        Each with the numbers it holds, ``fields``, by the names of `impact88.names`.
+
+    Raises
+    ------
+    UserError
+        Where there is no printout in it.
+
+    Examples
+    --------
+    >>> (printout,) = impact88.read_printouts(impact88.run(impact88.sample(1)).page)
+    >>> printout.fields["MA"].text
+    '143.5'
+    """
+    if not isinstance(text, str):
+        raise UserError(f"{quoted(text)}: expected a text; impact88.verify takes files and bytes")
+    text = pasted.lay_out(text, where)
+    stripped = pasted.strip_markup(text)
+    columns = [_read_column(part) for part in pasted.columns(stripped)]
+    if not all(found for found, _ in columns):
+        columns = [_read_column(stripped)]
+    found = [printout for printouts, _ in columns for printout in printouts]
+    if not found:
+        expected = "expected text with labels such as MA= ... MB= ... VAX= ... VAY= ..."
+        raise UserError(f"no printout of the program in it; {columns[0][1] or expected}", where)
+    found[0].notes += [*_left_out_note(text, stripped), *_markup_note(text, stripped)]
+    return found
+
+
+def _read_column(text: str) -> tuple[list[Printout], str]:
+    """Return the printouts of a text that stands in one column, and why what follows them was not
+    read where that is so."""
+    page = Page(text)
+    budget = Budget()
+    printouts = [*_printouts(page, budget)]
+    reason = ""
+    if budget.stopped is not None:
+        line, column = page.place(page.glyphs[budget.stopped].offset)
+        reason = f"what follows line {line}, column {column} was not read: there is too much of it"
+        printouts = [printout for printout in printouts if len(printout.fields) >= _MIN_NUMBERS]
+    if not printouts:
+        return [], reason
+    printouts[-1].unread = reason
+    _keep_left_over(page, printouts)
+    for printout in printouts:
+        printout.check_labels()
+        printout.notes += _character_notes(page.text[printout.start : printout.stop])
+        printout.notes += printout.read_otherwise()
+        printout.notes += retyping_note(printout.labels)
+        printout.notes += asterisk_note({*printout._states.values()}, printout.fields)
+    return printouts, reason
+
+
+_ALIKE = str.maketrans("0QL1|!582’`", "OOIIIISBZ''")
+_DIGITS = str.maketrans("OQIL|!", "001111")
+_MESSAGES = {f"{code}ERROR": f"?{code} ERROR" for code in CODES} | {
+    ZERO_DETERMINANT: ZERO_DETERMINANT
+}
+_ENDINGS = {re.sub("[ ']", "", said).translate(_ALIKE): shown for said, shown in _MESSAGES.items()}
+_ENDING = re.compile(r"\??(" + "|".join(map("'?".join, _ENDINGS)) + ")")
+_IN_LINE = re.compile("[I1L|!]N([0-9OQIL|!]{1,5})")
+
+
+def _printouts(page: Page, budget: Budget) -> Iterator[Printout]:
+    """Yield the printouts of a page; a message that ended a run ends its printout."""
+    text = letters(page.glyphs)
+    commands = {at for match in _SLOT_COMMAND.finditer(text) for at in range(*match.span())}
+    start = 0
+    for message in [*_ENDING.finditer(text.translate(_ALIKE)), None]:
+        stop = message.start() if message else len(text)
+        states_of_each = [*align(page.glyphs, start, stop, budget, commands)]
+        if notes := _note_glyphs(page, start, stop, states_of_each):
+            states_of_each = [*align(page.glyphs, start, stop, budget, notes | commands)]
+        readable = [
+            printout for states in states_of_each if (printout := Printout(page, states)).read()
+        ]
+        if message and readable:
+            start = readable[-1].end(message, text)
+        yield from readable
+        if budget.stopped is not None:
+            return
+
+
+def _note_glyphs(page: Page, start: int, stop: int, found: Sequence[Mapping[int, int]]) -> set[int]:
+    """Return the glyphs of lines that are notes, though a number on them was taken for the page's.
+
+    More than half of the letters of a note, `_MIN_NOTE_LETTERS` at least and four a number, belong
+    to no label.
+    """
+    read = {at: state for states in found for at, state in states.items()}
+    notes: set[int] = set()
+    for line_range in page.lines:
+        line = [at for at in line_range if start <= at < stop]
+        states_on_line = (STATES[read.get(at, 0)] for at in line)
+        if any(state.kind == "number" and state.name in FIELDS for state in states_on_line):
+            words = [at for at in line if page.glyphs[at].char.isalpha()]
+            strange = sum(letter_of(read.get(at, 0)) != page.glyphs[at].char for at in words)
+            text = "".join(" "[: page.glyphs[at].gap] + page.glyphs[at].char for at in line)
+            if strange >= max(
+                _MIN_NOTE_LETTERS, 4 * len(re.findall(r"[0-9.]+", text)), len(words) / 2
+            ):
+                notes.update(line)
+    return notes
+
+
+_LABEL_WORDS = {*re.findall("[A-Z]{2,}", re.sub("{.*?}", "", " ".join(LINES[PROMPTS:])))}
+
+
+def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
+    """Add text that belongs to no printout to ``left_over`` of the one above it, or of the first.
+
+    A line belongs to a page if a number stands on it, half of its glyphs are letters as printed, or
+    it is a row of asterisks; of such lines the rest is left over, of others all. Text beside a
+    number may bear on the page, and so may a word beside labels, and another line that holds a
+    number or a label.
+    """
+    roles = {index: role for printout in found for index, role in printout.roles().items()}
+    for line in page.lines:
+        kinds = [roles.get(index) for index in line]
+        has_number = "number" in kinds
+        alike = sum(label_cost("*", page.glyphs[index].char) < 40 for index in line)
+        stars = len(line) <= len("*****") + 2 and 2 * alike > len(line)
+        is_whole = not (has_number or stars or 2 * kinds.count("exact") >= len(kinds))
+        loose = [at for at in line if is_whole or at not in roles]
+        for _, pairs in groupby(enumerate(loose), lambda pair: pair[1] - pair[0]):
+            run = [index for _, index in pairs]
+            start, stop = run[0], run[-1] + 1
+            if not _SLOT_COMMAND.fullmatch(letters(page.glyphs[start:stop])):
+                text, span = page.shown(start, stop), page.span(start, stop)
+                number, column = page.place(span[0])
+                figure = not stars and any(map(str.isdigit, text))
+                words = re.split(r"[^A-Za-z]+", text) if is_whole else ()
+                label_words = {
+                    word.upper() if len(word) > 2 else word for word in words
+                } & _LABEL_WORDS
+                is_word = not (is_whole or stars) and re.search("[A-Za-z]{2}", text)
+                is_beside = has_number or figure or bool(label_words or is_word)
+                above = [printout for printout in found if printout.line <= number] or found[:1]
+                above[-1].left_over.append(Piece(text, number, column, *span, is_beside, is_whole))
+
+
+def _character_notes(text: str) -> list[str]:
+    """Return a note on characters that were read as plain ones, with their number by kind."""
+    count = Counter(
+        unicodedata.name(char, f"U+{ord(char):04X}").lower().replace("u+0000", "NUL")
+        for char in text
+        if not " " <= char <= "~" and not char.isspace() and plain_glyphs(char) != char.upper()
+    )
+    kinds = ", ".join(f"{number} {name}" for name, number in sorted(count.items()))
+    return [f"characters read as plain ones or passed over: {kinds}"] if kinds else []
+
+
+_MAX_MARKUP = 6
+"""Number of kinds of markup that are named."""
+
+
+def _markup_note(text: str, stripped: str) -> list[str]:
+    """Return a note on the markup that was passed over in lines that were read."""
+    runs: Counter[str] = Counter()
+    for line, stripped_line in zip(text.split("\n"), stripped.split("\n"), strict=False):
+        if not stripped_line.strip() and any(map(str.isalpha, line)):
+            continue  # told whole
+        markup = "".join(
+            char if after.isspace() else " "
+            for char, after in zip(line, stripped_line, strict=False)
+        )
+        runs.update(markup.split())
+    kinds = [f"{count} {printable(run)}" for run, count in runs.most_common(_MAX_MARKUP)]
+    and_more = f" and {len(runs) - len(kinds)} more kinds" if len(runs) > len(kinds) else ""
+    return [f"markup passed over: {', '.join(kinds)}{and_more}"] if runs else []
+
+
+def _left_out_note(text: str, stripped: str) -> list[str]:
+    """Return a note on lines that were left out as markup or as lines of a program."""
+    lines = text.split("\n")
+    pairs = zip(lines, stripped.split("\n"), strict=False)
+    is_left_out = [
+        any(map(str.isalpha, line)) and not stripped_line.strip() for line, stripped_line in pairs
+    ]
+    if not any(is_left_out):
+        return []
+    count = "1 line is" if sum(is_left_out) == 1 else f"{sum(is_left_out)} lines are"
+    first = printable(lines[is_left_out.index(True)].strip())
+    return [
+        f"{count} markup or lines of a BASIC program, and not read: the first is line "
+        f"{is_left_out.index(True) + 1}: {first}"
+    ]

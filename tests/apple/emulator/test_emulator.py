@@ -1,0 +1,104 @@
+"""The emulator against the ROM: every captured program and every captured scene."""
+
+from __future__ import annotations
+
+import os
+from functools import partial
+
+import captures
+import pytest
+from emulation import FUZZ, PROGRAMS
+
+from impact88.apple.emulator.machine import Machine
+from impact88.apple.emulator.programfile import read_program
+from impact88.apple.emulator.tokens import FIRST, KEYWORDS, LAST_STATEMENT, TOKENS
+from impact88.conformance.qualification.captured import memory_contents, session
+from impact88.program import emulated
+
+SCENES = captures.scenes()[:: 1 if "IMPACT88_CAPTURES" in os.environ else 3]
+"""The port replays the others, and is compared with the emulator line by line."""
+
+pytestmark = pytest.mark.captures
+
+
+STATEMENTS = KEYWORDS[: LAST_STATEMENT - FIRST + 1]
+TYPED_ONLY = {"CONT", "DEL", "LIST"}
+"""Statements of the prompt, which `test_emulator_language` types."""
+
+
+def test_every_statement_s_method_is_named_for_a_keyword():
+    named = {f"{word.lower().rstrip(':')}_" for word in STATEMENTS} | {"break_"}
+    methods = [name for name in dir(Machine) if name.endswith("_") and name[0] != "_"]
+    for name in methods:
+        assert name in named, (
+            f"{name} is called by no statement; next step: name the method for its keyword in "
+            "apple/emulator/tokens.py, in small letters with an underscore behind it, or give the "
+            "keyword an entry in `statements` of `Machine.__init__` (apple/emulator/machine.py)"
+        )
+
+
+def test_every_statement_that_is_done_stands_in_a_captured_program():
+    """What the machine does is compared with the ROM: no statement is there on trust."""
+    machine = session("", "")[0].machine
+    used = {
+        token
+        for path in PROGRAMS
+        for _, tokens in read_program(path.read_bytes()).lines
+        for token in tokens
+    }
+    for word, does in zip(STATEMENTS, machine.statements, strict=True):
+        refused = isinstance(does, partial) and does.func == machine.refuse
+        assert refused or word in TYPED_ONLY or TOKENS[word] in used, (
+            f"{word} is done, and no captured program has it; next step: a program with the ROM's "
+            "own output in golden/programs/, made by impact88 witness --rom FILE --programs "
+            "FOLDER --save FOLDER"
+        )
+
+
+@pytest.mark.parametrize("path", PROGRAMS, ids=[path.stem for path in PROGRAMS])
+def test_captured_program(path):
+    keys = path.with_suffix(".in")
+    machine, displayed = session(
+        captures.printed(path.read_bytes()),
+        captures.printed(keys.read_bytes()) if keys.exists() else "",
+    )
+    expected = captures.printed(path.with_suffix(".out").read_bytes())
+    if displayed != expected and (refused := machine.machine.refused):
+        word = next(iter(refused))
+        pytest.fail(
+            f"{path.name} has {word}, which is not done; next step: the statement's method in the "
+            "module of its kind in emulator/"
+        )
+    assert displayed == expected
+    screen = path.with_suffix(".scr")
+    if screen.exists():
+        assert machine.screen_text() == captures.printed(screen.read_bytes())
+
+
+@pytest.mark.parametrize("case", FUZZ, ids=[case["name"] for case in FUZZ])
+def test_captured_random_program(case):
+    # these hold what the machine sent, without blanks for the columns that commas skip
+    _, displayed = session(case["program"], case["keyboard"], blanks=False)
+    assert displayed == case["output"]
+
+
+@pytest.mark.parametrize("case", SCENES, ids=[case["id"] for case in SCENES])
+def test_captured_scene(case):
+    run = emulated.run(case["scene"], dos=False)
+    assert run.printout == case["printout"]
+    assert memory_contents(run.reals, run.A) == memory_contents(case["reals"], case["A"])
+
+
+def test_the_scene_types_what_the_captures_typed():
+    for case in SCENES[:50]:
+        scene = emulated.Scene(case["scene"])
+        assert scene.typed_lines() == case["typed_lines"]
+        assert scene.keyboard() == case["keyboard"]
+
+
+def test_a_changed_bit_in_a_capture_is_seen():
+    case = SCENES[0]
+    run = emulated.run(case["scene"], dos=False)
+    name, value = next((n, v) for n, v in case["reals"].items() if not v.startswith("00"))
+    changed = {**case["reals"], name: f"{int(value, 16) ^ 1:010x}"}
+    assert memory_contents(run.reals, run.A) != memory_contents(changed, case["A"])

@@ -1,0 +1,296 @@
+"""Programs as paper and disks hold them: what LIST prints loads again, whatever ends its rows."""
+
+from __future__ import annotations
+
+import os
+import re
+import string
+from pathlib import Path
+from typing import Any
+
+import captures
+import pytest
+from emulation import FUZZ, PROGRAMS
+from hypothesis import example, given
+from hypothesis import strategies as st
+from installed import impact88, process
+
+from impact88.apple.emulator.emulator import Applesoft
+from impact88.apple.emulator.programfile import read_program
+from impact88.apple.emulator.tokens import KEYWORDS
+from impact88.errors import UserError
+from impact88.program.emulated import ListingCopy
+
+LISTING = (captures.ROOT / "legacy" / "impact.bas").read_text(encoding="ascii")
+TEXTS = {path.stem: captures.printed(path.read_bytes()) for path in PROGRAMS}
+TEXTS |= {case["name"]: case["program"] for case in FUZZ}
+HARD = (
+    "broad_0762",  # a keyword that crosses the screen's edge: LIST counts columns anew
+    "fuzz_open_0111",
+    "goto_computed",  # its saved text could be one long line of LIST's
+    "misc_clear",  # DATA with a blank, and no line begins with a keyword
+    "print_question_mark",
+    "witnessed_034",  # a row that begins with a number and a colon
+)
+
+
+def machine_with(program: str, *, small: bool = False) -> Applesoft:
+    """A machine in which a program has been typed; ``small``: with its small letters."""
+    machine = Applesoft()
+    for line in filter(None, program.split("\n")):
+        (machine.enter if small else machine.type_line)(line)
+    machine.type_line("TEXT")
+    machine.take_output()
+    return machine
+
+
+def sent(machine: Applesoft) -> str:
+    """What LIST sends to a file."""
+    machine.take_output()
+    machine.machine.poke(33, 40)
+    machine.enter("LIST")
+    return machine.take_output()
+
+
+def on_screen(machine: Applesoft, width: int) -> str:
+    """LIST's rows on a screen, line by line, so that none scrolls away; 33 columns as POKE 33,33
+    makes them, where LIST does not break lines itself."""
+    text = ""
+    for number, _ in machine.machine.lines():
+        machine.machine.poke(33, width)
+        machine.enter("HOME")
+        machine.enter(f"LIST {number}")
+        text += machine.screen_text()
+    return text
+
+
+def cut(machine: Applesoft, width: int) -> str:
+    """LIST on paper that ends at a column."""
+    machine.machine.poke(33, 255)  # no column that LIST would break at is the last
+    rows = []
+    for number, _ in machine.machine.lines():
+        machine.enter(f"LIST {number}")
+        line = re.sub(r"\n     |\n", "", machine.take_output())
+        rows += [line[at : at + width] for at in range(0, len(line), width)]
+    return "\n".join(rows)
+
+
+def image(machine: Applesoft) -> bytes:
+    """The program as it lies in memory."""
+    return bytes(machine.machine.ram[0x801 : machine.machine.prgend])
+
+
+def lines_of(machine: Applesoft) -> list[tuple[int, bytes]]:
+    return list(machine.machine.lines())
+
+
+@pytest.mark.captures
+@pytest.mark.parametrize(
+    "form",
+    [
+        sent,
+        lambda machine: re.sub(" +\n", "\n", sent(machine)),
+        lambda machine: on_screen(machine, 40),
+        lambda machine: on_screen(machine, 33),
+        Applesoft.source,
+        image,
+        lambda machine: len(image(machine)).to_bytes(2, "little") + image(machine) + bytes(99),
+    ],
+    ids=["sent", "stripped", "screen", "poke 33,33", "saved", "tokenised", "DOS 3.3"],
+)
+def test_every_captured_program_loads_as_it_was(form: Any) -> None:
+    names = [*TEXTS][:: 1 if "IMPACT88_CAPTURES" in os.environ else 8]
+    for name in (*names, *filter(TEXTS.get, HARD)):
+        machine = machine_with(TEXTS[name])
+        lines = lines_of(machine)
+        # blanks at the end of a line are on no screen
+        seen = not any(tokens.endswith(b" ") for _, tokens in lines)
+        # LIST 0 shows all lines
+        if lines and seen and lines[0][0]:
+            assert read_program(form(machine)).lines == lines, name
+
+
+@pytest.mark.parametrize("width", [33, 40, 80, 132])
+def test_the_listing_loads_from_paper_of_any_width(width: int) -> None:
+    machine = machine_with(LISTING, small=True)
+    lines = lines_of(machine)
+    assert read_program(cut(machine, width)).lines == lines
+    assert read_program(sent(machine)).lines == lines
+    assert read_program(on_screen(machine, 40)).lines == lines
+    assert read_program("".join(f"    {row}\n" for row in sent(machine).split("\n"))).lines == lines
+
+
+STATEMENTS = st.text(
+    st.sampled_from([*string.ascii_uppercase, *string.digits, *'  "":;,()$%.=+-*/<>?']), max_size=30
+) | st.sampled_from([f"{word} " for word in KEYWORDS])
+
+
+@example({0: ['"'], 1: ["<"]})
+@example({0: [":"], 1: ["<"]})
+@given(st.dictionaries(st.integers(0, 63999), st.lists(STATEMENTS, max_size=6), max_size=8))
+def test_what_a_person_may_type_loads_as_it_was(program: dict[int, list[str]]) -> None:
+    """As LIST sends it, as SAVE writes it, and tokenised."""
+    text = "".join(f"{number} {''.join(parts)}\n" for number, parts in program.items())
+    machine = machine_with(text[:4000])
+    lines = lines_of(machine)
+    assert not lines or read_program(image(machine)).lines == lines
+    # rows as wide as a device's, and a line that no statement begins: it may go on the row before
+    wide = max(map(len, f"{machine.source()}\n{sent(machine)}".split("\n"))) >= 33
+    if wide and not all(tokens[:1].isalpha() or 0x80 <= tokens[0] <= 0xBF for _, tokens in lines):
+        return
+    # DATA or REM inside a statement, which no program has: the blank behind it may be LIST's
+    if any(re.search(rb"[^:][\x83\xb2]", tokens) for _, tokens in lines):
+        return
+    assert read_program(machine.source()).lines == lines
+    if not any(tokens.endswith(b" ") for _, tokens in lines):  # they may fill a row, and none shows
+        assert read_program(sent(machine)).lines == lines
+
+
+def test_only_what_has_no_other_reading_is_listed() -> None:
+    """The blank behind REM and DATA is LIST's in a listing and the text's elsewhere."""
+    assert read_program("10  REM X").lines == [(10, b"\xb2X")]
+    assert read_program("10 REM X").lines == [(10, b"\xb2 X")]
+    assert read_program("10  REM X\n20 PRINT").lines[0] == (10, b"\xb2 X")
+
+
+ROW = "10  PRINT " + '"' + "A" * 29 + '"'
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        (ROW + "\n20  PRINT 1", [10, 20]),  # a full row, and a line
+        (ROW + ";\n1: PRINT 2\n20  END", [10, 20]),  # a colon behind a number continues
+        ("  10 PRINT 1\n 200 PRINT 2\n1000 PRINT 3", [10, 200, 1000]),
+        ("30 PRINT 1\n20 PRINT 2\n30 PRINT 3", [20, 30]),  # as typed, the last one stays
+        ("]LIST\n\n10  END \n\n]", [10]),
+        ("\f10 PRINT A\n   + B\n20 END\f\x1a", [10, 20]),
+        ("", []),
+    ],
+)
+def test_where_lines_begin(text: str, lines: list[int]) -> None:
+    assert [number for number, _ in read_program(text).lines] == lines
+
+
+@pytest.mark.parametrize(
+    ("program", "words"),
+    [
+        ("10 A\n20\tPRINT", "row 2, column 3: a tab"),
+        ('10 A\n20 PRINT "\xe9"', "row 2, column 11: character 'é'"),
+        ("10 PRINT 2 \u2212 1".encode(), "row 1, column 12: character '−'"),
+        (b'10 PRINT "\xe9"', r"row 1, column 11: character \$E9"),
+        ("10 PRINT 1\nPRINT 2", "row 2 has no line number; a row that continues line 10"),
+        ("10 A = 1\n     20 + B", "row 2 begins with blanks and a number"),
+        ("20 A = 1\n  10: B = 2", "row 2 begins with blanks and a number"),
+        ('10 PRINT "A\n  B"', "row 2 continues a text of line 10"),
+        ("10 DATA A,B\n  C", "row 2 continues a text of line 10"),
+        (b"\1\2\0\0\0\0\3", "no tokenised Applesoft program"),
+        (b"\x10\x08\x0a\x00\xba\x00", "no tokenised Applesoft program"),
+        (5, "not int"),
+        (None, "not NoneType"),
+    ],
+)
+def test_what_is_no_program_is_refused_by_its_place(program: Any, words: str) -> None:
+    machine = Applesoft()
+    machine.load("10 PRINT 1")
+    with pytest.raises(UserError, match=words):
+        machine.load(program)
+    assert machine.source() == "10 PRINT 1\n"
+
+
+ROWS = st.lists(
+    st.tuples(st.sampled_from(["", "7", "20 ", " 30", "63999 ", "64000 "]), STATEMENTS), max_size=12
+)
+
+
+@example([("", "10 STOP:POP"), ("20 ", ""), ("", "40 ASC%B.N%(I)")])
+@given(ROWS)
+def test_any_rows_are_a_program_or_refused_by_a_row(rows: list[tuple[str, str]]) -> None:
+    text = "\n".join(map("".join, rows))
+    words = ""
+    try:
+        lines = read_program(text).lines
+    except UserError as error:
+        lines, words = [], str(error)
+    assert not words or re.search("row [0-9]+|rows end at", words)
+    assert all(0 <= number <= 63999 and tokens for number, tokens in lines)
+
+
+def test_two_readings_are_refused() -> None:
+    """At a width of its own, with a blank at the row's end that may be one or none."""
+    text = '10  PRINT "' + "A" * 40 + '\nB"'
+    with pytest.raises(UserError, match="rows end at 51 columns"):
+        read_program(text)
+
+
+def test_two_ways_to_cut_quotes_are_refused() -> None:
+    """Of three lines with a quote each, which two are one?"""
+    rows = ['10  PRINT "' + "A" * 29, '20  PRINT "' + "B" * 29, '30  PRINT "C']
+    rows += ["40 A = " + "1" * 33, " + 1"]
+    with pytest.raises(UserError, match=r"row [23] may begin a line or continue line 10"):
+        read_program("\n".join(rows))
+    closed = [row + '"' if row.startswith("30") else row for row in rows]
+    closed[0] = closed[0][:-1] + '"'
+    closed[1] = closed[1][:-1] + '"'
+    assert [number for number, _ in read_program("\n".join(closed)).lines] == [10, 20, 30, 40]
+
+
+def test_apples_text_files_have_high_bits() -> None:
+    text = "10 PRINT 1\r20 END\r"
+    assert read_program(bytes(ord(c) | 0x80 for c in text) + bytes(9)) == read_program(text)
+    assert read_program(text.encode() + bytes(9)) == read_program(text)
+    assert read_program(text.encode("utf-16")) == read_program(text)
+    assert read_program(text.encode("utf-8-sig")) == read_program(text)
+
+
+def test_a_tokenised_file_keeps_its_order_and_says_what_is_left_out() -> None:
+    machine = machine_with("10 A=1\n20 B=2")
+    data = image(machine)
+    assert read_program(data + b"\x60\x60").remarks == [
+        "2 bytes behind the program's last line, such as machine code, are left out"
+    ]
+    swapped = data.replace(b"\x0a\0A", b"\x1e\0A")  # 30 before 20, as no one can type
+    machine.load(swapped)
+    assert [number for number, _ in lines_of(machine)] == [30, 20]
+    elsewhere = bytearray(data)
+    elsewhere[1] = elsewhere[9] = 0x40  # saved from $4001 on
+    assert read_program(bytes(elsewhere)).lines == lines_of(machine_with("10 A=1\n20 B=2"))
+
+
+def test_basic_and_verify_load_the_same(tmp_path: Path) -> None:
+    machine = machine_with(LISTING, small=True)
+    forms: dict[str, str | bytes] = {"listed.bas": sent(machine), "disk.bas": image(machine)}
+    for name, form in forms.items():
+        path = tmp_path / name
+        path.write_bytes(form if isinstance(form, bytes) else form.encode())
+        assert ListingCopy(str(path)).changed_lines() == []
+        done = impact88("basic", str(path), "--prompt", input="1,2,3\n4,5,6\nLIST\n")
+        listed = done.stdout[done.stdout.rindex("]LIST") :]
+        assert read_program(listed).lines == lines_of(machine)
+
+
+def test_save_writes_nothing_that_is_in_use(tmp_path: Path) -> None:
+    """What is being read, what is being written, and the printer's paper."""
+    typed = tmp_path / "rr.txt"
+    typed.write_text(f"10 PRINT 1\nSAVE {typed}\nPRINT 6*7\n")
+    with typed.open() as stdin:
+        done = process("basic", stdin=stdin)
+    assert typed.read_text() == f"10 PRINT 1\nSAVE {typed}\nPRINT 6*7\n"
+    assert "42\n" in done.stdout
+    assert done.stderr.endswith(
+        "rr.txt: is the input or the output of this command; expected another file\n"
+    )
+    paper = tmp_path / "paper.txt"
+    done = impact88("basic", "--printer", str(paper), input=f"SAVE {paper}\n")
+    assert "is the printer's paper" in done.stderr
+
+
+def test_save_says_what_text_cannot_hold(tmp_path: Path) -> None:
+    path = tmp_path / "poked.bas"
+    poke = "NEW\n10 REM A\nPOKE 2054,9\nPOKE 2056,0\n"
+    done = impact88("basic", input=f"NEW\n10 X=1\nPOKE 2053,120\nSAVE {path}\n{poke}SAVE {path}\n")
+    assert done.stderr.splitlines() == [
+        f"impact88 basic: {path}: text cannot hold line 10 as it is; LOAD makes another",
+        f"impact88 basic: {path}: text cannot hold this program: row 1, column 7: a tab; "
+        "expected characters that an Apple's keys type",
+    ]

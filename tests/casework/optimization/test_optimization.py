@@ -1,0 +1,97 @@
+"""Extremes of functions over a box, against extremes that are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from impact88.casework.optimization import widening
+from impact88.casework.optimization.extremes import Piece
+
+SEED = 7
+
+
+def extremes_of(function, coordinates):
+    count = function(np.full((1, coordinates), 0.5)).size
+    piece = Piece(lambda u: function(u).reshape(len(u), -1), count)
+    return piece.extremes(coordinates, np.random.default_rng(SEED))
+
+
+def test_inside():
+    top = np.array([0.3, 0.71, 0.5])
+    extremes = extremes_of(lambda u: 4 - np.square(u - top).sum(axis=1), 3)
+    assert extremes.bound[1, 0] == pytest.approx(4, abs=1e-8)
+    assert extremes.at[1, 0] == pytest.approx(top, abs=1e-4)
+    assert extremes.corner[1, 0] < 3.7
+    assert extremes.bound[0, 0] == extremes.corner[0, 0] == 4 - (0.49 + 0.71**2 + 0.25)
+
+
+def test_corner_among_more_than_are_tried():
+    weights = np.linspace(-1, 1, 16)
+    extremes = extremes_of(lambda u: u @ weights, 16)
+    assert extremes.bound[1, 0] == pytest.approx(weights[weights > 0].sum(), abs=1e-12)
+    assert extremes.bound[0, 0] == pytest.approx(weights[weights < 0].sum(), abs=1e-12)
+
+
+def test_along_a_narrow_curved_ridge():
+    # the banana: the top of its ridge is at (0.8, 0.64)
+    extremes = extremes_of(
+        lambda u: -(500 * (u[:, 1] - u[:, 0] ** 2) ** 2) - (u[:, 0] - 0.8) ** 2, 2
+    )
+    assert extremes.bound[1, 0] == pytest.approx(0, abs=5e-5)  # 1e-7 of its range
+
+
+def test_jump_across_the_box():
+    # the height falls off at an oblique edge: the best lies on it, at its upper end
+    extremes = extremes_of(
+        lambda u: np.where(u[:, 0] + 0.7 * u[:, 1] < 0.9, u[:, 0] + 0.9 * u[:, 1], -1), 2
+    )
+    assert extremes.bound[1, 0] == pytest.approx(0.2 + 0.9, abs=2e-3)
+
+
+def test_points_without_value():
+    extremes = extremes_of(lambda u: np.where(u[:, 0] > 0.5, np.nan, u[:, 0]), 2)
+    assert extremes.bound[1, 0] == pytest.approx(0.5, abs=1e-6)
+    assert extremes.bound[0, 0] == 0
+
+
+def test_no_value_anywhere():
+    extremes = extremes_of(lambda u: np.full(len(u), np.nan), 2)
+    assert np.isnan(extremes.bound[1, 0])
+    assert np.isnan(extremes.bound[0, 0])
+
+
+def test_several_functions_at_once():
+    extremes = extremes_of(lambda u: np.stack([u[:, 0], -u[:, 1], u[:, 0] * 0], axis=1), 2)
+    assert extremes.bound[1].tolist() == [1, 0, 0]
+    assert extremes.bound[0].tolist() == [0, -1, 0]
+
+
+def test_nothing_varies():
+    extremes = extremes_of(lambda u: np.full(len(u), 3.0), 0)
+    assert (extremes.bound[0, 0], extremes.bound[1, 0]) == (3, 3)
+
+
+class Needle:
+    """A function of the unit square that is 0, but 1 at one point; every point is feasible."""
+
+    def __init__(self, point):
+        self.point = point
+
+    def evaluate(self, u, states):
+        values = (u == self.point).all(axis=1).astype(float)[:, None]
+        return states[0], values, np.full((len(u), 1), 0.5), np.ones(len(u), bool)
+
+
+def test_points_given_stay_where_they_are_while_others_are_spread():
+    """Bounds take in every draw, the last as well: no search finds a needle again."""
+    points = np.random.default_rng(SEED).random((3000, 2))
+    given = points.copy()
+    for row in (0, 2999):
+        pool, _ = widening._evaluate(Needle(points[row].copy()), points, np.zeros(3000))
+        tail = pool[-widening.SPREAD_POINTS :]
+        problem, rng = Needle(points[row].copy()), np.random.default_rng(SEED)
+        spread = widening._spread_points(problem, tail, rng)
+        assert np.array_equal(points, given)
+        assert pool.functions.sum() == 1
+        assert (spread.u != tail.u).any()
