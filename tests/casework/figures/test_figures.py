@@ -465,7 +465,8 @@ class TestCanvas:
         monkeypatch.chdir(tmp_path)
         assert main(line.format("usual").split()) == 0
         (tmp_path / "matplotlibrc").write_bytes(b"font.size: 40\nbogus\n\xff\xfe")
-        code = "import sys; from impact88.interface.commands.cli import main; sys.exit(main(sys.argv[1:]))"
+        cli = "impact88.interface.commands.cli"
+        code = f"import sys; from {cli} import main; sys.exit(main(sys.argv[1:]))"
         done = subprocess.run(
             [sys.executable, "-c", code, *line.format("set").split()],
             env={**os.environ, "MPLBACKEND": "nonsense"},

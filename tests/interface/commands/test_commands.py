@@ -536,6 +536,7 @@ def test_a_missing_library_is_no_bug(
 
 @pytest.mark.parametrize("command", ["solve", "run", "delta-v"])
 def test_help_does_not_wait_for_numpy(command: str) -> None:
-    code = f"import sys; from impact88.interface.commands.cli import main; main(['help', {command!r}]); "
+    code = "import sys; from impact88.interface.commands.cli import main\n"
+    code += f"main(['help', {command!r}]); "
     code += "sys.exit('numpy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True).returncode == 0

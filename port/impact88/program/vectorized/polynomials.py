@@ -1,7 +1,8 @@
 """The functions the listing calls, over arrays: the ROM's reductions and polynomials.
 
-Coefficients and order of the steps are those of `impact88.apple.applesoft.functions`. A branch there is a
-selection here, with both sides computed; where one could fail its operand is replaced first.
+Coefficients and order of the steps are those of `impact88.apple.applesoft.functions`. A branch
+there is a selection here, with both sides computed; where one could fail its operand is replaced
+first.
 """
 
 from collections.abc import Sequence

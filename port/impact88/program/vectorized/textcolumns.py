@@ -1,7 +1,7 @@
 """Decimal texts to arrays of reals and back, as Applesoft reads numbers and PRINT writes them.
 
-The scalar form of these rules is `impact88.apple.applesoft.decimaltext`; here all numbers of a column are
-read and written together, step by step.
+The scalar form of these rules is `impact88.apple.applesoft.decimaltext`; here all numbers of a
+column are read and written together, step by step.
 """
 
 from collections.abc import Callable, Sequence
