@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gzip
 import json
-import re
 from collections.abc import Iterator
 from contextlib import suppress
 from functools import cache, partial
@@ -530,53 +529,6 @@ def test_two_alterations_on_a_machine_read_page_accuse_and_three_do_not(
     result = one(text)
     assert str(result.verdict) == expected
     assert len(result.differing) == altered
-
-
-def hocr(text: str) -> str:
-    """A page as an optical reader saves words with their places, out of order."""
-    words = []
-    for row, line in enumerate(text.split("\n")):
-        for word in re.finditer(r"\S+", line):
-            left, right = 10 * word.start(), 10 * word.end()
-            place = f"bbox {left} {30 * row} {right} {30 * row + 18}"
-            words.append(f"<span class='ocrx_word' title='{place}; x_wconf 90'>{word[0]}</span>")
-    body = "\n".join(words[::2] + words[1::2])
-    return f"<html><body><div class='ocr_page' title='bbox 0 0 800 900'>{body}</div></body></html>"
-
-
-def alto(text: str) -> str:
-    words = []
-    for row, line in enumerate(text.split("\n")):
-        for word in re.finditer(r"\S+", line):
-            place = f'HPOS="{10 * word.start()}" VPOS="{30 * row}" WIDTH="{10 * len(word[0])}"'
-            words.append(f'<String CONTENT="{word[0]}" {place} HEIGHT="18"/>')
-    body = "".join(words[::2] + words[1::2])
-    head = (
-        '<?xml version="1.0" encoding="UTF-8"?>\n<alto xmlns="http://www.loc.gov/standards/alto/">'
-    )
-    return f"{head}<Layout><Page>{body}</Page></Layout></alto>"
-
-
-@pytest.mark.parametrize("form", [hocr, alto])
-def test_words_with_places_are_laid_out(form: Any) -> None:
-    assert one(form(SAMPLE)).verdict is Verdict.IDENTICAL
-    assert one(form(SAMPLE.replace("-8.78", "-3.78"))).verdict is Verdict.DIFFERS
-
-
-@pytest.mark.parametrize("text", ["<alto><Page>", "<alto/>", "<div class='ocr_page'></div>"])
-def test_damaged_words_with_places_are_refused(text: str) -> None:
-    with pytest.raises(UserError, match=r"damaged|no words"):
-        read_printouts(text)
-
-
-@pytest.mark.parametrize("number", ["nan", "inf", "-inf", "1e308", "1e9", "4e-300"])
-@pytest.mark.parametrize("place", ["HPOS", "VPOS", "WIDTH", "HEIGHT"])
-def test_places_that_no_page_has_are_refused_or_laid_out(number: str, place: str) -> None:
-    """In a word alone, and in one of many; never an error of another kind."""
-    for text in (SAMPLE, "KE"):
-        words = re.sub(f'{place}="[0-9]+"', f'{place}="{number}"', alto(text), count=1)
-        with suppress(UserError):
-            read_printouts(words)
 
 
 @pytest.mark.long

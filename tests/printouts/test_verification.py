@@ -16,7 +16,7 @@ from impact88.names import SCENE
 from impact88.printouts.reading.printout import read_printouts
 from impact88.printouts.recovery.search import in_doubles
 from impact88.printouts.recovery.typedtext import stored_and_printed, texts_that_print
-from impact88.printouts.reporting.examination import Verdict, Verification, examine, verify
+from impact88.printouts.reporting.examination import Verdict, Verification, verify
 from impact88.printouts.reporting.verification import lines
 from impact88.program.run import run
 from impact88.program.scene import sample
@@ -328,22 +328,6 @@ def test_a_reply_accuses_only_where_its_prompt_was_read(reply: str, verdict: Ver
     assert not result.differing
     if verdict is Verdict.DIFFERS:
         assert "reply at a prompt differs" in "\n".join(lines(result))
-
-
-def test_readings_of_one_paper_support_each_other() -> None:
-    """What one reader read right, another's slip does not contradict; what all read does."""
-    page = run(sample(1)).page
-    first, second = page.replace("-13.263", "-18.263"), page.replace("19.982", "19.932")
-    for readings, verdict in (
-        ((first, page), Verdict.IDENTICAL_AS_READ),
-        ((page, first), Verdict.IDENTICAL),
-        ((first, second), Verdict.IDENTICAL_AS_READ),
-        ((first, first.replace("INITIAL", "1NITIAL")), Verdict.DIFFERS),
-        ((first, page, first.replace("*****", "KKKKK")), Verdict.INCOMPLETE),
-        ((first, "nothing of it"), Verdict.DIFFERS),
-    ):
-        (result,) = examine("-", seed=readings[1:], data=readings[0].encode()).results
-        assert result.verdict is verdict, readings
 
 
 def test_what_is_shown_of_a_verdict_is_short() -> None:

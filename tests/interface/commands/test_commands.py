@@ -44,7 +44,7 @@ def test_version() -> None:
     )
 
 
-COMMANDS_FOLDER = Path(impact88.__file__).parent / "commands"
+COMMANDS_FOLDER = Path(impact88.__file__).parent / "interface/commands"
 MODULES = {path.stem for path in COMMANDS_FOLDER.glob("*_command.py")}
 
 

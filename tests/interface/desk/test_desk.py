@@ -658,25 +658,6 @@ def test_what_is_no_file_is_refused_before_it_is_read() -> None:
         paper.report([{"name": "x", "data": coded(RUN1)}], {"case": "x" * 201})
 
 
-def hocr(text: str) -> bytes:
-    words = []
-    for row, line in enumerate(text.split("\n")):
-        for word in re.finditer(r"\S+", line):
-            left, right, top = 20 * word.start(), 20 * word.end(), 40 * row
-            place = f"bbox {left} {top} {right} {top + 30}"
-            words.append(f"<span class='ocrx_word' title='{place}'>{word[0]}</span>")
-    return f"<html><body><div class='ocr_page'>{chr(10).join(words)}</div></body></html>".encode()
-
-
-def test_words_with_their_places_are_read_as_the_page_they_make() -> None:
-    told = paper.judge("page.hocr", hocr(RUN1.decode()))
-    assert told["printouts"][0]["title"].startswith("IDENTICAL")
-    assert "ocrx" not in told["text"]
-    for check in told["objects"][0]["fields"]:
-        assert check["start"] is None or told["text"][check["start"] : check["stop"]].strip()
-    assert "PDF" in paper.judge("page.pdf", b"%PDF-")["problem"]
-
-
 def test_a_scan_is_read_itself() -> None:
     pytest.importorskip("PIL", reason="the scan extra is not installed")
     scan = ROOT / "golden/scans/clean-001.png"

@@ -48,14 +48,6 @@ ARGUMENTS = (
     options.flag("--brief", "only verdicts and what differs"),
     options.reads("--scene", "FILE.toml", "the inputs, for a page that has only results"),
     options.reads("--listing", "THEIRS.bas", "compare pages with another copy of the listing"),
-    options.reads(
-        "--text-from",
-        "WORDS",
-        "output of another OCR program for the same page (repeatable): tesseract's TSV, hOCR, ALTO "
-        "or text. For a picture, its input values are tried too",
-        action="append",
-        default=[],
-    ),
     options.writes("--report", "FILE.html", "write a page for the case file"),
     options.sample_option("the inputs are those of a published run"),
     options.setting("change a value of these inputs"),
@@ -75,8 +67,6 @@ def main(args: options.Args) -> int:
         from ...casework.report.frame import check_page_name
 
         check_page_name(args.report)
-    from ...printouts.reading.plaintext import decode
-    from ...printouts.reading.printout import LARGEST_FILE
     from ...printouts.reporting.examination import Verdict, examine
 
     has_inputs = args.scene or args.sample or args.set
@@ -86,11 +76,10 @@ def main(args: options.Args) -> int:
         from ...program.emulated import ListingCopy
 
         copy = ListingCopy(args.listing)
-    readings = [decode(files.read_bytes(path, LARGEST_FILE), path) for path in args.text_from]
     status = 0
     files_examined = []
     for path in args.printouts:
-        file = examine(path, inputs, copy, readings)
+        file = examine(path, inputs, copy)
         files_examined.append(file)
         _show(file, args)
         adverse = any(result.verdict is not Verdict.IDENTICAL for result in file.results)

@@ -59,10 +59,9 @@ def base_name(name: str) -> str:
 
 
 def _text(examined: Examined, data: bytes) -> str | None:
-    """Return the text that places refer to: for words with coordinates, their layout; for a
-    picture, the reading of its only page."""
+    """Return the text that places refer to; for a picture, the reading of its only page."""
     try:
-        return pasted.lay_out(pasted.decode(data, examined.file), examined.file)
+        return pasted.decode(data, examined.file)
     except UserError:
         return examined.results[0].text if len(examined.results) == 1 else None
 

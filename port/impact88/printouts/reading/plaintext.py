@@ -1,15 +1,11 @@
-"""Plain text from what people type, paste and save: encodings, markup, and words with places.
+"""Plain text from what people type, paste and save: encodings and markup.
 
-Markup is blanked out, never shortened, so that every character keeps its line and column. Words
-with their places, as optical readers save them (hOCR, ALTO, TSV), are laid out: those whose middles
-are level stand on one line, and a gap between two becomes as many blanks as it is wide, in widths
-of the page's own letters; line and column then count in that text.
+Markup is blanked out, never shortened, so that every character keeps its line and column.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
-from typing import NamedTuple
 
 from ...errors import UserError
 
@@ -246,106 +242,3 @@ def _gutter_of(line: str, gutter: int) -> int:
     gaps = [gap.end() for gap in re.finditer(r"^\s*|\s{2,}|\t", line) if gap.end() < len(line)]
     nearest = min(gaps, key=lambda end: abs(end - gutter), default=len(line))
     return nearest if abs(nearest - gutter) <= _MAX_RAGGED else len(line)
-
-
-_TAG = re.compile(r"""<([\w:]+)((?:"[^"]*"|'[^']*'|[^"'<>])*)>([^<]*)""")
-_ATTRIBUTE = re.compile(r"""\b([\w:]++)\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s"'>]+))""")
-_BOX = re.compile(r"\bbbox +(-?[0-9]+) +(-?[0-9]+) +(-?[0-9]+) +(-?[0-9]+)")
-_MAX_PLACE = 1e7  # pixels, or tenths of a millimetre
-_MIN_LETTER = 0.01  # width of a letter, in the same units
-_MAX_GAP = 80
-"""Columns of a printer's line: no gap is wider."""
-
-
-class _Word(NamedTuple):
-    """A word and its box; x to the right, y downward."""
-
-    text: str
-    left: float
-    top: float
-    width: float
-    height: float
-
-
-def lay_out(text: str, where: str) -> str:
-    """Return the text of an hOCR or ALTO document or of tesseract's TSV; other text as it is.
-
-    Raises UserError for a document that is damaged or holds no words.
-    """
-    head = text[:4000].lower()
-    table = head.startswith("level\tpage_num\t")
-    if not table and not re.search("<alto|ocr_page|ocrx_word|ocr-system", head):
-        return text
-    pages: dict[str, list[_Word]] = {}
-    try:
-        for page, word, *place in _rows(text) if table else _elements(text):
-            if word.strip():
-                pages.setdefault(page, []).append(_Word(word.strip(), *map(_pixels, place)))
-    except (KeyError, TypeError, ValueError):
-        raise UserError("is damaged: the place of a word is not a number", where) from None
-    if not pages:
-        raise UserError("holds no words with places; expected hOCR, ALTO or TSV of a page", where)
-    return "\n\n".join(map(_lines_of, pages.values()))
-
-
-def _pixels(text: str) -> float:
-    """Return a place as a number. Raises ValueError for one that no page has, nan and inf too."""
-    value = float(text)
-    if not abs(value) < _MAX_PLACE:
-        raise ValueError(text)
-    return value
-
-
-def _rows(text: str) -> Iterator[list[str]]:
-    """Yield the words of TSV: page, text, left, top, width, height."""
-    import csv  # with its dialects heavier than a page needs
-
-    for row in csv.DictReader(text.splitlines(), delimiter="\t", quoting=csv.QUOTE_NONE):
-        place = [row[name] for name in ("left", "top", "width", "height")]
-        yield [row["page_num"], row["text"] or "", *place]
-
-
-def _elements(text: str) -> Iterator[list[str]]:
-    """Yield the words of hOCR and ALTO: page, text, left, top, width, height."""
-    from html import unescape
-
-    page, box = 0, None
-    for name, attributes, after in _TAG.findall(text):
-        values = {
-            key.lower(): unescape("".join(value)) for key, *value in _ATTRIBUTE.findall(attributes)
-        }
-        kind, element = values.get("class", ""), name.lower().rpartition(":")[2]
-        if kind == "ocr_page" or element == "page":
-            page += 1
-        elif kind in ("ocrx_word", "ocr_word"):
-            box = _BOX.search(values.get("title", ""))
-        elif element == "string" and "content" in values:
-            place = [values.get(key, "0") for key in ("hpos", "vpos", "width", "height")]
-            yield [str(page), values["content"], *place]
-        if box and after.strip():
-            left, top, right, bottom = map(int, box.groups())
-            place = [*map(str, (left, top, right - left, bottom - top))]
-            yield [str(page), unescape(after), *place]
-            box = None
-
-
-def _lines_of(words: Sequence[_Word]) -> str:
-    """Return a page's words in lines: middles less than half a height apart are on one line."""
-    lines: list[list[_Word]] = []
-    middle = 0.0
-    for word in sorted(words, key=lambda word: word.top + word.height / 2):
-        before, middle = middle, word.top + word.height / 2
-        if not lines or middle - before >= word.height / 2:
-            lines.append([])
-        lines[-1].append(word)
-    letter = _median([word.width / len(word.text) for word in words])
-    letter = letter if letter > _MIN_LETTER else 1.0
-    text = ""
-    for line in lines:
-        line.sort(key=lambda word: word.left)
-        text += line[0].text
-        for earlier, word in pairwise(line):
-            gap = round((word.left - earlier.left - earlier.width) / letter)
-            text += " " * min(max(1, gap), _MAX_GAP) + word.text
-        text += "\n"
-    return text

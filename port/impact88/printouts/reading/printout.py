@@ -603,7 +603,6 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     """
     if not isinstance(text, str):
         raise UserError(f"{quoted(text)}: expected a text; impact88.verify takes files and bytes")
-    text = pasted.lay_out(text, where)
     stripped = pasted.strip_markup(text)
     columns = [_read_column(part) for part in pasted.columns(stripped)]
     if not all(found for found, _ in columns):

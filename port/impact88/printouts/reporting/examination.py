@@ -7,7 +7,7 @@ and never change it.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from hashlib import sha256
 from operator import attrgetter
 from time import process_time
@@ -20,7 +20,6 @@ from ...errors import UserError, quoted
 from ...messages.arguments import explains_arguments
 from ..judging import beside
 from ..judging.judgement import Judged, Status, Verdict, attribute_to_reader, judge
-from ..judging.readings import judge_together, matching_readings
 from ..reading.plaintext import decode
 from ..reading.printout import LARGEST_FILE, Printout, read_printouts
 from ..recovery.recovered import recover, without_angles
@@ -50,7 +49,7 @@ def examine(
     path: str,
     given: Mapping[str, str] | None = None,
     copy: ListingCopy | None = None,
-    seed: str | Sequence[str] = "",
+    seed: str = "",
     data: bytes | None = None,
 ) -> Examined:
     """Verify every printout in a file.
@@ -63,8 +62,8 @@ def examine(
         Texts of inputs known from elsewhere, by scene name.
     copy : ListingCopy, optional
         Copy of the listing to compare with, in place of the restored one.
-    seed : str or sequence of str
-        Other readings of the picture, or of the paper that the text is a reading of.
+    seed : str
+        A person's reading of a picture, whose scene is tried without deciding anything.
     data : bytes, optional
         The file's bytes, where they are known.
 
@@ -82,15 +81,10 @@ def examine(
             raise UserError(
                 "a scene apart goes with text, not with a picture", files.display_name(path)
             )
-        seeds = [text for text in ([seed] if isinstance(seed, str) else seed) if text]
-        if seeds and copy:
-            raise UserError(
-                "other readings go without a copy of the listing", files.display_name(path)
-            )
         verifications = (
-            _verify_picture(path, data, copy, seeds)
+            _verify_picture(path, data, copy, seed)
             if picture
-            else _verify_text(path, data, given, copy, seeds)
+            else _verify_text(path, data, given, copy)
         )
         for result in verifications:
             result.sha256 = examination.sha256
@@ -101,7 +95,7 @@ def examine(
 
 
 def _verify_picture(
-    path: str, data: bytes, copy: ListingCopy | None, seeds: Sequence[str]
+    path: str, data: bytes, copy: ListingCopy | None, seed: str
 ) -> Iterator[Verification]:
     try:
         from .scanned import verify_pages
@@ -111,12 +105,12 @@ def _verify_picture(
         )
         raise UserError(problem, files.display_name(path)) from None
     if not copy:
-        return map(add_information, verify_pages(path, data, seeds))
+        return map(add_information, verify_pages(path, data, seed))
     from ..judging.copies import pages_of
 
     pages = pages_of(copy)
     pages.check_layout()
-    return (_add_copy(result, pages) for result in verify_pages(path, data, seeds, pages))
+    return (_add_copy(result, pages) for result in verify_pages(path, data, seed, pages))
 
 
 def _verify_text(
@@ -124,7 +118,6 @@ def _verify_text(
     data: bytes,
     given: Mapping[str, str] | None,
     copy: ListingCopy | None,
-    seeds: Sequence[str],
 ) -> Iterator[Verification]:
     file_name = files.display_name(path)
     if len(data) > LARGEST_FILE:
@@ -136,7 +129,6 @@ def _verify_text(
         pages = pages_of(copy)
         text, lines, besides = pages.prepare(text)
     printouts = read_printouts(text, file_name)
-    other_readings = [_readings(other_text) for other_text in seeds]
     for number, paper in enumerate(printouts, 1):
         if copy:
             end = paper.page.place(paper.stop)[0] if number < len(printouts) else len(lines)
@@ -145,10 +137,6 @@ def _verify_text(
             result.renumber(lines)
         else:
             result = _verify_printout(paper, given)
-            if seeds and result.verdict is not Verdict.IDENTICAL:
-                result = _verify_by_readings(
-                    result, [paper, *matching_readings(paper, other_readings)], given
-                )
         result.file, result.number = path, number
         yield result
 
@@ -247,38 +235,6 @@ def _verify_printout(paper: Printout, given: Mapping[str, str] | None) -> Verifi
         *verification.given_findings(given or {}, result),
     ]
     return add_information(result)
-
-
-def _readings(text: str) -> list[Printout]:
-    """Return the printouts in another reading; empty if it has none."""
-    try:
-        return read_printouts(text)
-    except UserError:
-        return []
-
-
-def _verify_by_readings(
-    result: Verification, papers: Sequence[Printout], given: Mapping[str, str] | None
-) -> Verification:
-    """Return the verification of a printout by several readings: DIFFERS only if each reading by
-    itself does."""
-    judgement = judge_together(papers, given)
-    if judgement is None:
-        if len(papers) < 2:
-            result.remarks.append("no other reading given holds this printout")
-        return result
-    if judgement.verdict is Verdict.DIFFERS:
-        alone = [result, *(_verify_printout(paper, given) for paper in papers[1:])]
-        if all(verification_alone.verdict is Verdict.DIFFERS for verification_alone in alone):
-            return result
-        judgement.verdict = Verdict.INCOMPLETE
-    together = _result(judgement)
-    together.findings = [
-        f"read {len(papers)} times: what one reading supports, another does not contradict",
-        *verification.findings(judgement),
-        *verification.given_findings(given or {}, together),
-    ]
-    return add_information(together)
 
 
 def _verify_by_copy(pages: CopyPages, found: Judged) -> Verification:

@@ -30,15 +30,14 @@ from .verification import Verification
 
 
 def verify_pages(
-    path: str, data: bytes, seed: str | Sequence[str] = "", copy: CopyPages | None = None
+    path: str, data: bytes, seed: str = "", copy: CopyPages | None = None
 ) -> Iterator[Verification]:
-    """Yield the verification of each printout in a picture or PDF. ``seed``: other readings, whose
-    scenes are tried without deciding anything; ``copy``: the listing that prints it, in place of
-    the restored one. Raises UserError when no printout is found."""
+    """Yield the verification of each printout in a picture or PDF. ``seed``: a person's reading,
+    whose scenes are tried without deciding anything; ``copy``: the listing that prints it, in place
+    of the restored one. Raises UserError when no printout is found."""
     results: list[Verification] = []
     without, causes = list[int](), ""
-    texts = [seed] if isinstance(seed, str) else seed
-    seeds = [scene for text in texts for scene in scenes_in(text)]
+    seeds = scenes_in(seed)
     with progress(None, "pages read", "page") as meter:
         for page in pages_of(data, path):
             page_results: list[Verification] = []

@@ -409,7 +409,6 @@ _DOUBTS: dict[str, str] = {
     Doubt.RETYPED: "read {whole}; the program prints {program}, never this form",
     Doubt.CUT: "cut off; the program prints {program}",
     Doubt.LEFT_OVER: "{read!r} left over beside {program}",
-    "another reading": "read {read!r} by another reader where the program prints {program}",
     "picture": "nearly as much like {read!r} as {printed!r} ({program})",
 }
 
