@@ -35,6 +35,17 @@ class Status(IntFlag):
     FRICTION_WRONG_DIRECTION = 8192
 
 
+IMPOSSIBLE = (
+    Status.SEPARATING
+    | Status.PULLING
+    | Status.ENERGY_GAINED
+    | Status.E_OUT_OF_RANGE
+    | Status.EM_OUT_OF_RANGE
+)
+"""Bits that no real impact has: it breaks a law. The other bits are remarks: with Table 2's own
+coefficients six of the chapter's eleven staged collisions have more friction than what ends their
+sliding. `mechanics.outcome.broken_laws` decides these bits for arrays of impacts."""
+
 RETIRED = {4: "SLIDING_REVERSED", 128: "FRICTION_DRIVES"}
 """Bits of version 0.2 that compared the sliding before and after the impact. Sliding that the
 normal impulse reverses is possible; FRICTION_ABOVE_CRITICAL and FRICTION_WRONG_DIRECTION replace

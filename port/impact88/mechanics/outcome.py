@@ -27,23 +27,16 @@ from numpy.typing import NDArray
 from ..collision.geometry import Geometry, with_point_masses
 from ..errors import UserError
 from ..names import FINAL_STATE, PIVOT, SCENE, VELOCITIES
-from ..status import Status
+from ..status import IMPOSSIBLE
 from .closedform.solve import quantities, solve
 from .closedform.statusbits import bits, findings, forward_friction
 from .state import CHANGES, CONTACT, COURSES, FORCES, SPEEDS, State
 
 Array = NDArray[Any]
 
-IMPOSSIBLE = (
-    Status.SEPARATING
-    | Status.PULLING
-    | Status.ENERGY_GAINED
-    | Status.E_OUT_OF_RANGE
-    | Status.EM_OUT_OF_RANGE
-    | Status.FRICTION_ABOVE_CRITICAL
-    | Status.FRICTION_WRONG_DIRECTION
-)
-"""Bits of STATUS that no real collision sets."""
+COEFFICIENT_TOLERANCE = 1e-9
+"""E and EM this far outside their range are at its end: a coefficient that follows from velocities
+has their rounding."""
 
 Divided = tuple[dict[str, Array], list[Array]]
 """Results by name, and their divisors: where a divisor is zero, some results are infinite."""
@@ -87,6 +80,71 @@ def moment_ratio(em: Any) -> Any:
         return -em / (1 - 2 * em)
 
 
+@np.errstate(all="ignore")
+def broken_laws(state: State) -> Array:
+    """Return the laws that impacts break, as bits of STATUS (`impact88.status.IMPOSSIBLE`).
+
+    This is the one definition of an impossible impact: its contact points do not approach, the
+    normal impulse pulls, kinetic energy is gained, or E or EM is out of range. What cannot be
+    decided for lack of a value is not broken.
+
+    Parameters
+    ----------
+    state : State
+        Impacts, numbers or arrays that broadcast. E and EM are those among its values, or else
+        those that its velocities and impulses give.
+
+    Returns
+    -------
+    ndarray of uint16
+        The bits, 0 for a possible impact.
+
+    Examples
+    --------
+    >>> scene = impact88.sample(1).numbers()
+    >>> values = {**scene, **impact88.solve(scene), "E": [0.1, -0.1]}
+    >>> broken_laws(State.of_known(values)).tolist()
+    [0, 16]
+    """
+    e, em = (state.values[name] if name in state.values else state[name] for name in ("E", "EM"))
+    laws: dict[str, Any] = {
+        "gn": np.real(state.relative_before[0]),
+        "pn": np.real(state.values["PN"]),
+        "twice_lost": np.real(2 * state.energy_lost),
+        "initial": np.real(state.initial_energy),
+        "e": _within_range(e, 0.0, 1.0),
+        "em": np.where(state.here.point, 0.0, _within_range(em, -1.0, 0.0)),
+    }
+    remarks = dict.fromkeys(_ARGUMENTS_OF_REMARKS, np.array(np.nan))
+    conditions = findings(**{**remarks, **laws})
+    return np.asarray(bits({bit: conditions[bit] for bit in IMPOSSIBLE}), np.uint16)
+
+
+_ARGUMENTS_OF_REMARKS = (
+    "arm_a",
+    "arm_b",
+    "da",
+    "db",
+    "friction_mu",
+    "forward",
+    "pivot_pn",
+    "limit",
+    "gt",
+    "turning",
+    "yielding",
+    "condition",
+    "sum_of_velocities",
+)
+"""Arguments of `findings` that only bits outside `IMPOSSIBLE` use."""
+
+
+def _within_range(coefficient: Any, low: float, high: float) -> Array:
+    """Return a coefficient without the rounding by which it lies outside its range."""
+    value = np.real(np.asarray(coefficient))
+    nearest = np.clip(value, low, high)
+    return np.where(abs(value - nearest) <= COEFFICIENT_TOLERANCE, nearest, value)
+
+
 def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Array:
     """Return STATUS of an impact; a bit that cannot be decided for lack of a value is clear.
 
@@ -117,8 +175,8 @@ def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Ar
             # an energy that is not known must not set NOT_FINITE
             twice_lost=np.where(np.isnan(lost), 0.0, lost),
             initial=np.where(np.isnan(initial), 1.0, initial),
-            e=e,
-            em=np.where(here.point, 0.0, em),
+            e=_within_range(e, 0.0, 1.0),
+            em=np.where(here.point, 0.0, _within_range(em, -1.0, 0.0)),
             friction_mu=friction_mu,
             forward=forward_friction(friction_mu, pivot_pt),
             pivot_pn=pivot_impulse["PN"],

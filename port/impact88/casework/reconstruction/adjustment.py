@@ -21,7 +21,7 @@ from ...collision.mappings import within_limits
 from ...collision.uncertain import Uncertain, fixed_value
 from ...errors import UserError
 from ...mechanics.closedform.solve import share_typed, solve
-from ...mechanics.outcome import IMPOSSIBLE, outcome
+from ...mechanics.outcome import outcome
 from ...mechanics.state import (
     COURSES,
     CRUSH,
@@ -42,7 +42,7 @@ from ...names import (
     VELOCITIES,
     check_names,
 )
-from ...status import Status
+from ...status import IMPOSSIBLE, Status
 from .evidence import Evidence, weigh
 from .laws import describe_laws, missed_laws
 from .quadrics import MAX_EQUATIONS, Paths, follow_paths, quadratic_equations

@@ -10,11 +10,11 @@ from typing import Any, Self
 from ...collision.geometry import clock, within_doubles
 from ...collision.units import RULES, VELOCITY, System, display_values
 from ...errors import UserError
-from ...mechanics.outcome import IMPOSSIBLE, forces, moment_ratio, outcome
+from ...mechanics.outcome import forces, moment_ratio, outcome
 from ...mechanics.state import CHANGES, COURSES, FORCES
 from ...messages.plaintable import decimals_for, format_fixed, number, paragraph, plain, table
 from ...names import CHAPTER, FINAL_STATE, PIVOT, RESULTS, SCENE, VELOCITIES, quantity
-from ...status import sentences
+from ...status import IMPOSSIBLE, sentences
 from .unknowns import BADLY_CONDITIONED, Solution, solve_for
 
 _ORDER = (*SCENE, *RESULTS, *CHAPTER)
