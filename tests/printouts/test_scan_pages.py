@@ -37,7 +37,6 @@ from impact88.printouts.scan.holding import (
     state,
 )
 from impact88.printouts.scan.layout import Place, Sheet
-from impact88.printouts.scan.rates import COUNTS, NONE, sentences, table
 from impact88.printouts.scan.scenes import MAX_CELL_COST, Candidate, Read, confirm_inputs
 from impact88.printouts.scan.typeface import READABLE
 from impact88.program.run import run
@@ -741,28 +740,6 @@ def test_another_letter_is_near_to_that_letters_mean() -> None:
     assert state(cell("", distance=100.0, other_distance=KIND + 1)) == "doubtful"
 
 
-def test_the_rates_count_every_page_that_was_offered() -> None:
-    """The two sentences against sums of the table made here, and no count twice."""
-    assert len({count[:2] for count in COUNTS}) == len(COUNTS)
-    genuine = np.array([count[2:] for count in COUNTS if count.alteration == NONE]).sum(axis=0)
-    altered = np.array([count[2:] for count in COUNTS if count.alteration != NONE]).sum(axis=0)
-    said = sentences()
-    assert f"Of {genuine.sum()} genuine pages offered" in said
-    assert f"{genuine[3]} were wrongly said to differ" in said
-    assert f"of {altered.sum()} altered pages, {altered[3]} were found to differ" in said
-    assert f"{altered[0]} passed as IDENTICAL" in said
-    assert (
-        f"0 failures (wrongly said to differ) in {genuine.sum()} genuine pages bound the failure "
-        f"rate at 1 in {genuine.sum() // 3} (95 % confidence)" in said
-    )
-    worse = sentences((*COUNTS, COUNTS[-1]._replace(alteration="added", identical=2)))
-    assert "2 failures (passed as IDENTICAL) in " in worse
-    assert worse.count("bound the failure rate") == 1
-    assert "no probability" in said
-    assert "drawn by a computer" in said
-    assert sum(row[2] for row in table()) == genuine.sum() + altered.sum()
-
-
 @pytest.mark.parametrize(
     ("verdicts", "printouts", "counted"),
     [
@@ -778,15 +755,11 @@ def test_the_worst_printout_of_a_page_counts(verdicts, printouts, counted) -> No
     assert scanrates.verdict_of(row) == counted
 
 
-def test_the_table_of_rates_stands_in_the_report_and_a_copy_is_named(tmp_path) -> None:
-    from impact88.casework.report.casefile import report
+def test_a_copy_that_prints_a_scanned_page_is_named(tmp_path) -> None:
     from impact88.files import packaged_text
     from impact88.program.emulated import LISTING, ListingCopy
 
     path = str(ROOT / "golden" / "scans" / FEW[0])
-    page = report([examine(path)])
-    assert "Appendix: pages with known truth" in page
-    assert sentences() in page
     listing = tmp_path / "office.bas"
     listing.write_text(packaged_text("impact88.legacy", LISTING))
     (found,) = examine(path, copy=ListingCopy(str(listing))).results

@@ -261,7 +261,7 @@ def test_json_one_object_a_printout_and_exit_status(tmp_path) -> None:
     objects = [json.loads(line) for line in done.stdout.splitlines()]
     assert [one.get("verdict") for one in objects] == ["identical", "identical", "differs", None]
     assert "cannot be read" in objects[3]["error"]
-    assert {one["schema"] for one in objects} == {"impact88/verify/2"}
+    assert {one["schema"] for one in objects} == {"impact88/verify/3"}
     assert done.stderr.count("\n") == 1
     (one,) = [
         json.loads(line) for line in impact88("verify", "--json", str(bad)).stdout.splitlines()

@@ -6,7 +6,7 @@
 PAGES is a folder of pictures with ``truth.jsonl.gz``, an object a picture: ``file``, ``kind``,
 ``prints`` and, of an altered page, ``altered`` or ``how``. Pages come in an order that is shuffled
 once and for all, so that a run cut short is a sample; each is a line of RESULTS.jsonl, and pages
-already there are passed over. ``table`` prints what `scan.rates.COUNTS` holds.
+already there are passed over. ``table`` prints how many pages have each verdict.
 """
 
 import gzip
@@ -99,7 +99,7 @@ def verdict_of(row: dict[str, Any]) -> str:
 
 
 def table(paths: Sequence[str]) -> Iterator[str]:
-    """Yield the lines of `COUNTS` for some results."""
+    """Yield a heading, and a line for each kind of alteration and quality of picture."""
     counts: Counter[tuple[str, str, str]] = Counter()
     for path in paths:
         for line in Path(path).read_text(encoding="utf-8").splitlines():
@@ -107,12 +107,10 @@ def table(paths: Sequence[str]) -> Iterator[str]:
             counts[alteration_of(row), quality_of(row), verdict_of(row)] += 1
     kinds = ["none", "replaced", "added", "erased", "moved"]
     pairs = {key[:2] for key in counts}
+    yield ",".join(("alteration", "quality", *reversed(_ORDER)))
     for kind, quality in sorted(pairs, key=lambda pair: (kinds.index(pair[0]), pair[1])):
-        numbers = [
-            counts[kind, quality, verdict]
-            for verdict in ("IDENTICAL", "IDENTICAL_AS_READ", "INCOMPLETE", "DIFFERS")
-        ]
-        yield f'    Count("{kind}", "{quality}", {", ".join(map(str, numbers))}),'
+        numbers = [str(counts[kind, quality, verdict]) for verdict in reversed(_ORDER)]
+        yield ",".join((kind, f'"{quality}"', *numbers))
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ NUMBERS = {
     "vectors": 2,
     "compare": 1,
     "conformance": 1,
-    "verify": 2,
+    "verify": 3,
     "selfcheck": 1,
     "witness": 1,
     "bounds": 2,

@@ -21,7 +21,6 @@ from ..scan.grid import Grid
 from ..scan.holding import Cell, state
 from ..scan.ink import Floats
 from ..scan.picture import Page, pages_of
-from ..scan.rates import sentences
 from ..scan.residue import Mark
 from ..scan.scenes import scenes_in
 from ..scan.sheets import Leaf, read_page
@@ -44,13 +43,13 @@ def verify_pages(
             unread = 0
             for paper in papers_of(page.picture):
                 scenes = [*seeds, *scenes_in(page.text)]
-                reading = read_page(paper.grey, scenes, paper.coloured, copy)
-                unread += not reading.leaves
-                causes = causes or ("" if reading.leaves else "; ".join(paper.remarks))
-                for leaf in reading.leaves:
+                leaves = read_page(paper.grey, scenes, paper.coloured, copy)
+                unread += not leaves
+                causes = causes or ("" if leaves else "; ".join(paper.remarks))
+                for leaf in leaves:
                     number = len(results) + len(page_results) + 1
                     result = _verification(path, number, page, paper, leaf, copy)
-                    result.exhibit = partial(exhibit, paper.grey, reading.leaves, leaf)
+                    result.exhibit = partial(exhibit, paper.grey, leaves, leaf)
                     result.remarks += [f"page {page.number}: {remark}" for remark in paper.remarks]
                     page_results.append(result)
             if page_results and unread:
@@ -122,7 +121,7 @@ def _verification(
     result = Verification(path, number, line, leaf.judged.verdict, scene, fields)
     result.converted = is_converted
     result.replies, result.page = [*_replies(leaf)], page.number
-    result.text, result.stop, result.basis = text, len(text), sentences()
+    result.text, result.stop = text, len(text)
     for check in result.fields:
         if check.printed and check.name in starts:
             check.start = starts[check.name]

@@ -87,8 +87,6 @@ class Verification:
     cells, marks : list of dict
         Of a picture, the cells of the printed characters, and all ink in and near the printout that
         the program does not print.
-    basis : str
-        Of a picture, how sure its margins are.
     exhibit : callable, optional
         Returns the pictures of the cells for the report.
     page : int, optional
@@ -131,7 +129,6 @@ class Verification:
     labels: list[LabelCheck] = field(default_factory=list)
     cells: list[dict[str, Any]] = field(default_factory=list)
     marks: list[dict[str, Any]] = field(default_factory=list)
-    basis: str = ""
     exhibit: Callable[[], dict[str, Any]] | None = field(default=None, repr=False)
     page: int | None = None
     start: int = 0
@@ -201,7 +198,7 @@ class Verification:
         if self.copy:
             described["listing"] = self.copy
         if self.cells:
-            described |= {"cells": self.cells, "marks": self.marks, "basis": self.basis}
+            described |= {"cells": self.cells, "marks": self.marks}
         return with_schema("verify", described)
 
 
@@ -373,31 +370,20 @@ _MARK_WORDS = {
     "mark": "a mark like no character of the page",
     "stroke": "ink larger than a character: pen, stamp or stain",
     "coloured ink": "ink of another colour than the page's type",
-    "straight line": "a straight line",
-    "hole": "a hole",
-    "edge of the sheet": "a dark edge of the sheet",
 }
-_COUNTED = {"straight line": "lines", "hole": "holes", "edge of the sheet": "dark edges"}
 
 
 def _marks(marks: Sequence[Mapping[str, Any]]) -> Iterator[str]:
-    """Yield a sentence for each mark that the program does not print; marks that do not bear on the
-    verdict are counted."""
+    """Yield a sentence for each mark that the program does not print."""
     for mark in marks:
-        if mark["bears"] or mark["kind"] not in _COUNTED:
-            x, y, _, _ = mark["box"]
-            place = f"line {mark['line']}, cell {mark['cell']}" if mark["line"] else ""
-            place = place or f"{x:.0f} pixels from the left, {y:.0f} from the top"
-            sentence = f"page {mark['page']}, {place}: {_MARK_WORDS[mark['kind']].format(**mark)}"
-            is_in_margin = mark["beside"] and not mark["line"] and not mark["touches"]
-            sentence += ", in or beside a line of the printout" if is_in_margin else ""
-            touches = ", ".join(mark["touches"])
-            yield sentence + (
-                f"; touches {touches}" if touches and mark["kind"] not in _TYPED else ""
-            )
-    for kind, words in _COUNTED.items():
-        if count := sum(mark["kind"] == kind and not mark["bears"] for mark in marks):
-            yield f"{count} {words if count > 1 else kind}, away from the printed lines"
+        x, y, _, _ = mark["box"]
+        place = f"line {mark['line']}, cell {mark['cell']}" if mark["line"] else ""
+        place = place or f"{x:.0f} pixels from the left, {y:.0f} from the top"
+        sentence = f"page {mark['page']}, {place}: {_MARK_WORDS[mark['kind']].format(**mark)}"
+        is_in_margin = mark["beside"] and not mark["line"] and not mark["touches"]
+        sentence += ", in or beside a line of the printout" if is_in_margin else ""
+        touches = ", ".join(mark["touches"])
+        yield sentence + (f"; touches {touches}" if touches and mark["kind"] not in _TYPED else "")
 
 
 _TYPED = ("character", "type")

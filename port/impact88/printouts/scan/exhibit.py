@@ -14,7 +14,6 @@ from PIL import Image as Pillow
 
 from .holding import DIFFERS, HOLDS, Cell, state
 from .ink import Floats, Image
-from .rates import HEADINGS, sentences, table
 from .sheets import Leaf
 from .typeface import BLANK, sample_of, typeface_of
 
@@ -39,8 +38,7 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
     dict
         ``page``, ``width`` and ``height`` of the picture; ``cells`` and ``marks``, each with its
         corners on it; ``strips``, the cells in doubt, and the number of ``more``; ``bars``, the
-        histogram of the margins in 60 steps from -1.5 to 1.5; ``basis`` and ``rates``, the verdicts
-        on pages with known truth.
+        histogram of the margins in 60 steps from -1.5 to 1.5.
     """
     upright = np.rot90(grey, leaf.grid.turns)
     height, width = upright.shape
@@ -79,8 +77,6 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
         "bars": (counts / max(counts.max(initial=1), 1)).tolist(),
         "margins": len(margins),
         "limits": (HOLDS, DIFFERS),
-        "basis": sentences(),
-        "rates": {"headings": HEADINGS, "rows": [*table()]},
     }
 
 

@@ -8,8 +8,7 @@ squared distance of a cell from a mean glyph and D that of two means, the cell's
 
     (d(predicted) - d(other)) / D(predicted, other),    the largest over the other characters:
 
--1 is the predicted glyph itself, +1 the other. How often verdicts from margins are right is counted
-in `rates`.
+-1 is the predicted glyph itself, +1 the other.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -62,8 +61,7 @@ FIT = 0.6  # smallest fraction of the ink in a blank that the character explains
 _SMALL = frozenset(".,-:'`*")
 # The next five were chosen on 314 pages that were settled: 160 scans and photographs, and 154 drawn
 # afterwards. Of 42,572 digits none has a margin above -0.23; of 427,482 trials of a digit as
-# another of its page two, of one photograph, are below +0.30 (+0.27). How pages fare that are
-# offered, settled or not, is counted in `rates`.
+# another of its page two, of one photograph, are below +0.30 (+0.27).
 HOLDS = -0.12  # margin of a number's cell below which it is the predicted character
 DIFFERS = 0.3  # margin of a number's cell from which it is another character
 LABEL = 0.1  # margin of a label's cell below which it holds

@@ -33,7 +33,7 @@ _MIN_TYPED = 3  # characters of a line of type
 _MIN_ALIKE = 0.5  # fraction of a typed line's cells that are like a character of the page
 _LONG = 0.4  # fraction of the sheet's side from which a thin mark is a straight line
 _TYPED_CELLS = (Added.CHARACTER, Added.BESIDE)
-_MAX_MARKS = 40  # listed on a page; more are counted
+_MAX_MARKS = 40  # listed on a page, those that bear on the verdict first
 
 
 class Kind(StrEnum):
@@ -48,9 +48,8 @@ class Kind(StrEnum):
     STROKE = "stroke"
     """Pen, stamp, ring: a mark larger than a character."""
     COLOURED = "coloured ink"
-    LINE = "straight line"
-    HOLE = "hole"
-    EDGE = "edge of the sheet"
+    PAPER = "straight line, hole or edge of the sheet"
+    """Of the paper, not of the page: it is not listed."""
 
 
 _TEXT = frozenset({Kind.CHARACTER, Kind.TYPE})
@@ -98,18 +97,6 @@ class Mark:
 
 
 @dataclass
-class Residue:
-    """Ink on a sheet besides its printouts.
-
-    ``marks`` lists up to `_MAX_MARKS`, ``more`` counts the others; ``specks`` counts speckles.
-    """
-
-    marks: list[Mark] = field(default_factory=list)
-    more: int = 0
-    specks: int = 0
-
-
-@dataclass
 class Explained:
     """Ink that a grid's printouts explain: their cells, and the lines of the grid they take."""
 
@@ -123,8 +110,8 @@ class Explained:
         return typeface_of(sample, ["" if cell.cut else cell.predicted for cell in self.cells])
 
 
-def residue_of(ink: Image, coloured: Image | None, explained: Sequence[Explained]) -> Residue:
-    """Return the marks of an upright sheet that its printouts do not explain.
+def residue_of(ink: Image, coloured: Image | None, explained: Sequence[Explained]) -> list[Mark]:
+    """Return the marks of an upright sheet that its printouts do not explain, up to `_MAX_MARKS`.
 
     Parameters
     ----------
@@ -150,25 +137,23 @@ def residue_of(ink: Image, coloured: Image | None, explained: Sequence[Explained
         _mask_of(outlines, scale, is_dark.shape), iterations=_SPILL
     )
     in_bands = _mask_of([*_line_outlines(explained)], scale, is_dark.shape)
-    residue = Residue([*_added_marks(explained), *lines_of_type])
+    marks = [*_added_marks(explained), *lines_of_type]
     regions = [(is_dark & ~is_explained, Kind.STROKE)]
     if coloured is not None:
         regions.append((resize(np.ascontiguousarray(coloured), scale) > _DARK, Kind.COLOURED))
     for is_left, kind in regions:
         for mark, area in _regions(is_left, kind, in_bands):
             if area < _SPECK * CELL_WIDTH**2:
-                residue.specks += 1
                 continue
             reach = is_dark | is_left if kind is Kind.STROKE else is_left
             mark.touches = _touched_fields(mark, reach, is_left, cells, scale)
             mark.corners = mark.corners / scale
-            residue.marks.append(mark)
-    residue.marks += _small_marks(explained, residue.marks)
-    _find_holes(residue.marks, pitch)
-    residue.marks.sort(key=lambda mark: (not mark.bears, float(mark.corners[0, 1])))
-    residue.more = max(0, len(residue.marks) - _MAX_MARKS)
-    del residue.marks[_MAX_MARKS:]
-    return residue
+            marks.append(mark)
+    marks += _small_marks(explained, marks)
+    _find_holes(marks, pitch)
+    marks = [mark for mark in marks if mark.kind is not Kind.PAPER]
+    marks.sort(key=lambda mark: (not mark.bears, float(mark.corners[0, 1])))
+    return marks[:_MAX_MARKS]
 
 
 def _added_marks(explained: Sequence[Explained]) -> Iterator[Mark]:
@@ -320,10 +305,9 @@ def _regions(is_left: Mask, kind: Kind, bands: Mask) -> Iterator[tuple[Mark, int
         is_at_edge = min(top, start, height - foot, width - stop) <= 2
         if kind is not Kind.COLOURED:
             is_long = across > _LONG * width or down > _LONG * height
-            if is_at_edge and not (is_beside and area < CELL_WIDTH**2):
-                mark.kind = Kind.EDGE
-            elif is_long and min(across, down) < 2 * CELL_WIDTH:
-                mark.kind = Kind.LINE
+            is_edge = is_at_edge and not (is_beside and area < CELL_WIDTH**2)
+            if is_edge or (is_long and min(across, down) < 2 * CELL_WIDTH):
+                mark.kind = Kind.PAPER
             elif max(across, down) < 2 * CELL_WIDTH:
                 mark.kind = Kind.MARK
         yield mark, area
@@ -337,8 +321,8 @@ def _find_holes(marks: Sequence[Mark], pitch: float) -> None:
         is_round = 0.6 < size[0] / max(size[1], 1.0) < 1.7 and size.max() < 4 * pitch
         is_alike = np.abs(sizes - size).max(axis=1) < 0.4 * size.max()
         in_column = is_alike & (np.abs(middles[:, 0] - middle[0]) < 1.5 * pitch)
-        if is_round and in_column.sum() > 3 and mark.kind in (Kind.MARK, Kind.STROKE, Kind.EDGE):
-            mark.kind = Kind.HOLE
+        if is_round and in_column.sum() > 3 and mark.kind in (Kind.MARK, Kind.STROKE):
+            mark.kind = Kind.PAPER
 
 
 def _touched_fields(

@@ -17,7 +17,7 @@ from .grid import FEWEST_POINTS, Grid, grids_of
 from .holding import Added, Cell, CellJudgement, compare_cells, judge_cells, state
 from .ink import Floats, Image, Points, ink_of, points_of, without_pen
 from .layout import Sheet, sheets_of
-from .residue import Explained, Kind, Mark, Residue, residue_of
+from .residue import Explained, Kind, Mark, residue_of
 from .scenes import Candidate, Copy, Read, confirm_inputs, scene_of
 from .typeface import BLANK, read_numbers
 
@@ -99,21 +99,13 @@ class Leaf:
         return float(np.hypot(*gaps))
 
 
-@dataclass
-class PageReading:
-    """A page as read: its printouts, and what else is on it."""
-
-    leaves: list[Leaf] = field(default_factory=list)
-    residue: Residue = field(default_factory=Residue)
-
-
 def read_page(
     grey: Image,
     seeds: Sequence[dict[str, str]] = (),
     coloured: Image | None = None,
     copy: Copy | None = None,
-) -> PageReading:
-    """Return all printouts of a page, upright or turned by quarters, and all else that is on it.
+) -> list[Leaf]:
+    """Return all printouts of a page, upright or turned by quarters, each with what else is there.
 
     Parameters
     ----------
@@ -127,7 +119,7 @@ def read_page(
         The program that printed the page, if not the restored listing.
     """
     if min(grey.shape) < _MIN_SIDE:
-        return PageReading()
+        return []
     ink = ink_of(grey)
     best = _Layout([])
     for layout in _layouts(ink):
@@ -136,7 +128,8 @@ def read_page(
         if layout.upright:
             break
     leaves = [leaf for pair in best.grids for leaf in _leaves(*pair, seeds, copy)]
-    return PageReading(leaves, _rest(ink, coloured, leaves, copy))
+    _add_marks(ink, coloured, leaves, copy)
+    return leaves
 
 
 class _Layout(NamedTuple):
@@ -186,10 +179,12 @@ def _lay_out(ink: Image, points: Points, turns: int) -> _Layout:
     return _Layout([(grid, sheets_of(grid.odds(), grid.tops)) for grid in grids])
 
 
-def _rest(ink: Image, coloured: Image | None, leaves: Sequence[Leaf], copy: Copy | None) -> Residue:
-    """Return what the printouts of a page do not explain; the nearest printout gets each mark."""
+def _add_marks(
+    ink: Image, coloured: Image | None, leaves: Sequence[Leaf], copy: Copy | None
+) -> None:
+    """Add what the printouts of a page do not explain to ``marks`` of the nearest one."""
     if not any(leaf.cells for leaf in leaves):
-        return Residue()
+        return
     turns = leaves[0].grid.turns
     grids = {id(leaf.grid): leaf.grid for leaf in leaves}
     explained = []
@@ -198,8 +193,7 @@ def _rest(ink: Image, coloured: Image | None, leaves: Sequence[Leaf], copy: Copy
         cells = [cell for leaf in on_grid for cell in leaf.cells]
         explained.append(Explained(grid, cells, {line for leaf in on_grid for line in leaf.lines}))
     upright = None if coloured is None else np.rot90(coloured, turns)
-    residue = residue_of(np.rot90(ink, turns), upright, explained)
-    for mark in residue.marks:
+    for mark in residue_of(np.rot90(ink, turns), upright, explained):
         leaf = min(leaves, key=lambda leaf: leaf.distance_to(mark.corners))
         scene = leaf.found.scene if leaf.found else {}
         if copy and mark.kind is Kind.TYPE and copy.prints(mark.sure, scene):
@@ -208,7 +202,6 @@ def _rest(ink: Image, coloured: Image | None, leaves: Sequence[Leaf], copy: Copy
         if mark.bears and leaf.judged.verdict is Verdict.IDENTICAL:
             leaf.judged.verdict = Verdict.IDENTICAL_AS_READ
     _find_claims(leaves)
-    return residue
 
 
 def _find_claims(leaves: Sequence[Leaf]) -> None:
