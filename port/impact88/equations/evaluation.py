@@ -32,7 +32,8 @@ _OPERATIONS: dict[str, Callable[..., Any]] = {
     "*": np.multiply,
     "/": np.divide,
     NEGATIVE: np.negative,
-    "**": lambda x, k: np.square(x) if isinstance(k, int) and k == 2 else x**k,
+    # in floats: integers have no negative powers
+    "**": lambda x, k: np.square(x) if isinstance(k, int) and k == 2 else np.float_power(x, k),
     "<": np.less,
     "<=": np.less_equal,
     ">": np.greater,
@@ -64,6 +65,17 @@ def evaluate(
     if isinstance(node, str):
         return np.pi if node == "pi" else names[node]
     return node
+
+
+def evaluate_edit(
+    node: Expression, names: Columns, cache: Mapping[int, Any] = MappingProxyType({})
+) -> Any:
+    """Return the value of an expression that a program was edited to hold, NaN where it has none:
+    an edit of an edit may ask for what no operation can do."""
+    try:
+        return evaluate(node, names, cache)
+    except (ArithmeticError, TypeError, ValueError):
+        return np.nan
 
 
 class _Columns(dict[str, Any]):
@@ -182,7 +194,7 @@ class Run:
         for k, new_sides in replacements:
             row = _Row(names, k)
             for column, side in zip(sides, new_sides, strict=True):
-                result = evaluate(side, row)
+                result = evaluate_edit(side, row)
                 column[..., k, :] = result[..., 0, :] if np.ndim(result) > 1 else result
         return sides
 
@@ -232,7 +244,9 @@ class Run:
         for node in reversed([node for side in statement.sides for node in nodes(side)]):
             if isinstance(node, tuple):
                 cache[id(node)] = evaluate(node, names, cache)
-        values = [[evaluate(side, names, cache) for side in edits[place][key]] for place in places]
+        values = [
+            [evaluate_edit(side, names, cache) for side in edits[place][key]] for place in places
+        ]
         results = [
             sides[0] if statement.target else np.subtract(*sides) for sides in (base, *values)
         ]

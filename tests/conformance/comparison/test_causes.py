@@ -7,20 +7,23 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Sequence
 
 import bugs
 import heldout
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from impact88.conformance.comparison.compare import Comparison, compare
 from impact88.conformance.comparison.constants import KNOWN, fit_constants
 from impact88.conformance.comparison.diagnosis import OTHER_ROWS
 from impact88.conformance.comparison.trials import Judge, Program
 from impact88.conformance.comparison.vectors import CASEWORK, scenes
-from impact88.equations.edits import node_edits, variants
-from impact88.equations.evaluation import Run
-from impact88.equations.spelling import spellings
+from impact88.equations.edits import Edit, node_edits, readings, spelling_edits, variants
+from impact88.equations.evaluation import Run, chunks
+from impact88.equations.spelling import nodes, operands, spellings
 from impact88.names import FINAL_VELOCITIES, SCENE
 
 SWEEP = os.environ.get("IMPACT88_SWEEP")
@@ -124,6 +127,53 @@ def test_constants_are_told_apart() -> None:
     values = sorted([*KNOWN.values(), *(1 / value for value in KNOWN.values())])
     apart = np.diff(np.log(values))
     assert ((apart > 2e-6) | (apart < 1e-15)).all()
+
+
+def leaves_numbers(edit: Edit) -> bool:
+    """Whether an edit leaves an operation of numbers alone, as 0**2."""
+    operations = (node for sides in edit.sides.values() for side in sides for node in nodes(side))
+    return any(
+        all(isinstance(part, int | float) for part in operands(node))
+        for node in operations
+        if operands(node)
+    )
+
+
+def run_all_edits(title: str, first: Edit, edits: Sequence[Edit]) -> None:
+    """Run edits of a program that has one already: none may end in an error."""
+    scene = {name: np.array([float(row[name]) for row in ROWS[:2]]) for name in SCENE}
+    spelling = spellings()[title].with_edits(first.sides)
+    run = Run(spelling, scene)
+    with np.errstate(all="ignore"):
+        distinct = run.distinct_edits([spelling.compose(edit.sides) for edit in edits])
+        for part in chunks(len(distinct), 2):
+            results = run.run_edits([changes for _, changes in distinct[part]])
+            assert all(np.asarray(column).dtype in (float, bool) for column in results.values())
+
+
+@pytest.mark.long
+@settings(max_examples=6, deadline=None)
+@given(st.sampled_from(sorted(spellings())), st.data())
+def test_an_edit_of_an_edited_program_gives_numbers_or_none(
+    title: str, data: st.DataObject
+) -> None:
+    models = [edit for edit in variants() if edit.title == title]
+    edits = [*models, *readings(), *spelling_edits(title)]
+    first = data.draw(st.integers(0, len(edits) - 1).map(edits.__getitem__))
+    edited = spellings()[title].with_edits(first.sides)
+    run_all_edits(title, first, [*readings(), *node_edits(edited)])
+
+
+@pytest.mark.parametrize("title", spellings() if SWEEP else ["impulse ratio"])
+@pytest.mark.long
+def test_operations_of_numbers_alone_may_be_edited(title: str) -> None:
+    """0 for a name leaves 0**2, and a sign there 0**-2, which integers do not have."""
+    firsts = [edit for edit in spelling_edits(title) if leaves_numbers(edit)]
+    assert firsts
+    for first in firsts:
+        edited = spellings()[title].with_edits(first.sides)
+        seconds = [edit for edit in node_edits(edited) if edit.sides.keys() <= first.sides.keys()]
+        run_all_edits(title, first, seconds)
 
 
 @pytest.mark.long

@@ -144,6 +144,33 @@ def test_a_tolerance_of_ones_own(tmp_path) -> None:
     assert compared(tmp_path, made, rtol=1e-7, causes=False).differing > 0
 
 
+@pytest.mark.parametrize("share", [1e-11, 1e-12])
+def test_a_row_that_agrees_but_for_its_last_digits_is_given_no_cause(
+    tmp_path, share: float
+) -> None:
+    """Its own numbers, to fewer digits, come before any other row's, and before any mistake."""
+    signs = np.random.default_rng(5).choice((-1.0, 1.0), (len(FINAL_VELOCITIES), len(ROWS)))
+    made = {
+        n: OURS[n] * (1 + share * sign) for n, sign in zip(FINAL_VELOCITIES, signs, strict=True)
+    }
+    for columns in (made, {**OURS, "VAX": made["VAX"]}):
+        done = compared(tmp_path, exactly(columns))
+        assert done.differing > 0
+        assert not done.programs
+        assert all(re.fullmatch("agrees to 1[0-9] digits", cause) for cause in done.causes)
+        assert "likely cause" not in done.summary
+
+
+@pytest.mark.parametrize("text", ["inf", "-Infinity", "1.#INF"])
+def test_an_infinite_number_is_an_answer_and_a_wrong_one(tmp_path, text: str) -> None:
+    made = exactly(OURS)
+    made["VAX"][:5] = [text] * 5
+    done = compared(tmp_path, made)
+    assert (done.agreeing, done.differing, done.silent) == (len(ROWS) - 5, 5, [])
+    assert done.causes == {diagnosis.INFINITE: 5}
+    json.dumps(done.as_json(), allow_nan=False)
+
+
 # --- what is wrong ---------------------------------------------------------------------------
 
 

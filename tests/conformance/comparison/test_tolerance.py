@@ -17,7 +17,7 @@ import pytest
 import strangers
 
 from impact88.bench import populations
-from impact88.conformance.comparison import agreement
+from impact88.conformance.comparison import agreement, tolerance
 from impact88.conformance.comparison.agreement import DIFFER, LOST
 from impact88.conformance.comparison.vectors import CASEWORK, CLASSES, casework, scenes
 from impact88.equations.roundoff import elimination_errors, running_errors
@@ -25,7 +25,7 @@ from impact88.equations.spelling import spellings
 from impact88.mechanics.accuracy.errorbound import scales
 from impact88.mechanics.accuracy.reference import thirty_digits
 from impact88.mechanics.closedform.solve import solve
-from impact88.names import FINAL_VELOCITIES, SCENE
+from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 from impact88.program.scene import sample
 
 SWEEP = os.environ.get("IMPACT88_SWEEP")
@@ -178,3 +178,20 @@ def test_digits_that_tell_nothing_are_not_agreement() -> None:
     assert grades[1, 0] == DIFFER
     sizes = scales(scene, {name: column.astype(float) for name, column in solve(scene).items()})
     assert sizes["VAX"][0] > 13
+
+
+def test_no_bound_of_an_ordinary_scene_reaches_the_one_that_stands_for_it() -> None:
+    """What is farther off is wrong whatever its own bound is, which is then not computed."""
+    rows = [scene for _, _, scene in scenes(1500, seed=21)]
+    scene = {name: np.array([float(row[name]) for row in rows]) for name in SCENE}
+    with np.errstate(all="ignore"):
+        ours = {name: column.astype(float) for name, column in solve(scene).items()}
+        sizes = scales(scene, ours)
+        best, _ = tolerance.best_error_bounds(scene, ours, sizes)
+        names = [name for name in RESULTS if name not in ("STATUS", "COND")]
+        bounds = tolerance.largest_error_bounds(scene, ours, sizes, best, names)
+        usual = tolerance.is_ordinary(scene, ours["COND"])
+        assert usual.mean() > 0.5
+        for name in names:
+            measured = usual & (sizes[name] > 0)
+            assert (bounds[name] / sizes[name])[measured].max() < tolerance.ORDINARY_BOUND / 3

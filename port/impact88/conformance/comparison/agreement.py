@@ -40,10 +40,12 @@ EQUATIONS = {
 """Number -> subject."""
 _EQUATION_RTOL = 1e-13  # rounding in evaluating an equation, relative to the sum of its terms
 _NO_RESULT = re.compile(
-    r"|null|none|n/a|#[A-Z]+[/0-9A-Z]*[!?]?|[+-]?(nan|inf|infinity|1\.#[A-Z]+[0-9]*)(\([a-z0-9]*\))?",
+    r"|null|none|n/a|#[A-Z]+[/0-9A-Z]*[!?]?|[+-]?(nan|1\.#(IND|QNAN|SNAN)[0-9]*)(\([a-z0-9]*\))?",
     re.IGNORECASE,
 )
-"""Cells that programs write for no result: spreadsheets' errors, C's -nan(ind), infinity."""
+"""Cells that programs write for no result: spreadsheets' errors, C's -nan(ind)."""
+_INFINITE = re.compile(r"([+-]?)(inf|infinity|1\.#INF[0-9]*)", re.IGNORECASE)
+"""Cells that programs write for a number beyond all others, which is no refusal."""
 HALF = 0.5 + 1e-9  # rounding to the last digit written, in units of that digit
 
 COLUMNS = (*SCENE, *(f"{row}_{name}" for row in NEIGHBOUR_SHIFTS for name in SCENE))
@@ -106,7 +108,8 @@ class Case(NamedTuple):
             # a size of 0 is no measure: take the other program's number
             measure = np.where(self.sizes > 0, self.sizes, np.abs(self.values))
             relative = np.minimum(np.where(off > 0, off / measure, 0.0), np.finfo(float).max)
-            absent = ~(np.isfinite(self.values) & np.isfinite(self.ours))
+            # an infinite number is an answer, and no finite one's
+            absent = np.isnan(self.values) | ~np.isfinite(self.ours)
             differ = off > written + self.loose
             lost = relative > self.no_digit
             within = (absent, differ, lost, off <= self.tight, off <= written + self.tight)
@@ -159,8 +162,12 @@ def _compare_scenes(
         tight = rtol * sizes + 2 * np.spacing(np.abs(ours))
     loose = tight.copy()
     per_unit = np.max([best_bounds[name] / scales[name] for name in FINAL_VELOCITIES], 0)
-    beyond = (np.abs(values - ours) > tight + units * HALF).any(0)
-    if rtol is None and (rows := np.flatnonzero(beyond)).size:
+    off = np.abs(values - ours) - units * HALF
+    beyond = (off > tight).any(0)
+    is_far = (off > tolerance.ORDINARY_BOUND * sizes) & (sizes > 0)
+    # a number that is far off in an ordinary scene needs no bound
+    is_plain = tolerance.is_ordinary(scene, solved["COND"]) & (~(off > tight) | is_far).all(0)
+    if rtol is None and (rows := np.flatnonzero(beyond & ~is_plain)).size:
         # these bounds take long: only for rows that are beyond the tight ones
         part_scene, part_solved, part_scales, part_bounds = (
             {name: column[rows] for name, column in table.items()}
@@ -192,7 +199,8 @@ def _compare_scenes(
 def read_theirs(rows: Rows, name: str, units: TableUnits) -> tuple[Floats, Floats]:
     """Return a column of results in base units, and the units of their last digits.
 
-    The unit is 0 for binary numbers. An empty cell is NaN and counts as not given; cells that are
+    The unit is 0 for binary numbers. An empty cell is NaN and counts as not given; one that says
+    infinity is infinite; cells that are
     not numbers are added to ``rows.bad``. Raises UserError for an array without a number for each
     row.
     """
@@ -206,6 +214,9 @@ def read_theirs(rows: Rows, name: str, units: TableUnits) -> tuple[Floats, Float
             continue
         text = "" if cell is None else str(cell).strip()
         if _NO_RESULT.fullmatch(text):
+            continue
+        if infinite := _INFINITE.fullmatch(text):
+            values[index] = float(f"{infinite[1]}inf")
             continue
         try:
             values[index] = double(text) * factor

@@ -29,7 +29,7 @@ from ...tables.rows import BadCell, Reader, Rows
 from ...tables.table import format_of, open_reader
 from . import agreement
 from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, Case
-from .diagnosis import LOOKED_INTO, UNKNOWN, Cause, Diagnosis, Unexplained
+from .diagnosis import AGREES, LOOKED_INTO, UNKNOWN, Cause, Diagnosis, Unexplained
 from .trials import Program
 from .vectors import FAILURE
 
@@ -247,7 +247,8 @@ class Comparison:
         if skipped := sum(group.rows for group in self.not_compared.values()):
             line += f", {skipped} not compared"
         for cause, count in self.causes.most_common(1):
-            line += f"; likely cause of {count}: {cause}"
+            is_cause = not cause.startswith(AGREES)
+            line += f"; likely cause of {count}: {cause}" if is_cause else f"; {count}: {cause}"
         return line
 
     def as_json(self) -> dict[str, Any]:

@@ -43,6 +43,8 @@ TRUNCATED = "cut off at the digits given, not rounded"
 APPLESOFT = "rounding in 32 bits, as Applesoft's"
 SINGLE = "rounding in single precision"
 OTHER_ROWS = "results of other rows: the order of the rows, or of the results, is another"
+INFINITE = "infinite where there is a result"
+AGREES = "agrees to"
 UNKNOWN = "unexplained"
 IN_THESE_ROWS = ", in these rows only"  # appended to a cause that agreeing rows contradict
 
@@ -68,6 +70,9 @@ _MAX_BITS_PER_ROW = 40.0  # more than any of these, so that two rows of doubles 
 _SAME_RTOL = 1e-9
 """Relative difference of results of the same program: more than the rounding of another way to
 compute them, no more than the effect of 3.14159265 for pi."""
+MAX_SLIGHT_DIFFERENCE = 1e-10
+"""Relative difference up to which a row agrees but for its last digits, which is given no cause:
+half of what 32 bits of mantissa leave, a twentieth of the effect of 3.14159265 for pi."""
 _MAX_FRACTION_LEFT = 0.1  # of a difference, in a row that is explained
 _MIN_AFFECTED = 0.5  # fraction of the rows able to show coarser arithmetic that it must affect
 _TYPICAL_FRACTION_OF_BOUND = 1 / 64  # error of coarser arithmetic, relative to its bound
@@ -137,15 +142,20 @@ class Diagnosis:
 
     @np.errstate(all="ignore")
     def __init__(self, case: Case) -> None:
-        self._case, self._wrong = case, (wrong := case.wrong)
-        self._causes = np.where(wrong, UNKNOWN, "").astype(object)
+        self._case, self._disagreeing = case, case.wrong
+        self._causes = np.where(self._disagreeing, UNKNOWN, "").astype(object)
         self.evidence: list[Cause] = []
         self.programs: list[Program] = []
+        self._explain_by_own_row()
+        wrong = self._wrong = self._open
         violations = violated_equations(case)
         self.equations = {
             number: (int(wrong.sum()), int((rows & wrong).sum()))
             for number, rows in violations.items()
         }
+        self.unexplained: dict[str, Unexplained] = {}
+        if not wrong.any():
+            return
         self._measure_differences()
         if not self._explain_by_digits():
             self._explain_by_search()
@@ -153,17 +163,33 @@ class Diagnosis:
                 self._explain_by_order()
             if self._open.sum() > (1 - MIN_FIT) * wrong.sum():
                 self._explain_by_precision()
-        self.unexplained = self._count_unexplained(violations) if self._open.any() else {}
+        if self._open.any():
+            self.unexplained = self._count_unexplained(violations)
         self._describe_unexplained(violations)
+
+    def _explain_by_own_row(self) -> None:
+        """Name the rows whose results are their own to fewer digits, and those that are infinite:
+        neither is another row's, nor a mistake's."""
+        self._causes[self._disagreeing & np.isinf(self._case.values).any(0)] = INFINITE
+        differences = self._relative_differences().max(0, initial=0.0)
+        for row in np.flatnonzero(self._open & (differences <= MAX_SLIGHT_DIFFERENCE)):
+            digits = math.floor(-math.log10(max(differences[row], 1e-16)) + 1e-9)
+            self._causes[row] = f"{AGREES} {digits} digits"
+
+    def _relative_differences(self) -> Floats:
+        """Return the relative differences beyond the digits written, (results, rows)."""
+        case = self._case
+        off, sizes = np.abs(case.values - case.ours), case.sizes
+        beyond = np.maximum(off - case.units * HALF, 0.0)
+        relative = np.where(sizes > 0, beyond / sizes, beyond != 0)
+        return np.where(np.isfinite(off), relative, 0.0)
 
     def _measure_differences(self) -> None:
         """Set each row's largest relative difference beyond the digits written, the part of it that
         digits and rounding leave open, and the limits within which a program explains a result."""
         case, wrong = self._case, self._wrong
         off, sizes, written = np.abs(case.values - case.ours), case.sizes, case.units * HALF
-        beyond = np.maximum(off - written, 0.0)
-        relative = np.where(sizes > 0, beyond / sizes, beyond != 0)
-        relative = np.where(np.isfinite(off), relative, 0.0)
+        relative = self._relative_differences()
         worst = relative.argmax(0), np.arange(wrong.size)
         self._differences = relative[worst]
         digits = np.where(np.isfinite(off) & (sizes > 0), written / sizes, 0.0)
@@ -205,7 +231,7 @@ class Diagnosis:
     @property
     def causes(self) -> list[str]:
         """The cause of each row that disagrees."""
-        return list(self._causes[self._wrong])
+        return list(self._causes[self._disagreeing])
 
     @property
     def _open(self) -> Bools:
@@ -345,7 +371,7 @@ class Diagnosis:
         for step in range(_MAX_TIES):
             place = order[np.minimum(lowest + step, wrong.size - 1)]
             within_limits = np.abs(case.values - case.ours[:, place]) <= limits
-            within_limits |= ~(np.isfinite(case.values) & np.isfinite(case.ours[:, place]))
+            within_limits |= np.isnan(case.values) | ~np.isfinite(case.ours[:, place])
             matching_rows |= within_limits.all(0)
         if (matching_rows & wrong).sum() >= MIN_FIT * wrong.sum():
             self._causes[matching_rows & wrong] = OTHER_ROWS
@@ -476,7 +502,7 @@ def _match_cut(case: Case, cut: Callable[[Floats], Floats]) -> Bools:
     tolerance = 1e-9 * np.maximum(np.abs(ours), 1.0)
     below, above = cut(ours - tolerance), cut(ours + tolerance)
     fits = (np.abs(steps - below) < 1e-6) | (np.abs(steps - above) < 1e-6)
-    return np.asarray((fits | ~np.isfinite(case.values)).all(0))
+    return np.asarray((fits | np.isnan(case.values)).all(0))
 
 
 def _match_printout(case: Case, wrong: Bools) -> Bools:
@@ -497,7 +523,7 @@ def _match_printout(case: Case, wrong: Bools) -> Bools:
     for name, column in zip(case.names, case.values[:, places], strict=True):
         printed = replayed.printed(name).tolist()
         values = np.array([float(text) if text else np.nan for text in printed])
-        rows[places] &= ~np.isfinite(column) | (values == column)
+        rows[places] &= np.isnan(column) | (values == column)
     rows[others] = (rows[places].mean() >= MIN_FIT) & _match_cut(case, np.floor)[others]
     return rows
 

@@ -104,6 +104,32 @@ def largest_error_bounds(
     return {name: bounds[name] + best[name] / 2 for name in {*wanted, *FINAL_VELOCITIES}}
 
 
+# what makes a scene ordinary
+_MAX_CONDITION = 1e3
+_MAX_MASS_RATIO = 100.0
+_MAX_INERTIA_RATIO = 1e3
+_MAX_ARM = 10.0  # in radii of gyration
+_MIN_DISTANCE_FROM_HALF = 0.05  # of e_m, at 1/2 of which the moment has no solution
+ORDINARY_BOUND = 1e-9
+"""Relative difference that no bound of an ordinary scene reaches; among 70,000 the largest was
+a sixth of it."""
+
+
+def is_ordinary(scene: Columns, condition: Floats) -> Bools:
+    """Return the rows in which no correct program's results are `ORDINARY_BOUND` from ours."""
+    with np.errstate(all="ignore"):
+        bodies, ia, ib = scene["M"] != 4, scene["IA"], scene["IB"]
+        masses, inertias = scene["MA"] / scene["MB"], np.where(bodies, ia / ib, 1.0)
+        is_usual = (scene["MA"] > 0) & (condition < _MAX_CONDITION) & (scene["MU"] != PIVOT)
+        for ratio, largest in ((masses, _MAX_MASS_RATIO), (inertias, _MAX_INERTIA_RATIO)):
+            is_usual &= (ratio <= largest) & (ratio * largest >= 1)
+        for mass, arm, inertia in (("MA", "DA", ia), ("MB", "DB", ib)):
+            largest_moment = _MAX_ARM**2 * inertia
+            is_usual &= ~bodies | (scene[mass] * scene[arm] ** 2 <= largest_moment)
+        is_usual &= ~bodies | (np.abs(scene["EM"] - 0.5) >= _MIN_DISTANCE_FROM_HALF)
+    return np.asarray(is_usual)
+
+
 def _result_bounds(scene: Columns, errors: Mapping[str, Bounded]) -> dict[str, Floats]:
     """Return the error bounds of results, NaN for those that a spelling does not compute."""
     count = len(next(iter(scene.values())))
