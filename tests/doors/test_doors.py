@@ -214,7 +214,7 @@ def write_csv(path: Path, columns: Mapping[str, np.ndarray], delimiter: str = ",
         writer.writerows(zip(*texts, strict=True))
 
 
-FORMS = ("csv.gz", "jsonl.gz", "npz", "parquet", "feather", "xlsx")
+FORMS = ("csv.gz", "jsonl.gz", "npz", "parquet", "xlsx")
 
 
 @pytest.fixture(params=["pyarrow", "standard library"])
@@ -237,7 +237,7 @@ def test_csv(csv_by: str, delimiter: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("form", FORMS)
 def test_a_format_out_and_in_again(form: str, tmp_path: Path) -> None:
-    if form in ("parquet", "feather"):
+    if form == "parquet":
         pytest.importorskip("pyarrow")
     if form == "xlsx":
         pytest.importorskip("openpyxl")

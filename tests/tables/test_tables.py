@@ -499,7 +499,7 @@ def test_infinite_mass_goes_into_every_format(tmp_path):
     (tmp_path / "a.csv").write_text(csv_text(rows))
     outputs = ["--outputs", "VAX,STATUS"]
     texts = []
-    for form in ("csv", "jsonl", "npz", "parquet", "feather"):
+    for form in ("csv", "jsonl", "npz", "parquet"):
         there, back = tmp_path / f"b.{form}", tmp_path / "c.csv"
         assert main(["solve", str(tmp_path / "a.csv"), "-o", str(there), *outputs]) == 0
         assert main(["solve", str(there), "-o", str(back), "--results-only", *outputs]) == 0
@@ -545,7 +545,7 @@ def test_missing_columns_are_named():
         check_scene_columns([n for n in SCENE if n not in ("GA", "PA", "M")])
 
 
-@pytest.mark.parametrize("form", ["feather", "parquet", "xlsx", "npz"])
+@pytest.mark.parametrize("form", ["parquet", "xlsx", "npz"])
 def test_a_damaged_file_is_no_fault_of_ours(tmp_path, monkeypatch, capsys, form):
     """Bytes changed at random: status 0 to 2 and a line that names the file, never a bug."""
     pytest.importorskip("pyarrow")

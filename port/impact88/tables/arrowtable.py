@@ -1,4 +1,4 @@
-"""Parquet and Arrow's own files (Feather): typed columns, read and written a block at a time.
+"""Parquet: typed columns, read and written a block at a time.
 
 Needs pyarrow (extra ``arrow``). Numbers are taken as they are stored, texts and decimals by their
 digits. What was text in a CSV becomes doubles where it is a scene's, and stays text elsewhere.
@@ -60,30 +60,17 @@ def _scene_column(pa: Any, rows: Rows, name: str, array: Any, where: str) -> Col
 
 @contextmanager
 def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[Reader]:
-    """Open a Parquet or Arrow file. Raises UserError if it is not one."""
+    """Open a Parquet file. Raises UserError if it is not one."""
     pa = library("pyarrow", "arrow", "this format")
+    from pyarrow import parquet
+
     with ExitStack() as stack:
         with decoding(path):
-            if form == "parquet":
-                from pyarrow import parquet
-
-                file = stack.enter_context(parquet.ParquetFile(path, memory_map=True))
-                headings, count = file.schema_arrow.names, file.metadata.num_rows
-                batches = file.iter_batches(BLOCK_ROWS, use_threads=pa.cpu_count() > 1)
-            else:
-                file = pa.ipc.open_file(stack.enter_context(pa.memory_map(path)))
-                headings, count = file.schema.names, None
-                batches = _slices(file)
+            file = stack.enter_context(parquet.ParquetFile(path, memory_map=True))
+            headings, count = file.schema_arrow.names, file.metadata.num_rows
+            batches = file.iter_batches(BLOCK_ROWS, use_threads=pa.cpu_count() > 1)
         names = scene_names(headings, path, results)
         yield Reader(names, _blocks(pa, names, _validate_each(batches, path), path), count)
-
-
-def _slices(file: Any) -> Iterator[Any]:
-    for at in range(file.num_record_batches):
-        batch = file.get_batch(at)
-        batch.validate(full=True)  # before it is cut: offsets of a damaged file lead anywhere
-        for first in range(0, batch.num_rows, BLOCK_ROWS):
-            yield batch.slice(first, BLOCK_ROWS)
 
 
 def _validate_each(batches: Iterable[Any], path: str) -> Iterator[Any]:
@@ -105,7 +92,7 @@ def _encodable(text: str) -> str:
 
 @contextmanager
 def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
-    """Write a Parquet or Arrow file, whose schema is the first block's."""
+    """Write a Parquet file, whose schema is the first block's."""
     pa = library("pyarrow", "arrow", "this format")
     from pyarrow import parquet
 
@@ -122,8 +109,6 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
         return pa.array(cells, pa.float64() if name in SCENE else None)
 
     def writer(schema: Any) -> Any:
-        if form != "parquet":
-            return pa.ipc.new_file(file, schema)
         # measured numbers hardly repeat: a dictionary of them takes thrice the time and room
         repeating = [field.name for field in schema if not pa.types.is_floating(field.type)]
         return parquet.ParquetWriter(file, schema, use_dictionary=repeating)

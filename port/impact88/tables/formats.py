@@ -74,13 +74,6 @@ ROWS = (
         noun="a table of typed columns",
     ),
     Format(
-        name="feather",
-        endings=(".feather", ".arrow"),
-        module="arrowtable",
-        summary="Arrow's own files, with impact88[arrow]",
-        noun="a table of typed columns",
-    ),
-    Format(
         name="xlsx",
         endings=(".xlsx",),
         module="excel",

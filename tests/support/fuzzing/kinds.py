@@ -548,7 +548,7 @@ def _typed_tables() -> dict[str, bytes]:
         table = os.path.join(folder, "t.csv")
         with open(table, "w", encoding="utf-8") as file:
             file.write("\n".join(rows))
-        for ending in ("parquet", "feather", "xlsx", "csv.gz"):
+        for ending in ("parquet", "xlsx", "csv.gz"):
             there = os.path.join(folder, f"t.{ending}")
             with contextlib.redirect_stderr(io.StringIO()):
                 if main(["solve", table, "-o", there, "--outputs", "VAX"]) == 0:

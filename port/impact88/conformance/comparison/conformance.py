@@ -305,7 +305,7 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
     theirs : str
         The table; ``-`` is standard input.
     form : str
-        Its format: csv, jsonl, npz, parquet, feather or xlsx.
+        Its format: csv, jsonl, npz, parquet or xlsx.
     encoding : str, optional
         Encoding of a CSV or JSON Lines file that is not UTF-8.
 
