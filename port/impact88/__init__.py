@@ -20,7 +20,7 @@ Old printouts and other programs
 Today's work, in double precision
     solve               final velocities and the rest, over arrays
     prepared, Prepared      the same for many short calls: root finders, samplers
-    solve_frame         the same for pandas, polars, pyarrow, xarray, records, lists of dicts
+    solve_frame         the same for pandas, polars, pyarrow, records, lists of dicts
     bounds, Bounds, Uncertain   results of values known within limits
     solve_for, Solution     Equations 13-18 for any unknowns, over arrays
     reconstruct, Reconstruction, Reconstructions

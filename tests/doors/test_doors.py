@@ -118,12 +118,6 @@ def pyarrow_table() -> Any:
     return impact88.solve_frame(pytest.importorskip("pyarrow").table(COLUMNS))
 
 
-def xarray_dataset() -> Any:
-    xarray = pytest.importorskip("xarray")
-    dataset = xarray.Dataset({name: ("scene", column) for name, column in COLUMNS.items()})
-    return impact88.solve_frame(dataset)
-
-
 def dask_frame() -> Any:
     dask = pytest.importorskip("dask.dataframe")
     frame = dask.from_pandas(pytest.importorskip("pandas").DataFrame(COLUMNS), npartitions=3)
@@ -179,7 +173,6 @@ IN_PYTHON: dict[str, Callable[[], Any]] = {
     "pandas columns": pandas_series,
     "polars": polars_frame,
     "pyarrow": pyarrow_table,
-    "xarray": xarray_dataset,
     "dask": dask_frame,
     "out=": fresh_arrays,
     "out= in shared memory": shared_memory,

@@ -48,13 +48,7 @@ def dicts() -> Any:
     return [dict(zip([*COLUMNS, "note"], row, strict=True)) for row in rows]
 
 
-def dataset() -> Any:
-    xarray = pytest.importorskip("xarray")
-    columns = {**COLUMNS, "note": np.array(NOTE)}
-    return xarray.Dataset({name: ("scene", column) for name, column in columns.items()})
-
-
-KINDS = [pandas_frame, polars_frame, pyarrow_table, records, dicts, dataset]
+KINDS = [pandas_frame, polars_frame, pyarrow_table, records, dicts]
 
 
 def column(frame: Any, name: str) -> np.ndarray:
@@ -111,17 +105,6 @@ def test_texts_count_as_input_reads_them() -> None:
     assert solved["VAX"] == pytest.approx(-13.2626556835327)
     (solved,) = solve_frame([{**row, "MA": "1_0"}], "VAX,STATUS")
     assert (np.isnan(solved["VAX"]), solved["STATUS"]) == (True, Status.NOT_FINITE)
-
-
-def test_xarray_joins_dimensions_by_name() -> None:
-    xarray = pytest.importorskip("xarray")
-    scene = {name: float(text) for name, text in impact88.sample(1).items()}
-    mu, e = np.linspace(0.1, 0.9, 3), np.linspace(0, 0.3, 2)
-    frame = xarray.Dataset({**scene, "MU": ("mu", mu), "E": ("e", e)})
-    solved = solve_frame(frame, "VAX")["VAX"]
-    assert set(solved.dims) == {"mu", "e"}
-    expected = impact88.solve({**scene, "MU": mu[:, None], "E": e[None, :]}, "VAX")["VAX"]
-    assert np.array_equal(solved.transpose("mu", "e").values, expected)
 
 
 def test_a_scene_gives_what_the_frame_lacks() -> None:

@@ -1,5 +1,5 @@
 """Frames of any kind in, the same kind out: pandas, polars and pyarrow through narwhals (extra
-``frames``), xarray by the names of its dimensions, structured arrays, lists of dicts, dicts.
+``frames``), structured arrays, lists of dicts, dicts.
 
 None of these libraries is imported here unless the frame handed over is its own.
 """
@@ -51,12 +51,11 @@ def solve_frame(
 
     Parameters
     ----------
-    frame : DataFrame, Table, Dataset, structured array, list of dict or dict of columns
-        A pandas or polars DataFrame, a pyarrow Table, an xarray Dataset and so on, with columns
-        named as the scene's (`impact88.names.SCENE`), with their units where they have any (``UX
-        [mph]``): the results are then in the same system and say so (``DVA [mph]``). Further
-        columns stay as they are; a result takes the place of a column with its name. A pandas index
-        is kept.
+    frame : DataFrame, Table, structured array, list of dict or dict of columns
+        A pandas or polars DataFrame, a pyarrow Table and so on, with columns named as the scene's
+        (`impact88.names.SCENE`), with their units where they have any (``UX [mph]``): the
+        results are then in the same system and say so (``DVA [mph]``). Further columns stay as they
+        are; a result takes the place of a column with its name. A pandas index is kept.
     outputs : sequence of str, or str, optional
         The result names wanted; all by default.
     scene : mapping of str to str or float, optional
@@ -117,16 +116,15 @@ def solve_frame(
         )
         return {heading(name): results[name] for name in table.headings(list(results))}
 
-    is_dataset = type(frame).__module__.partition(".")[0] == "xarray"
     result: Any
     if isinstance(frame, np.ndarray):
         result = _extend_structured(frame, solved)
-    elif isinstance(frame, Mapping) and not is_dataset:
+    elif isinstance(frame, Mapping) and not _is_dataset(frame):
         result = {**frame, **solved(list(frame), lambda name: frame[name])}
     elif isinstance(frame, list | tuple):
         result = _dicts(frame, solved)
     else:
-        result = (_dataset if hasattr(frame, "data_vars") else _narwhals)(frame, solved)
+        result = _narwhals(frame, solved)
     for remark in amiss:
         place = "1 row, at" if remark.rows == 1 else f"{remark.rows:,} rows, the first at"
         text = f"{place} position {remark.first}: {remark.text}"
@@ -221,24 +219,6 @@ def _dicts(rows: Sequence[Any], solved: Solver) -> list[dict[str, Any]]:
     return [{**row, **{n: c[at] for n, c in results.items()}} for at, row in enumerate(rows)]
 
 
-def _dataset(frame: Any, solved: Solver) -> Any:
-    """An xarray Dataset: dimensions of the same name belong together."""
-    import xarray
-
-    names = [heading(name) for name in scene_names(list(frame)) if name in SCENE]
-    lazy = [name for name in names if frame[name].chunks is not None]
-    if lazy:
-        raise UserError(
-            f"{lazy[0]} is not computed yet; expected frame.compute(), or "
-            "xarray.map_blocks(impact88.solve_frame, frame)"
-        )
-    spread = xarray.broadcast(*(frame[name] for name in names))
-    columns = {n: column.values for n, column in zip(names, spread, strict=True)}
-    dims = spread[0].dims if spread else ()
-    results = solved(names, columns.__getitem__)
-    return frame.assign({name: (dims, array) for name, array in results.items()})
-
-
 def _narwhals(frame: Any, solved: Solver) -> Any:
     nw, table = _table(frame)
     make = partial(nw.new_series, native_namespace=nw.get_native_namespace(table))
@@ -247,16 +227,23 @@ def _narwhals(frame: Any, solved: Solver) -> Any:
     return table.with_columns(*(make(*column) for column in spread)).to_native()
 
 
+def _is_dataset(frame: Any) -> bool:
+    """Return True for xarray's Dataset, which is a mapping, and of arrays of several dimensions."""
+    return hasattr(frame, "data_vars")
+
+
 def _table(frame: Any) -> tuple[Any, Any]:
     """Return narwhals, and its view of a frame. Raises UserError for what is none."""
+    if _is_dataset(frame):
+        raise UserError("is an xarray Dataset; expected frame.to_dataframe().reset_index()")
     nw = library("narwhals.stable.v1", "frames", f"a frame of type {type(frame).__name__}")
     try:
         return nw, nw.from_native(frame, eager_only=True)
     except TypeError:
         raise UserError(
             f"{type(frame).__module__}.{type(frame).__name__} is not a frame of values "
-            "already computed; expected a DataFrame of pandas or polars, a pyarrow Table, an "
-            "xarray Dataset, a structured array or a list of dicts"
+            "already computed; expected a DataFrame of pandas or polars, a pyarrow Table, a "
+            "structured array or a list of dicts"
         ) from None
 
 
@@ -276,14 +263,12 @@ def read_frame(frame: Any) -> Iterator[Reader]:
     columns: dict[Any, Any]
     if isinstance(frame, np.ndarray):
         columns = {n: frame[n].reshape(-1) for n in _names_of(frame)}
-    elif isinstance(frame, Mapping) and not hasattr(frame, "data_vars"):
+    elif isinstance(frame, Mapping) and not _is_dataset(frame):
         columns = {n: _column(n, cells) for n, cells in frame.items()}
     elif isinstance(frame, list | tuple):
         rows = _check_dicts(frame)
         keys = dict.fromkeys(name for row in rows for name in row)
         columns = {n: _column(n, [row.get(n) for row in rows]) for n in keys}
-    elif hasattr(frame, "data_vars"):
-        raise UserError("is an xarray Dataset; expected frame.to_dataframe().reset_index()")
     else:
         _, table = _table(frame)
         columns = {name: _cells(table, name) for name in table.columns}
