@@ -88,10 +88,6 @@ def test_figures(rows, tmp_path):
     assert len([text for text in drawn.texts() if text.role == "x label"]) == 2
     roles = [item.role for item in drawn.items]
     assert roles.count("memory roof") == 2
-    drawn = figure.error_distribution(rows)
-    roles = [item.role for item in drawn.items]
-    assert roles.count("bound") == 4
-    assert roles.count("closed-form") == 2 * (40 + 1)  # every scene, and a line through all
     canvas.save(drawn, str(tmp_path / "f.svg"))
 
 
@@ -106,7 +102,7 @@ def test_components():
 
 
 def test_command(tmp_path, capsys):
-    picture, errors = tmp_path / "f.svg", tmp_path / "e.svg"
+    picture = tmp_path / "f.svg"
     asked = [
         "bench",
         "--populations",
@@ -118,7 +114,7 @@ def test_command(tmp_path, capsys):
         "--quick",
         "--components",
     ]
-    asked += ["--json", "--figure", str(picture), "--errors-figure", str(errors)]
+    asked += ["--json", "--figure", str(picture)]
     assert main(asked) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["seed"] == 1988
@@ -126,10 +122,9 @@ def test_command(tmp_path, capsys):
     assert found["results"][0]["scenes_per_second"] > 0
     assert len(found["components"]) == 2 * len(COMPONENTS)
     assert picture.read_text().startswith("<?xml")
-    assert errors.read_text().startswith("<?xml")
     assert main(["bench", "--scenes", "0"]) == 2
     assert main(["bench", "--populations", "easy"]) == 2
-    assert main(["bench", "--errors-figure", "f.doc"]) == 2
+    assert main(["bench", "--figure", "f.doc"]) == 2
 
 
 def test_quick_is_one_screen(capsys):

@@ -1,4 +1,4 @@
-"""The benchmark's figures: error against time, against condition, and its distribution."""
+"""The benchmark's figure: error against time."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..casework.figures.charts import Panel, key, powers
-from ..casework.figures.drawing import GREY, ORANGE, VERMILION, Box, Drawing, Text, wrap_text
-from ..mechanics.accuracy.errorbound import APPLESOFT, DOUBLE, relative_bounds
+from ..casework.figures.drawing import GREY, Box, Drawing, Text, wrap_text
 from .measure import Row
 from .methods import METHODS
 from .populations import POPULATIONS
@@ -19,14 +18,8 @@ _PANELS_PER_ROW = 3
 # ends of the axes
 _TIMES = (1e-9, 2e-2)  # s a scene: 1/20 of memory alone, and ten times what 50 digits take
 _ERRORS = (1e-17, 1e4)  # an error of 0 is drawn at the lower end
-_CONDITIONS = (1.0, 1e16)  # no condition is below 1; at 1e16 no digit of a double is left
-_SHARES = (1e-4, 1.0)  # one scene of 10,000
 _LABEL = "relative error of the final velocities"
 _MARKS = {method.key: (method.mark, method.colour) for method in METHODS}
-SCATTERED = ("applesoft", "lapack-fill", "closed-form")
-"""Methods whose errors are shown scene by scene."""
-MOST_MARKS = 250
-"""Scenes shown of each method; more cover each other."""
 
 _Axis = tuple[tuple[float, float], str, Sequence[tuple[float, str]]]
 
@@ -97,48 +90,3 @@ def work_precision(rows: Sequence[Row], roof: float) -> Drawing:
     low = top - _ROW_HEIGHT * -(-len(names) // _PANELS_PER_ROW)
     note = "mark: median; end of line: largest; dashed: what memory alone takes"
     return _finish(drawing, low, rows, note)
-
-
-def error_distribution(rows: Sequence[Row]) -> Drawing:
-    """Two panels for each population: every scene's error, by its `errorbound.scales`, against its
-    COND, the estimate `relative_bounds` of each precision as a line; and the share of scenes with a
-    larger error."""
-    rows = [row for row in rows if row["method"] in SCATTERED]
-    title = "Error against condition, and the distribution of errors"
-    drawing = Drawing(WIDTH, title, "Errors against condition and their distribution")
-    top = drawing.heading() - 11
-    for name in dict.fromkeys(row["population"] for row in rows):
-        first = name == rows[0]["population"]
-        errors = _panel(
-            drawing,
-            Box(12, top - 38, 84, top),
-            [name],
-            (_CONDITIONS, "condition", powers(1, 1e16, 4)),
-            (_ERRORS, "error by the scene's speeds and spins" if first else "", _ERROR_TICKS),
-        )
-        for unit, colour in ((DOUBLE, ORANGE), (APPLESOFT, VERMILION)):
-            line = _clip_error(relative_bounds(_CONDITIONS, unit))
-            errors.line(_CONDITIONS, line, colour, 0.4, dash=(1.2, 0.6), role="bound")
-        shares = _panel(
-            drawing,
-            Box(98, top - 38, 170, top),
-            [],
-            (_ERRORS, "the same error", _ERROR_TICKS),
-            (_SHARES, "share of scenes with a larger error" if first else "", powers(1e-4, 1, 1)),
-        )
-        for row in [row for row in rows if row["population"] == name]:
-            method, scene_errors = row["method"], row["errors"]
-            stride = max(1, len(scene_errors) // MOST_MARKS)
-            for condition, error in zip(
-                row["conditions"][::stride], scene_errors[::stride], strict=True
-            ):
-                _mark(errors, float(np.clip(condition, *_CONDITIONS)), float(error), method)
-            share = 1 - np.arange(len(scene_errors)) / len(scene_errors)
-            mark, colour = _MARKS[method]
-            dash = (0.4, 0.6) if mark[-1] == " " else ()
-            shares.line(
-                _clip_error(np.sort(scene_errors)), share, colour, 0.4, dash=dash, role=method
-            )
-        top -= _ROW_HEIGHT
-    note = "dashed: 16 × condition × unit roundoff, of double precision and of the 1988 program"
-    return _finish(drawing, top, rows, note)

@@ -122,9 +122,9 @@ def measure(
     A row has the relative errors of the final velocities over the scenes with an answer;
     ``unanswered`` counts those without (ZERO DETERMINANT, an Applesoft error).
     ``over_sensitivity``: the largest divided by the method's unit roundoff and the scene's data
-    sensitivity. ``errors`` and ``conditions`` (COND): of each scene with an answer, by its
-    `errorbound.scales`; ``over_condition``: their largest quotient by the roundoff. ``seconds`` per
-    scene; ``memory``, of the closed form: what `mover` takes of as many scenes, in the same rounds.
+    sensitivity. ``over_condition``: the largest quotient of an error, by its scene's
+    `errorbound.scales`, and COND, divided by the roundoff. ``seconds`` per scene; ``memory``, of
+    the closed form: what `mover` takes of as many scenes, in the same rounds.
     """
     rows: list[Row] = []
     for name in populations:
@@ -161,8 +161,6 @@ def measure(
                     "largest": float(answered.max()),
                     "over_condition": float((scaled / condition).max() / method.roundoff),
                     "over_sensitivity": float((answered / sensitive[fine]).max() / method.roundoff),
-                    "errors": scaled,
-                    "conditions": condition,
                 }
             )
             progress(1)
@@ -237,8 +235,4 @@ def sizes(counts: Sequence[int], repeats: int) -> list[Row]:
 
 
 def as_json(rows: Sequence[Row]) -> list[Row]:
-    return [
-        {key: value for key, value in row.items() if key not in ("errors", "conditions")}
-        | {"scenes_per_second": 1 / row["seconds"]}
-        for row in rows
-    ]
+    return [row | {"scenes_per_second": 1 / row["seconds"]} for row in rows]

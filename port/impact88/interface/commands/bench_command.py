@@ -70,17 +70,12 @@ ARGUMENTS = (
     options.flag("--json", "print JSON instead of tables"),
     options.OUTPUT,
     options.writes("--figure", "FILE", "draw error against time: .svg .png .pdf"),
-    options.writes(
-        "--errors-figure",
-        "FILE",
-        "draw errors against condition, with their bound, and their distribution",
-    ),
 )
 
 
 def main(args: options.Args) -> None:
-    for picture in filter(None, (args.figure, args.errors_figure)):
-        check_ending(picture)
+    if args.figure:
+        check_ending(args.figure)
     machine = measure.machine()
     args.repeats = args.repeats or (QUICK_REPEATS if args.quick else REPEATS)
     args.scenes = args.scenes or (QUICK_ERROR_SCENES if args.quick else ERROR_SCENES)
@@ -106,8 +101,6 @@ def _measure(args: options.Args, machine: dict[str, Any]) -> tuple[dict[str, Any
         rows = measure.measure(populations, *sizes, meter.update, share)
     if args.figure:
         save(figure.work_precision(rows, machine["memory_roof"]), args.figure)
-    if args.errors_figure:
-        save(figure.error_distribution(rows), args.errors_figure)
     record = {"machine": machine, "seed": args.seed, "results": measure.as_json(rows)}
     texts = [tables.summary(rows) if args.quick else tables.results(rows)]
     if args.components:
