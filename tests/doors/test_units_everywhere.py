@@ -16,7 +16,7 @@ from unitscenes import SCENE, texts
 from impact88.collision.units import SYSTEMS, size_of
 from impact88.interface.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
-from impact88.names import FINAL_STATE, quantity
+from impact88.names import quantity
 from impact88.program.scene import sample
 
 Amounts = dict[str, float]
@@ -258,16 +258,3 @@ def test_the_oracle_takes_units_and_says_its_own(monkeypatch: Any, capsys: Any) 
     assert float(answer["scene"]["MA"]) == pytest.approx(143.5 / 32.17404855643)
     expected = solve({name: float(text) for name, text in answer["scene"].items()}, ["VAX"])
     assert answer["results"]["VAX"]["double"] == pytest.approx(float(expected["VAX"]))
-
-
-def test_a_staged_collision_of_ones_own_says_its_base_units(tmp_path: Path, capsys: Any) -> None:
-    known = {n: t for n, t in sample(1).items() if n not in ("E", "MU", "EM", "M")}
-    after = solve({name: float(text) for name, text in sample(1).items()})
-    known |= {name: f"{float(after[name])!r}" for name in FINAL_STATE}
-    text = "".join(f'{name} = "{value}"\n' for name, value in known.items())
-    (tmp_path / "own.toml").write_text(text)
-    assert main(["chapter", "staged", str(tmp_path / "own.toml")]) == 0
-    assert "base units: any consistent units" in " ".join(capsys.readouterr().out.split())
-    options = ["--units", "si", "--json"]
-    assert main(["chapter", "staged", str(tmp_path / "own.toml"), *options]) == 0
-    assert json.loads(capsys.readouterr().out)["base_units"] == "m, kg, s"

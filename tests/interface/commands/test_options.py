@@ -14,7 +14,7 @@ from impact88.interface.commands import options
 from impact88.interface.commands.cli import COMMANDS, main
 
 WITH_SET = (
-    "run --sample 1|solve cases.csv|compare cases.csv|reconstruct|barrier|colinear|delta-v|staged|"
+    "run --sample 1|solve cases.csv|compare cases.csv|reconstruct|barrier|colinear|delta-v|"
     "report --sample 1 -o page.html"
 )
 

@@ -24,7 +24,7 @@ from impact88.collision.case import Case as SceneCase
 from impact88.collision.scenefile import template
 from impact88.errors import UserError
 from impact88.interface.commands.cli import COMMANDS
-from impact88.names import CHAPTER, FINAL_STATE, RESULTS, SCENE
+from impact88.names import CHAPTER, RESULTS, SCENE
 from impact88.program.scene import sample
 
 from .case import Case
@@ -194,7 +194,7 @@ def _options(rng: Random, command: str, most: int = 3) -> list[str]:
 
 def toml_case(rng: Random) -> Case:
     """A scene file to a command that takes one."""
-    solving = ["run", "run", "reconstruct", "barrier", "colinear", "delta-v", "staged"]
+    solving = ["run", "run", "reconstruct", "barrier", "colinear", "delta-v"]
     command = rng.choice([*solving, "scene"])
     data = toml(rng)
     if command == "scene":
@@ -480,14 +480,7 @@ def extremes_case(rng: Random) -> Case:
     if rng.random() < 0.3:
         texts["M"] = rng.choice("46")
     others = ["bounds", "bounds", "bounds", "figure", "barrier", "colinear", "delta-v", "run"]
-    command = rng.choice(["reconstruct"] * 5 + ["oracle", "staged", *others])
-    if command == "staged":
-        for name in ("E", "MU", "EM", "M"):
-            texts.pop(name, None)
-        texts |= {name: value() for name in FINAL_STATE if rng.random() < 0.8}
-        files = {"s.toml": "".join(f'{n} = "{text}"\n' for n, text in texts.items()).encode()}
-        options = rng.choice(([], [f"--spin-weight={value()}"], ["--json"]))
-        return Case("extremes", ["staged", "s.toml", *options], files=files)
+    command = rng.choice(["reconstruct"] * 5 + ["oracle", *others])
     if command == "oracle":
         return Case("extremes", ["oracle"], stdin=json.dumps({"scene": texts}).encode() + b"\n")
     if command == "reconstruct":

@@ -1,23 +1,19 @@
 """The eleven staged collisions: Tables 1 and 2 (chapter, Section V) as data, and what they say.
 
 The tables are kept as printed (``legacy/table1.csv``, ``table2.csv``) with every emendation and
-its evidence (``legacy/emendations.csv``). Three ways from Table 1 to Table 2:
+its evidence (``legacy/emendations.csv``). Two ways from Table 1 to Table 2:
 
 - `forward`: the impact solved with Table 2's own e, e_m and μ: energy loss and computed ΔV;
-- `fit`: e, e_m and μ by least squares from the measured velocities;
 - `predicted`: ΔV by Equation 19 (with the factor 2/3, see `chapter.deltav`).
 
 `comparison` puts them beside Table 2, cell by cell.
 
-The fit minimises  Σ(V - V_measured)² + 25 ft² Σ(Ω - Ω_measured)²  over the final velocities,
-0 <= e <= 1, -1 <= e_m <= 0, μ free. The weight is not published; 25 ft² comes closest to Table 2
-(with e_m held at the printed value: rms .006 in e and in μ). For a given e_m the final velocities
-are linear in the impulse; e_m is then searched for alone. Units: ft, s, slug (Table 1).
+Units: ft, s, slug (Table 1).
 """
 
 import csv
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from itertools import product
 from typing import Any
@@ -25,28 +21,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...collision.geometry import Geometry, resolve_contact_point
+from ...collision.geometry import resolve_contact_point
 from ...files import packaged_text
 from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import forces
 from ...mechanics.state import State
-from ...names import FINAL_STATE, VELOCITIES
 from ..reconstruction.unknowns import mu_to_type
 from .deltav import delta_v
 
 Array = NDArray[np.float64]
 
-SPIN_WEIGHT = 25.0
-"""Weight of a squared spin against a squared velocity, ft²."""
-# bounds of the fitted coefficients: the chapter's own ranges
-E_BOUNDS = (0.0, 1.0)
-EM_BOUNDS = (-1.0, 0.0)
 # half of the last digit that Table 2 prints
 _HALF_DIGIT_COEFFICIENT = 0.0005
 _HALF_DIGIT = 0.05  # of loss and velocity changes
-_GRIDS = (201, *[21] * 6)
-"""Points of each grid in e_m, the next one around the best point of the last: to 5e-9 of e_m. The
-first one separates local minima; twice as many points move no fit of the eleven by 1e-7."""
 
 # -- the tables
 
@@ -157,13 +144,6 @@ class Collision:
         return {"E": self.table2["e"], "EM": self.table2["em"], "MUP": self.table2["mu"]}
 
 
-def with_8a_reconstructed() -> Collision:
-    """Return collision 8 with A's lost final velocity as Table 2 implies it, -10.2/10.6, each
-    +-0.2. It is a reconstruction, labelled as such wherever it is used, and never data."""
-    collision = next(c for c in collisions() if c.number == 8)
-    return replace(collision, measured=collision.measured | {"VAX": -10.2, "VAY": 10.6})
-
-
 @cache
 def collisions() -> tuple[Collision, ...]:
     """Return the eleven staged collisions in Table 1's order."""
@@ -244,101 +224,6 @@ def closure(collision: Collision) -> dict[str, float]:
         "spin_of_a": float(ia * wa - ma * (-here.d4 * ay + here.d3 * ax)),
         "spin_of_b": float(-ib * wb + mb * (here.d2 * by - here.d1 * bx)),
     }
-
-
-# -- least squares
-
-
-@dataclass(frozen=True)
-class Fit:
-    """A fitted impact: the coefficients, the sum of squares (ft²/s²) and which sit at a bound."""
-
-    E: float
-    EM: float
-    MUP: float
-    sum_of_squares: float
-    at_bound: tuple[str, ...]
-
-
-def fit(collision: Collision, em: float | None = None, spin_weight: float = SPIN_WEIGHT) -> Fit:
-    """Fit E, MUP and EM by least squares, or E and MUP with EM fixed at ``em``.
-
-    Lost velocities are left out. Raises LinAlgError where the equations overflow.
-    """
-    best_at = _fitter(collision, spin_weight)
-    if em is not None:
-        return best_at(em)
-    low, high = EM_BOUNDS
-    for count in _GRIDS:
-        fits = [best_at(x) for x in np.linspace(low, high, count).tolist()]
-        best = int(np.argmin([candidate.sum_of_squares for candidate in fits]))
-        low, high = fits[max(best - 1, 0)].EM, fits[min(best + 1, count - 1)].EM
-    for bound in EM_BOUNDS:
-        if abs(fits[best].EM - bound) < 1e-6:
-            bounded_fit = best_at(bound)
-            return replace(bounded_fit, at_bound=(*bounded_fit.at_bound, "EM"))
-    return fits[best]
-
-
-def profile(collision: Collision, count: int = 11) -> list[Fit]:
-    """Return the best fits with EM fixed at ``count`` values from -1 to 0; their sums of squares
-    hardly differ."""
-    return [*map(_fitter(collision, SPIN_WEIGHT), np.linspace(*EM_BOUNDS, count).tolist())]
-
-
-def undetermined_range(
-    collision: Collision, spin_weight: float = SPIN_WEIGHT
-) -> tuple[float, float]:
-    """Return the lowest and highest EM whose best fit has an rms misfit within 0.1 ft/s of the
-    least; the data do not determine it more closely."""
-    best_at, grid = _fitter(collision, spin_weight), np.linspace(*EM_BOUNDS, 401)
-    count = np.isfinite([*collision.measured.values()]).sum()
-    misfit = np.sqrt([best_at(em).sum_of_squares / count for em in grid.tolist()])
-    close = grid[misfit <= misfit.min() + 0.1]
-    return float(close.min()), float(close.max())
-
-
-def _fitter(collision: Collision, spin_weight: float) -> Callable[[float], Fit]:
-    """Return the function that gives the best fit for an EM.
-
-    For a given EM the final velocities are linear in the impulse p = (Pn, Pt, M), so that each fit
-    is a linear least-squares problem in Pn and Pt (M follows from Equation 18).
-    """
-    geometry = Geometry(collision.scene)
-    jacobian = np.array([geometry.changes(*unit) for unit in np.eye(3)], float).T
-    directions = np.array(geometry.relative([*np.eye(6)]))
-    before = np.array([collision.scene[name] for name in VELOCITIES])
-    after = np.array([collision.measured[name] for name in FINAL_STATE])
-    known = np.isfinite(after)
-    root_weight = np.sqrt(np.where(known, [1.0, 1.0, spin_weight] * 2, 0.0))
-    change = np.where(known, after - before, 0.0)
-    approach, _, spin_before = directions @ before
-    normal, _, spin = directions @ jacobian
-
-    def best_at(em: float) -> Fit:
-        # Equation 18: (1 - em)(spin·p + spin before) = em·M/Ired, and spin[2] is 1/Ired
-        row = (1 - em) * spin - [0.0, 0.0, em * spin[2]]
-        lift = np.array([[1.0, 0.0], [0.0, 1.0], [-row[0] / row[2], -row[1] / row[2]]])
-        offset = np.array([0.0, 0.0, -(1 - em) * spin_before / row[2]])
-        weighted = root_weight[:, None] * (jacobian @ lift)
-        right = root_weight * (change - jacobian @ offset)
-        if not (np.isfinite(weighted).all() and np.isfinite(right).all()):
-            raise np.linalg.LinAlgError("not finite")  # LAPACK may seek without end
-        free = np.linalg.lstsq(weighted, right, rcond=None)[0]
-        slope = normal @ lift
-        e = -(approach + slope @ free + normal @ offset) / approach
-        bound = min(max(e, E_BOUNDS[0]), E_BOUNDS[1])
-        if bound != e:
-            # on the line of impulses with e at its bound: the sum of squares is convex
-            start = slope * (-(1 + bound) * approach - normal @ offset) / (slope @ slope)
-            along = np.array([-slope[1], slope[0]])
-            step = weighted @ along
-            free = start + along * (step @ (right - weighted @ start)) / (step @ step)
-        misfit = weighted @ free - right
-        at_bound = ("E",) if bound != e else ()
-        return Fit(float(bound), em, float(free[1] / free[0]), float(misfit @ misfit), at_bound)
-
-    return best_at
 
 
 # -- against Table 2

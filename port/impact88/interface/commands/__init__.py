@@ -38,7 +38,7 @@ ROWS = (
     Command("colinear", _CHAPTER, "the direct colinear impact, Equations 1 to 12"),
     Command("barrier", _CHAPTER, "the impact of one vehicle on a rigid barrier"),
     Command("delta-v", _CHAPTER, "velocity changes from speeds, masses, energy loss: Equation 19"),
-    Command("staged", _CHAPTER, "eleven staged collisions: Tables 1 and 2 recomputed and fitted"),
+    Command("staged", _CHAPTER, "eleven staged collisions: Tables 1 and 2 recomputed"),
     Command("example", _CHAPTER, "Section VII's reconstruction, step by step"),
     Command("schema", _OTHER, "the forms of what --json prints, and the conventions"),
     Command("bench", _OTHER, "run time against error of every method, on this machine"),

@@ -25,7 +25,7 @@ NUMBERS = {
     "colinear": 1,
     "delta-v": 1,
     "example": 1,
-    "staged": 1,
+    "staged": 2,
 }
 """Name of a form -> its version number. Names are those of the commands, the oracle's ``vectors``,
 and ``conformance`` for compare --kit."""
