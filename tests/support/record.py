@@ -414,7 +414,9 @@ def commands_section(folder: Path, jobs: int) -> Iterator[tuple[str, Any]]:
 
 def problems(folder: Path) -> dict[str, str]:
     """Return 60 reconstructions, ID -> TOML: cars hit, and something of it is measured."""
-    scenes = read_scenes(folder)["casework"]
+    from impact88.bench.populations import scenes as population
+
+    scenes = population("casework", 20 * SCENES, 60)
     sound = np.flatnonzero(np.asarray(impact88.solve(scenes, "STATUS")["STATUS"]) == 0)[:60]
     scenes = {name: values[sound] for name, values in scenes.items()}  # vehicles can collide so
     texts = decimal_texts(scenes, 60)

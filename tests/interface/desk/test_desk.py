@@ -6,6 +6,7 @@ import argparse
 import base64
 import contextlib
 import json
+import os
 import re
 import select
 import signal
@@ -15,6 +16,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from http.client import HTTPConnection
 from importlib import resources
 from pathlib import Path
@@ -677,7 +679,8 @@ def test_half_a_megabyte_of_one_letter_is_no_printout() -> None:
 
 
 def wait_until(holds: Any) -> None:
-    for _ in range(600):
+    deadline = time.monotonic() + 90.0
+    while time.monotonic() < deadline:
         if holds():
             return
         time.sleep(0.02)
@@ -698,95 +701,143 @@ def in_thread(work: Any) -> tuple[threading.Thread, list[Any]]:
     return thread, outcome
 
 
-def worker(asking: workers.Bench) -> Any:
-    """The process of a bench, once it has been asked something."""
-    wait_until(lambda: any(future.running() for future in asking._asked.values()))
-    (process,) = asking._pool._pool_manager.worker_manager.workers.values()
-    return process
+def is_gone(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return True
+    return False
 
 
 @pytest.fixture(scope="module")
 def asking() -> Iterator[workers.Bench]:
-    bench = workers.Bench("collision")
+    bench = workers.Bench("deskwork")
     yield bench
     bench.close()
 
 
 RANGED = {"values": {**sample(1), "MU": "0.7 .. 0.9"}}
-ENDLESS = {"object_list": [], "timeout": 600.0}
-"""What `multiprocessing.connection.wait` is asked: a question still being answered when it is
-stopped, however quick the machine."""
 
 
-def ask_endlessly(
-    bench: workers.Bench, monkeypatch: pytest.MonkeyPatch
-) -> tuple[threading.Thread, list[Any], Any]:
-    """The thread that asks, what it is told in the end, and the process that is kept busy."""
-    monkeypatch.setattr(bench, "_module", "multiprocessing.connection")
-    thread, outcome = in_thread(lambda: bench.ask("page", "wait", **ENDLESS))
-    process = worker(bench)
-    monkeypatch.undo()
-    return thread, outcome, process
+def ask_endlessly(bench: workers.Bench, folder: Path) -> tuple[threading.Thread, list[Any], int]:
+    """The thread that asks in a page's first turn, what it is told in the end, and the process that
+    is kept busy."""
+    begun = folder / "begun"
+    thread, outcome = in_thread(lambda: bench.ask(folder.name, 1, "endless", begun=str(begun)))
+    wait_until(begun.exists)
+    return thread, outcome, int(begun.read_text())
 
 
 def test_a_newer_question_ends_the_older_and_another_page_waits(
-    asking: workers.Bench, monkeypatch: pytest.MonkeyPatch
+    asking: workers.Bench, tmp_path: Path
 ) -> None:
-    first, first_outcome, process = ask_endlessly(asking, monkeypatch)
-    other, other_outcome = in_thread(lambda: asking.ask("other", "bounds_answer", **RANGED))
-    newer, newer_outcome = in_thread(lambda: asking.ask("page", "bounds_answer", **RANGED))
+    page = tmp_path.name
+    first, first_outcome, process = ask_endlessly(asking, tmp_path)
+    other, other_outcome = in_thread(lambda: asking.ask("other", 1, "repeated", text="other"))
+    newer, newer_outcome = in_thread(lambda: asking.ask(page, 2, "repeated", text="newer"))
     for thread in (first, other, newer):
         thread.join()
     assert [type(outcome) for outcome in first_outcome] == [workers.SupersededError]
-    wait_until(lambda: not process.is_alive())
-    assert newer_outcome[0]["inputs"]["MU"]["limits"] == [0.7, 0.9]
-    assert newer_outcome == other_outcome
-    with pytest.raises(UserError, match="no ranges"):
-        asking.ask("page", "bounds_answer", values=dict(sample(1)))
+    wait_until(partial(is_gone, process))
+    assert (newer_outcome, other_outcome) == (["newer"], ["other"])
     with pytest.raises(workers.BrokenError, match="AttributeError"):
-        asking.ask("page", "nothing_of_the_sort")
+        asking.ask(page, 3, "nothing_of_the_sort")
 
 
 def test_stopping_ends_what_a_page_waits_for_and_no_other_pages(
-    asking: workers.Bench, monkeypatch: pytest.MonkeyPatch
+    asking: workers.Bench, tmp_path: Path
 ) -> None:
-    thread, outcome, process = ask_endlessly(asking, monkeypatch)
-    asking.stop("other")
-    assert process.is_alive()
-    asking.stop("page")
+    thread, outcome, process = ask_endlessly(asking, tmp_path)
+    asking.stop("other", 7)
+    assert not is_gone(process)
+    asking.stop(tmp_path.name, 2)
     thread.join()
     assert [type(one) for one in outcome] == [workers.SupersededError]
-    wait_until(lambda: not process.is_alive())
+    wait_until(partial(is_gone, process))
+
+
+def test_what_arrives_after_its_stop_or_a_newer_question_is_superseded(
+    asking: workers.Bench, tmp_path: Path
+) -> None:
+    page = tmp_path.name
+    asking.stop(page, 2)
+    with pytest.raises(workers.SupersededError):
+        asking.ask(page, 1, "repeated", text="stopped")
+    assert asking.ask(page, 3, "repeated", text="after the stop") == "after the stop"
+    with pytest.raises(workers.SupersededError):
+        asking.ask(page, 2, "repeated", text="overtaken")
+    # and a Stop that is late ends nothing that was asked since
+    begun = tmp_path / "begun"
+    thread, outcome = in_thread(lambda: asking.ask(page, 5, "endless", begun=str(begun)))
+    wait_until(begun.exists)
+    asking.stop(page, 4)
+    assert thread.is_alive()
+    assert not is_gone(int(begun.read_text()))
+    asking.stop(page, 6)
+    thread.join()
+    assert [type(one) for one in outcome] == [workers.SupersededError]
+
+
+def test_pages_that_count_no_turns_are_stopped_too(asking: workers.Bench, tmp_path: Path) -> None:
+    begun = tmp_path / "begun"
+    thread, outcome = in_thread(lambda: asking.ask("uncounted", 0, "endless", begun=str(begun)))
+    wait_until(begun.exists)
+    asking.stop("uncounted", 0)
+    thread.join()
+    assert [type(one) for one in outcome] == [workers.SupersededError]
+    assert asking.ask("uncounted", 0, "repeated", text="next") == "next"
+
+
+def test_turns_of_a_thousand_pages_are_remembered(asking: workers.Bench) -> None:
+    asking.stop("the oldest", 2)
+    for number in range(workers.PAGES_REMEMBERED - 1):
+        asking.stop(f"page {number}", 1)
+    with pytest.raises(workers.SupersededError):
+        asking.ask("the oldest", 1, "repeated", text="stopped")
+    asking.stop("page of one more", 1)
+    assert asking.ask("page 0", 0, "repeated", text="forgotten") == "forgotten"
 
 
 def test_a_process_killed_while_it_waits_is_started_again(asking: workers.Bench) -> None:
-    for pause in (False, True):
-        asking.ask("page", "bounds_answer", **RANGED)
-        (process,) = asking._pool._pool_manager.worker_manager.workers.values()
-        process.kill()
-        if pause:  # the pool has given up
-            wait_until(lambda: not asking._pool.active)
-        assert asking.ask("page", "bounds_answer", **RANGED)["inputs"]
+    process = asking.ask("page", 1, "own_process")
+    for turn in (2, 3):
+        os.kill(process, signal.SIGKILL)
+        if turn == 3:
+            wait_until(partial(is_gone, process))  # the pool knows, and has given up
+        before, process = process, asking.ask("page", turn, "own_process")
+        assert process != before
 
 
-def test_too_many_questions_are_refused(
-    asking: workers.Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(workers, "_places", threading.Semaphore(0))
-    with pytest.raises(UserError, match="questions wait"):
-        asking.ask("page", "bounds_answer", **RANGED)
+def test_too_many_questions_are_refused(asking: workers.Bench, tmp_path: Path) -> None:
+    thread, _, _ = ask_endlessly(asking, tmp_path)
+    waiting = [
+        in_thread(lambda page=f"waiting {number}": asking.ask(page, 1, "repeated", text=""))
+        for number in range(guard.MAX_QUESTIONS - 1)
+    ]
+
+    def refused() -> bool:  # once all of them are there
+        try:
+            asking.stop("one more", 3)
+            asking.ask("one more", 2, "repeated", text="")
+        except workers.SupersededError:
+            return False
+        except UserError as error:
+            return "questions wait" in str(error)
+        raise AssertionError
+
+    wait_until(refused)
+    asking.stop(tmp_path.name, 2)
+    for one in (thread, *(one for one, _ in waiting)):
+        one.join()
+    assert [outcome for _, outcome in waiting] == [[""]] * len(waiting)
+    assert asking.ask("one more", 4, "repeated", text="room") == "room"
 
 
-def test_what_takes_too_long_is_ended_and_told(
-    asking: workers.Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(workers, "ANSWERED_WITHIN", 0.01)
-    monkeypatch.setattr(asking, "_module", "multiprocessing.connection")
+def test_what_takes_too_long_is_ended_and_told(tmp_path: Path) -> None:
+    bench = workers.Bench("deskwork", seconds=0.01)
     with pytest.raises(UserError, match="not answered within"):
-        asking.ask("page", "wait", **ENDLESS)
-    monkeypatch.undo()
-    answered = asking.ask("page", "bounds_answer", **RANGED)
-    assert answered["inputs"]["MU"]["limits"] == [0.7, 0.9]
+        bench.ask("page", 1, "endless", begun=str(tmp_path / "begun"))
+    bench.close()
 
 
 # --- the command -------------------------------------------------------------------------------
@@ -877,15 +928,15 @@ def test_stop_is_answered_while_many_pages_wait(started: Any) -> None:
     parts = urlsplit(started[1])
     origin = f"http://127.0.0.1:{parts.port}"
 
-    def post(path: str, page: str, body: Any = None) -> HTTPConnection:
+    def post(path: str, page: str, turn: int, body: Any = None) -> HTTPConnection:
         connection = HTTPConnection("127.0.0.1", parts.port, timeout=60)
-        headers = {"Origin": origin, "X-Desk-Page": page}
+        headers = {"Origin": origin, "X-Desk-Page": page, "X-Desk-Turn": str(turn)}
         connection.request("POST", parts.path + path, json.dumps(body), headers)
         return connection
 
     question = {**RANGED, "units": ""}
-    waiting = [post("bounds", f"page {number}", question) for number in range(20)]
-    last, stop = waiting[-1], post("stop/bounds", "page 19")
+    waiting = [post("bounds", f"page {number}", 1, question) for number in range(20)]
+    last, stop = waiting[-1], post("stop/bounds", "page 19", 2)
     assert stop.getresponse().status == 200
     assert last.getresponse().status == 409
     # one process answers in turn: were the stop answered in turn, too, all others were before it

@@ -79,7 +79,7 @@ class Desk:
     """A bench for each kind of slow work."""
 
     def __init__(self) -> None:
-        self.benches = {name: Bench(module) for name, module in BENCHES.items()}
+        self.benches = {name: Bench(f"{__package__}.{module}") for name, module in BENCHES.items()}
         self._starts = [*(bench.warm for bench in self.benches.values()), collision.warm]
 
     def warm(self) -> None:
@@ -175,11 +175,14 @@ def _problem(error: Exception) -> Any:
 def _addresses(desk: Desk) -> Blueprint:
     routes = Blueprint("desk", __name__)
 
-    def sender() -> str:
-        return request.headers.get("X-Desk-Page", "")[:64]
+    def sender() -> tuple[str, int]:
+        """Return which page asks, and in which turn; of those that count none, all are the same."""
+        turn = request.headers.get("X-Desk-Turn", "")
+        counted = turn.isascii() and turn.isdecimal() and len(turn) < 16
+        return request.headers.get("X-Desk-Page", "")[:64], int(turn) if counted else 0
 
     def ask(bench: str, function: str, **arguments: Any) -> Any:
-        return desk.benches[bench].ask(sender(), function, **arguments)
+        return desk.benches[bench].ask(*sender(), function, **arguments)
 
     def table(macro: str, content: Any) -> str:
         return str(flask.get_template_attribute("answers.html", macro)(content))
@@ -287,7 +290,7 @@ def _addresses(desk: Desk) -> Blueprint:
     def stop(bench: str) -> Any:
         if bench not in desk.benches:
             abort(404)
-        desk.benches[bench].stop(sender())
+        desk.benches[bench].stop(*sender())
         return {}
 
     return routes

@@ -1,6 +1,7 @@
 // Asking the desk: questions to the program on this machine, and small helpers for its answers.
 
 const ID = crypto.randomUUID();
+let turn = 0; // requests arrive in any order: each says which it is
 const STOPPABLE = ["paper", "edit", "bounds", "reconstruction"];
 
 /** Input that cannot be used, or a fault; the message is the program's sentence. */
@@ -9,6 +10,12 @@ export class Problem extends Error {}
 /** The element with an id. */
 export function page(id) {
   return document.getElementById(id);
+}
+
+/** Who asks, and in which turn. */
+function sender() {
+  turn += 1;
+  return { "X-Desk-Page": ID, "X-Desk-Turn": String(turn) };
 }
 
 /** An element with properties (or attributes) and children; texts stay texts. */
@@ -34,7 +41,7 @@ export async function ask(path, body, query = {}) {
   try {
     response = await fetch(address, {
       method: "POST",
-      headers: { "X-Desk-Page": ID, "Content-Type": raw ? "application/octet-stream" : "application/json" },
+      headers: { ...sender(), "Content-Type": raw ? "application/octet-stream" : "application/json" },
       body: raw ? body : JSON.stringify(body ?? {}),
     });
   } catch {
@@ -64,7 +71,7 @@ export function stop(bench) {
 /** End everything, as the page goes away. */
 export function stopAll() {
   for (const bench of STOPPABLE) {
-    fetch(`stop/${bench}`, { method: "POST", headers: { "X-Desk-Page": ID }, keepalive: true }).catch(() => {});
+    fetch(`stop/${bench}`, { method: "POST", headers: sender(), keepalive: true }).catch(() => {});
   }
 }
 
