@@ -24,8 +24,10 @@ THREADS = MAX_QUESTIONS + 8
 LARGEST_HEADER = 32_768
 """Bytes of the largest header that is taken; a browser sends a thousand."""
 CONNECTIONS = 256
-"""Connections kept: four times those that may wait (`halfopen.MAX_WAITING`), and fewer than the 512
-sockets that `select` takes on Windows."""
+"""Connections kept, where a browser has six: fewer than the 512 sockets that `select` takes on
+Windows. More wait until some have been silent for long enough."""
+SILENCE = 10
+"""Seconds without a byte after which a connection that has no request is closed."""
 
 LEADING_PAGE = """<!doctype html>
 <meta charset="utf-8">
@@ -98,7 +100,6 @@ def _run(listener: socket.socket, port: int, token: str) -> None:
     from waitress.server import create_server  # type: ignore[import-untyped]
 
     from .app import Desk, application
-    from .halfopen import close_stalled
 
     # Windows lets any program change what a suffix means, and a browser runs no script that is
     # said to be plain text
@@ -115,10 +116,10 @@ def _run(listener: socket.socket, port: int, token: str) -> None:
         max_request_body_size=LARGEST_BODY,
         max_request_header_size=LARGEST_HEADER,
         connection_limit=CONNECTIONS,
+        channel_timeout=SILENCE,
         cleanup_interval=1,
         clear_untrusted_proxy_headers=True,
     )
-    close_stalled(server)
     try:
         server.run()
     finally:
