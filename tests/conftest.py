@@ -29,7 +29,6 @@ LONGEST = (
     "desk",
     "scan_pages",
     "installed",
-    "extension_points",
     "fuzz",
     "figures",
     "verification",

@@ -195,3 +195,15 @@ def test_the_table_of_names_is_names_py_s() -> None:
         f"| `{q.name}` | {q.symbol} | {q.meaning} | {q.unit} | {q.line} |" for q in SCENE.values()
     ]
     assert "\n".join(rows) in GUIDE
+
+
+def test_every_addition_names_a_test_that_names_the_next_step() -> None:
+    page = (ROOT / "port" / "README.md").read_text(encoding="utf-8")
+    adding = page.partition("## Adding things")[2].partition("\n## ")[0]
+    headings = re.findall(r"^\*\*.+?\*\* \((.+)\)$", adding, re.MULTILINE)
+    assert len(headings) == adding.count("\n**")
+    for heading in headings:
+        named = re.findall(r"`(tests/\S+\.py)`", heading)
+        assert named
+        for test in named:
+            assert "next step" in (ROOT / test).read_text(encoding="utf-8"), test
