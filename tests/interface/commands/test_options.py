@@ -42,45 +42,40 @@ def declared(command: str) -> dict[str, argparse.Action]:
 ALL = {command: declared(command) for command in COMMANDS}
 
 
-@pytest.mark.parametrize("option", sorted({name for one in ALL.values() for name in one}))
-def test_an_option_takes_the_same_words_in_every_command(option: str) -> None:
+def test_an_option_takes_the_same_words_in_every_command() -> None:
     """One spelling has one form; none takes several words, which would swallow a file's name."""
-    forms = {
-        (type(one[option]).__name__, one[option].nargs) for one in ALL.values() if option in one
-    }
-    assert len(forms) == 1
-    assert next(iter(forms))[1] in (None, 0)
+    forms: dict[str, set[tuple[str, object]]] = {}
+    for taken in ALL.values():
+        for option, action in taken.items():
+            forms.setdefault(option, set()).add((type(action).__name__, action.nargs))
+    assert {option: found for option, found in forms.items() if len(found) > 1} == {}
+    assert {option for option, ((_, words),) in forms.items() if words not in (None, 0)} == set()
+
+
+WRONG_SETTINGS = {
+    ("MA=1", "ma=2"): "--set: MA is given twice",
+    ("MA",): "expected NAME=VALUE",
+    ("mass=1",): "'MASS' is not a name used here",
+    ("MAA=3",): "did you mean MA?",
+    **{(f"MA={text}",): " is no" for text in ("1_0", "nan", "much", "M=1 2x")},
+}
+"""What is set, and what every command says of it."""
 
 
 @pytest.mark.parametrize("command", WITH_SET.split("|"))
-class TestSet:
-    @pytest.fixture(autouse=True)
-    def table(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.chdir(tmp_path)
-        (tmp_path / "cases.csv").write_text("E,VAX\n1,2\n")
-
-    def refused(self, command: str, capsys: pytest.CaptureFixture[str], *settings: str) -> str:
+def test_what_is_wrong_with_a_setting_is_said_in_one_line_by_every_command(
+    command: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "cases.csv").write_text("E,VAX\n1,2\n")
+    for settings, said in WRONG_SETTINGS.items():
         assert main([*command.split(), *(f"--set={text}" for text in settings)]) == 2
         captured = capsys.readouterr()
-        assert captured.out == ""
-        assert captured.err.count("\n") == 1
-        return captured.err
-
-    def test_twice(self, command: str, capsys: pytest.CaptureFixture[str]) -> None:
-        assert "--set: MA is given twice" in self.refused(command, capsys, "MA=1", "ma=2")
-
-    def test_no_value(self, command: str, capsys: pytest.CaptureFixture[str]) -> None:
-        assert "expected NAME=VALUE" in self.refused(command, capsys, "MA")
-
-    def test_no_name(self, command: str, capsys: pytest.CaptureFixture[str]) -> None:
-        assert "'MASS' is not a name used here" in self.refused(command, capsys, "mass=1")
-
-    def test_letter_typed_twice(self, command: str, capsys: pytest.CaptureFixture[str]) -> None:
-        assert "did you mean MA?" in self.refused(command, capsys, "MAA=3")
-
-    @pytest.mark.parametrize("text", ["1_0", "nan", "much", "M=1 2x"])
-    def test_no_number(self, command: str, text: str, capsys: pytest.CaptureFixture[str]) -> None:
-        assert " is no" in self.refused(command, capsys, f"MA={text}")
+        assert (captured.out, captured.err.count("\n")) == ("", 1), settings
+        assert said in captured.err
 
 
 class TestNames:
