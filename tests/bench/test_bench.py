@@ -13,10 +13,17 @@ from fiftydigits import exact, relative_error
 
 from impact88.bench import figure, measure, plainc, tables
 from impact88.bench.measure import COMPONENTS
-from impact88.bench.methods import METHODS, reference, relative_errors
-from impact88.bench.populations import BENCHMARK, POPULATIONS, repeat_scenes, scenes, texts
+from impact88.bench.methods import METHODS, relative_errors
 from impact88.casework.figures import canvas
 from impact88.interface.commands.cli import main
+from impact88.mechanics.accuracy.populations import (
+    BENCHMARK,
+    POPULATIONS,
+    repeat_scenes,
+    scenes,
+    texts,
+)
+from impact88.mechanics.accuracy.reference import two_doubles
 from impact88.mechanics.closedform.solve import solve
 from impact88.messages.progress import progress
 from impact88.names import FINAL_VELOCITIES
@@ -64,7 +71,7 @@ def test_errors_are_those_of_the_arithmetic(rows):
 
 def test_errors_by_two_doubles_are_the_reference_s():
     columns = scenes("extreme", 10, 2)
-    hi, lo = reference(columns)
+    hi, lo = two_doubles(columns)
     found = hi * (1 + 1e-12) + 1e-9
     mine = relative_errors(found, hi, lo)
     for i in range(10):

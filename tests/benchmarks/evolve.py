@@ -1,4 +1,5 @@
-"""Scenes as hard for the closed form as evolution makes them: port/impact88/bench/evolved.csv.
+"""Scenes as hard for the closed form as evolution makes them:
+port/impact88/mechanics/accuracy/evolved.csv.
 
     python tests/benchmarks/evolve.py [--lineages 48] [--generations 150] | head -25 > evolved.csv
 
@@ -16,10 +17,11 @@ import sys
 
 import numpy as np
 
-from impact88.bench.methods import reference, relative_errors
-from impact88.bench.populations import POPULATIONS, scenes
+from impact88.bench.methods import relative_errors
 from impact88.mechanics.accuracy.elimination import ORDER
 from impact88.mechanics.accuracy.errorbound import sensitivity
+from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
+from impact88.mechanics.accuracy.reference import two_doubles
 from impact88.mechanics.closedform.solve import quantities, solve
 from impact88.names import SCENE
 
@@ -29,7 +31,7 @@ POSITIVE = ("MA", "MB", "IA", "IB", "DA", "DB")
 
 def fitness(columns):
     """The largest error of each scene, in roundings of all its numbers; 0 where there is none."""
-    hi, lo = reference(columns)
+    hi, lo = two_doubles(columns)
     found = solve(columns, ORDER)
     error = relative_errors(np.stack([found[name] for name in ORDER], axis=1), hi, lo)
     fit = error / (sensitivity(columns) * 2.0**-53)

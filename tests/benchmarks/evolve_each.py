@@ -18,9 +18,9 @@ import time
 import numpy as np
 from evolve import child
 
-from impact88.bench.methods import reference
-from impact88.bench.populations import POPULATIONS, scenes
 from impact88.mechanics.accuracy.errorbound import DOUBLE, movements, result_bounds
+from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
+from impact88.mechanics.accuracy.reference import two_doubles
 from impact88.mechanics.closedform.solve import quantities, solve
 from impact88.names import PIVOT, RESULTS, SCENE
 
@@ -72,7 +72,7 @@ def above_half(em):
 def units(g, of_bound):
     """(scene, result) -> error in units, or as part of its bound; 0 where it says nothing."""
     with np.errstate(all="ignore"):
-        hi, lo = reference(g, NAMES)
+        hi, lo = two_doubles(g, NAMES)
         found = solve(g, NAMES)
         moved, bounds = ({}, result_bounds(g)) if of_bound else (movements(g, NAMES), {})
         slides = np.abs(quantities(g, ("gt",))["gt"])

@@ -17,7 +17,7 @@ import time
 import numpy as np
 
 from impact88 import solve
-from impact88.bench.populations import scenes
+from impact88.mechanics.accuracy.populations import scenes
 from impact88.names import FINAL_VELOCITIES, PIVOT, RESULTS
 
 BARS = (1.05, 1.25, 1.5)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import impact88
-from impact88.bench.populations import BENCHMARK, scenes
+from impact88.mechanics.accuracy.populations import BENCHMARK, scenes
 
 dask = pytest.importorskip("dask")
 distributed = pytest.importorskip("distributed")

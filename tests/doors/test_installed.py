@@ -30,7 +30,7 @@ uses = ("open", "ctypes.dlopen")
 sys.addaudithook(lambda event, told: opened.add(str(told[0])) if event in uses else None)
 import numpy
 from impact88 import sample
-from impact88.bench.populations import evolved
+from impact88.mechanics.accuracy.populations import evolved
 from impact88.interface.commands import cli
 from impact88.interface.desk import app
 from impact88.equations import edits

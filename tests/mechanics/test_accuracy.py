@@ -17,8 +17,6 @@ import numpy as np
 import pytest
 
 from impact88 import solve
-from impact88.bench.methods import reference
-from impact88.bench.populations import POPULATIONS, scenes
 from impact88.mechanics.accuracy.errorbound import (
     DOUBLE,
     movements,
@@ -26,7 +24,8 @@ from impact88.mechanics.accuracy.errorbound import (
     result_bounds,
     scales,
 )
-from impact88.mechanics.accuracy.reference import fifty_digits
+from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
+from impact88.mechanics.accuracy.reference import fifty_digits, two_doubles
 from impact88.mechanics.closedform.impactprograms import BODIES, program_for
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 from impact88.program.scene import sample
@@ -71,7 +70,7 @@ def assert_within_a_quarter(g):
 
 def shares(g, found=None):
     """(scene, result) -> error as part of the bound; what has no number counts as 0."""
-    hi, lo = reference(g, NAMES)
+    hi, lo = two_doubles(g, NAMES)
     found, bounds = found or solve(g, NAMES), result_bounds(g)
     assert set(bounds) == set(NAMES)
     every = np.zeros(hi.shape)
@@ -114,7 +113,7 @@ def test_no_error_is_above_a_quarter_of_it_in_any_population(name):
 def own_roundings(g, found):
     """Result -> errors, in roundings of the result itself and of each number of the scene."""
     names = list(found)
-    hi, lo = reference(g, names)
+    hi, lo = two_doubles(g, names)
     moved = movements(g, names)
     worst = {}
     for j, name in enumerate(names):
@@ -189,7 +188,7 @@ def test_the_estimate_by_condition_is_none():
     the rounding of angles is not in COND."""
     g = other_inertias(-12, False, 40)
     found = solve(g)
-    hi, lo = reference(g, FINAL_VELOCITIES)
+    hi, lo = two_doubles(g, FINAL_VELOCITIES)
     sizes, estimate = scales(g, found), relative_bounds(found["COND"])
     errors = [
         np.abs((found[name] - hi[:, j]) - lo[:, j]) / (estimate * sizes[name])

@@ -16,8 +16,8 @@ import numpy as np
 import pytest
 
 import impact88
-from impact88.bench.populations import POPULATIONS, repeat_scenes, scenes, texts
 from impact88.mechanics import kernelsource, native
+from impact88.mechanics.accuracy.populations import POPULATIONS, repeat_scenes, scenes, texts
 from impact88.mechanics.closedform import kernelcalls
 from impact88.mechanics.closedform import solve as solving
 from impact88.mechanics.closedform.impactprograms import ALL, BODIES, FORMULAS, KERNELS

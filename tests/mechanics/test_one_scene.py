@@ -9,8 +9,8 @@ import pytest
 from worked_cases import RUN_1
 
 from impact88 import solve
-from impact88.bench.populations import POPULATIONS, scenes
 from impact88.errors import UserError
+from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
 from impact88.mechanics.closedform import kernelcalls
 from impact88.mechanics.closedform.onescene import in_order, solve_one
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE

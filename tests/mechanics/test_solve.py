@@ -14,10 +14,10 @@ from passes import passes
 from worked_cases import RUN_1, reference_cases, scene_of
 
 from impact88 import solve
-from impact88.bench.populations import POPULATIONS, scenes
 from impact88.errors import UserError
 from impact88.mechanics import native
 from impact88.mechanics.accuracy.errorbound import scales
+from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
 from impact88.mechanics.accuracy.reference import fifty_digits
 from impact88.mechanics.closedform.columns import examine, part, sources
 from impact88.mechanics.closedform.impactprograms import program_for

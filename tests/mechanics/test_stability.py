@@ -18,7 +18,6 @@ from worked_cases import RUN_1
 
 from impact88 import solve
 from impact88.apple.applesoft.operators import Real
-from impact88.bench.populations import POPULATIONS, scenes
 from impact88.collision.degrees import sin_cos
 from impact88.collision.sinetable import STEP
 from impact88.mechanics.accuracy import reference
@@ -31,6 +30,7 @@ from impact88.mechanics.accuracy.elimination import (
     lapack,
 )
 from impact88.mechanics.accuracy.errorbound import movements, sensitivity
+from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
 from impact88.mechanics.accuracy.reference import fifty_digits
 from impact88.mechanics.closedform.columns import ANGLES
 from impact88.names import FINAL_VELOCITIES, SCENE

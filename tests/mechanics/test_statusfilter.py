@@ -7,7 +7,7 @@ threshold or a few units of rounding beside it.
 import numpy as np
 import pytest
 
-from impact88.bench.populations import POPULATIONS, scenes
+from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
 from impact88.mechanics.closedform.impactprograms import BODIES, FILTERS, program_for
 from impact88.mechanics.closedform.plan import Plan
 from impact88.mechanics.closedform.solve import quantities, solve

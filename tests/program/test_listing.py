@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from impact88.conformance.qualification.captured import memory_contents
+from impact88.apple.captured import memory_contents
 from impact88.files import packaged_text
 from impact88.names import SCENE
 from impact88.program import arithmetics
@@ -202,7 +202,7 @@ import gzip, json, sys
 sys.path[:0] = sys.argv[1:2]
 import impact88
 assert impact88.__file__.startswith(sys.argv[1]) and impact88.__file__.endswith(".pyc")
-from impact88.conformance.qualification.captured import memory_contents
+from impact88.apple.captured import memory_contents
 from impact88.program.run import run
 cases = [json.loads(line) for line in gzip.open(sys.argv[2], "rt")]
 for case in cases[:: int(sys.argv[3])]:

@@ -9,7 +9,7 @@ from importlib.resources import files
 
 import pytest
 
-from impact88.conformance.qualification.captured import session
+from impact88.apple.captured import session
 from impact88.program.run import run
 from impact88.program.scene import sample
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import captures
 
-from impact88.conformance.qualification.captured import memory_contents, normalize_zero
+from impact88.apple.captured import memory_contents, normalize_zero
 from impact88.program import emulated
 from impact88.program.run import run as run_port
 from impact88.program.scene import Scene

@@ -80,7 +80,10 @@ def command(arguments: list[str], stdin: str = "", folder: Path | None = None) -
 
 def populations() -> dict[str, dict[str, np.ndarray]]:
     """Return the scenes of the benchmark's populations, and what is made of them."""
-    from impact88.bench.populations import POPULATIONS, scenes
+    try:
+        from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
+    except ImportError:  # trees of before
+        from impact88.bench.populations import POPULATIONS, scenes
 
     made = {name: scenes(name, SCENES, 1988) for name in POPULATIONS}
     rng = np.random.default_rng(49)
@@ -414,7 +417,10 @@ def commands_section(folder: Path, jobs: int) -> Iterator[tuple[str, Any]]:
 
 def problems(folder: Path) -> dict[str, str]:
     """Return 60 reconstructions, ID -> TOML: cars hit, and something of it is measured."""
-    from impact88.bench.populations import scenes as population
+    try:
+        from impact88.mechanics.accuracy.populations import scenes as population
+    except ImportError:  # trees of before
+        from impact88.bench.populations import scenes as population
 
     scenes = population("casework", 20 * SCENES, 60)
     sound = np.flatnonzero(np.asarray(impact88.solve(scenes, "STATUS")["STATUS"]) == 0)[:60]

@@ -17,6 +17,7 @@ import numpy as np
 
 from ..mechanics import native
 from ..mechanics.accuracy.errorbound import APPLESOFT, DOUBLE, movements, scales, sensitivity
+from ..mechanics.accuracy.populations import BENCHMARK, POPULATIONS, repeat_scenes, scenes
 from ..mechanics.closedform.plan import Plan
 from ..mechanics.closedform.solve import TILE, solve
 from ..mechanics.native.formulas import ExpressionTable
@@ -25,8 +26,7 @@ from ..mechanics.native.program import Program, addresses
 from ..names import FINAL_VELOCITIES, PIVOT, SCENE
 from ..version import __version__
 from . import plainc
-from .methods import METHODS, Method, reference, relative_errors
-from .populations import BENCHMARK, POPULATIONS, repeat_scenes, scenes
+from .methods import METHODS, Method, relative_errors
 
 Row = dict[str, Any]
 ORDER = tuple(FINAL_VELOCITIES)
@@ -126,11 +126,13 @@ def measure(
     `errorbound.scales`, and COND, divided by the roundoff. ``seconds`` per scene; ``memory``, of
     the closed form: what `mover` takes of as many scenes, in the same rounds.
     """
+    from ..mechanics.accuracy.reference import two_doubles
+
     rows: list[Row] = []
     for name in populations:
         columns = scenes(name, count, seed)
         start = time.process_time()
-        hi, lo = reference(columns)
+        hi, lo = two_doubles(columns)
         reference_seconds = (time.process_time() - start) / count
         progress(1)
         solved, sensitive = solve(columns), sensitivity(columns)
@@ -189,11 +191,13 @@ def components(populations: Sequence[str], count: int, seed: int) -> list[Row]:
     """The closed form's errors result by result, each relative to itself, on ``count`` scenes of
     each population and on the same with EM = 0: the median, the largest, and the largest relative
     to what rounding every number of the scene to a double does (``over_rounding``)."""
+    from ..mechanics.accuracy.reference import two_doubles
+
     rows = []
     for name in populations:
         made = scenes(name, count, seed)
         for label, columns in ((name, made), (f"{name}, EM = 0", {**made, "EM": np.zeros(count)})):
-            hi, lo = reference(columns, COMPONENTS)
+            hi, lo = two_doubles(columns, COMPONENTS)
             found = solve(columns, COMPONENTS)
             moved = movements(columns, COMPONENTS)
             for place, result in enumerate(COMPONENTS):

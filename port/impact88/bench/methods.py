@@ -13,12 +13,12 @@ from ..casework.figures.drawing import BLACK, BLUE, GREY, ORANGE, VERMILION
 from ..mechanics import native
 from ..mechanics.accuracy.elimination import ORDER, changes, eliminate, fill, lapack
 from ..mechanics.accuracy.errorbound import APPLESOFT, DOUBLE
+from ..mechanics.accuracy.populations import Columns, texts
 from ..mechanics.closedform.solve import solve
 from ..program.run import run
 from ..program.scene import Scene
 from ..program.vectorized import replay
 from . import plainc
-from .populations import Columns, texts
 
 Floats = NDArray[np.float64]
 
@@ -188,21 +188,6 @@ METHODS: Sequence[Method] = (
     ),
 )
 """In the order of the table; the reference itself is measured beside them."""
-
-
-def reference(columns: Columns, names: Sequence[str] = ORDER) -> tuple[Floats, Floats]:
-    """Results to 50 digits, a column for each of ``names``, each number as the sum of two doubles
-    (hi, lo); NaN where there is none."""
-    from ..mechanics.accuracy.reference import fifty_digits
-
-    hi, lo = np.full((2, len(columns["MA"]), len(names)), np.nan)
-    for i in range(len(hi)):
-        true = fifty_digits({name: float(values[i]) for name, values in columns.items()})
-        for j, name in enumerate(names):
-            if name in true:
-                hi[i, j] = float(true[name])
-                lo[i, j] = float(true[name] - hi[i, j])
-    return hi, lo
 
 
 def relative_errors(

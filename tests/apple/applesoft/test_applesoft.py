@@ -5,8 +5,8 @@ from __future__ import annotations
 import captures
 import pytest
 
+from impact88.apple import captured
 from impact88.apple.applesoft.errorcodes import CODES
-from impact88.conformance.qualification import captured
 
 
 @pytest.mark.captures

@@ -9,10 +9,10 @@ import captures
 import pytest
 from emulation import FUZZ, PROGRAMS
 
+from impact88.apple.captured import memory_contents, session
 from impact88.apple.emulator.machine import Machine
 from impact88.apple.emulator.programfile import read_program
 from impact88.apple.emulator.tokens import FIRST, KEYWORDS, LAST_STATEMENT, TOKENS
-from impact88.conformance.qualification.captured import memory_contents, session
 from impact88.program import emulated
 
 SCENES = captures.scenes()[:: 1 if "IMPACT88_CAPTURES" in os.environ else 3]

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from impact88.apple.applesoft.console import EndOfInput
 from impact88.apple.applesoft.errorcodes import ApplesoftError
+from impact88.apple.captured import session
 from impact88.apple.emulator.emulator import Applesoft
 from impact88.apple.emulator.faults import TooManyStatements
 from impact88.apple.emulator.tokens import KEYWORDS, TOKENS, detokenise, split_number, tokenise
-from impact88.conformance.qualification.captured import session
 
 BEL = "\a"
 

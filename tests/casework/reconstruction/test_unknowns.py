@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from reference_cases import Case, cases_of
 
 from impact88 import sample, solve, solve_for
-from impact88.bench.populations import scenes
 from impact88.casework.reconstruction.solutiontable import Impact
 from impact88.casework.reconstruction.unknowns import UnsolvableError
 from impact88.errors import UserError
+from impact88.mechanics.accuracy.populations import scenes
 from impact88.mechanics.outcome import initial_impact, outcome
 from impact88.names import COEFFICIENTS, FINAL_STATE, VELOCITIES
 

@@ -10,13 +10,13 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
-from impact88.bench.populations import scenes
 from impact88.casework.uncertainty.bounds import RECONSTRUCTED, _ranks, bounds
 from impact88.casework.uncertainty.boundstable import as_json, table
 from impact88.casework.uncertainty.ranges import input_names, read_correlations, read_inputs
 from impact88.collision import uncertain
 from impact88.collision.uncertain import Uncertain, fixed_value, read
 from impact88.errors import UserError
+from impact88.mechanics.accuracy.populations import scenes
 from impact88.mechanics.closedform.solve import quantities
 from impact88.mechanics.outcome import forward_model, reconstruction_model
 from impact88.names import FINAL_VELOCITIES, SCENE, VELOCITIES, quantity

@@ -15,7 +15,7 @@ import pytest
 from installed import impact88
 from tinyrom import CODE, START, rom
 
-from impact88.conformance.qualification.captured import result
+from impact88.apple.captured import result
 from impact88.conformance.qualification.witness.apple import APPLE_II_PLUS, Apple, Lost, read_image
 from impact88.conformance.qualification.witness.hearing import (
     Case,

@@ -9,12 +9,12 @@ from decimal import Decimal
 from itertools import zip_longest
 from typing import Any, NamedTuple
 
+from ...apple import captured
 from ...casework.report import frame
 from ...collision.fields import FIELDS, outcome_fields
 from ...names import FINAL_VELOCITIES, SCENE
 from ...program.run import run
 from ...program.scene import sample
-from . import captured
 
 GOLDEN_RUNS = {1: "run1", 2: "run2", 3: "table3"}
 

@@ -20,9 +20,9 @@ import json
 from typing import Any
 
 from ...bench import figure, measure, tables
-from ...bench.populations import BENCHMARK, POPULATIONS
 from ...casework.figures.canvas import check_ending, save
 from ...errors import library
+from ...mechanics.accuracy.populations import BENCHMARK, POPULATIONS
 from ...messages.plaintable import plain
 from ...messages.progress import progress
 from . import options

@@ -11,6 +11,9 @@ from collections.abc import Mapping, Sequence
 from itertools import permutations
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ...errors import UserError
 from ...names import DEFAULT_M, PIVOT
 from .elimination import ORDER, Terms
@@ -250,3 +253,18 @@ def _energies(t: Exact, P: Sequence[Number], after: list[Number]) -> dict[str, N
     for name, inverse in zip(("EESA", "EESB"), t.inverses[:2], strict=True):
         values[name] = mpmath.sqrt(2 * part * inverse)
     return values
+
+
+def two_doubles(
+    columns: Mapping[str, NDArray[np.float64]], names: Sequence[str] = ORDER
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return results to 50 digits, a column for each of ``names``, each number as the sum of two
+    doubles (hi, lo); NaN where there is none."""
+    hi, lo = np.full((2, len(columns["MA"]), len(names)), np.nan)
+    for i in range(len(hi)):
+        true = fifty_digits({name: float(values[i]) for name, values in columns.items()})
+        for j, name in enumerate(names):
+            if name in true:
+                hi[i, j] = float(true[name])
+                lo[i, j] = float(true[name] - hi[i, j])
+    return hi, lo

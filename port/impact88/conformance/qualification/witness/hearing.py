@@ -16,7 +16,9 @@ from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
 
+from ....apple import captured
 from ....apple.applesoft.console import Console
+from ....apple.captured import ARITHMETIC, ENDINGS, FUZZ, PROGRAMS, SCENES
 from ....apple.emulator.faults import TooManyStatements
 from ....casework.report import frame
 from ....collision.fields import FIELDS, outcome_fields
@@ -26,8 +28,6 @@ from ....names import SCENE
 from ....program import emulated
 from ....program.run import run
 from ....program.scene import Scene, sample
-from .. import captured
-from ..captured import ARITHMETIC, ENDINGS, FUZZ, PROGRAMS, SCENES
 from ..selfcheck import GOLDEN_RUNS
 from .apple import Image, Lost
 from .session import LONGEST_TYPED, Session

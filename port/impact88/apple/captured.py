@@ -10,12 +10,12 @@ from collections.abc import Callable, Iterator, Mapping
 from importlib import resources
 from typing import TYPE_CHECKING, Any
 
-from ...apple.applesoft import decimaltext, functions, real
-from ...apple.applesoft.errorcodes import ApplesoftError
-from ...files import files_of
+from ..files import files_of
+from .applesoft import decimaltext, functions, real
+from .applesoft.errorcodes import ApplesoftError
 
 if TYPE_CHECKING:
-    from ...apple.emulator.emulator import Applesoft
+    from .emulator.emulator import Applesoft
 
 MAX_STATEMENTS = 3_000_000  # more than any captured program executes
 
@@ -154,7 +154,7 @@ def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple["Appl
         machine.feed_keys(keys)
         yield "RUN"
 
-    from ...apple.emulator.emulator import Applesoft
+    from .emulator.emulator import Applesoft
 
     lines = type_lines()
     machine = Applesoft(lambda: next(lines, None), blanks=blanks)

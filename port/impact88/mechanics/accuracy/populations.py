@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..collision.degrees import sin_cos
-from ..mechanics.closedform.solve import quantities
+from ...collision.degrees import sin_cos
+from ..closedform.solve import quantities
 
 Floats = NDArray[np.float64]
 Columns = dict[str, Floats]
