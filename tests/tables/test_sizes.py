@@ -63,7 +63,7 @@ READERS: dict[str, tuple[int, Callable[[int], Input]]] = {
             table(HEADER + "".join(f",n{i}" for i in range(n)), ROW + ",1" * n),
         ),
     ),
-    "unusable rows of a CSV": (600, lambda n: (["solve", "t.csv"], table(HEADER, *[",,"] * n))),
+    "unusable rows of a CSV": (600, lambda n: (["solve", "t.csv"], table(HEADER, *["1,,"] * n))),
     "a long field of a CSV": (
         30_000,
         lambda n: (["solve", "t.csv"], table(f"{HEADER},x", f"{ROW},{'z' * (n // 3)}")),

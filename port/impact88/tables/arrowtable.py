@@ -4,6 +4,7 @@ Needs pyarrow (extra ``arrow``). Numbers are taken as they are stored, texts and
 digits. What was text in a CSV becomes doubles where it is a scene's, and stays text elsewhere.
 """
 
+import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from typing import Any
@@ -13,8 +14,10 @@ import numpy as np
 from ..errors import UserError, library
 from ..files import ESCAPED, decoding, replacing
 from ..names import SCENE
+from .budget import Budget
 from .cells import typed_cells
 from .rows import (
+    BLOCK_CHARACTERS,
     BLOCK_ROWS,
     ArrowColumn,
     ArrowTexts,
@@ -25,6 +28,44 @@ from .rows import (
     Rows,
     scene_names,
 )
+
+
+def _text_sizes(pa: Any, array: Any) -> Any:
+    """Bytes of each text of a dictionary-encoded array, before any of them is copied."""
+    from pyarrow import compute
+
+    sizes = compute.binary_length(array.dictionary).fill_null(0)
+    return sizes.take(array.indices.fill_null(0)).to_numpy(zero_copy_only=False).astype(np.int64)
+
+
+def _decoded(pa: Any, batches: Iterable[Any], budget: Budget) -> Iterator[Any]:
+    """Yield the batches with their texts decoded, in parts that hold `BLOCK_CHARACTERS` each or one
+    row. Raises UserError past the budget."""
+    for batch in batches:
+        places = [
+            place
+            for place, kind in enumerate(batch.schema.types)
+            if pa.types.is_dictionary(kind) and _is_text(pa, kind.value_type)
+        ]
+        sizes = sum(
+            (_text_sizes(pa, batch.column(place)) for place in places),
+            np.zeros(batch.num_rows, np.int64),
+        )
+        budget.take(int(sizes.sum()))
+        parts = np.cumsum(sizes) // BLOCK_CHARACTERS
+        starts = [0, *(np.flatnonzero(np.diff(parts)) + 1).tolist(), batch.num_rows]
+        for start, end in itertools.pairwise(starts):
+            part = batch.slice(start, end - start)
+            for place in places:
+                name = part.schema.field(place).name
+                part = part.set_column(place, name, part.column(place).dictionary_decode())
+            yield part
+
+
+def _is_text(pa: Any, kind: Any) -> bool:
+    types = pa.types
+    tests = types.is_string, types.is_large_string, types.is_binary, types.is_large_binary
+    return any(test(kind) for test in tests)
 
 
 def _blocks(pa: Any, names: Sequence[str], batches: Iterable[Any], where: str) -> Iterator[Rows]:
@@ -41,7 +82,7 @@ def _blocks(pa: Any, names: Sequence[str], batches: Iterable[Any], where: str) -
 
 
 def _scene_column(pa: Any, rows: Rows, name: str, array: Any, where: str) -> Column:
-    if pa.types.is_dictionary(array.type):
+    if pa.types.is_dictionary(array.type):  # of numbers
         array = array.dictionary_decode()
     kind = array.type
     if pa.types.is_integer(kind) or pa.types.is_floating(kind):
@@ -64,13 +105,33 @@ def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[
     pa = library("pyarrow", "arrow", "this format")
     from pyarrow import parquet
 
+    budget = Budget(path)
     with ExitStack() as stack:
         with decoding(path):
             file = stack.enter_context(parquet.ParquetFile(path, memory_map=True))
             headings, count = file.schema_arrow.names, file.metadata.num_rows
+            budget.check_shape(len(headings), count)
+            budget.take(_largest_chunk(file.metadata))
+            # one text that a thousand rows share is read once, and counted before it is copied
+            texts = [f.name for f in file.schema_arrow if _is_text(pa, f.type)]
+            file = stack.enter_context(
+                parquet.ParquetFile(path, memory_map=True, read_dictionary=texts)
+            )
             batches = file.iter_batches(BLOCK_ROWS, use_threads=pa.cpu_count() > 1)
         names = scene_names(headings, path, results)
-        yield Reader(names, _blocks(pa, names, _validate_each(batches, path), path), count)
+        batches = _decoded(pa, _validate_each(batches, path), budget)
+        yield Reader(names, _blocks(pa, names, batches, path), count)
+
+
+def _largest_chunk(metadata: Any) -> int:
+    """The largest size that a column of a row group unpacks to: it may be one page."""
+    groups = (metadata.row_group(at) for at in range(metadata.num_row_groups))
+    sizes = (
+        group.column(at).total_uncompressed_size
+        for group in groups
+        for at in range(group.num_columns)
+    )
+    return max(sizes, default=0)
 
 
 def _validate_each(batches: Iterable[Any], path: str) -> Iterator[Any]:

@@ -4,7 +4,7 @@
 import json
 import math
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -29,13 +29,15 @@ from ..collision.units import (
 from ..errors import UserError, quoted
 from ..mechanics.closedform.columns import UNUSED_BY_POINTS
 from ..names import RESULTS, SCENE, quantity
+from .remarks import Remark
 from .rows import ArrowTexts, Column, Heading, Rows, heading
 
 _MEASURING = ("length", "length/time", "mass", "mass·length²", "mass·length²/time²")
 """Quantities whose bare column leaves its unit open beside columns with units."""
 _NUMBERS = re.compile(r"(?<![a-zA-Z^])(?:[0-9][0-9,]*\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _WRITTEN = re.compile(r"[+-]?[0-9]*(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?")
-_RATIOS = ("1", "-", "–", "—", "")
+RATIOS = ("1", "-", "–", "—", "")
+"""What stands for no unit."""
 
 
 class TableUnits:
@@ -59,7 +61,7 @@ class TableUnits:
         compared = [name for name in names if name in SCENE or name in results]
         for name in compared:
             unit, rule = getattr(name, "unit", ""), quantity(name).unit
-            if unit and unit != rule and not (rule == NUMBER and unit in _RATIOS):
+            if unit and unit != rule and not (rule == NUMBER and unit in RATIOS):
                 check_unit(unit, rule, f"column {quoted(heading(name))}", where)
                 self.units[name] = unit
         used = [(unit, quantity(name).unit) for name, unit in self.units.items()]
@@ -188,7 +190,9 @@ def fill_blanks(column: Column, text: str) -> Column:
         return column
     if isinstance(column, ArrowTexts):
         return column.filled(text)
-    return [text if cell in (None, "") else cell for cell in column]
+    return [
+        text if cell in (None, "") and not isinstance(cell, Merged) else cell for cell in column
+    ]
 
 
 def typed_cells(name: str, column: Column) -> NDArray[Any] | list[str]:
@@ -214,6 +218,33 @@ def numbers(rows: Rows, units: TableUnits) -> dict[str, NDArray[np.float64]]:
         )
         for name, column in rows.scene().items()
     }
+
+
+def vanished(
+    rows: Rows, columns: Mapping[str, NDArray[np.float64]]
+) -> Iterator[tuple[str, Remark]]:
+    """Yield a remark on each column with numbers too small for a double, which count as 0."""
+    for name, column in rows.scene().items():
+        if isinstance(column, np.ndarray):
+            continue
+        zeros = np.flatnonzero(columns[name] == 0)
+        if not zeros.size:
+            continue
+        if isinstance(column, ArrowTexts):
+            small = {text for text in column.among(zeros) if _is_small(text)}
+        else:
+            small = {text for text in map(column.__getitem__, zeros.tolist()) if _is_small(text)}
+        if small:
+            places = [index for index in zeros.tolist() if column[index] in small]
+            text = f"{name} = {column[places[0]]} is smaller than any double and counts as 0"
+            yield name, Remark(len(places), places[0], text)
+
+
+def _is_small(cell: object) -> bool:
+    """Return whether a text has other digits than 0 and is 0 as a double."""
+    if not isinstance(cell, str) or not cell.lstrip("-+ .0")[:1].isdigit():
+        return False
+    return doubles.read(cell)[0] == 0
 
 
 def point_masses(rows: Rows) -> NDArray[np.bool_]:
@@ -250,7 +281,8 @@ def _numbers(
                     raise UserError(f"some values have units and {cell} does not; add a unit")
             elif isinstance(cell, str) and any(map(str.isdigit, cell)):
                 values[index] = doubles.double(units.cell(name, cell))
-                cells[index] = f"{units.turned(name, values[index]) / factor:.15g}"
+                number = float(units.turned(name, values[index]) / factor)
+                cells[index] = Amount(doubles.digits(number), number)
                 rows.columns[name] = cells
             else:
                 raise UserError(number)
@@ -273,10 +305,12 @@ def _plain_numbers(column: Column) -> NDArray[np.float64] | None:
 
 def _number(cell: object) -> float | str:
     """Return the double that a cell is, or why it is none."""
+    if isinstance(cell, Amount):
+        return cell.number
+    if isinstance(cell, Merged):
+        return cell.reason
     if cell is None or (isinstance(cell, str) and not cell.strip()):
         return "is empty; expected a number"
-    if isinstance(cell, Share):
-        return cell.number
     with suppress(ValueError, TypeError):
         if not isinstance(cell, str | bool):
             return float(cell)  # type: ignore[arg-type]
@@ -290,17 +324,35 @@ def is_infinite(text: str) -> bool:
     return text.strip().lower() == "inf"
 
 
-class Share(str):
-    """The text of a share of the critical friction, and the ``number`` that it is in its scene."""
+class Amount(str):
+    """A cell that is not a plain number: its text, and the ``number`` that it is in its column's
+    unit. A share of the critical friction is that of its scene. Formats of texts write the text,
+    formats of numbers the number."""
 
     __slots__ = ("number",)
 
     number: float
 
-    def __new__(cls, text: str, number: float) -> "Share":
-        share = super().__new__(cls, text)
-        share.number = number
-        return share
+    def __new__(cls, text: str, number: float) -> "Amount":
+        amount = super().__new__(cls, text)
+        amount.number = number
+        return amount
+
+
+class Merged(str):
+    """An empty cell that is merged with another one, and the ``reason`` that says so."""
+
+    __slots__ = ("reason",)
+
+    reason: str
+
+    def __new__(cls, holder: str) -> "Merged":
+        merged = super().__new__(cls)
+        merged.reason = (
+            f"is empty, for it is merged with {holder}, which holds the value; expected a number "
+            "in each cell (unmerge them)"
+        )
+        return merged
 
 
 class Numeral(str):

@@ -21,9 +21,11 @@ from numpy.typing import NDArray
 from ..errors import UserError, quoted
 from ..files import LONGEST_LINE
 from ..names import RESULTS, SCENE
+from .budget import EMPTY_CELL
 from .cells import plain
 from .lines import Lines, open_text, writing
 from .rows import (
+    BLOCK_CELLS,
     BLOCK_CHARACTERS,
     BLOCK_ROWS,
     ArrowTexts,
@@ -39,6 +41,7 @@ from .rows import (
 # between these every version of pyarrow writes numbers as Python does, without an exponent
 _MIN_WITHOUT_EXPONENT = 1e-3
 _MAX_WITHOUT_EXPONENT = 1e10
+_LIVE = ("=", "@")
 BLOCK_BYTES = 1 << 22
 """A pass over a block of 4 MB takes some milliseconds; blocks of 1 and of 16 MB take as long."""
 
@@ -74,7 +77,7 @@ def _parse_plain(
     if width < 2 or b"\0" in data or data.count(b"\r") != data.count(b"\r\n"):
         return None
     import pyarrow as pa
-    from pyarrow import csv
+    from pyarrow import compute, csv
 
     characters = np.frombuffer(data, np.uint8)
     newlines = ends = np.flatnonzero(characters == ord("\n"))
@@ -107,8 +110,17 @@ def _parse_plain(
         return None
     if not data.endswith(b"\n") or table.num_rows != ends.size:
         return None
-    columns = [ArrowTexts(column.chunk(0)) for column in table.combine_chunks().columns]
-    return columns, np.searchsorted(newlines, ends) + 1
+    arrays = [column.chunk(0) for column in table.combine_chunks().columns]
+    numbers = np.searchsorted(newlines, ends) + 1
+    is_blank = np.ones(ends.size, np.bool_)
+    for array in arrays:  # a row of bare delimiters is no row
+        if not is_blank.any():
+            break
+        is_blank &= compute.equal(array, "").to_numpy(zero_copy_only=False)
+    if is_blank.any():
+        kept = pa.array(~is_blank)
+        arrays, numbers = [array.filter(kept) for array in arrays], numbers[~is_blank]
+    return list(map(ArrowTexts, arrays)), numbers
 
 
 def _records(lines: Lines, texts: Iterator[str], delimiter: str) -> Iterator[list[str]]:
@@ -146,6 +158,7 @@ def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[
         records = _records(lines, chain([header], lines), delimiter)
         names = [name.strip() for name in next(records, ())]
         width = len(names)
+        lines.budget.check_shape(width)
         while names and not names[-1]:
             del names[-1]
         if not names:
@@ -182,16 +195,23 @@ def _blocks(
             records, in_blocks = _records(lines, lines, delimiter), False
         else:
             numbers = (block[1] + number).tolist()
-            yield block[0], numbers, []
-            number = numbers[-1]
+            number += data.count(b"\n")
+            if numbers:
+                yield block[0], numbers, []
     while True:
         rows: dict[int, list[str]] = {}  # by the line in which each ends
         lines.taken = 0
-        while len(rows) < BLOCK_ROWS and lines.taken < BLOCK_CHARACTERS:
+        while (
+            len(rows) < BLOCK_ROWS
+            and len(rows) * width < BLOCK_CELLS
+            and lines.taken < BLOCK_CHARACTERS
+        ):
             if (row := next(records, None)) is None:
                 break
-            if row:  # an empty line is no row
+            if any(row):
                 rows[lines.number] = row
+            else:  # an empty line is no row, and one of bare commas neither
+                lines.budget.take(EMPTY_CELL)
         if not rows:
             return
         bad = [
@@ -200,6 +220,7 @@ def _blocks(
             if len(row) != width
         ]
         for number in [list(rows)[index] for index, *_ in bad]:
+            lines.budget.take(EMPTY_CELL * max(0, width - len(rows[number])))
             rows[number] = (rows[number] + [""] * width)[:width]
         yield list(zip(*rows.values(), strict=True)), list(rows), bad
 
@@ -292,6 +313,19 @@ def _row_bytes(arrays: Sequence[Any], delimiter: str, ends: str) -> Any:
             array = compute.if_else(compute.match_substring_regex(array, ends), quoted_texts, array)
         fields.append(array)
     return join_columns(join_columns(*fields, by=delimiter), "\n").buffers()[2]
+
+
+def has_live_text(column: Column) -> bool:
+    """Return whether a spreadsheet program would compute a text of the column: it takes one that
+    begins with = or @ for a formula."""
+    if isinstance(column, ArrowTexts):
+        from pyarrow import compute
+
+        marked = (compute.starts_with(column.array, mark) for mark in _LIVE)
+        return any(compute.any(mask).as_py() for mask in marked)
+    if isinstance(column, np.ndarray) and column.dtype.kind not in "USO":
+        return False
+    return any(isinstance(cell, str) and cell.startswith(_LIVE) for cell in column)
 
 
 @contextmanager

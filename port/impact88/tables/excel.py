@@ -7,12 +7,11 @@ read back to the double stored; openpyxl writes 16 digits of one, so that the la
 import datetime
 import io
 import math
-import os
 import shutil
 import zipfile
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
-from itertools import chain, islice
+from itertools import islice, product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,9 +19,10 @@ import numpy as np
 from ..errors import UserError, library, quoted
 from ..files import decoding, replacing
 from ..names import SCENE
-from .cells import plain, typed_cells
-from .npztable import check_unpacked
+from .budget import EMPTY_CELL, Budget
+from .cells import Merged, plain, typed_cells
 from .rows import (
+    BLOCK_CELLS,
     BLOCK_ROWS,
     Column,
     Named,
@@ -36,6 +36,7 @@ from .rows import (
 MAX_HEADER_ROW = 50  # the header is sought among these; titles and remarks are some lines
 MAX_SHEETS = 100  # those in which a table is sought
 MAX_SHEETS_LISTED = 5  # of those that are not read
+MAX_HIDDEN_LISTED = 5  # rows
 LONGEST_CELL = 32_767
 """Characters that Excel has in a cell."""
 WRITTEN = datetime.datetime(1988, 1, 1)
@@ -55,14 +56,22 @@ class _Header(NamedTuple):
     others: list[str]
 
 
+class _Marks(NamedTuple):
+    """What a sheet says of its cells beside their values: hidden rows, and by (row, column) the
+    first cell of those that each other merged cell belongs to."""
+
+    hidden: list[int]
+    merged: dict[tuple[int, int], str]
+
+
 @contextmanager
-def _open_workbook(path: str) -> Iterator[Any]:
+def _open_workbook(path: str, budget: Budget) -> Iterator[Any]:
     """The workbook, its formulas by their values. Raises UserError."""
     openpyxl = library("openpyxl", "excel", "an .xlsx")
     with ExitStack() as stack:
         with decoding(path, "is not an .xlsx workbook"):
             with zipfile.ZipFile(path) as archive:
-                check_unpacked(archive.infolist(), os.path.getsize(path), path)
+                budget.take(sum(member.file_size for member in archive.infolist()))
             book = openpyxl.load_workbook(path, read_only=True, data_only=True)
             stack.enter_context(closing(book))
         yield book
@@ -71,13 +80,14 @@ def _open_workbook(path: str) -> Iterator[Any]:
 def _lines(sheet: Any, path: str, first: int = 1) -> _Lines:
     """Yield a sheet's rows that hold anything, with their numbers. Raises UserError."""
     with decoding(path, "is not an .xlsx workbook"):
+        sheet.reset_dimensions()  # a row ends with its own last cell, wherever others have theirs
         rows = enumerate(sheet.iter_rows(min_row=first, values_only=True), first)
     while True:
         with decoding(path, "is not an .xlsx workbook"):
             number, row = next(rows, (0, ()))
         if not number:
             return
-        if any(cell is not None for cell in row):
+        if any(cell not in (None, "") for cell in row):
             yield number, row
 
 
@@ -101,15 +111,17 @@ def _header(book: Any, path: str, results: bool) -> _Header:
     return best._replace(others=[title for title in other_sheets if title != best.title])
 
 
-def _blocks(names: list[str], lines: _Lines, where: str, header: _Header) -> Iterator[Rows]:
-    width, is_trusted = len(names), False
-    while block := list(islice(lines, BLOCK_ROWS)):
+def _blocks(
+    names: list[str], lines: _Lines, where: str, marks: _Marks, budget: Budget
+) -> Iterator[Rows]:
+    width = len(names)
+    while block := list(islice(lines, max(1, min(BLOCK_ROWS, BLOCK_CELLS // width)))):
         for number, row in block:
             if any(cell is not None for cell in row[width:]):
                 raise UserError(f"row {number} has a cell in a column that has no name", where)
-        if not is_trusted and any(None in row for _, row in block):
-            _check_computed(where, header)
-            is_trusted = True
+        budget.take(EMPTY_CELL * sum(width - len(row) for _, row in block if len(row) < width))
+        if marks.merged:
+            block = [(number, _with_merged(number, row, width, marks)) for number, row in block]
         full = ((*row[:width], *[None] * (width - len(row))) for _, row in block)
         columns: dict[str, Column] = {}
         for name, cells in zip(names, zip(*full, strict=True), strict=True):
@@ -118,40 +130,91 @@ def _blocks(names: list[str], lines: _Lines, where: str, header: _Header) -> Ite
         yield Rows(len(block), columns, [number for number, _ in block])
 
 
-def _check_computed(path: str, header: _Header) -> None:
-    """Raise UserError where a formula has no value: libraries write formulas, spreadsheet programs
-    compute them when they save."""
-    load = library("openpyxl", "excel", "an .xlsx").load_workbook
-    with (
-        closing(load(path, read_only=True, data_only=True)) as values_book,
-        closing(load(path, read_only=True)) as formulas_book,
-    ):
-        sheets = (
-            book.worksheets[header.place].iter_rows(min_row=header.row, max_col=len(header.names))
-            for book in (values_book, formulas_book)
-        )
-        for value, formula in chain.from_iterable(map(zip, *sheets)):
-            if value.value is None and formula.data_type == "f":
-                raise UserError(
-                    f"cell {formula.coordinate} has a formula that was never computed; expected a "
-                    "workbook saved by a spreadsheet program",
-                    path,
-                )
+def _marks(path: str, part: str, header: _Header, budget: Budget) -> _Marks:
+    """Read a sheet's marks. Raises UserError where a formula has no value: libraries write
+    formulas, spreadsheet programs compute them when they save."""
+    from xml.etree.ElementTree import iterparse
+
+    from openpyxl.utils.cell import range_boundaries
+
+    marks = _Marks([], {})
+    with decoding(path, "is not an .xlsx workbook"), zipfile.ZipFile(path) as archive:
+        with archive.open(part) as sheet:
+            if not any(mark in piece for piece in _pieces(sheet) for mark in _MARKS):
+                return marks
+        number = 0
+        with archive.open(part) as sheet:
+            for event, element in iterparse(sheet, ("start", "end")):
+                tag = element.tag.rpartition("}")[2]
+                if event == "start":
+                    if tag == "row":
+                        number = int(element.get("r", number + 1))
+                        if element.get("hidden") in ("1", "true") and number > header.row:
+                            marks.hidden.append(number)
+                    continue
+                if tag == "mergeCell":
+                    left, top, right, bottom = range_boundaries(element.get("ref"))
+                    budget.take(EMPTY_CELL * (right - left + 1) * (bottom - top + 1))
+                    holder = element.get("ref").partition(":")[0]
+                    cells = product(range(top, bottom + 1), range(left, right + 1))
+                    marks.merged.update(dict.fromkeys(cells, holder))
+                elif tag == "c" and number > header.row and _is_uncomputed(element):
+                    raise UserError(
+                        f"cell {element.get('r')} has a formula that was never computed; expected "
+                        "a workbook saved by a spreadsheet program",
+                        path,
+                    )
+                if tag in ("row", "mergeCell"):
+                    element.clear()
+    return marks
+
+
+_MARKS = (b"hidden", b"mergeCell ", b"<f", b":f>", b":f ")
+
+
+def _pieces(file: Any) -> Iterator[bytes]:
+    """Yield the bytes of a file, each piece with the end of the one before."""
+    end = b""
+    while piece := file.read(1 << 20):
+        yield end + piece
+        end = piece[-16:]
+
+
+def _is_uncomputed(cell: Any) -> bool:
+    """Return whether a cell has a formula and no value."""
+    texts = {child.tag.rpartition("}")[2]: child.text for child in cell}
+    return "f" in texts and not texts.get("v")
+
+
+def _with_merged(number: int, row: tuple[Any, ...], width: int, marks: _Marks) -> tuple[Any, ...]:
+    """The row with its empty cells that are merged with others told from the rest."""
+    full = (*row, *[None] * (width - len(row)))
+    return tuple(
+        Merged(holder) if cell is None and (holder := marks.merged.get((number, column))) else cell
+        for column, cell in enumerate(full, 1)
+    )
 
 
 def _text(cell: Any) -> str:
+    if isinstance(cell, Merged):
+        return cell
     return repr(cell).removesuffix(".0") if isinstance(cell, float) else plain(cell)
 
 
 @contextmanager
 def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[Reader]:
     """Open a workbook. Raises UserError if it is not one, or unpacks to more than it may."""
-    with _open_workbook(path) as book:
+    budget = Budget(path)
+    with _open_workbook(path, budget) as book:
         header = _header(book, path, results)
+        budget.check_shape(len(header.names))
         names = scene_names(header.names, path, results)
         sheet = book.worksheets[header.place]
+        marks = _marks(path, sheet._worksheet_path, header, budget)
         with closing(_lines(sheet, path, header.row + 1)) as lines:
-            reader = Reader(names, _blocks(names, lines, path, header))
+            reader = Reader(names, _blocks(names, lines, path, marks, budget))
+            if marks.hidden:
+                reader.remarks.append(_hidden_words(marks.hidden))
             reader.place = {"sheet": header.title, "row": header.row}
             if header.place or header.row > 1 or header.others:
                 read = f"sheet {quoted(header.title)} is read, its headings in row {header.row}"
@@ -159,6 +222,13 @@ def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[
                 ellipsis = ", ..." if len(header.others) > MAX_SHEETS_LISTED else ""
                 reader.remarks.append(read + (f"; not read: {titles}{ellipsis}" if titles else ""))
             yield reader
+
+
+def _hidden_words(rows: list[int]) -> str:
+    first = ", ".join(map(str, rows[:MAX_HIDDEN_LISTED]))
+    more = ", ..." if len(rows) > MAX_HIDDEN_LISTED else ""
+    are = "s {} are" if len(rows) > 1 else " {} is"
+    return f"row{are.format(first + more)} hidden in the sheet, and read like the others"
 
 
 class _Archive(zipfile.ZipFile):

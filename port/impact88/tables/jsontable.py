@@ -22,7 +22,8 @@ from ..collision import doubles
 from ..errors import UserError, quoted
 from ..files import LONGEST_LINE
 from ..names import RESULTS, SCENE
-from .cells import Numeral, is_infinite, json_number, json_text
+from .budget import EMPTY_CELL
+from .cells import Amount, Numeral, is_infinite, json_number, json_text
 from .lines import Lines, open_text, writing
 from .rows import (
     ABSENT,
@@ -201,7 +202,9 @@ def _blocks(lines: Lines, values: Iterator[tuple[int, Any, str]], results: bool)
             objects.append(value)
         if not objects:
             return
+        lines.budget.take(EMPTY_CELL * (len(objects) * len(keys) - sum(map(len, objects))))
         new = [key for key in keys if key not in column_names]
+        lines.budget.check_shape(len(column_names) + len(new))
         all_names = scene_names([*column_names.values(), *new], None, results)
         column_names |= zip(new, all_names[len(column_names) :], strict=True)
         columns: dict[str, Column] = {}
@@ -235,6 +238,8 @@ _JSON = re.compile(r"-?(?:0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
 def _double(cell: Any) -> str:
     """A scene's cell as JSON writes a double: its own digits, and never as a whole number, so that
     readers who go by what they see give all of a column one type."""
+    if isinstance(cell, Amount):
+        return json_number(cell.number)
     if not isinstance(cell, str):
         return json_number(cell) if type(cell) in (int, float) else "null"
     if match := _JSON.fullmatch(cell):

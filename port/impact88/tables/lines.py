@@ -10,6 +10,7 @@ from typing import IO, Any, cast
 
 from ..errors import UserError, printable, quoted
 from ..files import ESCAPED, LONGEST_LINE, Source, encoding_of, replacing
+from .budget import Budget
 
 _START = 4096
 """Bytes of a file's begin that are looked at."""
@@ -18,11 +19,13 @@ _START = 4096
 class Lines:
     """An iterator over lines as they stand, their ends included. ``source``: the file as it is;
     ``binary``: its bytes, unpacked; ``encoding``: what they encode; ``number``: of the line last
-    given, from 1; ``taken``: the characters given since a block began. Raises UserError, naming
+    given, from 1; ``taken``: the characters given since a block began; ``budget``: of what
+    it decodes to. Raises UserError, naming
     file and line, for bytes that are not text, and for a line longer than `LONGEST_LINE`."""
 
-    def __init__(self, source: Source, binary: Any, encoding: str) -> None:
+    def __init__(self, source: Source, binary: Any, encoding: str, budget: Budget) -> None:
         self.source, self.binary, self.encoding = source, binary, encoding
+        self.budget = budget
         self.where, self.number, self.taken = source.name, 0, 0
         self.go_on(b"", 0)
 
@@ -82,6 +85,25 @@ class Lines:
         return UserError(f"line {self.number + 1} {message}", self.where)
 
 
+class _Unpacked(io.RawIOBase):
+    """The bytes of a packed stream, counted as they are unpacked."""
+
+    def __init__(self, packed: Any, budget: Budget) -> None:
+        import gzip
+
+        self._file, self._budget = gzip.GzipFile(fileobj=packed), budget
+
+    def readable(self) -> bool:
+        """Return True."""
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        """Read into ``buffer``. Raises UserError past the budget."""
+        count = self._file.readinto(buffer)
+        self._budget.take(count)
+        return count
+
+
 @contextmanager
 def open_text(path: str, encoding: str | None = None) -> Iterator[Lines]:
     """A text file: UTF-8, or UTF-16 with its mark, or of the ``encoding`` given; unpacked when its
@@ -95,17 +117,16 @@ def open_text(path: str, encoding: str | None = None) -> Iterator[Lines]:
                 "as cp1252"
             ) from None
     with Source(path) as source:
-        binary = io.BufferedReader(source)
+        binary: Any = io.BufferedReader(source)
+        budget = Budget(path)
         if path.lower().endswith(".gz"):
-            import gzip
-
-            binary = io.BufferedReader(cast(Any, gzip.GzipFile(fileobj=binary)))
+            binary = io.BufferedReader(_Unpacked(binary, budget))
         try:
             start = binary.peek(3)[:3]
         except (EOFError, zlib.error, OSError) as error:
             raise UserError(f"cannot be unpacked: {error}", source.name) from None
         name = encoding or encoding_of(start)
-        yield Lines(source, binary, "utf-8-sig" if name == "utf-8" else name)
+        yield Lines(source, binary, "utf-8-sig" if name == "utf-8" else name, budget)
 
 
 class _Terminal(io.TextIOBase):

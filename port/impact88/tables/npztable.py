@@ -6,7 +6,6 @@ held against its array's type and shape before any memory is taken.
 """
 
 import io
-import os
 import sys
 import zipfile
 from collections import Counter
@@ -21,17 +20,12 @@ from numpy.typing import NDArray
 from ..errors import UserError, quoted
 from ..files import ESCAPED, decoding, replacing
 from ..names import SCENE
+from .budget import Budget
 from .cells import typed_cells
 from .rows import BLOCK_CHARACTERS, BLOCK_ROWS, Column, Put, Reader, Rows, scene_names
 
-MOST_ARRAYS = 10_000
-"""A table has some fifty columns."""
 _HEADER = 1 << 17
 """Bytes in which an array's header ends: numpy reads one of 10,000 characters, and its length."""
-MAX_UNPACKED = 256_000_000  # bytes that any file may unpack to
-# a larger one may unpack to this many times its size: doubles pack to a third, and with twice as
-# much a file of 100 MB may take 4 GB of memory
-MAX_UNPACKED_RATIO = 20
 _PACKED = "cannot be unpacked"
 
 
@@ -43,30 +37,16 @@ def _members(path: str) -> Iterator[dict[str, "_Member"]]:
         with decoding(path, "is not an .npz file of plain arrays"):
             archive = stack.enter_context(zipfile.ZipFile(path))
             members = archive.infolist()
-            if len(members) > MOST_ARRAYS:
-                raise UserError(
-                    f"holds {len(members):,} arrays; at most {MOST_ARRAYS:,} are read", path
-                )
+            budget = Budget(path)
+            budget.check_shape(len(members))
             for name, count in Counter(member.filename for member in members).items():
                 if not name.endswith(".npy"):
                     raise UserError(f"holds {quoted(name)}; expected .npy arrays only", path)
                 if count > 1:
                     raise UserError(f"holds {quoted(name)} twice", path)
-            check_unpacked(members, os.path.getsize(path), path)
+            budget.take(sum(member.file_size for member in members))
             arrays = {m.filename[:-4]: _Member(archive, m, path, stack) for m in members}
         yield arrays
-
-
-def check_unpacked(members: list[zipfile.ZipInfo], size: int, path: str) -> None:
-    """Raise UserError when an archive of ``size`` bytes unpacks to more than is read."""
-    unpacked_size = sum(member.file_size for member in members)
-    limit = max(MAX_UNPACKED, MAX_UNPACKED_RATIO * size)
-    if unpacked_size > limit:
-        raise UserError(
-            f"has {size:,} bytes that unpack to {unpacked_size:,}; at most {limit:,} are read "
-            "(numpy.savez writes arrays unpacked)",
-            path,
-        )
 
 
 class _Member:

@@ -79,6 +79,12 @@ class ArrowTexts(ArrowColumn):
             return None
         return values
 
+    def among(self, places: NDArray[np.intp]) -> set[str]:
+        """The different texts at some places."""
+        import pyarrow as pa
+
+        return set(self.array.take(pa.array(places)).unique().to_pylist())
+
     def replaced(self, old: str, new: str) -> "ArrowTexts":
         """The column with every ``old`` a ``new``."""
         from pyarrow import compute
@@ -153,6 +159,17 @@ class Rows:
                 "expected a cell for each row (only .npz results hold it as it is)"
             )
         return column
+
+    def without_first(self) -> "Rows":
+        """The rows after the first one."""
+        columns = {
+            name: ArrowTexts(column.array.slice(1))
+            if isinstance(column, ArrowTexts)
+            else column[1:]
+            for name, column in self.columns.items()
+        }
+        bad = [(at - 1, column, reason) for at, column, reason in self.bad if at]
+        return Rows(self.count - 1, columns, self.lines[1:] if self.lines else None, bad)
 
     def complaints(self) -> list[BadCell]:
         """Return the bad cells, by the rows' numbers and lines."""

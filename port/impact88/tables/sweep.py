@@ -18,11 +18,13 @@ MAX_SCENES = 10_000_000  # of one sweep; time and memory grow with them
 
 
 class Range(NamedTuple):
-    """``steps`` evenly spaced values from ``low`` to ``high``, both included."""
+    """``steps`` evenly spaced values from ``low`` to ``high``, both included; ``unit``: behind
+    each, "%" for shares of the critical friction."""
 
     low: float
     high: float
     steps: int
+    unit: str = ""
 
     def values(self) -> list[float]:
         """The values, the ends as they were given."""
@@ -30,6 +32,10 @@ class Range(NamedTuple):
             return [self.low]
         step = (self.high - self.low) / (self.steps - 1)
         return [*(self.low + i * step for i in range(self.steps - 1)), self.high]
+
+    def texts(self) -> list[str]:
+        """The values as texts of a scene."""
+        return [f"{digits(value)} {self.unit}".rstrip() for value in self.values()]
 
 
 def read_ranges(texts: Mapping[str, str], case: Case) -> dict[str, Range]:
@@ -50,12 +56,14 @@ def read_ranges(texts: Mapping[str, str], case: Case) -> dict[str, Range]:
                 p if units_in(name, p) or i == 2 else f"{p} {unit}" for i, p in enumerate(parts)
             ]
         ends = [case.replaced({name: part}, "--sweep").values[name] for part in parts[:2]]
+        share = "%" if all(map(is_share, ends)) else ""
+        ends = [end.removesuffix(share).rstrip() for end in ends]
         if not all(map(is_number, ends)):
             raise UserError(f"--sweep {name}: {quoted(text)} is not LOW:HIGH:COUNT, such as 0:1:51")
         low, high, count = double(ends[0]), double(ends[1]), int(parts[2])
         if not (isfinite(low) and isfinite(high)) or not 1 <= count <= MAX_SCENES:
             raise UserError(f"--sweep {name}: {quoted(text)} is out of range")
-        ranges[name] = Range(low, high, count)
+        ranges[name] = Range(low, high, count, share)
     if prod(r.steps for r in ranges.values()) > MAX_SCENES:
         raise UserError(f"--sweep: more than {MAX_SCENES:,} scenes; expected fewer")
     return ranges
@@ -63,7 +71,7 @@ def read_ranges(texts: Mapping[str, str], case: Case) -> dict[str, Range]:
 
 def _blocks(case: Case, texts: Mapping[str, str], ranges: Mapping[str, Range]) -> Iterator[Rows]:
     inertias = {name: estimate for name, estimate in estimates(case).items() if name in texts}
-    grid = product(*(map(digits, r.values()) for r in ranges.values()))
+    grid = product(*(run.texts() for run in ranges.values()))
     while block := list(islice(grid, BLOCK_ROWS)):
         columns: dict[str, Column] = {n: [t] * len(block) for n, t in texts.items()}
         columns |= dict(zip(ranges, zip(*block, strict=True), strict=True))
@@ -113,9 +121,10 @@ def read_sweep(case: Case, ranges: Mapping[str, Range]) -> Iterator[Reader]:
     values = case.at_nominal().values
     scene = {name: values[name] for name in SCENE if name in values}
     headings = {n: Heading(n, system.heading(n), system.unit(n)) for n in scene}
-    texts: dict[str, str] = {headings[n]: t for n, t in case.display_texts(scene).items()}
+    texts: dict[str, str] = {"case": case.case} if case.case else {}
+    texts |= {headings[n]: t for n, t in case.display_texts(scene).items()}
     swept: dict[str, Range] = {}
     for n, run in ranges.items():
-        low, high = (system.display(n, limit) for limit in run[:2])
-        swept[headings[n]] = Range(low, high, run.steps)
+        low, high = run[:2] if run.unit else (system.display(n, limit) for limit in run[:2])
+        swept[headings[n]] = Range(low, high, run.steps, run.unit)
     yield Reader(list(texts), _blocks(case, texts, swept), prod(r.steps for r in ranges.values()))

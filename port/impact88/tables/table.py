@@ -9,14 +9,17 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import chain
 from typing import Any
 
 from numpy.typing import NDArray
 
+from ..collision.units import size_of
 from ..errors import UserError, quoted
-from ..names import SCENE
+from ..names import RESULTS, SCENE, quantity
+from .cells import RATIOS
 from .formats import ENDINGS, FORMATS
-from .rows import Reader, Rows, heading, heading_remarks
+from .rows import Heading, Reader, Rows, heading, heading_remarks
 
 
 def format_of(path: str, given: str | None) -> str:
@@ -46,8 +49,35 @@ def open_reader(
     if path == "-" and not row.is_text:
         raise UserError(f"{form} cannot be read from standard input; expected a file")
     with row.load().read(path, form, encoding, results) as reader:
+        _read_units_row(reader, results)
         reader.remarks += heading_remarks(reader.names, results)
         yield reader
+
+
+def _read_units_row(reader: Reader, results: bool) -> None:
+    """Take the first row for the units of its columns where it holds units and no number.
+
+    A heading that has a unit keeps it. Cells of other columns are not looked at."""
+    blocks = iter(reader.blocks)
+    first = next(blocks, None)
+    reader.blocks = blocks if first is None else chain([first], blocks)
+    known = [n for n in reader.names if n in SCENE or (results and n in RESULTS)]
+    if first is None or not first.lines or any(n not in first.columns for n in known):
+        return
+    cells = {n: str(first.columns[n][0] or "").strip().strip("[]()") for n in known}
+    units = {n: cell for n, cell in cells.items() if cell and cell not in RATIOS}
+    if not units:
+        return
+    for name, unit in units.items():
+        if size_of(unit, quantity(name).unit) is None:
+            return
+    written = {n: f"{heading(n)} [{unit}]" for n, unit in units.items()}
+    reader.names = [
+        Heading(n, written[n], units[n]) if n in units and not getattr(n, "unit", "") else n
+        for n in reader.names
+    ]
+    reader.remarks.append(f"line {first.lines[0]} is read as the units of its columns")
+    reader.blocks = chain([first.without_first()], blocks)
 
 
 @contextmanager

@@ -152,6 +152,10 @@ def _swept(args: options.Args) -> Drawing:
     if len(ranges) != 1:
         raise UserError("expected one --sweep NAME=LOW:HIGH:COUNT, such as --sweep MU=0:1:51")
     ((name, run),) = ranges.items()
+    if run.unit:
+        raise UserError(
+            f"--sweep {name}: shares of the critical friction have no axis; expected numbers"
+        )
     outputs = options.names_given(args.outputs, tuple(RESULTS), "--outputs")
     return swept(scene, name, run.values(), outputs or ["LOSS", "DVA", "DVB"])
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...collision.case import OWN_NAMES, VALUE_LIMIT, Case, check_value, is_share
-from ...collision.doubles import is_number
+from ...collision.doubles import double, is_number
 from ...collision.fields import ZERO_DETERMINANT
 from ...collision.scenefile import case_in
 from ...collision.units import Convention, convention_named
@@ -25,15 +25,17 @@ from ...messages.progress import progress
 from ...names import DEFAULT_M, RESULTS, SCENE, check_names
 from ...status import Status
 from ...tables.cells import (
-    Share,
+    Amount,
     TableUnits,
     check_scene_columns,
     fill_blanks,
     numbers,
     point_masses,
+    vanished,
 )
+from ...tables.csvtable import has_live_text
 from ...tables.remarks import Remark, remarks
-from ...tables.rows import BadCell, Rows, shortest
+from ...tables.rows import BadCell, Rows, heading, shortest
 from ...tables.sweep import estimates, read_ranges, read_sweep
 from ...tables.table import (
     format_of,
@@ -114,7 +116,7 @@ def solve_table(args: options.Args) -> int:
             {*source.names, *constants}, points, where=display_name(path or "--sample")
         )
         if swept:  # the rest is the same in every row
-            source.names = [name for name in source.names if name in swept]
+            source.names = [name for name in source.names if name in swept or name not in SCENE]
         elif units.strict:
             source.names = units.headings(source.names)
         extra_columns = ["ERROR", "LINE"] if arithmetic is _applesoft else []
@@ -135,6 +137,8 @@ def solve_table(args: options.Args) -> int:
             noted_names = [name for name in extra_case.remarks if name not in source.names]
         remarks = _Remarks(noted_names, constants, extra_case)
         stack.callback(remarks.say)
+        live: set[str] = set()
+        stack.callback(_say_live, live)
         adverse = place = 0
         for rows in blocks:
             for name, text in constants.items():
@@ -148,6 +152,10 @@ def solve_table(args: options.Args) -> int:
             rows.columns["M"] = fill_blanks(rows.columns["M"], DEFAULT_M)
             results = arithmetic(rows, units, outputs, remarks)
             write(rows, units.shown(results))
+            if result_format == "csv" and scene_too:
+                for name in {*rows.columns} - {*SCENE, *live}:
+                    if has_live_text(rows.columns[name]):
+                        live.add(name)
             adverse += complain(rows.complaints())
             if "ERROR" in results:
                 errors = results["ERROR"]
@@ -155,6 +163,17 @@ def solve_table(args: options.Args) -> int:
             meter.update(rows.place - place)
             place = rows.place
     return int(adverse > 0)
+
+
+def _say_live(columns: Collection[str]) -> None:
+    """Say that a CSV holds texts that a spreadsheet program computes."""
+    if columns:
+        names = " ".join(sorted(map(heading, columns)))
+        note(
+            "solve",
+            f"column {names}: a text that begins with = or @ is a formula to a spreadsheet "
+            "program; -o FILE.xlsx keeps it a text",
+        )
 
 
 class _Remarks:
@@ -181,7 +200,8 @@ class _Remarks:
                 return shortest(np.array([number]))[0].removesuffix(".0")
             return str(column[index])
 
-        for name, remark in remarks(columns, units.system, cell).items():
+        found = remarks(columns, units.system, cell)
+        for name, remark in (*vanished(rows, columns), *found.items()):
             if name in self._told:
                 continue
             if name in self._found:
@@ -289,7 +309,7 @@ def _read_shares(rows: Rows, columns: dict[str, NDArray[np.float64]]) -> None:
         columns["MU"][at] = share_typed(scene_columns, list(fractions.values()))
         cells_kept = list(rows.columns["MU"])
         for index in at:  # a typed table holds the number
-            cells_kept[index] = Share(cells_kept[index], float(columns["MU"][index]))
+            cells_kept[index] = Amount(cells_kept[index], float(columns["MU"][index]))
         rows.columns["MU"] = cells_kept
         rows.bad = [bad for bad in rows.bad if bad[1] != "MU" or bad[0] not in fractions]
 
@@ -298,21 +318,26 @@ def _applesoft(rows: Rows, units: TableUnits, wanted: Sequence[str], said: _Rema
     """The listing's own arithmetic, `impact88.replay`."""
     from ...program.vectorized import replay
 
-    said.look(rows, units, numbers(Rows(rows.count, rows.columns), units))
-
     points = point_masses(rows)
     columns = {n: _texts(n, column, units) for n, column in rows.scene().items()}
+    resolved = Rows(rows.count, rows.columns, rows.lines, first=rows.first)
+    said.look(resolved, units, numbers(resolved, units))
     for name in UNUSED_BY_POINTS if points.any() else ():
         # the program reads them all the same
         default = "1" if name in INERTIAS else "0"
         for index in np.flatnonzero(points).tolist():
             if columns[name][index] in (None, "", "NAN"):
                 columns[name][index] = default
+    shares: dict[int, Amount] = {}
     for index, cell in enumerate(columns["MU"]):
         if share_of(cell) is not None:
             scene = {name: column[index] for name, column in columns.items() if name in SCENE}
             with suppress(UserError, ValueError, TypeError):  # the cell's complaint follows
-                columns["MU"][index] = resolve_share(scene, "")[0]
+                columns["MU"][index] = text = resolve_share(scene, "")[0]
+                shares[index] = Amount(cell, double(text))
+    if shares:
+        cells = list(rows.columns["MU"])
+        rows.columns["MU"] = [shares.get(index, cell) for index, cell in enumerate(cells)]
     unread = {index for index, *_ in rows.bad}
     try:
         # nearly always all cells can be read, and looking at each takes as long as solving
