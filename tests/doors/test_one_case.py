@@ -237,7 +237,6 @@ def test_one_file_has_one_answer(
     seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(collision, "DRAWS", 100)
     made = Generated(seed)
     Path("case.toml").write_text(made.file(), encoding="utf-8")
     solved = impact88.solve(made.scene(), RESULTS)

@@ -168,9 +168,7 @@ def desk_bounds(system: str, path: Path, capsys: Any) -> Amounts:
     from impact88.interface.desk import collision
 
     values = {**texts(system), "MU": ".3 .. .5"}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(collision, "DRAWS", 200)
-        shown = collision.bounds_answer(values, system)["outputs"]
+    shown = collision.bounds_answer(values, system, draws=200)["outputs"]
     return {n: si(n, one["upper"], one["unit"]) for n, one in shown.items()}
 
 

@@ -374,22 +374,20 @@ def same(one: Replay, other: Replay, count: int) -> None:
         assert np.broadcast_to(one.printed(name), count).tolist() == other.printed(name).tolist()
 
 
-def test_blocks_and_threads_change_nothing(
-    awkward: list[dict[str, Any]], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_blocks_and_threads_change_nothing(awkward: list[dict[str, Any]]) -> None:
     scenes = read_columns(columns_of([run["scene"] for run in awkward]))
     whole = replay_scenes(scenes, threads=1)
     same(whole, replay_scenes(scenes, threads=1, block=60), scenes.size)
-    monkeypatch.setattr(blocks, "MIN_SCENES_PER_THREAD", 500)
+    count = 2 * blocks.MIN_SCENES_PER_THREAD
     many = scenes._replace(
-        values={name: np.resize(v, 1500) for name, v in scenes.values.items()},
-        size=1500,
-        first=np.resize(scenes.first, 1500),
+        values={name: np.resize(v, count) for name, v in scenes.values.items()},
+        size=count,
+        first=np.resize(scenes.first, count),
     )
     shared = replay_scenes(many, threads=2)
-    assert shared.code.tolist() == np.resize(whole.code, 1500).tolist()
+    assert shared.code.tolist() == np.resize(whole.code, count).tolist()
     for name in whole.names:
-        assert shared.reals(name).tolist() == np.resize(whole.reals(name), 1500).tolist()
+        assert shared.reals(name).tolist() == np.resize(whole.reals(name), count).tolist()
 
 
 @pytest.mark.parametrize("varied", ["MU", "UX", "WB", "MA", "GA"])

@@ -448,13 +448,12 @@ class TestCanvas:
             around = [b for b in boxes if b.left < x < b.right and b.bottom < y < b.top]
             assert any(b.left - 0.3 < ink.x0 and ink.x1 < b.right + 0.6 for b in around)
 
-    def test_formats(self, tmp_path, monkeypatch):
-        monkeypatch.setattr(canvas, "DOTS_PER_INCH", 75)
+    def test_formats(self, tmp_path):
         drawing = scene_drawing(sample(1))
         starts = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
         for ending, start in starts.items():
             path = tmp_path / f"scene.{ending}"
-            canvas.save(drawing, str(path))
+            canvas.save(drawing, str(path), dots_per_inch=75)
             assert path.read_bytes().startswith(start)
             # what a reader who cannot see it misses goes with it; the drawing's words are texts
             assert b"Vehicle A: speed 29.04 ft/s before" in path.read_bytes()
@@ -898,15 +897,14 @@ class TestRendered:
             alone = ink[one][0] & ~near
             assert not alone.any(), f"{alone.sum()} dots of {one} are not in {other}"
 
-    def test_an_outline_is_closed_in_every_format(self, tmp_path, monkeypatch):
+    def test_an_outline_is_closed_in_every_format(self, tmp_path):
         """An open outline that ends where it began keeps its last edge: matplotlib's Polygon
         drops it."""
         image = pytest.importorskip("PIL.Image")
-        monkeypatch.setattr(canvas, "DOTS_PER_INCH", 50.8)
         corners = (10 - 10j, 30 - 10j, 30 - 30j, 10 - 30j, 10 - 10j)
         for dash in ((), (3.0, 1.0)):
             drawing = Drawing(40, "a square", height=40, items=[Path(corners, "#000000", 1, dash)])
-            canvas.save(drawing, str(tmp_path / "x.png"))
+            canvas.save(drawing, str(tmp_path / "x.png"), dots_per_inch=50.8)
             dark = np.asarray(image.open(tmp_path / "x.png").convert("L")) < 128
             edges = dark[20, 22:58], dark[60, 22:58], dark[22:58, 20], dark[22:58, 60]
             for edge in edges:

@@ -454,17 +454,15 @@ def check_schema(name: str, whole: Any) -> None:
 
 
 @pytest.mark.usefixtures("brief_search")
-def test_what_the_page_is_answered_follows_the_published_schemas(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(reconstruction, "DRAWS", 100)
-    monkeypatch.setattr(collision, "DRAWS", 100)
+def test_what_the_page_is_answered_follows_the_published_schemas() -> None:
     ranged = {**sample(1), "MU": "0.7 .. 0.9"}
     known = reconstruction.known_of_sample(1)["values"]
     check_schema("oracle", collision.answer(ranged)["oracle"])
-    check_schema("bounds", collision.bounds_answer(ranged))
-    check_schema("reconstruct", reconstruction.answer(known)["object"])
-    check_schema("reconstruct", reconstruction.answer({**known, "VAX": "-13 +- 1"})["object"])
+    check_schema("bounds", collision.bounds_answer(ranged, draws=100))
+    check_schema("reconstruct", reconstruction.answer(known, draws=100)["object"])
+    check_schema(
+        "reconstruct", reconstruction.answer({**known, "VAX": "-13 +- 1"}, draws=100)["object"]
+    )
 
 
 # --- the reconstruction -------------------------------------------------------------------------
@@ -477,12 +475,11 @@ def toml(values: Mapping[str, str]) -> str:
 @pytest.mark.usefixtures("brief_search")
 @pytest.mark.parametrize("changes", [{}, {"VAX": "-13.26 +- 0.5", "UY": "0", "VBY": "20 +- 1"}])
 def test_a_reconstruction_is_the_commands_own(
-    changes: dict[str, str], tmp_path: Path, own: Own, monkeypatch: pytest.MonkeyPatch
+    changes: dict[str, str], tmp_path: Path, own: Own
 ) -> None:
-    monkeypatch.setattr(reconstruction, "DRAWS", 100)
     known = {**reconstruction.known_of_sample(1)["values"], "E": "0.3", **changes}
     (tmp_path / "known.toml").write_text(toml(known), encoding="utf-8")
-    told = reconstruction.answer(known)
+    told = reconstruction.answer(known, draws=100)
     assert told["problems"] == {}
     printed = own("reconstruct", "known.toml", "--samples", "100").rstrip("\n")
     assert [one["printed"] for one in told["solutions"]] == [printed]
@@ -491,11 +488,10 @@ def test_a_reconstruction_is_the_commands_own(
     assert bool(told["solutions"][0]["adjusted"]) == bool(changes)
 
 
-def test_rounding_is_nowhere_shown_as_a_number(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_rounding_is_nowhere_shown_as_a_number() -> None:
     """Spins that were 0, a sum of squares of values that agree, in tables, text and scene."""
-    monkeypatch.setattr(reconstruction, "DRAWS", 0)
     known = reconstruction.known_of_sample(1)["values"]
-    answer = reconstruction.answer({**known, "VAX": f"{known['VAX']} +- 1", "UY": "0"})
+    answer = reconstruction.answer({**known, "VAX": f"{known['VAX']} +- 1", "UY": "0"}, draws=0)
     (solution,) = answer["solutions"]
     assert {solution["scene"][name] for name in ("UY", "WA", "WB")} == {"0"}
     assert (
@@ -527,24 +523,18 @@ def test_what_a_collision_gave_is_reconstructed_to_the_collision() -> None:
         ("QQ", "1", "not a name used here"),
     ],
 )
-def test_each_known_value_is_judged_alone(
-    name: str, text: str, problem: str | None, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(reconstruction, "DRAWS", 100)
+def test_each_known_value_is_judged_alone(name: str, text: str, problem: str | None) -> None:
     known = reconstruction.known_of_sample(3)["values"]
-    told = reconstruction.answer({**known, name: text})
+    told = reconstruction.answer({**known, name: text}, draws=100)
     assert list(told["problems"]) == ([name] if problem else [])
     assert (problem or "") in told["problems"].get(name, "")
     assert bool(told["solutions"]) == (problem is None)
 
 
 @pytest.mark.usefixtures("brief_search")
-def test_a_reconstruction_answers_in_its_units(
-    tmp_path: Path, own: Own, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(reconstruction, "DRAWS", 100)
+def test_a_reconstruction_answers_in_its_units(tmp_path: Path, own: Own) -> None:
     known = {**reconstruction.known_of_sample(3)["values"], "VAX": "-5.1 +- 1"}
-    told = reconstruction.answer(known, "us")
+    told = reconstruction.answer(known, "us", draws=100)
     (tmp_path / "known.toml").write_text('units = "us"\n' + toml(known), encoding="utf-8")
     printed = own("reconstruct", "known.toml", "--samples", "100")
     assert [one["printed"] for one in told["solutions"]] == [printed.rstrip("\n")]
@@ -1020,11 +1010,8 @@ def test_as_many_draws_as_the_command_takes() -> None:
 
 
 @pytest.mark.long
-def test_a_reconstruction_begins_with_the_evidence_and_velocity_changes(
-    client: Client, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_reconstruction_begins_with_the_evidence_and_velocity_changes(client: Client) -> None:
     """What is asked first stands first: can it all be true, then ΔV and the force's direction."""
-    monkeypatch.setattr(reconstruction, "DRAWS", 100)
     values = {**reconstruction.known_of_sample(1)["values"], "UX": "-29 +- 1", "VAX": "-13 +- 1"}
     answer = client.post("reconstruct", {"values": values, "units": ""}).get_json()
     best = answer["solutions"][0]

@@ -151,7 +151,7 @@ def _quiet() -> Any:
         logger.setLevel(level)
 
 
-def make_figure(drawing: Drawing) -> Figure:
+def make_figure(drawing: Drawing, dots_per_inch: float = DOTS_PER_INCH) -> Figure:
     """The drawing as a matplotlib figure of exactly its size, tied to no screen."""
     from matplotlib.figure import Figure
     from matplotlib.patches import PathPatch
@@ -159,7 +159,7 @@ def make_figure(drawing: Drawing) -> Figure:
 
     size, points = drawing.enlarged, drawing.enlarged / MM_PER_POINT
     inches = (size * drawing.width / 25.4, size * drawing.height / 25.4)
-    figure = Figure(figsize=inches, dpi=DOTS_PER_INCH)
+    figure = Figure(figsize=inches, dpi=dots_per_inch)
     axes = figure.add_axes((0, 0, 1, 1), xlim=(0, drawing.width), ylim=(-drawing.height, 0))
     axes.axis("off")
     halo = [Stroke(linewidth=0.5 * points, foreground="white")]
@@ -195,7 +195,7 @@ def check_ending(path: str) -> str:
     return ending
 
 
-def save(drawing: Drawing, path: str) -> None:
+def save(drawing: Drawing, path: str, dots_per_inch: float = DOTS_PER_INCH) -> None:
     """Write a drawing, title and description with it; the format is the ending of ``path``. Raises
     UserError for another, a place that cannot be written to, or missing matplotlib."""
     ending = check_ending(path)
@@ -217,6 +217,6 @@ def save(drawing: Drawing, path: str) -> None:
         matplotlib.rcParams.update(
             {"font.family": "DejaVu Sans", "pdf.fonttype": 42, "text.hinting": "no_hinting"}
         )
-        figure = make_figure(drawing)
+        figure = make_figure(drawing, dots_per_inch)
         with replacing(path, "wb") as file:
-            figure.savefig(file, format=ending, dpi=DOTS_PER_INCH, metadata=about)
+            figure.savefig(file, format=ending, dpi=dots_per_inch, metadata=about)

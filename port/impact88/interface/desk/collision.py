@@ -205,7 +205,7 @@ def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
     return svg(scene_drawing(form.scene, result, title=title or "Scene from above"))
 
 
-def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
+def bounds_answer(values: dict[str, str], units: str = "", draws: int = DRAWS) -> dict[str, Any]:
     """Return the object that `impact88 bounds --json` prints for the form's ranges, with fewer
     draws. Raises UserError, also for a form without ranges."""
     from ...casework.uncertainty.bounds import bounds
@@ -216,7 +216,7 @@ def bounds_answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
     if not form.case or not form.scene or not form.ranges:
         raise UserError("there are no ranges to explore")
     inputs = read_inputs(form.case)
-    result = bounds(inputs.values, correlations=inputs.correlations, samples=DRAWS)
+    result = bounds(inputs.values, correlations=inputs.correlations, samples=draws)
     return with_schema("bounds", as_json(in_units(result, form.system)))
 
 

@@ -42,7 +42,7 @@ def warm() -> None:
     answer(known_of_sample(1)["values"])
 
 
-def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
+def answer(values: dict[str, str], units: str = "", draws: int = DRAWS) -> dict[str, Any]:
     """Return the solutions for the known values: ``problems`` by name; ``waiting``, why there is
     none; ``units`` as `units_shown`; ``object``, what `impact88 reconstruct --json` prints;
     ``solutions``, each with the command's text (``printed``), the verdict on the ``evidence``, what
@@ -72,8 +72,8 @@ def answer(values: dict[str, str], units: str = "") -> dict[str, Any]:
         impacts: Sequence[Impact]
         if adjustment.needs_adjustment(known):
             first, *more = adjustment.reconstruct(known)
-            best = Measured(first, DRAWS)
-            impacts = [best, *(Measured(solution, DRAWS, like=best) for solution in more)]
+            best = Measured(first, draws)
+            impacts = [best, *(Measured(solution, draws, like=best) for solution in more)]
         else:
             impacts = Exact.all_of({name: item.nominal for name, item in known.items()})
         solutions = [
