@@ -17,7 +17,7 @@ from types import MappingProxyType
 
 from ..errors import BEYOND_DOUBLES, UserError, quoted
 from ..names import DEFAULT_M, NO_AMOUNTS, quantity
-from .doubles import BARE, double, is_number
+from .doubles import BARE, digits, double, is_number
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -37,6 +37,11 @@ RANGES = ("..", "+-", "±", "+/-", "uniform", "triangular", "normal")
 """Marks of a value known within limits."""
 ESTIMATE = "estimate"
 """The word for an unknown yaw inertia, see `collision.estimates`."""
+FACING_COURSE = "course"
+"""TA or TB of a vehicle that faces the way it travels."""
+LOCKED = "locked"
+"""MU of vehicles whose contact points move together after the impact, beside E = 0."""
+LOCKED_MU = "-10"
 TOLERANCES = ("+-", "±", "+/-")
 """Marks that begin a tolerance around the value already given."""
 ABOUT = ("title", "case", "correlations", "units", "axes", "headings")
@@ -126,7 +131,11 @@ class Case:
             from .units import convention_named
 
             self._convention = convention_named(axes, headings, source)
-        amounts = {n: t for n, t in entries.items() if n not in ABOUT or n == "units"}
+        amounts = {
+            n: LOCKED_MU if n in ("MU", "MUP") and t.strip().lower() == LOCKED else t
+            for n, t in entries.items()
+            if n not in ABOUT or n == "units"
+        }
         base_texts, self.units = in_base_units(amounts, source, units)
         if self._convention:
             from .units import in_listing_axes
@@ -169,7 +178,7 @@ class Case:
                 self.remarks[name] = f"{name} = {values[name]} is estimated: {rule}"
             for name in self.estimated if self.is_single else ():
                 values[name] = nominal(name, values[name], source)
-        self.values = _with_contact_point(values, source)
+        self.values = _with_headings(_with_contact_point(values, source))
         self._remark()
 
     def _remark(self) -> None:
@@ -386,6 +395,34 @@ def in_base_units(
     from .units import in_base
 
     return in_base(texts, source, units)
+
+
+def _with_headings(values: dict[str, str]) -> dict[str, str]:
+    """Return the values with the numbers of TA and TB that are `FACING_COURSE`, where the course is
+    known exactly; where it is not, as of a vehicle at rest, the word stays."""
+    if FACING_COURSE not in values.values():
+        return values
+    from .plausibility import VELOCITY_NAMES
+
+    result = dict(values)
+    for vehicle, (x, y, speed, course) in VELOCITY_NAMES.items():
+        if values.get(f"T{vehicle}", "").strip() != FACING_COURSE:
+            continue
+        result[f"T{vehicle}"] = FACING_COURSE
+        parts = [values.get(name, "") for name in (x, y)]
+        direction = None
+        if all(map(is_number, parts)) and any(map(double, parts)):
+            direction = math.degrees(math.atan2(double(parts[1]), double(parts[0])))
+        elif is_number(text := values.get(course, "")) and not _is_zero(values.get(speed, "")):
+            direction = double(text)
+        if direction is not None:
+            theta = direction + 180 if vehicle == "A" else direction
+            result[f"T{vehicle}"] = digits(math.remainder(theta, 360))
+    return result
+
+
+def _is_zero(text: str) -> bool:
+    return is_number(text) and not double(text)
 
 
 def _with_contact_point(values: dict[str, str], source: str) -> dict[str, str]:

@@ -31,8 +31,12 @@ R = TypeVar("R")
 
 GEOMETRY = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
 """The values of a scene that define its geometry; M (6 or 4) is optional."""
-_POINT_MASS = dict.fromkeys(GEOMETRY[:2] + GEOMETRY[3:7], 0.0) | {"IA": 1.0, "IB": 1.0}
-"""Values a point mass does not use, which may be omitted if M is 4 throughout."""
+ARMS = ("DA", "PA", "TA", "IA", "DB", "PB", "TB", "IB")
+"""What an impact needs beyond masses and GA for spins and moments; without one of them its
+vehicles are point masses."""
+_STAND_INS = dict.fromkeys(GEOMETRY, 0.0) | {"IA": 1.0, "IB": 1.0}
+"""Numbers in place of what is not given. No result that is returned depends on them
+(`mechanics.uses`)."""
 
 
 def within_doubles(function: Callable[P, R]) -> Callable[P, R]:
@@ -68,19 +72,14 @@ def sin_cos(degrees: Any) -> tuple[Array, Array]:
     return sine + turn * cosine, cosine - turn * sine
 
 
-def with_point_masses(columns: Mapping[str, Any]) -> dict[str, Any]:
-    """Return ``columns``, completed with the values point masses may omit if M = 4 throughout."""
-    m = np.asarray(columns.get("M", 6), np.float64)
-    return {**(_POINT_MASS if m.size and (m == 4).all() else {}), **columns}
-
-
 class Geometry:
     """Contact geometry of scenes, as arrays that broadcast.
 
     Parameters
     ----------
     columns : mapping of str to array_like
-        The values named in `GEOMETRY`, angles in degrees, and M (default 6).
+        Those values named in `GEOMETRY` that are given, MA and MB among them, angles in degrees,
+        and M (default 6).
 
     Attributes
     ----------
@@ -98,13 +97,20 @@ class Geometry:
     inverse_spin_inertia : ndarray
         1/Ī = 1/I_a + 1/I_b.
     point : ndarray of bool
-        True for point masses (M = 4), which have no lever arms and do not turn.
+        True for point masses (M = 4, or a value of `ARMS` is not given), which have no lever arms
+        and do not turn.
+    absent : frozenset of str
+        Names that are not given. Numbers stand in for them; see `mechanics.uses`.
     """
 
     def __init__(self, columns: Mapping[str, Any]) -> None:
-        columns = with_point_masses(columns)
-        value = {name: _numbers(columns[name]) for name in GEOMETRY}
+        self.absent = frozenset(name for name in GEOMETRY if name not in columns)
+        value = {name: _numbers(columns.get(name, _STAND_INS[name])) for name in GEOMETRY}
         self.point = np.asarray(columns.get("M", 6), np.float64) == 4
+        if not self.absent.isdisjoint(ARMS):
+            self.point = np.ones_like(self.point)
+        for name in ("TA", "TB"):  # a point mass may face the way it travels, `state.COURSE`
+            value[name] = np.where(self.point, 0.0, value[name])
         self.sine, self.cosine = sin_cos(value["GA"])
         sine_a, cosine_a = sin_cos(value["TA"] + value["PA"])
         sine_b, cosine_b = sin_cos(value["TB"] + value["PB"])

@@ -26,7 +26,8 @@ MAX_SIDESLIP = 45.0  # degrees between a moving vehicle's course and its heading
 _SIDESLIP_TOL = 1e-9  # degrees; rounding may put an exact 45 slightly above
 BEYOND_ARM = "the contact point is more than 15 m from the center of gravity; is its unit as meant?"
 ONE_SPIN = "the moment at the contact leaves both vehicles with one spin; no moment is EM = 1"
-SPEEDS = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
+VELOCITY_NAMES = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
+"""Components, speed and course of each vehicle's velocity before the impact."""
 MEASURES = {
     "mass": (
         MIN_MASS,
@@ -141,7 +142,7 @@ def rule_of_name(name: str) -> str:
 def _directions(numbers: Mapping[str, float]) -> dict[str, str]:
     """Return remarks on vehicles that move sideways or backwards."""
     remarks_by_name: dict[str, str] = {}
-    for vehicle, (x, y, speed, course) in SPEEDS.items():
+    for vehicle, (x, y, speed, course) in VELOCITY_NAMES.items():
         name = f"T{vehicle}"
         if name not in numbers or numbers.get("M") == 4:
             continue

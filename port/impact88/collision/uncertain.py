@@ -25,6 +25,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ..errors import UserError, quoted
+from .case import FACING_COURSE
 from .doubles import double, is_number
 from .units import ACCEPTED, gravity_in, parse, system_of
 
@@ -286,6 +287,8 @@ def read(text: str, name: str, center: float | None = None, units: str | None = 
     inside; ``units``: the system of the numbers, which a `skid` needs. Raises UserError for any
     other text, limits in the wrong order, or a number too large.
     """
+    if text.strip() == FACING_COURSE and name.endswith(("TA", "TB")):
+        return fixed_value(math.nan)
     if text.lstrip().startswith("skid") and name.endswith(("SAF", "SBF")):
         return skid(text, name, units)
     try:

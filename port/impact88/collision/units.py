@@ -730,10 +730,16 @@ def in_listing_axes(texts: Mapping[str, str], system: System, source: str) -> di
     assert system.convention is not None
     turns = {name: system.convention.sign_and_offset(name) for name in texts}
     return {
-        name: text if turn is None else reorient_text(name, text, *turn, source)
+        name: text
+        if turn is None or not _has_digits(text)
+        else reorient_text(name, text, *turn, source)
         for name, text in texts.items()
         for turn in [turns[name]]
     }
+
+
+def _has_digits(text: str) -> bool:
+    return any(map(str.isdigit, text))
 
 
 def opposite(text: str) -> str:

@@ -24,13 +24,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..collision.geometry import Geometry, with_point_masses
+from ..collision.geometry import Geometry
 from ..errors import UserError
 from ..names import FINAL_STATE, PIVOT, SCENE, VELOCITIES
-from ..status import IMPOSSIBLE
+from ..status import IMPOSSIBLE, Status
+from .closedform.columns import UNUSED_BY_POINTS
 from .closedform.solve import quantities, solve
 from .closedform.statusbits import bits, findings, forward_friction
 from .state import CHANGES, CONTACT, COURSES, FORCES, SPEEDS, State
+from .uses import inputs_of
 
 Array = NDArray[Any]
 
@@ -47,7 +49,6 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
     """Return the consequences of ``values`` (geometry, velocities, coefficients, PN and PT, by
     name): contact point, STATUS, direction of force, contact velocities, energies, velocity
     changes, speeds and courses, and MUC, each where the values it needs are known."""
-    values = with_point_masses(values)
     numbers = {name: np.asarray(value, np.float64) for name, value in values.items()}
     if (numbers.get("M", np.array(6.0)) == 4).all():
         numbers = {"WA": np.zeros(()), "WB": np.zeros(()), "EM": np.zeros(()), **numbers}
@@ -55,14 +56,14 @@ def outcome(values: Mapping[str, Any]) -> dict[str, Array]:
     state = State.of_known(numbers)
     here = state.here
     result = {"CAX": -here.d4, "CAY": -here.d3, "CBX": here.d2, "CBY": here.d1}
-    names = (*CONTACT, *CHANGES, "KI", "KF", "LOSS", *SPEEDS, *COURSES)
+    names = (*CONTACT, *CHANGES, "KI", "KF", "LOSS", *SPEEDS, *COURSES, *FORCES)
     following = {name: state[name] for name in names} | state.contact_velocities()
+    following["P"] = np.hypot(*state.impulse_on_a)
     result |= {name: value for name, value in following.items() if not np.isnan(value).all()}
-    if "PN" in numbers and "PT" in numbers:
-        result |= {name: state[name] for name in FORCES}
-        result["P"] = np.hypot(numbers["PN"], numbers["PT"])
+    point = bool((numbers.get("M", np.array(6.0)) == 4).all())
+    result = {n: x for n, x in result.items() if here.absent.isdisjoint(inputs_of(n, point))}
     condition: Any = 1.0
-    if all(name in numbers for name in SCENE if name != "M"):
+    if _is_complete(numbers):
         scene = {name: numbers[name] for name in SCENE if name in numbers}
         result["MUC"], condition = solve(scene, ("MUC", "COND")).values()
     result["STATUS"] = status(state, numbers, condition)
@@ -107,9 +108,14 @@ def broken_laws(state: State) -> Array:
     [0, 16]
     """
     e, em = (state.values[name] if name in state.values else state[name] for name in ("E", "EM"))
+    normal_slip, pn = state.relative_before[0], state.values["PN"]
+    forbidden: Any = 0
+    if "GA" in state.here.absent:
+        normal_slip = pn = e = np.array(np.nan)
+        forbidden = _forbidden_for_every_normal(state)
     laws: dict[str, Any] = {
-        "gn": np.real(state.relative_before[0]),
-        "pn": np.real(state.values["PN"]),
+        "gn": np.real(normal_slip),
+        "pn": np.real(pn),
         "twice_lost": np.real(2 * state.energy_lost),
         "initial": np.real(state.initial_energy),
         "e": _within_range(e, 0.0, 1.0),
@@ -117,7 +123,38 @@ def broken_laws(state: State) -> Array:
     }
     remarks = dict.fromkeys(_ARGUMENTS_OF_REMARKS, np.array(np.nan))
     conditions = findings(**{**remarks, **laws})
-    return np.asarray(bits({bit: conditions[bit] for bit in IMPOSSIBLE}), np.uint16)
+    broken = bits({bit: conditions[bit] for bit in IMPOSSIBLE})
+    return np.asarray(broken | forbidden, np.uint16)
+
+
+def _forbidden_for_every_normal(state: State) -> Array:
+    """Return the bits that an impact sets whatever its contact plane: PULLING where the impulse
+    cannot push along any normal along which the vehicles approach, E_OUT_OF_RANGE where it can,
+    and the restitution is outside 0 ... 1 along all of those.
+
+    Each condition says that a vector has a component along the normal: the impulse, the approach,
+    the separation, and what of the approach the separation leaves. They change where a normal is
+    perpendicular to one of these, and are tested between all such normals."""
+    contact = {name: np.real(value) for name, value in state.contact_velocities().items()}
+    before = contact["XA"] - contact["XB"], contact["YA"] - contact["YB"]
+    after = contact["XAF"] - contact["XBF"], contact["YAF"] - contact["YBF"]
+    x, y = (np.real(part) for part in state.impulse_on_a)
+    rest = -before[0] - after[0], -before[1] - after[1]
+    vectors = [(x, y), (-before[0], -before[1]), after, rest]
+    across = [np.arctan2(b, a) + side for a, b in vectors for side in (-np.pi / 2, np.pi / 2)]
+    edges = np.sort(np.stack(np.broadcast_arrays(*across)) % (2 * np.pi), axis=0)
+    normals = (edges + np.concatenate([edges[1:], edges[:1] + 2 * np.pi])) / 2
+    speed = COEFFICIENT_TOLERANCE * np.hypot(*before)
+    pushes, approaches, separates, loses = (
+        a * np.cos(normals) + b * np.sin(normals) for a, b in vectors
+    )
+    possible = (pushes > 0) & (approaches > speed)
+    restituting = possible & (separates >= -speed) & (loses >= -speed)
+    pulls = ~possible.any(axis=0)
+    known = np.isfinite(x + y + before[0] + before[1])
+    result = np.where(known & pulls, int(Status.PULLING), 0)
+    out_of_range = ~pulls & ~restituting.any(axis=0) & np.isfinite(after[0] + after[1])
+    return result | np.where(known & out_of_range, int(Status.E_OUT_OF_RANGE), 0)
 
 
 _ARGUMENTS_OF_REMARKS = (
@@ -156,7 +193,7 @@ def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Ar
     velocities = [given[name] for name in (*VELOCITIES, *FINAL_STATE) if name in given]
     # the same impact if the sliding ended at separation
     pivot = {name: given[name] for name in SCENE if name in given} | {"MU": np.array(PIVOT)}
-    complete = all(name in pivot for name in SCENE if name != "M")
+    complete = _is_complete(pivot)
     names = ("PN", "PT")
     pivot_impulse = quantities(pivot, names) if complete else dict.fromkeys(names, np.nan)
     pivot_pt = np.asarray(pivot_impulse["PT"])
@@ -168,10 +205,10 @@ def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Ar
         conditions = findings(
             gn=normal_slip,
             pn=value["PN"],
-            arm_a=here.at,
-            arm_b=here.bt,
-            da=np.where(here.point, 0.0, value["DA"]),
-            db=np.where(here.point, 0.0, value["DB"]),
+            arm_a=here.at if "GA" in given else np.array(np.nan),
+            arm_b=here.bt if "GA" in given else np.array(np.nan),
+            da=np.where(here.point, 0.0, value.get("DA", 0.0)),
+            db=np.where(here.point, 0.0, value.get("DB", 0.0)),
             # an energy that is not known must not set NOT_FINITE
             twice_lost=np.where(np.isnan(lost), 0.0, lost),
             initial=np.where(np.isnan(initial), 1.0, initial),
@@ -187,7 +224,15 @@ def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Ar
             condition=np.asarray(condition),
             sum_of_velocities=sum(velocities, np.zeros(())),
         )
-        return np.asarray(bits(conditions), np.uint16)
+        remarks = {bit: x for bit, x in conditions.items() if not bit & IMPOSSIBLE}
+        return np.asarray(bits(remarks), np.uint16) | broken_laws(state)
+
+
+def _is_complete(values: Mapping[str, Any]) -> bool:
+    """Return True if the forward equations can be set up."""
+    point = bool((np.asarray(values.get("M", 6.0)) == 4).all())
+    unused = ("M", *(UNUSED_BY_POINTS if point else ()))
+    return all(name in values for name in SCENE if name not in unused)
 
 
 def _slip_changes(here: Geometry, value: Mapping[str, Any]) -> tuple[Any, Any]:

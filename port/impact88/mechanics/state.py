@@ -6,8 +6,9 @@ of sums, products, roots and quotients, over numbers or arrays, real or complex 
 carries a derivative).
 """
 
+import math
 from collections.abc import Collection, Mapping
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, reduce
 from typing import Any, Self
 
 import numpy as np
@@ -24,6 +25,9 @@ COURSES = {"HA": "SA", "HB": "SB", "HAF": "SAF", "HBF": "SBF"}
 FORCES = {"PDOFA": "A", "PDOFB": "B"}
 """Directions the force on a vehicle comes from, in degrees clockwise from its front."""
 DIRECTIONS = (*COURSES, *FORCES)
+COURSE = math.nan
+"""TA or TB of a vehicle that faces the way it travels: as its velocity before the impact does, or,
+of a vehicle at rest, that after it."""
 BARRIER_SPEEDS = {"EBSA": "ELA", "EBSB": "ELB"}
 """Equivalent barrier speeds, each with the energy it stands for."""
 CRUSH = ("ELA", "ELB", *BARRIER_SPEEDS)
@@ -57,6 +61,10 @@ KNOWABLE = (*names.SCENE, "MUP", *names.FINAL_VELOCITIES, *OTHERS)
 """Quantities that may be known of an impact."""
 
 
+REST_TOLERANCE = 1e-9
+"""A speed below this fraction of the largest is rounding, and printed as 0."""
+
+
 class State:
     """``values``: vehicles and geometry, IMPULSES, and each of VELOCITIES or, where it stands in
     ``from_after``, the velocity after the impact instead; for laws the coefficients too."""
@@ -81,6 +89,21 @@ class State:
         state.changes = [after - before for before, after in zip(early, late, strict=True)]
         state.energy_lost = state.initial_energy - state._energy(late)
         return state
+
+    @property
+    def impulse_on_a(self) -> tuple[Any, Any]:
+        """The impulse on A along x and y: as PN and PT give it, else by the change of momentum."""
+        pn, pt, _ = self.impulse
+        x = pn * self.here.cosine - pt * self.here.sine
+        y = pn * self.here.sine + pt * self.here.cosine
+        for vehicle, sign in (("A", 1.0), ("B", -1.0)):
+            mass = sign * self.values["M" + vehicle]
+            is_unknown = np.isnan(np.real(x + y))
+            if is_unknown.any():
+                change_x, change_y = self.change(vehicle)
+                x = np.where(is_unknown, mass * change_x, x)
+                y = np.where(is_unknown, mass * change_y, y)
+        return x, y
 
     @property
     def impulse(self) -> list[Any]:
@@ -158,7 +181,7 @@ class State:
         if name in SPEEDS:
             return _size(*self._components(name))
         if name in COURSES:
-            return course(*self._components(COURSES[name]))
+            return self._course_of(COURSES[name])
         if name in COEFFICIENTS:
             above, below = self.quotient(name)
             return above / below
@@ -173,6 +196,16 @@ class State:
             return (100.0 if name == "LOSS" else 1.0) * lost / initial
         return {"KI": initial, "KF": initial - lost, "EL": lost}[name]
 
+    def _course_of(self, speed: str) -> Any:
+        """Return the course of a speed; NaN for a vehicle at rest: a zero has no direction, and
+        neither has the rounding of velocities that cancel."""
+        x, y = self._components(speed)
+        sizes = [np.abs(np.real(v)) for v in (*self.before, *self.after)]
+        del sizes[2::3]  # spins
+        largest = reduce(np.fmax, sizes)
+        at_rest = np.hypot(np.real(x), np.real(y)) <= REST_TOLERANCE * largest
+        return np.where(at_rest, np.nan, course(x, y))
+
     def _components(self, speed: str) -> tuple[Any, Any]:
         x, y = SPEEDS[speed]
         return self[x], self[y]
@@ -186,23 +219,36 @@ class State:
     def _vector(self, direction: str) -> tuple[Any, Any]:
         if direction in COURSES:
             return self._components(COURSES[direction])
-        pn, pt, _ = self.impulse
+        x, y = self.impulse_on_a
         sign = 1.0 if direction == "PDOFA" else -1.0
-        cosine, sine = self.here.cosine, self.here.sine
-        return sign * (pn * cosine - pt * sine), sign * (pn * sine + pt * cosine)
+        return sign * x, sign * y
+
+    def _facing(self, vehicle: str) -> Any:
+        """Return the direction of a vehicle's front; NaN where it is not known."""
+        theta = self.values.get("T" + vehicle)
+        if theta is None:
+            return np.nan
+        front = facing(vehicle, theta)
+        travels = np.isnan(np.real(front))  # `COURSE`
+        return np.where(travels, self._course(vehicle), front) if travels.any() else front
+
+    def _course(self, vehicle: str) -> Any:
+        """Return the way a vehicle travels before the impact, after it if it was at rest; NaN if it
+        does not move."""
+        early, late = (self._course_of(f"S{vehicle}{suffix}") for suffix in ("", "F"))
+        return np.where(np.isnan(np.real(early)), late, early)
 
     def _unit_vector(self, direction: str) -> tuple[Any, Any]:
         """Return the unit vector of a given course or PDOF."""
         value = self.values[direction]
         if direction in FORCES:
-            vehicle = FORCES[direction]
-            value = facing(vehicle, self.values["T" + vehicle]) + 180 - value
+            value = self._facing(FORCES[direction]) + 180 - value
         return _unit(value)
 
     def _pdof(self, name: str) -> Any:
         """Return a PDOF in degrees, above -180 and up to 180; NaN without impulse."""
         vehicle, (x, y) = FORCES[name], self._vector(name)
-        clockwise = facing(vehicle, self.values["T" + vehicle]) + 180 - course(x, y)
+        clockwise = self._facing(vehicle) + 180 - course(x, y)
         reduced = clockwise - 360 * np.ceil((np.real(clockwise) - 180) / 360)
         return np.where((x == 0) & (y == 0), np.nan, reduced)
 
@@ -249,16 +295,17 @@ class State:
         x, y = self.change(vehicle)
         if not part:
             return _size(x, y)
-        cosine, sine = _unit(facing(vehicle, self.values["T" + vehicle]))
+        cosine, sine = _unit(self._facing(vehicle))
         return x * cosine + y * sine if part == "F" else x * sine - y * cosine
 
     def _energy(self, velocities: list[Any]) -> Any:
         inertias = [
-            np.where(np.isinf(np.real(self.values[n])), 0, self.values[n])
-            for n in ("MA", "MB", "IA", "IB")
+            np.where(np.isinf(np.real(inertia)), 0, inertia)
+            for inertia in (self.values.get(n, 1.0) for n in ("MA", "MB", "IA", "IB"))
         ]
         six = list(velocities)
-        six[2], six[5] = (np.where(self.here.point, 0.0, six[i]) for i in (2, 5))
+        point = np.asarray(np.real(self.values.get("M", 6.0))) == 4
+        six[2], six[5] = (np.where(point, 0.0, six[i]) for i in (2, 5))
         return kinetic_energy(inertias, six)
 
     @cached_property

@@ -16,7 +16,7 @@ from ..collision.plausibility import (
     MAX_ARM,
     MEASURES,
     ONE_SPIN,
-    SPEEDS,
+    VELOCITY_NAMES,
     inertia_words,
     is_sideways,
     rule_of_name,
@@ -149,7 +149,7 @@ class _Table:
 
     def sideways(self, every: bool) -> Iterator[tuple[str, Remark]]:
         """Remarks on vehicles that move sideways or backwards."""
-        for vehicle, (x, y, *_) in SPEEDS.items():
+        for vehicle, (x, y, *_) in VELOCITY_NAMES.items():
             name = f"T{vehicle}"
             if not {x, y, name} <= self.columns.keys():
                 continue

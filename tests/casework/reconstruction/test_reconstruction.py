@@ -520,7 +520,7 @@ class TestRefusals:
         [
             ({"FOO": 1.0}, "not a value of an impact"),
             ({**VEHICLES, "MA": 0.0}, "MA is not positive"),
-            ({n: v for n, v in VEHICLES.items() if n != "GA"}, "missing GA"),
+            ({n: v for n, v in VEHICLES.items() if n != "MA"}, "missing MA"),
             ({**SECTION_7, "MU": 0.5, "MUP": 0.5}, "MU and MUP are both given"),
             ({**SECTION_7, "SA": -3.0}, "SA is negative"),
             ({**SECTION_7, "UX": -20.0, "VAX": -10.0, "VBX": 3.0}, "agrees with all that is known"),

@@ -8,6 +8,7 @@ confirms the minimum. First-order deviations and correlations come from the same
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
@@ -16,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...collision.geometry import GEOMETRY, with_point_masses, within_doubles
+from ...collision.geometry import GEOMETRY, within_doubles
 from ...collision.mappings import within_limits
 from ...collision.uncertain import Uncertain, fixed_value
 from ...errors import UserError
@@ -45,6 +46,7 @@ from ...names import (
 from ...status import IMPOSSIBLE, Status
 from .evidence import Evidence, weigh
 from .laws import describe_laws, missed_laws
+from .posed import absent_results, is_wrong_way, pose, turned, turned_sentence
 from .quadrics import MAX_EQUATIONS, Paths, follow_paths, quadratic_equations
 from .system import PARAMETERS, SPINS, System
 from .unknowns import UnsolvableError, check_physical, mu_to_type, solve_for
@@ -509,6 +511,9 @@ class Reconstruction:
         MU, where it is known in size only.
     beside : tuple
         Every impact found, this one too, possible or not.
+    remarks : tuple of str
+        Sentences on what was made of the problem: values that are not used, a contact plane that
+        follows from the motion.
 
     Examples
     --------
@@ -530,6 +535,7 @@ class Reconstruction:
     search: Searched = NOT_SEARCHED
     typed_mu: float | None = None
     beside: tuple[tuple[System, Floats], ...] = field(default=(), repr=False, compare=False)
+    remarks: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         shown = ", ".join(
@@ -537,6 +543,11 @@ class Reconstruction:
         )
         adjusted = f", {len(self.adjusted)} values adjusted" if self.redundancy else ""
         return f"<Reconstruction: {shown or 'nothing determined'}{adjusted}>"
+
+    @property
+    def absent(self) -> dict[str, frozenset[str]]:
+        """Quantities that need an input that is not given, and which."""
+        return absent_results(self.system.known)
 
     @property
     def collides(self) -> bool:
@@ -748,7 +759,7 @@ class Reconstruction:
         missing = [n for n in (*names, "MUP") if n not in self.values]
         if missing:
             raise UnsolvableError(f"no scene: {' '.join(missing)} not determined")
-        values = {n: self.values[n] for n in (*GEOMETRY, *names)}
+        values = {n: self.values[n] for n in (*GEOMETRY, *names) if n in self.values}
         values |= {"MU": typed_friction(self.system.state(self.x), self.values["MUP"])}
         return {"M": 4.0 if self.system.point else 6.0, "EM": 0.0, **values}
 
@@ -792,6 +803,33 @@ def reconstruct(
     contradict one another beside others with a tolerance, UnsolvableError where nothing unknown
     is determined."""
     values, _ = resolve_friction(_check_known(known))
+    values, remarks = pose(values, fixed_value)
+    point = values["M"].nominal == 4
+    failure: UserError | None = None
+    try:
+        solutions = _impacts(values, progress)
+    except UserError as error:
+        solutions, failure = [], error
+    status = int(outcome(solutions[0].values)["STATUS"]) if solutions else Status.SEPARATING
+    if "GA" in values and is_wrong_way(status, point):
+        plane = values["GA"]
+        shift = turned(plane.nominal) - plane.nominal
+        ends = {end: getattr(plane, end) + shift for end in ("nominal", "low", "high")}
+        with suppress(UserError):
+            others = _impacts({**values, "GA": replace(plane, **ends)}, progress)
+            if not others[0].impossible:
+                solutions = others
+                if "GA" in known:
+                    remarks.append(turned_sentence(plane.nominal))
+    if not solutions:
+        assert failure is not None
+        raise failure
+    return [replace(solution, remarks=tuple(remarks)) for solution in solutions]
+
+
+def _impacts(values: dict[str, Uncertain], progress: Progress) -> list[Reconstruction]:
+    """Return every impact found that agrees with the values as they are posed, best first."""
+    values = dict(values)
     mu = values.pop("MU", None)
     readings = [values]
     if mu is not None:
@@ -837,7 +875,7 @@ def _invariants(values: Mapping[str, float]) -> list[float]:
             # a product of huge spins is infinite, a power of them an error
             values.get(spin, 0.0) * values.get(spin, 0.0) * values[inertia] / 2
             for spin, inertia in (("WA" + after, "IA"), ("WB" + after, "IB"))
-            if math.isfinite(values[inertia])
+            if math.isfinite(values.get(inertia, math.inf))
         )
         for after in ("", "F")
     ]
@@ -908,7 +946,6 @@ def _check_known(known: Mapping[str, Uncertain | float | str]) -> dict[str, Unce
     if values.setdefault("M", fixed_value(6.0)).nominal == 4:
         without_effect = (*SPINS, "EM", "DA", "DB", "PA", "PB", "IA", "IB")
         values = {name: item for name, item in values.items() if name not in without_effect}
-        values = {n: fixed_value(v) for n, v in with_point_masses({"M": 4.0}).items()} | values
     check_physical(
         {n: np.array([x.nominal if x.kind == "normal" else x.low]) for n, x in values.items()}
     )
@@ -1222,11 +1259,12 @@ def _describe(system: System, x: Floats, assumed: bool) -> Reconstruction:
     def to_float(array: Any) -> float:
         return float(np.ravel(array)[0])
 
-    values = {n: to_float(state.values[n]) for n in ("M", *GEOMETRY)}
+    values = {n: to_float(state.values[n]) for n in ("M", *GEOMETRY) if n in system.known}
+    absent = absent_results(system.known)
     undetermined: list[str] = []
     is_fold = bool(null.shape[1]) and _is_fold(system, x, null)
     for name, gradient in zip(QUANTITIES, system.gradients(x, QUANTITIES), strict=True):
-        if system.point and name in (*SPINS, "PM", "EM"):
+        if name in absent or (system.point and name in (*SPINS, "PM", "EM")):
             continue
         is_known = name in COEFFICIENTS and name in system.known
         if name == "MUP" and "MUC" in system.constants:
@@ -1243,7 +1281,8 @@ def _describe(system: System, x: Floats, assumed: bool) -> Reconstruction:
             values[name] = amount
         elif name in (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS):
             undetermined.append(name)
-    unknown = [n for n in (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS) if n not in system.known]
+    names = (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS)
+    unknown = [n for n in names if n not in system.known and n not in absent]
     if unknown and not any(name in values for name in unknown) and not system.observations:
         raise UnsolvableError(
             f"nothing of {' '.join(unknown)} is determined by what is known; expected more of it"

@@ -27,6 +27,8 @@ ROUNDING = 1e-9  # a law missed by less, relative to its largest term, holds
 NAMES = {
     "n": "momentum along n",
     "t": "momentum along t",
+    "x": "momentum along x",
+    "y": "momentum along y",
     "angular": "angular momentum",
     "E": "restitution",
     "MUP": "friction",
@@ -36,7 +38,16 @@ NAMES = {
 QUANTITIES = (*SPEEDS, *CHANGES, *CONTACT, *ENERGIES)
 _SPINS = ("WA", "WB", "WAF", "WBF")
 # For each law a quantity of the same unit
-_MEASURED_AS = {"n": "PN", "t": "PT", "angular": "PM", "E": "VC", "MUP": "PT", "EM": "WA"}
+_MEASURED_AS = {
+    "n": "PN",
+    "t": "PT",
+    "x": "PN",
+    "y": "PT",
+    "angular": "PM",
+    "E": "VC",
+    "MUP": "PT",
+    "EM": "WA",
+}
 
 
 @dataclass(frozen=True)
@@ -66,7 +77,7 @@ class MissedLaw:
     @property
     def _failure(self) -> str:
         """The law and that it fails; the amount follows."""
-        verb = "balance" if self.law in ("n", "t", "angular") else "hold"
+        verb = "balance" if self.law in ("n", "t", "x", "y", "angular") else "hold"
         return f"{self.name} does not {verb}: the error is"
 
     def text(self, units: System = RULES) -> str:
@@ -105,16 +116,20 @@ def missed_laws(known: Mapping[str, float]) -> tuple[MissedLaw, ...]:
     set that cannot hold together; empty where no law can be named.
 
     ``known``: vehicles, geometry and exact values, friction as MUP."""
-    if not {*GEOMETRY} <= {*known}:
+    if not {"MA", "MB"} <= {*known}:
         return ()
     values, mass_model = _with_components(known), np.float64(known.get("M", 6.0))
-    geometry = Geometry({n: np.float64(values[n]) for n in GEOMETRY} | {"M": mass_model})
-    if mass_model == 4:
+    dimensions = {n: np.float64(values[n]) for n in GEOMETRY if n in values}
+    geometry = Geometry(dimensions | {"M": mass_model})
+    values = {"IA": 1.0, "IB": 1.0, **values}
+    if geometry.point:
         values |= dict.fromkeys(_SPINS, 0.0)
     names = (*VELOCITIES, *FINAL_STATE)
     rows = _rows(values, geometry)
-    if mass_model == 4:
+    if geometry.point:
         rows = {law: row for law, row in rows.items() if law not in ("angular", "EM")}
+    if "GA" not in values:  # n and t stand for x and y
+        rows = {{"n": "x", "t": "y"}.get(law, law): row for law, row in rows.items()}
     laws = [law for law, row in rows.items() if np.isfinite(row).all()]
     missed = _missed_quantities(known, values, geometry)
     if not laws:

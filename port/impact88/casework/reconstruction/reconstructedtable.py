@@ -101,6 +101,7 @@ class Measured(Impact):
         elif has_alternatives:
             self.subject = "every impact that agrees with what is known"
         self.helpful = solution.helpful if solution.undetermined else ()
+        self.remarks, self.absent = solution.remarks, solution.absent
         results = wanted or [
             n
             for n in _RESULTS

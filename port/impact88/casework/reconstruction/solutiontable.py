@@ -3,7 +3,7 @@ coefficients, impulse, derived quantities, remarks. `Exact` shows an impact of e
 (`unknowns`), `reconstruction.reconstructedtable.Measured` one with tolerances."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from textwrap import wrap
 from typing import Any, Self
 
@@ -12,9 +12,11 @@ from ...collision.units import RULES, VELOCITY, System, display_values
 from ...errors import UserError
 from ...mechanics.outcome import forces, moment_ratio, outcome
 from ...mechanics.state import CHANGES, COURSES, FORCES
+from ...mechanics.uses import needed
 from ...messages.plaintable import decimals_for, format_fixed, number, paragraph, plain, table
 from ...names import CHAPTER, FINAL_STATE, PIVOT, RESULTS, SCENE, VELOCITIES, quantity
 from ...status import IMPOSSIBLE, sentences
+from .posed import absent_results, is_wrong_way, pose, turned, turned_sentence
 from .unknowns import BADLY_CONDITIONED, Solution, solve_for
 
 _ORDER = (*SCENE, *RESULTS, *CHAPTER)
@@ -72,13 +74,17 @@ class Impact:
 
     ``known``: the known values; ``values``: all values; ``undetermined``: what nothing determines,
     reported apart from the remarks; ``helpful``: further values that would determine it; ``note``:
-    a remark on several solutions; ``deviations``: standard deviations of the uncertain results;
-    ``ranges``: their bounds; ``drivers``: for each the known values that cause its uncertainty,
+    a remark on several solutions; ``remarks``: on what was made of the problem; ``absent``:
+    results that need an input that is not given, and which; ``deviations``: standard deviations of
+    the uncertain results; ``ranges``: their bounds; ``drivers``: for each the known values that
+    cause its uncertainty,
     with their fractions of its variance."""
 
     undetermined: Sequence[str] = ()
     helpful: Sequence[str] = ()
     note = ""
+    remarks: Sequence[str] = ()
+    absent: Mapping[str, Collection[str]] = {}
     subject = "this impact"
 
     def __init__(self, known: Mapping[str, Any], values: dict[str, float]) -> None:
@@ -106,7 +112,8 @@ class Impact:
 
     def warnings(self, units: System = RULES) -> list[str]:
         """Return the warnings, a sentence each."""
-        return sentences(int(self.values.get("STATUS", 0)), self.values)
+        needs = [f"{sentence}" for _, sentence in needed(self.absent)]
+        return [*sentences(int(self.values.get("STATUS", 0)), self.values), *self.remarks, *needs]
 
     def further_tables(self, units: System) -> list[list[str]]:
         """Return the tables of a subclass, as lines."""
@@ -156,6 +163,7 @@ class Impact:
                 "units": {n: units.label(quantity(n).unit) for n in values},
                 "status": int(self.values["STATUS"]) if "STATUS" in self.values else None,
                 "warnings": self.warnings(units),
+                "absent": {name: sorted(needs) for name, needs in self.absent.items()},
                 **self.json_items(units),
             }
         )
@@ -239,6 +247,8 @@ class Impact:
             cells = []
             for name in names[:count]:
                 text = format_fixed(values[name], decimals[unit]) if name in values else "unknown"
+                if name in COURSES and values.get(COURSES[name]) == 0:
+                    text = "at rest"
                 solved = name in values and name not in self.known and label in ("x", "y", "spin")
                 cells.append(f"{text}{'*' if solved else ' '}")
             rows.append([label, *cells, units.label(unit)])
@@ -332,6 +342,7 @@ class Exact(Impact):
     ) -> None:
         values = {**known, **{name: float(value) for name, value in solution.values.items()}}
         super().__init__(known, with_derived_values(values, contact_time))
+        self.absent = absent_results(known)
         self.solution, self.note = solution, ": MU is known in size, and both signs agree"
         if solution.contradictory:
             self.note += " (each a fit of values that contradict one another)"
@@ -347,10 +358,21 @@ class Exact(Impact):
     ) -> list[Self]:
         """Return every solution of a single scene, possible impacts first. Raise UserError;
         ``source`` says where the known values come from."""
+        given, remarks = pose(known, float)
         try:
-            impacts = [cls(known, solution, contact_time) for solution in solve_for(known, wanted)]
+            impacts = [cls(given, solution, contact_time) for solution in solve_for(given, wanted)]
+            point = given.get("M") == 4
+            if all(is_wrong_way(int(impact.values["STATUS"]), point) for impact in impacts):
+                plane = given["GA"]
+                given = {**given, "GA": turned(plane)}
+                others = solve_for(given, wanted)
+                impacts = [cls(given, solution, contact_time) for solution in others]
+                if "GA" in known:
+                    remarks.append(turned_sentence(plane))
         except UserError as error:
             raise UserError(str(error), source) from None
+        for impact in impacts:
+            impact.remarks = remarks
         return sorted(impacts, key=lambda impact: bool(int(impact.values["STATUS"]) & IMPOSSIBLE))
 
     def warnings(self, units: System = RULES) -> list[str]:

@@ -61,8 +61,8 @@ class System:
         self.progress = progress
         self.known, self.adjusted = dict(known), adjusted
         self.nominal: dict[str, Any] = {name: item.nominal for name, item in known.items()}
-        self.point = bool(np.all(self.nominal.get("M", 6.0) == 4))
         geometry = Geometry(self.nominal)
+        self.point = bool(np.all(geometry.point))
         # numpy's numbers: beyond the range of doubles they are infinite, where Python's raise
         self.mass: Any = np.float64(1) / geometry.inverse_mass
         self.gyration: Any = np.float64(1.0)

@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...collision.geometry import GEOMETRY, with_point_masses, within_doubles
+from ...collision.geometry import GEOMETRY, within_doubles
 from ...collision.mappings import columns
 from ...collision.uncertain import fixed_value
 from ...errors import UserError
@@ -41,6 +41,7 @@ from ...names import (
     missing,
     quantity,
 )
+from .posed import absent_results, pose
 from .system import COMPLEX_STEP, SPINS, System
 
 Array = NDArray[np.float64]
@@ -200,11 +201,13 @@ class _Problem:
         allowed = {*GEOMETRY, "M", *VELOCITIES, *FINAL_STATE, "E", "EM", "MU", "MUP"}
         values = columns(known)
         check_names(values, [n for n in (*SCENE, *RESULTS) if n in allowed], "value of an impact")
-        values = {n: np.asarray(v, np.float64) for n, v in with_point_masses(values).items()}
+        values = {n: np.asarray(v, np.float64) for n, v in values.items()}
         check_physical(values)
+        values, _ = pose(values, np.float64)
         m = values.get("M", np.asarray(6.0))
         self.point = point = bool(m.size) and bool((m == 4).all())
-        self.names = tuple(n for n in UNKNOWNS if not (point and n in (*SPINS, "EM")))
+        self.inapplicable = {*absent_results(values), *((*SPINS, "EM") if point else ())}
+        self.names = tuple(n for n in UNKNOWNS if n not in self.inapplicable)
         given = {*values} | ({"MUP"} if "MU" in values else set())
         self.absent = tuple(name for name in self.names if name not in given)
         self.wanted = self.absent if unknown is None else tuple(dict.fromkeys(unknown))
@@ -499,11 +502,14 @@ def _explain_coefficient(name: str, value: float) -> str:
     return reasons.get((name, value), default)
 
 
+COURSE_INPUTS = {"TA": "HA, or UX and UY", "TB": "HB, or VX and VY"}
+
+
 def check_physical(values: Mapping[str, Any]) -> None:
     """Raise UserError where vehicles or geometry are missing, for M other than 6 or 4, values that
     are not finite, masses that are not positive, and for two infinite masses or inertias."""
-    if missing_names := [name for name in GEOMETRY if name not in values]:
-        raise UserError(f"{missing(missing_names)}: the vehicles and their geometry must be known")
+    if missing_names := [name for name in ("MA", "MB") if name not in values]:
+        raise UserError(f"{missing(missing_names)}: the vehicles' masses must be known")
     if "MU" in values and "MUP" in values:
         raise UserError("MU and MUP are both given; give MUP (signed Pt/Pn) or MU, not both")
     m, mu = values.get("M", 6.0), values.get("MUP", values.get("MU", 0.0))
@@ -514,10 +520,17 @@ def check_physical(values: Mapping[str, Any]) -> None:
     for name, value in values.items():
         meaning = f"{quantity(name).meaning} [{quantity(name).unit}]"
         infinite_allowed = name in ("MA", "MB", "IA", "IB")
+        if name in ("TA", "TB") and np.isnan(value).all():  # `state.COURSE`
+            if np.all(m == 4):
+                continue
+            raise UserError(
+                f'{name} = "course" needs the course before the impact, exactly: '
+                f"{COURSE_INPUTS[name]}, unless M is 4"
+            )
         if np.isnan(value).any() or (np.isinf(value).any() and not infinite_allowed):
             raise UserError(f"{name} is not finite; expected {meaning}")
         if infinite_allowed and not np.all(value > 0):
             raise UserError(f"{name} is not positive; expected {meaning}")
     for kind, names in (("mass", ("MA", "MB")), ("moment of inertia", ("IA", "IB"))):
-        if all(np.isinf(values[name]).any() for name in names):
+        if all(name in values and np.isinf(values[name]).any() for name in names):
             raise UserError(f"{' and '.join(names)} are both infinite; expected one {kind} at most")

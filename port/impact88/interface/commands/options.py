@@ -13,6 +13,7 @@ from functools import partial
 from math import isfinite
 
 from ...collision.case import (
+    FACING_COURSE,
     OWN_AXES,
     OWN_NAMES,
     RANGES,
@@ -429,7 +430,7 @@ def note_remarks(case: Case | Scene, based: str = "") -> None:
 def _within_limits(name: str, text: str, source: str, units: str | None) -> Uncertain:
     from ...collision.uncertain import fixed_value, read
 
-    if any(mark in text for mark in (*RANGES, "skid")) or is_share(text):
+    if any(mark in text for mark in (*RANGES, "skid", FACING_COURSE)) or is_share(text):
         return read(text, f"{source}: {name}", units=units)
     value = double(check_value(name, text, source))
     if not isfinite(value):

@@ -1,0 +1,205 @@
+"""A problem as it is posed: what is known made complete where the motion says it, and freed of
+what cannot be used."""
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from ...collision.geometry import ARMS, GEOMETRY
+from ...collision.uncertain import Uncertain
+from ...mechanics.state import COURSES, CRUSH, FORCES, KNOWABLE, QUANTITIES, SPEEDS
+from ...mechanics.uses import inputs_of, needed
+from ...names import FINAL_STATE, PIVOT, VELOCITIES
+from ...status import Status
+
+PARALLEL_TOLERANCE = 1e-9  # degrees between directions along one line
+_ENERGIES = ("KI", "KF", "EL", "LOSS", "DT", *CRUSH)
+_COURSE_OF = {speed: course for course, speed in COURSES.items()}
+_SPINS = ("WA", "WB", "WAF", "WBF")
+
+
+def pose(
+    known: Mapping[str, Any], fixed: Callable[[float], Any]
+) -> tuple[dict[str, Any], list[str]]:
+    """Return what is known as the equations take it, and sentences on what was made of it.
+
+    Point masses that move along one line need no GA: the contact plane lies across the line, and
+    nothing acts along the plane. What needs an input that is not given is left out.
+
+    Parameters
+    ----------
+    known : mapping of str to Uncertain, float or array
+        Values by name (`state.KNOWABLE`).
+    fixed : callable
+        Makes such a value of a number.
+
+    Returns
+    -------
+    dict, list of str
+        The values to be used, and remarks.
+    """
+    values, remarks = dict(known), []
+    point = bool(np.all(_number(values.get("M", 6.0)) == 4))
+    line, implied = line_of_motion(values) if point else (None, False)
+    if line is not None:
+        across = "GA" not in values
+        if across:
+            values["GA"] = fixed(line)
+            remarks.append(
+                "the motion is along one line: the contact plane is taken across it, and nothing "
+                "acts along the plane"
+            )
+        along = across or abs(np.remainder(_single(values["GA"]) - line + 90, 180) - 90) <= (
+            PARALLEL_TOLERANCE
+        )
+        friction = next((n for n in ("MUP", "MU") if n in values), None)
+        if along and friction is None and not implied:
+            values["MUP"] = fixed(0.0)
+        elif across and friction and np.any(_number(values[friction]) != PIVOT):
+            del values[friction]
+            values["MUP"] = fixed(0.0)
+            remarks.append(f"{friction} is not used: nothing slides along the contact plane")
+    return values, remarks + _leave_out_unusable(values, point)
+
+
+def _leave_out_unusable(values: dict[str, Any], point: bool) -> list[str]:
+    """Remove what needs an input that is not given; return a sentence for each such input."""
+    absent = {name for name in GEOMETRY if name not in values and (not point or name not in ARMS)}
+    absent |= {name for name in ("TA", "TB") if name not in values}
+    armless = not point and not absent.isdisjoint(ARMS)
+    friction = _number(values.get("MUP", values.get("MU", np.nan)))
+    is_pivot = bool(np.all(friction == PIVOT))
+    locked = is_pivot and bool(np.all(_number(values.get("E", np.nan)) == 0)) and not armless
+    unusable: dict[str, frozenset[str]] = {}
+    for name in [n for n in values if n in KNOWABLE and n not in GEOMETRY and n != "M"]:
+        if name in (*VELOCITIES, *FINAL_STATE):
+            continue
+        law = {"MU": "MUP", **dict.fromkeys(CRUSH, "EL")}.get(name, name)
+        law = "E" if law == "MUP" and is_pivot else law
+        needs = inputs_of(law, point) & absent
+        if armless and name in _ENERGIES:
+            needs = frozenset(absent & {*ARMS})
+        if needs and not (locked and name in ("E", "MU", "MUP")):
+            unusable[name] = needs
+    for name in unusable:
+        del values[name]
+    return [
+        f"{text}, and {'is' if len(names) == 1 else 'are'} not used"
+        for names, text in needed(unusable)
+    ]
+
+
+def absent_results(known: Mapping[str, Any]) -> dict[str, frozenset[str]]:
+    """Return the quantities that need an input that is not given, and which."""
+    point = bool(np.all(_number(known.get("M", 6.0)) == 4))
+    absent = {name for name in GEOMETRY if name not in known}
+    no_turning = frozenset() if point else frozenset(absent & {*ARMS})
+    result = {}
+    for name in QUANTITIES:
+        needs = inputs_of(name, point) & absent
+        if name in (*_SPINS, "PM", "EM"):
+            needs = no_turning
+        if needs and name not in known:
+            result[name] = needs
+    return result
+
+
+_WRONG_SIDES = Status.A_ON_WRONG_SIDE | Status.B_ON_WRONG_SIDE
+
+
+def is_wrong_way(status: int, point: bool) -> bool:
+    """Return True if an impact has A on the other side of its contact plane than GA says: the
+    contact points do not approach, and both centers lie beyond the plane or have no place."""
+    broken = status & (Status.SEPARATING | Status.PULLING)
+    return bool(broken) and (point or status & _WRONG_SIDES == _WRONG_SIDES)
+
+
+def turned(degrees: float) -> float:
+    """Return the opposite direction, of the smaller size."""
+    return degrees - 180 if degrees > 0 else degrees + 180
+
+
+def turned_sentence(plane: float) -> str:
+    """Return the remark on a GA that was turned."""
+    return (
+        f"GA = {plane:.6g} is taken as {turned(plane):.6g}, A being on the other side of the "
+        "contact plane: so the vehicles approach"
+    )
+
+
+def line_of_motion(known: Mapping[str, Any]) -> tuple[float | None, bool]:
+    """Return the normal of the contact plane of vehicles that move along one line, as GA, and True
+    if what is known implies that the impulse is along it; None where they do not move so, or are
+    not known to.
+
+    Their directions are known to be parallel before the impact, or after it, or those of one
+    vehicle before and after and one of the other, and nothing known is across the line. A vehicle
+    at rest has no direction. A is taken to be the faster one."""
+    nowhere = None, False
+    if not {*FORCES, "DVAR", "DVBR"}.isdisjoint(known):
+        return nowhere
+    directions: dict[str, float | None] = {}
+    for speed in SPEEDS:
+        direction = _direction(known, speed)
+        if direction is not None:
+            directions[speed] = None if np.isnan(direction) else direction
+    pairs = (("SA", "SB"), ("SAF", "SBF"), ("SA", "SAF"), ("SB", "SBF"))
+    complete = [all(name in directions for name in pair) for pair in pairs]
+    if not (complete[0] or complete[1] or (any(complete[2:]) and len(directions) > 2)):
+        return nowhere
+    moving = {name: angle for name, angle in directions.items() if angle is not None}
+    if not moving:
+        return nowhere
+    first, *others = moving.values()
+    if any(abs((other - first + 90) % 180 - 90) > PARALLEL_TOLERANCE for other in others):
+        return nowhere
+    for speed in SPEEDS:
+        if speed not in directions and _may_leave(known, speed, first):
+            return nowhere
+    name = next(iter(moving))
+    line = float(np.remainder(first + 180 if name[1] == "A" else first, 360))
+    return (line if line <= 180 else line - 360), any(complete[2:])
+
+
+def _may_leave(known: Mapping[str, Any], speed: str, line: float) -> bool:
+    """Return True if what is known of a velocity is not along the line: its direction is not known
+    exactly, and its course is known otherwise, or its component across an axis."""
+    x, y = SPEEDS[speed]
+    across = {0.0: y, 90.0: x}.get(round(line % 180, 6) % 180)
+    return _COURSE_OF[speed] in known or {x, y} <= {*known} or across in known
+
+
+def _direction(known: Mapping[str, Any], speed: str) -> float | None:
+    """Return the exact direction of a velocity in degrees, NaN for one at rest; None where it is
+    not known exactly."""
+    parts = [known.get(name) for name in SPEEDS[speed]]
+    course = known.get(_COURSE_OF[speed])
+    if speed in known and _is_exact(known[speed]) and _single(known[speed]) == 0:
+        return np.nan
+    if all(part is not None for part in parts):
+        x, y = (_single(part) for part in parts)
+        zero = [_is_exact(part) and _single(part) == 0 for part in parts]
+        if all(zero):
+            return np.nan
+        if any(zero) or all(map(_is_exact, parts)):
+            return float(np.degrees(np.arctan2(y, x)))
+        return None
+    if course is not None and _is_exact(course):
+        return _single(course)
+    return None
+
+
+def _number(value: Any) -> Any:
+    return value.nominal if isinstance(value, Uncertain) else value
+
+
+def _single(value: Any) -> float:
+    """Return the one number that a value is, NaN for an array of several."""
+    numbers: Iterable[float] = np.unique(np.ravel(np.asarray(_number(value), np.float64)))
+    first, *others = numbers
+    return float(first) if not others else np.nan
+
+
+def _is_exact(value: Any) -> bool:
+    return not (isinstance(value, Uncertain) and value.varies)
