@@ -10,6 +10,7 @@ when all others are done.
 from __future__ import annotations
 
 import os
+import random
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from pathlib import Path
@@ -81,13 +82,16 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put the files that take longest first, and leave out what is marked as long."""
+    """Put the files that take longest first, and leave out what is marked as long; with
+    IMPACT88_SHUFFLE, a number, files and tests in any order: none may need another."""
     if not os.environ.get("IMPACT88_LONG"):
         for item in items:
             if item.get_closest_marker("long"):
                 item.add_marker(pytest.mark.skip(reason="IMPACT88_LONG is not set"))
     ranks = {f"test_{name}.py": rank for rank, name in enumerate(LONGEST)}
     items.sort(key=lambda item: ranks.get(item.path.name, len(LONGEST)))
+    if seed := os.environ.get("IMPACT88_SHUFFLE"):
+        random.Random(seed).shuffle(items)
 
 
 @pytest.fixture(scope="module")

@@ -852,7 +852,7 @@ def test_it_prints_its_address_serves_only_there_and_ends_with_control_c(started
     parts = urlsplit(address)
     assert (parts.scheme, parts.hostname) == ("http", "127.0.0.1")
     assert len(parts.path.strip("/")) >= 20
-    connection = HTTPConnection("127.0.0.1", parts.port, timeout=60)
+    connection = HTTPConnection("127.0.0.1", parts.port, timeout=100)
     connection.request("GET", parts.path)
     answer = connection.getresponse()
     assert answer.status == 200
@@ -866,7 +866,7 @@ def test_it_prints_its_address_serves_only_there_and_ends_with_control_c(started
     with pytest.raises(OSError, match=r"refused|timed out|reachable"):
         socket.create_connection(("127.0.0.2", parts.port or 0), timeout=2)
     process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
+    out, err = process.communicate(timeout=100)
     assert process.returncode == 0
     assert out == ""
     assert err == "Control-C ends the desk\n"
@@ -879,10 +879,10 @@ def test_half_open_connections_stall_nobody(started: Any) -> None:
     waiting = []
     try:
         for _ in range(300):
-            one = socket.create_connection(("127.0.0.1", parts.port or 0), timeout=60)
+            one = socket.create_connection(("127.0.0.1", parts.port or 0), timeout=100)
             one.sendall(b"GET / HTTP/1.1\r\nHost: ")
             waiting.append(one)
-        connection = HTTPConnection("127.0.0.1", parts.port, timeout=20)
+        connection = HTTPConnection("127.0.0.1", parts.port, timeout=100)
         connection.request("GET", parts.path)
         assert connection.getresponse().status == 200
         connection.close()
@@ -899,12 +899,12 @@ def test_connections_that_were_refused_keep_nobody_out(started: Any) -> None:
     refused = []
     try:
         for _ in range(70):
-            connection = HTTPConnection("127.0.0.1", parts.port, timeout=20)
+            connection = HTTPConnection("127.0.0.1", parts.port, timeout=100)
             connection.request("GET", "/")
             assert connection.getresponse().read() == b""
             refused.append(connection)
         for _ in range(3):
-            own = HTTPConnection("127.0.0.1", parts.port, timeout=20)
+            own = HTTPConnection("127.0.0.1", parts.port, timeout=100)
             own.request("GET", parts.path)
             assert own.getresponse().status == 200
             own.close()
@@ -918,7 +918,7 @@ def test_stop_is_answered_while_many_pages_wait(started: Any) -> None:
     origin = f"http://127.0.0.1:{parts.port}"
 
     def post(path: str, page: str, turn: int, body: Any = None) -> HTTPConnection:
-        connection = HTTPConnection("127.0.0.1", parts.port, timeout=60)
+        connection = HTTPConnection("127.0.0.1", parts.port, timeout=100)
         headers = {"Origin": origin, "X-Desk-Page": page, "X-Desk-Turn": str(turn)}
         connection.request("POST", parts.path + path, json.dumps(body), headers)
         return connection
