@@ -249,7 +249,7 @@ def test_blanks_breaks_and_form_feeds_anywhere_part_no_printout(glyphs: str) -> 
     for seed, row in enumerate(printouts.sampled(printouts.normal_ends(), 3, seed=37)):
         page = row["printout"] if seed % 2 else printouts.body(row["printout"])
         for chance in (0.08, 0.3):
-            assert len(read_printouts(printouts._sprinkled(page, glyphs, chance, seed))) == 1
+            assert len(read_printouts(printouts.sprinkled(page, glyphs, chance, seed))) == 1
 
 
 def side_by_side(left: str, right: str, gap: int) -> str:

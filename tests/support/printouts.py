@@ -135,7 +135,7 @@ def one_digit_changed(text: str, place: Place, rng: random.Random) -> str:
     return text[:at] + digit + text[at + 1 :]
 
 
-def _sprinkled(text: str, glyphs: str, chance: float, seed: int) -> str:
+def sprinkled(text: str, glyphs: str, chance: float, seed: int) -> str:
     rng = random.Random(seed)
     return "".join(c + (rng.choice(glyphs) if rng.random() < chance else "") for c in text)
 
@@ -152,8 +152,8 @@ MANGLED: dict[str, Callable[[str], str]] = {
     "one line": lambda text: re.sub(r"\s+", " ", text),
     "no blank lines": lambda text: re.sub(r"\n+", "\n", text),
     "forty columns": _wrapped,
-    "line breaks anywhere": lambda text: _sprinkled(text, "\n", 0.06, 1),
-    "blanks and breaks anywhere": lambda text: _sprinkled(text, " \n\r\f\t", 0.15, 2),
+    "line breaks anywhere": lambda text: sprinkled(text, "\n", 0.06, 1),
+    "blanks and breaks anywhere": lambda text: sprinkled(text, " \n\r\f\t", 0.15, 2),
     "no blanks at all": lambda text: re.sub(r"\s+", "", text),
     "DOS line ends": lambda text: text.replace("\n", "\r\n"),
     "typographic": lambda text: text.replace("-", "−").replace("0", "O").replace("1", "l"),

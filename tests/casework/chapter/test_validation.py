@@ -29,7 +29,7 @@ def test_the_nhtsa_tests_are_those_of_the_published_model() -> None:
 def test_one_rounded_speed_makes_4364_what_is_published() -> None:
     """All five numbers within half their last digit, but for a tenth of it; as published, four are
     not. No other single input does so."""
-    (row,) = (r for r in validation._rows(NHTSA) if r["test"] == "4364")
+    (row,) = (r for r in validation.rows_of(NHTSA) if r["test"] == "4364")
     halves = np.array([0.005, 0.5, 0.05, 0.5, 0.05])
     columns = ("critical_impulse_ratio", "delta_omega1_deg_s", "delta_v1_mph")
     columns = (*columns, "delta_omega2_deg_s", "delta_v2_mph")
@@ -37,7 +37,7 @@ def test_one_rounded_speed_makes_4364_what_is_published() -> None:
 
     def worst(**changes: str) -> float:
         names = ("MUC", "WAF", "DVA", "WBF", "DVB")
-        results = solve(validation._nhtsa_scene({**row, **changes}), names)
+        results = solve(validation.nhtsa_scene({**row, **changes}), names)
         sizes = np.abs([float(results[name]) for name in names])
         sizes[[1, 3]] = np.degrees(sizes[[1, 3]])
         sizes[[2, 4]] /= validation.FEET_PER_SECOND

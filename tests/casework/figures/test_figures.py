@@ -1001,7 +1001,7 @@ class TestExtremes:
         )
         a, b = plan(scene, solved(scene)).vehicles
         once = a.length / 51
-        assert not views._are_apart((a, b), once)
+        assert not views.are_apart((a, b), once)
         drawing = views.strip_drawing(scene, solved(scene))
         ends = [
             [p for p in drawing.paths() if p.role == f"{name} outline"][-1].points for name in "AB"

@@ -62,7 +62,7 @@ def test_a_run_is_taken_down_to_the_bit(session: Session) -> None:
 
 def test_the_listing_is_typed_with_its_small_letters(session: Session) -> None:
     session.run_scene(sample(1))
-    session.apple.restore(session._with_listing)
+    session.apple.restore(session.with_listing)
     text, place = (captures.ROOT / "legacy" / LISTING).read_text(encoding="ascii"), 0
     for line in text.splitlines():
         place = session.apple.memory.index(line.partition(" ")[2].encode("ascii") + b"\0", place)
@@ -72,7 +72,7 @@ def test_the_listing_is_typed_with_its_small_letters(session: Session) -> None:
 
 
 def test_a_key_is_pressed_only_when_the_rom_waits(session: Session) -> None:
-    session.apple.restore(session._fresh)
+    session.apple.restore(session.fresh)
     session.apple.type_keys("10 REM\n20 rem")
     assert session.apple.take_output() == "10 REM\n\n]20 REM"
     assert not session.apple.memory.keys

@@ -194,13 +194,15 @@ def divide(left: Number, right: Number) -> Number:
     if e > 255:
         raise overflow()
     # an exponent of 0 before that 1 is added does not make a zero here, it loses the sign
-    digits = (m1 << 33) // m2 if m2 >> 39 else _digits(m1 >> 8, m2 >> 8)
+    digits = (m1 << 33) // m2 if m2 >> 39 else quotient_by_loop(m1 >> 8, m2 >> 8)
     return normalise(e, digits << 6, s1 ^ s2 if e > 1 else 0)
 
 
-def _digits(dividend: int, divisor: int) -> int:
-    """The ROM's loop of shifts and subtractions, 34 bits: by a string's descriptor, whose top bit
-    may be clear, it gives no quotient; what is left is compared only where its own top bit is set.
+def quotient_by_loop(dividend: int, divisor: int) -> int:
+    """Return the quotient of the ROM's loop of shifts and subtractions, 34 bits.
+
+    By a string's descriptor, whose top bit may be clear, it gives no quotient; what is left is
+    compared only where its own top bit is set.
     """
     digits, larger = 0, dividend >= divisor
     for _ in range(34):

@@ -76,8 +76,8 @@ def checks() -> list[Check]:
 
 def scenes() -> dict[str, dict[str, float]]:
     """Return the tests as scenes, in ft, s and slug, by source and number."""
-    numbers = {f"{NHTSA} {row['test']}": _nhtsa_scene(row) for row in _rows(NHTSA)}
-    return numbers | {f"{IIHS} {row['test']}": _iihs_scene(row) for row in _rows(IIHS)}
+    numbers = {f"{NHTSA} {row['test']}": nhtsa_scene(row) for row in rows_of(NHTSA)}
+    return numbers | {f"{IIHS} {row['test']}": iihs_scene(row) for row in rows_of(IIHS)}
 
 
 def program_scenes() -> dict[str, dict[str, float]]:
@@ -101,12 +101,13 @@ def medians(checks: Sequence[Check]) -> list[tuple[str, str, str, str, int, floa
     return [(*group, len(sizes), median(sizes), max(sizes)) for group, sizes in groups.items()]
 
 
-def _rows(source: str) -> list[dict[str, str]]:
+def rows_of(source: str) -> list[dict[str, str]]:
+    """Return the rows of the table of a source."""
     name = {NHTSA: "nhtsa-oblique-offset.csv", IIHS: "iihs-small-overlap.csv"}[source]
     return list(csv.DictReader(packaged_text("impact88.legacy", name).splitlines()))
 
 
-def _nhtsa_scene(row: Mapping[str, str]) -> dict[str, float]:
+def nhtsa_scene(row: Mapping[str, str]) -> dict[str, float]:
     """Vehicle 1 is A and travels along -x; no moment impulse, the sliding ends at separation."""
     g = {name: float(text) for name, text in row.items()}
     heading, speed = radians(g["heading2_deg"]), g["speed2_mph"] * FEET_PER_SECOND
@@ -121,8 +122,8 @@ def _nhtsa_scene(row: Mapping[str, str]) -> dict[str, float]:
 
 def _nhtsa() -> list[Check]:
     checks = []
-    for row in _rows(NHTSA):
-        result = solve(_nhtsa_scene(row), ("MUC", "WAF", "DVA", "WBF", "DVB"))
+    for row in rows_of(NHTSA):
+        result = solve(nhtsa_scene(row), ("MUC", "WAF", "DVA", "WBF", "DVB"))
         values = {name: float(value) for name, value in result.items()}
         # spins as sizes, as they are published
         pairs = (
@@ -138,7 +139,7 @@ def _nhtsa() -> list[Check]:
     return checks
 
 
-def _iihs_scene(row: Mapping[str, str]) -> dict[str, float]:
+def iihs_scene(row: Mapping[str, str]) -> dict[str, float]:
     """The car is A and travels along -x; of the mass only the ratio to the inertia counts."""
     g = {name: float(row[name]) for name in ("restitution", "d_ft", "phi_deg", "gamma_deg")}
     mass = 100.0
@@ -152,8 +153,8 @@ def _iihs_scene(row: Mapping[str, str]) -> dict[str, float]:
 
 def _iihs() -> list[Check]:
     checks = []
-    for row in _rows(IIHS):
-        scene = _iihs_scene(row)
+    for row in rows_of(IIHS):
+        scene = iihs_scene(row)
         result = barrier(scene, ("VAX", "VAY", "WAF"))
         values = {name: float(value) for name, value in result.items()}
         pairs = (

@@ -41,7 +41,7 @@ def strip_drawing(
     speed = max(m.speed for v in bodies for m in (v.before, v.after) if m)
     once = size / speed if speed else 0.0
     longer = (once * factor for factor in (1.0, 1.5, 2.0, 2.5, 3.0))
-    time = next((time for time in longer if _are_apart(bodies, time)), once)
+    time = next((time for time in longer if are_apart(bodies, time)), once)
     frames = {
         "before": [_move_vehicle(v, v.before, -time) for v in bodies],
         "impact": bodies,
@@ -88,7 +88,7 @@ def _move_vehicle(vehicle: Vehicle, motion: Motion, time: float) -> Vehicle:
     return vehicle._replace(center=center, front=front, outline=outline, kept=outline)
 
 
-def _are_apart(vehicles: Sequence[Vehicle], time: float) -> bool:
+def are_apart(vehicles: Sequence[Vehicle], time: float) -> bool:
     """Return whether no outline covers another ``time`` after the impact, nor before it.
 
     Some side then has all corners of the other beyond it.

@@ -39,11 +39,13 @@ class Session:
         if last != PROMPT:
             what = _OTHER_PROMPTS.get(last, f"{displayed[-20:]!r}, no prompt of Applesoft")
             raise UserError(f"this ROM comes to {what}")
-        self._fresh = self.apple.state()
+        self.fresh = self.apple.state()
+        """The machine at its first prompt."""
 
     @cached_property
-    def _with_listing(self) -> State:
-        self.apple.restore(self._fresh)
+    def with_listing(self) -> State:
+        """The machine at the prompt with the listing typed in."""
+        self.apple.restore(self.fresh)
         program = packaged_text("impact88.legacy", LISTING)
         lines = program.splitlines()
         with progress(len(lines), "typing the listing in") as meter:
@@ -61,7 +63,7 @@ class Session:
         the array ``A``. Raises UserError for a line too long to be typed, and for a program that
         does not end.
         """
-        self.apple.restore(self._with_listing)
+        self.apple.restore(self.with_listing)
         self.apple.blanks = False
         for line in scene.typed_lines():
             self._enter(line)
@@ -70,7 +72,7 @@ class Session:
 
     def run_program(self, program: str, keys: str = "", *, blanks: bool = True) -> str:
         """Type a program, RUN and keys; return the output without the prompts' NULs."""
-        self.apple.restore(self._fresh)
+        self.apple.restore(self.fresh)
         self.apple.blanks = blanks
         for line in filter(None, program.split("\n")):
             self._enter(line)
@@ -80,7 +82,7 @@ class Session:
         """Call one routine of the ROM's arithmetic; arguments and result in the captures' form: a
         number is ``stored:raw:extension``, an error ``E`` and its code."""
         apple = self.apple
-        apple.restore(self._fresh)
+        apple.restore(self.fresh)
         operand = [_LDA, _OPERAND & 0xFF, _LDY, _OPERAND >> 8]
         if operation == "fin":
             _put(apple, _BUFFER, first.encode("ascii") + b"\0")
