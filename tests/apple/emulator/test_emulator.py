@@ -10,6 +10,7 @@ import pytest
 from emulation import FUZZ, PROGRAMS
 
 from impact88.apple.captured import memory_contents, session
+from impact88.apple.emulator.emulator import Applesoft
 from impact88.apple.emulator.machine import Machine
 from impact88.apple.emulator.programfile import read_program
 from impact88.apple.emulator.tokens import FIRST, KEYWORDS, LAST_STATEMENT, TOKENS
@@ -102,3 +103,21 @@ def test_a_changed_bit_in_a_capture_is_seen():
     name, value = next((n, v) for n, v in case["reals"].items() if not v.startswith("00"))
     changed = {**case["reals"], name: f"{int(value, 16) ^ 1:010x}"}
     assert memory_contents(run.reals, run.A) != memory_contents(changed, case["A"])
+
+
+def test_the_monitors_vtab_and_the_branch_before_home_return() -> None:
+    """POKE 37 and CALL -990 move to a row as VTAB does; -938 clears the screen as -936 does."""
+    machine = Applesoft()
+    machine.type_line("VTAB 7: A = PEEK(40) + 256 * PEEK(41)")
+    machine.type_line("POKE 37,6: CALL -990: PRINT A = PEEK(40) + 256 * PEEK(41)")
+    assert machine.take_output() == "1\n"
+    machine.type_line("CALL -938: PRINT PEEK(37)")
+    assert machine.take_output() == "0\n"
+    assert machine.screen_text().startswith("0\n")
+
+
+def test_a_byte_255_is_listed_with_a_note() -> None:
+    machine = Applesoft()
+    machine.load("10 PRINT 1")
+    machine.type_line("POKE 2053,255: LIST")
+    assert any("byte 255" in note for note in machine.machine.ignored)

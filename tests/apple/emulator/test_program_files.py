@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import string
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -185,7 +186,8 @@ def test_where_lines_begin(text: str, lines: list[int]) -> None:
         ('10 PRINT "A\n  B"', "row 2 continues a text of line 10"),
         ("10 DATA A,B\n  C", "row 2 continues a text of line 10"),
         (b"\1\2\0\0\0\0\3", "no tokenised Applesoft program"),
-        (b"\x10\x08\x0a\x00\xba\x00", "no tokenised Applesoft program"),
+        (b"\x10\x08\x0a\x00\0\x00\x01", "no tokenised Applesoft program"),
+        ("10 PRINT".encode("utf-16-be"), "no tokenised Applesoft program"),
         (5, "not int"),
         (None, "not NoneType"),
     ],
@@ -255,6 +257,42 @@ def test_a_tokenised_file_keeps_its_order_and_says_what_is_left_out() -> None:
     elsewhere = bytearray(data)
     elsewhere[1] = elsewhere[9] = 0x40  # saved from $4001 on
     assert read_program(bytes(elsewhere)).lines == lines_of(machine_with("10 A=1\n20 B=2"))
+
+
+@pytest.mark.parametrize(
+    ("change", "remark"),
+    [
+        (lambda data: data[:-2], ""),
+        (lambda data: data[:-1], ""),
+        (lambda data: data[:-2] + b"\xff\0\1", "1 bytes behind"),
+        (lambda data: data.replace(b"\x09\x08", b"\x99\x66"), "1 of 3 links"),
+        (lambda data: data[:-3], ""),
+    ],
+    ids=["no zeros", "one zero", "FF 00 01", "a wrong link", "cut in the last line's zero"],
+)
+@pytest.mark.parametrize("dos", [False, True])
+def test_a_tokenised_program_is_walked_as_the_rom_does(
+    change: Callable[[bytes], bytes], remark: str, dos: bool
+) -> None:
+    """It makes the links anew, and stops at a zero high byte alone; behind the file is nothing."""
+    text = "10 A=1\n20 B=A+2\n30 PRINT B"
+    data = change(image(machine_with(text)))
+    program = read_program(len(data).to_bytes(2, "little") + data if dos else data)
+    assert program.lines == lines_of(machine_with(text))
+    assert remark in " ".join(program.remarks)
+    assert bool(remark) == bool(program.remarks)
+    machine = Applesoft()
+    machine.load(data)
+    machine.type_line("RUN")
+    assert machine.take_output() == "3\n"
+
+
+def test_a_wrong_link_is_made_anew_by_the_next_line_typed() -> None:
+    """The search for a line's end begins at its second token."""
+    machine = machine_with("10 A=1\n20 PRINT A")
+    machine.type_line("POKE 2053,0:POKE 2049,0")
+    machine.type_line("30 END")
+    assert machine.machine.word(0x801) == machine.machine.ram.index(0, 0x806) + 1
 
 
 def test_basic_and_verify_load_the_same(tmp_path: Path) -> None:

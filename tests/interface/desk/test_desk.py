@@ -913,6 +913,31 @@ def test_connections_that_were_refused_keep_nobody_out(started: Any) -> None:
             connection.close()
 
 
+def test_a_refusal_ends_its_connection(started: Any) -> None:
+    """What is sent behind it is not served."""
+    parts = urlsplit(started[1])
+    request = f"GET / HTTP/1.1\r\nHost: 127.0.0.1:{parts.port}\r\n\r\n".encode()
+    with socket.create_connection(("127.0.0.1", parts.port or 0), timeout=20) as one:
+        one.sendall(request * 100)
+        answer = b""
+        while part := one.recv(1 << 16):
+            answer += part
+    assert answer.count(b"HTTP/1.1 404") == 1
+    assert b"Connection: close" in answer
+
+
+def test_a_body_that_is_too_long_is_answered_before_the_connection_goes(started: Any) -> None:
+    parts = urlsplit(started[1])
+    size = guard.LARGEST_BODY + 1
+    connection = HTTPConnection("127.0.0.1", parts.port, timeout=20)
+    headers = {"Origin": f"http://127.0.0.1:{parts.port}"}
+    connection.request("POST", f"{parts.path}judge", b" " * size, headers)
+    answer = connection.getresponse()
+    assert answer.status == 413
+    assert f"{guard.LARGEST_BODY:,}" in json.loads(answer.read())["problem"]
+    connection.close()
+
+
 def test_stop_is_answered_while_many_pages_wait(started: Any) -> None:
     parts = urlsplit(started[1])
     origin = f"http://127.0.0.1:{parts.port}"

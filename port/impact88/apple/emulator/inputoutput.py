@@ -144,6 +144,8 @@ class InputOutput(Expressions):
             for place, byte in enumerate(ram[line + HEADER : ram.index(0, line + HEADER)], HEADER):
                 if byte >= FIRST:
                     self._keep_place(place)
+                if byte == BREAK_CODE:
+                    self.ignore("LIST of the byte 255 prints text of the ROM there, nothing here")
                 self.put(
                     list_text(byte) if self.screen.shows else self._apply_mask(list_text(byte))
                 )

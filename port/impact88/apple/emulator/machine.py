@@ -41,6 +41,7 @@ from .tokens import (
     LAST_STATEMENT,
     OPEN,
     TOKENS,
+    following_line,
 )
 from .variables import store
 
@@ -611,7 +612,9 @@ class Machine(InputOutput):
         self.set_pointers()
         ram, address = self.ram, self.txttab
         while ram[address + 1] and address < ROM:
-            following = ram.index(0, address + HEADER) + 1
+            following = following_line(ram, address)
+            if following <= address:  # the ROM never comes back
+                break
             self.put_word(address, following)
             address = following
         self.prgend = self.vartab

@@ -153,6 +153,10 @@ class Memory:
         _add_note(self.refused, what)
         raise Fault("SYNTAX", self.sp - 4)
 
+    def ignore(self, what: str) -> None:
+        """Note what is not done here and ends in no error."""
+        _add_note(self.ignored, what)
+
     def _pass_over_command(self, word: str) -> None:
         _add_note(self.ignored, f"the disk command {word} was passed over: there is no disk")
 

@@ -24,6 +24,7 @@ from .tokens import (
     REM,
     TOKENS,
     detokenise,
+    following_line,
     list_text,
     split_number,
     tokenise,
@@ -38,6 +39,8 @@ MAX_LOST_BLANKS = 2  # at the end of a full row; two keywords leave so many
 MAX_LISTED_TOKENS = 255  # in a line of LIST's output; no line so long can be typed
 MAX_KEYWORD_PIECE = 12  # characters at the end of a text in which a keyword may be cut off
 LINE_HEADER = 4  # bytes of a line before its tokens: the next line's address, and its number
+LONGEST_LINE = 256  # bytes within which the ROM finds a line's end
+MIN_BEGUN = 0.5  # of a program's lines are begun by a statement
 LENGTH_HEADER = 2  # bytes before a program on a DOS 3.3 disk: its length
 
 _PROMPT = re.compile(r"\] *(?:LIST[-, 0-9]*)?$", re.I)
@@ -414,34 +417,64 @@ def _typed_lines(rows: Sequence[Row]) -> list[Line]:
 # --- tokenised files --------------------------------------------------------------------------
 
 
+class _Image(NamedTuple):
+    """A tokenised file as the ROM walks it: its lines, the number of links that were wrong,
+    whether it ends with two zeros, and what is behind the program."""
+
+    lines: list[Line]
+    wrong_links: int
+    is_ended: bool
+    extra: bytes
+
+    @property
+    def likelihood(self) -> float:
+        """1 for a program as SAVE writes it, else the share of lines that a statement may begin."""
+        if self.lines and self.is_ended and not self.wrong_links:
+            return 1.0
+        begun = sum(_begins_line(tokens.lstrip(b" :")) for _, tokens in self.lines)
+        return begun / max(1, len(self.lines))
+
+
 def _read_image(data: bytes) -> Program | None:
     """Return the program in a tokenised file, None for any other file."""
     length = int.from_bytes(data[:LENGTH_HEADER], "little")
-    images = [data]
+    images = [_walk(data)]
     if LENGTH_HEADER <= length <= len(data) - LENGTH_HEADER:
-        images.append(data[LENGTH_HEADER : LENGTH_HEADER + length])
-    for image in images:
-        lines, end, links = [], 0, []
-        while end + LINE_HEADER <= len(image) and image[end + 1]:
-            close = image.find(0, end + LINE_HEADER)
-            if close < 0:
-                break
-            links.append(int.from_bytes(image[end : end + 2], "little") - close - 1)
-            lines.append(
-                (
-                    int.from_bytes(image[end + 2 : end + LINE_HEADER], "little"),
-                    image[end + LINE_HEADER : close],
-                )
-            )
-            end = close + 1
-        # all links minus their places in the file give the program's address when it was saved
-        if lines and image[end : end + 2] == b"\0\0" and len(set(links)) == 1:
-            extra = image[end + 2 :].strip(b"\0")
-            remarks = []
-            if extra:
-                remarks.append(
-                    f"{len(extra)} bytes behind the program's last line, such as machine code, "
-                    "are left out"
-                )
-            return Program(lines, remarks)
-    return None
+        images.append(_walk(data[LENGTH_HEADER : LENGTH_HEADER + length]))
+    best = max(images, key=lambda image: image.likelihood)
+    if 0 not in data or best.likelihood < MIN_BEGUN:
+        return None
+    remarks = []
+    if best.wrong_links:
+        remarks.append(
+            f"{best.wrong_links} of {len(best.lines)} links between lines led elsewhere; they are "
+            "made anew, as the Apple does"
+        )
+    if best.extra:
+        remarks.append(
+            f"{len(best.extra)} bytes behind the program's last line, such as machine code, "
+            "are left out"
+        )
+    return Program(best.lines, remarks)
+
+
+def _walk(image: bytes) -> _Image:
+    """Walk a program as $D4F2 does: links are not looked at but for a zero high byte, which ends
+    it, as does the memory behind the file, which holds zeros."""
+    memory = image + bytes(LONGEST_LINE)
+    lines: list[Line] = []
+    links: list[int] = []
+    line = 0
+    while line < len(image) and memory[line + 1]:
+        following = following_line(memory, line)
+        if following <= line + LINE_HEADER:
+            return _Image([], 0, False, b"")
+        links.append(int.from_bytes(memory[line : line + 2], "little") - following)
+        number = int.from_bytes(memory[line + 2 : line + LINE_HEADER], "little")
+        lines.append((number, memory[line + LINE_HEADER : following - 1]))
+        line = following
+    # a link minus its line's place in the file is the address of the program when it was saved
+    usual = max(links, key=links.count, default=0)
+    wrong = len(links) - links.count(usual)
+    is_ended = image[line : line + 2] == b"\0\0"
+    return _Image(lines, wrong, is_ended, image[line + 2 :].strip(b"\0"))

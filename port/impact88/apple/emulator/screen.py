@@ -169,6 +169,8 @@ class Screen(Editor):
         others."""
         routines: dict[int, Callable[[], None]] = {
             0xFC58: self.home,
+            0xFC56: self.home,  # a branch on the carry, which CALL clears, in front of it
+            0xFC22: lambda: self.move_to_row(self.row),
             0xFC70: self._scroll,
             0xFC66: self._line_feed,
             0xFC1A: self._step_up,

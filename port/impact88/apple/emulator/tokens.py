@@ -146,3 +146,16 @@ def spelling(token: int) -> str:
 def list_text(byte: int) -> str:
     """Return LIST's text for a byte of a line."""
     return chr(byte) if byte < FIRST else f" {spelling(byte)} "
+
+
+def following_line(text: bytes | bytearray, line: int) -> int:
+    """Return the address behind the line that begins at ``line``, as $D4F2 finds it; 0 where the
+    ROM would search without end.
+
+    The search for the line's zero begins at its second token, and an index of one byte counts: a
+    line longer than 255 bytes ends with the first zero of its own beginning.
+    """
+    place = text.find(0, line + 5, line + 256)
+    if place < 0:
+        place = text.find(0, line, line + 5)
+    return place + 1 if place >= 0 else 0

@@ -31,7 +31,7 @@ from ...program.scene import SAMPLES, sample
 from ...version import __version__
 from . import collision, reconstruction
 from .forms import digits, filled_in
-from .guard import HEADERS, LARGEST_BODY, refusal
+from .guard import HEADERS, LARGEST_BODY, TOO_LONG, refusal
 from .workers import Bench, BrokenError, SupersededError
 
 BENCHES = {
@@ -166,8 +166,7 @@ def _problem(error: Exception) -> Any:
     if isinstance(error, SupersededError):
         return {"superseded": True}, 409
     if isinstance(error, HTTPException):
-        too_large = f"more than {LARGEST_BODY:,} bytes, the limit here"
-        return {"problem": too_large if error.code == 413 else error.name}, error.code or 500
+        return {"problem": TOO_LONG if error.code == 413 else error.name}, error.code or 500
     detail = str(error) if isinstance(error, BrokenError) else f"{type(error).__name__}: {error}"
     return {"problem": f"internal error of impact88 {__version__}; please report it: {detail}"}, 500
 

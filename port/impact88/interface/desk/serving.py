@@ -100,6 +100,7 @@ def _run(listener: socket.socket, port: int, token: str) -> None:
     from waitress.server import create_server  # type: ignore[import-untyped]
 
     from .app import Desk, application
+    from .connections import Channel
 
     # Windows lets any program change what a suffix means, and a browser runs no script that is
     # said to be plain text
@@ -120,6 +121,7 @@ def _run(listener: socket.socket, port: int, token: str) -> None:
         cleanup_interval=1,
         clear_untrusted_proxy_headers=True,
     )
+    server.channel_class = Channel
     try:
         server.run()
     finally:
