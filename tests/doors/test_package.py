@@ -27,7 +27,14 @@ def project() -> dict[str, Any]:
     return tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 
-FOR_TESTS = {"scans", "corners", "ocr-page.txt", "reference-cases.json", "scans.jsonl.gz"}
+FOR_TESTS = {
+    "scans",
+    "corners",
+    "published",
+    "ocr-page.txt",
+    "reference-cases.json",
+    "scans.jsonl.gz",
+}
 """What of golden/ no installation needs: selfcheck and oracle read the rest."""
 
 
