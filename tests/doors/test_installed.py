@@ -78,8 +78,11 @@ print(json.dumps([cli.__file__, sorted(opened), statuses, len(vectors), pages]))
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder that holds what a wheel of this checkout installs."""
+    """A folder that holds what a wheel of this checkout installs: one that IMPACT88_WHEEL names, or
+    one that is built here."""
     folder = tmp_path_factory.mktemp("wheel")
+    if built := os.environ.get("IMPACT88_WHEEL"):
+        return unpacked(Path(built), folder / "site")
     cruft = shutil.ignore_patterns("__pycache__", "*.egg-info", "build")
     for name in ("port", "legacy", "golden", ".ci"):
         shutil.copytree(ROOT / name, folder / "source" / name, ignore=cruft)
@@ -94,15 +97,19 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
         capture_output=True,
         check=True,
     )
-    with zipfile.ZipFile(next(folder.glob("*.whl"))) as wheel:
-        wheel.extractall(folder / "site")
-    return folder / "site"
+    return unpacked(next(folder.glob("*.whl")), folder / "site")
+
+
+def unpacked(wheel: Path, site: Path) -> Path:
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(site)
+    return site
 
 
 @pytest.mark.long
 def test_every_packaged_file_is_used(installed: Path, tmp_path: Path) -> None:
     package = installed / "impact88"
-    static = sorted(path.name for path in (package / "desk" / "static").iterdir())
+    static = sorted(path.name for path in (package / "interface" / "desk" / "static").iterdir())
     done = subprocess.run(
         [sys.executable, "-c", USE, str(package), *static],
         cwd=tmp_path,

@@ -1,8 +1,13 @@
-"""The rooms of port/impact88: data flows one way, and lower rooms never import upper ones."""
+"""The wings and rooms of port/impact88: data flows one way, and lower ones never import upper ones.
+
+At the root stand the wings, and the ground that all of them may use: `names`, `status`, `errors`,
+`files`, `version` and `messages`. The core is what stands alone.
+"""
 
 from __future__ import annotations
 
 import ast
+import re
 from collections import Counter
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
@@ -75,13 +80,60 @@ def test_no_package_imports_another_that_imports_it() -> None:
         pytest.fail(" -> ".join(error.args[1]))
 
 
-MAX_BOXES = 24  # folders and modules at the root: what a reader takes in at a glance
+CORE = ("apple", "collision", "mechanics", "program")
+GROUND_BOXES = ("errors", "files", "messages", "names", "status", "version")
+BOXES = sorted({name.split(".")[1] for name in FILES if "." in name} - {"__main__"})
+WINGS = tuple(box for box in BOXES if box not in GROUND_BOXES)
+
+
+def box_of(name: str) -> str:
+    """The folder or module at the root that a module is in; "" for the package itself."""
+    return name.split(".")[1] if "." in name else ""
+
+
+def wings_imported(box: str) -> set[str]:
+    """The wings that a wing, or a box of the ground, imports, on first use too."""
+    modules = {module for name, used in rooms().items() if box_of(name) == box for module in used}
+    return {box_of(module) for module in modules} & set(WINGS) - {box}
+
+
+def test_the_wings_are_in_an_order() -> None:
+    try:
+        list(TopologicalSorter({wing: wings_imported(wing) for wing in WINGS}).static_order())
+    except CycleError as error:
+        pytest.fail(" -> ".join(error.args[1]))
+
+
+@pytest.mark.parametrize("wing", WINGS)
+def test_a_wing_says_what_it_needs(wing: str) -> None:
+    """And what comes in, what goes out and who uses it, at the top of its ``__init__``."""
+    path = PACKAGE / wing / "__init__.py"
+    says = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
+    parts = re.split(r"\b(Needs|In|Out|Used by): ", says)
+    assert parts[1::2] == ["Needs", "In", "Out", "Used by"]
+    assert set(re.findall(r"`(\w+)`", parts[2])) == wings_imported(wing)
+    assert ("Core." in parts[2]) == (wing in CORE)
+    assert len(says.splitlines()) <= 14
+
+
+def test_the_core_and_the_ground_need_no_other_wing() -> None:
+    for wing in CORE:
+        assert wings_imported(wing) <= set(CORE), wing
+    for box in GROUND_BOXES:
+        assert not wings_imported(box), box
+
+
+def test_tests_stand_in_the_folders_of_the_wings() -> None:
+    folders = {path.name for path in (ROOT / "tests").iterdir() if any(path.glob("**/test_*.py"))}
+    assert folders <= {*WINGS, "messages", "doors"}
+
+
+MAX_BOXES = 17  # folders and modules at the root: what a reader takes in at a glance
 
 
 def test_the_root_is_a_table_of_contents() -> None:
     """A package is found from the question, and none has the name of a public function."""
-    boxes = {name.split(".")[1] for name in FILES if "." in name} - {"__main__"}
-    assert len(boxes) <= MAX_BOXES, sorted(boxes)
+    assert len(BOXES) <= MAX_BOXES, BOXES
     public = {name for name in impact88.__all__ if callable(getattr(impact88, name))}
     packages = {name.rpartition(".")[2] for name in FILES if FILES[name].name == "__init__.py"}
     assert not packages & public

@@ -1,7 +1,8 @@
 """The Apple II Plus: its arithmetic and text (`applesoft`), and the machine (`emulator`).
 
 Needs: nothing but the ground. Core.
-In: decimal texts, Applesoft programs, keys. Out: five-byte reals, printed text, screens.
+In: decimal texts, Applesoft programs, keys; the captures of a real ROM that it is held against
+(`captured`). Out: five-byte reals, printed text, screens.
 Used by: `program`, which runs the 1988 listing; anyone with another Applesoft program
 (`impact88 basic`). It knows nothing of collisions.
 """

@@ -1,6 +1,7 @@
 """The interface: the command line (`commands`) and the local web page (`desk`).
 
-Needs: every wing, each on first use; a command whose wing is missing says so.
+Needs: `apple`, `collision`, `mechanics`, `program`, `tables`, `printouts`, `casework`,
+`conformance`, `bench`; each on first use, and a command whose wing is missing says so.
 In: arguments, files, forms. Out: text, JSON, files, exit statuses.
 Used by: everybody who does not import the package.
 """

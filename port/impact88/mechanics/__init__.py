@@ -1,1 +1,8 @@
-"""The planar impact in double precision: closed form, compiled kernels, accuracy, outcome."""
+"""The planar impact in double precision: closed form, compiled kernels, accuracy, outcome.
+
+Needs: `collision` (geometry, angles in degrees), `apple` (decimal texts of the reference). Core.
+In: columns of numbers by the listing's names. Out: results by theirs, STATUS, bounds of rounding
+errors; the compiled library (`native`), which `program` uses too.
+Used by: `impact88.solve`, and every wing that computes an impact: `casework`, `tables`,
+`conformance`, `bench`; programs that import the package.
+"""

@@ -210,7 +210,9 @@ def _reason(error: Exception) -> str | None:
     if isinstance(error, UserError):
         return str(error)
     if isinstance(error, ModuleNotFoundError):
-        package = (error.name or "").partition(".")[0]
+        package, _, wing = (error.name or "").partition(".")
+        if package == "impact88" and wing and "." not in wing:
+            return f"impact88.{wing} is not installed; expected: the whole package"
         if package in ("", "impact88"):
             return None
         return f"{package} is not installed; expected: pip install {package}"
