@@ -64,6 +64,9 @@ LONGEST = (
 )
 """Files of tests that take more than some seconds (``--durations=0`` has the times)."""
 
+LONGER = ("IMPACT88_LONG", "IMPACT88_SWEEP", "IMPACT88_CASES", "IMPACT88_SETS")
+"""Environment variables with which what is marked as long is run too."""
+
 settings.register_profile(
     "run",
     max_examples=int(os.environ.get("IMPACT88_EXAMPLES") or 40),
@@ -84,7 +87,7 @@ def pytest_configure(config: pytest.Config) -> None:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put the files that take longest first, and leave out what is marked as long; with
     IMPACT88_SHUFFLE, a number, files and tests in any order: none may need another."""
-    if not os.environ.get("IMPACT88_LONG"):
+    if not any(map(os.environ.get, LONGER)):
         for item in items:
             if item.get_closest_marker("long"):
                 item.add_marker(pytest.mark.skip(reason="IMPACT88_LONG is not set"))

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from installed import COMMAND, impact88
+from longer import long_but
 
 from impact88.errors import LONGEST_MESSAGE, UserError, one_line, quoted
 from impact88.files import check_apart, read_bytes, replacing
@@ -180,7 +181,9 @@ def test_an_error_in_reading_names_the_file() -> None:
     assert done.stderr.startswith("impact88 solve: /proc/self/mem: cannot be read: ")
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
+@pytest.mark.parametrize(
+    "number", long_but([signal.SIGTERM, signal.SIGHUP, signal.SIGINT], kept=(2,))
+)
 def test_a_signal_leaves_the_old_file_and_nothing_beside_it(folder: Path, number: int) -> None:
     (folder / "old.csv").write_text("old", "utf-8")
     with subprocess.Popen(

@@ -33,6 +33,10 @@ LONG = (
     "compare-every-result-zero",
     "extremes-a.1066",
     "extremes-e.5751",
+    "printout-number-of-many-digits",
+    "figure-histogram-of-a-constant",
+    "verify-scene-plus-sign",
+    "typed-5.0.353",
 )
 """Beginnings of the names of cases that take seconds, and have quicker ones of their kind beside
 them: run where the seconds are more than the default's."""

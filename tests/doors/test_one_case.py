@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from longer import long_but
 
 import impact88
 from impact88.collision.case import Case
@@ -346,7 +347,7 @@ COMMANDS = (
 )
 
 
-@pytest.mark.parametrize("seed", range(FILES))
+@pytest.mark.parametrize("seed", long_but(range(FILES), kept=(1,)))
 def test_an_option_is_the_edited_file(
     seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -14,6 +14,7 @@ import mpmath
 import numpy as np
 import pytest
 from fiftydigits import exact, listing_elimination, relative_error, split
+from longer import long_but
 from worked_cases import RUN_1
 
 from impact88 import solve
@@ -391,7 +392,7 @@ def single_spin_errors(g):
     return worst
 
 
-@pytest.mark.parametrize("pivot", [False, True])
+@pytest.mark.parametrize("pivot", long_but([False, True]))
 @pytest.mark.parametrize("scales", [("DA", "DB"), ("DA", "DB", "MA", "MB", "IA", "IB")])
 def test_each_spin_keeps_its_own_digits(pivot, scales):
     """Mean and difference, each right to the last digit, left 2e3 to 2e4 roundings in a spin."""
@@ -405,7 +406,7 @@ def test_each_spin_keeps_its_own_digits(pivot, scales):
     assert single_spin_errors(g) <= BACKWARD_STABLE
 
 
-@pytest.mark.parametrize("name", ["casework", "heavy", "extreme", "cancelling"])
+@pytest.mark.parametrize("name", long_but(["casework", "heavy", "extreme", "cancelling"]))
 def test_a_pivot_that_gains_energy_is_as_accurate(name):
     """EM > 1/2: both sums that the form of the final velocities is chosen by are negative."""
     count, rng = 200, np.random.default_rng(38)

@@ -7,6 +7,7 @@ import re
 from collections import Counter
 
 import pytest
+from longer import long_but
 
 import printouts
 from impact88.printouts.reading.fieldlabels import LabelState
@@ -79,7 +80,7 @@ WRONG = (exchanged, another, of_the_other_side, nonsense, angles)
 
 
 @pytest.mark.captures
-@pytest.mark.parametrize("how", WRONG, ids=lambda how: how.__name__)
+@pytest.mark.parametrize("how", long_but(WRONG, kept=(0, 1)), ids=lambda how: how.__name__)
 def test_a_wrong_label_is_never_identical(how) -> None:  # type: ignore[no-untyped-def]
     rng = random.Random(how.__name__)
     rows = printouts.normal_ends()
@@ -192,6 +193,7 @@ def test_a_number_without_its_label_is_no_part_of_the_reply_above_it() -> None:
     assert verify(shown).verdict is Verdict.IDENTICAL_AS_READ
 
 
+@pytest.mark.long
 def test_a_reply_never_outranks_the_printed_number() -> None:
     prompt = "ENTER THE INITIAL VELOCITY COMPONENTS OF MA :Vax,Vay,Wa ?"
     text = f"{prompt}-29.04,0,0\n\n{SAMPLE}"
@@ -248,7 +250,7 @@ def test_a_note_typed_beside_a_genuine_number_is_told_and_accuses_nothing(
     assert re.search(rf"{re.escape(note)}' left over beside a number", said)
 
 
-@pytest.mark.parametrize("figures", ["5", "31.2", "-1"])
+@pytest.mark.parametrize("figures", long_but(["5", "31.2", "-1"]))
 def test_figures_right_after_a_number_differ_and_are_shown_as_they_stand(figures: str) -> None:
     result = one(SAMPLE.replace("-13.263", f"-13.263 {figures}"))
     assert result.verdict is Verdict.DIFFERS
@@ -263,6 +265,7 @@ INSERTED = (
 )
 
 
+@pytest.mark.long
 @pytest.mark.captures
 def test_every_character_that_is_put_into_a_page_is_told() -> None:
     """Bare IDENTICAL only with a note that shows it."""
@@ -330,6 +333,7 @@ ENTER THE INITIAL VELOCITY COMPONENTS OF MB :Vbx,Vby,Wb ?14.52,25.15,0
 TRANSCRIPT = PROMPTS + SAMPLE
 
 
+@pytest.mark.long
 def test_each_mark_that_the_page_lacks_is_told() -> None:
     """In one line, and nothing else is: no number is accused."""
     assert one(TRANSCRIPT).verdict is Verdict.IDENTICAL

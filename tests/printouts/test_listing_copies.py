@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import scanpages
 from captures import ROOT
+from longer import long_but
 
 import printouts
 from impact88.apple.emulator.emulator import Applesoft
@@ -160,6 +161,7 @@ def test_what_only_the_copy_prints_is_part_of_its_page(tmp_path: Path) -> None:
     assert verdicts(altered, copy) == {Verdict.DIFFERS}
 
 
+@pytest.mark.long
 def test_what_a_page_cannot_show_is_what_the_copy_cannot(tmp_path: Path) -> None:
     """One that forgets PB shows nothing of it."""
     copy = copy_of(LISTING.replace("TB + PB", "TB"), tmp_path)
@@ -183,6 +185,7 @@ def test_what_is_no_copy_is_refused(text: str, says: str, tmp_path: Path) -> Non
         copy_of(text, tmp_path).run({})
 
 
+@pytest.mark.long
 def test_a_line_retyped_wrong_is_named(tmp_path: Path) -> None:
     """Without the copy at hand: the page itself shows which line is another."""
     wrong = copy_of(changed((490, line(490).replace("- 2 * EM", "+ 2 * EM"))), tmp_path)
@@ -253,7 +256,7 @@ def run_as_a_person(text: str, replies: list[str], *, dos: bool = False) -> str:
 
 
 @pytest.mark.usefixtures("verdicts_alone")
-@pytest.mark.parametrize("name", OFFICES)
+@pytest.mark.parametrize("name", long_but(OFFICES, kept=(1,)))
 def test_pages_of_an_office_are_settled_by_its_copy(name: str, tmp_path: Path) -> None:
     text, replies = OFFICES[name]
     page, copy = run_as_a_person(text, replies), copy_of(text, tmp_path)

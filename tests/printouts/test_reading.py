@@ -7,6 +7,7 @@ from itertools import zip_longest
 
 import captures
 import pytest
+from longer import long_but
 
 import impact88
 import printouts
@@ -226,7 +227,7 @@ def test_truncated_anywhere_reads_or_is_refused() -> None:
 
 
 @pytest.mark.parametrize("note", ["\n   177\n", "seen 1988\n", "12\n", "-8.78\n", "VAX= 3.449\n"])
-@pytest.mark.parametrize("number", [1, 2, 3])
+@pytest.mark.parametrize("number", long_but([1, 2, 3]))
 def test_what_stands_below_the_angles_is_none_of_them(number: int, note: str) -> None:
     page = impact88.run(impact88.sample(number)).page
     end = page.index("\n", page.index("TB GA\n") + len("TB GA\n")) + 1
@@ -243,7 +244,7 @@ def test_what_stands_below_the_angles_is_none_of_them(number: int, note: str) ->
 
 
 @pytest.mark.captures
-@pytest.mark.parametrize("glyphs", [" ", "\n", "\f", " \n\r\f\t"])
+@pytest.mark.parametrize("glyphs", long_but([" ", "\n", "\f", " \n\r\f\t"], kept=(3,)))
 def test_blanks_breaks_and_form_feeds_anywhere_part_no_printout(glyphs: str) -> None:
     """Where they cut the row of angles into more than five pieces, too."""
     for seed, row in enumerate(printouts.sampled(printouts.normal_ends(), 3, seed=37)):

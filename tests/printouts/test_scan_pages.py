@@ -16,6 +16,7 @@ import pytest
 import scanpages
 import scanrates
 from captures import ROOT
+from longer import long_but
 from worked_cases import RUN_1
 
 from impact88.printouts.judging import beside
@@ -49,6 +50,8 @@ PAGES = ROOT / "golden" / "scans"
 TRUTH = [json.loads(line) for line in (PAGES / "truth.jsonl").read_text().splitlines()]
 SWEEP = bool(os.environ.get("IMPACT88_SWEEP"))
 FEW = ("clean-001.png", "clean-002.png", "hard-003.png", "photo-001.jpg", "forged-003.png")
+"""Pages that are read without IMPACT88_SWEEP; by default the first two, one of them altered."""
+PAGES_READ = [row for row in TRUTH if SWEEP or row["file"] in FEW]
 LETTERHEAD = {"hard-003.png"}
 """Pages with typed lines that the program does not print."""
 SETTLED = {"identical", "identical_as_read"}
@@ -69,7 +72,7 @@ def verdicts(file: str) -> tuple[str, ...]:
     return tuple(str(one.verdict) for one in examined(file))
 
 
-@pytest.mark.parametrize("row", [row for row in TRUTH if SWEEP or row["file"] in FEW], ids=str)
+@pytest.mark.parametrize("row", long_but(PAGES_READ, kept=(0, 1)), ids=str)
 def test_no_genuine_page_accused_no_altered_page_settled(row: dict[str, Any]) -> None:
     found = verdicts(row["file"])
     if row["altered"] is None:
@@ -232,6 +235,7 @@ def test_a_page_that_takes_too_much_time_or_memory_is_refused_with_its_number(mo
         list(pdfpages.render_pages(file.getvalue(), 40_000))
 
 
+@pytest.mark.long
 def test_a_picture_larger_than_is_read_has_its_boxes_in_the_pixels_of_its_file(monkeypatch) -> None:
     from impact88.printouts.scan import picture
 
@@ -297,6 +301,7 @@ def test_the_hair_of_a_thin_dash_is_ink_and_a_speck_is_none() -> None:
     assert max(inked[1:]) < 0
 
 
+@pytest.mark.long
 def test_a_digit_pasted_from_elsewhere_on_the_page_differs_and_is_shown() -> None:
     from impact88.casework.report.casefile import report
 
@@ -377,6 +382,7 @@ def with_line(below: float) -> Any:
     return longer
 
 
+@pytest.mark.long
 def test_a_line_of_type_below_the_page_is_read_and_bars_a_bare_identical() -> None:
     result = read_again(with_line(6.0))
     assert result.verdict is Verdict.IDENTICAL_AS_READ
@@ -386,6 +392,7 @@ def test_a_line_of_type_below_the_page_is_read_and_bars_a_bare_identical() -> No
     assert "typed text that the program does not print" in "\n".join(lines(result))
 
 
+@pytest.mark.long
 def test_a_typed_line_that_gives_a_number_of_the_page_another_value_differs() -> None:
     """A label of the page and another number below the page, made of the page's own glyphs; with
     the page's number it contradicts nothing."""
@@ -549,6 +556,7 @@ def test_ink_of_another_colour_is_set_apart_and_the_type_under_it_stays() -> Non
     assert not paper.coloured[grey < 60][~inked[grey < 60]].any()
 
 
+@pytest.mark.long
 def test_a_page_askew_is_set_straight_and_one_nearly_straight_is_left_alone() -> None:
     from impact88.printouts.scan.cleaning import papers_of
 
@@ -634,6 +642,7 @@ def test_no_page_with_something_added_is_bare_identical(kind: str) -> None:
         assert sum("differs" in some for some in told) >= 7
 
 
+@pytest.mark.long
 def test_a_text_layer_must_agree_and_another_readers_words_decide_nothing(monkeypatch) -> None:
     from impact88.printouts.reporting import scanned
     from impact88.printouts.scan.picture import Page

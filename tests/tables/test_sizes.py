@@ -21,6 +21,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from longer import long_but
 
 from impact88.interface.commands.cli import main
 from impact88.names import SCENE
@@ -116,6 +117,15 @@ READERS: dict[str, tuple[int, Callable[[int], Input]]] = {
     "printouts": (1, lambda n: (["verify", "--brief", "t.txt"], table(*[PRINTOUT] * n))),
     "one letter to verify": (5000, lambda n: (["verify", "t.txt"], b"x" * n)),
 }
+LONG = (
+    "columns of a CSV",
+    "rows of JSON Lines",
+    "questions to the oracle",
+    "lines of a scene file",
+    "printouts",
+    "one letter to verify",
+)
+"""Readers that take half a second."""
 TIMED = bool(os.environ.get("IMPACT88_SWEEP"))
 if TIMED:  # seconds for any number of rows
     READERS["unlike rows to compare"] = (
@@ -156,7 +166,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("folder")
-@pytest.mark.parametrize("reader", READERS)
+@pytest.mark.parametrize(
+    "reader", long_but(READERS, kept=[i for i, name in enumerate(READERS) if name not in LONG])
+)
 def test_work_grows_with_size_and_not_faster(reader: str) -> None:
     size, make = READERS[reader]
     if TIMED:

@@ -20,6 +20,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from longer import long_but
 
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
@@ -191,7 +192,7 @@ class TestNpz:
             read(path)
 
 
-@pytest.mark.parametrize("rows", [1, 9000])
+@pytest.mark.parametrize("rows", long_but([1, 9000]))
 def test_pyarrow_is_imported_for_large_tables_alone(tmp_path, rows):
     """It imports pandas, which takes longer than a small table; and the bytes are the same."""
     pytest.importorskip("pyarrow")

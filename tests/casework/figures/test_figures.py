@@ -431,6 +431,7 @@ def found():
 
 
 class TestCanvas:
+    @pytest.mark.long
     def test_ink_of_texts_does_not_overlap(self, monkeypatch):
         """What matplotlib paints keeps to the boxes that the layout reckons with."""
         drawing = scene_drawing(sample(1), solved(sample(1)))
@@ -459,6 +460,7 @@ class TestCanvas:
             assert b"Vehicle A: speed 29.04 ft/s before" in path.read_bytes()
         assert sorted(p.suffix for p in tmp_path.iterdir()) == [".pdf", ".png", ".svg"]
 
+    @pytest.mark.long
     def test_nobody_elses_settings_change_a_figure(self, tmp_path, monkeypatch):
         line = "figure force -o {}.pdf"
         monkeypatch.chdir(tmp_path)
@@ -917,6 +919,7 @@ class TestRendered:
         assert not any(below for _, below in cut)
         assert "".join(piece for piece, _ in cut) == r"photo_12 \_ a_{b}"
 
+    @pytest.mark.long
     def test_a_title_that_does_not_print_is_shown_with_escapes(self, tmp_path):
         title = "Main \x1b[31m and \u202e4th\x00 \ud800"
         drawing = scene_drawing(sample(1), title=title)

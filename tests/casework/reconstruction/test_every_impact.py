@@ -206,6 +206,7 @@ def test_draws_are_those_of_rejection_over_both_branches():
         assert bounds[name].upper >= max(other.max(), drawn.values[name].max())
 
 
+@pytest.mark.long
 def test_a_car_that_may_have_stood_still_has_a_least_speed_of_0():
     """B's speed has a kink there; where it was hit on the move the least speed is that."""
     known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "GA": 170.0, "MUP": 0.1, "UY": 0.0}
@@ -220,6 +221,7 @@ def test_a_car_that_may_have_stood_still_has_a_least_speed_of_0():
         assert 28 < change < 40
 
 
+@pytest.mark.long
 def test_the_first_order_is_not_shown_where_it_contradicts_the_draws():
     known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "GA": 180.0, "UY": 0.0, "VY": 0.0, "MUP": 0.0}
     known |= {"E": read("0 .. .4", "E"), "VBX": read("normal 30 2", "VBX")}
@@ -248,6 +250,7 @@ def test_draws_about_one_impact_of_several_say_so():
     assert not any("about this impact only" in line for line in one.warnings())
 
 
+@pytest.mark.long
 def test_where_two_branches_meet_no_first_order_deviation_is_shown():
     """The speed of A is that of its x component: UY is 0, from both sides, and within .5 ft/s of
     speed it is up to the leg of a right-angled triangle."""

@@ -134,6 +134,7 @@ def test_bounds_take_in_every_draw():
     assert bounds["UX"].searched
 
 
+@pytest.mark.long
 def test_an_exact_change_of_velocity_is_met_by_every_draw_and_both_roots_are_drawn():
     """Point masses along x, MUP 0: of u, v and e flat and an exact change of velocity D of A,
     w = -D m_a / m / (1 + e); B's velocity after is v + m_a D / m_b. The density over (v, e) is that

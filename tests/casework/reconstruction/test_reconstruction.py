@@ -11,7 +11,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from impact88.casework.chapter.staged import collisions, fit
+from impact88.casework.chapter.staged import collisions
 from impact88.casework.reconstruction import adjustment
 from impact88.casework.reconstruction.adjustment import reconstruct, refine, solve_gauss_newton
 from impact88.casework.reconstruction.reconstructed import draws, ranges
@@ -163,6 +163,7 @@ class TestLeastOfAll:
     )
 
     # IMPACT88_SETS=1 solves all; the last needs tolerances tightened little by little
+    @pytest.mark.long
     @pytest.mark.parametrize(
         ("problem", "squares"), PROBLEMS if os.environ.get("IMPACT88_SETS") else PROBLEMS[5:]
     )
@@ -266,23 +267,6 @@ class TestLeastSquares:
         (solution,) = reconstruct(BOTH_SPINS)
         assert solution.squares > 1
 
-    @pytest.mark.parametrize("number", [1, 6, 9, 10])
-    def test_a_staged_collision_is_fitted_as_section_5_does(self, number):
-        """Initial velocities exact, spins weighted by 25 ft²: where no bound holds the fit back."""
-        collision = next(c for c in collisions() if c.number == number)
-        known = dict(collision.scene)
-        for name, value in collision.measured.items():
-            known[name] = read(f"normal {value!r} {0.2 if name[0] == 'W' else 1.0}", name)
-        (solution,) = reconstruct(known)
-        free = (
-            fit(collision, em=solution.values["EM"]) if -1 <= solution.values["EM"] <= 0 else None
-        )
-        best = fit(collision)
-        assert solution.squares <= best.sum_of_squares * (1 + 1e-9)
-        if free is not None and "E" not in free.at_bound:
-            assert solution.values["E"] == pytest.approx(free.E, abs=1e-6)
-            assert solution.values["MUP"] == pytest.approx(free.MUP, abs=1e-6)
-
 
 class TestDetermined:
     """With no more known than needed nothing is adjusted."""
@@ -381,6 +365,7 @@ class TestUncertainty:
         assert drawn.std() == pytest.approx(deviation, rel=0.02)
         assert bound.lower <= drawn.min() <= drawn.max() <= bound.upper
 
+    @pytest.mark.long
     def test_each_draw_is_solved(self):
         """Coefficients and geometry vary: `solve` gives back the drawn velocities after."""
         after = {n: float(v) for n, v in solve(TABLE_3, (*FINAL, "MUP")).items()}
@@ -471,6 +456,7 @@ class TestUncertainty:
             assert found[name].lower == pytest.approx(min(every), abs=1e-5 * width)
             assert found[name].upper == pytest.approx(max(every), abs=1e-5 * width)
 
+    @pytest.mark.long
     def test_bounds_with_more_known_than_needed_reach_a_corner_of_all_limits(self):
         """A scene within all limits, at the corner of four of them, as the closed form has it: the
         bounds hold it. Where the edge of the redundant limits was met as a hole the lowest UX was
@@ -505,6 +491,7 @@ class TestUncertainty:
             assert sizes == pytest.approx([0.5 / 3, 1.5 / 1], rel=1e-5)
         assert found["DVB"].upper == pytest.approx(math.hypot(2 + tolerance, 1.5), rel=1e-6)
 
+    @pytest.mark.long
     def test_near_e_0(self):
         after = {n: float(v) for n, v in solve(TABLE_3, (*FINAL, "MUP")).items()}
         known = {**VEHICLES, "E": read(".25 +- .25", "E"), "EM": -0.9, **after}
@@ -561,6 +548,7 @@ class TestCommand:
         assert "VBX 70 %" in out
         assert all(len(line) <= 104 for line in out.splitlines())
 
+    @pytest.mark.long
     def test_step_5_with_both_spins_and_the_scene_it_gives(self, section_7, tmp_path, capsys):
         scene = str(tmp_path / "found.toml")
         settings = [

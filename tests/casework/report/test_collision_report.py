@@ -285,6 +285,7 @@ REAR_END = {
 """B may have stood; EM = 0 makes the friction given more than the sliding takes."""
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("brief_search")
 def test_a_car_that_fits_best_standing_has_no_speed_of_rounding(tmp_path: Path) -> None:
     """Neither a course of who stands, nor ± about a value outside 90 % of the draws, nor digits of

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from longer import long_but
 
 from impact88.conformance.comparison.compare import Comparison, compare
 from impact88.conformance.comparison.constants import KNOWN, fit_constants
@@ -81,7 +82,7 @@ def test_a_kind_of_mistake_is_named(kind: str) -> None:
     assert count >= 0.9 * done.differing
 
 
-@pytest.mark.parametrize("kind", FITTED if SWEEP else FITTED[:3])
+@pytest.mark.parametrize("kind", long_but(FITTED if SWEEP else FITTED[:3]))
 def test_a_constant_is_fitted(kind: str) -> None:
     """Alone, in rows of casework: what the search does where no edit of its own explains them."""
     program, changes, says = KINDS[kind]

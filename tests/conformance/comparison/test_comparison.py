@@ -23,6 +23,7 @@ import numpy as np
 import pytest
 import strangers
 from installed import impact88
+from longer import long_but
 from mistakes import DEGREES, MISTAKES, MPH, SPINS, Squared, each, scaled, scaling
 from otherprogram import RESULTS, Numbers, Program, answers
 
@@ -319,6 +320,7 @@ def test_three_mistakes_are_not_called_two(tmp_path) -> None:
     assert unknown >= 0.9 * done.differing, done.causes
 
 
+@pytest.mark.long
 def test_rows_shifted_are_named(tmp_path) -> None:
     rows = [ROWS[-1], *ROWS[:-1]]
     done = compared(tmp_path, answered(Program(), rows, FINAL_VELOCITIES))
@@ -338,7 +340,7 @@ HARD = {
 }
 
 
-@pytest.mark.parametrize("what", HARD)
+@pytest.mark.parametrize("what", long_but(HARD))
 def test_correct_programs_of_any_style_agree_in_hard_scenes(tmp_path, what: str) -> None:
     """Their way's own condition is allowed for: elimination, closed forms, either sliding."""
     rng = Random(5)
@@ -388,6 +390,7 @@ def test_point_masses_need_no_inertias_to_be_explained(tmp_path, monkeypatch) ->
     assert (done.differing, done.bad) == (2, [])
 
 
+@pytest.mark.long
 def test_one_wrong_cell_is_no_convention(tmp_path) -> None:
     """A number to one decimal is met by chance by some slip among hundreds: it names none."""
     found = answered(Program(), names=("VAX",), places=1)
@@ -411,6 +414,7 @@ def test_printed_digits_floors_and_cuts_are_told_apart(tmp_path) -> None:
         assert any(one.startswith(says) for one in done.causes)
 
 
+@pytest.mark.long
 def test_the_pi_of_the_listing_is_recognised(tmp_path) -> None:
     class Listing(Program):
         pi = 3.14159265

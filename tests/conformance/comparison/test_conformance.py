@@ -161,6 +161,7 @@ def test_what_is_wrong_does_not_pass(
     assert "does not conform" in done.badge
 
 
+@pytest.mark.long
 def test_every_vector_is_judged_by_itself(kit: Path, answers: Table, tmp_path: Path) -> None:
     """Any one answer changed by 1e-6 of it, left out, or given where none is: that one fails."""
     for at, row in enumerate(answers):

@@ -129,6 +129,7 @@ def test_one_digit_of_the_rom_differs_from_all() -> None:
     assert "+INITIAL KE= 100904.929 KE LOSS= 57.47 %" in shown
 
 
+@pytest.mark.long
 def test_one_bit_of_a_variable_or_of_the_array_differs() -> None:
     changed = f"{int(RUN1.reals['D1'], 16) ^ 1:010x}"
     data = list(RUN1.A["data"])
@@ -190,6 +191,7 @@ def test_a_folder_of_programs(tmp_path, played: bytes) -> None:
     assert "row 1 has 247 characters" in impact88("witness", *options).stderr
 
 
+@pytest.mark.long
 def test_captures_are_drawn_without_repeating() -> None:
     drawn = cases(60, seed=1)
     assert len({(case.kind, case.name) for case in drawn}) == 60

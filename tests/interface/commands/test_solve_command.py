@@ -224,6 +224,7 @@ def test_unusable(cases, tmp_path, monkeypatch, capsys, arguments, told):
     assert not (tmp_path / "r.csv").exists()
 
 
+@pytest.mark.long
 def test_memory_does_not_grow_with_the_file(cases, tmp_path, monkeypatch):
     monkeypatch.setattr(csvtable, "BLOCK_ROWS", 500)
     monkeypatch.setattr(csvtable, "BLOCK_BYTES", 50_000)

@@ -648,6 +648,7 @@ def test_what_is_no_file_is_refused_before_it_is_read() -> None:
         paper.report([{"name": "x", "data": coded(RUN1)}], {"case": "x" * 201})
 
 
+@pytest.mark.long
 def test_a_scan_is_read_itself() -> None:
     pytest.importorskip("PIL", reason="the scan extra is not installed")
     scan = ROOT / "golden/scans/clean-001.png"
