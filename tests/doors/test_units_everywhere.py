@@ -5,12 +5,12 @@ from __future__ import annotations
 import csv
 import io
 import json
-import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import pytest
+from installed import impact88
 from unitscenes import SCENE, texts
 
 from impact88.collision.units import SYSTEMS, size_of
@@ -243,14 +243,12 @@ def test_the_same_file_at_every_door(
     assert main(words) == 0, capsys.readouterr().err
 
 
-def test_the_oracle_takes_units_and_says_its_own(monkeypatch: Any, capsys: Any) -> None:
+def test_the_oracle_takes_units_and_says_its_own() -> None:
     """The program is given base units; the answer names them."""
     given = {**sample(1), **{"units": "us", "UX": "-19.8 mph"}}
-    monkeypatch.setattr(
-        sys, "stdin", io.TextIOWrapper(io.BytesIO(json.dumps({"scene": given}).encode()))
-    )
-    assert main(["oracle", "--no-reference"]) == 0
-    answer = json.loads(capsys.readouterr().out)
+    done = impact88("oracle", "--no-reference", input=json.dumps({"scene": given}))
+    assert done.returncode == 0
+    answer = json.loads(done.stdout)
     assert answer["units"] == "ft, slug, s"
     assert float(answer["scene"]["UX"]) == pytest.approx(-29.04)
     assert float(answer["scene"]["MA"]) == pytest.approx(143.5 / 32.17404855643)

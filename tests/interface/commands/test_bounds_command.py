@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import io
 import json
 import re
 import shlex
-import sys
+from pathlib import Path
 
 import pytest
+from installed import impact88
 
 from impact88.interface.commands import bounds_command as command
 from impact88.interface.commands.cli import main
@@ -92,13 +92,11 @@ def test_file_with_ranges(capsys, scene_file):
     assert found["correlations"] == [{"names": ["MU", "UX"], "correlation": 0.5}]
 
 
-def test_file_from_standard_input(capsys, scene_file, monkeypatch):
-    with open(scene_file, "rb") as file:
-        data = file.read()
-    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
-    status, out, _ = answer(capsys, "-", *DVA, "--samples", "100")
-    assert status == 0
-    assert "normal" in out
+def test_file_from_standard_input(scene_file):
+    text = Path(scene_file).read_text(encoding="utf-8")
+    done = impact88("bounds", "-", *DVA, "--samples", "100", input=text)
+    assert done.returncode == 0
+    assert "normal" in done.stdout
 
 
 def test_reconstruction_says_where_the_finals_come_from(capsys):

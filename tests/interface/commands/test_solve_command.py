@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import csv
-import io
 import json
 import tracemalloc
 
 import numpy as np
 import pytest
+from installed import impact88
 
 from impact88 import replay, solve
 from impact88.interface.commands.cli import main
@@ -191,11 +191,11 @@ def test_a_table_without_rows_gives_one_without_rows(cases, tmp_path):
     assert out.read_text().splitlines() == [",".join(["id", *NAMES, "note", "VAX"])]
 
 
-def test_standard_input_and_output(cases, capsys, monkeypatch):
-    stdin = io.TextIOWrapper(io.BufferedReader(io.BytesIO(cases.read_bytes())))
-    monkeypatch.setattr("sys.stdin", stdin)
-    assert main(["solve", "-", "--outputs", "KI", "--results-only"]) == 0
-    out = capsys.readouterr().out.splitlines()
+def test_standard_input_and_output(cases):
+    text = cases.read_text(encoding="utf-8")
+    done = impact88("solve", "-", "--outputs", "KI", "--results-only", input=text)
+    assert done.returncode == 0
+    out = done.stdout.splitlines()
     assert out[0] == "id,note,KI"
     assert float(out[1].rpartition(",")[2]) == expected(cases)["KI"][0]
 

@@ -12,7 +12,7 @@ Units: ft, s, slug (Table 1).
 """
 
 import csv
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
@@ -245,11 +245,12 @@ class Compared:
     explanation: str
 
 
-def comparison() -> list[Compared]:
-    """Compare loss and the three pairs of ΔV of Table 2 with their recomputation."""
+def comparison(printed: Sequence[Collision] | None = None) -> list[Compared]:
+    """Compare loss and the three pairs of ΔV of Table 2, or of what is said to be ``printed``, with
+    their recomputation."""
     half, rows = _HALF_DIGIT_COEFFICIENT, []
     offsets = np.array([*product((-half, 0, half), repeat=3)]).T
-    for collision in collisions():
+    for collision in collisions() if printed is None else printed:
         coefficients = {
             n: x + o for (n, x), o in zip(collision.coefficients.items(), offsets, strict=True)
         }
