@@ -10,6 +10,7 @@ import pytest
 import printouts
 from impact88.collision.doubles import double
 from impact88.printouts.explaining.causes import Cause
+from impact88.printouts.explaining.explanations import MORE_DIGITS
 from impact88.printouts.explaining.machines import cut
 from impact88.printouts.reading.numerals import as_printed
 from impact88.printouts.reading.printout import FIELDS, read_printouts
@@ -275,3 +276,12 @@ def test_halves_are_rounded_upward(value: float, places: int, number: str) -> No
 def test_the_other_sign_of_what_may_be_typed(typed: str) -> None:
     assert double(opposite(typed)) == -double(typed)
     assert double(opposite(opposite(typed))) == double(typed)
+
+
+@pytest.mark.parametrize("typed", ["-10.00000001", "-10.00000002"])
+def test_an_input_typed_with_more_digits_than_are_printed_is_named(typed: str) -> None:
+    """-10 is printed, and line 510 turns on the digit that is not."""
+    page = run(sample(1).replaced({"MU": typed})).page
+    assert "MU= -10 " in page
+    cause = first(page)
+    assert (cause.kind, cause.field, cause.remaining) == (MORE_DIGITS, "MUP", 0)

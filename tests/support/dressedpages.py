@@ -1,4 +1,4 @@
-"""Fresh pages of the program in the dresses in which people send them, and altered in one character.
+"""Fresh pages of the program in the dresses people send them in, and altered in one character.
 
     python tests/support/dressedpages.py [GENUINE [ALTERED [SEED]]]
 

@@ -8,7 +8,7 @@ of the expected character.
 
 verdicts:
   IDENTICAL                 every number was read, and is what the program prints, and so are the
-                            marks beside them; no other text on the page has a digit or a label
+                            labels and marks; nothing else stands between its first and last line
   IDENTICAL AS FAR AS READ  the program's page explains the paper; doubts are listed
   DIFFERS                   no set of inputs consistent with the page gives
                             all its numbers

@@ -17,12 +17,13 @@ from typing import Any
 import numpy as np
 
 from ...collision.doubles import double
-from ...collision.fields import FIELDS, INPUTS, scene_name
+from ...collision.fields import ANGLES, FIELDS, INPUTS, scene_name
 from ..judging.judgement import Judged
 from ..recovery import slips
+from ..recovery.replays import run_all
 from ..recovery.search import in_doubles
 from ..recovery.slips import Change, Reread, Rereading
-from ..recovery.typedtext import mu_turned
+from ..recovery.typedtext import longer_texts, mu_turned, opposite
 from . import machines
 from .causes import (
     LABEL_WRONG,
@@ -55,6 +56,9 @@ LAST_PLACE_BITS = 8.0
 """Bits added for a result misread by one in its last place, where another arithmetic is likelier;
 and for misread inputs on a page with no larger difference. Doubled, one page has another first."""
 MIN_SLIP_BITS = min(slips.BITS.values())
+MORE_DIGITS = "typed with more digits than are printed"
+MORE_DIGITS_BITS = 12.0
+"""Bits of an input typed with more digits than are printed: as rare as a digit lost."""
 
 
 @np.errstate(all="ignore")  # a cause tried may leave a double's range, and then explains nothing
@@ -70,6 +74,7 @@ def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) ->
         rows = Rows(page)
         causes += [
             *_input_slips(page, rereading.best(single=True)),
+            *_longer_inputs(page),
             *rows.causes(),
             *machines.causes(page),
         ]
@@ -145,6 +150,27 @@ def _input_slips(page: PageEvidence, rereads: Iterable[Reread]) -> Iterator[Caus
             for cause in _slip_causes(page, changes, unexplained, run.outcome.fields):
                 best = min(best, _total_bits(cause))
                 yield cause
+
+
+def _longer_inputs(page: PageEvidence) -> Iterator[Cause]:
+    """Yield inputs typed with digits that are not printed, and that enter the sums."""
+    scene = page.recovered.scene
+    trials: list[tuple[Change, dict[str, str]]] = []
+    for name, printed in page.recovered.assumed.items():
+        is_turned = name == "MUP" and mu_turned(scene["MU"], printed)
+        for text in longer_texts(printed, name in ANGLES):
+            typed = opposite(text) if is_turned else text
+            change = Change(MORE_DIGITS, name, printed, text)
+            trials.append((change, {**scene, scene_name(name): typed}))
+    outcomes = run_all([trial for _, trial in trials])
+    best: dict[str, Cause] = {}
+    for (change, trial), outcome in zip(trials, outcomes, strict=True):
+        unexplained = page.left(trial, outcome)
+        known = best.get(change.field)
+        if unexplained < page.base and (known is None or len(unexplained) < len(known.left)):
+            cause = Cause(MORE_DIGITS, "", MORE_DIGITS_BITS, unexplained, (change,))
+            best[change.field] = cause
+    yield from best.values()
 
 
 def _exchanges_with_slips(page: PageEvidence, rows: Rows, rereading: Rereading) -> Iterator[Cause]:

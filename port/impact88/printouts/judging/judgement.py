@@ -6,15 +6,16 @@ verdict follows from these alone.
 """
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from itertools import groupby
 from typing import Any, NamedTuple
 
 from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES
 from ..reading.fieldlabels import LabelState
 from ..reading.glyphs import Region
-from ..reading.numerals import Doubt, Match, Spot, compare, cut_as, note_start
+from ..reading.numerals import LONGEST, Doubt, Match, Spot, compare, cut_as, note_start
 from ..reading.printout import Piece, Printout, Reading, reading_of
 from ..recovery.recovered import Recovered, reply_candidates, without_mark
 from ..recovery.slips import Rereading
@@ -136,10 +137,24 @@ class FieldCheck:
         ]
 
 
+class Standing(StrEnum):
+    """What a character of the page is: as the program prints it there, a reading of what it prints
+    there, or nothing that it prints."""
+
+    MATCHED = "matched"
+    DOUBTFUL = "doubtful"
+    LEFT_OVER = "left over"
+
+
+Standings = dict[int, Standing]
+"""Standing of characters, by their offset in the text."""
+
+
 @dataclass
 class Judged:
     """A printout compared with the page of the recovered scene: every number, the replies, the
-    ending, and the verdict. ``notes``: text typed beside a number that was read exactly."""
+    ending, and the verdict. ``notes``: text typed beside a number that was read exactly;
+    ``standings``: of every character that the printout accounts for."""
 
     paper: Printout
     recovered: Recovered
@@ -148,6 +163,13 @@ class Judged:
     ending: FieldCheck
     verdict: Verdict
     notes: list[Piece] = field(default_factory=list)
+    standings: Standings = field(default_factory=dict)
+
+    def characters(self) -> dict[str, int]:
+        """Return the numbers of characters by standing; markup is left over."""
+        counts = Counter(self.standings.values())
+        counts[Standing.LEFT_OVER] += self.paper.markup
+        return {standing.name.lower(): counts[standing] for standing in Standing}
 
     @property
     def contradicted(self) -> list[FieldCheck]:
@@ -159,13 +181,18 @@ class Judged:
 def judge(paper: Printout, recovered: Recovered, others: Sequence[FieldCheck] = ()) -> Judged:
     """Compare a printout with the recovered scene's page. ``others``: replies compared
     elsewhere."""
-    replies = [_reply(paper, recovered, name, reading) for name, reading in paper.replies.items()]
-    checks, notes = _fields(paper, recovered)
+    numbers: Standings = {}
+    replies = [
+        _reply(paper, recovered, name, reading, numbers) for name, reading in paper.replies.items()
+    ]
+    checks, notes = _fields(paper, recovered, numbers)
     if all(check.status != Status.CONTRADICTED for check in checks):
         _doubt_damaged_replies(paper, replies)
     ending = _ending(paper, recovered)
+    standings = _account(paper, numbers)
+    notes += _unlisted(paper, standings, {*numbers})
     judgement = Judged(
-        paper, recovered, checks, [*replies, *others], ending, Verdict.IDENTICAL, notes
+        paper, recovered, checks, [*replies, *others], ending, Verdict.IDENTICAL, notes, standings
     )
     judgement.verdict = _verdict(judgement)
     return judgement
@@ -182,20 +209,63 @@ def _verdict(found: Judged) -> Verdict:
     if unread or found.ending.same is None or missing or paper.fragment_of_run or paper.unread:
         return Verdict.INCOMPLETE
     doubtful = any(check.status != Status.READ for check in [*found.fields, *found.replies])
-    extra_text = any(piece.beside for piece in paper.left_over) or bool(
-        found.notes or paper.remarks
-    )
+    extra_text = any(piece.bears for piece in paper.left_over) or bool(found.notes or paper.remarks)
     if doubtful or extra_text or any(label.doubt for label in paper.labels):
         return Verdict.IDENTICAL_AS_READ
     return Verdict.IDENTICAL
 
 
+def _account(paper: Printout, numbers: Standings) -> Standings:
+    """Return the standing of every character that a printout accounts for. ``numbers``: of those in
+    numbers that were compared; in others nothing is what the program prints."""
+    standings: Standings = {}
+    roles, glyphs = paper.roles(), paper.page.glyphs
+    apart = [piece for piece in paper.left_over if piece.whole]
+    outside = {at for piece in apart for at in range(piece.start, piece.stop)}
+    for index in paper.own:
+        offset, role = glyphs[index].offset, roles.get(index)
+        standing = Standing.LEFT_OVER
+        if offset in paper.echoed or (role == "exact" and offset not in outside):
+            standing = Standing.MATCHED
+        elif role == "letter" and offset not in outside:
+            standing = Standing.DOUBTFUL
+        standings[offset] = numbers.get(offset, standing)
+    return standings
+
+
+def _unlisted(paper: Printout, standings: Standings, listed: set[int]) -> Iterator[Piece]:
+    """Yield what is left over in a number's place, such as a reply before the one that counts.
+    ``listed``: offsets of characters that are listed with a number."""
+    listed |= {at for piece in paper.left_over for at in range(piece.start, piece.stop)}
+    loose = [
+        index
+        for index in paper.own
+        if standings[offset := paper.page.glyphs[index].offset] is Standing.LEFT_OVER
+        if offset not in listed
+    ]
+    for _, pairs in groupby(enumerate(loose), lambda pair: pair[1] - pair[0]):
+        run = [index for _, index in pairs]
+        yield _note(paper, paper.page.glyphs[run[0] : run[-1] + 1])
+
+
+def _standings_of(region: Region, spots: Sequence[Spot]) -> Standings:
+    """Return the standing of a number's glyphs, from their differences from the program's text."""
+    standings = {glyph.offset: Standing.MATCHED for glyph in region}
+    for spot in spots:
+        standing = Standing.DOUBTFUL if spot.printed else Standing.LEFT_OVER
+        for glyph in region[spot.at :][: len(spot.read)]:
+            standings[glyph.offset] = standing
+    return standings | {glyph.offset: Standing.LEFT_OVER for glyph in region[LONGEST:]}
+
+
 # --- numbers -------------------------------------------------------------------------------------
 
 
-def _fields(paper: Printout, recovered: Recovered) -> tuple[list[FieldCheck], list[Piece]]:
+def _fields(
+    paper: Printout, recovered: Recovered, standings: Standings
+) -> tuple[list[FieldCheck], list[Piece]]:
     """Return a check of every field that is printed or should be, in the order of the printout; and
-    the notes typed beside numbers that were read."""
+    the notes typed beside numbers that were read. ``standings`` takes those of their glyphs."""
     checks, notes = [], []
     row = _angle_row(paper, recovered)
     for name in FIELDS:
@@ -214,9 +284,11 @@ def _fields(paper: Printout, recovered: Recovered) -> tuple[list[FieldCheck], li
                 number_match = compare(reading.region[:note_at], text)
                 if not number_match.contradicts:
                     notes.append(_note(paper, reading.region[note_at:]))
+                    standings |= {g.offset: Standing.LEFT_OVER for g in reading.region[note_at:]}
                     check.stop = reading.region[note_at - 1].offset + 1
                     reading = replace(reading, region=reading.region[:note_at], stop=check.stop)
             match = compare(reading.region, text, reading.cut, reading.sign_free)
+            standings |= _standings_of(reading.region, match.spots)
             if name in row and name != ANGLES[0] and not reading.region[0].gap:
                 match = match._replace(spots=(Spot(0, "", "", Doubt.BLANK), *match.spots))
             check.status = _status(match, reading.region, text)
@@ -227,8 +299,10 @@ def _fields(paper: Printout, recovered: Recovered) -> tuple[list[FieldCheck], li
                 check.status is Status.CONTRADICTED and not reading.clean
             ):
                 check.printed = _paper_text(paper, reading)
-        elif not recovered.missing:
-            check.status = Status.CONTRADICTED
+        else:
+            if not recovered.missing:
+                check.status = Status.CONTRADICTED
+            standings |= {glyph.offset: Standing.DOUBTFUL for glyph in reading.region}
         checks.append(check)
     return checks, notes
 
@@ -303,21 +377,27 @@ def _doubts(paper: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Do
 # --- replies, and the ending ---------------------------------------------------------------------
 
 
-def _reply(paper: Printout, recovered: Recovered, name: str, reading: Reading) -> FieldCheck:
+def _reply(
+    paper: Printout, recovered: Recovered, name: str, reading: Reading, standings: Standings
+) -> FieldCheck:
     """Compare a reply at a prompt with the scene's velocity, by value; then with its text as typed
-    or as printed, with or without the first glyph, whichever matches best."""
+    or as printed, with or without the first glyph, whichever matches best. ``standings`` takes
+    those of its glyphs."""
     value = recovered.typed.get(name, recovered.scene[name])
+    standings |= {glyph.offset: Standing.DOUBTFUL for glyph in reading.region}
     if name in recovered.missing:
         return _check(name, reading, None)
     check = _check(name, reading, value)
     if reading.clean and same_value(reading.text, value):
         check.status = Status.READ
+        standings |= {glyph.offset: Standing.MATCHED for glyph in reading.region}
         return check
     stored = stored_and_printed(value)
     texts = sorted({value, stored[1]} if stored else {value})
     parts = filter(None, (reading, without_mark(reading)))
     matches = [(part, compare(part.region, text)) for part in parts for text in texts]
     part, match = min(matches, key=lambda pair: pair[1].cost)
+    standings |= _standings_of(part.region, match.spots)
     check.status, how = Status.NOT_READ, Doubt.ILLEGIBLE
     if any(same_value(text, value) for text, _, _ in reply_candidates(reading)):
         check.status, how = Status.DOUBTFUL, Doubt.LOOK_ALIKE

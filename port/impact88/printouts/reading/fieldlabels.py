@@ -36,6 +36,7 @@ class LabelState(StrEnum):
     DAMAGED = "damaged"
     CONTRADICTORY = "contradictory"
     MISSING = "missing"
+    MOVED = "moved"
 
 
 class LabelCheck(NamedTuple):
@@ -48,9 +49,10 @@ class LabelCheck(NamedTuple):
     printed, read : str
         The letters or the mark that the program prints, and what was read.
     state : LabelState
-        EXACT, DAMAGED, CONTRADICTORY or MISSING.
+        EXACT, DAMAGED, CONTRADICTORY, MISSING or MOVED (a mark, to another line).
     doubt : bool
-        True if the letters leave open which number is meant.
+        True if the letters leave open which number is meant, or if they are not the program's on a
+        page that no machine read.
     line, column, start, stop : int
         Its place in the text: line and column from 1, and offsets; for a missing label, its
         number's.

@@ -9,14 +9,14 @@ another mark.
 """
 
 import re
-from collections.abc import Collection, Container, Mapping, Sequence
+from collections.abc import Collection, Container, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
 from ...collision.fields import FIELDS, REPLIES
 from .alignment import FIRST_STARS, LABELS, PROMPTS, RETYPED_ANGLES, ROWS, STARS, STATES
 from .fieldlabels import LabelCheck, LabelState
-from .glyphs import Page, is_look_alike, letters
+from .glyphs import Gap, Page, is_look_alike, letters
 
 _BEHIND = (")", "%")
 """Marks that belong to the number before them; all others belong to the one behind them."""
@@ -55,8 +55,9 @@ def mark_checks(
     states: Mapping[int, int],
     slots: Mapping[str, tuple[int, int]],
     labels: Sequence[LabelCheck],
+    machine_read: bool,
 ) -> list[LabelCheck]:
-    """Return the marks and the words of prompts that were not read as the program prints them.
+    """Return the marks, asterisks and words of prompts that are not as the program prints them.
 
     Parameters
     ----------
@@ -68,6 +69,9 @@ def mark_checks(
     labels : sequence of LabelCheck
         The labels: an equals sign goes unreported where the whole label is missing, and a bracket
         where it counts as a letter of the label.
+    machine_read : bool
+        True for a page of an optical reader, which may take a mark for one that looks like it, lose
+        asterisks, and put a mark on another line.
     """
     without_label = {check.name for check in labels if check.state is LabelState.MISSING}
     reported = {at for check in labels if check.doubt for at in range(check.start, check.stop)}
@@ -82,7 +86,14 @@ def mark_checks(
             continue
         at = [places[state] for state in token.states if state in places]
         read = letters(page.glyphs[index] for index in at)
-        if len(at) == len(text) and all(map(is_look_alike, text, read)):
+        is_apart = at and text in (*_BEHIND, "=") and page.glyphs[at[0]].gap is Gap.LINE
+        if read == text and is_apart and not machine_read:
+            place = page.span(at[0], at[0] + 1)
+            checks.append(
+                LabelCheck(name, text, read, LabelState.MOVED, True, *page.place(place[0]), *place)
+            )
+            continue
+        if read == text or (machine_read and _is_like(text, read)):
             continue
         if name in FIELDS and text in letters(page.glyphs[slots[name][0] - 1 : slots[name][1] + 1]):
             continue  # it was read as part of the number
@@ -97,14 +108,44 @@ def mark_checks(
         end_of_last = token.states.stop
         state = LabelState.DAMAGED if read else LabelState.MISSING
         checks.append(LabelCheck(name, text, read, state, True, *page.place(start), start, stop))
-    if any(STATES[state].name == "=" for state in states.values()):
+    if not machine_read:
+        checks += _broken_asterisks(page, places, slots)
+    signs = {page.glyphs[at].char for at, state in states.items() if STATES[state].name == "="}
+    if "=" in signs:
         return checks
-    return [
+    return [  # retyped in another form, with colons for example
         check._replace(doubt=False)
-        if check.state is LabelState.MISSING and check.name in FIELDS
+        if check.name in FIELDS and (check.state is LabelState.MISSING or check.printed == "=")
         else check
         for check in checks
     ]
+
+
+def _is_like(text: str, read: str) -> bool:
+    return len(read) == len(text) and all(map(is_look_alike, text, read))
+
+
+def _broken_asterisks(
+    page: Page, places: Mapping[int, int], slots: Container[str]
+) -> Iterator[LabelCheck]:
+    """Yield a check of each row of asterisks of which some are not on the page, or another
+    character stands among them."""
+    for row, (field, _) in _STARS.items():
+        own = [at for at, state in enumerate(STATES) if state.line == row and state.name == "*"]
+        at = [places[state] for state in own if state in places]
+        read = letters(page.glyphs[index] for index in at)
+        if field in slots and at and read != "*" * len(own):
+            start, stop = page.span(at[0], at[-1] + 1)
+            yield LabelCheck(
+                field,
+                "*" * len(own),
+                read,
+                LabelState.DAMAGED,
+                True,
+                *page.place(start),
+                start,
+                stop,
+            )
 
 
 def retyping_note(labels: Sequence[LabelCheck]) -> list[str]:

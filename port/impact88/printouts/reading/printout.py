@@ -31,7 +31,7 @@ from .alignment import (
     letter_of,
 )
 from .fieldlabels import MIN_READER_MARKS, LabelCheck, LabelState, label_checks, words_before
-from .glyphs import ILLEGIBLE, Gap, Page, Region, label_cost, letters, plain_glyphs
+from .glyphs import Gap, Page, Region, label_cost, letters, plain_glyphs
 from .labelmarks import asterisk_note, mark_checks, retyping_note
 
 LARGEST_FILE = 2_000_000
@@ -116,9 +116,11 @@ class Piece(NamedTuple):
     line, column, start, stop : int
         Its place: line and column from 1, and offsets.
     beside : bool
-        True if it may bear on a number: it stands beside one, or holds a number or a label.
+        True if it bears on the page: it stands beside a number or a label, or holds a label.
     whole : bool
         True if it is a whole line.
+    within : bool
+        True if it stands between the first and the last line of a printout.
     """
 
     text: str
@@ -128,6 +130,12 @@ class Piece(NamedTuple):
     stop: int
     beside: bool
     whole: bool = False
+    within: bool = False
+
+    @property
+    def bears(self) -> bool:
+        """True if the page with it is not all that the program prints."""
+        return self.beside or self.within
 
 
 @dataclass(repr=False)
@@ -173,6 +181,13 @@ class Printout:
         Letters of labels and asterisks that were read as others.
     misread_prompts : set of str
         The first reply of each prompt whose question mark was read as another character.
+    echoed : set of int
+        Offsets of what the Apple shows in the replies besides their numbers.
+    own : range
+        The glyphs of the text that it accounts for: from its first (those above the first printout
+        are the first's) to the next printout.
+    markup : int
+        Characters of markup that were passed over in the text of which it is the first printout.
 
     Examples
     --------
@@ -201,6 +216,9 @@ class Printout:
     unread: str = ""
     misread_letters: int = 0
     misread_prompts: set[str] = field(default_factory=set)
+    own: range = range(0)
+    markup: int = 0
+    echoed: set[int] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         glyphs, states = self.page.glyphs, self._states
@@ -401,10 +419,19 @@ class Printout:
             for name, own in LABELS
         ]
         self.labels = label_checks(self.page, label_glyphs, read, marks)
-        replies = {name: slot for name, slot in self._slots.items() if name not in FIELDS}
-        self.labels += mark_checks(self.page, self._states, read | replies, self.labels)
         wrong = {label.name for label in self.mislabelled}
         self.misread_letters = self._misread("*ABCDEFGHIJKLMNOPQRSTUVWXYZ", wrong)
+        if not self.machine_read:  # nobody typed another letter by reading it so
+            self.labels = [
+                label._replace(doubt=True)
+                if label.state is LabelState.DAMAGED and label.name in FIELDS
+                else label
+                for label in self.labels
+            ]
+        replies = {name: slot for name, slot in self._slots.items() if name not in FIELDS}
+        self.labels += mark_checks(
+            self.page, self._states, read | replies, self.labels, self.machine_read
+        )
 
     def read_otherwise(self) -> list[str]:
         """Return a note on misread letters of labels that leave no doubt which number is meant.
@@ -499,7 +526,7 @@ class Printout:
             and (not self._letter(stop) or self._line(stop) == line)
         ):
             stop += 1
-        parts = _reply_parts(glyphs[start:stop])
+        parts, echoed = _reply_parts(glyphs[start:stop])
         # a prompt's end whose mark was not read, before what is printed below
         value = numerals.value_of(self.text(names[0]) or "")
         first = letters(parts[0])
@@ -514,11 +541,14 @@ class Printout:
             extra = "".join(map(letters, parts[3:]))
             self._remark("reply", start, " after the third number", extra)
             parts = parts[:3]
-        if len(parts) == len(names):
-            for name, region in zip(names, parts, strict=True):
-                reading = reading_of(self.page, region)
-                if reading is not None and ILLEGIBLE not in reading.text:
+            used = {glyph.offset for part in parts for glyph in part}
+            echoed = {offset for offset in echoed if offset < max(used)}
+        readings = [reading_of(self.page, region) for region in parts]
+        if len(parts) == len(names) and all(readings):
+            for name, reading in zip(names, readings, strict=True):
+                if reading is not None:
                     self.replies[name] = reading
+            self.echoed |= echoed
         elif parts != [()]:
             self._remark("reply", start, " is not three numbers", self.page.shown(start, stop))
 
@@ -557,21 +587,32 @@ def reading_of(page: Page, region: Region, sign_free: bool = False) -> Reading |
     return Reading(text, *page.place(begin), begin, end, region, cut, sign_free)
 
 
-def _reply_parts(region: Region) -> list[Region]:
-    """Return the glyphs of a reply, divided at its commas and where INPUT asked for more.
-
-    Numbers that INPUT refused before it, or ignored behind it, are left out.
+def _reply_parts(region: Region) -> tuple[list[Region], set[int]]:
+    """Return the glyphs of a reply, divided at its commas and where INPUT asked for more; and the
+    offsets of what the Apple shows besides: the commas, question marks, and its answers to numbers
+    that INPUT refused before it, or ignored behind it.
     """
-    match = re.search(r"(?:.*REENTER)?\?*(.*?)(?:\?EXTRAIGNORED|PR#|$)", letters(region))
-    region = region[slice(*match.span(1))] if match else ()
+    text = letters(region)
+    match = re.search(r"(?:(.*)\?REENTER)?\?*(.*?)(?:\?EXTRAIGNORED|PR#|$)", text)
+    if match is None:
+        return [()], set()
+    refused = (match[1] or "").rpartition("?")[2].split(",")
+    is_echo = match[1] is None or not all(map(numerals.is_number, refused))
+    echoed = {glyph.offset for glyph in region[: match.start(2)] if is_echo}
+    if "?EXTRAIGNORED" in text[match.end(2) :]:
+        echoed |= {glyph.offset for glyph in region[match.end(2) :][: len("?EXTRAIGNORED")]}
+    region = region[slice(*match.span(2))]
     parts: list[Region] = [()]
     for place, glyph in enumerate(region):
         is_next = glyph.gap is Gap.LINE and letters(region[place : place + 2]) == "??"
+        is_mark = glyph.char == "?" and place and region[place - 1].char == "?"
         if glyph.char in ",;" or is_next:
             parts.append(())
-        elif not (glyph.char == "?" and place and region[place - 1].char == "?"):
+        elif not is_mark:
             parts[-1] += (glyph,)
-    return parts
+        if glyph.char == "," or is_next or is_mark:
+            echoed.add(glyph.offset)
+    return parts, echoed
 
 
 @explains_arguments
@@ -612,7 +653,34 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
         expected = "expected text with labels such as MA= ... MB= ... VAX= ... VAY= ..."
         raise UserError(f"no printout of the program in it; {columns[0][1] or expected}", where)
     found[0].notes += [*_left_out_note(text, stripped), *_markup_note(text, stripped)]
+    found[0].markup = _count_shown(text) - _count_shown(stripped)
+    for printout in found:
+        printout.left_over += _markup_pieces(printout, text, stripped)
     return found
+
+
+def _markup_pieces(printout: Printout, text: str, stripped: str) -> list[Piece]:
+    """Return the markup between the lines of a printout that is not on most of them: a character
+    typed there, rather than the form of the text."""
+    last, _ = printout.page.place(printout.stop - 1)
+    lines = zip(text.split("\n"), stripped.split("\n"), strict=False)
+    pieces, count, start = list[Piece](), 0, 0
+    for number, (line, stripped_line) in enumerate(lines, 1):
+        if printout.line <= number <= last and line.strip():
+            count += 1
+            runs = [at for at, char in enumerate(line) if stripped_line[at : at + 1] != char]
+            places = range(printout.start - start, printout.stop - start)
+            runs = [at for at in runs if at in places and not line[at].isspace()]
+            if runs:
+                span = runs[0], runs[-1] + 1
+                place = (span[0] + 1, start + span[0], start + span[1])
+                pieces.append(Piece(line[slice(*span)], number, *place, False, within=True))
+        start += len(line) + 1
+    return pieces if 2 * len(pieces) < count else []
+
+
+def _count_shown(text: str) -> int:
+    return sum(len(plain_glyphs(char)) for char in text if not char.isspace())
 
 
 def _read_column(text: str) -> tuple[list[Printout], str]:
@@ -630,7 +698,9 @@ def _read_column(text: str) -> tuple[list[Printout], str]:
         return [], reason
     printouts[-1].unread = reason
     _keep_left_over(page, printouts)
+    commands = _slot_commands(page)
     for printout in printouts:
+        printout.echoed |= {page.glyphs[at].offset for at in commands.intersection(printout.own)}
         printout.check_labels()
         printout.notes += _character_notes(page.text[printout.start : printout.stop])
         printout.notes += printout.read_otherwise()
@@ -649,10 +719,16 @@ _ENDING = re.compile(r"\??(" + "|".join(map("'?".join, _ENDINGS)) + ")")
 _IN_LINE = re.compile("[I1L|!]N([0-9OQIL|!]{1,5})")
 
 
+def _slot_commands(page: Page) -> set[int]:
+    """Return the glyphs of line 610's commands, printed where no DOS takes them."""
+    matches = _SLOT_COMMAND.finditer(letters(page.glyphs))
+    return {at for match in matches for at in range(*match.span())}
+
+
 def _printouts(page: Page, budget: Budget) -> Iterator[Printout]:
     """Yield the printouts of a page; a message that ended a run ends its printout."""
     text = letters(page.glyphs)
-    commands = {at for match in _SLOT_COMMAND.finditer(text) for at in range(*match.span())}
+    commands = _slot_commands(page)
     start = 0
     for message in [*_ENDING.finditer(text.translate(_ALIKE)), None]:
         stop = message.start() if message else len(text)
@@ -691,17 +767,22 @@ def _note_glyphs(page: Page, start: int, stop: int, found: Sequence[Mapping[int,
     return notes
 
 
+_NAMED_NUMBER = re.compile(r"[A-Za-z] ?= ?[-+.]?[0-9]")
 _LABEL_WORDS = {*re.findall("[A-Z]{2,}", re.sub("{.*?}", "", " ".join(LINES[PROMPTS:])))}
 
 
 def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
-    """Add text that belongs to no printout to ``left_over`` of the one above it, or of the first.
+    """Add text that belongs to no printout to ``left_over`` of the one above it, or of the first,
+    and set the glyphs that each accounts for.
 
     A line belongs to a page if a number stands on it, half of its glyphs are letters as printed, or
-    it is a row of asterisks; of such lines the rest is left over, of others all. Text beside a
-    number may bear on the page, and so may a word beside labels, and another line that holds a
-    number or a label.
+    it is a row of asterisks; of such lines the rest is left over, of others all. What stands within
+    a page bears on it; so does outside of it a line that holds a label.
     """
+    starts = [0, *(min(printout._states) for printout in found[1:]), len(page.glyphs)]
+    for printout, start, stop in zip(found, starts, starts[1:], strict=False):
+        printout.own = range(start, stop)
+    spans = [(printout.line, page.place(printout.stop - 1)[0]) for printout in found]
     roles = {index: role for printout in found for index, role in printout.roles().items()}
     for line in page.lines:
         kinds = [roles.get(index) for index in line]
@@ -716,15 +797,18 @@ def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
             if not _SLOT_COMMAND.fullmatch(letters(page.glyphs[start:stop])):
                 text, span = page.shown(start, stop), page.span(start, stop)
                 number, column = page.place(span[0])
-                figure = not stars and any(map(str.isdigit, text))
                 words = re.split(r"[^A-Za-z]+", text) if is_whole else ()
                 label_words = {
                     word.upper() if len(word) > 2 else word for word in words
                 } & _LABEL_WORDS
                 is_word = not (is_whole or stars) and re.search("[A-Za-z]{2}", text)
-                is_beside = has_number or figure or bool(label_words or is_word)
-                above = [printout for printout in found if printout.line <= number] or found[:1]
-                above[-1].left_over.append(Piece(text, number, column, *span, is_beside, is_whole))
+                is_named = is_whole and _NAMED_NUMBER.search(text)
+                is_beside = has_number or bool(label_words or is_word or is_named)
+                is_within = any(first <= number <= last for first, last in spans)
+                owner = next(printout for printout in found if start in printout.own)
+                owner.left_over.append(
+                    Piece(text, number, column, *span, is_beside, is_whole, is_within)
+                )
 
 
 def _character_notes(text: str) -> list[str]:

@@ -63,6 +63,20 @@ def texts_that_print(printed: str, angle: bool = False) -> tuple[str, ...]:
     return tuple(texts.values())
 
 
+def longer_texts(printed: str, angle: bool = False) -> list[str]:
+    """Return texts of more digits than Applesoft prints that print as ``printed`` and are stored as
+    other numbers: -10.00000001 for -10."""
+    value, own = value_of(printed), stored_and_printed(printed, angle)
+    if not value or own is None:
+        return []
+    texts: dict[bytes, str] = {}
+    for text in _neighbours(value, printed):
+        seen = stored_and_printed(text, angle)
+        if seen is not None and seen[1] == printed and seen[0] != own[0]:
+            texts.setdefault(seen[0], text)
+    return [*texts.values()]
+
+
 def opposite(text: str) -> str:
     """Return a number with the other sign; it may be written with a plus sign and blanks."""
     size = text.strip()

@@ -177,8 +177,8 @@ def verify(
     Notes
     -----
     The inputs on the page are recovered, the listing is run with them in Applesoft's arithmetic,
-    and every digit and label is compared. Text that is none of the program's is listed, and bars
-    `Verdict.IDENTICAL` where it holds a figure or a label, or stands beside a number.
+    and every digit, label and mark is compared. Text that is none of the program's is listed, and
+    bars `Verdict.IDENTICAL` where it stands between the first and the last line, or holds a label.
 
     Examples
     --------
@@ -270,8 +270,8 @@ def _result(found: Judged) -> Verification:
         missing=found.recovered.missing, guessed=guessed_names,
         remarks=[*map(str, paper.remarks), *paper.notes, *filter(None, [paper.unread])],
         left_over=sorted([*paper.left_over, *found.notes], key=attrgetter("start")),
-        labels=paper.labels, start=paper.start, stop=paper.stop,
-        text=paper.page.text if paper.page else "",
+        labels=paper.labels, start=paper.start, stop=paper.stop, text=paper.page.text,
+        characters=found.characters(),
     )  # fmt: skip
 
 

@@ -101,6 +101,10 @@ class Verification:
         Whether that listing converts inputs before it prints them: the scene is as printed.
     text : str
         The text it was read from.
+    characters : dict of str to int
+        Of a text, the numbers of its characters that are ``matched`` (read, and what the program
+        prints), ``doubtful`` (stand where it prints a character, and are not read as that one) and
+        ``left_over`` (nothing that it prints). Their sum is all that stands on the page but blanks.
 
     Examples
     --------
@@ -137,6 +141,7 @@ class Verification:
     copy: dict[str, Any] | None = None
     converted: bool = False
     text: str = field(default="", repr=False)
+    characters: dict[str, int] = field(default_factory=dict)
 
     @property
     def where(self) -> str:
@@ -197,6 +202,8 @@ class Verification:
         described |= {name: _plain(getattr(self, name)) for name in _IN_JSON}
         if self.copy:
             described["listing"] = self.copy
+        if self.characters:
+            described["characters"] = self.characters
         if self.cells:
             described |= {"cells": self.cells, "marks": self.marks}
         return with_schema("verify", described)
@@ -320,7 +327,8 @@ def summary(result: Verification) -> list[str]:
         page_text, program_text = (
             text or "no error" for text in (ending.printed, ending.recomputed)
         )
-        sentences.append(f"ends with {page_text}, recomputed: {program_text}")
+        recomputed = "nothing could be recomputed" if missing else f"recomputed: {program_text}"
+        sentences.append(f"ends with {page_text}, {recomputed}")
     return sentences
 
 
@@ -341,9 +349,10 @@ def counts(fields: Sequence[FieldCheck]) -> str:
 def sections(result: Verification) -> dict[str, list[str]]:
     """Return the headings below the verdict, in order, with their lines, for any form of output. A
     line that begins with blanks belongs to the one above it."""
-    doubtful = _labels(result.labels)
+    doubtful = [*_labels(result.labels), *_label_cells(result.cells)]
+    unread = [check for check in result.replies if check.status is Status.NOT_READ]
     for check in [*result.fields, *result.replies]:
-        if check.status == Status.DOUBTFUL:
+        if check.status is Status.DOUBTFUL or check in unread:
             doubtful += _doubts(check)
             suffix = f" ({check.name}: the program prints {check.recomputed})"
             doubtful += [place + suffix for place in look(check)]
@@ -362,6 +371,19 @@ def sections(result: Verification) -> dict[str, list[str]]:
         NOTES: [*notes, *result.remarks, *_left_over(result.left_over)],
     }
     return {heading: entries for heading, entries in entries_by_heading.items() if entries}
+
+
+def _label_cells(cells: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """Yield a sentence for each cell of a picture's labels that is in doubt."""
+    for cell in cells:
+        if cell["state"] == "doubtful" and not cell["field"]:
+            x, y, _, _ = cell["box"]
+            characters = (cell["runner_up"], cell["predicted"])
+            other, printed = (repr(char) if char.strip() else "a blank" for char in characters)
+            yield (
+                f"page {cell['page']}, {x:.0f} pixels from the left, {y:.0f} from the top: a label "
+                f"shows nearly as much {other} as {printed}"
+            )
 
 
 _MARK_WORDS = {
@@ -440,6 +462,11 @@ def _labels(checks: Sequence[LabelCheck]) -> list[str]:
         *_missing_labels([label for label in labels if label.state is LabelState.MISSING]),
         *_missing_marks([mark for mark in marks if mark.state is LabelState.MISSING]),
         *_other_marks([mark for mark in marks if mark.state is LabelState.DAMAGED]),
+        *(
+            f"line {mark.line}: {_of_number(mark)} stands on another line than its number"
+            for mark in marks
+            if mark.state is LabelState.MOVED
+        ),
     ]
 
 
@@ -519,8 +546,10 @@ def _extent(result: Verification) -> str:
     if replies:
         examined += f", {replies} replies at the prompts"
     remainder = "nothing else stands on the page"
-    if result.left_over:
+    if result.left_over or result.characters.get("left_over"):
         remainder = "what else stands on the page is listed below"
+    elif result.characters.get("doubtful") or any(label.doubt for label in result.labels):
+        remainder = "what is not read as the program prints it is listed below"
     return f"examined: {examined}; {remainder}"
 
 
@@ -577,6 +606,8 @@ def findings(found: Judged) -> Iterator[str]:
     if text.count(",") >= 3 and "." not in text:
         yield "decimal commas throughout: retyped, or made by another program"
     m = scene.scene["M"]
+    if scene.outcome.ending or found.paper.ending or found.paper.fragment_of_run:
+        return  # there are no results of one M or the other
     if scene.m_unknown and not scene.missing:
         yield (
             f"no line of final spins: read as M = {m}; with M = {'6' if m == '4' else '4'} the "
