@@ -1,9 +1,10 @@
-"""Make README's pictures and its table of run times again: python .ci/pictures.py
+"""Make README's pictures, its table of run times and the page of measurements again:
+python .ci/pictures.py
 
 Needs ``pip install -e '.[bench,desk,plot,report,scan,test]'``, Chromium and chromedriver. Each
 picture is what a command of README makes; pages are photographed by a browser without a window.
-The benchmark takes some ten seconds, and wants a machine that does nothing else; ``--no-bench``
-leaves it out.
+The benchmark takes a minute, and wants a machine that does nothing else; ``--no-bench`` leaves it
+out, ``--no-pictures`` all else.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import re
 import shutil
 import subprocess
 import sys
+from datetime import UTC, datetime
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -26,6 +28,7 @@ PAGE_SIZE = (1000, 1300)
 DESK_SIZE = (1280, 1000)
 SCAN = "clean-001.png"
 README = ROOT / "README.md"
+MEASUREMENTS = ROOT / "port" / "docs" / "measurements.md"
 TABLE_START = "<!-- run times: .ci/pictures.py -->"
 TABLE_END = "<!-- end of run times -->"
 METHODS = {
@@ -104,24 +107,96 @@ def write_table(record: dict[str, Any]) -> None:
     README.write_text(before + table + after, encoding="utf-8")
 
 
+def write_measurements(record: dict[str, Any], sizes: dict[str, Any]) -> None:
+    """Write the page of measurements: every method, every result by itself, growth with the
+    scenes."""
+    machine = record["machine"]
+    lines = [
+        "# Measurements",
+        "",
+        f"Made by `python .ci/pictures.py` on {datetime.now(UTC):%Y-%m-%d}: one run of `impact88 "
+        f"bench --quick --components` and one of `--sizes` on {machine['processor']}, "
+        f"{machine['instructions']}, {machine['cores']} cores, Python {machine['python']}, numpy "
+        f"{machine['numpy']}, load {machine['load']:.1f}. Times are of the processor; on a busy "
+        "machine they are longer, and ratios hold.",
+        "",
+        "## Run time against error",
+        "",
+        "Relative error of the final velocities against 50 digits.",
+        "",
+        "| scenes | method | scenes per second | median error | largest error |",
+        "|---|---|---|---|---|",
+    ]
+    for row in record["results"]:
+        speed = float(f"{row['scenes_per_second']:.2g}")
+        errors = (
+            f"{row['median']:.1e} | {row['largest']:.1e}" if "median" in row else "| the reference"
+        )
+        lines.append(f"| {row['population']} | {row['name']} | {speed:,.0f} | {errors} |")
+    lines += [
+        "",
+        "## Each result by itself",
+        "",
+        "The ten results whose largest error is most times what rounding the numbers of the scene "
+        "does to it.",
+        "",
+        "| scenes | result | largest relative error | over rounding |",
+        "|---|---|---|---|",
+    ]
+    worst = sorted(record["components"], key=lambda row: row["over_rounding"] or 0, reverse=True)
+    lines += [
+        f"| {row['population']} | {row['result']} | {row['largest']:.1e} "
+        f"| {row['over_rounding']:.1f} |"
+        for row in worst[:10]
+    ]
+    lines += [
+        "",
+        "## Growth with the scenes",
+        "",
+        "Nanoseconds a scene of `solve` for the six velocities, of the same with `out=`, and of "
+        "moving as many numbers alone.",
+        "",
+        "| scenes | `solve` | with `out=` | memory alone |",
+        "|---|---|---|---|",
+    ]
+    for row in sizes["sizes"]:
+        times = (row["nanoseconds"], row["nanoseconds_out"], row["memory"])
+        numbers = " | ".join(f"{float(f'{time:.2g}'):,.0f}" for time in times)
+        lines.append(f"| {row['scenes']:,} | {numbers} |")
+    MEASUREMENTS.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def make_pictures(folder: Path) -> None:
+    """Make README's pictures, but that of the benchmark."""
+    scene = scene_file(folder)
+    run("figure", "scene", scene, "-o", str(PICTURES / "scene.svg"), folder=folder)
+    run("report", scene, "-o", "case.html", folder=folder)
+    photograph((folder / "case.html").as_uri(), PICTURES / "report.png")
+    shutil.copy(ROOT / "golden" / "scans" / SCAN, folder)
+    run("verify", "--brief", "--report", "page.html", SCAN, folder=folder)
+    photograph((folder / "page.html").as_uri(), PICTURES / "verify.png")
+    photograph_desk(PICTURES / "desk.png")
+
+
+def measure(folder: Path) -> None:
+    """Run the benchmark for its picture, README's table and the page of measurements."""
+    figure, record, sizes = PICTURES / "work-precision.svg", folder / "b.json", folder / "s.json"
+    asked = ("bench", "--quick", "--components", "--figure", str(figure))
+    run(*asked, "--json", "-o", str(record), folder=folder)
+    run("bench", "--quick", "--sizes", "--json", "-o", str(sizes), folder=folder)
+    measured = json.loads(record.read_text(encoding="utf-8"))
+    write_table(measured)
+    write_measurements(measured, json.loads(sizes.read_text(encoding="utf-8")))
+
+
 def main() -> None:
-    """Make all pictures."""
+    """Make all of it again."""
     PICTURES.mkdir(parents=True, exist_ok=True)
     with TemporaryDirectory() as name:
-        folder = Path(name)
-        scene = scene_file(folder)
-        run("figure", "scene", scene, "-o", str(PICTURES / "scene.svg"), folder=folder)
-        run("report", scene, "-o", "case.html", folder=folder)
-        photograph((folder / "case.html").as_uri(), PICTURES / "report.png")
-        shutil.copy(ROOT / "golden" / "scans" / SCAN, folder)
-        run("verify", "--brief", "--report", "page.html", SCAN, folder=folder)
-        photograph((folder / "page.html").as_uri(), PICTURES / "verify.png")
-        photograph_desk(PICTURES / "desk.png")
+        if "--no-pictures" not in sys.argv:
+            make_pictures(Path(name))
         if "--no-bench" not in sys.argv:
-            figure = str(PICTURES / "work-precision.svg")
-            record = folder / "bench.json"
-            run("bench", "--quick", "--figure", figure, "--json", "-o", str(record), folder=folder)
-            write_table(json.loads(record.read_text(encoding="utf-8")))
+            measure(Path(name))
 
 
 if __name__ == "__main__":
