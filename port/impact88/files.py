@@ -32,6 +32,51 @@ _BYTE_ORDER_MARKS = (
 )
 
 
+_PICTURES = "; pictures are read as PNG, JPEG, TIFF or PDF: save it as one of these"
+CONTENTS = (
+    (0, b"\x89PNG", "a PNG picture", ""),
+    (0, b"\xff\xd8\xff", "a JPEG picture", ""),
+    (0, b"II*\0", "a TIFF picture", ""),
+    (0, b"MM\0*", "a TIFF picture", ""),
+    (0, b"%PDF-", "a PDF", ""),
+    (0, b"GIF8", "a GIF picture", _PICTURES),
+    (0, b"BM", "a BMP picture", _PICTURES),
+    (0, b"P4\n", "a PBM picture", _PICTURES),
+    (0, b"P5\n", "a PGM picture", _PICTURES),
+    (0, b"P6\n", "a PPM picture", _PICTURES),
+    (8, b"WEBP", "a WebP picture", _PICTURES),
+    (4, b"ftyphei", "a HEIC picture", _PICTURES),
+    (4, b"ftypmif", "a HEIF picture", _PICTURES),
+    (4, b"ftypavif", "an AVIF picture", _PICTURES),
+    (0, b"{\\rtf", "an RTF file", ": save it as plain text, or pandoc -t plain FILE"),
+    (
+        0,
+        b"PK\x03\x04",
+        "a packed file, such as a Word or Excel file",
+        ": save it as plain text or as CSV, or pandoc -t plain FILE",
+    ),
+    (
+        0,
+        b"\xd0\xcf\x11\xe0",
+        "an older Word or Excel file",
+        ": save it as plain text or as CSV, or antiword FILE",
+    ),
+    (0, b"\x1f\x8b", "packed", ": gunzip FILE"),
+    (0, b"PAR1", "a Parquet file", ": its name ends in .parquet"),
+)
+"""Files that are no text, by their content: where and with which bytes each is marked, what it is,
+and what makes text of it."""
+
+
+def check_text(data: bytes, where: str, expected: str = "text") -> None:
+    """Raise UserError, saying what it is, for a file whose first bytes are those of another kind
+    than text."""
+    for place, mark, name, advice in CONTENTS:
+        # two letters alone may begin a text
+        if data.startswith(mark, place) and (len(mark) > 2 or b"\0" in data[:32]):
+            raise UserError(f"is {name}; expected {expected}{advice}", where)
+
+
 def _escape(error: UnicodeError) -> tuple[str, int]:
     """Return \\uXXXX for the characters that cannot be encoded, see `codecs.register_error`."""
     if not isinstance(error, UnicodeEncodeError):
@@ -56,6 +101,7 @@ def encoding_of(start: bytes) -> str:
 def decode(data: bytes, where: str) -> str:
     """Return the text of UTF-8 bytes, or UTF-16 with a byte-order mark; line ends become newlines.
     Raises UserError, naming ``where`` and the byte, if it is neither."""
+    check_text(data, where)
     encoding = encoding_of(data)
     try:
         text = data.decode(encoding)

@@ -7,6 +7,7 @@ import statistics
 import pytest
 
 from impact88.casework.chapter.staged import collisions
+from impact88.collision.case import Case, remark_lines
 from impact88.collision.estimates import CARS
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
@@ -130,3 +131,18 @@ class TestMarks:
         again = ["reconstruct", str(tmp_path / "r.toml"), "--set", "IA=estimate", "--for", "UX,VX"]
         assert main(again) == 0
         assert "impact88: IA = 3745 is estimated" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("units", "mass", "inertia"), [("us", "lb", "lb-ft-s2"), ("metric", "kg", "kg-m2")]
+)
+def test_remarks_are_one_a_line_and_in_the_users_units(units, mass, inertia):
+    weight = "3000 lb" if units == "us" else "1400"
+    values = {**sample(1), "units": units, "MA": weight, "IA": "estimate", "UX": "4000"}
+    values["TA"] = "77"
+    remarks = remark_lines(Case(values).at_nominal().remarks)
+    assert len(remarks) == len(set(remarks)) >= 3
+    assert all("\n" not in remark and len(remark) < 200 for remark in remarks)
+    (estimate,) = [remark for remark in remarks if "is estimated" in remark]
+    assert f" {inertia} is estimated: " in estimate
+    assert f"the mass in {mass}, less " in estimate

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
@@ -15,7 +16,8 @@ from installed import COMMAND, impact88
 from longer import long_but
 
 from impact88.errors import LONGEST_MESSAGE, UserError, one_line, quoted
-from impact88.files import check_apart, read_bytes, replacing
+from impact88.files import check_apart, packaged_text, read_bytes, replacing
+from impact88.interface.commands.cli import main
 from impact88.names import SCENE
 from impact88.program.scene import sample
 
@@ -277,3 +279,42 @@ def test_with_an_unreadable_printout_no_report_is_written(folder: Path) -> None:
     done = impact88("verify", "letter.txt", "--report", "r.html")
     assert done.returncode == 2
     assert names(folder) == {"t.csv", "letter.txt"}
+
+
+@pytest.mark.parametrize(
+    ("start", "name"),
+    [
+        (b"GIF89a", "a GIF picture"),
+        (b"BM\x36\0\0\0", "a BMP picture"),
+        (b"P6\n640 480\n255\n", "a PPM picture"),
+        (b"RIFF\0\0\0\0WEBPVP8 ", "a WebP picture"),
+        (b"\0\0\0\x18ftypheic", "a HEIC picture"),
+    ],
+)
+@pytest.mark.parametrize("command", ["verify", "solve", "run"])
+def test_a_file_is_known_by_its_content(tmp_path, capsys, start, name, command):
+    """Whatever it is called, and however long it is."""
+    path = tmp_path / ("t.csv" if command == "solve" else "t.txt")
+    path.write_bytes(start + bytes(90_000 if command == "run" else 3_000_000))
+    assert main([command, str(path)]) == 2
+    err = capsys.readouterr().err
+    assert f"is {name}; expected" in err
+    assert "PNG, JPEG, TIFF or PDF" in err
+
+
+def test_a_text_that_begins_with_two_letters_of_a_picture_is_a_text(tmp_path, capsys):
+    path = tmp_path / "t.csv"
+    path.write_text("BM,MU\n1,2\n")
+    assert main(["solve", str(path)]) == 2
+    assert "no column E" in capsys.readouterr().err
+
+
+def test_json_holds_nothing_that_turns_a_terminal_round(tmp_path, capsys):
+    path = tmp_path / "t.txt"
+    path.write_text(
+        packaged_text("impact88.legacy", "run1-as-printed.txt") + "note \u202e behind\n"
+    )
+    main(["verify", "--json", str(path)])
+    out = capsys.readouterr().out
+    assert out.replace("\n", "").isprintable()
+    assert "note \u202e behind" in json.loads(out)["left_over"][0]["text"]

@@ -89,7 +89,8 @@ class Case:
     outlines : dict
         LA BA LB BB, in base units.
     remarks : dict
-        By name, how entries were understood, and which values are implausible.
+        By name, how entries were understood, and which values are implausible: one remark a line
+        (`remark_lines`).
 
     Raises
     ------
@@ -175,7 +176,9 @@ class Case:
 
             values, self.estimated, self.outlines = with_estimates(values, source, self.units)
             for name, rule in self.estimated.items():
-                self.remarks[name] = f"{name} = {values[name]} is estimated: {rule}"
+                text = self.display_texts({name: values[name]})[name]
+                amount = f"{text} {self.system.unit(name)}".rstrip()
+                self.remarks[name] = f"{name} = {amount} is estimated: {rule}"
             for name in self.estimated if self.is_single else ():
                 values[name] = nominal(name, values[name], source)
         self.values = _with_headings(_with_contact_point(values, source))
@@ -198,7 +201,7 @@ class Case:
         new_remarks = plausibility.remarks(numbers, self.given, system, self.outlines)
         for name, text in new_remarks.items():
             earlier = self.remarks.get(name)
-            self.remarks[name] = f"{earlier}; {text}" if earlier else text
+            self.remarks[name] = f"{earlier}\n{text}" if earlier else text
 
     def __repr__(self) -> str:
         return f"Case({dict(self.texts)!r}, {self.source!r})"
@@ -321,6 +324,11 @@ class Case:
         options = {"units": self.named_units, "axes": axes, "headings": headings}
         texts = {name: self.given.get(name) or options.get(name) or "" for name in ABOUT}
         return {name: text for name, text in texts.items() if text}
+
+
+def remark_lines(remarks: Mapping[str, str]) -> list[str]:
+    """Return a case's or a scene's remarks, one a line and each once."""
+    return list(dict.fromkeys(line for text in remarks.values() for line in text.split("\n")))
 
 
 def kind_of(name: str, text: str) -> str:

@@ -23,7 +23,7 @@ from typing import Any
 
 from ..errors import UserError
 from .doubles import digits, double
-from .units import INERTIA, MASS, SYMBOLS, SYSTEMS, System, nominal
+from .units import INERTIA, MASS, SYMBOLS, SYSTEMS, System, nominal, size_of
 
 WORD = "estimate"
 """The word in a file for an unknown inertia."""
@@ -65,9 +65,19 @@ def with_estimates(
             )
         else:
             inertia = _inertia_from_weight(mass, name, source, units)
-            rules[name] = f"1.03 W - 1206 for passenger cars, from the weight alone{_bias(6, 29)}"
+            rules[name] = f"{_weight_words(units)}, for passenger cars{_bias(6, 29)}"
         values[name] = digits(float(f"{inertia:.4g}")) + text.removeprefix(WORD)
     return values, rules, outlines
+
+
+def _weight_words(units: str | None) -> str:
+    """Return the rule of the weight alone in a user's units."""
+    system = SYSTEMS[units or "us"]
+    mass, inertia = system.label(MASS), system.label(INERTIA)
+    pounds = float(size_of(mass, MASS)[0] / SYMBOLS["lb"][1])  # type: ignore[index]
+    size = float(size_of(inertia, INERTIA)[0] / SYSTEMS["us"].scale(INERTIA))  # type: ignore[index]
+    slope, offset = _SLOPE * pounds / size, _OFFSET / size
+    return f"{slope:.4g} times the mass in {mass}, less {offset:.4g} {inertia}"
 
 
 def _bias(least: int, most: int) -> str:

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import IO, Any, cast
 
 from ..errors import UserError, printable, quoted
-from ..files import ESCAPED, LONGEST_LINE, Source, encoding_of, replacing
+from ..files import ESCAPED, LONGEST_LINE, Source, check_text, encoding_of, replacing
 from .budget import Budget
 
 _START = 4096
@@ -122,9 +122,10 @@ def open_text(path: str, encoding: str | None = None) -> Iterator[Lines]:
         if path.lower().endswith(".gz"):
             binary = io.BufferedReader(_Unpacked(binary, budget))
         try:
-            start = binary.peek(3)[:3]
+            start = binary.peek(_START)[:_START]
         except (EOFError, zlib.error, OSError) as error:
             raise UserError(f"cannot be unpacked: {error}", source.name) from None
+        check_text(start, source.name, "a table of text")
         name = encoding or encoding_of(start)
         yield Lines(source, binary, "utf-8-sig" if name == "utf-8" else name, budget)
 

@@ -21,6 +21,7 @@ from ...collision.case import (
     check_value,
     in_base_units,
     is_share,
+    remark_lines,
 )
 from ...collision.doubles import double
 from ...collision.scenefile import case_in
@@ -269,13 +270,22 @@ def show_impacts(args: Args, found: Sequence[Impact], units: System) -> None:
 
 def print_json(form: str, found: Mapping[str, Any], indent: int | None = None) -> None:
     """Print an object of a published form on one line; what is not finite is null."""
-    import json
-
     from ...messages.plaintable import plain
     from ...messages.schemas import with_schema
 
     record = with_schema(form, plain(found))
-    print(json.dumps(record, ensure_ascii=False, allow_nan=False, indent=indent), flush=True)
+    print(json_text(record, indent), flush=True)
+
+
+def json_text(record: Mapping[str, Any], indent: int | None = None) -> str:
+    """Return an object as JSON; characters that do not print, which may turn what a terminal shows
+    round, are escaped."""
+    import json
+
+    text = json.dumps(record, ensure_ascii=False, allow_nan=False, indent=indent)
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() or c == "\n" else json.dumps(c)[1:-1] for c in text)
 
 
 def pairs(texts: Sequence[str], option: str, example: str) -> dict[str, str]:
@@ -416,13 +426,13 @@ def read_known(case: Case, allowed: Collection[str]) -> dict[str, Uncertain]:
 
 
 def note_remarks(case: Case | Scene, based: str = "") -> None:
-    """Say on stderr how a case's entries were understood: estimates, middles, units; and in one
-    line with it what is ``based`` on the base units."""
-    lines = list(case.remarks.values())
+    """Say on stderr how a case's entries were understood: estimates, middles, units; and what is
+    ``based`` on the base units."""
+    lines = remark_lines(case.remarks)
     if based and case.units in ("us", "metric"):  # the others are shown in their base units
         from ...collision.units import base_of, system_of
 
-        lines = ["; ".join([f"{based} is in {base_of(system_of(case.units))}", *lines])]
+        lines.insert(0, f"{based} is in {base_of(system_of(case.units))}")
     for line in lines:
         note(None, line)
 

@@ -27,7 +27,6 @@ exit status: 0 every line was answered; 1 some lines could not be used; 2 no usa
 
 import argparse
 import codecs
-import json
 import sys
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -108,7 +107,7 @@ def main(args: options.Args) -> int:
         for line in answers:
             total += 1
             refusals += "error" in line
-            print(json.dumps(line, ensure_ascii=False))
+            print(options.json_text(line))
         sys.stdout.flush()
     if refusals == total:
         empty_message = 'nothing to answer; expected lines such as {"id": 1, "scene": {...}}'

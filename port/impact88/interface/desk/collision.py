@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from ...apple.emulator.screen import shown_character
 from ...collision import uncertain
-from ...collision.case import Case, check_value
+from ...collision.case import Case, check_value, remark_lines
 from ...collision.doubles import double, doubles_of, is_number
 from ...collision.geometry import coordinate_names
 from ...collision.scenefile import template, toml_texts
@@ -97,7 +97,7 @@ def read(values: Mapping[str, str], units: str = "", title: str = "") -> Form:
         except UserError as error:
             problems["MU"] = str(error)
     remarks = scene.remarks if scene else case.remarks
-    return Form(case, scene, ranges, problems, missing, list(remarks.values()))
+    return Form(case, scene, ranges, problems, missing, remark_lines(remarks))
 
 
 def _varies(name: str, text: str) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ...collision import uncertain
-from ...collision.case import Case
+from ...collision.case import Case, remark_lines
 from ...collision.scenefile import known_template
 from ...collision.uncertain import Uncertain
 from ...collision.units import RULES
@@ -62,7 +62,7 @@ def answer(values: dict[str, str], units: str = "", draws: int = DRAWS) -> dict[
             problems[name] = str(error)
     reply: dict[str, Any] = {"problems": problems, "units": units_shown(system)}
     reply |= {"waiting": "", "object": None, "solutions": []}
-    reply["remarks"] = list(case.remarks.values()) if case else []
+    reply["remarks"] = remark_lines(case.remarks) if case else []
     try:
         if problems or case is None:
             raise UserError(f"To be corrected: {' '.join(problems)}.")

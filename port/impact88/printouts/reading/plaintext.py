@@ -8,22 +8,12 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from ...errors import UserError
+from ...files import check_text
 
 _PICTURE = (
     "is a picture, not text, and not a readable PNG, JPEG or TIFF (damaged?); expected an intact "
     "one, or text: tesseract FILE out --psm 6 makes it"
 )
-_NO_TEXT = {
-    b"%PDF": "is a PDF; expected text: pdftotext -layout FILE.pdf makes it, or, of a scan, "
-    "ocrmypdf --sidecar FILE.txt",
-    **dict.fromkeys((b"\x89PNG", b"\xff\xd8\xff", b"II*\0", b"MM\0*", b"GIF8"), _PICTURE),
-    b"PK\x03\x04": "is a Word or other packed file; expected text: save it as plain text, or "
-    "pandoc -t plain FILE",
-    b"\xd0\xcf\x11\xe0": "is a Word file; expected text: save it as plain text, or antiword FILE",
-    b"\x1f\x8b": "is packed; expected text: gunzip FILE",
-}
-"""First bytes of files that are not text, and what makes text of them."""
-
 _MARKS = ("MA=", "MB=", "KE=", "VAX", "UX=", "ENTER", "LOSS", "PA PB", "ZERO DET", "MA ")
 
 
@@ -32,9 +22,7 @@ def decode(data: bytes, where: str) -> str:
 
     Raises UserError for a file that is no text.
     """
-    for start, message in _NO_TEXT.items():
-        if data.startswith(start):
-            raise UserError(message, where)
+    check_text(data, where)
     text = _decode(data)
     odd = sum(char < " " and char not in "\t\n\r\f\a\b\0\x04\x1b" for char in text)
     if odd > 4 + len(text) / 50:

@@ -120,6 +120,7 @@ def _verify_text(
     copy: ListingCopy | None,
 ) -> Iterator[Verification]:
     file_name = files.display_name(path)
+    files.check_text(data, file_name)
     if len(data) > LARGEST_FILE:
         raise UserError(f"is larger than {LARGEST_FILE:,} bytes of text", file_name)
     text = decode(data, file_name)
