@@ -265,17 +265,17 @@ def comparison(printed: Sequence[Collision] | None = None) -> list[Compared]:
             values[f"dV{vehicle}_pred"] = (float(equation_19[name][0]), equation_19[name])
         for column in filter(values.__contains__, COLUMNS_2):
             value, around = values[column]
-            printed = collision.table2[column]
+            cell = collision.table2[column]
             low, high = float(np.min(around)), float(np.max(around))
             # a printed last digit stands for half a unit either way; 1e-9: its own rounding
-            agrees = low - _HALF_DIGIT - 1e-9 <= printed <= high + _HALF_DIGIT + 1e-9
+            agrees = low - _HALF_DIGIT - 1e-9 <= cell <= high + _HALF_DIGIT + 1e-9
             remark = _remark(2, str(collision.number), column)
             why = "" if agrees else remark.evidence if remark else "not explained"
             rows.append(
                 Compared(
                     collision=collision.number,
                     column=column,
-                    printed=printed,
+                    printed=cell,
                     value=value,
                     low=low,
                     high=high,
