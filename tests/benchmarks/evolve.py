@@ -22,7 +22,8 @@ from impact88.mechanics.accuracy.elimination import ORDER
 from impact88.mechanics.accuracy.errorbound import sensitivity
 from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
 from impact88.mechanics.accuracy.reference import two_doubles
-from impact88.mechanics.closedform.solve import quantities, solve
+from impact88.mechanics.closedform.general import quantities
+from impact88.mechanics.closedform.solve import solve
 from impact88.names import SCENE
 
 ANGLES = ("GA", "PA", "PB", "TA", "TB")

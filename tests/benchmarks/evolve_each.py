@@ -21,7 +21,8 @@ from evolve import child
 from impact88.mechanics.accuracy.errorbound import DOUBLE, movements, result_bounds
 from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
 from impact88.mechanics.accuracy.reference import two_doubles
-from impact88.mechanics.closedform.solve import quantities, solve
+from impact88.mechanics.closedform.general import quantities
+from impact88.mechanics.closedform.solve import solve
 from impact88.names import PIVOT, RESULTS, SCENE
 
 NOT_MEASURED = ("STATUS", "COND", "MUP")

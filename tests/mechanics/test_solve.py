@@ -20,8 +20,8 @@ from impact88.mechanics.accuracy.errorbound import scales
 from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
 from impact88.mechanics.accuracy.reference import fifty_digits
 from impact88.mechanics.closedform.columns import examine, part, sources
+from impact88.mechanics.closedform.general import SHARED_TILE
 from impact88.mechanics.closedform.impactprograms import program_for
-from impact88.mechanics.closedform.solve import SHARED_TILE
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 from impact88.status import Status
 
@@ -226,7 +226,6 @@ def test_threads_and_blocks_change_nothing():
 
 
 def test_results_stay_what_they_are_while_anybody_holds_one():
-    """The memory of results is used again, but never under somebody's hands."""
     g = {name: np.resize(v, 20_000) for name, v in mixed_scenes(500).items()}
     others = {**g, "UX": g["UX"] + 1}
     found = solve(g, FINAL_VELOCITIES)
@@ -580,6 +579,20 @@ class TestSkipping:
 
     def test_no_trigonometry_for_a_point_mass_but_of_the_surface(self):
         assert passes_of({**self.general(), "M": 4.0, "GA": 0.0}) < 35
+
+
+def test_nothing_stays_of_results_that_nobody_holds():
+    g = scenes("casework", 2000, 1) | {"MU": np.linspace(0, 1, 2000)}
+    solve(g)
+    tracemalloc.start()
+    try:
+        for count in (2000, 200_000):
+            found = solve({name: np.resize(v, count) for name, v in g.items()}, threads=1)
+            assert tracemalloc.get_traced_memory()[0] > count * 8 * len(NUMBERS)
+            del found
+            assert tracemalloc.get_traced_memory()[0] < 200_000
+    finally:
+        tracemalloc.stop()
 
 
 def test_memory_is_bounded_by_the_results():

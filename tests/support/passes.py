@@ -2,8 +2,7 @@
 
 WEIGHTS = {
     **dict.fromkeys(("RESULT", "RESULT_OR_INFINITE", "BITS"), 0),
-    **dict.fromkeys(("PRODUCT_PLUS", "PRODUCT_MINUS", "MINUS_PRODUCT"), 2),
-    **dict.fromkeys(("PRODUCTS_PLUS", "PRODUCTS_MINUS", "AGAINST", "CHOOSE"), 3),
+    **dict.fromkeys(("AGAINST", "CHOOSE"), 3),
     "SINE_AND_COSINE": 26,
 }
 """Passes over the scenes that numpy makes for an operation, where they are not one."""

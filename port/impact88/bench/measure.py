@@ -19,10 +19,11 @@ from ..mechanics import native
 from ..mechanics.accuracy.errorbound import APPLESOFT, DOUBLE, movements, scales, sensitivity
 from ..mechanics.accuracy.populations import BENCHMARK, POPULATIONS, repeat_scenes, scenes
 from ..mechanics.closedform.plan import Plan
-from ..mechanics.closedform.solve import TILE, solve
+from ..mechanics.closedform.general import TILE
+from ..mechanics.closedform.solve import solve
 from ..mechanics.native.formulas import ExpressionTable
 from ..mechanics.native.processors import processors
-from ..mechanics.native.program import Program, addresses
+from ..mechanics.native.schedule import Schedule
 from ..names import FINAL_VELOCITIES, PIVOT, SCENE
 from ..version import __version__
 from . import plainc
@@ -62,18 +63,14 @@ def machine() -> Row:
 
 def mover(columns: Mapping[str, Any], results: Mapping[str, Any]) -> Callable[[], object]:
     """Work that reads ``columns`` and writes ``results``, their sum in place of the mechanics: a
-    loop in plain C, or, where no compiler is, strip by strip as the compiled machine or numpy
-    does."""
+    loop in plain C, or, where no compiler is, as numpy does it."""
     if plainc.available():
         return partial(plainc.move, plainc.prepare(columns), results)
-    count = len(next(iter(results.values())))
     table = ExpressionTable()
     first, *columns_left = (table.column(name, varies=True) for name in columns)
-    program = Program(dict.fromkeys(results, sum(columns_left, first)), ["RESULT"] * len(results))
+    program = Schedule(dict.fromkeys(results, sum(columns_left, first)), ["RESULT"] * len(results))
     read = [columns[name] for name in program.columns]
-    if native.library is None:
-        return partial(Plan(program).run, read, results, {}, TILE)
-    return lambda: program.run(addresses(read), addresses(results.values()), count)
+    return partial(Plan(program).run, read, results, {}, TILE)
 
 
 def memory_roof() -> float:

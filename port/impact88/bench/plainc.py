@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mechanics.accuracy.elimination import ORDER
-from ..mechanics.native.program import addresses
 from ..names import SCENE
 
 Floats = NDArray[np.float64]
@@ -78,7 +77,7 @@ def available() -> bool:
 
 
 def _call(function: Any, read: Sequence[Floats], results: Iterable[Floats]) -> None:
-    into, out = addresses(read), addresses(results)
+    into, out = (np.array([x.ctypes.data for x in arrays]) for arrays in (read, results))
     function(into.ctypes.data, out.ctypes.data, len(read[0]))
 
 

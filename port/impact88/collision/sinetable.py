@@ -59,7 +59,7 @@ def sine_and_cosine(
     """Return sine and cosine of a finite angle in degrees, at most 2**40.
 
     For arrays, ``table`` is `turn` as an array and ``whole`` converts an array to integers. The
-    order of operations is that of ``native/machine.c``, so that the bits agree."""
+    order of operations is that of ``native/impacts.h``, so that the bits agree."""
     table = turn() if table is None else table
     s0, s1, s2, c1, c2 = POLYNOMIALS
     steps = angle * (1 / STEP) + INTEGER_IN_LOW_BITS - INTEGER_IN_LOW_BITS

@@ -29,7 +29,8 @@ from ..errors import UserError
 from ..names import FINAL_STATE, PIVOT, SCENE, VELOCITIES
 from ..status import IMPOSSIBLE, Status
 from .closedform.columns import UNUSED_BY_POINTS
-from .closedform.solve import quantities, solve
+from .closedform.general import quantities
+from .closedform.solve import solve
 from .closedform.statusbits import bits, findings, forward_friction
 from .state import CHANGES, CONTACT, COURSES, FORCES, SPEEDS, State
 from .uses import inputs_of

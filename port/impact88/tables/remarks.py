@@ -23,7 +23,6 @@ from ..collision.plausibility import (
     sideways_words,
 )
 from ..collision.units import System
-from ..mechanics.closedform.columns import limits_of
 
 Floats = NDArray[np.float64]
 Where = NDArray[np.bool_]
@@ -76,7 +75,7 @@ def remarks(
     names = [name for name in flat if name in ("M", "EM")]
     if not system.is_bare:
         names += [name for name in flat if rule_of_name(name) in MEASURES or name in _SIZED]
-    limits = dict(zip(names, limits_of([flat[name] for name in names]), strict=True))
+    limits = {name: (float(flat[name].min()), float(flat[name].max())) for name in names}
     table = _Table(flat, limits, system, cells, count)
     sizes = {} if system.is_bare else dict(table.sizes())
     return {**sizes, **dict(table.sideways(every)), **dict(table.one_spin())}

@@ -17,7 +17,7 @@ from impact88.collision import uncertain
 from impact88.collision.uncertain import Uncertain, fixed_value, read
 from impact88.errors import UserError
 from impact88.mechanics.accuracy.populations import scenes
-from impact88.mechanics.closedform.solve import quantities
+from impact88.mechanics.closedform.general import quantities
 from impact88.mechanics.outcome import forward_model, reconstruction_model
 from impact88.names import FINAL_VELOCITIES, SCENE, VELOCITIES, quantity
 from impact88.program.scene import sample

@@ -21,7 +21,8 @@ from ...collision.geometry import GEOMETRY, within_doubles
 from ...collision.mappings import within_limits
 from ...collision.uncertain import Uncertain, fixed_value
 from ...errors import UserError
-from ...mechanics.closedform.solve import share_typed, solve
+from ...mechanics.closedform.share import share_typed
+from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import outcome
 from ...mechanics.state import (
     COURSES,

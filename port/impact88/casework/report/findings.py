@@ -224,7 +224,8 @@ def _cell(text: str) -> float | str | None:
 
 
 def _forward(case: Case, source: str, samples: int, seed: int, units: System) -> Findings:
-    from ...mechanics.closedform.solve import share_typed, solve
+    from ...mechanics.closedform.share import share_typed
+    from ...mechanics.closedform.solve import solve
     from ..reconstruction.solutiontable import with_derived_values
     from ..uncertainty.ranges import read_inputs
 

@@ -29,7 +29,9 @@ from ...collision.uncertain import (
     random_numbers,
 )
 from ...errors import UserError
-from ...mechanics.closedform.solve import quantities, share_typed, solve
+from ...mechanics.closedform.general import quantities
+from ...mechanics.closedform.share import share_typed
+from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import forward_model, reconstruction_model
 from ...messages.arguments import explains_arguments
 from ...names import FINAL_VELOCITIES, PIVOT, RESULTS, VELOCITIES, check_names, split_names
@@ -274,7 +276,7 @@ class _Box:
     def solve(self, columns: Mapping[str, Array], outputs: Sequence[str]) -> dict[str, Array]:
         """Return the outputs for n sets of inputs, n each (one number where nothing varies)."""
         scenes = self.scenes(columns)
-        if self.forward:  # without the model's divisors there are compiled kernels for it
+        if self.forward:  # without the model's divisors the compiled library does it
             return solve(scenes, outputs)
         return self.model(scenes, outputs, None)[0]
 

@@ -124,7 +124,8 @@ def _forward_solution(case: Case) -> dict[str, str]:
             f"({' '.join(missing)} missing)",
             case.source,
         )
-    from ...mechanics.closedform.solve import share_typed, solve
+    from ...mechanics.closedform.share import share_typed
+    from ...mechanics.closedform.solve import solve
 
     scene = resolve_contact_point({name: item.nominal for name, item in values.items()})
     friction = case.values["MU"]

@@ -19,8 +19,8 @@ from ...collision.units import Convention, convention_named
 from ...errors import UserError, note, quoted
 from ...files import display_name, replacing
 from ...mechanics.closedform.columns import INERTIAS, UNUSED_BY_POINTS, examine, refusals
-from ...mechanics.closedform.share import resolve_share, share_of
-from ...mechanics.closedform.solve import share_typed, solve
+from ...mechanics.closedform.share import resolve_share, share_of, share_typed
+from ...mechanics.closedform.solve import solve
 from ...messages.progress import progress
 from ...names import DEFAULT_M, RESULTS, SCENE, check_names
 from ...status import Status

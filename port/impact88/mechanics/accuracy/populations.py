@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...collision.degrees import sin_cos
-from ..closedform.solve import quantities
+from ..closedform.general import quantities
 
 Floats = NDArray[np.float64]
 Columns = dict[str, Floats]

@@ -5,7 +5,7 @@ whole. Blocks are looked at once: which columns are the same for all their scene
 which numbers cannot be used. The answers choose the program.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,9 +15,6 @@ from ...collision.fields import ANGLES
 from ...collision.mappings import in_base, in_doubles
 from ...errors import UserError
 from ...names import DEFAULT_M, PIVOT, SCENE
-from .. import native
-from ..native.program import addresses
-from .written import LARGE_ANGLE
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
@@ -28,6 +25,9 @@ BODIES = (("MA", "IA", ("UX", "UY"), "WA"), ("MB", "IB", ("VX", "VY"), "WB"))
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
 """Names that a point-mass scene (M = 4) ignores."""
 
+LARGE_ANGLE = 720.0
+"""Angles beyond this, in degrees, are taken modulo 360 (which is exact) before they are added up:
+the sums are then rounded no more coarsely than the angles people give are."""
 Limits = tuple[float, float]
 """Least and largest number."""
 _LARGEST = float(np.finfo(np.float64).max)
@@ -102,7 +102,7 @@ class Block(NamedTuple):
 def examine(values: Mapping[str, Floats]) -> Block:
     """Classify the columns of a block. ``values``: columns of one length, or of length 1. Single
     scenes are examined only where a column's limits do not rule out unusable numbers."""
-    extremes = dict(zip(values, limits_of(list(values.values())), strict=True))
+    extremes = {name: (float(x.min()), float(x.max())) for name, x in values.items()}
     only_points = extremes["M"] == (4.0, 4.0)
     fixed: dict[str, Floats] = {}
     varying: dict[str, Floats] = {}
@@ -143,19 +143,6 @@ def examine(values: Mapping[str, Floats]) -> Block:
     for refusal in refusals(together):
         refused |= refusal.where
     return Block(fixed, varying, kinds_in_order, refused if refused.any() else None)
-
-
-def limits_of(columns: Sequence[Floats]) -> list[Limits]:
-    """Return the least and the largest number of each column; both are NaN where one number is."""
-    if native.library is None:
-        return [(float(column.min()), float(column.max())) for column in columns]
-    order = sorted(range(len(columns)), key=lambda i: -len(columns[i]))
-    starts, limits = addresses(columns[i] for i in order), np.empty((len(order), 2))
-    count = len(columns[order[0]])
-    full_length = sum(len(column) == count for column in columns)
-    find_extremes = native.library.find_extremes
-    find_extremes(starts.ctypes.data, full_length, len(order), count, limits.ctypes.data)
-    return [(least, largest) for least, largest in limits[np.argsort(order)].tolist()]
 
 
 ORDINARY: dict[str, Limits] = {

@@ -51,17 +51,14 @@ quantity is an `Expression`: what nobody asks for is noted and never computed.
 from collections.abc import Mapping, Sequence
 from math import inf, pi
 from sys import float_info
-from typing import Literal
 
 from ...names import PIVOT
 from ...status import Status
 from ..native.formulas import Expression, ExpressionTable
 from .energy import kinetic_energy
 from .statusbits import findings
-from .statusfilter import Impulse, filtered_status
 
 LARGEST, RADIAN = float_info.max, pi / 180
-StatusFrom = Literal["results", "impulse", "estimate"]
 MOST = 2 / 3
 """Fraction of a center's velocity that an impact without rebound takes away. Above it, the velocity
 after is computed from the other body's."""
@@ -74,7 +71,6 @@ def impact(
     point: bool | Expression,
     infinite: bool,
     sign: float | None = None,
-    status_from: StatusFrom = "results",
 ) -> dict[str, Expression]:
     """The results of an impact by name, of the expressions of a scene's columns; beside them ``gn``
     and ``gt``, ``determinant``, which is zero where the equations have no solution, and
@@ -82,8 +78,7 @@ def impact(
 
     ``pivot``: True when MU = -10 throughout, False when nowhere, else the condition where it is.
     ``point``: the same for M = 4. ``infinite``: whether a body may be. ``sign``: what MU is
-    multiplied with instead of the sign rule. ``status_from``: what STATUS is found from; with
-    "impulse" and "estimate" by a filter, which marks scenes `statusfilter.UNDECIDED`.
+    multiplied with instead of the sign rule.
     """
     zero, absolute = table.constant(0.0), table.absolute
 
@@ -449,30 +444,6 @@ def impact(
         del status[Status.FRICTION_ABOVE_CRITICAL], status[Status.FRICTION_WRONG_DIRECTION]
     bits = [condition * float(bit) for bit, condition in status.items()]
     STATUS = sum(bits[1:], bits[0])
-    if status_from != "results":
-        impulse = None
-        if status_from == "impulse":
-            impulse = Impulse(PN, turning, yielding, lost)
-        STATUS = filtered_status(
-            table,
-            pivot,
-            impulse,
-            e=E,
-            em=EM,
-            mu=sliding,
-            da=DA,
-            db=DB,
-            wa=WA,
-            wb=WB,
-            dx=dx,
-            dy=dy,
-            gn=gn,
-            gt=gt,
-            arms=(an, at, bn, bt),
-            inverses=(R, ia, ib),
-            reduced=Ired,
-            initial=KI,
-        )
     return {
         "gn": gn,
         "gt": gt,

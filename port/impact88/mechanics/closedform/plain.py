@@ -1,13 +1,16 @@
 """Short path of `solve` for plain columns: float64 arrays of one shape, and numbers.
 
-Each thread makes one call of the compiled kernels, and hardly anything is done column by column:
+Each thread makes one call of the compiled library, and hardly anything is done column by column:
 `bounds` and root finders make many short calls.
 """
 
+import ctypes
 import math
-import sys
+from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
+from itertools import pairwise
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -15,8 +18,7 @@ from numpy.typing import NDArray
 
 from ...errors import UserError
 from ...names import SCENE
-from ..native.program import Addresses, addresses
-from .kernelcalls import call_of
+from .compiledcalls import Call, CallOfOneScene, free_calls
 
 Array = NDArray[Any]
 
@@ -29,14 +31,36 @@ MAX_CONVERTED = 4096
 longer ones are left to the general path, which converts them tile by tile."""
 MAX_COPIED = 512
 """Scenes up to which copying all columns is cheaper than asking each for its address."""
-MAX_REUSED_BYTES = 1 << 28
-"""Size up to which results are rows of one array, whose memory is used again once no result of it
-is referenced. One array is paged in twice as fast as many, but lives as long as any of its rows.
-Chosen for all results of a million scenes: 70 instead of 250 to 500 ns a scene; a quarter of this
-size is too small for them."""
-MIN_REUSED_BYTES = 1 << 17
-"""Size from which the C library returns freed memory to the system, so that fresh memory has to be
-paged in. Twice or half as much makes no call slower or faster."""
+MAX_TOGETHER = 1 << 20
+"""Bytes up to which the results are rows of one array, which takes less time to make than many but
+lives as long as any of them."""
+
+_in_order = itemgetter(*NAMES)
+
+
+def in_order(columns: Mapping[str, object]) -> tuple[Any, ...]:
+    """Return the scene's values in the table's order; () where names are missing or unknown."""
+    if "M" not in columns:
+        columns = {**columns, "M": 6.0}
+    try:
+        return _in_order(columns) if len(columns) == len(NAMES) else ()
+    except KeyError:
+        return ()
+
+
+def solve_one(values: tuple[Any, ...], wanted: tuple[str, ...]) -> dict[str, Any] | None:
+    """Return the results ``wanted`` of one scene (values as from `in_order`) as numpy's float64,
+    STATUS as uint16; None where the values are not all plain numbers."""
+    if not PLAIN.issuperset(map(type, values)):
+        return None
+    free = free_calls(wanted, CallOfOneScene)
+    call = free.pop() if free else CallOfOneScene(wanted)
+    try:
+        return call.solve(values)
+    except OverflowError:  # a whole number that no double holds
+        return None
+    finally:
+        free.append(call)
 
 
 class _Layout:
@@ -80,31 +104,27 @@ def solve_plain(
     if layout is None:
         return None
     arrays = [values[i] for i in layout.columns]
-    numbers = {i: values[i] for i in layout.numbers}
     shape, count = arrays[0].shape, arrays[0].size
     if count < 2 or not all(array.shape == shape for array in arrays):
         return None
-    inputs = _inputs(layout, arrays, list(numbers.values()))
+    inputs = _inputs(layout, arrays, [values[i] for i in layout.numbers])
     if inputs is None:
         return None
-    _memory, input_addresses = inputs
-    missing = wanted if out is None else [name for name in wanted if name not in out]
-    by_name, result_addresses = allocate_results(missing, shape)
-    if out is not None:
-        check_output_arrays(out, wanted, shape, arrays)
-        by_name = {name: out[name] if name in out else by_name[name] for name in wanted}
-        result_addresses = addresses(by_name.values())
-    with call_of(wanted) as call:
-        call.columns[layout.order] = input_addresses
-        call.steps[:] = layout.steps
-        call.choose_kernels(numbers)
-        call.run(result_addresses, count, threads)
+    _memory, starts = inputs
+    if out is None:
+        by_name, result_starts = allocate_results(wanted, shape)
+    else:
+        by_name, result_starts = results_into(out, wanted, shape, arrays)
+    free = free_calls(wanted)
+    call = free.pop() if free else Call(wanted)
+    call.columns[layout.order] = starts
+    call.steps[:] = layout.steps
+    call.run(result_starts, count, threads)
+    free.append(call)
     return by_name
 
 
-def _inputs(
-    layout: _Layout, arrays: list[Array], numbers: list[float]
-) -> tuple[Array, Addresses] | None:
+def _inputs(layout: _Layout, arrays: list[Array], numbers: list[float]) -> tuple[Array, Any] | None:
     """Return an array to be kept for the length of the call, and the addresses of all values.
 
     Long float64 columns are read where they are, and only the numbers are copied; of few scenes
@@ -114,11 +134,12 @@ def _inputs(
     try:
         if count > MAX_COPIED and all(_is_plain(array) for array in arrays):
             data = np.array(numbers, np.float64)
-            number_addresses = data.ctypes.data + 8 * np.arange(len(numbers))
-            return data, np.concatenate([addresses(arrays), number_addresses])
+            first = address(data)
+            numbers_at = range(first, first + data.nbytes, 8)
+            return data, [*map(address, arrays), *numbers_at]
         if count <= MAX_CONVERTED:
             data = np.concatenate([*arrays, numbers], None, dtype=np.float64, casting="same_kind")
-            return data, data.ctypes.data + count * layout.strides + layout.offsets
+            return data, address(data) + count * layout.strides + layout.offsets
     except (TypeError, OverflowError):  # not numbers
         pass
     return None
@@ -128,49 +149,52 @@ def _is_plain(array: Array) -> bool:
     return array.dtype == np.float64 and array.flags.c_contiguous and array.flags.aligned
 
 
-_reusable: list[Array] = []
-"""The block of results of the last call, or nothing."""
-
-
-def _pop_block(blocks: list[Array]) -> tuple[Array, int]:
-    """Take the last block from a list; return it and its reference count."""
-    block = blocks.pop()
-    return block, sys.getrefcount(block)
-
-
-_UNSHARED = _pop_block([np.empty(0)])[1]
-"""Reference count of a block that no result refers to."""
-
-
-def memory(count: int) -> Array:
-    """Return an uninitialized array of ``count`` float64: that of an earlier call where no result
-    refers to it any more."""
-    block, references = _pop_block(_reusable) if _reusable else (None, 0)
-    if block is None or block.size != count or references > _UNSHARED:
-        block = np.empty(count)
-    if MIN_REUSED_BYTES <= block.nbytes <= MAX_REUSED_BYTES:
-        _reusable[:] = [block]
-    return block
+def address(array: Any) -> int:
+    """Return an array's address. The buffer of a writable contiguous one gives it in a fourth of
+    the time."""
+    try:
+        return ctypes.addressof(ctypes.c_char.from_buffer(array))
+    except (TypeError, ValueError):  # not writable, not contiguous; empty
+        start: int = array.__array_interface__["data"][0]
+        return start
 
 
 def allocate_results(
     names: Sequence[str], shape: tuple[int, ...]
-) -> tuple[dict[str, Array], Addresses]:
+) -> tuple[dict[str, Array], list[int]]:
     """Return an uninitialized array for each result, and their addresses."""
-    count = math.prod(shape)
-    per_block = max(1, MAX_REUSED_BYTES // max(1, 8 * count))
-    arrays: dict[str, Array] = {}
-    starts = np.empty(len(names), np.int64)
-    for at in range(0, len(names), per_block):
-        group = names[at : at + per_block]
-        block = memory(len(group) * count).reshape(len(group), *shape)
-        rows = block if shape else [block[i, ...] for i in range(len(group))]
-        arrays.update(zip(group, rows, strict=True))
-        starts[at : at + per_block] = block.ctypes.data + 8 * count * np.arange(len(group))
+    size = 8 * math.prod(shape)
+    if not shape or size * len(names) > MAX_TOGETHER or len(names) == 1:
+        arrays = {name: np.empty(shape, _type_of(name)) for name in names}
+        return arrays, [address(array) for array in arrays.values()]
+    block = np.empty((len(names), *shape))
+    first = address(block)
+    arrays = dict(zip(names, block, strict=True))
+    starts = list(range(first, first + size * len(names), size)) if size else [first] * len(names)
     if "STATUS" in arrays:
-        arrays["STATUS"] = np.empty(shape, np.uint16)
-        starts[names.index("STATUS")] = arrays["STATUS"].ctypes.data
+        arrays["STATUS"] = np.empty(shape, _BITS)
+        starts[names.index("STATUS")] = address(arrays["STATUS"])
     return arrays, starts
+
+
+def results_into(
+    out: Mapping[str, Array],
+    wanted: Sequence[str],
+    shape: tuple[int, ...],
+    columns: Sequence[Array],
+) -> tuple[dict[str, Array], list[int]]:
+    """Return the results' arrays, of ``out`` where they are in it, and their addresses. Raises
+    UserError."""
+    given = check_output_arrays(out, wanted, shape, columns)
+    missing = [name for name in wanted if name not in out]
+    arrays, starts = allocate_results(missing, shape) if missing else ({}, [])
+    starts_by_name = {**given, **dict(zip(missing, starts, strict=True))}
+    arrays = {name: out[name] if name in out else arrays[name] for name in wanted}
+    return arrays, [starts_by_name[name] for name in wanted]
+
+
+def _type_of(name: str) -> np.dtype[Any]:
+    return _BITS if name == "STATUS" else _FLOATS
 
 
 def check_output_arrays(
@@ -178,47 +202,53 @@ def check_output_arrays(
     wanted: Sequence[str],
     shape: tuple[int, ...],
     columns: Sequence[Array],
-) -> None:
-    """Raise UserError for arrays that cannot take the results."""
+) -> dict[str, int]:
+    """Return the addresses of arrays for results. Raises UserError for those that cannot take
+    them."""
+    starts: dict[str, int] = {}
     for name, array in out.items():
-        place = f"out, {name}"
         if name not in wanted:
             raise UserError(
-                f"is not among the requested results; expected some of {' '.join(wanted)}", place
+                f"is not among the requested results; expected some of {' '.join(wanted)}",
+                f"out, {name}",
             )
-        dtype = _BITS if name == "STATUS" else _FLOATS
+        dtype = _type_of(name)
         if not isinstance(array, np.ndarray) or array.dtype != dtype or array.shape != shape:
             got = f"{array.dtype} {array.shape}" if isinstance(array, np.ndarray) else type(array)
-            raise UserError(f"is {got}; expected an array of {dtype} {shape}", place)
+            raise UserError(f"is {got}; expected an array of {dtype} {shape}", f"out, {name}")
         flags = array.flags
         if not (flags.c_contiguous and flags.writeable and flags.aligned):
-            raise UserError("is not contiguous, not aligned or not writable", place)
-    _check_apart(out, columns)
+            raise UserError("is not contiguous, not aligned or not writable", f"out, {name}")
+        starts[name] = address(array)
+    _check_apart(out, starts, columns)
+    return starts
 
 
-def _check_apart(out: Mapping[str, Array], columns: Sequence[Array]) -> None:
-    """Raise UserError where a result shares memory with a column or another result: one pass over
-    the address ranges in order. Columns may overlap each other."""
-    ranges = [(*_address_range(array), name) for name, array in out.items()]
-    ranges += [(*_address_range(column), "") for column in columns]
-    results_end, last_result = 0, ""  # the highest address of the results so far, and of which
-    columns_end = 0
-    for start, end, name in sorted(ranges):
-        if start == end:
-            continue
-        if start < results_end or (name and start < columns_end):
-            raise UserError(
-                "shares memory with a column or another result", f"out, {name or last_result}"
-            )
-        if name:
-            results_end, last_result = max((results_end, last_result), (end, name))
-        else:
-            columns_end = max(columns_end, end)
+def _check_apart(
+    out: Mapping[str, Array], starts: Mapping[str, int], columns: Sequence[Array]
+) -> None:
+    """Raise UserError where a result shares memory with a column or another result. Columns may
+    overlap each other."""
+    ranges = sorted((start, start + out[name].nbytes, name) for name, start in starts.items())
+    ends = [end for _, end, _ in ranges]
+    for (_, end, name), (start, _, _) in pairwise(ranges):
+        if start < end:
+            _refuse_shared(name)
+    for column in columns:
+        start, end = _address_range(column)
+        # the first result that ends behind the column's beginning
+        place = bisect_left(ends, start + 1)
+        if start < end and place < len(ranges) and ranges[place][0] < end:
+            _refuse_shared(ranges[place][2])
+
+
+def _refuse_shared(name: str) -> None:
+    raise UserError("shares memory with a column or another result", f"out, {name}")
 
 
 def _address_range(array: Array) -> tuple[int, int]:
     """Return the addresses of an array's first byte and of the one behind its last."""
-    start = array.ctypes.data
+    start = address(array)
     if array.flags.c_contiguous:
         return start, start + array.nbytes
     if not array.size:

@@ -17,26 +17,6 @@ CONDITIONS = ("EQUAL", "LESS", "LESS_OR_EQUAL", "EITHER", "BOTH", "NOT")
 """Operations whose value is a condition, kept as bytes in a working array."""
 
 
-def _product(with_sum: Callable[..., object]) -> Callable[..., None]:
-    """Return the step a * b combined with c by ``with_sum(product, c, out)``."""
-
-    def operation(a: Array, b: Array, c: Array, out: Array, work: Array) -> None:
-        with_sum(np.multiply(a, b, out=work), c, out)
-
-    return operation
-
-
-def _products(with_sum: Callable[..., object]) -> Callable[..., None]:
-    """Return the step a * b combined with c * d by ``with_sum(product, product, out)``."""
-
-    def operation(
-        a: Array, b: Array, c: Array, d: Array, out: Array, work: Array, more: Array
-    ) -> None:
-        with_sum(np.multiply(a, b, out=work), np.multiply(c, d, out=more), out)
-
-    return operation
-
-
 def _against(value: Array, slip: Array, out: Array) -> None:
     positive = slip > 0  # out may be the memory of either operand
     np.copyto(out, value)
@@ -77,11 +57,6 @@ OPERATIONS: dict[str, tuple[Callable[..., object], int]] = {
     "MINIMUM": (_minimum, 0),
     "NOT": (np.logical_not, 0),
     "AGAINST": (_against, 0),
-    "PRODUCT_PLUS": (_product(np.add), 1),
-    "PRODUCT_MINUS": (_product(np.subtract), 1),
-    "MINUS_PRODUCT": (_product(lambda product, c, out: np.subtract(c, product, out)), 1),
-    "PRODUCTS_PLUS": (_products(np.add), 2),
-    "PRODUCTS_MINUS": (_products(np.subtract), 2),
     "CHOOSE": (_choose, 1),
     "SINE_AND_COSINE": (_sine_and_cosine, 0),
     "RESULT": (_result, 0),

@@ -1,6 +1,5 @@
 """`impact88.prepared`: everything that calls of `solve` have in common, done once."""
 
-import ctypes
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -16,11 +15,11 @@ from ...messages.arguments import explains_arguments
 from ...names import RESULTS, SCENE, split_names
 from ...status import Status
 from .. import native
-from . import kernelcalls
+from . import compiledcalls
 from .columns import sources
+from .compiledcalls import PreparedCall
 from .impactprograms import ALL, COLUMNS
-from .kernelcalls import PreparedCall
-from .plain import MIN_REUSED_BYTES, PLAIN, memory
+from .plain import PLAIN, address
 from .share import share_of
 from .solve import solve
 
@@ -157,15 +156,15 @@ class Prepared:
         rows = self._rows_of(values)
         if self._factors is not None:
             rows = rows / self._factors.reshape(-1, *[1] * (rows.ndim - 1))
-        if native.library is None or not kernelcalls.usable():
+        if not compiledcalls.usable():
             return self._solve_by_numpy(rows)
         call = self._call or self._create_call()
         shape = rows.shape[1:]
         results, bits = self._room(shape)
         call.run(
-            _address(rows),
-            _address(results),
-            0 if bits is None else _address(bits),
+            address(rows),
+            address(results),
+            0 if bits is None else address(bits),
             math.prod(shape),
         )
         return self._by_name(results, bits)
@@ -216,7 +215,7 @@ class Prepared:
         return self._read(values)
 
     def _solve_by_numpy(self, rows: Array) -> dict[str, Array]:
-        """Return the results without the compiled kernels."""
+        """Return the results without the compiled library."""
         scene = dict(zip(COLUMNS, self._values.tolist(), strict=True))
         return solve({**scene, **dict(zip(self.names, rows, strict=True))}, self.outputs)
 
@@ -227,10 +226,7 @@ class Prepared:
 
     def _room(self, shape: tuple[int, ...]) -> tuple[Array, Array | None]:
         """Return uninitialized arrays for the float64 results, as rows, and for STATUS."""
-        size = len(self._rows) * math.prod(shape)
-        small = size < MIN_REUSED_BYTES // 8
-        room = (len(self._rows), *shape)
-        results = np.empty(room) if small else memory(size).reshape(room)
+        results = np.empty((len(self._rows), *shape))
         return results, np.empty(shape, np.uint16) if self._has_status else None
 
     def _by_name(self, results: Array, bits: Array | None) -> dict[str, Array]:
@@ -297,15 +293,15 @@ class Bound:
             rows["STATUS"] = bits
         self.results: dict[str, Array] = {name: rows[name] for name in prepared_call.outputs}
         self._at: int | None = None
-        self._machine = native.library if kernelcalls.usable() else None
+        self._machine = native.library if compiledcalls.usable() else None
         count = math.prod(values.shape[1:])
         in_one_call = (
-            count < 2 * kernelcalls.MIN_SCENES_PER_THREAD and prepared_call._factors is None
+            count < 2 * compiledcalls.MIN_SCENES_PER_THREAD and prepared_call._factors is None
         )
         if self._machine is not None and in_one_call:
             call = prepared_call._call or prepared_call._create_call()
-            status = 0 if bits is None else _address(bits)
-            self._block = call.bound(_address(values), _address(results), status, count)
+            status = 0 if bits is None else address(bits)
+            self._block = call.bound(address(values), address(results), status, count)
             self._call = call
             self._at = self._block.ctypes.data
             self._run = self._machine.solve_bound
@@ -318,11 +314,3 @@ class Bound:
             for name, result in self._prepared(self.values).items():
                 self.results[name][...] = result
         return self.results
-
-
-def _address(array: Any) -> int:
-    """Return an array's address. The buffer of a writable one gives it in a fourth of the time."""
-    if array.size and array.flags.writeable:
-        return ctypes.addressof(ctypes.c_char.from_buffer(array))
-    start: int = array.__array_interface__["data"][0]
-    return start

@@ -1,22 +1,24 @@
 """MU as a share of the critical friction: MU = "85 %".
 
 Critical is the friction that just ends the sliding at separation, MUC; the share is of P_t/P_n. MU
-is then the number to be typed at line 280: the listing turns its sign where gt > 0 (line 400). For
-the texts of one scene it is computed without numpy; `closedform.solve.share_typed` does the same
-over arrays.
+is then the number to be typed at line 280: the listing turns its sign where gt > 0 (line 400); see
+`share_typed`.
 """
 
 import math
 import re
 from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ...collision.doubles import double
 from ...errors import UserError
-from ...names import DEFAULT_M, SCENE
-from ..native.formulas import ExpressionTable
-from ..native.schedule import Schedule
-from .impact import impact
-from .written import compile_function
+from ...names import DEFAULT_M, PIVOT, SCENE
+from .general import quantities
+
+Array = NDArray[Any]
 
 _SHARE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+))\s*%\s*")
 
@@ -35,19 +37,19 @@ def resolve_share(texts: Mapping[str, str], source: str) -> tuple[str, str]:
         raise UserError(f"MU = {texts['MU']!r} is not a share; expected one such as 85 %", source)
     numbers = {"M": double(DEFAULT_M)}
     numbers |= {name: double(texts[name]) for name in SCENE if name in texts and name != "MU"}
-    table = ExpressionTable()
-    columns = {name: table.column(name, varies=True) for name in SCENE}
-    quantities = impact(table, columns, pivot=True, point=numbers["M"] == 4, infinite=False)
-    results = {name: quantities[name] for name in ("PN", "MUC", "gt")}
-    values = [numbers.get(name, 0.0) for name in SCENE]
-    try:
-        pn, critical, slip = compile_function(Schedule(results, ["RESULT"] * 3))(*values)
-    except ArithmeticError:
-        pn = critical = slip = math.nan
-    mu = share * critical
-    if not (pn > 0 and math.isfinite(mu)):
+    mu = float(share_typed(numbers, share))
+    if not math.isfinite(mu):
         raise UserError(
             f"MU = {texts['MU']}: no friction ends the sliding here; expected a number", source
         )
-    number = repr((-mu if slip > 0 else mu) + 0.0).removesuffix(".0").upper()
+    number = repr(mu).removesuffix(".0").upper()
     return number, f"MU = {number} is {100 * share:g} % of the critical friction"
+
+
+def share_typed(columns: Mapping[str, Any], share: Any) -> Array:
+    """Return MU as line 280 would take it, for a fraction of each scene's critical friction
+    (MUC); NaN where no friction ends the sliding. ``columns``: without MU."""
+    critical = quantities({**columns, "MU": PIVOT}, ("MUC", "PN", "gt"))
+    with np.errstate(invalid="ignore"):
+        mu = np.where(critical["PN"] > 0, np.asarray(share) * critical["MUC"], np.nan)
+        return np.asarray(np.where(critical["gt"] > 0, -mu, mu) + 0.0)

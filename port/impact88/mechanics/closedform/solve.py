@@ -4,9 +4,8 @@ Same physics as the 1988 listing (Equations 13 to 18, its sign rule of line 400,
 point masses) with exact pi, by the closed form of `closedform.impact`.
 """
 
-import math
 from collections.abc import Mapping, Sequence
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -16,32 +15,18 @@ from ...collision.case import check_mapping
 from ...collision.mappings import in_base, in_doubles
 from ...errors import UserError
 from ...messages.arguments import explains_arguments
-from ...names import PIVOT, RESULTS, split_names
-from ...status import Status
-from .. import native
-from ..native.processors import run_in_threads, workers
-from ..native.program import addresses
-from . import kernelcalls
-from .columns import Source, examine, part, sources
-from .impactprograms import ALL, CIRCLE, program_for
-from .onescene import in_order, solve_one
-from .plain import allocate_results, check_output_arrays, solve_plain
-from .plan import Plan
-from .share import share_of
+from ...names import RESULTS, split_names
+from . import compiledcalls
+from .general import solve_arrays
+from .impactprograms import ALL
+from .plain import in_order, solve_one, solve_plain
+from .share import share_of, share_typed
 
 Array = NDArray[Any]
 
 _CELLS = {str, list, tuple}
 """Types of an MU in which texts such as "85 %" may be."""
 _FLOATS = np.dtype(np.float64)
-TILE = 16384
-"""Scenes per pass of numpy. Two arrays fit the second-level cache and all of them the third, and
-numpy's cost of starting an operation (half a microsecond) is spread over enough scenes.
-Measured: 4096 takes a fifth longer, 8192 and 32768 a few percent."""
-SHARED_TILE = 4 * TILE
-"""Scenes per pass with several threads. Each operation releases and re-acquires the GIL; when
-operations are short the other thread has not woken up by then, and the threads take turns. Measured
-on two cores: 1.6 times as fast as one thread with tiles this long, 1.1 times with `TILE`."""
 
 
 @explains_arguments
@@ -125,53 +110,18 @@ def solve(
     if type(mu) in _CELLS or getattr(mu, "dtype", _FLOATS).kind in "OUS":
         columns = _with_shares_typed(in_base(columns))
     values = in_order(columns)
-    if values and wanted:
+    if values and wanted and compiledcalls.usable():
         results = solve_one(values, wanted) if out is None else None
-        if results is None and kernelcalls.usable():
+        if results is None:
             results = solve_plain(values, wanted, threads, out)
         if results is not None:
             return results
-    arrays = _solve_arrays(columns, wanted, threads, out=out)
+    arrays = solve_arrays(columns, wanted, threads, out=out)
     # one scene gives numbers, not arrays without dimensions
     return {
         name: array[()] if array.ndim == 0 and out is None else array
         for name, array in arrays.items()
     }
-
-
-def _solve_arrays(
-    columns: Mapping[str, object],
-    wanted: tuple[str, ...],
-    threads: int | None,
-    sign: float | None = None,
-    out: Mapping[str, Array] | None = None,
-) -> dict[str, Array]:
-    """Solve columns of any types and shapes; the general path of `solve`. ``sign``: see
-    `quantities`."""
-    inputs, shape = sources(columns)
-    count = math.prod(shape)
-    missing = [name for name in wanted if out is None or name not in out]
-    arrays, _ = allocate_results(missing, shape)
-    if out is not None:
-        input_arrays = [x.base if isinstance(x, np.flatiter) else x for x in inputs.values()]
-        check_output_arrays(out, wanted, shape, input_arrays)
-        arrays |= {name: out[name] for name in wanted if name in out}
-    results: dict[str, Array] = {name: arrays[name].reshape(count) for name in wanted}
-    if not wanted:
-        return {}
-    number = workers(count, threads, SHARED_TILE)
-    tile = TILE if number == 1 else SHARED_TILE
-    run_in_threads(partial(_solve_part, inputs, results, tile, sign), count, number)
-    return {name: arrays[name] for name in wanted}
-
-
-def share_typed(columns: Mapping[str, Any], share: Any) -> Array:
-    """Return MU as line 280 would take it, for a fraction of each scene's critical friction
-    (`closedform.share`); NaN where no friction ends the sliding. ``columns``: without MU."""
-    critical = quantities({**columns, "MU": PIVOT}, ("MUC", "PN", "gt"))
-    with np.errstate(invalid="ignore"):
-        mu = np.where(critical["PN"] > 0, np.asarray(share) * critical["MUC"], np.nan)
-        return np.asarray(np.where(critical["gt"] > 0, -mu, mu) + 0.0)
 
 
 def _with_shares_typed(columns: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -186,17 +136,6 @@ def _with_shares_typed(columns: Mapping[str, Any]) -> Mapping[str, Any]:
     return {**scene, "MU": np.where(is_share, share_typed(scene, shares), plain)}
 
 
-def quantities(
-    columns: Mapping[str, object], names: Sequence[str], sign: float | None = None
-) -> dict[str, Array]:
-    """Return results and other quantities of `closedform.impact`, such as ``gt`` and
-    ``determinant``, by their names there; otherwise as `solve`, on one thread.
-
-    ``sign``: +1 keeps MU's sign in all scenes, -1 changes it; None applies line 400's rule.
-    """
-    return _solve_arrays(columns, tuple(names), 1, sign)
-
-
 @lru_cache(maxsize=256)
 def _check_results(names: tuple[str, ...]) -> tuple[str, ...]:
     """Return the names, each once. Raises UserError for one that is not a result."""
@@ -204,36 +143,3 @@ def _check_results(names: tuple[str, ...]) -> tuple[str, ...]:
         if name not in RESULTS:
             raise UserError(f"{name!r} is not a result name; expected some of {' '.join(RESULTS)}")
     return tuple(dict.fromkeys(names))
-
-
-@np.errstate(all="ignore")
-def _solve_part(
-    inputs: Mapping[str, Source],
-    results: Mapping[str, Array],
-    tile: int,
-    sign: float | None,
-    start: int,
-    stop: int,
-) -> None:
-    """Solve scenes ``start`` to ``stop``, block by block: by the compiled kernels where these are
-    usable, else by a program for the block's kind, compiled or run by numpy."""
-    for at in range(start, stop, 2 * tile):
-        end = min(at + 2 * tile, stop)
-        values = {name: part(source, at, end) for name, source in inputs.items()}
-        targets = {name: array[at:end] for name, array in results.items()}
-        if sign is None and kernelcalls.usable() and RESULTS.keys() >= results.keys():
-            starts = addresses(targets.values())
-            kernelcalls.solve_columns(list(values.values()), tuple(results), starts, end - at)
-            continue
-        block = examine(values)
-        constants = {name: float(column[0]) for name, column in block.fixed.items()}
-        program = program_for(block.kinds, tuple(results), sign)
-        columns = [block.varying[name] for name in program.columns]
-        if native.library is None:
-            Plan(program).run(columns, targets, constants, tile)
-        else:
-            starts = addresses(targets.values())
-            program.run(addresses(columns), starts, end - at, CIRCLE, constants)
-        if block.refused is not None:
-            for name, result in targets.items():
-                result[block.refused] = Status.NOT_FINITE if name == "STATUS" else np.nan

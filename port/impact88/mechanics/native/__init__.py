@@ -1,4 +1,4 @@
-"""The compiled library, where it was built: `machine.c` and its kernels, loaded by ctypes.
+"""The compiled library, where it was built: `machine.c`, loaded by ctypes.
 
 It is optional. Where no compiler was found when the package was installed, or where the environment
 variable IMPACT88_ACCELERATED is 0, `library` is None and numpy computes the same bits.
@@ -32,33 +32,24 @@ def _declare_functions(loaded: ctypes.CDLL) -> ctypes.CDLL:
     """Declare argument and result types of the library's functions and return it. Raises
     AttributeError where one is missing."""
     number, address = ctypes.c_int64, ctypes.c_void_p
-    loaded.find_extremes.argtypes = [address, number, number, number, address]
     loaded.run_program.argtypes, loaded.run_program.restype = [address], None
     loaded.solve_impacts.argtypes, loaded.solve_impacts.restype = [address, number, number], None
-    loaded.solve_prepared.argtypes = [*[address] * 4, number]
-    loaded.solve_prepared_part.argtypes = [*[address] * 4, *[number] * 3]
+    loaded.solve_prepared.argtypes = [*[address] * 4, *[number] * 3]
     loaded.solve_bound.argtypes = [address]
-    for function in (loaded.solve_prepared, loaded.solve_prepared_part, loaded.solve_bound):
-        function.restype = None
-    loaded.kernel_of.argtypes, loaded.kernel_of.restype = [number, ctypes.c_uint64], address
-    loaded.cost_of.argtypes, loaded.cost_of.restype = [number, ctypes.c_uint64], number
-    loaded.formulas.restype = ctypes.c_char_p
+    loaded.solve_prepared.restype = loaded.solve_bound.restype = None
+    loaded.formulas.restype = loaded.results.restype = ctypes.c_char_p
     loaded.read_numbers.argtypes = [ctypes.c_char_p, number, address, address]
     loaded.write_numbers.argtypes = [address, number, address, address]
     loaded.instructions.restype = loaded.operations.restype = ctypes.c_char_p
-    for counts in (loaded.strip, loaded.most_places):
+    for counts in (loaded.replayed_together, loaded.most_places):
         counts.restype = number
     return loaded
 
 
 library: Any = _load()
 """The loaded library, or None. Read it at every call: `switched_off` may change it."""
-STRIP: int = library.strip() if library else 0
-"""Scenes that the compiled code computes at a time."""
-
-
 accelerated: str | None = library.instructions().decode() if library else None
-"""Instruction set that the compiled kernels use; None where numpy computes everything."""
+"""Instruction set that the compiled library uses; None where numpy computes everything."""
 
 
 @contextmanager

@@ -1,12 +1,10 @@
 """Steps that compute expressions, in the order of the formulas, each value in a numbered place.
 
 An expression has an ``operation``, ``operands``, and says whether it ``varies`` from scene to
-scene; a column or constant has a ``value``. Each operation becomes a step, with its rounding. A
-product that only one sum needs is taken together with that sum, each still rounded by itself. The
-same steps are run by the compiled library, by numpy, and as lines of Python.
+scene; a column or constant has a ``value``. Each operation becomes a step, with its rounding.
+numpy runs them (`closedform.plan`), and those of the replay a compiled machine.
 """
 
-from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -67,14 +65,8 @@ class Schedule:
     def _write(self, work: Sequence[Any], kept: Sequence[Any]) -> None:
         """Append the steps for the expressions ``work``. The place of a value is used again after
         its last use, except for the expressions ``kept``."""
-        fused = _fuse_products(work, kept)
-        products_fused = {e for _, products in fused.values() for e in products}
-        steps = {
-            e: _operands(e, fused)
-            for e in work
-            if e not in products_fused and e.operation not in PROJECTIONS
-        }
-        last = {operand: e for e, operands in steps.items() for operand in operands}
+        steps = [e for e in work if e.operation not in PROJECTIONS]
+        last = {operand: e for e in steps for operand in e.operands}
         permanent = set(kept)
         reusable: dict[Any, int] = {}
 
@@ -84,53 +76,18 @@ class Schedule:
                 if mine and value not in permanent:
                     self._free.append(reusable.pop(value))
 
-        for e, operands in steps.items():
-            places = [self._place[operand] for operand in operands]
+        for e in steps:
+            places = [self._place[operand] for operand in e.operands]
             values = [e]
             if e.operation == "sine_and_cosine":
                 values = [e.table.combine(half, e) for half in PROJECTIONS]
             elif e.operation not in _APART:
-                release(operands, e)
+                release(e.operands, e)
             for value in values:
                 place = self._free.pop() if self._free else self.places
                 self.places = max(self.places, place + 1)
                 self._place[value] = reusable[value] = place
                 places.append(place)
-            name = fused[e][0] if e in fused else e.operation.upper()
-            self.steps.append((name, tuple(places)))
+            self.steps.append((e.operation.upper(), tuple(places)))
             if e.operation in _APART:
-                release([*operands, *(v for v in values if v not in last)], e)
-
-
-Fused = dict[Any, tuple[str, tuple[Any, ...]]]
-"""Sums that take products with them: expression -> (operation, products)."""
-
-
-def _operands(e: Any, fused: Fused) -> list[Any]:
-    """Return a step's operands, with the factors of the products that are fused into it."""
-    if e not in fused:
-        return list(e.operands)
-    products = fused[e][1]
-    factors = [factor for product in products for factor in product.operands]
-    return factors + [operand for operand in e.operands if operand not in products]
-
-
-def _fuse_products(work: Sequence[Any], kept: Sequence[Any]) -> Fused:
-    """Return the sums that can take products with them: those of products used nowhere else."""
-    uses = Counter(operand for e in work for operand in e.operands)
-    uses.update(dict.fromkeys(kept, 2))
-    mine = set(work)
-    fused: Fused = {}
-    for e in work:
-        if e.operation not in ("add", "subtract"):
-            continue
-        products = tuple(
-            x for x in e.operands if x.operation == "multiply" and uses[x] == 1 and x in mine
-        )
-        ending = "PLUS" if e.operation == "add" else "MINUS"
-        if len(products) == 2:
-            fused[e] = f"PRODUCTS_{ending}", products
-        elif products:
-            minus = ending == "MINUS" and products[0] is e.operands[1]
-            fused[e] = "MINUS_PRODUCT" if minus else f"PRODUCT_{ending}", products
-    return fused
+                release([*e.operands, *(v for v in values if v not in last)], e)

@@ -59,12 +59,12 @@ static inline const char *read_number(const char *p, double *value, double *time
 
 EXPORT CLONES void read_numbers(const char *p, int64_t count, double *values, uint8_t *odd)
 {
-    double v[STRIP] = {0}, times[STRIP] = {0};
-    int minus[STRIP], wrong[STRIP];
-    int64_t strange[STRIP];
-    const int lanes = STRIP;
-    for (int64_t start = 0; start < count; start += STRIP) {
-        int64_t many = count - start < STRIP ? count - start : STRIP, any;
+    double v[REPLAYED] = {0}, times[REPLAYED] = {0};
+    int minus[REPLAYED], wrong[REPLAYED];
+    int64_t strange[REPLAYED];
+    const int64_t lanes = REPLAYED;
+    for (int64_t start = 0; start < count; start += REPLAYED) {
+        int64_t many = count - start < REPLAYED ? count - start : REPLAYED, any;
         for (int64_t i = 0; i < many; i++) p = read_number(p, v + i, times + i, minus + i, wrong + i);
         EACH strange[i] = 0;
         do {
@@ -128,13 +128,13 @@ static inline void lay_out(const char *digits, int64_t last, int64_t d, int nega
 /* What PRINT writes of each: TEXT_WIDTH characters of four bytes, as numpy keeps text. */
 EXPORT CLONES void write_numbers(const double *x, int64_t count, uint32_t *texts, uint8_t *odd)
 {
-    double v[STRIP], d[STRIP], size[STRIP];
-    int64_t strange[STRIP], last[STRIP];
-    char digits[STRIP][32] = {{0}}, text[STRIP][48];
+    double v[REPLAYED], d[REPLAYED], size[REPLAYED];
+    int64_t strange[REPLAYED], last[REPLAYED];
+    char digits[REPLAYED][32] = {{0}}, text[REPLAYED][48];
     static const char zero[16] = "0";
-    const int lanes = STRIP;
-    for (int64_t start = 0; start < count; start += STRIP, x += STRIP) {
-        int64_t many = count - start < STRIP ? count - start : STRIP, any = 0;
+    const int64_t lanes = REPLAYED;
+    for (int64_t start = 0; start < count; start += REPLAYED, x += REPLAYED) {
+        int64_t many = count - start < REPLAYED ? count - start : REPLAYED, any = 0;
         LOOP size[i] = i < many ? fabs(x[i]) : 0.0, strange[i] = 0;
         EACH {
             ordinary(size[i], strange + i);

@@ -6,7 +6,7 @@ polynomials  LOG EXP ^2 SIN COS
 textcolumns  decimal texts to reals and back
 statements   lines 280-760 and 1000-1170
 realcolumns  the caller's columns as stored reals
-compiled     the statements as a program of the compiled machine
+compiled     the statements as a program of the compiled machine (realmachine)
 blocks       many scenes, sorted into kinds, cut into blocks and computed
 result       the `Replay` that the caller gets
 """

@@ -1,4 +1,4 @@
-"""The replay's statements as a program for the compiled kernel.
+"""The replay's statements as a program for the compiled machine.
 
 `statements.run` is traced: run once on symbolic values that record the operations applied to them.
 Unusual scenes (an error, a magnitude above 2^100 or below 2^-100, a comparison without its carry)
@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from ...mechanics.native.formulas import Expression, ExpressionTable
-from ...mechanics.native.program import Program, addresses
 from ...names import SCENE
 from . import statements
+from .realmachine import Program, addresses
 from .reals import ZERO, Floats, Reals
 from .unit import Bools, Unit
 

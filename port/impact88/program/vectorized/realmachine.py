@@ -1,4 +1,4 @@
-"""Programs for the compiled interpreter (`machine.c`)."""
+"""Programs of the Apple's reals for the compiled machine (`native/replay.h`)."""
 
 from collections.abc import Iterable, Mapping
 from functools import cached_property
@@ -6,14 +6,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import native
-from .schedule import Schedule
+from ...mechanics import native
+from ...mechanics.native.schedule import Schedule
 
 Addresses = NDArray[np.int64]
 
 
 class Program(Schedule):
-    """Steps in the form that the compiled interpreter runs."""
+    """Steps in the form that the compiled machine runs."""
 
     @cached_property
     def code(self) -> NDArray[np.int32]:
@@ -21,21 +21,7 @@ class Program(Schedule):
             raise MemoryError(f"a program of {self.places} values")
         operations = native.library.operations().decode().split()
         steps = [[operations.index(name), *places] for name, places in self.steps]
-        return np.array([[*step, *[0] * (6 - len(step))] for step in steps], np.int32)
-
-    @cached_property
-    def width(self) -> Addresses:
-        """Bytes per number of each column and result."""
-        widths = [2 if ending == "BITS" else 8 for ending in self.endings]
-        return np.array([8] * len(self.columns) + widths, np.int64)
-
-    @property
-    def digest(self) -> int:
-        """Digest of columns, results, constants and steps."""
-        from hashlib import blake2b  # OpenSSL takes 4 ms to load
-
-        text = repr((self.columns, self.results, self.scalars, self.steps)).encode()
-        return int.from_bytes(blake2b(text, digest_size=8).digest())
+        return np.array([[*step, *[0] * (5 - len(step))] for step in steps], np.int32)
 
     @cached_property
     def _free_rooms(self) -> list["Room"]:
@@ -47,18 +33,16 @@ class Program(Schedule):
         columns: Addresses,
         results: Addresses,
         count: int,
-        circle: int = 0,
         fixed: Mapping[str, float] = {},
     ) -> None:
         """Compute ``count`` scenes. ``columns``, ``results``: addresses in the program's order, of
-        float64 (of uint16 for a result that ends in BITS); ``fixed``: values of the columns that do
-        not vary; ``circle``: `closedform.impactprograms.CIRCLE`, or 0 without sines."""
+        float64; ``fixed``: values of the columns that do not vary."""
         room = self._free_rooms.pop() if self._free_rooms else Room(self)
         room.moving[: len(columns)] = columns
         room.moving[len(columns) :] = results
         if fixed:
             room.values[:] = [fixed[x] if isinstance(x, str) else x for x in self.scalars]
-        room.run(count, circle)
+        room.run(count)
         self._free_rooms.append(room)
 
 
@@ -68,15 +52,14 @@ class Room:
     def __init__(self, program: Program) -> None:
         self.moving = np.empty(program.moving, np.int64)
         self.values = np.array([0.0 if isinstance(x, str) else x for x in program.scalars], float)
-        self._block = np.empty(program.places * native.STRIP + 8)
+        self._block = np.empty(program.places * native.library.replayed_together() + 8)
         start = self._block.ctypes.data + -self._block.ctypes.data % 64  # of a cache line
-        self._kept = code, width = program.code, program.width
+        self._code = code = program.code
         call = (
             code.ctypes.data,
             program.once,
             len(code),
             self.moving.ctypes.data,
-            width.ctypes.data,
             len(program.columns),
             program.moving,
             self.values.ctypes.data,
@@ -84,12 +67,12 @@ class Room:
             start,
             program.places,
         )
-        self._call = np.array([*call, 0, 0], np.int64)
+        self._call = np.array([*call, 0], np.int64)
         self._at = self._call.ctypes.data
 
-    def run(self, count: int, circle: int) -> None:
+    def run(self, count: int) -> None:
         """Run the program over ``count`` scenes of what ``moving`` and ``values`` hold."""
-        self._call[-2:] = count, circle
+        self._call[-1] = count
         native.library.run_program(self._at)
 
 
