@@ -18,8 +18,8 @@ import numpy as np
 from ..mechanics import native
 from ..mechanics.accuracy.errorbound import APPLESOFT, DOUBLE, movements, scales, sensitivity
 from ..mechanics.accuracy.populations import BENCHMARK, POPULATIONS, repeat_scenes, scenes
-from ..mechanics.closedform.plan import Plan
 from ..mechanics.closedform.general import TILE
+from ..mechanics.closedform.plan import Plan
 from ..mechanics.closedform.solve import solve
 from ..mechanics.native.formulas import ExpressionTable
 from ..mechanics.native.processors import processors
