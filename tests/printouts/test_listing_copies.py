@@ -267,6 +267,7 @@ def test_pages_of_an_office_are_settled_by_its_copy(name: str, tmp_path: Path) -
     assert verdicts(page.replace(replies[0], replies[0] + "5"), copy) == {Verdict.DIFFERS}
 
 
+@pytest.mark.long
 def test_a_page_of_a_converting_copy_is_told_in_words_first() -> None:
     page = run_as_a_person(*OFFICES["converted in place"])
     (result,) = examine("-", data=page.encode()).results

@@ -781,6 +781,7 @@ def test_the_worst_printout_of_a_page_counts(verdicts, printouts, counted) -> No
     assert scanrates.verdict_of(row) == counted
 
 
+@pytest.mark.long
 def test_a_copy_that_prints_a_scanned_page_is_named(tmp_path) -> None:
     from impact88.files import packaged_text
     from impact88.program.emulated import LISTING, ListingCopy

@@ -292,6 +292,7 @@ def test_a_digit_in_the_first_prompt_is_left_over() -> None:
 # --- what a reader lost or damaged accuses nobody ------------------------------------------------
 
 
+@pytest.mark.long
 @pytest.mark.captures
 def test_a_number_that_was_not_read_is_missing_and_no_other_takes_its_place() -> None:
     """Its label stands alone before the next line: ``EM=`` above ``INITIAL KE=``."""
@@ -336,6 +337,7 @@ def test_what_is_shown_of_a_verdict_is_short() -> None:
     assert found._repr_html_().count("IDENTICAL") == 1
 
 
+@pytest.mark.long
 def test_no_character_of_a_page_reaches_a_terminal_as_a_command() -> None:
     rng = random.Random(4)
     for _ in range(2):

@@ -10,6 +10,7 @@ from itertools import product
 
 import numpy as np
 import pytest
+from longer import long_but
 
 from impact88.casework.chapter.staged import collisions
 from impact88.casework.reconstruction import adjustment
@@ -397,6 +398,7 @@ class TestUncertainty:
             assert drawn.values[name].std() == pytest.approx(deviations[name], rel=0.05)
             assert drawn.values[name].mean() == pytest.approx(solution.values[name], abs=0.1)
 
+    @pytest.mark.long
     @pytest.mark.parametrize("tolerance", [1e-6, 1e-2][: 1 + bool(os.environ.get("IMPACT88_SETS"))])
     def test_draws_are_adjusted_however_tight_the_tolerances(self, tolerance):
         """So near the impact the equations are straight: draws spread as to first order."""
@@ -477,7 +479,7 @@ class TestUncertainty:
         course = math.degrees(math.atan2(after["VBY"], after["VBX"]))
         assert found["HBF"].lower <= course <= found["HBF"].upper
 
-    @pytest.mark.parametrize(("tolerance", "endless"), [(1.0, False), (2.5, True)])
+    @pytest.mark.parametrize(("tolerance", "endless"), long_but([(1.0, False), (2.5, True)]))
     def test_what_is_divided_by_zero_has_no_bound(self, tolerance, endless):
         """B, at rest, leaves with 2 +- 1 along n (P_n is not 0) or 2 +- 2.5 (it may be)."""
         known = {"M": 4.0, "MA": 100.0, "MB": 80.0, **dict.fromkeys(("GA", "UY", "VY"), 0.0)}
