@@ -1,5 +1,6 @@
 """The JSON forms of the commands' --json output: a JSON Schema and a version number for each.
 
+A form is a text file with a line for each field; `forms` makes its JSON Schema of it.
 An added field does not change the number. A field that is removed or renamed, changes its type,
 unit or meaning, or may now be null raises it by one, as does a word added to an enumeration.
 Schema, number and output change in the same commit. More accurate digits are not a change of form.
@@ -44,4 +45,11 @@ def text(name: str) -> str:
         raise UserError(
             f"there is no schema {name}; expected one of {' '.join(NUMBERS)}, or {CONVENTIONS}"
         )
-    return packaged_text(__name__, f"{name}.md" if name == CONVENTIONS else f"{name}.json")
+    if name == CONVENTIONS:
+        return packaged_text(__name__, f"{name}.md")
+    import json
+
+    from .forms import expanded
+
+    schema = expanded(packaged_text(__name__, f"{name}.txt"), f"impact88/{name}/{NUMBERS[name]}")
+    return json.dumps(schema, indent=1, ensure_ascii=False) + "\n"
