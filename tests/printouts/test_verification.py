@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import random
+from collections.abc import Iterator
+from typing import Any
 
 import captures
 import numpy as np
@@ -292,19 +294,34 @@ def test_a_digit_in_the_first_prompt_is_left_over() -> None:
 # --- what a reader lost or damaged accuses nobody ------------------------------------------------
 
 
-@pytest.mark.long
-@pytest.mark.captures
-def test_a_number_that_was_not_read_is_missing_and_no_other_takes_its_place() -> None:
-    """Its label stands alone before the next line: ``EM=`` above ``INITIAL KE=``."""
+def pages_without_a_number(rows: list[Any]) -> Iterator[str]:
+    """Pages of captured runs, EM or any other number of each taken out."""
     rng = random.Random(8)
-    ordinary = [row for row in printouts.normal_ends() if "E+" not in row["printout"]]
+    ordinary = [row for row in rows if "VAX=" in row["printout"] and "E+" not in row["printout"]]
     for row in printouts.sampled(ordinary, 5, seed=8):
         page = printouts.body(row["printout"])
         lost = [place for place in printouts.places(page) if place.name == "EM"]
         lost += rng.sample(printouts.places(page), 1)
         for place in lost:
-            text = page[: place.start].rstrip(" ") + page[place.stop :]
-            assert verified(text).verdict is Verdict.INCOMPLETE, place.name
+            yield page[: place.start].rstrip(" ") + page[place.stop :]
+
+
+@pytest.mark.long
+def test_a_number_that_was_not_read_is_missing_and_no_other_takes_its_place(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Its label stands alone before the next line: ``EM=`` above ``INITIAL KE=``. Of the project's
+    own captures; where results do not depend on an angle, another one may be taken for two."""
+    monkeypatch.delenv("IMPACT88_CAPTURES", raising=False)
+    for text in pages_without_a_number(captures.scenes()):
+        assert verified(text).verdict is Verdict.INCOMPLETE
+
+
+@pytest.mark.long
+@pytest.mark.captures
+def test_a_page_that_lacks_a_number_is_never_read_whole() -> None:
+    for text in pages_without_a_number(captures.scenes()):
+        assert verified(text).verdict is not Verdict.IDENTICAL
 
 
 def test_a_number_that_hardly_depends_on_what_is_missing_is_not_compared() -> None:

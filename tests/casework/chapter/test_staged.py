@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import csv
+import math
+import statistics
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from captures import ROOT
 
+from impact88.casework.chapter.claims import claims
 from impact88.casework.chapter.staged import (
     COLUMNS_1,
     COLUMNS_2,
     cells,
-    claims,
     closure,
     collisions,
     comparison,
@@ -219,8 +221,41 @@ def test_claims_by_hand():
 
 def test_claims_hold_what_they_say():
     found = {claim.claim: claim for claim in claims()}
-    assert len(found) == 6
+    assert len(found) == len(claims())
+    assert all(claim.verdict and (claim.found or claim.varied) for claim in claims())
     em = next(c for c in found.values() if "ΔV not very sensitive to e_m" in c.claim)
     assert max(map(abs, (*em.sides, *em.others))) < 6
-    force = next(c for c in found.values() if "weight" in c.claim)
+    force = next(c for c in found.values() if "average force 5 to 10" in c.claim)
     assert force.sides[0] < 5 < 10 < force.sides[1]
+
+
+@pytest.mark.parametrize(
+    ("words", "verdict", "numbers"),
+    [
+        ("largest e is 0.258", "true", "0.000 to 0.258"),
+        ("consistently near -0.5", "true", "-0.504 to -0.475"),
+        ("side its magnitude is greater", "false of collision 6", "collision 6 has -0.430"),
+        ("in the first six", "true", "0.553 to 0.911"),
+        ("the last five", "true", "-0.069 to 0.049"),
+        ("varies fairly consistently", "between the two groups", "correlation 0.90 over all"),
+    ],
+)
+def test_generalizations_of_section_five(words, verdict, numbers):
+    (claim,) = [claim for claim in claims() if words in claim.claim]
+    assert claim.verdict.startswith(verdict)
+    assert numbers in claim.found
+
+
+def test_friction_and_sliding_by_hand():
+    """The correlation from Table 1's own velocities, turned by Γ, and Table 2's μ."""
+    pairs = []
+    for c in collisions():
+        relative = complex(c.scene["UX"] - c.scene["VX"], c.scene["UY"] - c.scene["VY"])
+        turned = relative * complex(
+            math.cos(math.radians(c.scene["GA"])), -math.sin(math.radians(c.scene["GA"]))
+        )
+        pairs.append((abs(turned.imag), abs(c.table2["mu"])))
+    over_all = statistics.correlation(*zip(*pairs, strict=True))
+    within = statistics.correlation(*zip(*pairs[:6], strict=True))
+    (claim,) = [claim for claim in claims() if "varies fairly consistently" in claim.claim]
+    assert f"{over_all:.2f} over all, {within:.2f} within front to side" in claim.found

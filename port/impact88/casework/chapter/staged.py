@@ -12,7 +12,7 @@ Units: ft, s, slug (Table 1).
 """
 
 import csv
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
@@ -21,10 +21,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...collision.geometry import resolve_contact_point
 from ...files import packaged_text
 from ...mechanics.closedform.solve import solve
-from ...mechanics.outcome import forces
 from ...mechanics.state import State
 from ..reconstruction.unknowns import mu_to_type
 from .deltav import delta_v
@@ -284,120 +282,3 @@ def comparison(printed: Sequence[Collision] | None = None) -> list[Compared]:
                 )
             )
     return rows
-
-
-# -- what the chapter claims of its method
-
-GRAVITY = 32.174
-"""ft/s²."""
-CONTACT_TIMES = (0.1, 0.2)
-"""Seconds, Section III."""
-
-
-@dataclass(frozen=True)
-class Claim:
-    """A claim of the text, what was varied, and the lowest and highest it makes of the
-    front-to-side collisions (``sides``) and the ``others``, in ``unit``."""
-
-    where: str
-    claim: str
-    varied: str
-    sides: tuple[float, float]
-    others: tuple[float, float]
-    unit: str
-    verdict: str
-
-
-def _extent(rule: Callable[[Collision], Array], alike: list[Collision]) -> tuple[float, float]:
-    values = np.concatenate([np.ravel(rule(collision)) for collision in alike])
-    return float(values.min()), float(values.max())
-
-
-@cache
-def claims() -> tuple[Claim, ...]:
-    """Return the chapter's claims, each with the result for the eleven collisions."""
-
-    def solve_changed(c: Collision, changes: Mapping[str, Any]) -> dict[str, Array]:
-        """Solve with Table 2's coefficients and some values changed. Friction keeps the sign of
-        Table 2, whatever the sliding does."""
-        scene = resolve_contact_point({**c.scene, **changes})
-        em = np.asarray(scene.pop("EM", c.coefficients["EM"]))
-        mu = typed_friction(scene, c.coefficients["MUP"])
-        return solve({**scene, "E": c.coefficients["E"], "EM": em, "MU": mu}, ("DVA", "LOSS"))
-
-    def delta_v_change(c: Collision, changes: Mapping[str, Any]) -> Array:
-        """Return the change of ΔV in percent. It is the same for both vehicles, whose ΔV are in the
-        inverse ratio of their masses."""
-        return 100 * (solve_changed(c, changes)["DVA"] / forward(c)["DVA"] - 1)
-
-    def delta_v_turned(c: Collision, degrees: float, *names: str) -> Array:
-        """Return the changes of ΔV, in percent, when each of the angles named is turned either way;
-        a contact point stays where it is on its vehicle."""
-        turns = np.array([-degrees, degrees])
-        return np.concatenate([delta_v_change(c, {n: c.scene[n] + turns}) for n in names])
-
-    def force_over_weight(c: Collision) -> Array:
-        """Return the average contact force over each vehicle's weight."""
-        results = forward(c)
-        average = forces(np.hypot(results["PN"], results["PT"]), np.array(CONTACT_TIMES))["FA"]
-        return np.asarray(average[:, None] / (GRAVITY * np.array([c.scene["MA"], c.scene["MB"]])))
-
-    sides = [c for c in collisions() if "SIDE" in c.category]
-    rest = [c for c in collisions() if "SIDE" not in c.category]
-    around = np.radians(np.arange(0, 360, 5.0))
-    contact = {"CX": np.cos(around), "CY": np.sin(around)}
-    moments = np.linspace(-1, 0, 21)
-    rows: tuple[tuple[str, str, str, Callable[[Collision], Array], str, str], ...] = (
-        (
-            "IV-A",
-            "results not critically sensitive to Γ",
-            "Γ by 10 degrees either way",
-            lambda c: delta_v_turned(c, 10.0, "GA"),
-            "% of ΔV",
-            "false for the side impacts",
-        ),
-        (
-            "IV-A",
-            "nor to the location of point C",
-            "C by 1 ft in any direction",
-            lambda c: delta_v_change(c, contact),
-            "% of ΔV",
-            "true of a foot",
-        ),
-        (
-            "V",
-            "ΔV not very sensitive to e_m",
-            "e_m over its whole range, -1 to 0",
-            lambda c: delta_v_change(c, {"EM": moments}),
-            "% of ΔV",
-            "true",
-        ),
-        (
-            "V",
-            "nor is the energy loss",
-            "e_m over its whole range, -1 to 0",
-            lambda c: solve_changed(c, {"EM": moments})["LOSS"] - forward(c)["LOSS"],
-            "points of loss",
-            "true",
-        ),
-        (
-            "IV-A",
-            "turns during contact below 45 degrees matter little",
-            "one vehicle's heading by 22.5 degrees, half the turn",
-            lambda c: delta_v_turned(c, 22.5, "TA", "TB"),
-            "% of ΔV",
-            "they matter: up to a fifth of ΔV",
-        ),
-        (
-            "III",
-            "average force 5 to 10 times the weight",
-            "contact time .1 to .2 s",
-            force_over_weight,
-            "weights",
-            "the middle of a wider range",
-        ),
-    )
-    return tuple(
-        Claim(where, text, varied, _extent(rule, sides), _extent(rule, rest), unit, verdict)
-        for where, text, varied, rule, unit, verdict in rows
-    )

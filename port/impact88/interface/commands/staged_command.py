@@ -2,7 +2,7 @@
 cell by cell beside its recomputation, the differences explained. Units: ft, s, slug.
 
   --cells     each cell that is not as printed or is doubtful, with the evidence
-  --claims    what the text says of its method, checked on the collisions
+  --claims    every sentence with a number or a comparison, checked
   --table N   table 1 or 2 itself, emended
   --validation  25 crash tests published since, beside what is computed for them
 
@@ -21,7 +21,7 @@ from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any
 
-from ...casework.chapter import staged, validation
+from ...casework.chapter import claims, staged, validation
 from ...messages.plaintable import format_fixed, paragraph, table
 from . import options
 
@@ -53,11 +53,14 @@ def _claims() -> list[str]:
     def extent(values: tuple[float, float]) -> str:
         return f"{values[0] + 0.0:.1f} ... {values[1]:.1f}"
 
-    lines = ["What the chapter says of its method, on the eleven staged collisions", ""]
-    for claim in staged.claims():
+    lines = ["What the chapter says in numbers or comparisons, checked", ""]
+    for claim in claims.claims():
         lines += paragraph(f"Section {claim.where}: {claim.claim}: {claim.verdict}")
-        rows = [[claim.varied, extent(claim.sides), extent(claim.others), claim.unit]]
-        lines += ["", *table(rows, ["  varied", "front to side", "others", ""], left=(0, 3)), ""]
+        lines += paragraph(claim.found, "  ") if claim.found else []
+        if claim.varied:
+            rows = [[claim.varied, extent(claim.sides), extent(claim.others), claim.unit]]
+            lines += ["", *table(rows, ["  varied", "front to side", "others", ""], left=(0, 3))]
+        lines += [""]
     return lines[:-1]
 
 
