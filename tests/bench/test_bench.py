@@ -134,6 +134,7 @@ def test_command(tmp_path, capsys):
     assert main(["bench", "--figure", "f.doc"]) == 2
 
 
+@pytest.mark.long
 def test_quick_is_one_screen(capsys):
     asked = ["bench", "--quick", "--scenes", "5", "--repeats", "1"]
     assert main(asked) == 0

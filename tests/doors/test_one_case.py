@@ -233,7 +233,7 @@ def assert_same(found: Mapping[str, float], expected: Mapping[str, float], door:
             assert found[name] == pytest.approx(value, rel=1e-9, abs=1e-9 * largest), (door, name)
 
 
-@pytest.mark.parametrize("seed", range(FILES))
+@pytest.mark.parametrize("seed", long_but(range(FILES), kept=(0, 1)))
 def test_one_file_has_one_answer(
     seed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -178,6 +178,7 @@ def test_another_m() -> None:
     assert result.scene["M"] == "6"
 
 
+@pytest.mark.long
 @pytest.mark.captures
 def test_another_arithmetic_is_offered_only_where_no_machine_explains_the_page() -> None:
     """All results one in the last place: no machine does that, and none is blamed beside one."""
@@ -229,6 +230,7 @@ def test_an_angle_beyond_a_full_turn_takes_as_much_as_a_digit_more() -> None:
     assert Change("no slip", "PA", "36", "361").bits == 0
 
 
+@pytest.mark.long
 def test_single_slips_are_one_input_put_right_and_pairs_are_two() -> None:
     (shown,) = read_printouts(_printed(sample(1), {"MUP": "-.911", "MA": "148.5"}))
     rereading = Rereading(recover(shown))

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from installed import impact88
+from longer import long_but
 
 from impact88.collision.doubles import double
 from impact88.printouts.reading.printout import read_printouts
@@ -87,6 +88,7 @@ def written(folder: Path, files: dict[str, tuple[str | bytes, str]]) -> list[str
     return paths
 
 
+@pytest.mark.long
 def test_what_people_paste(tmp_path: Path) -> None:
     assert len(PAIRS) == 36
     done = impact88("verify", "--json", *written(tmp_path, FORMS))
@@ -157,7 +159,7 @@ SLIPS = [
 
 @pytest.mark.parametrize(
     ("name", "typed", "noise"),
-    [(*slip, noise) for slip in SLIPS for noise in (False, True)][:: 1 if SWEEP else 8],
+    long_but([(*slip, noise) for slip in SLIPS for noise in (False, True)][:: 1 if SWEEP else 8]),
 )
 def test_a_slip_in_what_was_given_apart_is_found(name: str, typed: str, noise: bool) -> None:
     """And no reader's mistake is made of it, however bad the scan of the results is."""

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from longer import long_but
 
 from impact88.casework.reconstruction.adjustment import reconstruct
 from impact88.casework.reconstruction.reconstructed import draws, ranges
@@ -114,7 +115,7 @@ another where an angle was written with 360° more."""
 CHANGES = (mirrored, rotated, in_meters, exchanged, written_otherwise)
 
 
-@pytest.mark.parametrize("change", CHANGES)
+@pytest.mark.parametrize("change", long_but(CHANGES))
 @pytest.mark.parametrize(
     ("scene", "names"), [*((SCENE, names) for names in PROBLEMS), (TIED_SCENE, TIED)]
 )

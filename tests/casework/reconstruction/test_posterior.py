@@ -117,6 +117,7 @@ def test_impacts_beside_a_pole_do_not_end_the_draws():
         assert abs(own.mean() - mean) < 0.1 * deviation
 
 
+@pytest.mark.long
 def test_bounds_take_in_every_draw():
     known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "GA": 180.0, "UY": 0.0, "VY": 0.0, "MUP": 0.0}
     known |= {"E": read("0 .. .4", "E"), "VBX": read("normal 30 2", "VBX")}

@@ -578,6 +578,7 @@ class TestCommand:
         ):
             assert self.run(capsys, *command)[0] == 0, command
 
+    @pytest.mark.long
     def test_ill_posed_is_said_with_the_number(self, tmp_path, capsys):
         after = {n: float(v) for n, v in solve(TABLE_3, (*FINAL, "MUP")).items()}
         lines = [f'{n} = "{v!r}"' for n, v in {**VEHICLES, **after, "EM": -0.9}.items()]

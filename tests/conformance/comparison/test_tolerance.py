@@ -136,6 +136,7 @@ def test_no_vector_takes_any_number() -> None:
         assert (case.grade()[0][0] == DIFFER)[np.isfinite(ours[name])].all()
 
 
+@pytest.mark.long
 def test_the_bound_is_one_of_the_exact_result() -> None:
     """Against thirty digits: by elimination in double precision, of every spelling."""
     rows = [scene for _, _, scene in scenes(120, 12)]
