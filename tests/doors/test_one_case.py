@@ -21,7 +21,7 @@ from impact88.collision.case import Case
 from impact88.collision.scenefile import toml_texts
 from impact88.interface.commands.cli import main
 from impact88.interface.desk import collision
-from impact88.interface.desk.forms import filled_in
+from impact88.interface.desk.formview import filled_in
 from impact88.names import SCENE
 
 FILES = int(os.environ.get("IMPACT88_CASES", "4"))

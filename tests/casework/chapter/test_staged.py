@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from captures import ROOT
 
-from impact88.casework.chapter.claims import claims
+from impact88.casework.chapter.sentences import claims
 from impact88.casework.chapter.staged import (
     COLUMNS_1,
     COLUMNS_2,

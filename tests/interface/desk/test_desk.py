@@ -47,7 +47,7 @@ pytest.importorskip("waitress", reason="the desk's extra is not installed")
 from impact88.interface.desk import (
     app,
     collision,
-    forms,
+    formview,
     guard,
     paper,
     reconstruction,
@@ -1020,18 +1020,18 @@ def test_directions_are_said_as_people_say_them() -> None:
     compass = system._replace(convention=units.Convention("", "compass"))
     for course in range(-180, 181, 7):
         x, y = np.cos(np.radians(course)), np.sin(np.radians(course))
-        words = forms.spoken_direction("HAF", float(course), system)
+        words = formview.spoken_direction("HAF", float(course), system)
         assert ("left" in words) == (y > 0.01 and "of x" in words)
         if "of x" in words:
-            mirror = forms.spoken_direction("HAF", float(course), sae)
+            mirror = formview.spoken_direction("HAF", float(course), sae)
             assert ("left" in mirror) == ("right" in words)
         heading = (90 - course) % 360
-        point = forms.spoken_direction("HA", float(heading), compass)
+        point = formview.spoken_direction("HA", float(heading), compass)
         assert ("north" in point) == (y > np.sin(np.radians(22.5)))
         assert ("west" in point) == (x < -np.sin(np.radians(22.5)))
-    assert forms.spoken_direction("HB", 180.0, system) == "against x"
-    assert forms.spoken_direction("PDOFA", -30.0, system) == "11 o'clock"
-    assert forms.spoken_direction("SA", -30.0, system) == ""
+    assert formview.spoken_direction("HB", 180.0, system) == "against x"
+    assert formview.spoken_direction("PDOFA", -30.0, system) == "11 o'clock"
+    assert formview.spoken_direction("SA", -30.0, system) == ""
 
 
 def test_as_many_draws_as_the_command_takes() -> None:

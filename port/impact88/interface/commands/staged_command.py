@@ -21,7 +21,7 @@ from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any
 
-from ...casework.chapter import claims, staged, validation
+from ...casework.chapter import sentences, staged, validation
 from ...messages.plaintable import format_fixed, paragraph, table
 from . import options
 
@@ -54,7 +54,7 @@ def _claims() -> list[str]:
         return f"{values[0] + 0.0:.1f} ... {values[1]:.1f}"
 
     lines = ["What the chapter says in numbers or comparisons, checked", ""]
-    for claim in claims.claims():
+    for claim in sentences.claims():
         lines += paragraph(f"Section {claim.where}: {claim.claim}: {claim.verdict}")
         lines += paragraph(claim.found, "  ") if claim.found else []
         if claim.varied:

@@ -30,7 +30,7 @@ from ...names import DEFAULT_M, SCENE, quantity
 from ...program.scene import SAMPLES, sample
 from ...version import __version__
 from . import collision, reconstruction
-from .forms import digits, filled_in
+from .formview import digits, filled_in
 from .guard import HEADERS, LARGEST_BODY, TOO_LONG, refusal
 from .workers import Bench, BrokenError, SupersededError
 

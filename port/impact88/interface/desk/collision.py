@@ -21,7 +21,7 @@ from ...messages.plaintable import number
 from ...messages.schemas import with_schema
 from ...names import FINAL_VELOCITIES, RESULTS, SCENE, quantity
 from ...program.scene import Scene, sample
-from .forms import entries, spoken_direction, units_shown, without_rounding
+from .formview import entries, spoken_direction, units_shown, without_rounding
 
 DRAWS = 20_000
 """Random draws for the bounds' quantiles: half a second at most with every value a range."""

@@ -16,7 +16,7 @@ from ...messages.plaintable import number
 from ...messages.schemas import with_schema
 from ...names import FINAL_STATE, SCENE, VELOCITIES, check_names, quantity
 from ...program.scene import sample
-from .forms import digits, entries, spoken_direction, units_shown, without_rounding
+from .formview import digits, entries, spoken_direction, units_shown, without_rounding
 
 DRAWS = 20_000  # random draws for the quantiles, as for a collision's bounds
 _DIGITS = 6  # digits shown of a value, as the command prints
