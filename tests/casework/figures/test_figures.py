@@ -282,7 +282,9 @@ class TestPlan:
         length = one(drawing, "length scale")
         side = np.subtract(*one(drawing, "A whole").points[1:3])
         shown = abs(np.subtract(*length.points) / side)
-        assert shown == pytest.approx(5 / plan(sample(1)).vehicles[0].length)
+        scene = sample(1)
+        drawn = plan(scene, units=scene.case.system).vehicles[0]
+        assert shown == pytest.approx(5 / drawn.length)
 
     def test_spins_turn_the_way_they_do(self):
         scene = sample(1).replaced({"WA": "2"})
@@ -790,10 +792,43 @@ class TestToScale:
         drawing = scene_drawing(scene, solved(scene))
         notes = " ".join(text.text for text in drawing.texts() if text.role == "note")
         assert "A drawn as measured, 16 by 6 ft." in notes
-        assert "Outline of B from I/m" in notes
+        assert "B drawn as a car of its weight, 15.1 by 5.9 ft." in notes
         assert (
             f"Relative speed of the centers {math.hypot(29.04 + 14.52, 25.15):.4g} ft/s." in notes
         )
+
+    @pytest.mark.parametrize(
+        ("units", "mass", "inertia", "length", "width", "words"),
+        [
+            ("us", "80000", "1000000", 62.3, 8.5, "a truck with a trailer"),
+            ("us", "3000", "1900", 15.1, 5.9, "a car"),
+            ("metric", "1400", "2500", 4.6, 1.8, "a car"),
+            ("metric", "220", "60", 2.2, 0.8, "a motorcycle"),
+            ("metric", "3500", "9000", 5.7, 2.0, "a light truck"),
+            ("si", "12000", "60000", 9.0, 2.5, "a heavy truck"),
+        ],
+    )
+    def test_a_vehicle_has_the_size_of_its_class(self, units, mass, inertia, length, width, words):
+        values = {**sample(1), "units": units, "DA": "0.3", "DB": "0.3"}
+        scene = Scene({**values, "MA": mass, "IA": inertia, "MB": mass, "IB": inertia})
+        drawing = scene_drawing(scene, solved(scene))
+        notes = " ".join(text.text for text in drawing.texts() if text.role == "note")
+        unit = "ft" if units == "us" else "m"
+        size = f"{length:.1f} by {width:.1f} {unit}".replace(".0 ", " ")
+        assert f"A and B drawn as {words} of its weight, {size}." in notes
+
+    def test_point_masses_are_discs_that_touch(self):
+        scene = sample(2)
+        shapes = plan(scene, solved(scene), units=scene.case.system)
+        for vehicle in shapes.vehicles:
+            distances = [abs(point - vehicle.center) for point in vehicle.outline]
+            assert distances == pytest.approx([vehicle.length / 2] * len(distances))
+            assert abs(vehicle.center) == pytest.approx(vehicle.length / 2)
+        drawing = scene_drawing(scene, solved(scene))
+        notes = " ".join(text.text for text in drawing.texts() if text.role == "note")
+        assert "Point masses: drawn as discs, moved apart along n." in notes
+        assert one(drawing, "impulse")
+        assert not [item for item in drawing.paths() if item.role in ("glass", "heading")]
 
     def test_force_and_change_of_velocity(self):
         scene = sample(1)
@@ -821,7 +856,7 @@ class TestToScale:
         outlines = [i for i in drawing.items if isinstance(i, Path) and i.role == "A outline"]
         sides = [np.subtract(*outline.points[1:3]) for outline in (outlines[0], outlines[2])]
         before, after = np.angle(sides)
-        size = plan(scene).vehicles[0].length
+        size = plan(scene, units=scene.case.system).vehicles[0].length
         expected = solved(scene)["WAF"] * size / math.hypot(14.52, 25.15)
         assert after - before == pytest.approx(expected, abs=1e-3)
 

@@ -6,23 +6,36 @@ n = (cos GA, sin GA) points to A's side, the tangent is t = (-sin GA, cos GA), a
 on A. So A's front looks along TA + 180 degrees, B's along TB, and on either vehicle the contact
 point stands at the angle PA or PB from the front: all of Table 1 reads so.
 
-A vehicle is drawn as measured (LA BA, LB BB), else as the uniform rectangle of its radius of
-gyration, L² + W² = 12 I/m, at L/W = 2.6, a passenger car's, lengthened or widened where the contact
-point would lie outside. One 10,000 times as heavy as the other and at rest is a wall; point masses
-are moved apart along n until they touch. What reaches beyond the contact plane is crushed.
+A vehicle is drawn as measured (LA BA, LB BB), else in the size of its class by weight (`CLASSES`);
+without units, where the weight is not known, as the uniform rectangle of its radius of gyration,
+L² + W² = 12 I/m, at L/W = 2.6. It is lengthened or widened where the contact point would lie
+outside. One 10,000 times as heavy as the other and at rest is a wall; point masses are discs, moved
+apart along n until they touch. What reaches beyond the contact plane is crushed.
 """
 
+import cmath
 import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
+from ...collision.units import RULES, System
 from ...names import FINAL_VELOCITIES
 from ...program.scene import numbers_of
 from ...status import sentences
 from .drawing import check_drawable, degrees, unit
 
 PROPORTION = 2.6  # length over width of a vehicle
+CLASSES = (
+    (450.0, "a motorcycle", 2.2, 0.8),
+    (2500.0, "a car", 4.6, 1.8),
+    (4500.0, "a light truck", 5.7, 2.0),
+    (16000.0, "a heavy truck", 9.0, 2.5),
+    (math.inf, "a truck with a trailer", 19.0, 2.6),
+)
+"""Classes of vehicles: up to which mass in kg, what it is, usual length and width in m."""
+DISC = 0.3  # radius of a point mass over the length it would have
+DISC_CORNERS = 36
 WALL = 1e4  # ratio of masses from which on the heavier body is drawn as a wall
 
 
@@ -39,8 +52,9 @@ class Motion(NamedTuple):
 
 class Vehicle(NamedTuple):
     """One vehicle in plan, in the scene's units; points are x + iy. ``center``: of gravity;
-    ``front``: unit vector; ``outline``: four corners, the front's two first; ``kept``: the outline
-    on its own side of the contact plane; ``wall``: too heavy to be a vehicle."""
+    ``front``: unit vector; ``outline``: four corners, the front's two first, or a disc's rim;
+    ``kept``: the outline on its own side of the contact plane; ``wall``: too heavy to be a vehicle;
+    ``point``: a point mass."""
 
     name: str
     center: complex
@@ -50,6 +64,7 @@ class Vehicle(NamedTuple):
     outline: tuple[complex, ...]
     kept: tuple[complex, ...]
     wall: bool
+    point: bool
     before: Motion
     after: Motion | None
 
@@ -66,8 +81,8 @@ class Vehicle(NamedTuple):
 
 class Plan(NamedTuple):
     """A scene in plan. ``normal`` and ``tangent`` are unit vectors; ``impulse`` acts on A;
-    ``apart``: whether point masses were moved apart to be seen; ``measured``: the vehicles whose
-    length and width are known."""
+    ``apart``: whether point masses were moved apart to be seen; ``sizes_from``: by vehicle what its
+    size is from: "measured", "I/m" or a class by weight, "a car"."""
 
     vehicles: tuple[Vehicle, Vehicle]
     normal: complex
@@ -76,7 +91,7 @@ class Plan(NamedTuple):
     apart: bool
     remarks: tuple[str, ...]
     numbers: dict[str, float]
-    measured: tuple[str, ...]
+    sizes_from: dict[str, str]
 
     @property
     def closing(self) -> float:
@@ -90,14 +105,19 @@ class Plan(NamedTuple):
 
 
 def plan(
-    scene: Any, result: Mapping[str, Any] | None = None, outlines: Mapping[str, float] | None = None
+    scene: Any,
+    result: Mapping[str, Any] | None = None,
+    outlines: Mapping[str, float] | None = None,
+    units: System = RULES,
+    discs: bool = True,
 ) -> Plan:
     """Return the scene in plan.
 
     ``scene``: texts or numbers by the listing's names; ``result``: VAX, VAY, VBX, VBY, WAF and WBF
     unless of point masses, STATUS where known; without it, or where it is not finite, there is
-    nothing after the impact. Raises UserError for a value that is not a
-    finite number, or too large to draw."""
+    nothing after the impact; ``units``: whose base units the numbers are in; ``discs``: draw point
+    masses as such. Raises UserError for a value that is not a finite number, or too large to
+    draw."""
     values, outlines = numbers_of(scene), outlines or {}
     for name, value in values.items():
         check_drawable([value], name)
@@ -119,33 +139,39 @@ def plan(
     front = {"A": -unit(values["TA"]), "B": unit(values["TB"])}
     apart = values["DA"] == 0 == values["DB"]
     contact = {name: 2 * reach[name] * front[name].conjugate() for name in "AB"}
-    sizes = _sizes(values, contact, outlines)
+    sizes, sizes_from = _sizes(values, contact, outlines, units)
+    points = discs and values["M"] == 4
     vehicles = []
     for name, inward in (("A", normal), ("B", -normal)):
         length, width = sizes[name]
         center = -reach[name]
+        if points:
+            length = width = 2 * DISC * length
         if apart:
             turned = front[name] * normal.conjugate()
-            center = inward * (abs(turned.real) * length + abs(turned.imag) * width) / 2
+            half = (abs(turned.real) * length + abs(turned.imag) * width) / 2
+            center = inward * (length / 2 if points else half)
         corners = ((1, -1), (1, 1), (-1, 1), (-1, -1))
         outline = tuple(
             center + front[name] * complex(i * length, j * width) / 2 for i, j in corners
         )
-        cut = _depth(center, inward) > 0.15 * width
+        if points:
+            rim = (cmath.rect(length / 2, math.tau * k / DISC_CORNERS) for k in range(DISC_CORNERS))
+            outline = tuple(center + point for point in rim)
+        cut = not points and _depth(center, inward) > 0.15 * width
         kept = _clip_outline(outline, inward) if cut else outline
         heavy, light = (abs(values[f"M{which}"]) for which in (name, "B" if name == "A" else "A"))
         wall = heavy >= WALL * light and before[name] == (0, 0)
         motions = before[name], after.get(name)
         size = length, width, outline, kept
-        vehicles.append(Vehicle(name, center, front[name], *size, wall, *motions))
+        vehicles.append(Vehicle(name, center, front[name], *size, wall, points, *motions))
     # momentum of the lighter vehicle: a wall's change of velocity has no digits left
     moved, sense = (vehicles[1], -1) if vehicles[0].wall else (vehicles[0], 1)
     impulse = None if moved.change is None else sense * values[f"M{moved.name}"] * moved.change
     known = {**values, **(result or {})}
     remarks = tuple(sentences(int(known.get("STATUS") or 0), known))
-    measured = tuple(name for name in "AB" if f"L{name}" in outlines)
     both = vehicles[0], vehicles[1]
-    return Plan(both, normal, 1j * normal, impulse, apart, remarks, values, measured)
+    return Plan(both, normal, 1j * normal, impulse, apart, remarks, values, sizes_from)
 
 
 def _depth(point: complex, inward: complex) -> float:
@@ -154,25 +180,40 @@ def _depth(point: complex, inward: complex) -> float:
 
 
 def _sizes(
-    values: Mapping[str, float], contact: Mapping[str, complex], outlines: Mapping[str, float]
-) -> dict[str, tuple[float, float]]:
-    """Length and width of both vehicles; ``contact``: twice the contact point from each's axes."""
-    lengths: dict[str, float] = {}
+    values: Mapping[str, float],
+    contact: Mapping[str, complex],
+    outlines: Mapping[str, float],
+    units: System,
+) -> tuple[dict[str, tuple[float, float]], dict[str, str]]:
+    """Length and width of both vehicles, and what each size is from; ``contact``: twice the contact
+    point from each's axes."""
+    usual: dict[str, tuple[float, float]] = {}
+    sizes_from: dict[str, str] = {}
     for name in "AB":
         mass, inertia, distance = (values[kind + name] for kind in "MID")
         square = 12 * inertia / mass if mass else math.nan
-        if 0 < square < 1e12 * max(1.0, distance**2):
-            lengths[name] = math.sqrt(square / (1 + PROPORTION**-2))
+        if not units.is_bare and 0 < mass < math.inf:
+            weight = mass * float(units.scale("mass"))
+            _, kind, *size = next(row for row in CLASSES if weight <= row[0])
+            length, width = (metres / float(units.scale("length")) for metres in size)
+            usual[name], sizes_from[name] = (length, width), kind
+        elif 0 < square < 1e12 * max(1.0, distance**2):
+            length = math.sqrt(square / (1 + PROPORTION**-2))
+            usual[name], sizes_from[name] = (length, length / PROPORTION), "I/m"
         elif distance:
-            lengths[name] = 2.4 * abs(distance)
+            length = 2.4 * abs(distance)
+            usual[name], sizes_from[name] = (length, length / PROPORTION), "the contact point"
     sizes = {}
+    longest = max(usual.values(), default=(1.0, 1.0 / PROPORTION))
     for name in "AB":
-        length = lengths.get(name, max(lengths.values(), default=1.0))
+        length, width = usual.get(name, longest)
+        sizes_from.setdefault(name, "the other vehicle")
         along, across = abs(contact[name].real), abs(contact[name].imag)
-        sizes[name] = max(length, along), max(length / PROPORTION, across)
+        sizes[name] = max(length, along), max(width, across)
         if f"L{name}" in outlines:
             sizes[name] = (outlines[f"L{name}"], outlines[f"B{name}"])
-    return sizes
+            sizes_from[name] = "measured"
+    return sizes, sizes_from
 
 
 def _clip_outline(outline: Sequence[complex], inward: complex) -> tuple[complex, ...]:

@@ -76,7 +76,8 @@ def plan_with_units(
     case = getattr(scene, "case", None)
     if outlines is None and case is not None:
         outlines = case.outlines
-    return plan(scene, result, outlines), units or (case.system if case else RULES)
+    units = units or (case.system if case else RULES)
+    return plan(scene, result, outlines, units), units
 
 
 @explains_arguments
@@ -278,6 +279,10 @@ def draw_bodies(drawing: Drawing, vehicles: Sequence[Vehicle], at: View) -> None
         lines = [((*kept, kept[0]), 0.45, (), f"{name} outline")]
         if kept != whole:
             lines.insert(0, ((*whole, whole[0]), 0.25, (0.7, 0.5), f"{name} whole"))
+        if vehicle.point:
+            for points, width, dash, role in lines:
+                drawing.add(Path(at.all(points), COLOURS[name], width, dash, role=role))
+            continue
         # the front: windscreen, rear window and an arrowhead, as on a police sketch
         along, across = vehicle.front * vehicle.length, 1j * vehicle.front * vehicle.width
         for place_, half in ((0.22, 0.38), (-0.3, 0.36)):
@@ -397,25 +402,41 @@ def _cells(vehicle: Vehicle, shapes: Plan, units: System, widest: float) -> list
     return cells + (["–", "–"] if shapes.numbers["M"] == 4 else spins)
 
 
+def _sizes_words(shapes: Plan, units: System) -> str:
+    """Return what the drawn sizes are from: "A as measured, 16 by 6 ft; B as a car, ..."."""
+    texts = []
+    for vehicle in shapes.bodies:
+        origin = shapes.sizes_from[vehicle.name]
+        size = " by ".join(
+            short(amount) if origin == "measured" else f"{amount:.1f}".removesuffix(".0")
+            for amount in (units.display_value(_LENGTH, x) for x in (vehicle.length, vehicle.width))
+        )
+        size = f"{size} {'' if units.is_bare else units.label(_LENGTH)}".rstrip()
+        words = {
+            "measured": f"as measured, {size}",
+            "I/m": "from I/m, L/W = 2.6",
+        }.get(origin, f"as {origin} of its weight, {size}")
+        texts.append((vehicle.name, f"from {origin}" if origin.startswith("the ") else words))
+    if len({words for _, words in texts}) == 1 and len(texts) == 2:
+        return (
+            f"Outlines {texts[0][1]}: not measured."
+            if "I/m" in texts[0][1]
+            else (f"A and B drawn {texts[0][1]}.")
+        )
+    return " ".join(f"{name} drawn {words}." for name, words in texts)
+
+
 def _notes(shapes: Plan, units: System) -> list[str]:
-    first = []
-    for vehicle in shapes.vehicles:
-        if vehicle.name in shapes.measured:
-            length = short(units.display_value(_LENGTH, vehicle.length))
-            width = with_unit(vehicle.width, _LENGTH, units)
-            first.append(f"{vehicle.name} drawn as measured, {length} by {width}.")
-    assumed = [v.name for v in shapes.bodies if v.name not in shapes.measured]
-    if assumed:
-        whose = "Outlines" if len(assumed) == 2 else f"Outline of {assumed[0]}"
-        first.append(f"{whose} from I/m, L/W = 2.6: not measured.")
+    first = [_sizes_words(shapes, units)] if shapes.numbers["M"] != 4 else []
     barrier = len(shapes.bodies) < 2
     if not barrier:
         first.append(f"Relative speed of the centers {with_unit(shapes.closing, _SPEED, units)}.")
     if not units.is_bare:
         first.append(f"Speeds in {units.label(_SPEED)}, spins in {units.label(_SPIN)}.")
-    notes = [" ".join(first)]
-    if shapes.apart:
-        notes.append("Point masses: drawn moved apart along n.")
+    notes = [" ".join(filter(None, first))]
+    if shapes.numbers["M"] == 4:
+        apart = ", moved apart along n" if shapes.apart else ""
+        notes.append(f"Point masses: drawn as discs{apart}.")
     if barrier:
         notes.append("The hatched vehicle's mass makes it a rigid barrier.")
     return notes + [f"Remark: {remark}." for remark in shapes.remarks]

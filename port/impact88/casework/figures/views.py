@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
+from ...collision.units import SYSTEMS
 from ...errors import UserError
 from ...program.scene import sample
 from . import drawing as d
@@ -128,7 +129,10 @@ def configurations() -> Drawing:
     chosen: dict[str, Any] = {}
     for collision in collisions():
         chosen.setdefault(collision.category, collision)
-    plans = [plan({**item.scene, "E": 0, "MU": 0, "EM": -1, "M": 6}) for item in chosen.values()]
+    plans = [
+        plan({**item.scene, "E": 0, "MU": 0, "EM": -1, "M": 6}, units=SYSTEMS["chapter"])
+        for item in chosen.values()
+    ]
     arrow = 0.8 * max(v.length for shapes in plans for v in shapes.vehicles)
     boxes = [
         d.extent(p for v in shapes.vehicles for p in (*v.outline, _tail(v, shapes, arrow)))
@@ -190,7 +194,7 @@ def colinear() -> Drawing:
 def planar(scene: Any = None, velocities: bool = False) -> Drawing:
     """Figure 3: planar impact; distances, angles and impulses of a scene's vehicles (the
     Appendix's without one), with the ``velocities`` before or without. Raises UserError."""
-    shapes = plan(scene or sample(1))
+    shapes = plan(scene or sample(1), discs=False)
     drawing = Drawing(
         d.COLUMN,
         "Free bodies, planar impact",
