@@ -181,13 +181,13 @@ class Printout:
         Letters of labels and asterisks that were read as others.
     misread_prompts : set of str
         The first reply of each prompt whose question mark was read as another character.
-    echoed : set of int
-        Offsets of what the Apple shows in the replies besides their numbers.
     own : range
         The glyphs of the text that it accounts for: from its first (those above the first printout
         are the first's) to the next printout.
     markup : int
         Characters of markup that were passed over in the text of which it is the first printout.
+    echoed : set of int
+        Offsets of what the Apple shows in the replies besides their numbers.
 
     Examples
     --------
