@@ -95,7 +95,7 @@ def test_wrong_names_are_told_as_ever() -> None:
     with pytest.raises(UserError, match="'MX' is not a scene name"):
         solve({**RUN_1, "MX": 1.0})
     with pytest.raises(UserError, match="missing: UX"):
-        solve({name: value for name, value in RUN_1.items() if name != "UX"})
+        solve({name: value for name, value in RUN_1.items() if name != "UX"}, ["VAX", "DVA"])
     with pytest.raises(UserError, match="'VX' is not a result name"):
         solve(RUN_1, ["VAX", "VX"])
 

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from ...collision.geometry import ARMS, GEOMETRY
+from ...collision.needs import needed
 from ...collision.uncertain import Uncertain
 from ...mechanics.state import COURSES, CRUSH, FORCES, KNOWABLE, QUANTITIES, SPEEDS
-from ...mechanics.uses import inputs_of, needed
+from ...mechanics.uses import inputs_of
 from ...names import FINAL_STATE, PIVOT, VELOCITIES
 from ...status import Status
 

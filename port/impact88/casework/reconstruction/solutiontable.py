@@ -8,11 +8,11 @@ from textwrap import wrap
 from typing import Any, Self
 
 from ...collision.geometry import clock, within_doubles
+from ...collision.needs import needed
 from ...collision.units import RULES, VELOCITY, System, display_values
 from ...errors import UserError
 from ...mechanics.outcome import forces, moment_ratio, outcome
 from ...mechanics.state import CHANGES, COURSES, FORCES
-from ...mechanics.uses import needed
 from ...messages.plaintable import decimals_for, format_fixed, number, paragraph, plain, table
 from ...names import CHAPTER, FINAL_STATE, PIVOT, RESULTS, SCENE, VELOCITIES, quantity
 from ...status import IMPOSSIBLE, sentences

@@ -5,7 +5,7 @@ point masses) with exact pi, by the closed form of `closedform.impact`.
 """
 
 from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from ...names import RESULTS, split_names
 from . import compiledcalls
 from .general import solve_arrays
 from .impactprograms import ALL
+from .omitted import not_given, solve_without
 from .plain import in_order, solve_one, solve_plain
 from .share import share_of, share_typed
 
@@ -61,13 +62,15 @@ def solve(
     -------
     dict of str to ndarray
         Arrays of the broadcast shape, float64 (STATUS: uint16), in the order asked; of one scene,
-        given as plain numbers, numbers (numpy's float64, which is a float), the same bits.
+        given as plain numbers, numbers (numpy's float64, which is a float), the same bits. Where
+        scenes lack inputs, the results that use none of them; the attribute ``absent`` names the
+        others, each with the inputs it needs.
 
     Raises
     ------
     UserError
-        For unknown or missing names, columns that hold no numbers or do not broadcast, and arrays
-        in ``out`` that cannot take the results.
+        For unknown names, missing inputs that every wanted result needs, columns that hold no
+        numbers or do not broadcast, and arrays in ``out`` that cannot take the results.
 
     Notes
     -----
@@ -76,6 +79,11 @@ def solve(
     M = 4 is the point-mass impact: DA and DB count as 0; EM, angles other than GA and inertias are
     not looked at, spins pass through and stay out of the energies. An infinite body must be at
     rest and adds no energy; not both bodies may be infinite (mass or inertia).
+
+    An input that no wanted result uses need not be given: point masses that are locked together (E
+    = 0 beside MU = -10) need no GA, and those that move along one line have their contact plane
+    across it, and nothing acts along the plane. STATUS then has what holds for every value of what
+    is missing (`closedform.omitted`).
 
     A scene with a number that cannot be used (not finite, M neither 4 nor 6, a mass or inertia
     that is not positive, a barrier that moves, two barriers) is NaN in every result and has
@@ -116,6 +124,9 @@ def solve(
             results = solve_plain(values, wanted, threads, out)
         if results is not None:
             return results
+    if out is None and (lacking := not_given(columns)):
+        complete = partial(solve_arrays, threads=threads)
+        return solve_without(columns, lacking, wanted, complete)
     arrays = solve_arrays(columns, wanted, threads, out=out)
     # one scene gives numbers, not arrays without dimensions
     return {

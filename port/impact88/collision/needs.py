@@ -1,0 +1,76 @@
+"""What a result needs that is not given, in words; and ordinary numbers to find it out with."""
+
+from collections.abc import Collection, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..names import RESULTS, SCENE, quantity
+
+ORDINARY: dict[str, tuple[float, float]] = {
+    "degree": (-180.0, 180.0),
+    "length": (1.0, 9.0),
+    "mass": (50.0, 200.0),
+    "mass·length²": (800.0, 4000.0),
+    "length/time": (-60.0, 60.0),
+    "rad/time": (-3.0, 3.0),
+    "1": (0.1, 0.9),
+}
+"""Ordinary numbers, by the rule of their unit."""
+
+
+def ordinary(name: str, rng: np.random.Generator, count: int) -> NDArray[np.float64]:
+    """Return ordinary numbers for a value of an impact."""
+    values = rng.uniform(*ORDINARY[quantity(name).unit], count)
+    return np.asarray(-values if name == "EM" else values)
+
+
+def needed(needs: Mapping[str, Collection[str]]) -> list[tuple[list[str], str]]:
+    """Return sentences on what results need, those with the same needs together.
+
+    Parameters
+    ----------
+    needs : mapping of str to collection of str
+        Results, each with the inputs it needs that are not given.
+
+    Returns
+    -------
+    list of (list of str, str)
+        Results and their sentence.
+
+    Examples
+    --------
+    >>> for _, sentence in needed({"PDOFA": ["TA"], "E": ["GA"], "VC": ["GA"]}):
+    ...     print(sentence)
+    PDOFA needs TA, the way A faces; TA = "course" takes the way it travels
+    E and VC need GA (angle of the impact surface from the y axis)
+    """
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for result, inputs in needs.items():
+        ordered = tuple(name for name in (*SCENE, *RESULTS) if name in inputs)
+        groups.setdefault(ordered, []).append(result)
+    return [
+        (results, f"{_listed(results)} {'needs' if len(results) == 1 else 'need'} {_meant(inputs)}")
+        for inputs, results in groups.items()
+    ]
+
+
+def sentences(needs: Mapping[str, Collection[str]]) -> list[str]:
+    """Return the sentences of `needed`."""
+    return [sentence for _, sentence in needed(needs)]
+
+
+def _listed(names: Sequence[str]) -> str:
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def _meant(inputs: Sequence[str]) -> str:
+    if len(inputs) == 1 and inputs[0] in ("TA", "TB"):
+        vehicle = inputs[0][1]
+        return (
+            f'{inputs[0]}, the way {vehicle} faces; {inputs[0]} = "course" takes the way it travels'
+        )
+    if len(inputs) == 1:
+        return f"{inputs[0]} ({quantity(inputs[0]).meaning})"
+    return _listed(inputs)

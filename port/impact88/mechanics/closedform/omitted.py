@@ -1,0 +1,239 @@
+"""Scenes that lack inputs: the results that do not use them, and what the others need.
+
+An input is not used where any value of it gives the same result. So every scene is solved with
+several values in place of what it lacks: a result that is the same for all of them stands. Nothing
+is judged by such a value: of STATUS the laws count that all of them break, which include opposite
+contact planes.
+"""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...collision.mappings import in_base, in_doubles
+from ...collision.needs import ordinary, sentences
+from ...errors import UserError
+from ...names import DEFAULT_M, PIVOT, SCENE, quantity
+from ...status import IMPOSSIBLE, Status
+from .columns import BODIES, UNUSED_BY_POINTS
+
+Array = NDArray[Any]
+Solve = Callable[[Mapping[str, Any], Sequence[str]], Mapping[str, Array]]
+
+TRIALS = 24  # values of each input that is not given; directions are 15 degrees apart
+SPECIAL = {"E": (0.0, 1.0), "MU": (0.0, PIVOT), "EM": (0.0, 1.0)}
+OUTWEIGHING = np.array([100.0, -100.0, 1000.0, -1000.0])
+SAME = 1e-9  # relative difference of results that are the same but for rounding
+ROUNDING = 1e-12  # the same relative to the largest result of its unit
+PARALLEL = 1e-12  # sine of the angle between velocities along one line
+_JUDGED = IMPOSSIBLE | Status.NOT_FINITE | Status.SINGULAR | Status.MU_OUT_OF_RANGE
+
+
+class Results(dict[str, Any]):
+    """Results by name, without those that need an input that is not given.
+
+    Attributes
+    ----------
+    absent : dict of str to tuple of str
+        The results left out, each with the inputs it needs.
+    """
+
+    def __init__(self, values: Mapping[str, Any], absent: Mapping[str, tuple[str, ...]]) -> None:
+        super().__init__(values)
+        self.absent = dict(absent)
+
+    def __missing__(self, name: str) -> Any:
+        if name in self.absent:
+            raise KeyError("; ".join(sentences({name: self.absent[name]})))
+        raise KeyError(name)
+
+
+def not_given(columns: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the inputs that scenes lack and that their number of equations has."""
+    absent = [name for name in SCENE if name not in columns and name != "M"]
+    if absent and "M" in columns:
+        m = in_doubles("M", in_base({"M": columns["M"]})["M"])
+        if m.size and bool((m == 4).all()):
+            absent = [name for name in absent if name not in UNUSED_BY_POINTS]
+    return tuple(absent)
+
+
+@np.errstate(all="ignore")
+def solve_without(
+    columns: Mapping[str, Any], lacking: Sequence[str], wanted: Sequence[str], solve: Solve
+) -> Results:
+    """Return the wanted results of scenes that lack inputs, as far as they do not use them.
+
+    Parameters
+    ----------
+    columns : mapping of str to array_like
+        What is given.
+    lacking : sequence of str
+        What is not, see `not_given`.
+    wanted : sequence of str
+        Names of results.
+    solve : callable
+        Solves complete scenes.
+
+    Raises
+    ------
+    UserError
+        If no wanted result is left.
+    """
+    given = {name: in_doubles(name, value) for name, value in in_base(columns).items()}
+    given.setdefault("M", np.array(float(DEFAULT_M)))
+    rng = np.random.default_rng(1988)
+    trials = {name: _trials(name, rng) for name in lacking}
+    if "GA" in trials:
+        trials["GA"] = [360.0 / TRIALS * trial for trial in range(TRIALS)]
+    along = _along_a_line(given, lacking)
+    completed = [
+        _completed(given, {name: values[trial] for name, values in trials.items()}, along)
+        for trial in range(TRIALS)
+    ]
+    names = [name for name in wanted if name != "STATUS"]
+    if len(names) < len(wanted) and "KF" not in names:
+        names.append("KF")
+    first, *others = [solve(scene, names) for scene in completed]
+    stands = _same(first, others, first)
+    zero = [n for n in names if all(not np.any(x[n]) for x in (first, *others))]
+    if zero:  # one that is not below 0, such as EESA where energy is gained, hides its inputs
+        scenes = _ordinary_scenes(given, rng)
+        elsewhere = [
+            solve(_completed(scenes, {n: x[trial] for n, x in trials.items()}, np.False_), names)
+            for trial in range(TRIALS)
+        ]
+        same = _same(elsewhere[0], elsewhere[1:], elsewhere[0])
+        stands |= {name: stands[name] & (np.all(same[name]) | along) for name in zero}
+    results = {name: np.where(stands[name], first[name], np.nan) for name in names}
+    absent: dict[str, tuple[str, ...]] = {}
+    changed = [name for name in names if not np.any(stands[name])]
+    if changed:
+        one_by_one = {
+            name: [solve({**completed[1], name: other[name]}, changed) for other in completed[2:5]]
+            for name in lacking
+        }
+        for result in changed:
+            base = {result: others[0][result]}
+            needs = tuple(
+                name
+                for name, changes in one_by_one.items()
+                if not np.all(_same(base, changes, others[0])[result])
+            )
+            absent[result] = needs or tuple(lacking)
+            del results[result]
+    if "STATUS" in wanted and "KF" in absent:  # an impact that is not known is not judged
+        absent["STATUS"] = absent["KF"]
+    absent = {name: needs for name, needs in absent.items() if name in wanted}
+    if wanted and len(absent) == len(wanted):
+        needs_in_words = "; ".join(sentences(absent))
+        raise UserError(f"missing: {' '.join(lacking)}; {needs_in_words}")
+    if "STATUS" in wanted and "STATUS" not in absent:
+        statuses = [np.asarray(solve(scene, ["STATUS"])["STATUS"]) for scene in completed]
+        mask = np.where(along, np.uint16(0xFFFF), np.uint16(_JUDGED))
+        if {*lacking} - {"GA", "MU"}:
+            mask = np.asarray(np.uint16(_JUDGED))
+        results["STATUS"] = np.bitwise_and.reduce(statuses) & mask
+    return Results({n: _number(results[n]) for n in wanted if n in results}, absent)
+
+
+def _trials(name: str, rng: np.random.Generator) -> list[float]:
+    """Return values for an input that is not given: ordinary ones, the special ones of a
+    coefficient, and velocities that outweigh any other, so that no sign hides behind them."""
+    rule = quantity(name).unit
+    values = ordinary(name, rng, TRIALS)
+    if rule == "degree":
+        values = rng.permutation(np.arange(TRIALS) * 360.0 / TRIALS)
+    if rule in ("length/time", "rad/time", "length"):
+        outweighing = np.abs(values[-4:]) * OUTWEIGHING
+        values[-4:] = np.abs(outweighing) if rule == "length" else outweighing
+    special = SPECIAL.get(name, ())
+    values[len(values) - len(special) :] = special
+    return [float(value) for value in values]
+
+
+def _ordinary_scenes(given: Mapping[str, Array], rng: np.random.Generator) -> dict[str, Array]:
+    """Return ordinary scenes with the special values that are given: zeros, infinite bodies, the
+    pivot and no moment."""
+    scenes = {}
+    for name, value in given.items():
+        special = {0.0, np.inf, *SPECIAL.get(name, ())}
+        kept = name == "M" or (value.size and np.ptp(value) == 0 and value.flat[0] in special)
+        kept = kept or (np.isinf(value).all() and bool(value.size))
+        scenes[name] = value.flat[0] if kept else ordinary(name, rng, 2 * TRIALS)
+    return {name: np.asarray(value, np.float64) for name, value in scenes.items()}
+
+
+def _number(value: Any) -> Any:
+    """Return a number for an array without dimensions."""
+    return np.asarray(value)[()]
+
+
+def _same(
+    first: Mapping[str, Array], others: Sequence[Mapping[str, Array]], all_of: Mapping[str, Array]
+) -> dict[str, Array]:
+    """Return, for each result, where all others have it too."""
+    largest: dict[str, Any] = {}
+    for name, value in all_of.items():
+        rule = quantity(name).unit
+        largest[rule] = np.fmax(largest.get(rule, 0.0), np.abs(value))
+    same = {}
+    for name, value in first.items():
+        agrees: Any = np.True_
+        for other in others:
+            size = np.fmax(np.abs(value), np.abs(other[name]))
+            limit = SAME * size + ROUNDING * largest[quantity(name).unit]
+            apart = np.abs(value - other[name])
+            agrees = agrees & ((apart <= limit) | (np.isnan(value) & np.isnan(other[name])))
+        same[name] = np.asarray(agrees)
+    return same
+
+
+def _along_a_line(given: Mapping[str, Array], lacking: Collection[str]) -> Array:
+    """Return where point masses move along one line, and the contact plane lies across it: there
+    is none given, or the given one does."""
+    names = ("UX", "UY", "VX", "VY")
+    if not {*names} <= given.keys() or _lacks_more(lacking):
+        return np.False_  # type: ignore[return-value]
+    ux, uy, vx, vy = (given[name] for name in names)
+    sizes = np.hypot(ux, uy) * np.hypot(vx, vy)
+    moving = (np.hypot(ux, uy) > 0) | (np.hypot(vx, vy) > 0)
+    along = (given["M"] == 4) & moving & (np.abs(ux * vy - uy * vx) <= PARALLEL * sizes)
+    if "GA" in given:
+        across = np.radians(given["GA"] - _line(given))
+        along = along & (np.abs(np.sin(across)) <= PARALLEL)
+    return np.asarray(along)
+
+
+def _lacks_more(lacking: Collection[str]) -> bool:
+    """Return True if more is lacking than motion along one line makes up for."""
+    return bool({*lacking} & {"UX", "UY", "VX", "VY"}) or not {*lacking} & {"GA", "MU"}
+
+
+def _line(given: Mapping[str, Array]) -> Array:
+    """Return the normal of a contact plane across the motion, as GA: A approaches against it."""
+    x, y = given["UX"] - given["VX"], given["UY"] - given["VY"]
+    still = (x == 0) & (y == 0)
+    x, y = np.where(still, given["UX"], x), np.where(still, given["UY"], y)
+    return np.asarray(np.degrees(np.arctan2(-y + 0.0, -x + 0.0)))
+
+
+def _completed(
+    given: Mapping[str, Array], trial: Mapping[str, float], along: Array
+) -> dict[str, Any]:
+    """Return scenes with values in place of what they lack: where they move along one line the
+    plane across it, and nothing that acts along the plane."""
+    scene: dict[str, Any] = {**given, **trial}
+    for mass, inertia, velocities, spin in BODIES:  # an infinite body is at rest
+        infinite = np.isinf(scene[mass]) | np.isinf(scene.get(inertia, 1.0))
+        for name in (*velocities, spin):
+            if name in trial and np.any(infinite):
+                scene[name] = np.where(infinite, 0.0, trial[name])
+    if np.any(along):
+        if "GA" in trial:
+            scene["GA"] = np.where(along, _line(given), trial["GA"])
+        free = along if "MU" in trial else along & (np.asarray(scene["MU"]) != PIVOT)
+        scene["MU"] = np.where(free, 0.0, scene["MU"])
+    return scene
