@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Collection, Hashable, Iterator, Mapping
 
-from ..collision.case import Case, check_mapping, check_value, is_share
+from ..collision.case import FACING_COURSE, Case, check_mapping, check_value, is_share
 from ..collision.doubles import double
 from ..collision.scenefile import case_in, template, toml_texts
 from ..errors import UserError, quoted
@@ -28,6 +28,8 @@ DATA_LINES = (280, 290, 310)
 REPLY_LINES = (210, 230)
 """Lines of the listing that ask for values."""
 M_LINE = 350  # the line of the listing that sets M
+INERTIAS = ("IA", "IB")
+"""Line 480 divides by them, of point masses, too: 1 is typed where they are not given."""
 MAX_LINE_LENGTH = 239  # characters of a line that the Apple keeps
 LISTING = "impact.bas"
 
@@ -49,6 +51,8 @@ class Scene(Mapping[str, str]):
     ----------
     case : Case
         The entries of the scene as written.
+    omitted : tuple of str
+        Names that are not given, for which 0 is typed, of inertias 1; only `Scene.of` allows any.
 
     Raises
     ------
@@ -62,7 +66,7 @@ class Scene(Mapping[str, str]):
     ('.5', 0.005)
     """
 
-    __slots__ = ("_values", "case", "remarks")
+    __slots__ = ("_values", "case", "omitted", "remarks")
 
     def __init__(
         self,
@@ -75,13 +79,16 @@ class Scene(Mapping[str, str]):
         self._take(Case({**values, "title": title} if title else values, source, units))
 
     @classmethod
-    def of(cls, case: Case) -> Self:
+    def of(cls, case: Case, may_omit: Collection[str] = ()) -> Self:
         """Return the scene of a case.
 
         Parameters
         ----------
         case : Case
             The entries of a file, form or mapping.
+        may_omit : collection of str, optional
+            Names that need not be given: 0 is typed for them, of inertias 1, and ``omitted`` names
+            them.
 
         Returns
         -------
@@ -94,17 +101,20 @@ class Scene(Mapping[str, str]):
             For a missing or unknown name, or a text that is not an amount.
         """
         scene = cls.__new__(cls)
-        scene._take(case)
+        scene._take(case, may_omit)
         return scene
 
-    def _take(self, case: Case) -> None:
+    def _take(self, case: Case, may_omit: Collection[str] = ()) -> None:
         """Set the values from the nominal values of ``case``. Raises UserError."""
         nominal_case, source = case.at_nominal(), case.source
         values = dict(nominal_case.values)
         check_names(values, SCENE, "value of a scene", source)
-        absent = [name for name in SCENE if name not in values]
-        if absent:
-            raise UserError(missing(absent), source)
+        # a vehicle at rest that faces the way it travels has no heading yet
+        absent = [name for name in SCENE if values.get(name, FACING_COURSE) == FACING_COURSE]
+        if needed := [name for name in absent if name not in may_omit]:
+            raise UserError(missing(needed), source)
+        self.omitted = tuple(absent)
+        values |= {name: "1" if name in INERTIAS else "0" for name in absent}
         self.remarks = dict(nominal_case.remarks)
         if is_share(values["MU"]):
             from ..mechanics.closedform.share import resolve_share  # needed for a share only
@@ -192,6 +202,11 @@ class Scene(Mapping[str, str]):
         if not isinstance(text, str):
             raise UserError(f"{quoted(text)} is not the text of a file")
         return cls.of(Case(toml_texts(text, source), source, units))
+
+    @property
+    def given(self) -> dict[str, str]:
+        """The values without those omitted."""
+        return {name: text for name, text in self._values.items() if name not in self.omitted}
 
     @property
     def title(self) -> str | None:

@@ -32,6 +32,8 @@ from ..names import RESULTS, SCENE, quantity
 from .remarks import Remark
 from .rows import ArrowTexts, Column, Heading, Rows, heading
 
+OPTIONAL_OF_POINTS = (*UNUSED_BY_POINTS, "GA", "E", "MU", "WA", "WB")
+"""Columns that a table of point masses may lack."""
 _MEASURING = ("length", "length/time", "mass", "mass·length²", "mass·length²/time²")
 """Quantities whose bare column leaves its unit open beside columns with units."""
 _NUMBERS = re.compile(r"(?<![a-zA-Z^])(?:[0-9][0-9,]*\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
@@ -173,8 +175,9 @@ def check_scene_columns(
     advice: str = "--set NAME=VALUE",
     where: str | None = None,
 ) -> None:
-    """Raise UserError unless ``names`` are a scene; ``points``: of point masses only."""
-    optional = ("M", *(UNUSED_BY_POINTS if points else ()))
+    """Raise UserError unless ``names`` are a scene. Of point masses only, ``points``, the masses
+    and velocities of one suffice: what other results need, `impact88.solve` says."""
+    optional = ("M", *(OPTIONAL_OF_POINTS if points else ()))
     missing = [name for name in SCENE if name not in names and name not in optional]
     if missing:
         raise UserError(

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..collision.doubles import is_number
+from ..collision.needs import sentences
 from ..errors import PlausibilityWarning, UserError, library, quoted
 from ..mechanics.closedform.solve import solve
 from ..messages.arguments import explains_arguments
@@ -81,7 +82,8 @@ def solve_frame(
     -----
     PlausibilityWarning
         For sizes that no vehicle has, where the columns have units, vehicles that move sideways (of
-        long frames a thousand rows are looked at, and all where one does) and EM = 0.
+        long frames a thousand rows are looked at, and all where one does), EM = 0, and results that
+        are left out, as they need a column that is not there.
 
     Examples
     --------
@@ -91,6 +93,7 @@ def solve_frame(
     """
 
     amiss: list[Remark] = []
+    lacking: list[str] = []
 
     def solved(names: Sequence[str], column: Callable[[str], Any]) -> dict[str, Array]:
         """The results of a frame's columns, by heading."""
@@ -110,7 +113,9 @@ def solve_frame(
                 columns.setdefault(name, _numbers(name, [value], table)[0])
         all_points = "M" in columns and bool(np.all(np.asarray(columns["M"]) == 4))
         check_scene_columns(columns, all_points, "scene=")
-        results = table.shown(solve(columns, outputs, threads=threads))
+        found = solve(columns, outputs, threads=threads)
+        lacking.extend(sentences(getattr(found, "absent", {})))
+        results = table.shown(found)
         amiss.extend(
             remarks(columns, table.system, partial(_cell, scene_columns, scene), False).values()
         )
@@ -125,6 +130,8 @@ def solve_frame(
         result = _dicts(frame, solved)
     else:
         result = _narwhals(frame, solved)
+    for sentence in lacking:
+        warnings.warn(sentence, PlausibilityWarning, stacklevel=3)
     for remark in amiss:
         place = "1 row, at" if remark.rows == 1 else f"{remark.rows:,} rows, the first at"
         text = f"{place} position {remark.first}: {remark.text}"

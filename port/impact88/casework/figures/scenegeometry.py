@@ -19,8 +19,10 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
+from ...collision.doubles import double
 from ...collision.units import RULES, System
-from ...names import FINAL_VELOCITIES
+from ...errors import UserError
+from ...names import FINAL_VELOCITIES, SCENE, missing
 from ...program.scene import numbers_of
 from ...status import sentences
 from .drawing import check_drawable, degrees, unit
@@ -118,7 +120,7 @@ def plan(
     nothing after the impact; ``units``: whose base units the numbers are in; ``discs``: draw point
     masses as such. Raises UserError for a value that is not a finite number, or too large to
     draw."""
-    values, outlines = numbers_of(scene), outlines or {}
+    values, outlines = numbers_of(_drawable(scene, result or {})), outlines or {}
     for name, value in values.items():
         check_drawable([value], name)
     normal = unit(values["GA"])
@@ -172,6 +174,36 @@ def plan(
     remarks = tuple(sentences(int(known.get("STATUS") or 0), known))
     both = vehicles[0], vehicles[1]
     return Plan(both, normal, 1j * normal, impulse, apart, remarks, values, sizes_from)
+
+
+_OF_NO_EFFECT = dict.fromkeys(
+    ("DA", "DB", "PA", "PB", "WA", "WB", "IA", "IB", "E", "MU", "EM"), 0.0
+)
+"""What a drawing of point masses does not show, where it is not given."""
+
+
+def _drawable(scene: Any, result: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a scene of point masses with what its drawing needs beyond what is given: vehicles
+    face the way they travel, and the contact plane lies across motion along one line. Raises
+    UserError where the plane is not known."""
+    values: dict[str, Any] = dict(getattr(scene, "given", scene))
+    if double(str(values.get("M", 6))) != 4 or {*SCENE} <= {*values}:
+        return values
+    values = {**_OF_NO_EFFECT, **values}
+    speeds: dict[str, complex] = {}
+    for vehicle, (x, y) in {"A": ("UX", "UY"), "B": ("VX", "VY")}.items():
+        after = (float(result.get(f"V{vehicle}{axis}", math.nan)) for axis in "XY")
+        before = (double(str(values.get(name, math.nan))) for name in (x, y))
+        speeds[vehicle] = complex(*before)
+        course = next((v for v in (speeds[vehicle], complex(*after)) if abs(v) > 0), 0j)
+        theta = math.degrees(cmath.phase(course)) + (180.0 if vehicle == "A" else 0.0)
+        values.setdefault(f"T{vehicle}", theta)
+    if "GA" not in values:
+        a, b = speeds["A"], speeds["B"]
+        if not abs((a * b.conjugate()).imag) <= 1e-12 * abs(a) * abs(b):
+            raise UserError(f"{missing(['GA'])}; the drawing shows the contact plane")
+        values["GA"] = math.degrees(cmath.phase(b - a)) if a != b else math.degrees(cmath.phase(-a))
+    return values
 
 
 def _depth(point: complex, inward: complex) -> float:

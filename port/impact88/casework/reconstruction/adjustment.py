@@ -24,6 +24,7 @@ from ...errors import UserError
 from ...mechanics.closedform.share import share_typed
 from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import outcome
+from ...mechanics.posed import absent_results, is_wrong_way, pose, turned, turned_sentence
 from ...mechanics.state import (
     COURSES,
     CRUSH,
@@ -47,7 +48,6 @@ from ...names import (
 from ...status import IMPOSSIBLE, Status
 from .evidence import Evidence, weigh
 from .laws import describe_laws, missed_laws
-from .posed import absent_results, is_wrong_way, pose, turned, turned_sentence
 from .quadrics import MAX_EQUATIONS, Paths, follow_paths, quadratic_equations
 from .system import PARAMETERS, SPINS, System
 from .unknowns import UnsolvableError, check_physical, mu_to_type, solve_for

@@ -12,11 +12,11 @@ from ...collision.needs import needed
 from ...collision.units import RULES, VELOCITY, System, display_values
 from ...errors import UserError
 from ...mechanics.outcome import forces, moment_ratio, outcome
+from ...mechanics.posed import absent_results, is_wrong_way, pose, turned, turned_sentence
 from ...mechanics.state import CHANGES, COURSES, FORCES
 from ...messages.plaintable import decimals_for, format_fixed, number, paragraph, plain, table
 from ...names import CHAPTER, FINAL_STATE, PIVOT, RESULTS, SCENE, VELOCITIES, quantity
 from ...status import IMPOSSIBLE, sentences
-from .posed import absent_results, is_wrong_way, pose, turned, turned_sentence
 from .unknowns import BADLY_CONDITIONED, Solution, solve_for
 
 _ORDER = (*SCENE, *RESULTS, *CHAPTER)

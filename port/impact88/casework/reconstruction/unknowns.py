@@ -27,6 +27,7 @@ from ...collision.mappings import columns
 from ...collision.uncertain import fixed_value
 from ...errors import UserError
 from ...mechanics.closedform.solve import solve
+from ...mechanics.posed import absent_results, pose
 from ...mechanics.state import State
 from ...messages.arguments import explains_arguments
 from ...names import (
@@ -41,7 +42,6 @@ from ...names import (
     missing,
     quantity,
 )
-from .posed import absent_results, pose
 from .system import COMPLEX_STEP, SPINS, System
 
 Array = NDArray[np.float64]

@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ...collision.case import ABOUT, Case
 from ...collision.geometry import MOVES, clock, coordinate_names, resolve_contact_point
+from ...collision.needs import sentences as needs_in_words
 from ...collision.units import System, base_of
 from ...errors import UserError, library
 from ...files import replacing
@@ -21,6 +23,7 @@ from ...status import sentences
 from ..figures.canvas import svg
 from ..figures.sceneview import scene_drawing
 from ..reconstruction.solutiontable import without_noise
+from ..uncertainty.ranges import OPTIONAL_OF_POINTS
 from .frame import render
 
 if TYPE_CHECKING:
@@ -167,7 +170,8 @@ def report(
     units = case.system
     names = {n for n, text in case.values.items() if text.strip()}
     scene = coordinate_names(SCENE, names)
-    forward = set(scene) - {"M"} <= names <= {*scene, *MOVES}
+    optional = ("M", *(OPTIONAL_OF_POINTS if case.values["M"].strip() == "4" else ()))
+    forward = set(scene) - {*optional} <= names <= {*scene, *MOVES}
     check_names(names, coordinate_names((*KNOWABLE, *MOVES), names), "name used here", source)
     findings = (_forward if forward else _inverse)(case, source, samples, seed, units)
     drawing = None
@@ -175,10 +179,10 @@ def report(
     paper = paper or ("letter" if units.name in ("us", "chapter", "") else "a4")
     summary, answer = _summary(findings, case, units), _sentences(findings, units)
     remarks = [*case.remarks.values(), *findings.remarks]
-    if set(SCENE) <= set(findings.scene):  # what is not determined cannot be drawn
-        look = (DRAWN, "", units, case.outlines)
-        verdicts = [text for text in (findings.impossible, findings.evidence) if text]
-        room = _room(paper, [*summary, *answer], verdicts, remarks)
+    look = (DRAWN, "", units, case.outlines)
+    verdicts = [text for text in (findings.impossible, findings.evidence) if text]
+    room = _room(paper, [*summary, *answer], verdicts, remarks)
+    with suppress(UserError):  # what is not determined cannot be drawn
         drawing = scene_drawing(findings.scene, findings.values, *look, tallest=room)
     page = render(
         "collision.html",
@@ -226,24 +230,31 @@ def _cell(text: str) -> float | str | None:
 def _forward(case: Case, source: str, samples: int, seed: int, units: System) -> Findings:
     from ...mechanics.closedform.share import share_typed
     from ...mechanics.closedform.solve import solve
+    from ...mechanics.posed import absent_results
     from ..reconstruction.solutiontable import with_derived_values
     from ..uncertainty.ranges import read_inputs
 
     inputs = read_inputs(case)
     nominal = resolve_contact_point({name: item.nominal for name, item in inputs.values.items()})
-    if inputs.values["MU"].share:
+    if "MU" in nominal and inputs.values["MU"].share:
         nominal["MU"] = share_typed(nominal, nominal["MU"])
-    results = {name: float(value) for name, value in solve(nominal).items()}
+    solved = solve(nominal)
+    results = {name: float(value) for name, value in solved.items()}
     values = with_derived_values({**{n: float(v) for n, v in nominal.items()}, **results}, None)
     spreads: dict[str, Spread] = {}
-    remarks = sentences(int(results["STATUS"]), {**nominal, **results})
+    status = int(results.get("STATUS", 0))
+    remarks = sentences(status, {**nominal, **results})
+    needs = {**absent_results(nominal), **getattr(solved, "absent", {})}
+    shown = {*FORWARD, *_CONSEQUENCES} - {*values}
+    remarks += needs_in_words({name: x for name, x in needs.items() if name in shown})
     if any(item.varies for item in inputs.values.values()):
         from ..uncertainty.bounds import bounds
         from ..uncertainty.boundstable import quantiles_of
 
         options: dict[str, Any] = {"samples": samples, "seed": seed, "keep_draws": True}
-        bounded = bounds(inputs.values, FORWARD[2:], correlations=inputs.correlations, **options)
-        for vehicle in "AB":
+        wanted = [name for name in FORWARD[2:] if name in results]
+        bounded = bounds(inputs.values, wanted, correlations=inputs.correlations, **options)
+        for vehicle in "AB" if {"VAX", "VAY", "VBX", "VBY"} <= {*wanted} else "":
             speeds = np.hypot(bounded.draws[f"V{vehicle}X"], bounded.draws[f"V{vehicle}Y"])
             speeds = speeds[np.isfinite(speeds)]
             low, high = quantiles_of(speeds, (0.05, 0.95))
@@ -262,7 +273,7 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
             f"{100 * share:.3g} % of the draws carry the warning {name}"
             for name, share in bounded.warnings.items()
         ]
-    scene = {name: float(nominal[name]) for name in SCENE}
+    scene = {name: float(nominal[name]) for name in SCENE if name in nominal}
     return Findings(False, values, FORWARD, spreads, remarks, scene)
 
 

@@ -21,6 +21,7 @@ from ... import status
 from ...collision.case import check_mapping
 from ...collision.geometry import MOVES, resolve_contact_point
 from ...collision.mappings import base_system, within_limits
+from ...collision.needs import sentences
 from ...collision.uncertain import (
     Uncertain,
     columns_of,
@@ -32,7 +33,9 @@ from ...errors import UserError
 from ...mechanics.closedform.general import quantities
 from ...mechanics.closedform.share import share_typed
 from ...mechanics.closedform.solve import solve
+from ...mechanics.closedform.omitted import not_given
 from ...mechanics.outcome import forward_model, reconstruction_model
+from ...mechanics.posed import line_of_motion
 from ...messages.arguments import explains_arguments
 from ...names import FINAL_VELOCITIES, PIVOT, RESULTS, VELOCITIES, check_names, split_names
 from ..optimization.extremes import MAX_FULL_CORNERS, Extremes, Piece, merge
@@ -251,6 +254,9 @@ class _Box:
         self.inputs = {name: item for name, item in given.items() if item.varies}
         self.known = {name: item.nominal for name, item in given.items() if not item.varies}
         usual, allowed = _outputs(problem, given["M"].nominal == 4)
+        self.judged = 0xFFFF
+        if problem == "forward" and (lacking := not_given(self.known | dict.fromkeys(self.inputs))):
+            usual = self._do_without(given, lacking, usual, outputs)
         self.outputs = tuple(dict.fromkeys(usual if outputs is None else split_names(outputs)))
         check_names(self.outputs, allowed, "result")
         if not self.outputs:
@@ -264,6 +270,29 @@ class _Box:
         check_names(exclude, WARNINGS, "warning")
         self.excluded = sum({WARNINGS[name] for name in exclude})
         self.share = "MU" in given and given["MU"].share
+
+    def _do_without(
+        self,
+        given: Mapping[str, Uncertain],
+        lacking: Sequence[str],
+        usual: Sequence[str],
+        outputs: Sequence[str] | str | None,
+    ) -> tuple[str, ...]:
+        """Set what stands in for inputs that are not given, and return the usual outputs that do
+        not use them. Raises UserError for an output asked for that does."""
+        wanted = usual if outputs is None else split_names(outputs)
+        line, _ = line_of_motion(given)
+        if line is not None:
+            self.known |= {"GA": line, "MU": 0.0} if "GA" in lacking else {"MU": 0.0}
+            lacking = [name for name in lacking if name not in self.known]
+        nominal = {name: item.nominal for name, item in given.items()} | self.known
+        absent = getattr(solve(nominal, tuple(RESULTS)), "absent", {}) if lacking else {}
+        if outputs is not None and (needs := {n: absent[n] for n in wanted if n in absent}):
+            raise UserError("; ".join(sentences(needs)))
+        self.known |= dict.fromkeys(lacking, 0.0)
+        if lacking:  # nothing is judged by what stands in
+            self.judged = int(status.Status.ENERGY_GAINED | status.Status.NOT_FINITE)
+        return tuple(name for name in usual if name not in absent)
 
     def columns(self, point: Array) -> dict[str, Array]:
         """Return the inputs that vary at points of the cube, n values each."""
@@ -339,11 +368,14 @@ class _Box:
 
     def is_excluded(self, solved: Mapping[str, Array]) -> NDArray[np.bool_]:
         """Return True for each scene that has an excluded warning."""
-        return np.asarray(np.asarray(solved["STATUS"], np.int64) & self.excluded, bool)
+        return np.asarray(
+            np.asarray(solved["STATUS"], np.int64) & self.excluded & self.judged, bool
+        )
 
     def warnings_at(self, point: Array) -> tuple[str, ...]:
         """Return the names of the warnings of one point."""
         bits = int(np.ravel(self.solve(self.columns(point[None]), ["STATUS"])["STATUS"])[0])
+        bits &= self.judged
         return tuple(name for name, bit in WARNINGS.items() if bits & bit)
 
     def nominal(self) -> dict[str, float]:
@@ -373,12 +405,12 @@ class _Box:
 
 def _check_values(values: Mapping[str, Uncertain], problem: str) -> None:
     """Raise UserError for missing or unknown values and ranges that a problem cannot have."""
-    names = complete(values, problem)
+    names = complete(values, problem, point=values["M"].nominal == 4)
     check_names(values, (*names, *MOVES), f"value of the {problem} problem")
     if values["M"].varies or values["M"].nominal not in (4, 6):
         raise UserError("expected 6, or 4 for point masses", "M")
     name = "MU" if problem == "forward" else "MUP"
-    friction = values[name]
+    friction = values.get(name, fixed_value(0.0))
     if friction.varies and friction.low <= -10 <= friction.high and friction.kind != "normal":
         raise UserError("a range must not include -10, the code for the pivot", name)
     if problem != "forward":
@@ -443,7 +475,7 @@ def _monte_carlo(
         is_excluded = box.is_excluded(results) if box.excluded else False
         for name in box.outputs:
             draws[name][chunk] = np.where(is_excluded, np.nan, results[name])
-        flags[chunk] = results["STATUS"]
+        flags[chunk] = results["STATUS"].astype(np.int64) & box.judged
         if first < RANKED_DRAWS:
             for name, column in ranked_inputs.items():
                 part = column[chunk]

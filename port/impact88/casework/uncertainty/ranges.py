@@ -15,6 +15,7 @@ from ...collision.geometry import MOVES, coordinate_names, resolve_contact_point
 from ...collision.uncertain import Uncertain
 from ...collision.units import opposite
 from ...errors import UserError
+from ...mechanics.closedform.columns import UNUSED_BY_POINTS
 from ...names import FINAL_VELOCITIES, SCENE, VELOCITIES, check_names
 
 Pair = tuple[str, str]
@@ -42,10 +43,19 @@ def input_names(problem: str) -> tuple[str, ...]:
     return (*common, *(before if problem == "forward" else AFTER))
 
 
-def complete(given: Collection[str], problem: str, source: str | None = None) -> tuple[str, ...]:
-    """Return the names a problem needs, those of the contact point as they are ``given``. Raise
-    UserError where one is missing."""
+OPTIONAL_OF_POINTS = (*UNUSED_BY_POINTS, "GA", "E", "MU", "WA", "WB")
+"""What point masses may lack: not all results use it."""
+
+
+def complete(
+    given: Collection[str], problem: str, source: str | None = None, point: bool = False
+) -> tuple[str, ...]:
+    """Return the names a problem needs, those of the contact point as they are ``given``, of point
+    masses (``point``) without what is not given of `OPTIONAL_OF_POINTS`. Raise UserError where one
+    is missing."""
     names = coordinate_names(input_names(problem), given)
+    optional = OPTIONAL_OF_POINTS if point and problem == "forward" else ()
+    names = tuple(name for name in names if name in given or name not in optional)
     if missing := [name for name in names if name not in given]:
         hint = " (MUP: the friction coefficient as signed P_t/P_n)" if "MUP" in missing else ""
         raise UserError(
@@ -94,7 +104,11 @@ def read_inputs(
     late = {name: text for name, text in changes.items() if name in AFTER}
     case = case.replaced(late, "--range") if late else case
     values = _read(case, (*scene, *MOVES) if forward else tuple(case.values))
-    wanted = (*complete(values, problem, source), *(name for name in MOVES if name in values))
+    point = values["M"].nominal == 4
+    wanted = (
+        *complete(values, problem, source, point),
+        *(name for name in MOVES if name in values),
+    )
     correlations = read_correlations(case.correlations, source)
     return Inputs({name: values[name] for name in wanted}, correlations, case, derived)
 

@@ -32,10 +32,13 @@ from typing import Any
 from ...casework.figures.canvas import check_ending, save
 from ...casework.figures.drawing import Drawing
 from ...casework.figures.sceneview import scene_drawing
-from ...errors import UserError
+from ...collision.doubles import double
+from ...collision.needs import sentences
+from ...errors import UserError, note
+from ...mechanics.closedform.columns import UNUSED_BY_POINTS
 from ...mechanics.closedform.solve import solve
 from ...names import FINAL_VELOCITIES, RESULTS, missing
-from ...program.scene import Scene, numbers_of
+from ...program.scene import Scene
 from . import options
 
 OF_RANGES = ("histogram", "tornado")
@@ -90,7 +93,8 @@ def _draw(args: options.Args) -> Drawing:
         )
     if kind == "barrier":
         return _barrier(args)
-    scene = options.one_scene(args) if kind != "planar" or scene_source else None
+    may_omit = OF_POINTS if kind in ("scene", "strip") and _point_masses(args) else ()
+    scene = options.one_scene(args, may_omit) if kind != "planar" or scene_source else None
     if kind == "planar" or scene is None:
         from ...casework.figures.views import planar
 
@@ -162,5 +166,16 @@ def _swept(args: options.Args) -> Drawing:
 
 def solved(scene: Scene) -> dict[str, Any]:
     """The results of one scene as numbers, for a drawing."""
-    results = solve(numbers_of(scene), (*FINAL_VELOCITIES, "STATUS"))
+    given = {name: double(text) for name, text in scene.given.items()}
+    results = solve(given, (*FINAL_VELOCITIES, "STATUS"))
+    for sentence in sentences(getattr(results, "absent", {})):
+        note("figure", sentence)
     return {name: value.item() for name, value in results.items()}
+
+
+OF_POINTS = (*UNUSED_BY_POINTS, "GA", "E", "MU", "WA", "WB")
+"""What the drawing of point masses does without."""
+
+
+def _point_masses(args: options.Args) -> bool:
+    return options.case_given(args).values.get("M", "6").strip() in ("4", "4.0")

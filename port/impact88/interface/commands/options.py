@@ -448,14 +448,15 @@ def _within_limits(name: str, text: str, source: str, units: str | None) -> Unce
     return fixed_value(value)
 
 
-def scene_given(args: Args, based: str = "") -> Scene | None:
+def scene_given(args: Args, based: str = "", may_omit: Collection[str] = ()) -> Scene | None:
     """Return the scene that file or sample name, with what ``--set`` and ``--move-contact`` change;
     None where neither is given. How its entries were understood is said on stderr, and what of the
-    answer is ``based`` on other units than the scene's. Raises UserError."""
+    answer is ``based`` on other units than the scene's. Names of ``may_omit`` need not be given.
+    Raises UserError."""
     if source_of(args) is None:
         return None
     set_pairs(args.set, (*SCENE, *OWN_NAMES))
-    scene = Scene.of(case_given(args))
+    scene = Scene.of(case_given(args), may_omit)
     note_remarks(scene, based)
     if (move := getattr(args, "move_contact", None)) is None:
         return scene
@@ -472,9 +473,9 @@ def scene_given(args: Args, based: str = "") -> Scene | None:
     return Scene.of(case.replaced({**cleared, **texts}, "--move-contact"))
 
 
-def one_scene(args: Args) -> Scene:
+def one_scene(args: Args, may_omit: Collection[str] = ()) -> Scene:
     """Return `scene_given`'s scene. Raises UserError where neither file nor sample is given."""
-    if (scene := scene_given(args)) is None:
+    if (scene := scene_given(args, may_omit=may_omit)) is None:
         raise UserError(ONE_EXPECTED)
     return scene
 

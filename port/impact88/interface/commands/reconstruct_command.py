@@ -102,6 +102,12 @@ def main(args: options.Args) -> None:
     else:
         numbers = {name: item.nominal for name, item in values.items()}
         solutions = Exact.all_of(numbers, output_names, args.contact_time, options.source_of(args))
+    for impact in solutions:
+        impact.remarks = [
+            *case.remarks.values(),
+            *([friction] if friction else []),
+            *impact.remarks,
+        ]
     options.show_impacts(args, solutions, units)
 
 

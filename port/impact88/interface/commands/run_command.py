@@ -20,7 +20,7 @@ from itertools import chain, repeat
 
 from ...apple.applesoft.console import PRINTER_SLOT, Console, EndOfInput
 from ...collision.case import OWN_NAMES, Case, check_value
-from ...errors import UserError
+from ...errors import UserError, note
 from ...files import replacing, typed_line
 from ...names import SCENE, VELOCITIES
 from ...program.arithmetics import ARITHMETICS
@@ -77,7 +77,10 @@ def check_slot(args: options.Args) -> None:
 
 def main(args: options.Args) -> int:
     check_slot(args)
-    scene = options.scene_given(args, "the program's page")
+    scene = options.scene_given(args, "the program's page", may_omit=tuple(SCENE))
+    if scene and scene.omitted:
+        names = [n if scene[n] == "0" else f"{n} (1: it divides)" for n in scene.omitted]
+        note("run", f"0 is typed for what is not given: {' '.join(names)}")
     data = dict(scene or _published_data(args))
     velocities = [name for name in VELOCITIES if name in data]
     if velocities and len(velocities) < len(VELOCITIES):

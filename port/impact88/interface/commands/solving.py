@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ...collision.case import OWN_NAMES, VALUE_LIMIT, Case, check_value, is_share
 from ...collision.doubles import double, is_number
 from ...collision.fields import ZERO_DETERMINANT
+from ...collision.needs import sentences
 from ...collision.scenefile import case_in
 from ...collision.units import Convention, convention_named
 from ...errors import UserError, note, quoted
@@ -22,7 +23,7 @@ from ...mechanics.closedform.columns import INERTIAS, UNUSED_BY_POINTS, examine,
 from ...mechanics.closedform.share import resolve_share, share_of, share_typed
 from ...mechanics.closedform.solve import solve
 from ...messages.progress import progress
-from ...names import DEFAULT_M, RESULTS, SCENE, check_names
+from ...names import DEFAULT_M, RESULTS, SCENE, check_names, missing
 from ...status import Status
 from ...tables.cells import (
     Amount,
@@ -112,9 +113,13 @@ def solve_table(args: options.Args) -> int:
                 if name in constants and f"M{name[1]}" in source.names
             }
         points = constants.get("M", "4" if "M" in source.names else "6") == "4"
-        check_scene_columns(
-            {*source.names, *constants}, points, where=display_name(path or "--sample")
-        )
+        present = {*source.names, *constants}
+        if not one_scene:
+            check_scene_columns(present, points, where=display_name(path))
+        lacking = _Lacking(present, points)
+        if arithmetic is _applesoft and lacking.names:
+            raise UserError(missing(lacking.names), display_name(path or "--sample"))
+        stack.callback(lacking.say)
         if swept:  # the rest is the same in every row
             source.names = [name for name in source.names if name in swept or name not in SCENE]
         elif units.strict:
@@ -146,11 +151,11 @@ def solve_table(args: options.Args) -> int:
                 rows.columns[name] = [text] * rows.count
             for name, estimate in inertias.items():
                 rows.columns[name] = estimate(rows)
-            # a name without a column has empty cells: a complaint where a row looks at them
+            # a block may lack what others have: a complaint where a row looks at the empty cells
             blanks = [None] * rows.count
-            rows.columns |= {name: blanks for name in SCENE if name not in rows.columns}
+            rows.columns |= {n: blanks for n in lacking.filled if n not in rows.columns}
             rows.columns["M"] = fill_blanks(rows.columns["M"], DEFAULT_M)
-            results = arithmetic(rows, units, outputs, remarks)
+            results = arithmetic(rows, units, outputs, remarks, lacking)
             write(rows, units.shown(results))
             if result_format == "csv" and scene_too:
                 for name in {*rows.columns} - {*SCENE, *live}:
@@ -272,20 +277,46 @@ def _estimate_inertias(
     return texts
 
 
-def _float64(rows: Rows, units: TableUnits, wanted: Sequence[str], said: _Remarks) -> Results:
+class _Lacking:
+    """Inputs that a table has no column for, and what is said of the results that need them once at
+    the end. ``filled``: the names that its rows have, if only as empty cells."""
+
+    def __init__(self, present: Collection[str], points: bool) -> None:
+        unused = UNUSED_BY_POINTS if points else ()
+        self.names = [n for n in SCENE if n not in present and n not in ("M", *unused)]
+        self.filled = [name for name in SCENE if name not in self.names]
+        self.absent: dict[str, tuple[str, ...]] = {}
+
+    def say(self) -> None:
+        for sentence in sentences(self.absent):
+            note("solve", sentence)
+
+
+def _float64(
+    rows: Rows, units: TableUnits, wanted: Sequence[str], said: _Remarks, lacking: _Lacking
+) -> Results:
     """The closed form in double precision."""
     columns = numbers(rows, units)
     _read_shares(rows, columns)
     said.look(rows, units, columns)
     unread = {index for index, *_ in rows.bad}
-    any_refused = rows.count > 0 and examine(columns).refused is not None
-    for refusal in refusals(columns) if any_refused else ():
-        values = np.broadcast_to(columns[refusal.column], rows.count)
+    usable = {**dict.fromkeys(lacking.names, np.ones(1)), **columns}
+    complete = {name: usable[name] for name in SCENE}
+    any_refused = rows.count > 0 and examine(complete).refused is not None
+    for refusal in refusals(complete) if any_refused else ():
+        values = np.broadcast_to(complete[refusal.column], rows.count)
         rows_refused = np.flatnonzero(np.broadcast_to(refusal.where, rows.count)).tolist()
         for index in sorted({*rows_refused} - unread):
             unread.add(index)
             rows.bad.append((index, refusal.column, f"{float(values[index])!r} {refusal.reason}"))
-    return _blank_rows(solve(columns, wanted), unread)
+    found = solve(columns, wanted)
+    results = dict(found)
+    if lacking.names:
+        lacking.absent = getattr(found, "absent", {})
+        for name in lacking.absent:
+            results[name] = np.full(rows.count, np.nan)
+        results = {name: np.array(np.broadcast_to(results[name], rows.count)) for name in wanted}
+    return _blank_rows(results, unread)
 
 
 def _blank_rows(results: Results, unread: set[int]) -> Results:
@@ -314,7 +345,9 @@ def _read_shares(rows: Rows, columns: dict[str, NDArray[np.float64]]) -> None:
         rows.bad = [bad for bad in rows.bad if bad[1] != "MU" or bad[0] not in fractions]
 
 
-def _applesoft(rows: Rows, units: TableUnits, wanted: Sequence[str], said: _Remarks) -> Results:
+def _applesoft(
+    rows: Rows, units: TableUnits, wanted: Sequence[str], said: _Remarks, lacking: _Lacking
+) -> Results:
     """The listing's own arithmetic, `impact88.replay`."""
     from ...program.vectorized import replay
 

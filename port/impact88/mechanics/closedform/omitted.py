@@ -102,7 +102,7 @@ def solve_without(
     if zero:  # one that is not below 0, such as EESA where energy is gained, hides its inputs
         scenes = _ordinary_scenes(given, rng)
         elsewhere = [
-            solve(_completed(scenes, {n: x[trial] for n, x in trials.items()}, np.False_), names)
+            solve(_completed(scenes, {n: x[trial] for n, x in trials.items()}, np.zeros(())), names)
             for trial in range(TRIALS)
         ]
         same = _same(elsewhere[0], elsewhere[1:], elsewhere[0])

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from ...collision.geometry import ARMS, GEOMETRY
-from ...collision.needs import needed
-from ...collision.uncertain import Uncertain
-from ...mechanics.state import COURSES, CRUSH, FORCES, KNOWABLE, QUANTITIES, SPEEDS
-from ...mechanics.uses import inputs_of
-from ...names import FINAL_STATE, PIVOT, VELOCITIES
-from ...status import Status
+from ..collision.geometry import ARMS, GEOMETRY
+from ..collision.needs import needed
+from ..collision.uncertain import Uncertain
+from ..names import FINAL_STATE, PIVOT, VELOCITIES
+from ..status import Status
+from .state import COURSES, CRUSH, FORCES, KNOWABLE, QUANTITIES, SPEEDS
+from .uses import inputs_of
 
 PARALLEL_TOLERANCE = 1e-9  # degrees between directions along one line
 _ENERGIES = ("KI", "KF", "EL", "LOSS", "DT", *CRUSH)
