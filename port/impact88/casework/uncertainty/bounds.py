@@ -31,9 +31,9 @@ from ...collision.uncertain import (
 )
 from ...errors import UserError
 from ...mechanics.closedform.general import quantities
+from ...mechanics.closedform.omitted import not_given
 from ...mechanics.closedform.share import share_typed
 from ...mechanics.closedform.solve import solve
-from ...mechanics.closedform.omitted import not_given
 from ...mechanics.outcome import forward_model, reconstruction_model
 from ...mechanics.posed import line_of_motion
 from ...messages.arguments import explains_arguments
