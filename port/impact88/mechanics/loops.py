@@ -383,15 +383,30 @@ def _function(plan: Layout) -> list[str]:
     lines = [
         "/* The results of a strip of scenes, as far as ``loops`` are done. */",
         "static CLONES void compute_loops(",
-        "    const double *const *in, double (*restrict v)[ROW_LENGTH], const circle *circle,",
-        "    const loop_set loops, const int64_t eights)",
+        "    const double *const *in, const double *const *ahead, double (*restrict v)[ROW_LENGTH],",
+        "    const circle *circle, const loop_set loops, const int64_t eights)",
         "{",
         "    const int64_t lanes = 8 * eights; /* vectors of any length leave no rest */",
         *_wrap_columns(),
     ]
+    fetched = _fetched_columns(plan)
     for number, loop in enumerate(plan.loops):
         lines += _write_loop(plan, number, loop)
+        if names := fetched.get(number):
+            texts = " ".join(f"FETCH_COLUMN({name})" for name in names)
+            lines.append(f"    if (HAS(loops, {number})) {{ {texts} }}")
     return [*lines, "}"]
+
+
+def _fetched_columns(plan: Layout) -> dict[int, list[str]]:
+    """Return the columns that are fetched with each loop: with that which most questions need."""
+    fetched: dict[int, list[str]] = {}
+    for name in COLUMNS:
+        users = [k for k, loop in enumerate(plan.loops) if any(x.value == name for x in loop.given)]
+        if users:
+            most = max(users, key=lambda k: plan.share_of(plan.loops[k].needed))
+            fetched.setdefault(most, []).append(name)
+    return fetched
 
 
 def _wrap_columns() -> list[str]:

@@ -62,6 +62,19 @@ typedef struct {
 #define HAS(set, loop) ((set).bits[(loop) / 64] >> (loop) % 64 & 1)
 #define COLUMN(name) const double *restrict name = in[AT_##name];
 
+/* What is needed soon is fetched into the second-level cache beside the computing. */
+#ifdef __GNUC__
+#define FETCH(address) __builtin_prefetch(address, 0, 2)
+#define FETCH_RESULT(address) __builtin_prefetch(address, 1, 2)
+#else
+#define FETCH(address) (void)(address)
+#define FETCH_RESULT(address) (void)(address)
+#endif
+#define FETCH_COLUMN(name) \
+    for (int64_t i = 0; i < lanes; i += 8) FETCH(ahead[AT_##name] + i);
+/* Scenes between those that are written and those whose results' memory is fetched. */
+#define RESULTS_AHEAD 128
+
 #include "loops.h"
 
 EXPORT const char *formulas(void) { return FORMULAS; }
@@ -286,9 +299,11 @@ static void *result_at(const impacts *c, int r, int64_t at)
 }
 
 /* Compute the scenes of a strip, with as many beside them as fill vectors. */
-static void compute(const impacts *c, work *w, int kind, const double *const *in, int64_t count)
+static void compute(
+    const impacts *c, work *w, int kind, const double *const *in, const double *const *ahead,
+    int64_t count)
 {
-    compute_loops(in, w->row, c->circle, w->loops[kind], (count + 7) / 8);
+    compute_loops(in, ahead, w->row, c->circle, w->loops[kind], (count + 7) / 8);
 }
 
 /* Compute the scenes of a kind of the tile from ``at`` on, and put them in place. */
@@ -307,7 +322,7 @@ static void compute_apart(const impacts *c, work *w, int kind, const tile *t, in
         for (int k = 0; k < COLUMNS; k++)
             for (int64_t i = 0; i < (many + 7) / 8 * 8 && c->step[k]; i++)
                 copy[k][i] = t->near[k][place[i]];
-        compute(c, w, kind, in, many);
+        compute(c, w, kind, in, in, many);
         for (int64_t n = 0; n < w->count; n++) {
             int r = (int)w->wanted[n];
             if (r == TO_STATUS) {
@@ -334,16 +349,22 @@ static void refuse(const impacts *c, const work *w, int64_t scene)
 
 /* Compute the scenes of the commonest kind where they are: ``count`` from ``at`` on. */
 static void compute_together(
-    const impacts *c, work *w, int kind, const tile *t, int64_t at)
+    const impacts *c, work *w, int kind, const tile *t, int64_t at, int64_t stop)
 {
-    const double *in[COLUMNS];
+    const double *in[COLUMNS], *ahead[COLUMNS];
     for (int k = 0; k < COLUMNS; k++) in[k] = c->step[k] ? t->near[k] : w->fixed[k];
     for (int64_t from = 0; from < t->count; from += STRIP) {
         int64_t many = t->count - from < STRIP ? t->count - from : STRIP;
-        compute(c, w, kind, in, many);
+        for (int k = 0; k < COLUMNS; k++) {
+            int64_t there = at + from + TILE + STRIP <= stop && c->step[k];
+            ahead[k] = there ? c->column[k] + at + from + TILE : in[k];
+        }
+        compute(c, w, kind, in, ahead, many);
         for (int64_t n = 0; n < w->count; n++) {
             int r = (int)w->wanted[n];
             hand_over(w, kind, r, in, result_at(c, r, at + from), many);
+            for (int i = 0; i < STRIP && at + from + RESULTS_AHEAD + STRIP <= stop; i += 8)
+                FETCH_RESULT((double *)result_at(c, r, at + from + RESULTS_AHEAD) + i);
         }
         for (int k = 0; k < COLUMNS; k++)
             if (c->step[k]) in[k] += STRIP;
@@ -383,7 +404,7 @@ EXPORT void solve_impacts(const impacts *c, int64_t start, int64_t stop)
         for (int k = 0; k < KINDS; k++)
             if (numbers[k] > numbers[most]) most = k;
 
-        if (numbers[most]) compute_together(c, &w, most, &t, at);
+        if (numbers[most]) compute_together(c, &w, most, &t, at, stop);
         for (int k = 0; k < KINDS; k++)
             if (k != most && numbers[k]) compute_apart(c, &w, k, &t, at);
         for (int64_t i = 0; i < count && numbers[REFUSED]; i++)

@@ -1,6 +1,6 @@
 /* Made from the formulas of closedform/impact.py by mechanics/loops.py: not to be edited. */
 
-#define FORMULAS "04bb7382392e90f3"
+#define FORMULAS "599737ac2621a67b"
 enum column { AT_E, AT_MU, AT_EM, AT_DA, AT_DB, AT_GA, AT_PA, AT_PB, AT_TA, AT_TB, AT_MA, AT_MB,
     AT_IA, AT_IB, AT_UX, AT_UY, AT_WA, AT_VX, AT_VY, AT_WB, AT_M, COLUMNS };
 enum kind { FRICTION, PIVOT, POINT, POINT_PIVOT, KINDS };
@@ -103,8 +103,8 @@ static const int place_of[KINDS][RESULTS] = {
 
 /* The results of a strip of scenes, as far as ``loops`` are done. */
 static CLONES void compute_loops(
-    const double *const *in, double (*restrict v)[ROW_LENGTH], const circle *circle,
-    const loop_set loops, const int64_t eights)
+    const double *const *in, const double *const *ahead, double (*restrict v)[ROW_LENGTH],
+    const circle *circle, const loop_set loops, const int64_t eights)
 {
     const int64_t lanes = 8 * eights; /* vectors of any length leave no rest */
     COLUMN(E) COLUMN(MU) COLUMN(EM) COLUMN(DA) COLUMN(DB) COLUMN(GA) COLUMN(PA) COLUMN(PB)
@@ -115,12 +115,14 @@ static CLONES void compute_loops(
         double x0 = ADD(TA[i], PA[i]); v[2][i] = x0;
         double x1 = ADD(TB[i], PB[i]); v[3][i] = x1;
     }
+    if (HAS(loops, 1)) { FETCH_COLUMN(PA) FETCH_COLUMN(PB) FETCH_COLUMN(TA) FETCH_COLUMN(TB) }
     if (HAS(loops, 2)) EACH {
         double x0 = SUBTRACT(UY[i], VY[i]); v[4][i] = x0;
         double x1 = SUBTRACT(UX[i], VX[i]); v[5][i] = x1;
         double x2 = SUBTRACT(v[2][i], GA[i]); v[6][i] = x2;
         double x3 = SUBTRACT(v[3][i], GA[i]); v[7][i] = x3;
     }
+    if (HAS(loops, 2)) { FETCH_COLUMN(GA) FETCH_COLUMN(UX) FETCH_COLUMN(UY) FETCH_COLUMN(VX) FETCH_COLUMN(VY) }
     if (HAS(loops, 3)) EACH {
         double x0 = MULTIPLY(v[0][i], v[4][i]);
         double x1 = MULTIPLY(v[1][i], v[5][i]);
@@ -148,9 +150,11 @@ static CLONES void compute_loops(
         double x11 = ADD(x9, x10); v[21][i] = x11;
         double x12 = MULTIPLY(E[i], x11); v[22][i] = x12;
     }
+    if (HAS(loops, 7)) { FETCH_COLUMN(E) FETCH_COLUMN(DA) FETCH_COLUMN(DB) }
     if (HAS(loops, 8)) EACH {
         double x0 = AGAINST(MU[i], v[16][i]); v[23][i] = x0;
     }
+    if (HAS(loops, 8)) { FETCH_COLUMN(MU) }
     if (HAS(loops, 9)) EACH SINE_AND_COSINE(v[2][i], v[24][i], v[25][i]);
     if (HAS(loops, 10)) EACH {
         double x0 = MULTIPLY(DA[i], v[24][i]); v[2][i] = x0;
@@ -225,6 +229,7 @@ static CLONES void compute_loops(
         double x2 = ADD(x0, x1); v[54][i] = x2;
         double x3 = DIVIDE(0x1.0000000000000p+0, x2); v[55][i] = x3;
     }
+    if (HAS(loops, 25)) { FETCH_COLUMN(MA) FETCH_COLUMN(MB) }
     if (HAS(loops, 26)) EACH {
         double x0 = ADD(EM[i], EM[i]);
         double x1 = SUBTRACT(0x1.0000000000000p+0, x0); v[56][i] = x1;
@@ -246,6 +251,7 @@ static CLONES void compute_loops(
         double x17 = MULTIPLY(x4, WA[i]); v[72][i] = x17;
         double x18 = MULTIPLY(x10, v[54][i]); v[73][i] = x18;
     }
+    if (HAS(loops, 26)) { FETCH_COLUMN(EM) FETCH_COLUMN(IA) FETCH_COLUMN(IB) FETCH_COLUMN(WA) FETCH_COLUMN(WB) }
     if (HAS(loops, 27)) EACH {
         double x0 = MULTIPLY(v[23][i], v[14][i]);
         double x1 = SUBTRACT(v[17][i], x0); v[74][i] = x1;
