@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import os
 import re
@@ -106,8 +107,17 @@ def test_friction_as_a_share_is_that_of_the_other_commands(tmp_path: Path, capsy
     rows = list(csv.reader((tmp_path / "t.csv").open(encoding="utf-8")))
     found = next(row[2] for row in rows if row[:1] == ["DVA"])
     capsys.readouterr()
-    assert main(["solve", str(tmp_path / "case.toml"), "--outputs", "DVA", "--results-only"]) == 0
-    assert float(found) == pytest.approx(float(capsys.readouterr().out.split()[-1]), abs=0.06)
+    assert main(["solve", str(tmp_path / "case.toml"), "--outputs", "DVA"]) == 0
+    (row,) = csv.DictReader(io.StringIO(capsys.readouterr().out))
+    assert float(found) == pytest.approx(float(row["DVA [mph]"]), abs=0.06)
+
+
+def test_what_is_taken_as_given_is_said(tmp_path: Path) -> None:
+    page = written(tmp_path, SCENE)
+    told = page[page.index("Not judged") : page.index("Validation</h2>")]
+    assert "Taken as exact" in told
+    assert "The file names no source for" in told
+    assert " MA " not in told.partition("names no source for")[2]
 
 
 def test_the_same_input_gives_the_same_bytes_and_no_file_is_missed(forward: Path) -> None:

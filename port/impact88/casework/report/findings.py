@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...collision.case import ABOUT, Case
+from ...collision.case import ABOUT, Case, remark_lines
 from ...collision.geometry import MOVES, clock, coordinate_names, resolve_contact_point
 from ...collision.needs import sentences as needs_in_words
 from ...collision.units import System, base_of
@@ -178,7 +178,7 @@ def report(
     tables = [_answer(findings, units), *_details(findings, case, units)]
     paper = paper or ("letter" if units.name in ("us", "chapter", "") else "a4")
     summary, answer = _summary(findings, case, units), _sentences(findings, units)
-    remarks = [*case.remarks.values(), *findings.remarks]
+    remarks = [*remark_lines(case.remarks), *findings.remarks]
     look = (DRAWN, "", units, case.outlines)
     verdicts = [text for text in (findings.impossible, findings.evidence) if text]
     room = _room(paper, [*summary, *answer], verdicts, remarks)
@@ -200,12 +200,29 @@ def report(
         figures=_figures(findings, units),
         answer=answer,
         validated=_validation_text(),
+        unjudged=_unjudged(case),
         tables=tables,
         drawing=svg(drawing) if drawing else "",
         room=FIRST_PAGE[paper],
         remarks=remarks,
     )
     return page, tables
+
+
+def _unjudged(case: Case) -> list[str]:
+    """Return sentences on what the page takes as it was given, and on what it says nothing."""
+    given = [entry for entry in case.entries.values() if entry.name in KNOWABLE]
+    exact = [entry.name for entry in given if entry.kind == "value" and entry.name != "M"]
+    unsourced = [entry.name for entry in given if not entry.source and entry.name != "M"]
+    sentences = []
+    if exact:
+        sentences.append(f"Taken as exact, for no limits are given: {' '.join(exact)}.")
+    if unsourced:
+        sentences.append(f"The file names no source for {' '.join(unsourced)}.")
+    return [
+        *sentences,
+        "Motion before and after the impact, crush and injury: nothing of them is computed here.",
+    ]
 
 
 def write_workbook(path: str, tables: Sequence[Table]) -> None:

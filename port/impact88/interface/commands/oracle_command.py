@@ -35,6 +35,7 @@ from ...conformance.comparison import kit, vectors
 from ...conformance.comparison.oracle import BATCH, answer, published_tests
 from ...errors import UserError
 from ...files import LONGEST_LINE, display_name, encoding_of, open_bytes
+from ...messages.progress import progress
 from . import options
 
 ARGUMENTS = (
@@ -103,12 +104,14 @@ def main(args: options.Args) -> int:
     else:
         batches = (answer(batch, reference, args.units) for batch in _batches(args.scenes))
     total = refusals = 0
-    for answers in batches:
-        for line in answers:
-            total += 1
-            refusals += "error" in line
-            print(options.json_text(line))
-        sys.stdout.flush()
+    with progress(args.vectors, "oracle") as meter:
+        for answers in batches:
+            for line in answers:
+                total += 1
+                refusals += "error" in line
+                print(options.json_text(line))
+                meter.update(1)
+            sys.stdout.flush()
     if refusals == total:
         empty_message = 'nothing to answer; expected lines such as {"id": 1, "scene": {...}}'
         raise UserError(
