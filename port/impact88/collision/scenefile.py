@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import re
+from collections import namedtuple
 from collections.abc import Collection, Mapping, Sequence
 
 from ..errors import UserError, quoted
@@ -164,6 +165,100 @@ def template(case: Case | None = None, units: str | None = None) -> str:
             lines += [line + mark, *source]
     if remaining:
         lines += ["", *(line for name in remaining for line in _entry(name, texts, 20, system))]
+    return "\n".join(lines) + "\n"
+
+
+class CaseTemplate(namedtuple("CaseTemplate", "title command remarks entries")):
+    """A kind of collision: what it is, the command that takes its file, remarks for who fills it
+    in, and its entries, each with the text it begins with ("" to fill in)."""
+
+    __slots__ = ()
+
+
+_FACING = {"TA": "course", "TB": "course"}
+CASES = {
+    "intersection": CaseTemplate(
+        "Intersection: speeds before from skids and departure angles",
+        "reconstruct",
+        (
+            "Momentum alone: masses, the ways the vehicles came and left, and their speeds after.",
+            'A skid to rest is a speed: SAF = "skid 62 ft at 0.7 +- .05". Courses are',
+            "counterclockwise from x. Leave SAF and SBF empty and give SA and SB for the converse.",
+        ),
+        {
+            "M": "4",
+            **dict.fromkeys(("MA", "MB", "HA", "HB", "SAF", "HAF", "SBF", "HBF"), ""),
+            **_FACING,
+        },
+    ),
+    "rear-end": CaseTemplate(
+        "Rear end: delta-V from closing speed and restitution",
+        "reconstruct",
+        ("Both along x, A into B. B's speed is 0 where it stands; E is .1 to .4 at low speeds.",),
+        {
+            "M": "4",
+            "MA": "",
+            "MB": "",
+            "SA": "",
+            "HA": "0",
+            "SB": "0",
+            "HB": "0",
+            "E": "",
+            **_FACING,
+        },
+    ),
+    "head-on": CaseTemplate(
+        "Head-on: speeds after and delta-V",
+        "reconstruct",
+        ("Along one line: A along x, B against it. E = 0 leaves them locked together.",),
+        {
+            "M": "4",
+            "MA": "",
+            "MB": "",
+            "SA": "",
+            "HA": "0",
+            "SB": "",
+            "HB": "180",
+            "E": "0",
+            **_FACING,
+        },
+    ),
+    "barrier": CaseTemplate(
+        "Barrier: one vehicle against a rigid barrier",
+        "chapter barrier",
+        ("The barrier is along y where GA = 0; A drives against n, and faces it where TA = 0.",),
+        {
+            **dict.fromkeys(("MA", "IA", "DA", "PA"), ""),
+            **{"TA": "0", "GA": "0", "E": "", "MU": "", "EM": "1", "UX": "", "UY": "0", "WA": "0"},
+        },
+    ),
+    "planar": CaseTemplate(
+        "Planar impact: velocities after from those before",
+        "solve",
+        (*SIGNS.rstrip().splitlines(), "", 'MU = "locked" ends the sliding; EM = 1 is no moment.'),
+        {**dict.fromkeys(SCENE, ""), "WA": "0", "WB": "0", "EM": "1", "M": "6"},
+    ),
+    "crush": CaseTemplate(
+        "Crush energy to delta-V (Equation 19)",
+        "chapter delta-v",
+        ("An estimate from the energy lost, fitted to eleven staged collisions.",),
+        dict.fromkeys(("MA", "MB", "SA", "SB", "EL"), ""),
+    ),
+}
+"""The kinds of collision that `case_template` offers, by the field's names."""
+
+
+def case_template(name: str, units: str | None = None) -> str:
+    """Return a file to fill in that holds what a kind of collision (`CASES`) needs, and nothing
+    else; its bare numbers are in the system ``units``, ft, lb and mph by default."""
+    from .units import system_of
+
+    units = units or "us"
+    case, system = CASES[name], system_of(units)
+    lines = [f"# {case.title}", "#", *(f"# {line}".rstrip() for line in case.remarks)]
+    lines += [f"# Filled in, it goes to: impact88 {case.command} FILE", "", f'units = "{units}"']
+    for entry in case.entries:
+        lines += _entry(entry, case.entries, 16, system)
     return "\n".join(lines) + "\n"
 
 

@@ -137,10 +137,13 @@ def report(
     names = (*INITIAL, *FINAL, "PN", "PT", "DVA", "DVB", "KI", "KF", "LOSS", "MUP", "MUC")
     shape = np.broadcast_shapes(*(np.shape(value) for value in values))
     zero, total = np.zeros(()), final[0] + final[1] + final[2] + final[3]
+    # A is on the side that it approaches from, whichever way n points
+    side = np.where(van > vbn, -1.0, 1.0)
+    pushed = side * pn
     # no arms, no moment; mu is signed here, and -10 does not stand for the pivot
     conditions = findings(
-        gn=van - vbn,
-        pn=pn,
+        gn=side * (van - vbn),
+        pn=pushed,
         arm_a=zero,
         arm_b=zero,
         da=zero,
@@ -150,8 +153,8 @@ def report(
         e=e,
         em=zero,
         friction_mu=mu,
-        forward=forward_friction(mu, critical * pn),
-        pivot_pn=pn,
+        forward=forward_friction(mu, critical * pushed),
+        pivot_pn=pushed,
         limit=abs(critical * pn),
         # without arms the normal impulse does not reverse the sliding
         gt=zero,

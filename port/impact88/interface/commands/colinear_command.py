@@ -1,7 +1,8 @@
 """Two vehicles that do not turn, velocities along n (crush) and t (sliding). Given MA MB E MUP and
 the velocities before (UN UT of A, VN VT of B), Equations 9-12 give those after; given those after
 (VAN VAT VBN VBT), the same equations with 1/E give those before. MUP is the signed P_t/P_n of
-Equation 8: no rule chooses its sign here. Units: any consistent set.
+Equation 8: no rule chooses its sign here. Without MUP, UT and VT (VAT and VBT) the motion is along
+one line, and nothing acts across it; which way n points does not matter. Units: any consistent set.
 
 examples:
   impact88 chapter colinear --template -o rear-end.toml    a file to fill in
@@ -40,6 +41,9 @@ def main(args: options.Args) -> None:
             "expected the four before or the four after",
             args.scene,
         )
+    along = [name for name in ("MUP", "UT", "VT", "VAT", "VBT") if name in numbers]
+    if not along:  # motion along one line: nothing acts across it
+        numbers |= dict.fromkeys(("MUP", *(("VAT", "VBT") if after else ("UT", "VT"))), 0.0)
     missing = [name for name in (*COMMON, *(AFTER if after else BEFORE)) if name not in numbers]
     if missing:
         raise UserError(f"missing {' '.join(missing)}", args.scene)

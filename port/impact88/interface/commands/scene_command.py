@@ -13,20 +13,34 @@ for a car from its weight. Beside a known inertia LA BA are the outline that fig
 examples:
   impact88 scene -o mine.toml       a template to fill in
   impact88 scene --units us         the same, in mph, lb and ft
+  impact88 scene --template intersection -o crash.toml    the case's own entries
   impact88 scene --sample 2         the scene of the Appendix's second sample run
 """
 
-from ...collision.scenefile import SIGNS, template
+from ...collision.scenefile import CASES, SIGNS, case_template, template
 from ...collision.units import system_named
+from ...errors import UserError
 from ...program.scene import sample
 from . import options
 
 __doc__ = (__doc__ or "").format(signs=SIGNS)
 
-ARGUMENTS = (options.SAMPLE, options.UNITS, options.OUTPUT)
+ARGUMENTS = (
+    options.SAMPLE,
+    options.choice(
+        "--template", tuple(CASES), "a file with what this kind of collision needs, and no more"
+    ),
+    options.UNITS,
+    options.OUTPUT,
+)
 
 
 def main(args: options.Args) -> None:
     system = system_named(args.units, "--units").name if args.units else None
+    if args.template and args.sample:
+        raise UserError("--template and --sample are both given; expected one of them")
+    if args.template:
+        print(case_template(args.template, system), end="")
+        return
     case = sample(args.sample).case.shown_in(system) if args.sample else None
     print(template(case, system), end="")

@@ -113,6 +113,8 @@ def solve_table(args: options.Args) -> int:
                 if name in constants and f"M{name[1]}" in source.names
             }
         points = constants.get("M", "4" if "M" in source.names else "6") == "4"
+        if one_scene and extra_case is not None:
+            points = extra_case.values["M"].strip() == "4"
         present = {*source.names, *constants}
         if not one_scene:
             check_scene_columns(present, points, where=display_name(path))
