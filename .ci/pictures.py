@@ -1,4 +1,4 @@
-"""Make README's pictures, its table of run times and the page of measurements again:
+"""Make README's pictures, the table of run times and the page of measurements again:
 python .ci/pictures.py
 
 Needs ``pip install -e '.[bench,desk,plot,report,scan,test]'``, Chromium and chromedriver. Each
@@ -27,7 +27,7 @@ BROWSER_OPTIONS = ("--headless=new", "--no-sandbox", "--disable-gpu", "--hide-sc
 PAGE_SIZE = (1000, 1300)
 DESK_SIZE = (1280, 1000)
 SCAN = "clean-001.png"
-README = ROOT / "README.md"
+RUN_TIMES = ROOT / "port" / "docs" / "speed.md"
 MEASUREMENTS = ROOT / "port" / "docs" / "measurements.md"
 TABLE_START = "<!-- run times: .ci/pictures.py -->"
 TABLE_END = "<!-- end of run times -->"
@@ -61,7 +61,7 @@ def photograph(address: str, picture: Path, size: tuple[int, int] = PAGE_SIZE) -
 def scene_file(folder: Path) -> str:
     """Write README's ``crash.toml``."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    block = re.search(r"^```toml\n(.*?)^```$", text, re.M | re.S)
+    block = re.search(r"`crash.toml`:\n\n```toml\n(.*?)^```$", text, re.M | re.S)
     assert block is not None
     (folder / "crash.toml").write_text(block[1], encoding="utf-8")
     return "crash.toml"
@@ -83,7 +83,7 @@ def photograph_desk(picture: Path) -> None:
 
 
 def write_table(record: dict[str, Any]) -> None:
-    """Put what a benchmark measured into README's table, with where it was measured."""
+    """Put what a benchmark measured into the table of run times, with where it was measured."""
     rows = {(row["method"], row["population"]): row for row in record["results"]}
     machine = record["machine"]
     lines = [
@@ -100,11 +100,11 @@ def write_table(record: dict[str, Any]) -> None:
         f"{machine['instructions']}, Python {machine['python']}, numpy {machine['numpy']}, load "
         f"{machine['load']:.1f}; made again by `python .ci/pictures.py`."
     )
-    text = README.read_text(encoding="utf-8")
+    text = RUN_TIMES.read_text(encoding="utf-8")
     before, _, rest = text.partition(TABLE_START)
     _, _, after = rest.partition(TABLE_END)
     table = "\n".join([TABLE_START, "", *lines, "", where, "", TABLE_END])
-    README.write_text(before + table + after, encoding="utf-8")
+    RUN_TIMES.write_text(before + table + after, encoding="utf-8")
 
 
 def write_measurements(record: dict[str, Any], sizes: dict[str, Any]) -> None:
@@ -179,7 +179,7 @@ def make_pictures(folder: Path) -> None:
 
 
 def measure(folder: Path) -> None:
-    """Run the benchmark for its picture, README's table and the page of measurements."""
+    """Run the benchmark for its picture, the table of run times and the page of measurements."""
     figure, record, sizes = PICTURES / "work-precision.svg", folder / "b.json", folder / "s.json"
     asked = ("bench", "--quick", "--components", "--figure", str(figure))
     run(*asked, "--json", "-o", str(record), folder=folder)
