@@ -290,7 +290,8 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
             f"{100 * share:.3g} % of the draws carry the warning {name}"
             for name, share in bounded.warnings.items()
         ]
-    scene = {name: float(nominal[name]) for name in SCENE if name in nominal}
+    numbers = {name: float(nominal[name]) for name in SCENE if name in nominal}
+    scene = {name: x for name, x in numbers.items() if not math.isnan(x)}  # `state.COURSE`
     return Findings(False, values, FORWARD, spreads, remarks, scene)
 
 

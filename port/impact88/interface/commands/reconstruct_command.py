@@ -64,7 +64,7 @@ from ...casework.reconstruction.adjustment import (
 )
 from ...casework.reconstruction.reconstructedtable import Measured
 from ...casework.reconstruction.solutiontable import Exact, Impact
-from ...collision.case import OWN_AXES, OWN_NAMES, SOURCE, Case
+from ...collision.case import OWN_AXES, OWN_NAMES, SOURCE, Case, remark_lines
 from ...collision.scenefile import template
 from ...collision.uncertain import Uncertain
 from ...errors import UserError, note
@@ -104,7 +104,7 @@ def main(args: options.Args) -> None:
         solutions = Exact.all_of(numbers, output_names, args.contact_time, options.source_of(args))
     for impact in solutions:
         impact.remarks = [
-            *case.remarks.values(),
+            *remark_lines(case.remarks),
             *([friction] if friction else []),
             *impact.remarks,
         ]

@@ -5,18 +5,22 @@ A text that INPUT takes for a number goes into the program as it stands; of a ra
 imported on first use: the page is shown before numpy is there.
 """
 
-from collections.abc import Mapping
+import math
+from collections.abc import Collection, Mapping
 from itertools import groupby
 from typing import Any, NamedTuple
 
+from ... import status
 from ...apple.emulator.screen import shown_character
 from ...collision import uncertain
-from ...collision.case import Case, check_value, remark_lines
+from ...collision.case import FACING_COURSE, Case, check_value, remark_lines
 from ...collision.doubles import double, doubles_of, is_number
 from ...collision.geometry import coordinate_names
+from ...collision.needs import sentences as needs_in_words
 from ...collision.scenefile import template, toml_texts
 from ...collision.units import RULES, System
 from ...errors import UserError
+from ...mechanics.closedform.columns import UNUSED_BY_POINTS
 from ...messages.plaintable import number
 from ...messages.schemas import with_schema
 from ...names import FINAL_VELOCITIES, RESULTS, SCENE, quantity
@@ -46,6 +50,10 @@ _ANSWER = (
     ("critical friction coefficient", "MUC"),
 )
 """What is asked of a collision: words, and a name for each vehicle or one for both."""
+
+
+OPTIONAL_OF_POINTS = (*UNUSED_BY_POINTS, "GA", "MU", "WA", "WB")
+"""What a form of point masses may lack: not all results use it."""
 
 
 class Form(NamedTuple):
@@ -87,13 +95,16 @@ def read(values: Mapping[str, str], units: str = "", title: str = "") -> Form:
         problems["M"] = "M: expected 6, or 4 for point masses"
     # a form shows the M that it takes
     given = {n for n in case.values if n != "M" or "M" in case.given}
+    optional = OPTIONAL_OF_POINTS if double_or_none(case.values["M"]) == 4 else ()
     missing = [
-        name for name in coordinate_names(SCENE, given) if name not in given | problems.keys()
+        name
+        for name in coordinate_names(SCENE, given)
+        if name not in given | problems.keys() and name not in optional
     ]
     scene = None
     if not problems and not missing:
         try:
-            scene = Scene.of(case)
+            scene = Scene.of(case, optional)
         except UserError as error:
             problems["MU"] = str(error)
     remarks = scene.remarks if scene else case.remarks
@@ -132,6 +143,11 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
         known = oracle([scene], reference=False)[0]
         results, system, machine = known["results"], form.system, load_machine(scene)
         exact = {n: row["double"] for n, row in results.items() if row["double"] is not None}
+        warnings = beside.warnings(scene)
+        if scene.omitted:  # nothing is judged by a 0 that was typed for want of a value
+            exact, lines = _without(scene, results)
+            warnings = []
+            found["remarks"] += lines
         run_machine(machine)
         found |= {
             "oracle": with_schema("oracle", {"id": None, "scene": dict(scene), **known}),
@@ -139,9 +155,32 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
             "page": page(known["printout"]),
             "screen": [screen_runs(row) for row in machine.screen_rows()],
             "results": _rows(results, without_rounding(exact, _ROUNDING), system),
-            "warnings": beside.warnings(scene),
+            "warnings": warnings,
         }
     return found
+
+
+def _known(scene: Scene) -> dict[str, float]:
+    """Return what is given of a scene, `state.COURSE` for a heading that is the course."""
+    facing = {n for n in ("TA", "TB") if scene.case.values.get(n) == FACING_COURSE}
+    return {**doubles_of(scene.given), **dict.fromkeys(facing & {*scene.omitted}, math.nan)}
+
+
+def _without(scene: Scene, results: Collection[str]) -> tuple[dict[str, float], list[str]]:
+    """Return the results of a scene that do not need what it lacks, and remarks: what the program
+    is typed in its place, what the impact breaks, and what is needed for the rest."""
+    from ...mechanics.closedform.solve import solve
+    from ...mechanics.posed import absent_results
+
+    given = _known(scene)
+    solved = solve(given)
+    needs = {**absent_results(given), **getattr(solved, "absent", {})}
+    answered = {name for _, *names in _ANSWER for name in names} - {*solved}
+    typed = [n if scene[n] == "0" else f"{n} (1: it divides)" for n in scene.omitted]
+    lines = [f"0 is typed for what is not given: {' '.join(typed)}"]
+    lines += status.sentences(int(solved.get("STATUS", 0)), {**given, **solved})
+    lines += needs_in_words({name: x for name, x in needs.items() if name in answered})
+    return {name: float(x) for name, x in solved.items() if name in results}, lines
 
 
 def _answer(scene: Scene, exact: Mapping[str, float], system: System) -> list[dict[str, Any]]:
@@ -149,7 +188,7 @@ def _answer(scene: Scene, exact: Mapping[str, float], system: System) -> list[di
     one or one for each vehicle."""
     from ...casework.reconstruction.solutiontable import with_derived_values
 
-    given = {name: double(text) for name, text in scene.items()}
+    given = _known(scene)
     values = without_rounding(with_derived_values({**given, **exact}, None), _ROUNDING)
     rows = []
     for words, *names in _ANSWER:
@@ -201,7 +240,7 @@ def figure(values: Mapping[str, str], title: str = "", units: str = "") -> str:
     form = read(values, units)
     if not form.scene:
         raise UserError("there is no complete scene to draw")
-    result = solve(doubles_of(form.scene), [*FINAL_VELOCITIES, "STATUS"])
+    result = solve(doubles_of(form.scene.given), [*FINAL_VELOCITIES, "STATUS"])
     return svg(scene_drawing(form.scene, result, title=title or "Scene from above"))
 
 

@@ -76,6 +76,8 @@ def answer(values: dict[str, str], units: str = "", draws: int = DRAWS) -> dict[
             impacts = [best, *(Measured(solution, draws, like=best) for solution in more)]
         else:
             impacts = Exact.all_of({name: item.nominal for name, item in known.items()})
+        for impact in impacts:  # as the command prints them
+            impact.remarks = [*reply["remarks"], *impact.remarks]
         solutions = [
             (impact.as_json(system), impact.as_text(system), impact.impossible)
             for impact in impacts
@@ -86,6 +88,8 @@ def answer(values: dict[str, str], units: str = "", draws: int = DRAWS) -> dict[
         "reconstruct", {"solutions": [numbers for numbers, *_ in solutions]}
     )
     reply["solutions"] = [_solution(case, known, *solution) for solution in solutions]
+    for solution in reply["solutions"]:  # what stands above all of them is not said twice
+        solution["warnings"] = [w for w in solution["warnings"] if w not in reply["remarks"]]
     return reply
 
 

@@ -145,7 +145,7 @@ def _trials(name: str, rng: np.random.Generator) -> list[float]:
     rule = quantity(name).unit
     values = ordinary(name, rng, TRIALS)
     if rule == "degree":
-        values = (rng.permutation(TRIALS) + rng.uniform()) * (360.0 / TRIALS)
+        values = np.asarray(rng.permutation(TRIALS) + rng.uniform(), np.float64) * (360.0 / TRIALS)
     if rule in ("length/time", "rad/time", "length"):
         outweighing = np.abs(values[-4:]) * OUTWEIGHING
         values[-4:] = np.abs(outweighing) if rule == "length" else outweighing
