@@ -383,8 +383,9 @@ def _function(plan: Layout) -> list[str]:
     lines = [
         "/* The results of a strip of scenes, as far as ``loops`` are done. */",
         "static CLONES void compute_loops(",
-        "    const double *const *in, const double *const *ahead, double (*restrict v)[ROW_LENGTH],",
-        "    const circle *circle, const loop_set loops, const int64_t eights)",
+        "    const double *const *in, const double *const *ahead,",
+        "    double (*restrict v)[ROW_LENGTH], const circle *circle, const loop_set loops,",
+        "    const int64_t eights)",
         "{",
         "    const int64_t lanes = 8 * eights; /* vectors of any length leave no rest */",
         *_wrap_columns(),

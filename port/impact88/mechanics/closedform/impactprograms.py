@@ -28,7 +28,7 @@ _CIRCLE = np.frombuffer(
 ).copy()
 CIRCLE = _CIRCLE.ctypes.data
 """Address of the table of sines and its constants, ``circle`` in `native/impacts.h`."""
-FORMULAS = "599737ac2621a67b"
+FORMULAS = "a14c68646dac0027"
 """Digest of `native/loops.h`: a library that was built from the same formulas has it, too."""
 
 

@@ -30,10 +30,10 @@ MAX_CONVERTED = 4096
 """Scenes up to which columns of other types, or not contiguous, are copied by one call of numpy;
 longer ones are left to the general path, which converts them tile by tile."""
 MAX_COPIED = 512
-"""Scenes up to which copying all columns is cheaper than asking each for its address."""
-MAX_TOGETHER = 1 << 20
+"""Scenes up to which all columns are copied, where nothing else needs their addresses."""
+MAX_TOGETHER = 1 << 25
 """Bytes up to which the results are rows of one array, which takes less time to make than many but
-lives as long as any of them."""
+lives as long as any of them. Larger arrays the C library maps anew each time."""
 
 _in_order = itemgetter(*NAMES)
 
@@ -107,14 +107,17 @@ def solve_plain(
     shape, count = arrays[0].shape, arrays[0].size
     if count < 2 or not all(array.shape == shape for array in arrays):
         return None
-    inputs = _inputs(layout, arrays, [values[i] for i in layout.numbers])
+    # of few scenes copying all columns is cheaper than asking each for its address
+    in_place = count > MAX_COPIED or out is not None
+    inputs = _inputs(layout, arrays, [values[i] for i in layout.numbers], in_place)
     if inputs is None:
         return None
-    _memory, starts = inputs
+    _memory, starts, are_columns = inputs
     if out is None:
         by_name, result_starts = allocate_results(wanted, shape)
     else:
-        by_name, result_starts = results_into(out, wanted, shape, arrays)
+        column_starts = starts[: len(arrays)] if are_columns else None
+        by_name, result_starts = results_into(out, wanted, shape, arrays, column_starts)
     free = free_calls(wanted)
     call = free.pop() if free else Call(wanted)
     call.columns[layout.order] = starts
@@ -124,29 +127,32 @@ def solve_plain(
     return by_name
 
 
-def _inputs(layout: _Layout, arrays: list[Array], numbers: list[float]) -> tuple[Array, Any] | None:
-    """Return an array to be kept for the length of the call, and the addresses of all values.
+def _inputs(
+    layout: _Layout, arrays: list[Array], numbers: list[float], in_place: bool
+) -> tuple[Array, Any, bool] | None:
+    """Return an array to be kept for the length of the call, the addresses of all values, and
+    whether they are the columns' own.
 
-    Long float64 columns are read where they are, and only the numbers are copied; of few scenes
-    all values are copied into one block. None where neither is possible.
+    ``in_place``: float64 columns are read where they are, and only the numbers are copied; else,
+    of few scenes, all values are copied into one block. None where neither is possible.
     """
     count = arrays[0].size
     try:
-        if count > MAX_COPIED and all(_is_plain(array) for array in arrays):
+        if in_place and all(_is_plain(array) for array in arrays):
             data = np.array(numbers, np.float64)
             first = address(data)
             numbers_at = range(first, first + data.nbytes, 8)
-            return data, [*map(address, arrays), *numbers_at]
+            return data, [*map(address, arrays), *numbers_at], True
         if count <= MAX_CONVERTED:
             data = np.concatenate([*arrays, numbers], None, dtype=np.float64, casting="same_kind")
-            return data, address(data) + count * layout.strides + layout.offsets
+            return data, address(data) + count * layout.strides + layout.offsets, False
     except (TypeError, OverflowError):  # not numbers
         pass
     return None
 
 
 def _is_plain(array: Array) -> bool:
-    return array.dtype == np.float64 and array.flags.c_contiguous and array.flags.aligned
+    return array.dtype == _FLOATS and array.flags.c_contiguous and array.flags.aligned
 
 
 def address(array: Any) -> int:
@@ -182,12 +188,22 @@ def results_into(
     wanted: Sequence[str],
     shape: tuple[int, ...],
     columns: Sequence[Array],
+    column_starts: Sequence[int] | None = None,
 ) -> tuple[dict[str, Array], list[int]]:
     """Return the results' arrays, of ``out`` where they are in it, and their addresses. Raises
-    UserError."""
-    given = check_output_arrays(out, wanted, shape, columns)
+    UserError.
+
+    ``column_starts``: the addresses of columns that are all contiguous and of the results' size.
+    """
+    given = _check_output_arrays(out, wanted, shape)
+    size = 8 * math.prod(shape)
+    every = sorted([*given.values(), *(column_starts or ())])
+    if column_starts is None or any(b - a < size for a, b in pairwise(every)):
+        _check_apart(out, given, columns)
+    if len(out) == len(wanted):
+        return {name: out[name] for name in wanted}, [given[name] for name in wanted]
     missing = [name for name in wanted if name not in out]
-    arrays, starts = allocate_results(missing, shape) if missing else ({}, [])
+    arrays, starts = allocate_results(missing, shape)
     starts_by_name = {**given, **dict(zip(missing, starts, strict=True))}
     arrays = {name: out[name] if name in out else arrays[name] for name in wanted}
     return arrays, [starts_by_name[name] for name in wanted]
@@ -197,30 +213,28 @@ def _type_of(name: str) -> np.dtype[Any]:
     return _BITS if name == "STATUS" else _FLOATS
 
 
-def check_output_arrays(
-    out: Mapping[str, Array],
-    wanted: Sequence[str],
-    shape: tuple[int, ...],
-    columns: Sequence[Array],
+def _check_output_arrays(
+    out: Mapping[str, Array], wanted: Sequence[str], shape: tuple[int, ...]
 ) -> dict[str, int]:
     """Return the addresses of arrays for results. Raises UserError for those that cannot take
     them."""
     starts: dict[str, int] = {}
-    for name, array in out.items():
-        if name not in wanted:
-            raise UserError(
-                f"is not among the requested results; expected some of {' '.join(wanted)}",
-                f"out, {name}",
-            )
-        dtype = _type_of(name)
+    for name in wanted:
+        if name not in out:
+            continue
+        array, dtype = out[name], _type_of(name)
         if not isinstance(array, np.ndarray) or array.dtype != dtype or array.shape != shape:
             got = f"{array.dtype} {array.shape}" if isinstance(array, np.ndarray) else type(array)
             raise UserError(f"is {got}; expected an array of {dtype} {shape}", f"out, {name}")
-        flags = array.flags
-        if not (flags.c_contiguous and flags.writeable and flags.aligned):
+        if not array.flags.carray:
             raise UserError("is not contiguous, not aligned or not writable", f"out, {name}")
         starts[name] = address(array)
-    _check_apart(out, starts, columns)
+    if len(starts) < len(out):
+        unknown = next(name for name in out if name not in starts)
+        raise UserError(
+            f"is not among the requested results; expected some of {' '.join(wanted)}",
+            f"out, {unknown}",
+        )
     return starts
 
 

@@ -1,6 +1,6 @@
 /* Made from the formulas of closedform/impact.py by mechanics/loops.py: not to be edited. */
 
-#define FORMULAS "599737ac2621a67b"
+#define FORMULAS "a14c68646dac0027"
 enum column { AT_E, AT_MU, AT_EM, AT_DA, AT_DB, AT_GA, AT_PA, AT_PB, AT_TA, AT_TB, AT_MA, AT_MB,
     AT_IA, AT_IB, AT_UX, AT_UY, AT_WA, AT_VX, AT_VY, AT_WB, AT_M, COLUMNS };
 enum kind { FRICTION, PIVOT, POINT, POINT_PIVOT, KINDS };
@@ -103,8 +103,9 @@ static const int place_of[KINDS][RESULTS] = {
 
 /* The results of a strip of scenes, as far as ``loops`` are done. */
 static CLONES void compute_loops(
-    const double *const *in, const double *const *ahead, double (*restrict v)[ROW_LENGTH],
-    const circle *circle, const loop_set loops, const int64_t eights)
+    const double *const *in, const double *const *ahead,
+    double (*restrict v)[ROW_LENGTH], const circle *circle, const loop_set loops,
+    const int64_t eights)
 {
     const int64_t lanes = 8 * eights; /* vectors of any length leave no rest */
     COLUMN(E) COLUMN(MU) COLUMN(EM) COLUMN(DA) COLUMN(DB) COLUMN(GA) COLUMN(PA) COLUMN(PB)
