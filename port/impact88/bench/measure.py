@@ -156,7 +156,7 @@ def measure(
                     "timed": timed,
                     "unanswered": int(count - fine.sum()),
                     "median": float(np.median(answered)),
-                    "per_mille": float(np.quantile(answered, 0.999)),
+                    "percentile_99": float(np.quantile(answered, 0.99)),
                     "largest": float(answered.max()),
                     "over_condition": float((scaled / condition).max() / method.roundoff),
                     "over_sensitivity": float((answered / sensitive[fine]).max() / method.roundoff),

@@ -57,7 +57,7 @@ class Call:
         """Compute ``count`` scenes and write to ``results``, addresses in the order wanted."""
         self.results[self.places] = results
         solve = native.library.solve_impacts
-        number = 1 if threads == 1 else workers(count, threads, MIN_SCENES_PER_THREAD)
+        number = workers(count, threads, MIN_SCENES_PER_THREAD)
         if number == 1:
             solve(self.at, 0, count)
         else:

@@ -52,7 +52,7 @@ def solve(
         The result names wanted (`impact88.names.RESULTS`), all of them by default. Only what they
         need is computed.
     threads : int, optional
-        How many to use; by default as many as there are processors and work.
+        How many to use; by default as many as there are idle processors and work.
     out : mapping of str to ndarray, optional
         Result name -> array to write it into, of the broadcast shape, contiguous, aligned, float64
         (STATUS: uint16), apart from all columns; given again and again it spares the paging in of

@@ -11,9 +11,20 @@ def processors() -> int:
     return os.cpu_count() or 1
 
 
+def idle_processors() -> int:
+    """Return the number of processors that had nothing to do in the last minute, and this
+    process's own: two threads on a busy machine take longer than one."""
+    if not hasattr(os, "getloadavg"):
+        return processors()
+    others = round(os.getloadavg()[0]) - 1
+    return min(processors(), max(1, (os.cpu_count() or 1) - others))
+
+
 def workers(count: int, threads: int | None, share: int) -> int:
     """Return the number of threads for ``count`` scenes, at least ``share`` for each thread."""
-    return max(1, min(threads or processors(), count // share))
+    if threads == 1 or count < 2 * share:
+        return 1
+    return max(1, min(threads or idle_processors(), count // share))
 
 
 def run_in_threads(work: Callable[[int, int], None], count: int, workers: int) -> None:

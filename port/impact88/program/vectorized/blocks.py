@@ -31,8 +31,8 @@ MIN_SCENES_PER_THREAD = 8192
 def replay_scenes(scenes: Scenes, threads: int | None = None, block: int = BLOCK_SIZE) -> Replay:
     """Replay scenes and return their results.
 
-    ``threads``: at most so many; None for as many as there are processors, if each has enough to
-    do. ``block``: scenes per block, at most."""
+    ``threads``: at most so many; None for as many as there are idle processors, if each has enough
+    to do. ``block``: scenes per block, at most."""
     unit = Unit(scenes.size)
     unit.first[...] = scenes.first
     M = scenes.values["M"]
