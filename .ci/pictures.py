@@ -99,8 +99,9 @@ def write_table(record: dict[str, Any]) -> None:
     scenes = rows["closed-form", "casework"]["scenes"]
     where = (
         "Relative error of the final velocities against 50 digits that 99 % of "
-        f"{scenes} scenes are below; {machine['processor']}, {machine['instructions']}, Python {machine['python']}, numpy {machine['numpy']}, load "
-        f"{machine['load']:.1f}; made again by `python .ci/pictures.py`."
+        f"{scenes} scenes are below; {machine['processor']}, {machine['instructions']}, "
+        f"Python {machine['python']}, numpy {machine['numpy']}, load {machine['load']:.1f}; made "
+        "again by `python .ci/pictures.py`."
     )
     text = RUN_TIMES.read_text(encoding="utf-8")
     before, _, rest = text.partition(TABLE_START)
