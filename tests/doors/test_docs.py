@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 
 import pytest
-from captures import ROOT
 from guide import DOCS, chapters
 
 import impact88

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError, quoted
-from .case import RANGES, Case, case_of, check_mapping, is_share
+from .case import FACING_COURSE, RANGES, Case, case_of, check_mapping, is_share
 from .doubles import digits, double
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def _in_base(values: Mapping[str, Any]) -> tuple[Mapping[str, Any], str | None]:
     texts = {name: value for name, value in values.items() if isinstance(value, str)}
     if case_of(values) or not texts:
         return values, None
-    if "units" in texts:
+    if "units" in texts or FACING_COURSE in texts.values():
         texts |= {n: repr(v).upper() for n, v in values.items() if type(v) in (int, float)}
     case = Case(texts, "values")
     numbers = {name: value for name, value in values.items() if name not in texts}
@@ -101,6 +101,8 @@ def in_doubles(name: str, values: Any) -> Array:
 
 def _double(name: str, value: Any) -> float:
     """Return one cell as a double. Raises UserError naming its column."""
+    if value == FACING_COURSE and name in ("TA", "TB"):
+        return math.nan  # `state.COURSE`; a scene of two vehicles with arms refuses it
     try:
         if isinstance(value, bytes):
             value = value.decode("ascii")

@@ -106,6 +106,22 @@ def absent_results(known: Mapping[str, Any]) -> dict[str, frozenset[str]]:
     return result
 
 
+def with_headings(values: Mapping[str, float]) -> dict[str, float]:
+    """Return values with the numbers of TA and TB that are `state.COURSE`, as far as the courses
+    are among the values: the one before the impact, or after it of a vehicle that was at rest."""
+    result = dict(values)
+    for vehicle in "AB":
+        theta = f"T{vehicle}"
+        if theta in values and np.isnan(values[theta]):
+            course = values.get(f"H{vehicle}", np.nan)
+            if np.isnan(course) and values.get(f"S{vehicle}") == 0:
+                course = values.get(f"H{vehicle}F", np.nan)
+            if not np.isnan(course):
+                front = course + 180 if vehicle == "A" else course
+                result[theta] = float(np.remainder(front + 180, 360) - 180)
+    return result
+
+
 _WRONG_SIDES = Status.A_ON_WRONG_SIDE | Status.B_ON_WRONG_SIDE
 
 

@@ -2,8 +2,11 @@
 
 import json
 import math
+import os
+import re
 import tomllib
 
+import numpy as np
 import pytest
 from captures import ROOT
 
@@ -11,6 +14,8 @@ import impact88
 from impact88.interface.commands.cli import main
 from impact88.status import IMPOSSIBLE
 
+PROBLEMS = int(os.environ.get("IMPACT88_EXAMPLES") or 6)  # .ci/run takes more
+SPEED_NAMES = ("UX", "UY", "VX", "VY", "SA", "SB", "SAF", "SBF")
 PUBLISHED = ROOT / "golden" / "published"
 TEN = json.loads((PUBLISHED / "public-collisions.json").read_text())
 SHEETS = json.loads((PUBLISHED / "planar-spreadsheets.json").read_text())
@@ -102,3 +107,123 @@ def test_a_spreadsheet_is_met_to_12_digits_with_ga_either_way_round(sheet, turn,
         if name != "PDOFA":  # that sheet measures it otherwise
             assert values[name] == pytest.approx(published, rel=1e-12), name
     assert not found["status"] & IMPOSSIBLE
+
+
+# -- random problems, with what is known removed entry by entry
+
+
+def momentum(rng):
+    """Point masses: masses, courses, speeds after; and what follows by momentum alone."""
+    ma, mb = rng.uniform(800, 3000, 2)
+    u, v = (complex(*rng.normal(0, 15, 2)) for _ in "AB")
+    push = complex(*rng.normal(0, 10, 2)) * 1000
+    after = u + push / ma, v - push / mb
+    known = {"M": 4, "MA": ma, "MB": mb, "TA": "course", "TB": "course"}
+    for name, velocity in zip(("A", "B"), (u, v), strict=True):
+        known[f"H{name}"] = math.degrees(math.atan2(velocity.imag, velocity.real))
+    for name, velocity in zip(("A", "B"), after, strict=True):
+        known[f"S{name}F"] = abs(velocity)
+        known[f"H{name}F"] = math.degrees(math.atan2(velocity.imag, velocity.real))
+    return known, {"SA": abs(u), "SB": abs(v), "DVA": abs(push) / ma, "DVB": abs(push) / mb}
+
+
+def locked(rng):
+    ma, mb = rng.uniform(800, 3000, 2)
+    u, v = (complex(*rng.normal(0, 15, 2)) for _ in "AB")
+    common = (ma * u + mb * v) / (ma + mb)
+    known = {"M": 4, "MA": ma, "MB": mb, "E": 0, "MU": "locked", "TA": "course", "TB": "course"}
+    known |= {"UX": u.real, "UY": u.imag, "VX": v.real, "VY": v.imag}
+    found = {"SAF": abs(common), "SBF": abs(common), "DVA": abs(common - u), "DVB": abs(common - v)}
+    return known, found
+
+
+def along_a_line(rng):
+    ma, mb = rng.uniform(800, 3000, 2)
+    speed, restitution, course = rng.uniform(5, 30), rng.uniform(0, 0.5), rng.uniform(-180, 180)
+    known = {"M": 4, "MA": ma, "MB": mb, "SA": speed, "HA": course, "SB": 0, "E": restitution}
+    known |= {"TA": "course", "TB": "course"}
+    change = (1 + restitution) * speed / (ma + mb)
+    found = {"DVA": mb * change, "DVB": ma * change, "SBF": ma * change, "PDOFA": 0, "PDOFB": 180}
+    return known, found
+
+
+def turned(known, found, degrees):
+    """The same collision in axes turned by an angle."""
+    new = dict(known)
+    for name in ("HA", "HB", "HAF", "HBF", "GA"):
+        if name in new:
+            new[name] = math.remainder(new[name] + degrees, 360)
+    turn = complex(math.cos(math.radians(degrees)), math.sin(math.radians(degrees)))
+    for x, y in (("UX", "UY"), ("VX", "VY")):
+        if x in new:
+            velocity = complex(known[x], known[y]) * turn
+            new |= {x: velocity.real, y: velocity.imag}
+    return new, found
+
+
+def mirrored(known, found):
+    new = {n: -x if n[0] == "H" or n in ("UY", "VY") else x for n, x in known.items()}
+    return new, found
+
+
+EXCHANGED = {"UX": "VX", "UY": "VY", "VX": "UX", "VY": "UY"}
+
+
+def exchanged(known, found):
+    """A and B exchanged."""
+
+    def other(name):
+        letters = {"A": "B", "B": "A"}
+        return EXCHANGED.get(name) or "".join(letters.get(letter, letter) for letter in name)
+
+    return {other(n): x for n, x in known.items()}, {other(n): x for n, x in found.items()}
+
+
+def best(known):
+    return impact88.reconstruct({name: str(value) for name, value in known.items()})[0]
+
+
+def assert_has(solution, found):
+    for name, value in found.items():
+        if name.startswith("PDOF"):
+            assert abs(math.remainder(solution.values[name] - value, 360)) < 1e-6, name
+        else:
+            assert solution.values[name] == pytest.approx(value, rel=1e-7, abs=1e-7), name
+
+
+@pytest.mark.parametrize("kind", [momentum, locked, along_a_line])
+def test_random_problems_in_any_axes_and_units(kind):
+    rng = np.random.default_rng(88)
+    for _ in range(PROBLEMS):
+        known, found = kind(rng)
+        assert_has(best(known), found)
+        assert_has(best(turned(known, found, rng.uniform(-180, 180))[0]), found)
+        assert_has(best(mirrored(known, found)[0]), found)
+        assert_has(best(exchanged(known, found)[0]), exchanged(known, found)[1])
+        speed = 3600 / 1000
+        metric = {n: x * speed if n in SPEED_NAMES else x for n, x in known.items()}
+        assert_has(best({**metric, "units": "metric"}), found)
+
+
+@pytest.mark.parametrize("kind", [momentum, locked, along_a_line])
+def test_a_result_changes_only_if_it_uses_what_is_removed(kind):
+    rng = np.random.default_rng(89)
+    for _ in range(PROBLEMS):
+        known, _ = kind(rng)
+        whole = best(known)
+        for name in known:
+            less = {other: value for other, value in known.items() if other != name}
+            try:
+                solution = best(less)
+            except impact88.UserError as error:
+                text = str(error)  # too little is left, or no mass
+                assert name in ("MA", "MB", "M") or re.search("determined|nothing", text), text
+                continue
+            for result, value in solution.values.items():
+                if result in whole.values and result not in ("M", "TA", "TB"):
+                    assert value == pytest.approx(whole.values[result], rel=1e-6, abs=1e-6), (
+                        name,
+                        result,
+                    )
+            if name in ("TA", "TB"):
+                assert all(name in solution.absent[result] for result in ALONG_THE_CAR[name[1]])

@@ -24,7 +24,14 @@ from ...errors import UserError
 from ...mechanics.closedform.share import share_typed
 from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import outcome
-from ...mechanics.posed import absent_results, is_wrong_way, pose, turned, turned_sentence
+from ...mechanics.posed import (
+    absent_results,
+    is_wrong_way,
+    pose,
+    turned,
+    turned_sentence,
+    with_headings,
+)
 from ...mechanics.state import (
     COURSES,
     CRUSH,
@@ -553,8 +560,11 @@ class Reconstruction:
     @property
     def collides(self) -> bool:
         """True if the contact points approach and push each other, as far as that is known."""
-        state = self.system.state(self.x)
-        return bool(state.relative_before[0] < 0 and self.values.get("PN", 1.0) > 0)
+        if not self.values.get("PN", 1.0) > 0:
+            return False
+        if "VC" not in self.values:  # the contact plane or a velocity is not known
+            return True
+        return bool(self.system.state(self.x).relative_before[0] < 0)
 
     @cached_property
     def impossible(self) -> Status:
@@ -1274,8 +1284,12 @@ def _describe(system: System, x: Floats, assumed: bool) -> Reconstruction:
         amount = to_float(state.values[name] if is_known else state[name])
         largest = np.abs(gradient).max(initial=0.0)
         is_open = not is_fold and np.abs(gradient @ null).max(initial=0.0) > NULL_TOL * largest
-        if name in COURSES and name not in system.known:
-            is_open |= bool({*undetermined} & {*SPEEDS[COURSES[name]]})
+        if name in COURSES:
+            along_open = bool({*undetermined} & {*SPEEDS[COURSES[name]]})
+            if along_open and name in system.known and not system.known[name].varies:
+                values[name] = system.known[name].nominal  # the vehicle might drive either way
+                continue
+            is_open |= along_open and name not in system.known
         if name in FORCES and name not in system.known:
             is_open |= "PN" not in values
         if is_known or (np.isfinite(amount) and np.isfinite(largest) and not is_open):
@@ -1299,7 +1313,7 @@ def _describe(system: System, x: Floats, assumed: bool) -> Reconstruction:
     return Reconstruction(
         system=system,
         x=x,
-        values=values,
+        values=with_headings(values),
         undetermined=tuple(undetermined),
         adjusted=adjusted,
         redundancy=redundancy,

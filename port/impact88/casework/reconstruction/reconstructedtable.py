@@ -517,7 +517,7 @@ def reconstruct(known: Mapping[str, Uncertain | float | str]) -> Reconstructions
     known : mapping of str to float, str or Uncertain
         What is known, by name (``UX`` ... ``WB``, ``VAX`` ... ``WBF``, ``E``, ``EM``, ``MU`` or
         ``MUP``, ``SA``, ``HA``, ``DVA``, ``PDOFA``, ``EL`` and so on), in one consistent set of
-        units. The vehicles and their geometry must be known. A number is exact; a text such as
+        units. The masses must be known. A number is exact; a text such as
         ``"41 +- 2"`` or an `Uncertain` is known within its tolerance. M is 6 where left out.
 
     Returns

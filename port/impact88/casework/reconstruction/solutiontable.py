@@ -12,7 +12,14 @@ from ...collision.needs import needed
 from ...collision.units import RULES, VELOCITY, System, display_values
 from ...errors import UserError
 from ...mechanics.outcome import forces, moment_ratio, outcome
-from ...mechanics.posed import absent_results, is_wrong_way, pose, turned, turned_sentence
+from ...mechanics.posed import (
+    absent_results,
+    is_wrong_way,
+    pose,
+    turned,
+    turned_sentence,
+    with_headings,
+)
 from ...mechanics.state import CHANGES, COURSES, FORCES
 from ...messages.plaintable import decimals_for, format_fixed, number, paragraph, plain, table
 from ...names import CHAPTER, FINAL_STATE, PIVOT, RESULTS, SCENE, VELOCITIES, quantity
@@ -54,7 +61,7 @@ def with_derived_values(values: dict[str, float], contact_time: float | None) ->
     if contact_time is not None and "P" in derived:
         derived["TF"] = contact_time
         derived |= {n: float(v) for n, v in forces(derived["P"], contact_time).items()}
-    values = values | derived
+    values = with_headings(values | derived)
     if "EM" in values:
         values["RR0"] = float(moment_ratio(values["EM"]))
     absent = _absent_quantities(values)

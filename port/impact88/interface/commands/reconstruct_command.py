@@ -1,6 +1,7 @@
 """The file is flat TOML with the listing's names, like a scene (impact88 scene --help): whatever
-is not known is left out, or left empty, and is solved for. The vehicles and their geometry (DA DB
-GA PA PB TA TB MA MB IA IB) must be known; then any of
+is not known is left out, or left empty, and is solved for. The masses MA MB must be known; of the
+geometry (GA; with M = 6 DA DB PA PB TA TB IA IB) what the results need: momentum of point masses (M
+= 4) needs none, and a result that needs more is left out and names it. Then any of
 
   before         UX UY WA VX VY WB (x, y, spin), or SA HA SB HB (speed, course)
   after          VAX VAY WAF VBX VBY WBF, or SAF HAF SBF HBF
@@ -25,7 +26,10 @@ shown. MUP is the signed P_t/P_n instead. Units: any consistent set; angles in d
 per unit of time; or values with units, "-25 +- 2 mph", "3091 lb", "3.5 ft", or units = "us" (or
 metric, chapter, si) in the file, for bare numbers: results are then in the same units. A yaw
 inertia that was not measured is IA = "estimate +- 20%" (impact88 scene --help says from what).
-PDOF: where the force comes from, clockwise from the vehicle's front (A faces TA + 180, B faces TB).
+PDOF: where the force comes from, clockwise from the vehicle's front (A faces TA + 180, B faces TB;
+TA = "course" is the way A travels). Vehicles locked together have E = 0 and MU = "locked". Point
+masses that move along one line need no GA, and nothing acts across it. A GA that has A on the other
+side of the contact plane is turned, with a remark.
 A vehicle that skids to rest: SAF = "skid 62 ft at 0.7 +- .05" is the speed v = sqrt(2 MU g D).
 
 EM sets the moment at C (Equation 18). RR0 in the results is the fraction of the relative spin that
