@@ -647,6 +647,24 @@ def test_a_negative_two_pages_and_a_page_on_a_dark_desk_are_turned_into_paper() 
             assert -2 < top < bottom < height + 2
 
 
+@pytest.mark.parametrize("phosphor", long_but(scanpages.PHOSPHORS))
+def test_a_screen_with_coloured_type_on_black_is_a_page(phosphor: str) -> None:
+    """Polarity is decided before colour: the type is not taken for ink of another colour."""
+    page, _ = genuine()
+    picture = scanpages.on_screen(page, random.Random(3), phosphor)
+    (result,) = examine("screen.png", data=saved(picture, "PNG")).results
+    assert result.verdict is Verdict.IDENTICAL
+    assert "negative" in "\n".join(result.remarks)
+
+
+@pytest.mark.parametrize("seed", long_but(range(4)))
+def test_a_photograph_with_a_soft_shadow_on_a_grey_desk_is_read(seed: int) -> None:
+    page, _ = genuine()
+    picture = scanpages.shadowed(page, random.Random(seed))
+    (result,) = examine("photo.jpg", data=saved(picture, "JPEG")).results
+    assert result.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
+
+
 @pytest.mark.skipif(not SWEEP, reason="a sweep: IMPACT88_SWEEP=1")
 @pytest.mark.parametrize("kind", scanpages.ADDED)
 def test_no_page_with_something_added_is_bare_identical(kind: str) -> None:

@@ -28,11 +28,11 @@ KINDS = (
     *("altered", "font", "pasted", "line", "erased", "labels"),
     *("pins", "carbon", "columns", "half", "turned"),
     *("sign", "point", "digit", "appended", "typedline", "beside", "word"),
-    *("desk", "spread", "skew", "pen", "stamp", "holes"),
+    *("desk", "spread", "skew", "pen", "stamp", "holes", "shadow", "screen"),
 )
 """The first three genuine, the next six not; five genuine, in ways of their own; on the next seven
-something was added in the page's own type; the last six are genuine, and other things than paper
-and type are on the picture."""
+something was added in the page's own type; the last eight are genuine: other things than paper
+and type are on the picture, or it shows a screen."""
 FORGED = KINDS[3:9]
 ADDED = KINDS[14:21]
 SURROUNDED = KINDS[21:]
@@ -411,6 +411,10 @@ def surrounded(papers: list[Grey], kind: str, choose: random.Random) -> Image.Im
         grey = (part * np.asarray(laid, float) + (1 - part) * desk) * light
         grey = grey + noise.normal(0, 3, grey.shape)
         return Image.fromarray(np.clip(grey, 0, 255).astype(np.uint8))
+    if kind == "shadow":  # a soft one, of a page on a grey desk
+        return shadowed(sheet, choose)
+    if kind == "screen":
+        return on_screen(sheet, choose)
     strip = round(0.18 * width)
     if kind == "holes":
         wide = Image.new("L", (width + 2 * strip, height), 255)
@@ -449,6 +453,34 @@ def surrounded(papers: list[Grey], kind: str, choose: random.Random) -> Image.Im
             points.append((x + length, y + wave))
         pen.line(points, ink, choose.randint(3, 6))
     return wide
+
+
+def shadowed(sheet: Image.Image, choose: random.Random) -> Image.Image:
+    """Paper on a grey desk, a soft shadow over both."""
+    noise = np.random.default_rng(choose.getrandbits(32))
+    margin, desk = round(0.12 * sheet.width), choose.randint(110, 165)
+    laid = Image.new("L", (sheet.width + 2 * margin, sheet.height + 2 * margin), desk)
+    laid.paste(Image.eval(sheet, lambda value: round(value * 235 / 255)), (margin, margin))
+    laid = laid.rotate(choose.uniform(-1.5, 1.5), Image.Resampling.BICUBIC, fillcolor=desk)
+    grey = np.asarray(laid, float)
+    y, x = np.mgrid[0 : grey.shape[0], 0 : grey.shape[1]] / max(grey.shape)
+    angle = choose.uniform(0, 2 * math.pi)
+    within = (x - 0.5) * math.cos(angle) + (y - 0.5) * math.sin(angle) + choose.uniform(-0.2, 0.2)
+    light = 1 - choose.uniform(0.35, 0.55) / (1 + np.exp(-within / choose.uniform(0.03, 0.08)))
+    grey = grey * light + noise.normal(0, 2, grey.shape)
+    return Image.fromarray(np.clip(grey, 0, 255).astype(np.uint8))
+
+
+PHOSPHORS = {"green": (51, 255, 51), "amber": (255, 176, 0), "white": (255, 255, 255)}
+
+
+def on_screen(sheet: Image.Image, choose: random.Random, phosphor: str = "") -> Image.Image:
+    """Type as an emulator's screen shows it: a colour on black, some with dark scan lines."""
+    lit = 1 - np.asarray(sheet.convert("L"), float) / 255
+    if choose.random() < 0.4:
+        lit[::3] *= 0.5
+    colour = PHOSPHORS[phosphor or choose.choice(list(PHOSPHORS))]
+    return Image.fromarray((lit[:, :, None] * np.array(colour)).astype(np.uint8))
 
 
 def _aged(paper: Grey, kind: str, pixels: int, choose: random.Random) -> Grey:

@@ -27,6 +27,7 @@ Range = tuple[float, float]
 
 LABELS_EXCHANGED = "labels exchanged"
 LABEL_WRONG = "another label"
+ROWS = "order of rows"
 NOT_APPLESOFT = "then this program on an Apple II did not print it"
 MAX_LEFT_FRACTION = 0.15
 """Largest fraction of the differing numbers that a cause may leave; doubled, one page changes."""
@@ -190,6 +191,7 @@ class PageEvidence:
         # what contradicts the program's number contradicts a cause that predicts the same
         wrong |= {n for n, value in self._contradicted.items() if ranges.get(n, value) == value}
         wrong |= {"ENDING"} if self.paper.ending not in (None, outcome.ending) else set()
+        wrong |= self.base & {ROWS}
         for check in self.found.replies:
             read = check.status in (Status.READ, Status.CONTRADICTED)
             if read and not same_value(check.printed or "", scene.get(check.name, "")):
@@ -213,6 +215,7 @@ def differing(found: Judged) -> frozenset[str]:
     return frozenset(
         [f"{'reply ' * (id(check) in replies)}{check.name}" for check in found.contradicted]
         + [f"label {label.name}" for label in found.paper.mislabelled]
+        + [ROWS] * found.paper.out_of_order
     )
 
 

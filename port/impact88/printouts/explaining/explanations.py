@@ -29,6 +29,7 @@ from .causes import (
     LABEL_WRONG,
     LABELS_EXCHANGED,
     NOT_APPLESOFT,
+    ROWS,
     Cause,
     PageEvidence,
     differing,
@@ -70,7 +71,9 @@ def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) ->
     """
     page = PageEvidence(found)
     causes = [*_slip_causes(page, (), page.base, found.recovered.outcome.fields), *_labels(page)]
-    if not found.recovered.missing and any(not name.startswith("label ") for name in page.base):
+    causes += _rows(page)
+    of_form = {ROWS, *(name for name in page.base if name.startswith("label "))}
+    if not found.recovered.missing and page.base - of_form:
         rows = Rows(page)
         causes += [
             *_input_slips(page, rereading.best(single=True)),
@@ -138,6 +141,13 @@ def _labels(page: PageEvidence) -> Iterator[Cause]:
         unexplained = page.base - {f"label {label.name}" for label in wrong}
         note, bits = "the numbers are what the program prints there", slips.BITS[slips.DIGIT]
         yield Cause(kind, note, bits, unexplained, changes)
+
+
+def _rows(page: PageEvidence) -> Iterator[Cause]:
+    """Yield a cause of rows that are out of the program's order."""
+    if ROWS in page.base:
+        note, bits = "; ".join(page.paper.exchanged), slips.BITS[slips.SWAP]
+        yield Cause("rows exchanged", note, bits, page.base - {ROWS})
 
 
 def _input_slips(page: PageEvidence, rereads: Iterable[Reread]) -> Iterator[Cause]:

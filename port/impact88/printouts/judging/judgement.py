@@ -200,7 +200,7 @@ def judge(paper: Printout, recovered: Recovered, others: Sequence[FieldCheck] = 
 
 def _verdict(found: Judged) -> Verdict:
     paper, missing = found.paper, found.recovered.missing
-    if paper.mislabelled:
+    if paper.mislabelled or paper.out_of_order:
         return Verdict.DIFFERS
     if found.contradicted:
         misread = paper.badly_read or (paper.machine_read and missing)

@@ -9,10 +9,10 @@ are, for they mean something else.
 import re
 import unicodedata
 from bisect import bisect_right
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from enum import IntEnum
 from functools import lru_cache
-from itertools import pairwise, repeat
+from itertools import accumulate, pairwise, repeat
 from math import log10
 from typing import NamedTuple
 
@@ -100,6 +100,12 @@ class Page:
             return Gap.NONE if full else Gap.LINE
         blanks = sum(map(str.isspace, between))
         return Gap.WIDE if blanks > 1 or "\t" in between else Gap.BLANK if blanks else Gap.NONE
+
+    def reorder(self, order: Sequence[int]) -> None:
+        """Put the lines of glyphs in another order; their offsets in the text stay."""
+        self.glyphs = tuple(self.glyphs[at] for line in order for at in self.lines[line])
+        stops = [*accumulate((len(self.lines[line]) for line in order), initial=0)]
+        self.lines = [range(*ends) for ends in pairwise(stops)]
 
     def place(self, offset: int) -> tuple[int, int]:
         """Return line and column, counted from 1, of an offset in the text."""

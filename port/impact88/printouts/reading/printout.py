@@ -33,6 +33,7 @@ from .alignment import (
 from .fieldlabels import MIN_READER_MARKS, LabelCheck, LabelState, label_checks, words_before
 from .glyphs import Gap, Page, Region, label_cost, letters, plain_glyphs
 from .labelmarks import asterisk_note, mark_checks, retyping_note
+from .rows import find_rows
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
@@ -186,6 +187,8 @@ class Printout:
         are the first's) to the next printout.
     markup : int
         Characters of markup that were passed over in the text of which it is the first printout.
+    exchanged : list of str
+        What is said of rows in another order than the program's.
     echoed : set of int
         Offsets of what the Apple shows in the replies besides their numbers.
 
@@ -218,6 +221,7 @@ class Printout:
     misread_prompts: set[str] = field(default_factory=set)
     own: range = range(0)
     markup: int = 0
+    exchanged: list[str] = field(default_factory=list)
     echoed: set[int] = field(default_factory=set)
 
     def __post_init__(self) -> None:
@@ -244,7 +248,8 @@ class Printout:
             for index, state in self._states.items()
             if letter_of(state) == glyphs[index].char
         }
-        self.start, self.stop = self.page.span(min(states), max(states) + 1)
+        offsets = [glyphs[index].offset for index in states]
+        self.start, self.stop = min(offsets), max(offsets) + 1
         self.line, self.column = self.page.place(self.start)
 
     def _close_numbers(self) -> None:
@@ -287,6 +292,12 @@ class Printout:
     def mislabelled(self) -> list[LabelCheck]:
         """Labels that name another number than the one beside them."""
         return [label for label in self.labels if label.state is LabelState.CONTRADICTORY]
+
+    @property
+    def out_of_order(self) -> bool:
+        """True if rows are out of the program's order on a page of its form, with prompts or rows
+        of asterisks; one without them was retyped, in an order of its own."""
+        return bool(self.exchanged) and (bool(self.replies) or self.ended)
 
     @property
     def marks(self) -> int:
@@ -660,23 +671,26 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
 
 
 def _markup_pieces(printout: Printout, text: str, stripped: str) -> list[Piece]:
-    """Return the markup between the lines of a printout that is not on most of them: a character
-    typed there, rather than the form of the text."""
+    """Return the markup that a printout has once only: characters typed there, rather than the form
+    of the text."""
     last, _ = printout.page.place(printout.stop - 1)
     lines = zip(text.split("\n"), stripped.split("\n"), strict=False)
-    pieces, count, start = list[Piece](), 0, 0
+    pieces, start = dict[str, list[Piece]](), 0
     for number, (line, stripped_line) in enumerate(lines, 1):
         if printout.line <= number <= last and line.strip():
-            count += 1
             runs = [at for at, char in enumerate(line) if stripped_line[at : at + 1] != char]
             places = range(printout.start - start, printout.stop - start)
             runs = [at for at in runs if at in places and not line[at].isspace()]
             if runs:
                 span = runs[0], runs[-1] + 1
                 place = (span[0] + 1, start + span[0], start + span[1])
-                pieces.append(Piece(line[slice(*span)], number, *place, False, within=True))
+                piece = Piece(line[slice(*span)], number, *place, False, within=True)
+                removed = Counter(line[at] for at in runs if not line[at].isalnum())
+                pieces.setdefault("".join(sorted(removed)), []).extend(
+                    [piece] * max(removed.values(), default=1)
+                )
         start += len(line) + 1
-    return pieces if 2 * len(pieces) < count else []
+    return [same[0] for same in pieces.values() if len(same) == 1]
 
 
 def _count_shown(text: str) -> int:
@@ -687,8 +701,12 @@ def _read_column(text: str) -> tuple[list[Printout], str]:
     """Return the printouts of a text that stands in one column, and why what follows them was not
     read where that is so."""
     page = Page(text)
+    rows = find_rows(page)
+    doubled = {page.glyphs[at].offset for at in rows.doubled}
+    page.reorder(rows.order)
     budget = Budget()
-    printouts = [*_printouts(page, budget)]
+    none_of_it = {at for at, glyph in enumerate(page.glyphs) if glyph.offset in doubled}
+    printouts = [*_printouts(page, budget, none_of_it)]
     reason = ""
     if budget.stopped is not None:
         line, column = page.place(page.glyphs[budget.stopped].offset)
@@ -698,6 +716,11 @@ def _read_column(text: str) -> tuple[list[Printout], str]:
         return [], reason
     printouts[-1].unread = reason
     _keep_left_over(page, printouts)
+    for offset, sentence in [*rows.repeated, *rows.exchanged]:
+        above = [printout for printout in printouts if printout.start <= offset]
+        owner = (above or printouts[:1])[-1]
+        owner.remarks.append(sentence)
+        owner.exchanged += [sentence] * ((offset, sentence) in rows.exchanged)
     commands = _slot_commands(page)
     for printout in printouts:
         printout.echoed |= {page.glyphs[at].offset for at in commands.intersection(printout.own)}
@@ -725,10 +748,11 @@ def _slot_commands(page: Page) -> set[int]:
     return {at for match in matches for at in range(*match.span())}
 
 
-def _printouts(page: Page, budget: Budget) -> Iterator[Printout]:
-    """Yield the printouts of a page; a message that ended a run ends its printout."""
+def _printouts(page: Page, budget: Budget, none_of_it: set[int]) -> Iterator[Printout]:
+    """Yield the printouts of a page; a message that ended a run ends its printout. ``none_of_it``:
+    glyphs that are known to be none of the program's."""
     text = letters(page.glyphs)
-    commands = _slot_commands(page)
+    commands = _slot_commands(page) | none_of_it
     start = 0
     for message in [*_ENDING.finditer(text.translate(_ALIKE)), None]:
         stop = message.start() if message else len(text)

@@ -211,7 +211,8 @@ def _verify_printout(paper: Printout, given: Mapping[str, str] | None) -> Verifi
     rereading = Rereading(scene, apart=True)
     judgement, attributed = judge(paper, scene), None
     is_open = in_doubt or judgement.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE)
-    if is_open and not paper.mislabelled:
+    is_of_another_form = bool(paper.mislabelled) or paper.out_of_order
+    if is_open and not is_of_another_form:
         attributed = attribute_to_reader(judgement, rereading)
     if in_doubt and not attributed:
         judgement = judge(paper, without_angles(scene))
@@ -223,7 +224,7 @@ def _verify_printout(paper: Printout, given: Mapping[str, str] | None) -> Verifi
             judgement, rereading, lambda: process_time() - start_time < BUDGET
         )
         is_alteration = any(len(cause.changes) <= MOST_ALTERED for cause in result.explanations[:1])
-        if paper.machine_read and not is_alteration and not paper.mislabelled:
+        if paper.machine_read and not is_alteration and not is_of_another_form:
             result.verdict, result.explanations = Verdict.INCOMPLETE, []
     if result.verdict is Verdict.INCOMPLETE and paper.machine_read and result.differing:
         result.remarks.append(

@@ -44,6 +44,7 @@ MEANINGS = {
 }
 """Sentence that explains each verdict."""
 
+ROWS_EXCHANGED = "rows exchanged"  # a kind of cause
 DOUBTFUL = "doubtful places"
 NOTES = "notes on the reading"
 MARKS = "on the page and not printed by the program"
@@ -304,6 +305,8 @@ def summary(result: Verification) -> list[str]:
             sentences.append(f"{replies} {noun} from the velocities printed")
         if wrong := sum(label.state is LabelState.CONTRADICTORY for label in result.labels):
             sentences.append("1 label contradicts" if wrong == 1 else f"{wrong} labels contradict")
+        if any(cause.kind == ROWS_EXCHANGED for cause in result.explanations):
+            sentences.append("its rows stand in another order than the program prints them")
         if lines := sum(bool(mark["contradicts"]) for mark in result.marks):
             verb = "1 typed line gives" if lines == 1 else f"{lines} typed lines give"
             sentences.append(f"{verb} numbers that are not the page's")
