@@ -141,11 +141,11 @@ def brief_search(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reconstructions draw from a tenth of the points and search from them once: for tests of what
     doors show and of two doors that must show the same, not of the bounds themselves."""
     from impact88.casework.optimization import widening
-    from impact88.casework.reconstruction import posterior, reconstructed
+    from impact88.casework.reconstruction import reconstructed, sampler
 
-    monkeypatch.setattr(posterior, "PARTICLES", 800)
-    monkeypatch.setattr(posterior, "BURN_IN_MOVES", 6)
-    monkeypatch.setattr(reconstructed, "LEVEL_DRAWS", 200)
+    monkeypatch.setattr(sampler, "PARTICLES", 800)
+    monkeypatch.setattr(sampler, "BURN_IN_MOVES", 6)
+    monkeypatch.setattr(reconstructed, "DRAWS_OF_BOUNDS", 200)
     monkeypatch.setattr(widening, "SPREAD_POINTS", 200)
     monkeypatch.setattr(widening, "SPREAD_STEPS", 3)
     monkeypatch.setattr(widening, "GENERATIONS", 4)

@@ -151,6 +151,12 @@ class State:
     def critical_friction(self) -> Any:
         """P_t/P_n of the impact whose contact points end their sliding at separation, by Equations
         15 and 18 with the pivot's condition."""
+        normal, tangential = self.pivot_impulse
+        return tangential / normal
+
+    @cached_property
+    def pivot_impulse(self) -> tuple[Any, Any]:
+        """P_n and P_t of that impact."""
         here = self.here
         e, em = (self.values.get(name) for name in ("E", "EM"))
         e = self["E"] if e is None else e
@@ -164,11 +170,7 @@ class State:
         moment = [np.where(here.point, float(i == 2), row) for i, row in enumerate(moment)]
         rows = [[unit[0] for unit in units], [unit[1] for unit in units], moment]
         right = [-(1 + e) * normal, -tangential, last]
-        entries = np.broadcast_arrays(*(x for row in rows for x in row), *right)
-        shape = entries[0].shape
-        matrix = np.stack(entries[:9], axis=-1).reshape(*shape, 3, 3)
-        solution = np.linalg.solve(matrix, np.stack(entries[9:], axis=-1)[..., None])[..., 0]
-        return solution[..., 1] / solution[..., 0]
+        return _first_two_unknowns(rows, right)
 
     def __getitem__(self, name: str) -> Any:
         """Return a quantity by name; coefficients follow from velocities and impulse."""
@@ -318,6 +320,23 @@ class State:
         the difference of two energies would."""
         parts = zip(self.impulse, self.relative_before, self.relative_after, strict=True)
         return -0.5 * sum(part * (early + late) for part, early, late in parts)
+
+
+def _first_two_unknowns(rows: list[list[Any]], right: list[Any]) -> tuple[Any, Any]:
+    """Return the first two unknowns of three linear equations, by Cramer's rule."""
+
+    def determinant(a: list[Any], b: list[Any], c: list[Any]) -> Any:
+        return (
+            a[0] * (b[1] * c[2] - b[2] * c[1])
+            - b[0] * (a[1] * c[2] - a[2] * c[1])
+            + c[0] * (a[1] * b[2] - a[2] * b[1])
+        )
+
+    columns = [[row[i] for row in rows] for i in range(3)]
+    whole = determinant(*columns)
+    first = determinant(right, columns[1], columns[2])
+    second = determinant(columns[0], right, columns[2])
+    return first / whole, second / whole
 
 
 def _size(x: Any, y: Any) -> Any:

@@ -27,8 +27,8 @@ MAX_ROUNDS = 80
 # Second-order corrections of a step. With a single one, bounds of reconstructions are up to 8 %
 # narrower.
 MAX_CORRECTIONS = 3
-MAX_BARRIER_ITERATIONS = 20  # interior-point method: each cuts the gap to about a fifth
-MAX_COMPLEMENTARITY = 1e-8  # it stops below; without this test it takes twice the time
+MAX_BARRIER_ITERATIONS = 30  # interior-point method: each cuts the gap to about a fifth
+MAX_COMPLEMENTARITY = 1e-11  # it stops below
 
 
 class SearchProblem(Protocol):

@@ -28,7 +28,7 @@ GENERATIONS = 40
 POPULATION_FACTOR = 4  # larger populations from the second round on
 SPREAD_FRACTION = 0.3  # of steps are differences of the spread points, not of the population
 CROSSOVER = 0.7  # probability that a step changes a coordinate; it changes one at least
-MIN_GAIN = 1e-7  # of a quantity's range: a local search stops below
+MIN_GAIN = 1e-10  # of a quantity's range: a local search stops below
 IMPROVEMENT_TOL = 1e-4  # of a quantity's range: a smaller improvement does not count
 CHUNK = 1 << 13  # points evaluated at a time, bounds the memory
 

@@ -4,8 +4,10 @@
 `reconstructed` has the uncertainty of a reconstruction: draws and bounds (entries: `draws`,
 `ranges`).
 
+- `posed`: what is known, made complete and freed of what cannot be used.
 - `system`: the equations in scaled variables; `quadrics`: all their exact solutions.
-- `posterior`: draws from the distribution that the known values define.
+- `admissible`: which impacts count; `coordinates`: those that meet all exact values; `posterior`:
+  the distribution that the known values define over both; `sampler`: draws from it.
 - `evidence`, `laws`: whether the measured values can all be true, and which laws they break.
 - `solutiontable`, `reconstructedtable`: results as tables and as JSON.
 """

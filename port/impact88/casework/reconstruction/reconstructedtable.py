@@ -10,6 +10,7 @@ import numpy as np
 from ...collision.geometry import within_doubles
 from ...collision.uncertain import Uncertain
 from ...collision.units import RULES, System, display_values
+from ...mechanics.outcome import broken_laws
 from ...mechanics.state import COURSES, FORCES, SPEEDS
 from ...messages import notebook
 from ...messages.arguments import explains_arguments
@@ -18,7 +19,8 @@ from ...names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..uncertainty.boundstable import unbounded_sides
 from . import adjustment
 from .adjustment import Reconstruction, typed_friction
-from .posterior import SIGMAS
+from .admissible import ENDS
+from .posterior import MAX_VELOCITY, MIN_SIZE, SIGMAS
 from .reconstructed import MIN_GAIN, Draws, Range, draws, ranges
 from .solutiontable import DRIVERS, NOISE, ROUNDING, Impact, join_texts, with_derived_values
 
@@ -40,8 +42,9 @@ _ANSWERS = ("SA", "SB", "DVA", "DVB")  # results of the answer, uncertain even w
 QUANTILES = (0.05, 0.5, 0.95)  # the median and the middle 90 % of the draws
 MAX_CORRELATION_COLUMNS = 7  # as many as 96 characters hold
 FIRST_ORDER_RTOL = 1 / 3  # first-order deviations farther from the draws' are not shown
+MAX_ENDS_NAMED = 4  # results whose interval ends at a condition
 MAX_FOLDED_NAMED = 6  # results named where branches meet
-MAX_SEPARATING_DRAWS = 0.005  # fraction of draws that do not approach, above which a remark is made
+MIN_SAID = 0.005  # fraction of draws above which a remark is made
 ILL_POSED = 0.25  # standard deviation of a velocity, relative to the largest speed
 
 
@@ -116,20 +119,22 @@ class Measured(Impact):
         self.draws: Draws | None = None
         self.ranges: dict[str, Range] = {}
         self.evidence = solution.evidence
-        infeasible = False
+        self.is_empty = self.not_drawn = False
+        self.refused: Draws | None = None
+        wants_draws = bool(samples and names)
         if like is not None and like.draws and {*names} <= {*like.draws.values}:
-            # all impacts have one distribution, whichever it was sampled from
-            self.draws, self.ranges = like.draws, {n: like.ranges[n] for n in names}
-        elif samples and names and not self.evidence.contradictory:
-            self.draws = draws(solution, names, samples, seed, progress)
-            self.ranges = ranges(solution, names, seed, self.draws, progress)
-            infeasible = any(math.isnan(bound.lower) for bound in self.ranges.values())
-        elif samples and names and not solution.assumed:
+            # all impacts have one distribution; an impossible one has no part in it
+            if not solution.impossible:
+                self.draws, self.ranges = like.draws, {n: like.ranges[n] for n in names}
+        elif like is not None:
+            self.refused = like.refused
+        elif wants_draws and not self.evidence.contradictory:
+            self._draw(samples, seed, progress)
+        elif wants_draws and not solution.assumed:
             bound = ranges(solution, names[:1], seed, None, progress)[names[0]]
-            infeasible = math.isnan(bound.lower)
-        self.not_drawn = infeasible and _is_within_limits(solution)
-        if infeasible:
-            self.draws, self.ranges = None, {}
+            self.is_empty = math.isnan(bound.lower)
+        if self.is_empty:
+            self.not_drawn = _is_within_limits(solution) and not solution.impossible
             if not self.not_drawn:
                 self.evidence = solution.weigh_evidence(inside=False)
         if not solution.assumed:
@@ -154,6 +159,18 @@ class Measured(Impact):
             fractions = responses**2 / (np.square(responses).sum() or 1.0)
             order = np.argsort(-fractions, kind="stable")
             self.drivers[name] = [(solution.system.observations[i], fractions[i]) for i in order]
+
+    def _draw(self, samples: int, seed: int, progress: Callable[[int], object]) -> None:
+        """Draw, and search for bounds; ``refused``: draws that do not suffice."""
+        drawn = draws(self.solution, self.names, samples, seed, progress)
+        self.is_empty = drawn is None
+        if drawn is None:
+            return
+        if not drawn.suffice:
+            self.refused = drawn
+            return
+        self.draws = drawn
+        self.ranges = ranges(self.solution, self.names, seed, drawn, progress)
 
     @property
     def uncertainties(self) -> Mapping[str, float]:
@@ -232,24 +249,12 @@ class Measured(Impact):
                 "no impact was found that lies within the limits of all known values at once: "
                 "there are neither draws nor bounds"
             )
-        if separating := self.separating:
-            lines.append(
-                f"{100 * separating:.2g} % of the draws separate already before the impact, which "
-                "meets all known values and is no impact; a course or a closing speed would "
-                "exclude them"
-            )
-        if self.draws and self.draws.signs is None and len(solution.beside) > 1:
-            lines.append(
-                f"draws and bounds are about this impact only, one of {len(solution.beside)} that "
-                "were found; they may be too narrow"
-            )
+        lines += self._draws_warnings()
         if not_searched := self.not_searched:
             lines.append(
                 "the search for bounds ended before its time; not searched to the end, and perhaps "
                 f"wider: {' '.join(not_searched)}"
             )
-        if self.draws and self.draws.failed:
-            lines.append(f"{100 * self.draws.failed:.3g} % of the draws have no solution")
         return lines + super().warnings()
 
     @property
@@ -257,21 +262,47 @@ class Measured(Impact):
         """Results whose bounds may be wider: the search did not converge."""
         return [name for name, bound in self.ranges.items() if not bound.searched]
 
-    @property
-    def separating(self) -> float:
-        """Fraction of draws whose contact points do not approach, 0 if it is negligible."""
-        if self.draws is None or "VC" not in self.draws.values:
-            return 0.0
-        fraction = float((self.draws.values["VC"] < 0).mean())
-        return fraction if fraction > MAX_SEPARATING_DRAWS else 0.0
+    def _draws_warnings(self) -> list[str]:
+        """Return the warnings about the draws: too few, cut off, or beyond strict friction."""
+        if self.refused is not None:
+            return [
+                f"the draws tell no more than {self.refused.effective:.0f} independent ones would "
+                f"(expected {MIN_SIZE}): there are neither draws nor bounds; narrower limits help"
+            ]
+        if self.draws is None:
+            return []
+        lines: list[str] = []
+        by_condition: dict[str, list[str]] = {}
+        for name in self.names:
+            for side, condition in zip(("below", "above"), self.draws.cut_by[name], strict=True):
+                if condition:
+                    by_condition.setdefault(condition, []).append(f"{name} {side}")
+        for condition, ends in by_condition.items():
+            more = f" and {len(ends) - MAX_ENDS_NAMED} more" if len(ends) > MAX_ENDS_NAMED else ""
+            named = ", ".join(ends[:MAX_ENDS_NAMED]) + more
+            lines.append(f"the interval ends where {ENDS[condition]}: {named}")
+        if self.draws.beyond_friction > MIN_SAID:
+            lines.append(
+                f"{100 * self.draws.beyond_friction:.2g} % of the draws need more friction than "
+                "what only ends the sliding, as some staged collisions do"
+            )
+        if self.draws.unlimited > MIN_SAID:
+            lines.append(
+                f"{100 * self.draws.unlimited:.2g} % of the draws are limited only by a largest "
+                f"velocity of {MAX_VELOCITY:g} times the largest known speed: the known values "
+                "leave velocities open"
+            )
+        return lines
 
     def _separate_values(self, name: str, deviation: float) -> list[float]:
-        """Return the values of a result in all impacts found, sorted, if draws cover several
-        impacts and these are farther apart than the standard deviation; else an empty list."""
-        if not (self.draws and self.draws.signs is not None):
+        """Return the values of a result in all possible impacts found, sorted, if draws cover
+        several of them and these are farther apart than the standard deviation; else none."""
+        if not self.draws:
             return []
         values = sorted(
-            float(np.ravel(system.state(x)[name])[0]) for system, x in self.solution.beside
+            float(np.ravel(state[name])[0])
+            for state in (system.state(x) for system, x in self.solution.beside)
+            if not broken_laws(state).any()
         )
         gaps = np.diff(values)
         return values if len(gaps) and gaps.max() > deviation else []
@@ -385,10 +416,11 @@ class Measured(Impact):
                 cells += [number(value, 5) for value in limits]
             rows.append([*cells, units.label(quantity(name).unit)])
         lines = table(rows, [*heading, "unit"], left=(0, len(heading))) if rows else []
-        if self.draws and self.draws.signs is not None and rows:
+        if self.draws and rows:
             lines += paragraph(
-                "Draws and bounds: over every impact that meets all known values, of all branches; "
-                "flat, where nothing is known, over velocities before, e, e_m and P_t/P_n"
+                f"Draws and bounds: {self.draws.counted}; flat, where nothing is known, over "
+                f"velocities before, e, e_m and P_t/P_n; as much as {self.draws.effective:.0f} "
+                "independent draws"
             )
             if any(self.first_order[n] is None for n in self.names):
                 lines += paragraph(
@@ -450,7 +482,9 @@ class Measured(Impact):
             "equal_tolerances_assumed": solution.assumed,
             "uncertainty": {name: self._uncertainty_json(name, units) for name in self.names},
             "correlations": {"names": self.names, "matrix": self._correlations(units)},
-            "draws_without_solution": self.draws.failed if self.draws else None,
+            "counted": self.draws.counted if self.draws else None,
+            "effective_draws": self.draws.effective if self.draws else None,
+            "beyond_strict_friction": self.draws.beyond_friction if self.draws else None,
             "not_searched": self.not_searched,
         }
 

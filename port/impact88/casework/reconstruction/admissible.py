@@ -1,0 +1,155 @@
+"""The impacts that count: those that break no law and need no more friction than there is.
+
+Laws always hold: the contact points approach, the normal impulse pushes, no kinetic energy is
+gained; E lies from 0 to 1 and EM from -1 to 0 where they are not given. Where friction is not
+given, P_t/P_n lies between 0 and what ends the sliding, or what sliding forth and back allows
+(`mechanics.closedform.statusbits`), widened as the chapter's eleven staged collisions need it.
+
+Each condition is a `Row`: a number that lies from 0 to 1 where it holds, smooth there, real or
+complex. `mechanics.outcome.broken_laws` decides the same laws for results."""
+
+from collections.abc import Collection, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...mechanics.outcome import broken_laws
+from ...mechanics.state import State
+from ...names import COEFFICIENTS
+from .posed import absent_results
+from .system import System
+
+Array = NDArray[Any]
+
+WIDER = 0.2  # widening of friction's limits on either side, relative to their distance
+MORE = 0.1  # and beside that
+# Where nothing ends the sliding, P_t/P_n has no other limit. The listing takes -10 for a pivot.
+LARGEST_FRICTION = 10.0
+
+APPROACH = "approach"
+PUSH = "push"
+ENERGY = "energy"
+NORMAL = "normal"  # some normal allows the impact; judged where the contact plane is not given
+FRICTION = "MUP"
+LAWS = (APPROACH, PUSH, ENERGY)
+RANGES = {"E": (0.0, 1.0), "EM": (-1.0, 0.0)}
+
+SENTENCE = "counted are impacts in which the vehicles approach, push and gain no energy"
+ENDS = {
+    APPROACH: "the vehicles would not approach",
+    PUSH: "the vehicles would pull",
+    ENERGY: "energy would be gained",
+    "E": "E would leave 0 ... 1",
+    "EM": "EM would leave -1 ... 0",
+    NORMAL: "no contact plane would allow the impact",
+    FRICTION: "friction would reverse the sliding",
+}
+"""Where an interval ends at a condition: it ends where ..."""
+
+
+class Admissible:
+    """The admissible set of a reconstruction. ``rows``: names of the conditions that are judged:
+    laws, and coefficients that are not given. ``given``: coefficients known, exactly or within
+    limits."""
+
+    def __init__(self, system: System) -> None:
+        self.given = [n for n in COEFFICIENTS if n in system.known]
+        absent = absent_results(system.known)
+        open_ones = [n for n in COEFFICIENTS if n not in self.given and n not in absent]
+        if system.point and "EM" in open_ones:
+            open_ones.remove("EM")
+        laws = LAWS if "GA" in system.known else (ENERGY, NORMAL)
+        self.rows: Sequence[str] = (*laws, *open_ones)
+        self.speed, self.mass = system.speed, system.mass
+
+    def limit_to(self, names: Collection[str]) -> None:
+        """Judge by these conditions alone."""
+        self.rows = [name for name in self.rows if name in names]
+
+    def row(self, state: State, name: str) -> Any:
+        """Return one condition of impacts: it holds from 0 to 1."""
+        if name == APPROACH:
+            return _positive(-state.relative_before[0], self.speed)
+        if name == PUSH:
+            return _positive(state.values["PN"], self.mass * self.speed)
+        if name == ENERGY:
+            return _positive(state.energy_lost, self.mass * self.speed**2)
+        if name == NORMAL:
+            return np.where(broken_laws(state) == 0, 0.5, -1.0)
+        if name in RANGES:
+            low, high = RANGES[name]
+            return (state[name] - low) / (high - low)
+        low, high = friction_limits(state)
+        return (state["MUP"] - low) / (high - low)
+
+    def sentence(self) -> str:
+        """Return the admissible set in one sentence, without its full stop."""
+        parts = [SENTENCE]
+        for name, (low, high) in RANGES.items():
+            if name in self.rows:
+                parts.append(f"{name} lies from {low:g} to {high:g}")
+        if FRICTION in self.rows:
+            parts.append(
+                "P_t/P_n lies between 0 and what ends the sliding, a fifth and 0.1 more on either "
+                f"side, and within {LARGEST_FRICTION:g}"
+            )
+        return f"{', '.join(parts[:-1])} and {parts[-1]}" if parts[1:] else parts[0]
+
+
+def _positive(value: Any, size: Any) -> Any:
+    """Return a number from 0 to 1 where a value is positive, smooth at 0."""
+    return value / (size + np.where(np.real(value) < 0, -value, value))
+
+
+def friction_limits(state: State, strict: bool = False) -> tuple[Any, Any]:
+    """Return the lowest and the highest P_t/P_n that friction makes, widened unless ``strict``."""
+    critical = _clipped(_critical_friction(state))
+    back = _forth_and_back(state)
+    low, high = _least(critical, back), -_least(-critical, -back)
+    if strict:
+        return low, high
+    room = WIDER * (high - low) + MORE
+    return _clipped(low - room), _clipped(high + room)
+
+
+def _clipped(value: Any) -> Any:
+    return np.where(np.abs(np.real(value)) < LARGEST_FRICTION, value, _largest_along(value))
+
+
+def _largest_along(value: Any) -> Any:
+    return np.sign(np.real(value)) * LARGEST_FRICTION
+
+
+def _least(first: Any, second: Any) -> Any:
+    """Return the least of two numbers and 0; of complex ones that with the least real part."""
+    least = np.where(np.real(first) < np.real(second), first, second)
+    return np.where(np.real(least) < 0, least, 0.0)
+
+
+def _critical_friction(state: State) -> Any:
+    """Return P_t/P_n of the impact whose sliding ends at separation; where that would pull, nothing
+    ends the sliding, and the largest there is along its P_t."""
+    normal, tangential = state.pivot_impulse
+    return np.where(
+        np.real(normal) > 0,
+        tangential / np.where(np.real(normal) > 0, normal, 1.0),
+        _largest_along(tangential),
+    )
+
+
+def _forth_and_back(state: State) -> Any:
+    """Return P_t/P_n of sliding forth and back at most, 0 where the normal impulse does not reverse
+    the sliding (`closedform.statusbits.slides_forth_and_back`)."""
+    here, impulse = state.here, state.values
+    sliding = state.relative_before[1]
+    turning = here.relative(here.changes(impulse["PN"], 0.0, impulse.get("PM", 0.0)))[1]
+    yielding = here.relative(here.changes(0.0, 1.0, 0.0))[1]
+    size = np.where(np.real(turning) < 0, -turning, turning)
+    speed = np.where(np.real(sliding) < 0, -sliding, sliding)
+    reverses = np.real(turning) * np.real(sliding) < 0
+    reverses &= (np.real(speed) > 0.5 * np.real(size)) & (np.real(speed) < 2 * np.real(size))
+    reverses &= np.real(impulse["PN"]) > 0
+    size, speed = np.where(reverses, size, 1.0), np.where(reverses, speed, 1.0)
+    largest = np.square(np.sqrt(2 * speed * size) - size) / (size * yielding * impulse["PN"])
+    return np.where(reverses, -np.sign(np.real(sliding)) * largest, 0.0)
