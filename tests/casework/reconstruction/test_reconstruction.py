@@ -10,7 +10,6 @@ from itertools import product
 
 import numpy as np
 import pytest
-from longer import long_but
 
 from impact88.casework.chapter.staged import collisions
 from impact88.casework.reconstruction import adjustment

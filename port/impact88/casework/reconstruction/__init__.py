@@ -4,7 +4,6 @@
 `reconstructed` has the uncertainty of a reconstruction: draws and bounds (entries: `draws`,
 `ranges`).
 
-- `posed`: what is known, made complete and freed of what cannot be used.
 - `system`: the equations in scaled variables; `quadrics`: all their exact solutions.
 - `admissible`: which impacts count; `coordinates`: those that meet all exact values; `posterior`:
   the distribution that the known values define over both; `sampler`: draws from it.

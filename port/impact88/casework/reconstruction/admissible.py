@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...mechanics.outcome import broken_laws
+from ...mechanics.posed import absent_results
 from ...mechanics.state import State
 from ...names import COEFFICIENTS
-from .posed import absent_results
 from .system import System
 
 Array = NDArray[Any]

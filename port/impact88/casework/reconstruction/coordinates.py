@@ -19,10 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...collision.geometry import GEOMETRY, Geometry
+from ...mechanics.posed import absent_results
 from ...mechanics.state import COURSES, CRUSH, DIRECTIONS, ENERGIES, SPEEDS, State
 from ...names import COEFFICIENTS, IMPULSES, PIVOT, VELOCITIES
 from .adjustment import Reconstruction
-from .posed import absent_results
 from .system import COMPLEX_STEP, System
 from .unknowns import TIE
 
