@@ -51,6 +51,7 @@ quantity is an `Expression`: what nobody asks for is noted and never computed.
 from collections.abc import Mapping, Sequence
 from math import inf, pi
 from sys import float_info
+from typing import NamedTuple
 
 from ...names import PIVOT
 from ...status import Status
@@ -64,261 +65,344 @@ MOST = 2 / 3
 after is computed from the other body's."""
 
 
-def impact(
-    table: ExpressionTable,
-    scene: Mapping[str, Expression],
-    pivot: bool | Expression,
-    point: bool | Expression,
-    infinite: bool,
-    sign: float | None = None,
-) -> dict[str, Expression]:
-    """The results of an impact by name, of the expressions of a scene's columns; beside them ``gn``
-    and ``gt``, ``determinant``, which is zero where the equations have no solution, and
-    ``critical_denominator``, which divides MUC.
+Condition = bool | Expression
+"""True where all scenes are so, False where none is, else which are."""
 
-    ``pivot``: True when MU = -10 throughout, False when nowhere, else the condition where it is.
-    ``point``: the same for M = 4. ``infinite``: whether a body may be. ``sign``: what MU is
-    multiplied with instead of the sign rule.
+
+class Given:
+    """What all formulas share: a scene as they take it, its geometry, inertia and motion before.
+
+    ``pivot``, ``point``, ``infinite``, ``sign``: see `impact`. Groups of values are in the order
+    in which they are unpacked everywhere.
     """
-    zero, absolute = table.constant(0.0), table.absolute
 
-    def unless_point(value: Expression, instead: Expression = zero) -> Expression:
-        if point is False:
+    def __init__(
+        self,
+        table: ExpressionTable,
+        scene: Mapping[str, Expression],
+        pivot: Condition,
+        point: Condition,
+        infinite: bool,
+        sign: float | None,
+    ) -> None:
+        self.table, self.scene = table, scene
+        self.pivot, self.point, self.infinite = pivot, point, infinite
+        self.zero, self.one = table.constant(0.0), table.constant(1.0)
+        self.E, self.masses = scene["E"], (scene["MA"], scene["MB"])
+        self.velocities = tuple(scene[name] for name in ("UX", "UY", "VX", "VY"))
+        # a point mass has neither arm nor spin, whatever its columns hold
+        self.EM, WA, WB, DA, DB = (
+            self.unless_point(scene[name]) for name in ("EM", "WA", "WB", "DA", "DB")
+        )
+        self.spins, self.distances = (WA, WB), (DA, DB)
+        self.inertias = tuple(self.unless_point(scene[name], self.one) for name in ("IA", "IB"))
+        self._set_geometry()
+        self._set_inertia()
+        self._set_motion(sign)
+
+    def unless_point(self, value: Expression, instead: Expression | None = None) -> Expression:
+        """Return a value, and what is there instead of it where bodies are points: by default 0."""
+        instead = self.zero if instead is None else instead
+        if self.point is False:
             return value
-        return instead if point is True else table.choose(point, instead, value)
+        return instead if self.point is True else self.table.choose(self.point, instead, value)
 
-    GA, E, MU, MA, MB = (scene[name] for name in ("GA", "E", "MU", "MA", "MB"))
-    UX, UY, VX, VY = (scene[name] for name in ("UX", "UY", "VX", "VY"))
-    # a point mass has neither arm nor spin, whatever its columns hold
-    EM, WA, WB, DA, DB = (unless_point(scene[name]) for name in ("EM", "WA", "WB", "DA", "DB"))
-    IA, IB = (unless_point(scene[name], table.constant(1.0)) for name in ("IA", "IB"))
-
-    # -- geometry: what a spin adds to the contact velocity along n and t, of A, and of B with the
-    # sign that the relative velocity a - b takes; and line 330's numbers
-
-    s, c = table.sine_and_cosine(GA)
-
-    def to_contact_axes(x: Expression, y: Expression) -> tuple[Expression, Expression]:
+    def to_contact_axes(self, x: Expression, y: Expression) -> tuple[Expression, Expression]:
         """Return the components along n and t of a vector along x and y."""
+        s, c = self.axes
         return c * x + s * y, c * y - s * x
 
-    def to_fixed_axes(n: Expression, t: Expression) -> tuple[Expression, Expression]:
+    def to_fixed_axes(self, n: Expression, t: Expression) -> tuple[Expression, Expression]:
         """Return the components along x and y of a vector along n and t."""
+        s, c = self.axes
         return c * n - s * t, s * n + c * t
 
-    def arms(distance: Expression, angle: Expression) -> Sequence[Expression]:
-        if distance.is_zero:
-            return [distance] * 4
-        (sine, cosine), (sn, cs) = map(table.sine_and_cosine, (angle, angle - GA))
-        return distance * sn, -(distance * cs), distance * sine, distance * cosine
-
-    an, at, D3, D4 = arms(DA, scene["TA"] + scene["PA"])
-    bn, bt, D1, D2 = arms(DB, scene["TB"] + scene["PB"])
-
-    # -- inertia
-
-    ma, mb, ia, ib = 1.0 / MA, 1.0 / MB, 1.0 / IA, 1.0 / IB
-    R, spins = ma + mb, ia + ib
-    Ired = 1.0 / spins
-    weight_a = ib * Ired  # Ia/(Ia + Ib), of A's spin in the mean
-    J = ia * weight_a  # 1/(Ia + Ib), in an order that the largest inertias survive
-
-    # -- relative velocity before: of the mass centers along x and y, n and t, and at the contact
-    # point; the parts of A's and B's spin in the mean
-
-    dx, dy = UX - VX, UY - VY
-    cn, ct = to_contact_axes(dx, dy)
-    gn, gt, gw = cn + an * WA + bn * WB, ct + at * WA + bt * WB, WA - WB
-    of_a, of_b = weight_a * WA, (ia * Ired) * WB
-    mean = of_a + of_b
-
-    def cross_with_spins(a: Expression, b: Expression) -> Expression:
+    def cross_with_spins(self, a: Expression, b: Expression) -> Expression:
         """Ired X = Ired (b omega_a/Ib - a omega_b/Ia) of arms a and b in one direction."""
+        of_a, of_b = self.parts_of_mean
         return b * of_a - a * of_b
 
-    # MU after the sign rule of line 400: changed where gt > 0, kept on a tie
-    mu = table.against(MU, gt) if sign is None else sign * MU
-    z, turn = 1.0 - (EM + EM), Ired * gw
-    sn, st = an + bn, at + bt
-    kn, kt = an * ia - bn * ib, at * ia - bt * ib
-    an_, at_, bn_, bt_ = map(absolute, (an, at, bn, bt))
-    sn_, st_ = an_ + bn_, at_ + bt_
-    kn_, kt_ = an_ * ia + bn_ * ib, at_ * ia + bt_ * ib
+    def _set_geometry(self) -> None:
+        """What a spin adds to the contact velocity along n and t, of A, and of B with the sign that
+        the relative velocity a - b takes; and line 330's numbers."""
+        scene, sine_and_cosine = self.scene, self.table.sine_and_cosine
+        self.axes = sine_and_cosine(scene["GA"])
 
-    # what a body's own state and the other's weigh in its final spin times the determinant
-    weight_b, other = ia * Ired, 1.0 - EM
-    own_a, own_b = z * weight_a - EM * weight_b, z * weight_b - EM * weight_a
-    other_a, other_b = other * weight_a, other * weight_b
+        def arms(distance: Expression, angle: Expression) -> Sequence[Expression]:
+            if distance.is_zero:
+                return [distance] * 4
+            (sine, cosine), (sn, cs) = map(sine_and_cosine, (angle, angle - scene["GA"]))
+            return distance * sn, -(distance * cs), distance * sine, distance * cosine
 
+        DA, DB = self.distances
+        an, at, D3, D4 = arms(DA, scene["TA"] + scene["PA"])
+        bn, bt, D1, D2 = arms(DB, scene["TB"] + scene["PB"])
+        self.arms, self.fixed_arms = (an, at, bn, bt), (D3, D4, D1, D2)
+        self.arm_sizes = tuple(map(self.table.absolute, self.arms))
+
+    def _set_inertia(self) -> None:
+        """Inverse masses and inertias, and what is made of them and the arms."""
+        self.inverses = ma, mb, ia, ib = tuple(1.0 / x for x in (*self.masses, *self.inertias))
+        R, both = ma + mb, ia + ib
+        Ired = 1.0 / both
+        weight_a, weight_b = ib * Ired, ia * Ired  # Ia/(Ia + Ib), of A's spin in the mean
+        J = ia * weight_a  # 1/(Ia + Ib), in an order that the largest inertias survive
+        self.reduced = R, both, Ired, J
+        an, at, bn, bt = self.arms
+        self.sums = an + bn, at + bt, an * ia - bn * ib, at * ia - bt * ib
+        an_, at_, bn_, bt_ = self.arm_sizes
+        self.sizes = an_ + bn_, at_ + bt_, an_ * ia + bn_ * ib, at_ * ia + bt_ * ib
+        # what a body's own state and the other's weigh in its final spin times the determinant
+        EM = self.EM
+        self.z, other = 1.0 - (EM + EM), 1.0 - EM
+        own_a, own_b = self.z * weight_a - EM * weight_b, self.z * weight_b - EM * weight_a
+        self.weights = own_a, own_b, other * weight_a, other * weight_b
+        WA, WB = self.spins
+        self.parts_of_mean = weight_a * WA, weight_b * WB
+
+    def _set_motion(self, sign: float | None) -> None:
+        """The relative velocity before, of the mass centers along x and y, n and t, and at the
+        contact point; the mean spin; friction."""
+        (UX, UY, VX, VY), (WA, WB) = self.velocities, self.spins
+        an, at, bn, bt = self.arms
+        self.of_centers = dx, dy = UX - VX, UY - VY
+        self.approach = cn, ct = self.to_contact_axes(dx, dy)
+        gn, gt = cn + an * WA + bn * WB, ct + at * WA + bt * WB
+        self.of_contact = gn, gt, WA - WB
+        of_a, of_b = self.parts_of_mean
+        _, _, Ired, _ = self.reduced
+        self.mean, self.turn = of_a + of_b, Ired * (WA - WB)
+        # MU after the sign rule of line 400: changed where gt > 0, kept on a tie
+        MU = self.scene["MU"]
+        self.mu = self.table.against(MU, gt) if sign is None else sign * MU
+
+
+class Found(NamedTuple):
+    """The impulse, the motion after and what else depends on the kind of impact.
+
+    ``moment``: H/em, which is PM/(1 - em); ``slip``: the tangential relative velocity at
+    separation; ``sliding``: MU after the sign rule, 0 for a pivot; ``absolute_sum``: the
+    determinant with every sum in it replaced by the sum of the absolute values.
+    """
+
+    determinant: Expression
+    PN: Expression
+    PT: Expression
+    Px: Expression
+    Py: Expression
+    moment: Expression
+    spin_a: Expression
+    spin_b: Expression
+    VAX: Expression
+    VAY: Expression
+    VBX: Expression
+    VBY: Expression
+    slip: Expression
+    MUP: Expression
+    sliding: Expression
+    absolute_sum: Expression
+
+
+def _friction(g: Given) -> Found:
+    """The impact with friction: everything along the direction (1, mu) of the impulse."""
+    table, E, EM, z, mu, mean, turn = g.table, g.E, g.EM, g.z, g.mu, g.mean, g.turn
+    absolute, to_fixed_axes, cross_with_spins = table.absolute, g.to_fixed_axes, g.cross_with_spins
+    (MA, MB), (ma, mb, ia, ib), (R, both, Ired, J) = g.masses, g.inverses, g.reduced
+    (UX, UY, VX, VY), (WA, WB) = g.velocities, g.spins
+    (s, c), (an, at, bn, bt) = g.axes, g.arms
+    (sn, st, kn, kt), (sn_, st_, kn_, kt_) = g.sums, g.sizes
+    (dx, dy), (cn, ct), (gn, _, _) = g.of_centers, g.approach, g.of_contact
+    own_a, own_b, other_a, other_b = g.weights
     # a x b, which is Ired kappa x sigma without the difference of products whose digits are lost in
-    # kappa already, times (Ia + Ib): of arms along n and t, and along x and y, of which each kind
-    # of impact has its own
-    crossing = spins * (an * bt - at * bn)
+    # kappa already, times (Ia + Ib)
+    crossing = both * (an * bt - at * bn)
+    rebound = E * gn
+    w = rebound + cn
+    a, b = an + mu * at, bn + mu * bt
+    em_kappa, J_sigma, X = EM * kn, J * (a + b), cross_with_spins(a, b)
+    twist = Ired * (a * ia - b * ib)
+    push, em_twist = z * J_sigma, EM * twist
+    levers = push * sn - em_twist * kn
+    determinant = z * R + levers
+    inverse, turned = 1.0 / determinant, em_kappa * turn
+    Pn = (turned - z * (w + sn * mean)) / determinant
+    Pt = mu * Pn
+    along_x, along_y = to_fixed_axes(g.one, mu)
+    Px, Py = along_x * Pn, along_y * Pn
+    moment = g.unless_point((twist * w - turn * R - sn * X) * inverse)
+    cross = EM * (a * (ia * WB) - b * (ib * WA))
+    # what w multiplies is in the determinant, too: sums that cancel have errors in common
+    kept_a, kept_b = own_a * WA + other_b * WB, own_b * WB + other_a * WA
+    spin_a = (R * kept_a - w * (push - ia * em_twist) + bn * cross) * inverse
+    spin_b = (R * kept_b - w * (push + ib * em_twist) - an * cross) * inverse
+    # by Cramer's rule, too: of ct and of what the impulse changes of it little may be left
+    kept = z * (R * ((ct + st * mean) - mu * (w + sn * mean)) + J_sigma * (ct * sn - st * w))
+    traded = twist * (kt * w - kn * ct) + (turn * R) * (mu * kn - kt) + crossing * X
+    slip = (kept + EM * traded) / determinant
+    # Where the impulse takes away most of a light body's velocity along x or y, that is found
+    # from the other's and the relative one after, of which no term is taken away again.
+    taken_x, taken_y = c * along_x, s * along_y  # 1 together
+    parting = (R * (turned - z * (rebound + sn * mean)) + levers * cn) * inverse
+    parting = g.unless_point(parting, -rebound)
+    relative_x = dx * taken_y + along_x * (parting - s * dy)
+    relative_y = dy * taken_x + along_y * (parting - c * dx)
+    of_masses, much_of_a, much_of_b = z * inverse, MOST * MA, MOST * MB
+    product = taken_x * taken_y
+    if not product.is_zero:  # but not both taken away and added, by much friction
+        of_masses = table.choose(product > -0.5, of_masses, g.zero)
+    taken_x, taken_y = of_masses * taken_x, of_masses * taken_y
 
-    # -- friction: everything along the direction (1, mu) of the impulse
+    def of_light(
+        taken: Expression, much: Expression, instead: Expression, velocity: Expression
+    ) -> Expression:
+        return velocity if taken.is_zero else table.choose(taken > much, instead, velocity)
 
-    def friction() -> list[Expression]:
-        rebound = E * gn
-        w = rebound + cn
-        a, b = an + mu * at, bn + mu * bt
-        em_kappa, J_sigma, X = EM * kn, J * (a + b), cross_with_spins(a, b)
-        twist = Ired * (a * ia - b * ib)
-        push, em_twist = z * J_sigma, EM * twist
-        levers = push * sn - em_twist * kn
-        determinant = z * R + levers
-        inverse, turned = 1.0 / determinant, em_kappa * turn
-        Pn = (turned - z * (w + sn * mean)) / determinant
-        Pt = mu * Pn
-        along_x, along_y = to_fixed_axes(table.constant(1.0), mu)
-        Px, Py = along_x * Pn, along_y * Pn
-        moment = unless_point((twist * w - turn * R - sn * X) * inverse)
-        cross = EM * (a * (ia * WB) - b * (ib * WA))
-        # what w multiplies is in the determinant, too: sums that cancel have errors in common
-        kept_a, kept_b = own_a * WA + other_b * WB, own_b * WB + other_a * WA
-        spin_a = (R * kept_a - w * (push - ia * em_twist) + bn * cross) * inverse
-        spin_b = (R * kept_b - w * (push + ib * em_twist) - an * cross) * inverse
-        # by Cramer's rule, too: of ct and of what the impulse changes of it little may be left
-        kept = z * (R * ((ct + st * mean) - mu * (w + sn * mean)) + J_sigma * (ct * sn - st * w))
-        traded = twist * (kt * w - kn * ct) + (turn * R) * (mu * kn - kt) + crossing * X
-        slip = (kept + EM * traded) / determinant
-        # Where the impulse takes away most of a light body's velocity along x or y, that is found
-        # from the other's and the relative one after, of which no term is taken away again.
-        taken_x, taken_y = c * along_x, s * along_y  # 1 together
-        parting = (R * (turned - z * (rebound + sn * mean)) + levers * cn) * inverse
-        parting = unless_point(parting, -rebound)
-        relative_x = dx * taken_y + along_x * (parting - s * dy)
-        relative_y = dy * taken_x + along_y * (parting - c * dx)
-        of_masses, much_of_a, much_of_b = z * inverse, MOST * MA, MOST * MB
-        product = taken_x * taken_y
-        if not product.is_zero:  # but not both taken away and added, by much friction
-            of_masses = table.choose(product > -0.5, of_masses, zero)
-        taken_x, taken_y = of_masses * taken_x, of_masses * taken_y
+    VAX, VAY, VBX, VBY = UX + ma * Px, UY + ma * Py, VX - mb * Px, VY - mb * Py
+    velocities = [
+        of_light(taken_x, much_of_a, VBX + relative_x, VAX),
+        of_light(taken_y, much_of_a, VBY + relative_y, VAY),
+        of_light(taken_x, much_of_b, VAX - relative_x, VBX),
+        of_light(taken_y, much_of_b, VAY - relative_y, VBY),
+    ]
+    size = absolute(mu)
+    straight = R * (1.0 + size) + J * (sn_ * (sn_ + size * st_))
+    twisting = absolute(EM) * (Ired * (kn_ * (kn_ + size * kt_)))
+    condition = absolute(z) * straight + twisting
+    impulse = [determinant, Pn, Pt, Px, Py]
+    spins_after = [moment, spin_a, spin_b]
+    return Found._make([*impulse, *spins_after, *velocities, slip, mu, mu, condition])
 
-        def of_light(
-            taken: Expression, much: Expression, instead: Expression, velocity: Expression
-        ) -> Expression:
-            return velocity if taken.is_zero else table.choose(taken > much, instead, velocity)
 
-        VAX, VAY, VBX, VBY = UX + ma * Px, UY + ma * Py, VX - mb * Px, VY - mb * Py
-        velocities = [
-            of_light(taken_x, much_of_a, VBX + relative_x, VAX),
-            of_light(taken_y, much_of_a, VBY + relative_y, VAY),
-            of_light(taken_x, much_of_b, VAX - relative_x, VBX),
-            of_light(taken_y, much_of_b, VAY - relative_y, VBY),
-        ]
-        size = absolute(mu)
-        straight = R * (1.0 + size) + J * (sn_ * (sn_ + size * st_))
-        twisting = absolute(EM) * (Ired * (kn_ * (kn_ + size * kt_)))
-        condition = absolute(z) * straight + twisting
-        impulse = [determinant, Pn, Pt, Px, Py]
-        spins_after = [moment, spin_a, spin_b]
-        return [*impulse, *spins_after, *velocities, slip, mu, mu, condition]
+class Pivot:
+    """A pivot's impulse, and what it is made of: MUC and STATUS of friction take some of it, too.
 
-    # -- pivot, everything divided by R, along x and y: GA only enters by the restitution, and what
-    # is rounded in turning to n and t would be lost where the sliding is all but undone
+    Everything is divided by R, along x and y: GA only enters by the restitution, and what is
+    rounded in turning to n and t would be lost where the sliding is all but undone.
+    """
 
-    ax, ay, bx, by = D3, -D4, D1, -D2
-    sx, sy = ax + bx, ay + by
-    kx, ky = ax * ia - bx * ib, ay * ia - by * ib
-    tx, ty = Ired * kx, Ired * ky
-    rebound = E * (c * (dx + ax * WA + bx * WB) + s * (dy + ay * WA + by * WB))
-    rx, ry = c * rebound, s * rebound
-    wx, wy = dx + rx, dy + ry
-    Xx, Xy = cross_with_spins(ax, bx), cross_with_spins(ay, by)
-    # a x b = Ired kappa x sigma, without the difference of products whose digits are lost in kappa
-    # already; times (Ia + Ib) and times J/R
-    cross, R_inverse = ax * by - ay * bx, 1.0 / R
-    lever, lever_J = spins * cross, (J * R_inverse) * cross
-    # sigma x (w, ct) and (w, ct) x kappa, which the mean spin drops out of
-    s_across, k_across = sx * wy - sy * wx, ky * wx - kx * wy
-    # the determinant divided by R: what the masses give of it and what the arms do, sums of squares
-    # without cancellation however slight R is
-    zJ, masses = z * J, z * R
-    levers = zJ * (sx * sx + sy * sy) - EM * (tx * kx + ty * ky + lever * lever_J)
-    pivot_determinant = masses + levers
-    # R P times the determinant, along x and y: at first without the approach of the mass centers,
-    # which is -z R times it; of bodies without arms only the rebound is left
-    turn_R, along = turn * R, zJ * s_across
-    of_turn_x, of_turn_y = turn_R * kx + lever * Xy, turn_R * ky - lever * Xx
-    x = EM * (of_turn_x + ty * k_across) - masses * (rx + sx * mean)
-    y = EM * (of_turn_y - tx * k_across) - masses * (ry + sy * mean)
-    x, y = x + sy * along, y - sx * along
-    RPx, RPy = x - masses * dx, y - masses * dy
-    critical_denominator, critical_numerator = to_contact_axes(RPx, RPy)
-    divisor = R * pivot_determinant
-    pivot_x, pivot_y = RPx / divisor, RPy / divisor
-    pivot_n, pivot_t = to_contact_axes(pivot_x, pivot_y)
+    def __init__(self, g: Given) -> None:
+        E, EM, z, mean, turn, (s, c) = g.E, g.EM, g.z, g.mean, g.turn, g.axes
+        cross_with_spins, to_contact_axes = g.cross_with_spins, g.to_contact_axes
+        (_, _, ia, ib), (R, both, Ired, J), (WA, WB) = g.inverses, g.reduced, g.spins
+        (D3, D4, D1, D2), (dx, dy) = g.fixed_arms, g.of_centers
+        ax, ay, bx, by = D3, -D4, D1, -D2
+        sx, sy = ax + bx, ay + by
+        kx, ky = ax * ia - bx * ib, ay * ia - by * ib
+        tx, ty = Ired * kx, Ired * ky
+        rebound = E * (c * (dx + ax * WA + bx * WB) + s * (dy + ay * WA + by * WB))
+        rx, ry = c * rebound, s * rebound
+        wx, wy = dx + rx, dy + ry
+        Xx, Xy = cross_with_spins(ax, bx), cross_with_spins(ay, by)
+        # a x b = Ired kappa x sigma, without the difference of products whose digits are lost in
+        # kappa already; times (Ia + Ib) and times J/R
+        cross, R_inverse = ax * by - ay * bx, 1.0 / R
+        lever, lever_J = both * cross, (J * R_inverse) * cross
+        # sigma x (w, ct) and (w, ct) x kappa, which the mean spin drops out of
+        s_across, k_across = sx * wy - sy * wx, ky * wx - kx * wy
+        # the determinant divided by R: what the masses give of it and what the arms do, sums of
+        # squares without cancellation however slight R is
+        zJ, masses = z * J, z * R
+        levers = zJ * (sx * sx + sy * sy) - EM * (tx * kx + ty * ky + lever * lever_J)
+        pivot_determinant = masses + levers
+        # R P times the determinant, along x and y: at first without the approach of the mass
+        # centers, which is -z R times it; of bodies without arms only the rebound is left
+        turn_R, along = turn * R, zJ * s_across
+        of_turn_x, of_turn_y = turn_R * kx + lever * Xy, turn_R * ky - lever * Xx
+        x = EM * (of_turn_x + ty * k_across) - masses * (rx + sx * mean)
+        y = EM * (of_turn_y - tx * k_across) - masses * (ry + sy * mean)
+        x, y = x + sy * along, y - sx * along
+        RPx, RPy = x - masses * dx, y - masses * dy
+        critical_denominator, critical_numerator = to_contact_axes(RPx, RPy)
+        divisor = R * pivot_determinant
+        pivot_x, pivot_y = RPx / divisor, RPy / divisor
+        pivot_n, pivot_t = to_contact_axes(pivot_x, pivot_y)
+        self.numerators = critical_numerator, critical_denominator
+        self.determinant = pivot_determinant
+        self.impulse = pivot_n, pivot_t, pivot_x, pivot_y
+        self.arms, self.twists = (ax, ay, bx, by), (tx, ty, kx, ky)
+        self.sums, self.rebound, self.lost = (sx, sy), (rx, ry), (wx, wy)
+        self.crosses, self.of_turn = (Xx, Xy, s_across), (of_turn_x, of_turn_y, turn_R)
+        self.levers = lever, lever_J, R_inverse, zJ, masses
 
-    def no_slip() -> list[Expression]:
-        """In `friction`'s order."""
-        moment = tx * wx + ty * wy - turn_R - (sx * Xx + sy * Xy + lever_J * s_across)
-        a_b, aa, bb = ax * bx + ay * by, ax * ax + ay * ay, bx * bx + by * by
-        crossing = lever * (J * R_inverse)
-        turned_a = a_b * (ia * WB) - bb * (ib * WA) - crossing * (bx * wy - by * wx)
-        turned_b = a_b * (ib * WA) - aa * (ia * WB) + crossing * (ax * wy - ay * wx)
-        state_a = R * WA - ia * (ax * wx + ay * wy)
-        state_b = R * WB - ib * (bx * wx + by * wy)
-        spin_a = own_a * state_a + other_b * state_b + EM * turned_a
-        spin_b = own_b * state_b + other_a * state_a + EM * turned_b
-        # What the impact takes away and what it leaves of the mass centers' approach along x and y,
-        # times the determinant: of a small rest nothing that was taken away is a term. Of a light
-        # body that keeps little of its velocity the change has rounding errors of the size of what
-        # it lost; the common velocity and a share of the final relative one have not, but spoil a
-        # small change by long arms. Sizes, for both are negative where EM > 1/2.
-        zJx = zJ * sx
-        xx, yy = zJx * sx - EM * (tx * kx), (zJ * sy) * sy - EM * (ty * ky)
-        xy, crossed = zJx * sy - EM * (tx * ky), EM * (lever * lever_J)
-        share_a, share_b = ma * R_inverse, mb * R_inverse
-        velocities = []
-        for u, v, d, turned, mean_part, crosswise, rebounding, taken, left in (
-            (UX, VX, dx, of_turn_x, sx * mean, xy * wy, rx, masses + yy, xx - crossed),
-            (UY, VY, dy, of_turn_y, sy * mean, xy * wx, ry, masses + xx, yy - crossed),
-        ):
-            little = absolute(left) < absolute(taken)
-            common = share_b * u + share_a * v
-            rest = EM * turned - masses * mean_part + crosswise - taken * rebounding
-            change = (rest + table.choose(little, left, -taken) * d) / pivot_determinant
-            velocities.append(table.choose(little, common, u) + share_a * change)
-            velocities.append(table.choose(little, common, v) - share_b * change)
-        twisting = Ired * (kn_ * kn_ + kt_ * kt_)
-        twisting = twisting + absolute(lever_J) * (spins * (an_ * bt_ + at_ * bn_))
-        straight = R + J * (sx * sx + sy * sy)
-        condition = absolute(z) * straight + absolute(EM) * twisting
-        return [
+
+def _no_slip(g: Given, p: Pivot) -> Found:
+    """The pivot: no sliding at separation."""
+    table, EM, z, mean = g.table, g.EM, g.z, g.mean
+    absolute = table.absolute
+    (ma, mb, ia, ib), (R, both, Ired, J) = g.inverses, g.reduced
+    (UX, UY, VX, VY), (WA, WB), (dx, dy) = g.velocities, g.spins, g.of_centers
+    (an_, at_, bn_, bt_), (_, _, kn_, kt_) = g.arm_sizes, g.sizes
+    own_a, own_b, other_a, other_b = g.weights
+    (ax, ay, bx, by), (tx, ty, kx, ky) = p.arms, p.twists
+    (sx, sy), (rx, ry), (wx, wy) = p.sums, p.rebound, p.lost
+    (Xx, Xy, s_across), (of_turn_x, of_turn_y, turn_R) = p.crosses, p.of_turn
+    lever, lever_J, R_inverse, zJ, masses = p.levers
+    pivot_determinant = p.determinant
+    moment = tx * wx + ty * wy - turn_R - (sx * Xx + sy * Xy + lever_J * s_across)
+    a_b, aa, bb = ax * bx + ay * by, ax * ax + ay * ay, bx * bx + by * by
+    crossing = lever * (J * R_inverse)
+    turned_a = a_b * (ia * WB) - bb * (ib * WA) - crossing * (bx * wy - by * wx)
+    turned_b = a_b * (ib * WA) - aa * (ia * WB) + crossing * (ax * wy - ay * wx)
+    state_a = R * WA - ia * (ax * wx + ay * wy)
+    state_b = R * WB - ib * (bx * wx + by * wy)
+    spin_a = own_a * state_a + other_b * state_b + EM * turned_a
+    spin_b = own_b * state_b + other_a * state_a + EM * turned_b
+    # What the impact takes away and what it leaves of the mass centers' approach along x and y,
+    # times the determinant: of a small rest nothing that was taken away is a term. Of a light
+    # body that keeps little of its velocity the change has rounding errors of the size of what
+    # it lost; the common velocity and a share of the final relative one have not, but spoil a
+    # small change by long arms. Sizes, for both are negative where EM > 1/2.
+    zJx = zJ * sx
+    xx, yy = zJx * sx - EM * (tx * kx), (zJ * sy) * sy - EM * (ty * ky)
+    xy, crossed = zJx * sy - EM * (tx * ky), EM * (lever * lever_J)
+    share_a, share_b = ma * R_inverse, mb * R_inverse
+    velocities = []
+    for u, v, d, turned, mean_part, crosswise, rebounding, taken, left in (
+        (UX, VX, dx, of_turn_x, sx * mean, xy * wy, rx, masses + yy, xx - crossed),
+        (UY, VY, dy, of_turn_y, sy * mean, xy * wx, ry, masses + xx, yy - crossed),
+    ):
+        little = absolute(left) < absolute(taken)
+        common = share_b * u + share_a * v
+        rest = EM * turned - masses * mean_part + crosswise - taken * rebounding
+        change = (rest + table.choose(little, left, -taken) * d) / pivot_determinant
+        velocities.append(table.choose(little, common, u) + share_a * change)
+        velocities.append(table.choose(little, common, v) - share_b * change)
+    twisting = Ired * (kn_ * kn_ + kt_ * kt_)
+    twisting = twisting + absolute(lever_J) * (both * (an_ * bt_ + at_ * bn_))
+    straight = R + J * (sx * sx + sy * sy)
+    condition = absolute(z) * straight + absolute(EM) * twisting
+    return Found._make(
+        [
             pivot_determinant,
-            pivot_n,
-            pivot_t,
-            pivot_x,
-            pivot_y,
-            unless_point(moment / pivot_determinant),
+            *p.impulse,
+            g.unless_point(moment / pivot_determinant),
             spin_a / pivot_determinant,
             spin_b / pivot_determinant,
             *velocities[::2],
             *velocities[1::2],
-            zero,
+            g.zero,
             table.constant(PIVOT),
-            zero,
+            g.zero,
             condition,
         ]
+    )
 
-    if isinstance(pivot, bool):
-        found = no_slip() if pivot else friction()
-    else:
-        pairs = zip(no_slip(), friction(), strict=True)
-        found = [table.choose(pivot, fixed, sliding) for fixed, sliding in pairs]
-    # the moment is H/em = PM/(1 - em); the slip the tangential relative velocity at separation
-    determinant, PN, PT, Px, Py, moment, spin_a, spin_b, *found = found
-    VAX, VAY, VBX, VBY, slip, MUP, sliding, absolute_sum = found
 
-    # -- after impact
+def _contact_velocities(g: Given, found: Found) -> tuple[Expression, ...]:
+    """Return XAF, YAF, XBF and YBF.
 
-    H, PM = EM * moment, (1.0 - EM) * moment
-    WAF, WBF = unless_point(spin_a, scene["WA"]), unless_point(spin_b, scene["WB"])
-
-    # The contact points part by the rebound along n and the slip along t. Where the terms of the
-    # one are smaller, with those of rebound and slip, the other is found from it: of the terms of a
-    # car that stops at a barrier, or of a long arm that hits, little is left. An arm has the
-    # rounding errors of its angle, too, times the component across.
+    The contact points part by the rebound along n and the slip along t. Where the terms of the one
+    are smaller, with those of rebound and slip, the other is found from it: of the terms of a car
+    that stops at a barrier, or of a long arm that hits, little is left. An arm has the rounding
+    errors of its angle, too, times the component across.
+    """
+    table, scene, E, pivot, zero = g.table, g.scene, g.E, g.pivot, g.zero
+    absolute, unless_point, to_fixed_axes = table.absolute, g.unless_point, g.to_fixed_axes
+    (UX, UY, VX, VY), (WA, WB), (s, c) = g.velocities, g.spins, g.axes
+    (an, _, bn, _), (D3, D4, D1, D2), (R, _, _, _) = g.arms, g.fixed_arms, g.reduced
+    (cn, ct), (gn, gt, _) = g.approach, g.of_contact
+    PT, slip, spin_a, spin_b = found.PT, found.slip, found.spin_a, found.spin_b
+    VAX, VAY, VBX, VBY = found.VAX, found.VAY, found.VBX, found.VBY
     part_x, part_y = to_fixed_axes(-(E * gn), slip)
     slipping = absolute(ct) + absolute(gt) + absolute(R * PT)
     if not isinstance(pivot, bool):
@@ -359,6 +443,32 @@ def impact(
     terms_y = absolute(c) * slipping + absolute(s) * rebounding
     XAF, XBF = contacts((UX, VX), (VAX, VBX), turned_x, rounded_x, part_x, terms_x)
     YAF, YBF = contacts((UY, VY), (VAY, VBY), turned_y, rounded_y, part_y, terms_y)
+    return XAF, YAF, XBF, YBF
+
+
+class Energies(NamedTuple):
+    """Kinetic energies before and after, twice the energy lost in all, and twice the works of the
+    normal, the tangential and the moment impulse; ``works``: twice what these lose."""
+
+    KI: Expression
+    KF: Expression
+    twice_lost: Expression
+    crushed: Expression
+    rubbed: Expression
+    twisted: Expression
+    works: Expression
+
+
+def _energies(g: Given, found: Found, H: Expression, PM: Expression) -> Energies:
+    """Return the energies of an impact whose moment impulse is PM."""
+    table, zero, infinite, pivot = g.table, g.zero, g.infinite, g.pivot
+    unless_point, absolute, E = g.unless_point, table.absolute, g.E
+    (MA, MB), (IA, IB) = g.masses, g.inertias
+    (UX, UY, VX, VY), (WA, WB), (_, both, _, _) = g.velocities, g.spins, g.reduced
+    (dx, dy), (gn, gt, gw) = g.of_centers, g.of_contact
+    PN, PT, Px, Py, slip = found.PN, found.PT, found.Px, found.Py, found.slip
+    VAX, VAY, VBX, VBY = found.VAX, found.VAY, found.VBX, found.VBY
+    spin_a, spin_b = found.spin_a, found.spin_b
 
     def finite(inertia: Expression) -> Expression:
         """An infinite body is at rest, exactly, before and after: times 0 any number will do."""
@@ -373,7 +483,7 @@ def impact(
     # Twice the energy lost by each impulse: its work at the mean of the relative velocities before
     # and after, negated. KI - KF would lose digits when little is lost.
     crushed, rubbed = ((1.0 - E) * gn) * PN, PT * (gt + slip)
-    twisted = PM * (gw + spins * H)
+    twisted = PM * (gw + both * H)
     lost = -(crushed + rubbed + twisted)
     all_lost = lost
     if pivot is not False:
@@ -387,9 +497,15 @@ def impact(
         smaller = absolute(Px * x) + absolute(Py * y) + in_spins < in_works
         of_pivot = table.choose(smaller, of_spins - (Px * x + Py * y), lost)
         all_lost = of_pivot if pivot is True else table.choose(pivot, of_pivot, lost)
+    return Energies(KI, KF, all_lost, crushed, rubbed, twisted, lost)
 
+
+def _equivalent_speeds(g: Given, twice_lost: Expression) -> tuple[Expression, Expression]:
+    """Return EESA and EESB."""
+    table, zero, infinite = g.table, g.zero, g.infinite
+    (MA, MB), (ma, mb, _, _) = g.masses, g.inverses
     # of an impact that gains energy nothing is left for crush; NaN stays NaN
-    twice_crush = table.choose(all_lost < 0.0, zero, all_lost)
+    twice_crush = table.choose(twice_lost < 0.0, zero, twice_lost)
     root_of_all, root_of_half = table.root(twice_crush), table.root(0.5 * twice_crush)
 
     def equivalent_speed(inverse_mass: Expression, other: Expression) -> Expression:
@@ -403,18 +519,46 @@ def impact(
             own = table.choose(table.equals(other, inf), root_of_all, root_of_half)
         return own * table.root(inverse_mass)
 
+    return equivalent_speed(ma, MB), equivalent_speed(mb, MA)
+
+
+def _velocity_changes(g: Given, found: Found) -> tuple[Expression, Expression]:
+    """Return DVA and DVB."""
+    table, Px, Py, (ma, mb, _, _) = g.table, found.Px, found.Py, g.inverses
+
     def change_size(inverse_mass: Expression) -> Expression:
         """Return the size of a center's velocity change, by operations that every machine rounds
         alike."""
         x, y = inverse_mass * Px, inverse_mass * Py
         return table.root(x * x + y * y)
 
-    # An estimate of the condition number of the 6x6 equations, rows and columns scaled best: the
-    # determinant with every sum in it replaced by the sum of the absolute values, divided by the
-    # determinant, times 3, the typical ratio to Bauer's number, the spectral radius of |A^-1||A|.
-    # Over 10^4 scenes of each of the benchmark's populations within a factor 5 of it for 98 % and
-    # within 55 always; for EM within 1e-1 to 1e-16 of 1/2, for 91 % and 400.
-    COND = 3.0 * (absolute_sum / absolute(determinant))
+    return change_size(ma), change_size(mb)
+
+
+def _condition(g: Given, found: Found) -> Expression:
+    """Return COND, an estimate of the condition number of the 6x6 equations, scaled best.
+
+    It is the determinant with every sum in it replaced by the sum of the absolute values, divided
+    by the determinant, times 3, the typical ratio to Bauer's number, the spectral radius of
+    |A^-1||A|. Over 10^4 scenes of each of the benchmark's populations within a factor 5 of it for
+    98 % and within 55 always; for EM within 1e-1 to 1e-16 of 1/2, for 91 % and 400.
+    """
+    return 3.0 * (found.absolute_sum / g.table.absolute(found.determinant))
+
+
+def _status(
+    g: Given, p: Pivot, found: Found, energies: Energies, PM: Expression, COND: Expression
+) -> Expression:
+    """Return STATUS."""
+    table, absolute, pivot, E, EM = g.table, g.table.absolute, g.pivot, g.E, g.EM
+    (an, at, bn, bt), (_, _, _, kt), (DA, DB) = g.arms, g.sums, g.distances
+    (_, _, ia, ib), (R, _, _, _), (gn, gt, _) = g.inverses, g.reduced, g.of_contact
+    critical_numerator, critical_denominator = p.numerators
+    pivot_determinant, PN, sliding = p.determinant, found.PN, found.sliding
+    lost, KI = energies.works, energies.KI
+    WAF = g.unless_point(found.spin_a, g.scene["WA"])
+    WBF = g.unless_point(found.spin_b, g.scene["WB"])
+    sum_of_velocities = found.VAX + found.VAY + found.VBX + found.VBY + WAF + WBF
     turning = (an * at * ia + bn * bt * ib) * PN + kt * PM
     yielding = R + (at * at * ia + bt * bt * ib)
     sign_of_pivot = table.choose(pivot_determinant < 0.0, table.constant(-1.0), table.constant(1.0))
@@ -438,28 +582,65 @@ def impact(
         turning=turning,
         yielding=yielding,
         condition=COND,
-        sum_of_velocities=VAX + VAY + VBX + VBY + WAF + WBF,
+        sum_of_velocities=sum_of_velocities,
     )
     if pivot is True:  # of friction none is at fault
         del status[Status.FRICTION_ABOVE_CRITICAL], status[Status.FRICTION_WRONG_DIRECTION]
     bits = [condition * float(bit) for bit, condition in status.items()]
-    STATUS = sum(bits[1:], bits[0])
+    status_bits: Expression = sum(bits[1:], bits[0])
+    return status_bits
+
+
+def impact(
+    table: ExpressionTable,
+    scene: Mapping[str, Expression],
+    pivot: Condition,
+    point: Condition,
+    infinite: bool,
+    sign: float | None = None,
+) -> dict[str, Expression]:
+    """The results of an impact by name, of the expressions of a scene's columns; beside them ``gn``
+    and ``gt``, ``determinant``, which is zero where the equations have no solution, and
+    ``critical_denominator``, which divides MUC.
+
+    ``pivot``: True when MU = -10 throughout, False when nowhere, else the condition where it is.
+    ``point``: the same for M = 4. ``infinite``: whether a body may be. ``sign``: what MU is
+    multiplied with instead of the sign rule.
+    """
+    g = Given(table, scene, pivot, point, infinite, sign)
+    p = Pivot(g)
+    if isinstance(pivot, bool):
+        found = _no_slip(g, p) if pivot else _friction(g)
+    else:
+        pairs = zip(_no_slip(g, p), _friction(g), strict=True)
+        found = Found(*(table.choose(pivot, fixed, sliding) for fixed, sliding in pairs))
+    H, PM = g.EM * found.moment, (1.0 - g.EM) * found.moment
+    XAF, YAF, XBF, YBF = _contact_velocities(g, found)
+    energies = _energies(g, found, H, PM)
+    KI, KF, twice_lost, crushed, rubbed, twisted, _ = energies
+    EESA, EESB = _equivalent_speeds(g, twice_lost)
+    DVA, DVB = _velocity_changes(g, found)
+    COND = _condition(g, found)
+    STATUS = _status(g, p, found, energies, PM, COND)
+    (UX, UY, VX, VY), (WA, WB), (gn, gt, _) = g.velocities, g.spins, g.of_contact
+    D3, D4, D1, D2 = g.fixed_arms
+    critical_numerator, critical_denominator = p.numerators
     return {
         "gn": gn,
         "gt": gt,
-        "determinant": determinant,
-        "PN": PN,
-        "PT": PT,
+        "determinant": found.determinant,
+        "PN": found.PN,
+        "PT": found.PT,
         "PM": PM,
         "critical_denominator": critical_denominator,
         "VC": -gn,
-        "VS": E * -gn,
-        "VAX": VAX,
-        "VAY": VAY,
-        "VBX": VBX,
-        "VBY": VBY,
-        "WAF": WAF,
-        "WBF": WBF,
+        "VS": g.E * -gn,
+        "VAX": found.VAX,
+        "VAY": found.VAY,
+        "VBX": found.VBX,
+        "VBY": found.VBY,
+        "WAF": g.unless_point(found.spin_a, scene["WA"]),
+        "WBF": g.unless_point(found.spin_b, scene["WB"]),
         # lines 340, 700 and 710
         "XA": UX + D3 * WA,
         "YA": UY - D4 * WA,
@@ -471,16 +652,16 @@ def impact(
         "YBF": YBF,
         "KI": KI,
         "KF": KF,
-        "LOSS": (50.0 * all_lost) / KI,
+        "LOSS": (50.0 * twice_lost) / KI,
         "COND": COND,
-        "MUP": MUP,
+        "MUP": found.MUP,
         "MUC": critical_numerator / critical_denominator,
         "ELN": -0.5 * crushed,
         "ELT": -0.5 * rubbed,
         "ELM": -0.5 * twisted,
-        "EESA": equivalent_speed(ma, MB),
-        "EESB": equivalent_speed(mb, MA),
-        "DVA": change_size(ma),
-        "DVB": change_size(mb),
+        "EESA": EESA,
+        "EESB": EESB,
+        "DVA": DVA,
+        "DVB": DVB,
         "STATUS": STATUS,
     }
