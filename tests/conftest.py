@@ -137,20 +137,23 @@ def verdicts_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def brief_search(monkeypatch: pytest.MonkeyPatch) -> None:
+def brief_search() -> Iterator[None]:
     """Reconstructions draw from a tenth of the points and search from them once: for tests of what
     doors show and of two doors that must show the same, not of the bounds themselves."""
-    from impact88.casework.optimization import widening
-    from impact88.casework.reconstruction import reconstructed, sampler
+    from impact88.casework.optimization.effort import Effort, granting
 
-    monkeypatch.setattr(sampler, "PARTICLES", 800)
-    monkeypatch.setattr(sampler, "BURN_IN_MOVES", 6)
-    monkeypatch.setattr(reconstructed, "DRAWS_OF_BOUNDS", 200)
-    monkeypatch.setattr(widening, "SPREAD_POINTS", 200)
-    monkeypatch.setattr(widening, "SPREAD_STEPS", 3)
-    monkeypatch.setattr(widening, "GENERATIONS", 4)
-    monkeypatch.setattr(widening, "MAX_ROUNDS", 1)
-    monkeypatch.setattr(widening, "STARTS", 1)
+    brief = Effort(
+        particles=800,
+        burn_in_moves=6,
+        draws_of_bounds=200,
+        spread_points=200,
+        spread_steps=3,
+        starts=1,
+        rounds=1,
+        generations=4,
+    )
+    with granting(brief):
+        yield
 
 
 @pytest.fixture(scope="module", params=["compiled", "numpy"])

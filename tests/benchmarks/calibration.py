@@ -24,7 +24,7 @@ import warnings
 import numpy as np
 from impactsampler import Known, Problem, exact, impact, possible
 
-from impact88.casework.reconstruction import sampler
+from impact88.casework.optimization.effort import Effort, granting
 from impact88.casework.reconstruction.adjustment import Reconstruction
 from impact88.casework.reconstruction.coordinates import Coordinates
 from impact88.casework.reconstruction.posterior import Posterior
@@ -118,7 +118,8 @@ def ranks(kind, number, friction, control, rng):
         posterior.coordinates.__class__ = WithoutJacobian
     if control == "likelihood":
         posterior.items = {n: v for n, v in posterior.items.items() if n not in measured}
-    drawn = posterior.sample(PARTICLES, rng)
+    with granting(Effort(particles=PARTICLES)):
+        drawn = posterior.sample(PARTICLES, rng)
     if drawn is None:
         return None, 0.0
     names = [*RANKED[:5], *measured]
@@ -153,7 +154,6 @@ def main():
     parser.add_argument("--controls", action="store_true")
     args = parser.parse_args()
     warnings.filterwarnings("ignore")
-    sampler.PARTICLES = PARTICLES
     smallest, tests = 1.0, 0
     for control in CONTROLS if args.controls else ("",):
         for kind in args.kinds or KINDS:

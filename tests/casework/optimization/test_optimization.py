@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from impact88.casework.optimization import widening
+from impact88.casework.optimization.effort import THOROUGH
 from impact88.casework.optimization.extremes import Piece
 
 SEED = 7
@@ -89,7 +90,7 @@ def test_points_given_stay_where_they_are_while_others_are_spread():
     given = points.copy()
     for row in (0, 2999):
         pool, _ = widening._evaluate(Needle(points[row].copy()), points, np.zeros(3000))
-        tail = pool[-widening.SPREAD_POINTS :]
+        tail = pool[-THOROUGH.spread_points :]
         problem, rng = Needle(points[row].copy()), np.random.default_rng(SEED)
         spread = widening._spread_points(problem, tail, rng)
         assert np.array_equal(points, given)

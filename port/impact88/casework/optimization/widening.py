@@ -14,17 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .ascent import CONSTRAINT_TOL, SearchProblem, climb, replace_nonfinite
+from .effort import granted
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-SPREAD_POINTS = 2000  # points spread over the feasible region
-SPREAD_STEPS = 30  # random steps that spread them
-STARTS = 4  # local searches per extreme in the first round
 RESTARTS = 2  # local searches per extreme where evolution improved it
-MAX_ROUNDS = 6  # of local search and evolution
 POPULATION = 24  # members per extreme
-GENERATIONS = 40
 POPULATION_FACTOR = 4  # larger populations from the second round on
 SPREAD_FRACTION = 0.3  # of steps are differences of the spread points, not of the population
 CROSSOVER = 0.7  # probability that a step changes a coordinate; it changes one at least
@@ -82,10 +78,11 @@ def extremes(
 ) -> Extremes:
     """Search for the extremes of all functions from random ``u`` (n, coordinates) within limits, in
     the states ``x`` (n)."""
+    effort = granted()
     draws, _ = _evaluate(problem, u, x)
     count = draws.functions.shape[1]
     # the last draws are the most widely spread
-    spread_pool = _spread_points(problem, draws[-SPREAD_POINTS:], rng)
+    spread_pool = _spread_points(problem, draws[-effort.spread_points :], rng)
     pool = draws + spread_pool
     index, sense = np.tile(np.arange(count), 2), np.repeat([-1.0, 1.0], count)
     all_goals = np.arange(2 * count)
@@ -94,12 +91,13 @@ def extremes(
     def objectives(points: _Pool) -> Array:
         return replace_nonfinite(points.functions[:, index] * sense)
 
-    parts = [np.arange(i, len(pool.u), STARTS) for i in range(min(STARTS, len(pool.u)))]
+    starts = min(effort.starts, len(pool.u))
+    parts = [np.arange(i, len(pool.u), starts) for i in range(starts)]
     values = objectives(pool)
     start_numbers = np.stack([part[values[part].argmax(axis=0)] for part in parts])
     start_pool, goals = pool[start_numbers.reshape(-1)], np.tile(all_goals, len(start_numbers))
     converged, retried_once = np.zeros((2, 2 * count), bool)
-    for _ in range(MAX_ROUNDS):
+    for _ in range(effort.rounds):
         best_values = objectives(pool).max(axis=0)
         ranges = np.maximum(
             np.nan_to_num(best_values + np.roll(best_values, count), neginf=0.0), 0.0
@@ -157,7 +155,7 @@ def _spread_points(problem: SearchProblem, points: _Pool, rng: np.random.Generat
     another; the points given stay where they are."""
     points = _Pool(points.u.copy(), points.x, points.functions.copy())
     dimensions = points.u.shape[1]
-    for _ in range(SPREAD_STEPS):
+    for _ in range(granted().spread_steps):
         first, second = rng.integers(len(points.u), size=(2, len(points.u)))
         length = 1.19 / np.sqrt(dimensions) * np.exp(rng.standard_normal(len(points.u)))
         trial = points.u + length[:, None] * (points.u[first] - points.u[second])
@@ -191,7 +189,7 @@ def _evolve(
     rows, own_index, own_sense = np.arange(len(goal)), index[goal], sense[goal]
     own_values = replace_nonfinite(population.functions[rows, own_index] * own_sense)
     dimensions = pool.u.shape[1]
-    for _ in range(GENERATIONS):
+    for _ in range(granted().generations):
         first, second = goal * members + rng.integers(members, size=(2, len(goal)))
         difference = population.u[first] - population.u[second]
         spread_first, spread_second = rng.integers(len(spread_pool.u), size=(2, len(goal)))

@@ -14,6 +14,7 @@ from ...collision.geometry import within_doubles
 from ...collision.uncertain import Uncertain, fixed_value, random_numbers
 from ...mechanics.state import SPEEDS
 from ...names import VELOCITIES
+from ..optimization.effort import granted
 from ..optimization.widening import extremes
 from ..uncertainty.boundstable import Spread
 from .adjustment import NULL_TOL, Reconstruction, pseudo_inverse
@@ -26,7 +27,6 @@ Progress = Callable[[int], object]
 
 MIN_GAIN = 1e-7  # of a quantity's range: the resolution of bounds
 STANDSTILL_STARTS = 16  # slowest draws, from which a standstill is searched for
-DRAWS_OF_BOUNDS = 2000  # from which bounds are searched for where none are given
 LIMIT_REACHED = 0.5  # of the largest velocity: draws beyond hang on that limit
 # A condition ends an interval if most of the outermost draws, and far more of them than of all
 # draws, lie at its border
@@ -133,7 +133,10 @@ def ranges(
     """Return the lowest and highest value of each quantity over the admissible impacts within the
     limits of what is known, searched for from the draws ``drawn``, or from own ones."""
     posterior = Posterior(solution, progress)
-    sample = drawn.sample if drawn else posterior.sample(DRAWS_OF_BOUNDS, random_numbers(seed, 0))
+    if drawn:
+        sample = drawn.sample
+    else:
+        sample = posterior.sample(granted().draws_of_bounds, random_numbers(seed, 0))
     if sample is None:
         return {name: Range(np.nan, np.nan, {}, {}) for name in names}
     region = FeasibleRegion(posterior, names, sample.points)

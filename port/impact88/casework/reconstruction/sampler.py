@@ -16,13 +16,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ..optimization.effort import granted
+
 Floats = NDArray[np.float64]
 Branches = NDArray[np.int64]
 
-PARTICLES = 4000
 PROPOSAL_FACTOR = 12  # proposals per particle, so that thin parts of the distribution are found
 MOVES_PER_STAGE = 6  # moves of every particle after each hardening of the limits
-BURN_IN_MOVES = 40  # moves before the first draws are taken
 ENOUGH = 1000  # effective draws of every coordinate; with fewer, moves go on
 MAX_BURN_INS = 6
 THINNING = 6  # moves between one set of draws and the next
@@ -132,7 +132,7 @@ class _Sampler:
 
     def run(self, count: int) -> Sample | None:
         size = len(self.proposals[0].center)
-        number = min(PARTICLES, max(count, 4 * size, 200)) // 2 * 2
+        number = min(granted().particles, max(count, 4 * size, 200)) // 2 * 2
         particles = self._propose(PROPOSAL_FACTOR * number)
         hardness = 0.0
         for _ in range(MAX_STAGES):
@@ -153,7 +153,7 @@ class _Sampler:
         else:
             return None
         for _ in range(MAX_BURN_INS):
-            for _ in range(BURN_IN_MOVES):
+            for _ in range(granted().burn_in_moves):
                 self._move(particles, np.inf)
             drawn = self._collect(particles, count)
             if min(map(drawn.effective_size, drawn.points)) >= min(ENOUGH, 0.25 * count):

@@ -1,0 +1,46 @@
+"""How much work a search for draws and bounds may take."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import NamedTuple
+
+
+class Effort(NamedTuple):
+    """What a search may take; the defaults are what answers are found with."""
+
+    particles: int = 4000
+    """Points that a sampler moves at a time, at most."""
+    burn_in_moves: int = 40
+    """Moves of each before the first draws are taken."""
+    draws_of_bounds: int = 2000
+    """Draws from which bounds are searched for, where none are given."""
+    spread_points: int = 2000
+    """Points spread over the feasible region."""
+    spread_steps: int = 30
+    """Random steps that spread them."""
+    starts: int = 4
+    """Local searches per extreme in the first round."""
+    rounds: int = 6
+    """Of local search and evolution, at most."""
+    generations: int = 40
+    """Of each evolution."""
+
+
+THOROUGH = Effort()
+_granted: ContextVar[Effort] = ContextVar("effort", default=THOROUGH)
+
+
+def granted() -> Effort:
+    """Return the effort that searches may take here."""
+    return _granted.get()
+
+
+@contextmanager
+def granting(effort: Effort) -> Iterator[None]:
+    """Let every search within take this effort."""
+    before = _granted.set(effort)
+    try:
+        yield
+    finally:
+        _granted.reset(before)
