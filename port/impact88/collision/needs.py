@@ -1,5 +1,7 @@
 """What a result needs that is not given, in words; and ordinary numbers to find it out with."""
 
+from __future__ import annotations
+
 from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np

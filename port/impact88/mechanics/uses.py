@@ -6,6 +6,8 @@ closed form, at the values that a scene has. An input that no wanted result uses
 a result whose input is not given is absent, and says which.
 """
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any

@@ -269,7 +269,7 @@ def test_colinear_forward_and_back(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("pairs", "message"),
     [
-        ("MA=1", "missing MB E MUP UN UT VN VT"),
+        ("MA=1", "missing MB E UN VN"),
         (f"{REAR_END} VAN=1", "are both given"),
         (REAR_END.replace("MA=154.7", "MA=0"), "MA is not positive"),
         ("MA=1 MB=1 E=0 MUP=0 VAN=1 VAT=0 VBN=1 VBT=0", "E = 0: the vehicles move on together"),

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ... import status
 from ...collision.case import check_mapping
-from ...collision.geometry import MOVES, resolve_contact_point
+from ...collision.geometry import MOVES, coordinate_names, resolve_contact_point
 from ...collision.mappings import base_system, within_limits
 from ...collision.needs import sentences
 from ...collision.uncertain import (
@@ -37,7 +37,7 @@ from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import forward_model, reconstruction_model
 from ...mechanics.posed import line_of_motion
 from ...messages.arguments import explains_arguments
-from ...names import FINAL_VELOCITIES, PIVOT, RESULTS, VELOCITIES, check_names, split_names
+from ...names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, VELOCITIES, check_names, split_names
 from ..optimization.extremes import MAX_FULL_CORNERS, Extremes, Piece, merge
 from .boundstable import Bound, Bounds, Drive, Spread
 from .ranges import complete, read_correlations
@@ -255,7 +255,7 @@ class _Box:
         self.known = {name: item.nominal for name, item in given.items() if not item.varies}
         usual, allowed = _outputs(problem, given["M"].nominal == 4)
         self.judged = 0xFFFF
-        if problem == "forward" and (lacking := not_given(self.known | dict.fromkeys(self.inputs))):
+        if problem == "forward" and (lacking := self._lacking()):
             usual = self._do_without(given, lacking, usual, outputs)
         self.outputs = tuple(dict.fromkeys(usual if outputs is None else split_names(outputs)))
         check_names(self.outputs, allowed, "result")
@@ -270,6 +270,12 @@ class _Box:
         check_names(exclude, WARNINGS, "warning")
         self.excluded = sum({WARNINGS[name] for name in exclude})
         self.share = "MU" in given and given["MU"].share
+
+    def _lacking(self) -> list[str]:
+        """Return the inputs that are not given, in whichever coordinates."""
+        names = {**self.known, **dict.fromkeys(self.inputs)}
+        scene = {name: x for name, x in names.items() if name in SCENE}
+        return [n for n in not_given(scene) if coordinate_names((n,), names) == (n,)]
 
     def _do_without(
         self,

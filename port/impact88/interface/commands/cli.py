@@ -100,7 +100,7 @@ def _run(name: str, arguments: Sequence[str]) -> int:
     options.check_files(parser, args)
     status = 0
     with suppress(_NothingToKeep), options.output_of(args, module.ARGUMENTS):
-        if getattr(args, "template", False) is True:
+        if getattr(args, "template", False) and hasattr(module, "KNOWABLE"):
             print(known_template(module.KNOWABLE))
         elif (status := int(module.main(args) or 0)) == UNUSABLE:
             raise _NothingToKeep

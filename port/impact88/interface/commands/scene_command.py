@@ -10,6 +10,8 @@ follow them, and reconstruct asks for limits on DA PA. IA = "estimate" has the y
 inertia estimated: from the vehicle's length and width where LA BA are given (LB BB for IB), else
 for a car from its weight. Beside a known inertia LA BA are the outline that figures draw.
 
+Kinds of collision (CASE): intersection, rear-end, head-on, barrier, planar, crush.
+
 examples:
   impact88 scene -o mine.toml       a template to fill in
   impact88 scene --units us         the same, in mph, lb and ft
@@ -26,10 +28,11 @@ from . import options
 __doc__ = (__doc__ or "").format(signs=SIGNS)
 
 ARGUMENTS = (
-    options.SAMPLE,
-    options.choice(
-        "--template", tuple(CASES), "a file with what this kind of collision needs, and no more"
+    options.value(
+        "case", "CASE", "the kind of collision: see above", choices=tuple(CASES), nargs="?"
     ),
+    options.SAMPLE,
+    options.flag("--template", "a file with what CASE needs, and no more; without CASE, the kinds"),
     options.UNITS,
     options.OUTPUT,
 )
@@ -37,10 +40,13 @@ ARGUMENTS = (
 
 def main(args: options.Args) -> None:
     system = system_named(args.units, "--units").name if args.units else None
-    if args.template and args.sample:
-        raise UserError("--template and --sample are both given; expected one of them")
+    if args.case and args.sample:
+        raise UserError(f"{args.case} and --sample are both given; expected one of them")
+    if args.case:
+        print(case_template(args.case, system), end="")
+        return
     if args.template:
-        print(case_template(args.template, system), end="")
+        print("\n".join(f"{name:<14}{case.title}" for name, case in CASES.items()))
         return
     case = sample(args.sample).case.shown_in(system) if args.sample else None
     print(template(case, system), end="")

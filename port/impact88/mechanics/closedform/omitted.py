@@ -6,6 +6,8 @@ is judged by such a value: of STATUS the laws count that all of them break, whic
 contact planes.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
