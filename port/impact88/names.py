@@ -183,7 +183,7 @@ def quantity(name: str) -> Quantity:
     return SCENE.get(name) or RESULTS.get(name) or CHAPTER[name]
 
 
-NO_AMOUNTS = ("title", "case", "correlations", "M")
+NO_AMOUNTS = ("title", "case", "examiner", "date", "correlations", "M")
 """Entries of a scene file that are not amounts."""
 
 

@@ -351,3 +351,16 @@ class TestWhatIsExplored:
         how = ["--sweep", "UX=-30:-15:5"] if kind == "sweep" else ["--range", "UX=+- 2"]
         assert main(["figure", kind, us, *how, "--outputs", "DVA", "-o", str(out)]) == 0
         assert ", mph" in out.read_text("utf-8")
+
+
+@pytest.mark.parametrize("system", ["us", "chapter", "metric", "si"])
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_a_published_run_shown_in_other_units_is_the_same_collision(number, system):
+    """Feet are not metres: what is without a unit comes out the same, speeds by their ratio."""
+    case = sample(number).case
+    shown = Scene.of(case.shown_in(system))
+    one, two = (solve(scene.numbers(), ["LOSS", "DVA", "KI"]) for scene in (sample(number), shown))
+    feet = system in ("us", "chapter")
+    assert two["LOSS"] == pytest.approx(one["LOSS"], rel=1e-12)
+    assert two["DVA"] == pytest.approx(one["DVA"] * (1 if feet else 0.3048), rel=1e-12)
+    assert two["KI"] == pytest.approx(one["KI"] * (1 if feet else 1.3558179483314), rel=1e-12)

@@ -44,7 +44,7 @@ LOCKED = "locked"
 LOCKED_MU = "-10"
 TOLERANCES = ("+-", "±", "+/-")
 """Marks that begin a tolerance around the value already given."""
-ABOUT = ("title", "case", "correlations", "units", "axes", "headings")
+ABOUT = ("title", "case", "examiner", "date", "correlations", "units", "axes", "headings")
 """Entries about the whole file."""
 _SIZES = frozenset(("LA", "BA", "LB", "BB"))
 _MOVES = ("CX", "CY")
@@ -295,8 +295,20 @@ class Case:
         options = {"units": units, "axes": axes, "headings": headings}
         about = {name: text for name, text in options.items() if text}
         target = type(self)({**self.about, **about}, self.source)
-        numbers = {name: text for name, text in self._based.items() if is_number(text)}
+        numbers = {
+            name: self._in_base_of(target.system, name, text)
+            for name, text in self._based.items()
+            if is_number(text)
+        }
         return type(self)({**self.texts, **target.display_texts(numbers), **about}, self.source)
+
+    def _in_base_of(self, system: System, name: str, text: str) -> str:
+        """Return a number in base units of this case in those of another system."""
+        if self.system.is_bare or system.is_bare or self.system.base == system.base:
+            return text
+        rule = quantity(name).unit
+        factor = float(self.system.scale(rule) / system.scale(rule))
+        return text if factor == 1 else f"{double(text) * factor:.15g}".upper()
 
     def at_nominal(self) -> Self:
         """Return this case with the nominal value of each value known within limits."""

@@ -532,6 +532,19 @@ def test_each_known_value_is_judged_alone(name: str, text: str, problem: str | N
     assert bool(told["solutions"]) == (problem is None)
 
 
+@pytest.mark.parametrize("to", ["us", "chapter", "metric", "si"])
+def test_a_form_in_other_units_is_the_same_collision(client: Client, to: str) -> None:
+    values = {**collision.sample_scene(1)["values"], "UX": "-29.04 +- 2", "LA": "16", "BA": "6"}
+    asked_for = {"values": values, "units": "chapter", "to": to}
+    told = client.post("convert", asked_for).json["values"]
+    before, after = (
+        collision.answer(texts, units)["oracle"]["results"]
+        for texts, units in ((values, "chapter"), (told, to))
+    )
+    assert after["LOSS"]["double"] == pytest.approx(before["LOSS"]["double"], rel=1e-12)
+    assert told["UX"].startswith("-29.04 +- 2 ft/s")
+
+
 @pytest.mark.usefixtures("brief_search")
 def test_a_reconstruction_answers_in_its_units(tmp_path: Path, own: Own) -> None:
     known = {**reconstruction.known_of_sample(3)["values"], "VAX": "-5.1 +- 1"}

@@ -182,6 +182,51 @@ def test_the_scene_saved_is_the_commands_own_and_opens_again(
     assert collision.at("collision-UX").get_attribute("value") == "-31.5"
 
 
+def test_the_form_shows_every_entry_of_its_file(collision: Page, tmp_path: Path) -> None:
+    """What another collision is typed over does not carry a case that stands nowhere."""
+    path = tmp_path / "old.toml"
+    about = 'case = "24-117"\nexaminer = "N. N."\ndate = "2026-01-02"\nLA = 16\nBA = 6\n'
+    path.write_text(sample(1).to_toml() + about, encoding="utf-8")
+    collision.at("collision-file").send_keys(str(path))
+    until(lambda: collision.at("collision-case").get_attribute("value") == "24-117", "the case")
+    assert collision.at("collision-examiner").get_attribute("value") == "N. N."
+    assert collision.texts("#collision-extra li code") == ['LA = "16"', 'BA = "6"']
+    for _ in range(2):
+        collision.run("document.querySelector('#collision-extra li button').click()")
+    collision.at("collision-case").clear()
+    collision.at("collision-save").click()
+    saved = collision.saved("scene.toml").decode()
+    assert "24-117" not in saved
+    assert "LA" not in saved
+    assert 'date = "2026-01-02"' in saved
+
+
+def test_other_units_convert_the_form_or_read_it_anew(collision: Page) -> None:
+    masses = []
+    for button in ("stay", "convert", "reread"):
+        collision.choose("collision-units", {"reread": "us"}.get(button, "metric"))
+        until(lambda: collision.at("collision-asks").is_displayed(), "the question")
+        collision.at(f"collision-{button}").click()
+        until(lambda: not collision.at("collision-asks").is_displayed(), "the answer")
+        masses.append(float(collision.at("collision-MA").get_attribute("value")))
+    assert masses[0] == 143.5
+    assert masses[1] == pytest.approx(143.5 * 14.593903)
+    assert masses[2] == masses[1]
+
+
+def test_on_a_narrow_page_the_answer_stands_before_the_forms_second_half(collision: Page) -> None:
+    size = collision.driver.get_window_size()
+    collision.driver.set_window_size(360, 900)
+    try:
+        tops = [
+            collision.at(name).location["y"]
+            for name in ("collision-MB", "collision-first", "collision-UX")
+        ]
+    finally:
+        collision.driver.set_window_size(size["width"], size["height"])
+    assert tops == sorted(tops)
+
+
 # --- paper -------------------------------------------------------------------------------------
 
 

@@ -201,6 +201,7 @@ def report(
         answer=answer,
         validated=_validation_text(),
         unjudged=_unjudged(case),
+        signed={name: case.given.get(name, "") for name in ("examiner", "date")},
         tables=tables,
         drawing=svg(drawing) if drawing else "",
         room=FIRST_PAGE[paper],

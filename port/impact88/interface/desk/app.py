@@ -30,7 +30,7 @@ from ...names import DEFAULT_M, SCENE, quantity
 from ...program.scene import SAMPLES, sample
 from ...version import __version__
 from . import collision, reconstruction
-from .formview import digits, filled_in
+from .formview import converted, digits, filled_in
 from .guard import HEADERS, LARGEST_BODY, TOO_LONG, refusal
 from .workers import Bench, BrokenError, SupersededError
 
@@ -71,6 +71,8 @@ ALWAYS_KNOWN = frozenset("MA IA DA PA TA MB IB DB PB TB GA M".split())
 SYSTEMS = {"us": "lb, mph, ft", "chapter": "slug, ft/s, ft"}
 SYSTEMS |= {"metric": "kg, km/h, m", "si": "kg, m/s, m"}
 """The systems of units (`collision.units`), and what bare numbers are in them."""
+REPORT_FIELDS = (("case", "Case"), ("examiner", "Examiner"), ("date", "Date"))
+"""Entries about a case, and how they are called on the page."""
 PUBLISHED = ("run1-as-printed.txt", "run2-as-printed.txt", "table3-as-printed.txt")
 """The published printouts, as they stand in the chapter."""
 
@@ -200,7 +202,8 @@ def _addresses(desk: Desk) -> Blueprint:
             known_groups=KNOWN_GROUPS,
             more_groups=MORE_GROUPS,
             always_known=ALWAYS_KNOWN,
-            report_fields=[("case", "Case"), ("examiner", "Examiner"), ("date", "Date")],
+            report_fields=REPORT_FIELDS,
+            about_fields=[("title", "Title"), *REPORT_FIELDS],
             published=PUBLISHED,
             systems=SYSTEMS.items(),
             default_m=DEFAULT_M,
@@ -245,6 +248,10 @@ def _addresses(desk: Desk) -> Blueprint:
             answer["first"] = table("first", answer["answer"])
             answer["all"] = table("results", answer["results"])
         return answer
+
+    @routes.post("/convert")
+    def convert() -> Any:
+        return {"values": converted(**_parts(*_FORM, "to"))}
 
     @routes.post("/figure")
     def figure() -> Response:
@@ -310,7 +317,7 @@ def _are_papers(value: object) -> bool:
 
 
 _KINDS: dict[str, tuple[str, Callable[[Any], bool]]] = {
-    **dict.fromkeys(("units", "title"), ("text", lambda part: isinstance(part, str | None))),
+    **dict.fromkeys(("units", "title", "to"), ("text", lambda part: isinstance(part, str | None))),
     **dict.fromkeys(("values", "words"), ("an object of texts", _are_texts)),
     "papers": ("a list of objects of texts", _are_papers),
 }
@@ -330,6 +337,7 @@ def _parts(*names: str) -> dict[str, Any]:
         kind, fits = _KINDS[name]
         if not fits(question.get(name)):
             raise UserError(f"{name!r} is not {kind}")
-    if "units" in names and (units := question.get("units")) and units not in SYSTEMS:
-        raise UserError(f"{units!r} is not a system of units; expected {', '.join(SYSTEMS)}")
+    for name in {"units", "to"}.intersection(names):
+        if (units := question.get(name)) and units not in SYSTEMS:
+            raise UserError(f"{units!r} is not a system of units; expected {', '.join(SYSTEMS)}")
     return {name: "" if question.get(name) is None else question[name] for name in names}

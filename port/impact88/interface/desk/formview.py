@@ -8,7 +8,7 @@ from ...collision.case import ABOUT, OWN_AXES, SOURCE, Case, in_base_units
 from ...collision.estimates import SIZES
 from ...collision.geometry import clock
 from ...collision.scenefile import toml_texts
-from ...collision.units import System, base_of
+from ...collision.units import System, base_of, units_in
 from ...errors import UserError
 from ...files import decode
 from ...mechanics.state import COURSES, FORCES
@@ -51,6 +51,21 @@ def entries(values: Mapping[str, str], units: str, title: str = "") -> Form:
             except UserError as error:
                 problems[name] = str(error)
     return Form(None, problems or {UNITS: together})
+
+
+def converted(values: Mapping[str, str], units: str, to: str) -> dict[str, str]:
+    """Return the texts of a form in another system: numbers are converted, and a range keeps the
+    unit it was in. Raises UserError."""
+    case, problems = entries(values, units)
+    for problem in problems.values():
+        raise UserError(problem)
+    assert case is not None
+    texts = dict(case.texts)
+    for name, entry in case.entries.items():
+        if entry.kind in ("range", "tolerance") and entry.unit and not units_in(name, entry.text):
+            texts[name] = f"{entry.text} {entry.unit}"
+    shown = Case(texts, "").shown_in(to).texts
+    return {name: text for name, text in shown.items() if name != UNITS}
 
 
 def units_shown(system: System) -> dict[str, Any]:

@@ -1,24 +1,15 @@
 // The Collision view: 21 values, answered while one types.
-import { ask, asked, attempt, drawInto, element, newest, page, save, settled, showList, showUnits, shown, stop, tabs, tell, watched } from "./ask.js";
+import { asked, drawInto, element, newest, page, settled, showList, showUnits, shown, stop, tabs } from "./ask.js";
+import { formView } from "./form.js";
 
-const form = () => page("collision-form");
-const inputs = () => [...form().querySelectorAll("fieldset input")];
-let extra = {}; // what a file has beside the fields: computed with, and saved again
-const values = () => ({ ...extra, ...Object.fromEntries(inputs().map((input) => [input.name, input.value])) });
-const question = () => ({ values: values(), title: page("collision-title").value, units: page("collision-units").value });
-const trouble = (error) => tell(page("collision-trouble"), error);
-
-/** What is wrong with each value, at its field. */
-function showProblems(problems, ranges) {
-  tell(page("collision-units-problem"), problems.units && { message: problems.units });
-  for (const input of inputs()) {
-    const problem = problems[input.name];
-    tell(page(`collision-${input.name}-problem`), problem && { message: problem });
-    if (problem) input.setAttribute("aria-invalid", "true");
-    else input.removeAttribute("aria-invalid");
-    input.classList.toggle("range", ranges.includes(input.name));
-  }
-}
+const view = formView("collision", {
+  sample: "sample",
+  file: "scene",
+  read: () => Object.fromEntries(view.inputs().map((input) => [input.name, input.value])),
+  put: (input, text) => { input.value = text; },
+  answer: () => answer(),
+});
+const { form, inputs, question, trouble } = view;
 
 /** What stands between the form and an answer. */
 function waitingFor(answer) {
@@ -109,7 +100,7 @@ const answer = newest(async () => {
     return;
   }
   trouble(null);
-  showProblems(told.problems, told.ranges);
+  view.showProblems(told.problems, told.ranges);
   showList(page("collision-remarks"), told.remarks);
   showUnits(form(), told.units);
   page("collision-base").textContent = told.units.base;
@@ -131,48 +122,14 @@ const answer = newest(async () => {
   if (ranged) explore();
 });
 
-function load(scene) {
-  for (const input of inputs()) input.value = scene.values[input.name] ?? "";
-  extra = scene.extra ?? {};
-  page("collision-title").value = scene.title;
-  page("collision-units").value = scene.units ?? "";
-  answer();
-}
-
-const doing = (work) => attempt(work, trouble);
-
 /** Start the view. */
 export function collision() {
+  view.start();
   form().addEventListener("input", (event) => {
-    if (event.target.name !== "title") answer();
+    if (event.target.name) answer();
   });
-  form().addEventListener("submit", (event) => event.preventDefault());
-  page("collision-sample").addEventListener("change", (event) => {
-    const number = event.target.value;
-    event.target.value = "";
-    if (number) doing(async () => load(await asked(`sample/${number}`)));
-  });
-  page("collision-units").addEventListener("change", answer);
-  page("collision-open").addEventListener("click", () => page("collision-file").click());
-  page("collision-file").addEventListener("change", (event) => {
-    const [file] = event.target.files;
-    if (file) {
-      doing(async () => {
-        load(await asked("scene", file, { name: file.name }));
-        page("collision-file").value = "";
-      });
-    }
-  });
-  page("collision-save").addEventListener("click", () => doing(async () =>
-    save(await ask("file/collision", question()))));
-  page("collision-report").addEventListener("click", () => doing(async () => {
-    const busy = page("collision-busy");
-    const response = await watched(busy, "Writing the report", "bounds", ask("case-report/collision", question()));
-    if (response) await save(response);
-  }));
   tabs(document.querySelector("#collision .tabs"));
-  page("collision-print").addEventListener("click", () => print());
-  addEventListener("desk-scene", (event) => load(event.detail));
+  addEventListener("desk-scene", (event) => view.load(event.detail));
   page("collision-bounds-stop").addEventListener("click", () => stop("bounds"));
   answer();
 }

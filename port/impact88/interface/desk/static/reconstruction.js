@@ -1,19 +1,24 @@
 // The Reconstruction view: what is known is ticked, the rest is solved for while one types.
-import { ask, asked, attempt, drawInto, page, save, settled, showList, showUnits, tell, watched } from "./ask.js";
+import { asked, drawInto, page, settled, showList, showUnits, watched } from "./ask.js";
+import { formView } from "./form.js";
 
-const form = () => page("reconstruction-form");
-const inputs = () => [...form().querySelectorAll("input[name]")];
+const view = formView("reconstruction", {
+  sample: "known",
+  file: "known",
+  read: values,
+  put,
+  answer: () => answer(),
+  loaded: showAll,
+});
+const { form, inputs, question, trouble } = view;
 const ticks = () => [...form().querySelectorAll("input[data-for]")];
 const tickOf = (input) => page(`${input.id}-known`);
 const toleranceOf = (input) => page(`${input.id}-tolerance`);
 const WITHIN = /^(.*\S)\s*(?:\+-|±)\s*(\S.*)$/;
-let extra = {}; // what a file has beside the fields: computed with, and saved again
-const question = () => ({ values: { ...extra, ...values() }, units: page("reconstruction-units").value });
-const trouble = (error) => tell(page("reconstruction-trouble"), error);
 
-/** The values that count: those always known, and those ticked. */
-function values() {
-  const counted = inputs().filter((input) => input.value.trim() && tickOf(input)?.checked !== false);
+/** The values that count: those always known, and those ticked; or `all` that stand there. */
+function values(all = false) {
+  const counted = inputs().filter((input) => input.value.trim() && (all || tickOf(input)?.checked !== false));
   return Object.fromEntries(counted.map((input) => [input.name, textOf(input)]));
 }
 
@@ -33,17 +38,6 @@ function showTicks() {
   for (const tick of ticks()) tick.closest(".knowable").classList.toggle("unknown", !tick.checked);
 }
 
-/** What is wrong with each value, at its field. */
-function showProblems(problems) {
-  tell(page("reconstruction-units-problem"), problems.units && { message: problems.units });
-  for (const input of inputs()) {
-    const problem = problems[input.name];
-    tell(page(`${input.id}-problem`), problem && { message: problem });
-    if (problem) input.setAttribute("aria-invalid", "true");
-    else input.removeAttribute("aria-invalid");
-  }
-}
-
 /** The values solved for, at the fields they belong to. */
 function showAtFields(solutions) {
   for (const input of inputs()) {
@@ -58,7 +52,8 @@ function showAtFields(solutions) {
 /** The drawing of a solution, and a button that takes it over to the Collision view. */
 function finish(part, solution, units) {
   if (!solution.scene) return;
-  const scene = { values: solution.scene, title: "Reconstructed", units, extra };
+  const extra = view.beside();
+  const scene = { values: solution.scene, title: extra.title || "Reconstructed", units, extra };
   drawInto(part.querySelector("img"), { ...scene, values: { ...extra, ...solution.scene } })
     .then((drawn) => { part.querySelector("figure").hidden = !drawn; });
   part.querySelector("button").addEventListener("click", () => {
@@ -91,7 +86,7 @@ const solve = settled(async () => {
     return;
   }
   trouble(null);
-  showProblems(told.problems);
+  view.showProblems(told.problems);
   showList(page("reconstruction-remarks"), told.remarks);
   showUnits(form(), told.units);
   latest = told.solutions;
@@ -112,52 +107,22 @@ function answer() {
   solve();
 }
 
-function load(given) {
-  extra = given.extra ?? {};
-  for (const input of inputs()) {
-    put(input, given.values[input.name] ?? "");
-    const tick = tickOf(input);
-    if (tick) tick.checked = Boolean(input.value);
-  }
-  page("reconstruction-units").value = given.units ?? "";
+/** Tick what a file has, and open the part of the form that it fills. */
+function showAll() {
+  for (const tick of ticks()) tick.checked = Boolean(page(tick.id.replace(/-known$/, "")).value);
   const more = page("reconstruction-more");
   more.open ||= inputs().some((input) => more.contains(input) && input.value);
-  answer();
 }
-
-const doing = (work) => attempt(work, trouble);
 
 /** Start the view. */
 export function reconstruction() {
+  view.start();
   form().addEventListener("input", (event) => {
     const { target } = event;
+    if (target.dataset.about) return;
     const tick = target.name ? tickOf(target) : null;
     if (tick) tick.checked = Boolean(target.value.trim());
     answer();
   });
-  form().addEventListener("submit", (event) => event.preventDefault());
-  page("reconstruction-sample").addEventListener("change", (event) => {
-    const number = event.target.value;
-    event.target.value = "";
-    if (number) doing(async () => load(await asked(`known/${number}`)));
-  });
-  page("reconstruction-units").addEventListener("change", answer);
-  page("reconstruction-open").addEventListener("click", () => page("reconstruction-file").click());
-  page("reconstruction-file").addEventListener("change", (event) => {
-    const [file] = event.target.files;
-    if (!file) return;
-    doing(async () => {
-      load(await asked("known", file, { name: file.name }));
-      page("reconstruction-file").value = "";
-    });
-  });
-  page("reconstruction-save").addEventListener("click", () => doing(async () =>
-    save(await ask("file/reconstruction", question()))));
-  page("reconstruction-report").addEventListener("click", () => doing(async () => {
-    const busy = page("reconstruction-busy");
-    const response = await watched(busy, "Writing the report", "bounds", ask("case-report/reconstruction", question()));
-    if (response) await save(response);
-  }));
-  page("reconstruction-print").addEventListener("click", () => print());
   showTicks();
 }
