@@ -454,9 +454,13 @@ def test_what_people_save_and_paste(change: Any) -> None:
 
 @pytest.mark.parametrize(
     ("start", "says"),
-    [(b"%PDF-1.4", "pdftotext"), (b"\x89PNG\r\n", "tesseract"), (b"PK\x03\x04", "plain text")],
+    [
+        (b"%PDF-1.4", "is a PDF; expected text"),
+        (b"\x89PNG\r\n", "is a PNG picture; expected text"),
+        (b"PK\x03\x04", "is a packed file.*expected text: save it as plain text"),
+    ],
 )
-def test_files_that_are_no_text_say_what_makes_text_of_them(start: bytes, says: str) -> None:
+def test_files_that_are_no_text_say_what_they_are(start: bytes, says: str) -> None:
     with pytest.raises(UserError, match=says):
         printouts.from_bytes(start + b"\0" * 200, "page")
 

@@ -133,10 +133,8 @@ def ranges(
     """Return the lowest and highest value of each quantity over the admissible impacts within the
     limits of what is known, searched for from the draws ``drawn``, or from own ones."""
     posterior = Posterior(solution, progress)
-    if drawn:
-        sample = drawn.sample
-    else:
-        sample = posterior.sample(granted().draws_of_bounds, random_numbers(seed, 0))
+    count = granted().draws_of_bounds
+    sample = drawn.sample if drawn else posterior.sample(count, random_numbers(seed, 0))
     if sample is None:
         return {name: Range(np.nan, np.nan, {}, {}) for name in names}
     region = FeasibleRegion(posterior, names, sample.points)

@@ -10,10 +10,6 @@ from itertools import pairwise
 from ...errors import UserError
 from ...files import check_text
 
-_PICTURE = (
-    "is a picture, not text, and not a readable PNG, JPEG or TIFF (damaged?); expected an intact "
-    "one, or text: tesseract FILE out --psm 6 makes it"
-)
 _MARKS = ("MA=", "MB=", "KE=", "VAX", "UX=", "ENTER", "LOSS", "PA PB", "ZERO DET", "MA ")
 
 
