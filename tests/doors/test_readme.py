@@ -157,7 +157,7 @@ TOURS: dict[str, tuple[str, ...]] = {
     "bounds crash.toml --outputs DVA,DVB": (),
     "report crash.toml -o case.html": ("report",),
     "figure scene crash.toml -o crash.svg": (),
-    "oracle --vectors 3 -o vectors.jsonl": ("oracle",),
+    "oracle --vectors 3 -o vectors.jsonl": (),
     "compare theirs.jsonl --strict": (),
     "desk --no-browser --port {taken}": ("desk",),
 }

@@ -8,6 +8,7 @@ from __future__ import annotations
 import csv
 import hashlib
 import io
+import re
 import shutil
 import subprocess
 import tempfile
@@ -61,13 +62,18 @@ def answers(
     program: str,
     changes: Sequence[Change] = (),
     flags: tuple[str, ...] = (),
+    throughout: Change | None = None,
 ) -> dict[str, list[str]]:
-    """What a program answers: the texts it writes, by result."""
+    """What a program answers: the texts it writes, by result. ``throughout``: a word, and the one
+    that replaces it everywhere."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(SCENE)
     writer.writerows([scene[name] for name in SCENE] for scene in scenes)
-    command = _command(program, source(program, changes), flags)
+    text = source(program, changes)
+    if throughout is not None:
+        text = re.sub(rf"\b{throughout[0]}\b", throughout[1], text)
+    command = _command(program, text, flags)
     done = subprocess.run(
         command, input=out.getvalue(), capture_output=True, text=True, check=True, timeout=60
     )

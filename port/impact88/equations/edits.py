@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import NamedTuple
 
-from ..names import SCENE
-from .evaluation import NEIGHBOUR_SHIFTS
+from ..names import FINAL_VELOCITIES, SCENE
+from .evaluation import LAST, NEIGHBOUR_SHIFTS
 from .spelling import (
     COMPARISONS,
     IMPULSES,
@@ -24,6 +24,7 @@ from .spelling import (
     KinOf,
     Sides,
     Spelling,
+    Statement,
     format_statement,
     nodes,
     operands,
@@ -32,6 +33,7 @@ from .spelling import (
     spellings,
     substitute,
 )
+from .wording import change_words, name_words, subject_words
 
 # Rank of an edit, the likeliest first: of edits that compute the same, the likeliest is reported.
 MODEL = 0
@@ -40,6 +42,7 @@ RARE_CONVENTION = 2
 LIKELY = 3
 LESS_LIKELY = 4
 RARE = 5
+FITTED = 6  # with a number that was fitted
 
 BOOLEAN_NAMES = ("point", "pivot", "stick")
 BOOLEAN_OPERATIONS = (*COMPARISONS, "either")  # no sign or size to change
@@ -50,13 +53,16 @@ class Edit(NamedTuple):
     """Statements rewritten: key -> new sides.
 
     ``title``: the spelling it belongs to, "" if any; ``rank``: how likely it is (the lower, the
-    likelier); ``description``: shown in place of the statements, where they do not say enough.
+    likelier); ``description``: shown in place of the statements, where they do not say enough;
+    ``exchange``: of an edit that replaces names throughout an equation, what for what, and the
+    equation's subject.
     """
 
     title: str
     sides: Mapping[str, Sides]
     rank: int = LIKELY
     description: str = ""
+    exchange: tuple[Mapping[str, Expression], str] | None = None
 
     @property
     def changes_output(self) -> bool:
@@ -67,16 +73,45 @@ class Edit(NamedTuple):
     def text(self) -> str:
         """The description, or for each statement its place, what is written there, what should be,
         and its subject."""
-        if self.description:
-            return self.description
-        parts = []
+        return self.description or "; and ".join(
+            f"{statement.place}: {actual}, should be {correct}; {statement.subject}"
+            for statement, actual, correct in self._statements()
+        )
+
+    def _statements(self) -> Iterator[tuple[Statement, str, str]]:
+        """Yield each statement that is rewritten, what is written there, and what should be."""
         spelling = spellings()[self.title]
         for key, sides in self.sides.items():
             statement = spelling.statements[spelling.index_of[key]]
             actual = format_statement(statement.target, sides)
-            correct = statement.text.removeprefix(f"{statement.target} = ")
-            parts.append(f"{statement.place}: {actual}, should be {correct}; {statement.subject}")
-        return "; and ".join(parts)
+            yield statement, actual, statement.text.removeprefix(f"{statement.target} = ")
+
+    @property
+    def sentence(self) -> str:
+        """What the program does, in words of mechanics."""
+        if self.exchange:
+            return _exchange_words(*self.exchange, spellings()[self.title])
+        if self.description:
+            return self.description
+        spelling = spellings()[self.title]
+        subjects: dict[str, list[str]] = {}
+        for key, sides in self.sides.items():
+            statement = spelling.statements[spelling.index_of[key]]
+            change = change_words(statement.sides, sides, spelling)
+            subjects.setdefault(change, []).append(subject_words(statement.subject))
+        return "; and ".join(
+            f"{change} in {' and '.join(dict.fromkeys(parts))}"
+            for change, parts in subjects.items()
+        )
+
+    @property
+    def formula(self) -> str:
+        """What is written in each statement, and what should be; "" for an edit of no spelling."""
+        if not self.title:
+            return ""
+        return "; ".join(
+            f"{actual}, should be {correct}" for _, actual, correct in self._statements()
+        )
 
 
 def _node_edits(spelling: Spelling, places: range) -> Iterator[Edit]:
@@ -164,35 +199,43 @@ def _fill_template(template: Expression, bindings: Mapping[str, Expression]) -> 
     return substitute(template, bindings)
 
 
-def _equation_edits(spelling: Spelling) -> Iterator[Edit]:
-    """Yield edits that change a name throughout one statement, or throughout all statements whose
+def _equation_edits(spelling: Spelling, places: range) -> Iterator[Edit]:
+    """Yield edits that change a name throughout one of these statements, or throughout all whose
     subjects agree up to a comma."""
-    for subject, places in _subject_groups(spelling).items():
-        sides = (side for index in places for side in spelling.statements[index].sides)
+    seen = set()
+    groups = _subject_groups(spelling, places)
+    for subject, group in sorted(groups.items(), key=lambda group: -group[0].count(", ")):
+        sides = (side for index in group for side in spelling.statements[index].sides)
         names = Counter(x for side in sides for x in nodes(side) if isinstance(x, str))
-        kin = spelling.kin_at(places[0])
+        kin = spelling.kin_at(group[0])
         for name in names:
             if name in (*BOOLEAN_NAMES, "pi", *spelling.unknown):
                 continue
             for description, changes in _substitutions(name, kin(name), names):
                 lines = [
                     spelling.statements[index]
-                    for index in places
+                    for index in group
                     if not changes.keys().isdisjoint(spelling.reads[index])
                 ]
                 new_sides = {
                     line.key: tuple(substitute(x, changes) for x in line.sides) for line in lines
                 }
+                key = (tuple(line.key for line in lines), repr(changes))
+                if key in seen:  # of fewer statements
+                    continue
+                seen.add(key)
                 where = ", ".join(dict.fromkeys(line.place for line in lines))
                 text = f"{where}: {description} in {subject}"
-                yield Edit(spelling.title, new_sides, LESS_LIKELY, text)
+                exchange = changes, subject
+                yield Edit(spelling.title, new_sides, LESS_LIKELY, text, exchange)
+        yield from _group_edits(spelling, group)
 
 
-def _subject_groups(spelling: Spelling) -> dict[str, list[int]]:
-    """Return the statements of an equation by what they are called: each alone ("text; subject"),
-    and those that share a subject up to a comma, where there are several."""
+def _subject_groups(spelling: Spelling, places: range) -> dict[str, list[int]]:
+    """Return statements by what they are called: each alone ("text; subject"), and those that share
+    a subject up to a comma, where there are several."""
     groups: dict[str, list[int]] = {}
-    for index in range(spelling.own_start, spelling.results_start):
+    for index in places:
         statement = spelling.statements[index]
         subjects = statement.subject.split(", ")
         for count in range(1, len(subjects) + 1):
@@ -221,13 +264,70 @@ def _substitutions(
             yield f"{twin} for {name}", {name: twin}
 
 
+def _exchange_words(changes: Mapping[str, Expression], subject: str, spelling: Spelling) -> str:
+    """Return what a change of names throughout an equation, or several, does."""
+    text, _, own = subject.partition("; ")
+    where = subject_words(own or text) + ("" if own else ", throughout")
+    if len(changes) > 1:
+        one, other = (name_words(name, spelling) for name in changes)
+        (first, value), *_ = changes.items()
+        if value == 0:
+            return f"{one} and {other} are left out in {where}"
+        is_sign = value == (NEGATIVE, first)
+        return (
+            f"{one} and {other} {'have the wrong sign' if is_sign else 'are exchanged'} in {where}"
+        )
+    ((name, value),) = changes.items()
+    return f"{change_words((name,), (value,), spelling)} in {where}"
+
+
+def _group_edits(spelling: Spelling, places: Sequence[int]) -> Iterator[Edit]:
+    """Yield edits that do the same in several statements of one form: what stands in a function
+    that is called for each of them."""
+    forms: dict[Expression, list[Statement]] = {}
+    for index in places:
+        line = spelling.statements[index]
+        forms.setdefault(tuple(map(_shape, line.sides)), []).append(line)
+    for lines in forms.values():
+        if len(lines) > 1:
+            yield from _alike_edits(spelling, lines)
+
+
+def _alike_edits(spelling: Spelling, lines: Sequence[Statement]) -> Iterator[Edit]:
+    """Yield edits that do the same in statements of one form."""
+    each = [
+        [
+            (rank, (*line.sides[:at], variation, *line.sides[at + 1 :]))
+            for at, side in enumerate(line.sides)
+            for rank, variation in _variations(side, lambda name: ())
+        ]
+        for line in lines
+    ]
+    if len(set(map(len, each))) > 1:
+        return
+    for edits in zip(*each, strict=True):
+        sides = {line.key: new for line, (_, new) in zip(lines, edits, strict=True)}
+        yield Edit(spelling.title, sides, max(LESS_LIKELY, edits[0][0]))
+
+
+def _shape(node: Expression) -> Expression:
+    """Return an expression without its names."""
+    if isinstance(node, tuple):
+        return (node[0], *map(_shape, node[1:]))
+    return "" if isinstance(node, str) and node not in BOOLEAN_NAMES else node
+
+
 @cache
 def spelling_edits(title: str) -> tuple[Edit, ...]:
     """Return the edits of a spelling as it stands. Statements that all spellings share are edited
     in the listing's only."""
     spelling = spellings()[title]
-    own = _node_edits(spelling, range(spelling.own_start, spelling.results_start))
-    return (*(node_edits(spelling) if title == LISTING else own), *_equation_edits(spelling))
+    own = range(spelling.own_start, spelling.results_start)
+    if title != LISTING:
+        return (*_node_edits(spelling, own), *_equation_edits(spelling, own))
+    read = range(len(SCENE), spelling.own_start)
+    equations = (*_equation_edits(spelling, read), *_equation_edits(spelling, own))
+    return (*node_edits(spelling), *equations)
 
 
 def node_edits(spelling: Spelling) -> Iterator[Edit]:
@@ -278,6 +378,7 @@ def _parse_reading(line: str) -> Edit:
     sides: dict[str, Sides] = {}
     for name, expression in parse_assignments(scene):
         neighbours = {row: f"{TYPED}{row}_{name}" for row in NEIGHBOUR_SHIFTS}
+        neighbours |= {f"{LAST}{result}": f"{TYPED}{LAST}{result}" for result in FINAL_VELOCITIES}
         sides[name] = (substitute(expression, {**typed, **neighbours, "x": typed[name]}),)
     for name, expression in parse_assignments(results):
         sides[f"{SHOWN}{name}"] = (substitute(expression, {"x": name}),)

@@ -23,6 +23,8 @@ Changes = Mapping[str, Sequence[Any]]
 NEIGHBOUR_SHIFTS = {"before": 1, "after": -1}
 """Neighbouring row -> how far `numpy.roll` shifts a column to get it. A program may read from the
 wrong row of its table."""
+LAST = "last_"
+"""Prefix of a final velocity's name: what the table shows for it in the row before."""
 MAX_VALUES_PER_CHUNK = 60_000
 """Scenes times edits computed together; bounds the memory."""
 
@@ -83,6 +85,8 @@ class _Columns(dict[str, Any]):
     column of neighbouring rows (``typed_before_UX``) is made when it is read."""
 
     def __missing__(self, name: str) -> Any:
+        if name.startswith(f"{TYPED}{LAST}"):  # not given
+            return np.full((1, 1), np.nan)
         row, _, column = name.removeprefix(TYPED).partition("_")
         if row not in NEIGHBOUR_SHIFTS or column not in SCENE:
             raise KeyError(name)

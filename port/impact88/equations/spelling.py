@@ -40,7 +40,9 @@ LAST = "results"
 # titles of spellings
 LISTING = "listing"
 IMPULSES = "contact impulses"
+IMPULSE_MATRIX = "impulse matrix"
 A_IMPULSE = "equations with A's impulse"
+TRIAL_IMPULSES = "trial impulses"
 
 TYPED = "typed_"  # prefix of a column's name: its value in the table
 SHOWN = "shown_"  # prefix of a result's name: its value as the program shows it
@@ -162,15 +164,23 @@ def substitute(node: Expression, names: Mapping[str, Expression]) -> Expression:
 
 def format_statement(target: str, sides: Sides) -> str:
     """Return a statement as text: ``target = side``, or ``side = side`` for an equation."""
-    trees = (ast.parse(_parenthesize(side), mode="eval") for side in sides)
-    texts = [ast.unparse(tree).replace(" * ", "*").replace(" / ", "/") for tree in trees]
-    return " = ".join([target, *texts] if target else texts).replace(" ** ", "**")
+    texts = list(map(format_expression, sides))
+    return " = ".join([target, *texts] if target else texts)
+
+
+def format_expression(node: Expression) -> str:
+    """Return an expression as text, without brackets that it does not need."""
+    text = ast.unparse(ast.parse(_parenthesize(node), mode="eval"))
+    return text.replace(" * ", "*").replace(" / ", "/").replace(" ** ", "**")
 
 
 def _parenthesize(node: Expression) -> str:
     if not isinstance(node, tuple):
         return str(node)
     name, texts = node[0], list(map(_parenthesize, operands(node)))
+    if name == NEGATIVE and isinstance(node[1], tuple) and node[1][0] in "*/":
+        operation, left, right = node[1]
+        return _parenthesize((operation, (NEGATIVE, left), right))
     if name == NEGATIVE:
         return f"(-{texts[0]})"
     return f"{name}({','.join(texts)})" if name.isidentifier() else f"({f' {name} '.join(texts)})"
@@ -187,6 +197,15 @@ def _expression_of(tree: ast.expr) -> Expression:
             return name
         case ast.UnaryOp(ast.USub(), operand):
             return NEGATIVE, _expression_of(operand)
+        case ast.BinOp(ast.UnaryOp(ast.USub(), left), ast.Mult() | ast.Div() as operator, right):
+            # the sign is that of the whole product, so that a factor can be left out alone
+            product = _SYMBOLS[type(operator)], _expression_of(left), _expression_of(right)
+            return NEGATIVE, product
+        case ast.BinOp(left, ast.Mult() | ast.Div() as operator, right):
+            sides = _expression_of(left), _expression_of(right)
+            if isinstance(sides[0], tuple) and sides[0][0] == NEGATIVE and _is_product(left):
+                return NEGATIVE, (_SYMBOLS[type(operator)], sides[0][1], sides[1])
+            return _SYMBOLS[type(operator)], *sides
         case ast.BinOp(left, operator, right) | ast.Compare(left, [operator], [right]):
             return _SYMBOLS[type(operator)], _expression_of(left), _expression_of(right)
         case ast.Call(ast.Name(name), arguments):
@@ -194,6 +213,10 @@ def _expression_of(tree: ast.expr) -> Expression:
         case ast.Constant(number):
             return number
     raise ValueError(f"{ast.unparse(tree)} is not an expression")
+
+
+def _is_product(tree: ast.expr) -> bool:
+    return isinstance(tree, ast.BinOp) and isinstance(tree.op, ast.Mult | ast.Div)
 
 
 def _parse_statement(line: str, place: str) -> Statement:

@@ -23,10 +23,11 @@ from impact88.conformance.comparison.vectors import (
     EDGES,
     FAILURE,
     FAILURES,
-    PUBLISHED,
-    PUBLISHED_SEED,
+    FROZEN_COUNT,
+    FROZEN_ID,
+    FROZEN_SEED,
     casework,
-    published,
+    frozen,
     scenes,
     vectors,
 )
@@ -366,7 +367,7 @@ def test_without_mpmath_one_line_says_how_to_get_it() -> None:
         "import sys; sys.modules['mpmath'] = None\n"
         "from impact88.interface.commands.cli import main; sys.exit(main(sys.argv[1:]))"
     )
-    command = [sys.executable, "-c", blocked, "oracle", "--vectors", "3"]
+    command = [sys.executable, "-c", blocked, "oracle", "--vectors", "3", "--seed", "5"]
     done = subprocess.run(command, capture_output=True, encoding="utf-8", check=False)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert "pip install 'impact88[oracle]'" in done.stderr
@@ -374,15 +375,32 @@ def test_without_mpmath_one_line_says_how_to_get_it() -> None:
     assert (done.returncode, done.stdout.count(b"\n")) == (0, 3)
 
 
-def test_published_vectors_are_those_of_their_seed_and_hash() -> None:
+def test_the_frozen_set_is_printed_without_an_extra_and_never_changes() -> None:
+    """Its id stands for these bytes, here, in golden/README and wherever two firms name it."""
+    blocked = (
+        "import sys; sys.modules['mpmath'] = None\n"
+        "from impact88.interface.commands.cli import main; sys.exit(main(sys.argv[1:]))"
+    )
+    command = [sys.executable, "-c", blocked, "oracle", "--vectors"]
+    done = subprocess.run(command, capture_output=True, check=True)
+    assert done.stderr.decode() == f"impact88 oracle: vectors of the frozen set {FROZEN_ID}\n"
+    digests = {"1988.1": "e5ca33afdcdc8126bff2547348f3187d4cea69545f3e4a092ccd0a6876b1958f"}
+    assert hashlib.sha256(done.stdout).hexdigest() == digests[FROZEN_ID]
+    readme = (captures.ROOT / "golden" / "README.md").read_text(encoding="utf-8")
+    assert all(text in readme for text in (FROZEN_ID, digests[FROZEN_ID]))
+    few = subprocess.run([*command, "7", "--class", "edge"], capture_output=True, check=True)
+    edges = [line for line in done.stdout.splitlines() if b'"class": "edge"' in line]
+    assert few.stdout.splitlines() == edges[:7]
+    more = subprocess.run([*command, "1001"], capture_output=True, check=False)
+    assert (more.returncode, more.stderr.count(b"\n")) == (2, 1)
+
+
+def test_the_frozen_vectors_are_those_of_their_seed() -> None:
     """Printed digits, bytes and 30 digits are what is computed today; doubles may differ in their
     last bits, and a bound may be mended."""
-    text = published()
-    whole = list(map(json.loads, text.splitlines()))
-    assert len(whole) == PUBLISHED
-    assert [one["scene"] for one in whole] == [s for *_, s in scenes(PUBLISHED, PUBLISHED_SEED)]
-    readme = (captures.ROOT / "golden" / "README.md").read_text(encoding="utf-8")
-    assert hashlib.sha256(text.encode()).hexdigest() in readme
+    whole = frozen()
+    assert len(whole) == FROZEN_COUNT
+    assert [one["scene"] for one in whole] == [s for *_, s in scenes(FROZEN_COUNT, FROZEN_SEED)]
     few = whole[::50]
     for one, today in zip(few, oracle([one["scene"] for one in few]), strict=True):
         assert (one["printout"], one["ending"]) == (today["printout"], today["ending"])

@@ -8,14 +8,16 @@ correct digit, or too few are written, a number that shares none with ours is no
 """
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...collision.doubles import double
-from ...equations.evaluation import NEIGHBOUR_SHIFTS, Run
+from ...equations.evaluation import LAST, NEIGHBOUR_SHIFTS, Run
 from ...equations.spelling import A_IMPULSE, spelling_of
 from ...errors import UserError, quoted
 from ...mechanics.accuracy import errorbound
@@ -48,7 +50,11 @@ _INFINITE = re.compile(r"([+-]?)(inf|infinity|1\.#INF[0-9]*)", re.IGNORECASE)
 """Cells that programs write for a number beyond all others, which is no refusal."""
 HALF = 0.5 + 1e-9  # rounding to the last digit written, in units of that digit
 
-COLUMNS = (*SCENE, *(f"{row}_{name}" for row in NEIGHBOUR_SHIFTS for name in SCENE))
+COLUMNS = (
+    *SCENE,
+    *(f"{row}_{name}" for row in NEIGHBOUR_SHIFTS for name in SCENE),
+    *(f"{LAST}{name}" for name in FINAL_VELOCITIES),
+)
 
 # grades of agreement
 ABSENT = 0  # one side has no result
@@ -58,16 +64,19 @@ ELIMINATION = 3
 DIFFER = 4
 LOST = 5  # rounding, or the digits written, leave no digit to compare
 
+_PLAIN_FACTOR = 30.0  # of the best bound, in ordinary scenes: what elimination may add
+INITIAL_VELOCITIES = ("UX", "UY", "VX", "VY", "WA", "WB")
+"""In the order of the final ones."""
 NO_DIGIT = 0.1  # relative difference from which a result shares no digit with ours
 
 
 class Case(NamedTuple):
     """Rows of a table with our results for them: arrays (results, rows), or (rows,).
 
-    ``names``: of the results; ``scene``: each row's columns, and those of the rows before and after
-    (`COLUMNS`); ``values``: the other program's results; ``units``: of the last digit written (0
-    for binary numbers); ``ours``: our results; ``sizes``: errors are relative to them;
-    ``condition``: COND.
+    ``names``: of the results; ``scene``: each row's columns, those of the rows before and after,
+    and the other program's velocities of the row before (`COLUMNS`); ``values``: the other
+    program's results; ``units``: of the last digit written (0 for binary numbers); ``ours``: our
+    results; ``sizes``: errors are relative to them; ``condition``: COND.
     ``tight``, ``loose``: error bounds in double precision of the best programs, and of a correct
     one in any spelling (equal to the former where that was enough); ``per_unit``: the largest
     relative ``loose`` of a row's velocities per unit roundoff; ``no_digit``: relative difference
@@ -137,8 +146,9 @@ def make_case(
         part = {name: column[undecided] for name, column in scene.items()}
         results = {name: (a[undecided], b[undecided]) for name, (a, b) in theirs.items()}
         reversed_case, _ = _compare_scenes({**part, "MU": -part["MU"]}, results, rtol)
-        differing = (case.select_rows(undecided).grade()[0] == DIFFER).sum(0)
-        better = (reversed_case.grade()[0] == DIFFER).sum(0) < differing
+        # the nearer of the two, as rounding may leave neither within the bounds
+        ours, other = (x.grade()[1].max(0) for x in (case.select_rows(undecided), reversed_case))
+        better = other < ours
         for column, replacement in zip(case[4:], reversed_case[4:], strict=True):
             column[..., undecided[better]] = replacement[..., better]
     return case
@@ -154,6 +164,12 @@ def _compare_scenes(
     columns = np.stack([scene[name] for name in SCENE])
     neighbours = (np.roll(columns, shift, -1) for shift in NEIGHBOUR_SHIFTS.values())
     values, units = (np.stack(column) for column in zip(*theirs.values(), strict=True))
+    unknown = np.full(values.shape[1], np.nan)
+    last = np.stack([np.roll(theirs.get(name, (unknown,))[0], 1) for name in FINAL_VELOCITIES])
+    last[:, :1] = np.nan
+    # a program that has no result keeps none
+    own = np.stack([scene[name] for name in INITIAL_VELOCITIES])
+    last = np.where(np.isnan(last), own, last)
     ours = np.stack([solved[name] for name in theirs])
     sizes = np.stack([scales[name] for name in theirs])
     best_bounds, undecided = tolerance.best_error_bounds(scene, solved, scales)
@@ -167,6 +183,7 @@ def _compare_scenes(
     is_far = (off > tolerance.ORDINARY_BOUND * sizes) & (sizes > 0)
     # a number that is far off in an ordinary scene needs no bound
     is_plain = tolerance.is_ordinary(scene, solved["COND"]) & (~(off > tight) | is_far).all(0)
+    per_unit[beyond & is_plain] *= _PLAIN_FACTOR
     if rtol is None and (rows := np.flatnonzero(beyond & ~is_plain)).size:
         # these bounds take long: only for rows that are beyond the tight ones
         part_scene, part_solved, part_scales, part_bounds = (
@@ -181,7 +198,7 @@ def _compare_scenes(
         per_unit[rows] = np.max(np.where(np.isfinite(relative), relative, 0.0), axis=0)
     case = Case(
         names=tuple(theirs),
-        scene=np.concatenate([columns, *neighbours]),
+        scene=np.concatenate([columns, *neighbours, last]),
         values=values,
         units=units,
         ours=ours,
@@ -194,6 +211,65 @@ def _compare_scenes(
         no_digit=np.full(len(values[0]), NO_DIGIT if rtol is None else np.inf),
     )
     return case, np.flatnonzero(undecided)
+
+
+# of a program whose equations lose digits to trial impulses
+_MIN_NOISY_ROWS = 3
+_TRIAL_MARGIN = 8.0
+_MAX_NOISE = 1e-8  # relative difference of a row in an ordinary scene
+MAX_SLIGHT_DIFFERENCE = 1e-10
+"""Relative difference up to which a row agrees but for its last digits, which is given no cause:
+half of what 32 bits of mantissa leave, a twentieth of the effect of 3.14159265 for pi."""
+
+
+@dataclass
+class TrialNoise:
+    """Rows that disagree by no more than a correct program loses that finds its equations by trial
+    impulses: a program's, if it has several and none that agrees as closely is off by more.
+
+    ``rows``: for each row that disagrees, whether it is one, and its largest relative difference
+    and condition; ``cells``: results of such rows that disagree.
+    """
+
+    rows: list[tuple[bool, float, float]] = field(default_factory=list)
+    cells: Counter[str] = field(default_factory=Counter)
+    has_others: bool = False
+
+    @property
+    def count(self) -> int:
+        """Number of such rows, 0 where the program is none that loses so much."""
+        count = sum(noise for noise, *_ in self.rows)
+        return 0 if self.has_others or count < _MIN_NOISY_ROWS else count
+
+    def add(
+        self, case: Case, places: NDArray[np.intp], grades: NDArray[np.intp], relative: Floats
+    ) -> None:
+        """Add rows of a case that disagree."""
+        largest = np.where(grades == DIFFER, relative, 0.0).max(0)[places]
+        noise = np.zeros(places.size, bool)
+        usual = tolerance.is_ordinary(case.columns, case.condition)[places]
+        near = np.flatnonzero((largest <= _MAX_NOISE) | ~usual)
+        if near.size and not self.has_others:
+            noise[near] = _is_trial_noise(case.select_rows(places[near]))
+            self.has_others = bool((~noise & (largest <= MAX_SLIGHT_DIFFERENCE)).any())
+        rows = zip(noise.tolist(), largest.tolist(), case.condition[places].tolist(), strict=True)
+        self.rows += rows
+        differing = (grades[:, places[noise]] == DIFFER).sum(1).tolist()
+        self.cells.update(dict(zip(case.names, differing, strict=True)))
+
+
+@np.errstate(all="ignore")
+def _is_trial_noise(case: Case) -> Bools:
+    """Return the rows that are off by no more than a correct program may lose that finds its
+    equations by trial impulses."""
+    scene = {name: case.columns[name] for name in SCENE}
+    ours = dict(zip(case.names, case.ours, strict=True))
+    bounds = tolerance.trial_bounds(scene, {**solve(scene), **ours})
+    # their size and the order of operations are the program's own
+    limits = _TRIAL_MARGIN * np.stack([bounds[name] for name in case.names])
+    written = case.units * HALF
+    off = np.abs(case.values - case.ours)
+    return np.asarray(((off <= written + case.loose) | (off <= written + limits)).all(0))
 
 
 def read_theirs(rows: Rows, name: str, units: TableUnits) -> tuple[Floats, Floats]:

@@ -1,7 +1,7 @@
 """Compare another implementation's results with ours, row by row, and explain the differences.
 
-`agreement` grades each result by the scene's condition; `diagnosis` finds causes. Rows that could
-not be compared are counted by reason.
+`agreement` grades each result by the scene's condition; `diagnosis` explains differences. Rows that
+could not be compared are counted by reason.
 """
 
 import os
@@ -28,11 +28,21 @@ from ...tables.formats import FORMATS
 from ...tables.rows import BadCell, Reader, Rows
 from ...tables.table import format_of, open_reader
 from . import agreement
-from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, Case
-from .diagnosis import AGREES, LOOKED_INTO, UNKNOWN, Cause, Diagnosis, Unexplained
-from .trials import Program
+from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, Case, TrialNoise
+from .diagnosis import (
+    AGREES,
+    UNKNOWN,
+    Cause,
+    Diagnosis,
+    Hypothesis,
+    Unexplained,
+)
 from .vectors import FAILURE
 
+MAX_ROWS_KEPT = 20_000
+"""Rows that disagree from which a search starts; with its causes the rest is judged as it is read,
+so that the memory for large tables is bounded."""
+MAX_AGREEING_KEPT = 4000  # rows that a cause must not contradict
 MAX_ROWS_LISTED = 20  # of those that disagree most, and of those not compared for each reason
 NOT_COMPARED = ("STATUS", "COND")  # result columns
 CARRIED = ("id", "class", "label", "expect", "flags", "comment")
@@ -179,9 +189,11 @@ class Comparison:
     elimination : Elimination
         Rows that agree only as closely as elimination can.
     evidence : list of Cause
-        The rows that support each cause which is a program.
-    programs : list of Program
-        Those programs.
+        The rows that support each cause, its score, and what else would give the same.
+    programs : list of Hypothesis
+        Of the causes that are programs, those that give the results of scenes.
+    skipped : list of str
+        What was not looked for.
     equations : dict of str to tuple of int
         By equation, the rows in which it was checked and those that violate it.
     unexplained : dict of str to Unexplained
@@ -212,13 +224,15 @@ class Comparison:
     not_compared: dict[str, Skipped] = field(default_factory=dict)
     elimination: Elimination = field(default_factory=Elimination)
     evidence: list[Cause] = field(default_factory=list)
-    programs: list[Program] = field(default_factory=list)
+    programs: list[Hypothesis] = field(default_factory=list)
+    skipped: list[str] = field(default_factory=list)
     equations: dict[str, tuple[int, int]] = field(default_factory=dict)
     unexplained: dict[str, Unexplained] = field(default_factory=dict)
     bad: list[BadCell] = field(default_factory=list)
     unknown: dict[str, str] = field(default_factory=dict)
     place: dict[str, Any] = field(default_factory=dict)
     remarks: list[str] = field(default_factory=list)
+    _trials: TrialNoise = field(default_factory=TrialNoise)
 
     @property
     def worst(self) -> list[Row]:
@@ -274,6 +288,7 @@ class Comparison:
             "results": {name: vars(tally) for name, tally in self.tallies.items()},
             "causes": dict(self.causes.most_common()),
             "evidence": [cause._asdict() for cause in self.evidence],
+            "not_looked_for": self.skipped,
             "equations": equations,
             "unexplained": {name: kind._asdict() for name, kind in self.unexplained.items()},
             "worst": [row._asdict() for row in self.worst],
@@ -347,8 +362,8 @@ def compare(
         if text is not None and not isinstance(text, str):
             raise UserError(f"{name} is {quoted(text)}; expected a text")
     comparison = Comparison()
-    cases: list[Case] = []
-    with _opened(table, form, encoding) as (reader, where):
+    search = _Search(comparison) if causes else None
+    with open_table(table, form, encoding) as (reader, where):
         comparison.place, comparison.remarks = reader.place, reader.remarks
         wanted = [name for name in reader.names if name in RESULTS and name not in NOT_COMPARED]
         known = {*SCENE, *RESULTS, *CARRIED}
@@ -365,39 +380,94 @@ def compare(
             measured: TableUnits | None = None
             for rows in reader:
                 measured = measured or TableUnits(reader.names, units, rows, wanted, where)
-                max_agreeing = max(0, LOOKED_INTO - comparison.agreeing)
-                case = _compare_block(rows, values, comparison, rtol, measured, max_agreeing)
-                cases.append(case)
+                max_agreeing = max(0, MAX_AGREEING_KEPT - comparison.agreeing)
+                case, places = _compare_block(
+                    rows, values, comparison, rtol, measured, max_agreeing
+                )
+                if search is not None:
+                    search.add(case, places)
                 meter.update(rows.place - before)
                 before = rows.place
     if not any(tally.compared for tally in comparison.tallies.values()):
         raise UserError("no result could be compared", where)
-    if causes and comparison.differing:
-        _add_causes(comparison, agreement.concatenate_cases(cases))
+    noise = comparison._trials
+    if search is not None and comparison.differing > noise.count:
+        search.finish()
+    if noise.count:
+        _forgive(comparison)
+    if search is not None:
+        comparison.causes.update(row.cause for row in comparison.differences)
     return comparison
 
 
-def _add_causes(comparison: Comparison, case: Case) -> None:
-    """Look for the causes of the differences, and add them to the comparison."""
-    agreeing = np.flatnonzero(~case.wrong)[:LOOKED_INTO]
-    places = np.concatenate([np.flatnonzero(case.wrong), agreeing])
-    diagnosis = Diagnosis(case.select_rows(places))
-    differences = comparison.differences
-    comparison.equations = diagnosis.equations
-    comparison.programs = diagnosis.programs
-    comparison.unexplained = diagnosis.unexplained
-    comparison.evidence = [
-        cause._replace(parts={says: differences[at].row for says, at in cause.parts.items()})
-        for cause in diagnosis.evidence
-    ]
+def _forgive(comparison: Comparison) -> None:
+    """Count the rows that lose no more than trial impulses do among those that agree."""
+    elimination, noise = comparison.elimination, comparison._trials
+    rows = zip(comparison.differences, noise.rows, strict=True)
+    for row, (is_noise, largest, condition) in rows:
+        if is_noise:
+            comparison.differing -= 1
+            comparison.agreeing += 1
+            elimination.rows += 1
+            if largest > elimination.worst_relative:
+                elimination.worst_row, elimination.worst_relative = row.row, float(largest)
+                elimination.worst_condition = float(condition)
     comparison.differences = [
-        row._replace(cause=cause) for row, cause in zip(differences, diagnosis.causes, strict=True)
+        row
+        for row, (is_noise, *_) in zip(comparison.differences, noise.rows, strict=True)
+        if not is_noise
     ]
-    comparison.causes.update(diagnosis.causes)
+    for name, count in noise.cells.items():
+        comparison.tallies[name].differ -= count
+        comparison.tallies[name].elimination += count
+
+
+class _Search:
+    """The causes of a table's differences, sought in the first rows that disagree."""
+
+    def __init__(self, comparison: Comparison) -> None:
+        self._comparison = comparison
+        self._kept: list[tuple[Case, NDArray[np.intp]]] = []
+        self._diagnosis: Diagnosis | None = None
+        self._causes: list[str] = []
+
+    def add(self, case: Case, rows: NDArray[np.intp]) -> None:
+        """Keep a block's rows, or judge them if the causes are known."""
+        if self._diagnosis is not None:
+            self._assign(self._diagnosis, case, rows)
+            return
+        self._kept.append((case, rows))
+        if self._comparison.differing >= MAX_ROWS_KEPT:
+            self._diagnose()
+
+    def finish(self) -> None:
+        """Add the causes to the comparison."""
+        diagnosis = self._diagnosis or self._diagnose()
+        comparison = self._comparison
+        comparison.equations = diagnosis.equations
+        comparison.unexplained = diagnosis.unexplained
+        comparison.evidence = diagnosis.evidence
+        comparison.programs = [x for x in diagnosis.hypotheses if x.program is not None]
+        comparison.skipped = diagnosis.skipped
+        comparison.differences = [
+            row._replace(cause=cause)
+            for row, cause in zip(comparison.differences, self._causes, strict=True)
+        ]
+
+    def _diagnose(self) -> Diagnosis:
+        cases, rows = zip(*self._kept, strict=True)
+        self._diagnosis = Diagnosis(agreement.concatenate_cases(cases), np.concatenate(rows))
+        for case, places in self._kept:
+            self._assign(self._diagnosis, case, places)
+        self._kept = []
+        return self._diagnosis
+
+    def _assign(self, diagnosis: Diagnosis, case: Case, rows: NDArray[np.intp]) -> None:
+        self._causes += filter(None, diagnosis.assign(case, rows))
 
 
 @contextmanager
-def _opened(table: Any, form: str | None, encoding: str | None) -> Iterator[tuple[Reader, str]]:
+def open_table(table: Any, form: str | None, encoding: str | None) -> Iterator[tuple[Reader, str]]:
     """Open a table's file or a data frame; yields the reader, and the table's name in messages.
     Raises UserError."""
     if isinstance(table, str | os.PathLike):
@@ -434,11 +504,11 @@ def _compare_block(
     rtol: float | None,
     units: TableUnits,
     max_agreeing: int,
-) -> Case:
+) -> tuple[Case, NDArray[np.intp]]:
     """Compare a block of rows and add it to the comparison.
 
-    Returns the rows in which causes are looked for: those that disagree, and at most
-    ``max_agreeing`` that agree.
+    Returns the rows in which causes are looked for, and their numbers: those that disagree, and at
+    most ``max_agreeing`` that agree.
     """
     constants = {"M": DEFAULT_M, **values}
     scene = {
@@ -483,8 +553,11 @@ def _compare_block(
     worst_results = np.where(grades == DIFFER, relative, -1.0).argmax(0)
     places = np.flatnonzero(wrong)
     comparison.differences += _rows_of(rows, places, worst_results, relative, case)
+    if rtol is None:
+        comparison._trials.add(case, places, grades, relative)
     agreeing = np.flatnonzero(compared & ~wrong)[:max_agreeing]
-    return case.select_rows(np.concatenate([places, agreeing]))
+    kept = np.sort(np.concatenate([places, agreeing]))
+    return case.select_rows(kept), rows.first + kept
 
 
 def _rows_of(

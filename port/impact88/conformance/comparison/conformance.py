@@ -10,7 +10,6 @@ import io
 import json
 import math
 import os
-import re
 import shutil
 import tempfile
 from collections import Counter
@@ -31,13 +30,23 @@ from ...messages.schemas import NUMBERS
 from ...names import FINAL_VELOCITIES, RESULTS, SCENE
 from ...tables.cells import TableUnits, numbers
 from ...tables.rows import Rows
-from ...tables.table import open_reader
 from . import agreement
-from .agreement import DIFFER, LOST, Case, Floats
+from .agreement import DIFFER, ELIMINATION, LOST, Case, Floats
+from .compare import CARRIED, NOT_COMPARED, open_table
 from .junit import Suite
-from .vectors import ANSWER, EITHER, REFUSE, expectation, scenes
+from .kit import csv_lines
+from .vectors import (
+    ANSWER,
+    EITHER,
+    FROZEN_COUNT,
+    FROZEN_ID,
+    FROZEN_SEED,
+    REFUSE,
+    expectation,
+    frozen,
+    scenes,
+)
 
-NOT_COMPARED = ("STATUS", "COND")
 ABOUT = "KIT.json"
 SCENES = "vectors.csv"
 MAX_VECTORS = 10**7
@@ -54,7 +63,6 @@ REASONS = {
     "differs": "a number differs",
 }
 """Reason for which a vector fails -> message."""
-_INFINITE = re.compile(r"[+-]?(inf|infinity)", re.IGNORECASE)
 
 
 class Vector(NamedTuple):
@@ -147,6 +155,7 @@ class Conformance:
         state = "conforms" if self.conforms else "does not conform"
         count = f"{self.passed} of {len(self.verdicts)}"
         which = f"impact88 vectors/{NUMBERS['vectors']} seed {self.kit.seed}"
+        which = f"impact88 vectors {FROZEN_ID}" if self.kit.place == FROZEN_ID else which
         return f"{which}: {state}, {count} (table {self.sha256[:12]}, kit {self.kit.sha256[:12]})"
 
     def counts(self, attribute: str) -> dict[str, dict[str, int]]:
@@ -201,7 +210,8 @@ class Conformance:
 
 
 def read_kit(place: str) -> Kit:
-    """Return the kit in a folder or an archive (.zip), with its vectors regenerated from its seed.
+    """Return the kit in a folder or an archive (.zip), with its vectors regenerated from its seed;
+    or the frozen set by its id.
 
     Raises
     ------
@@ -209,6 +219,10 @@ def read_kit(place: str) -> Kit:
         Where there is no kit, it is of another number than this version's, or its vectors are not
         those of its seed.
     """
+    if place == FROZEN_ID and not os.path.exists(place):
+        expected = list(_vectors(FROZEN_COUNT, FROZEN_SEED))
+        data = "".join(csv_lines(frozen())).encode()
+        return Kit(place, FROZEN_SEED, hashlib.sha256(data).hexdigest(), expected)
     about = _parsed(place, _kit_file(place, ABOUT))
     mine = f"vectors/{NUMBERS['vectors']}"
     if about.get("kit") != mine:
@@ -315,9 +329,9 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
         Where kit or table cannot be read, or the table lacks ids or a final velocity.
     """
     whole = read_kit(kit)
-    with _on_disk(theirs) as path, open_reader(path, form, encoding, True) as reader:
+    where = display_name(theirs)
+    with _on_disk(theirs) as path, open_table(path, form, encoding) as (reader, _):
         results = [n for n in reader.names if n in RESULTS and n not in NOT_COMPARED]
-        where = display_name(theirs)
         if "id" not in reader.names:
             raise UserError("no column id; expected the kit's ids, one a row", where)
         if missing := [name for name in FINAL_VELOCITIES if name not in results]:
@@ -326,7 +340,7 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
                 where,
             )
         done = Conformance(whole, where, _digest(path), [str(name) for name in results])
-        known = {*SCENE, *RESULTS, "id", "class", "label", "expect", "flags", "comment"}
+        known = {*SCENE, *RESULTS, *CARRIED}
         done.unknown = [str(name) for name in reader.names if name not in known]
         done.place, done.remarks = reader.place, reader.remarks
         table = _Table()
@@ -371,7 +385,6 @@ def _add_answers(
 ) -> None:
     """Add a block's rows to ``table`` by vector; rows without a vector to the strays."""
     ids = [str(cell) for cell in rows.one_per_row("id")]
-    written = {name: list(rows.one_per_row(name)) for name in results}
     scene = numbers(rows, units)
     theirs = {name: agreement.read_theirs(rows, name, units) for name in results}
     wrong: dict[int, str] = {}
@@ -392,9 +405,9 @@ def _add_answers(
             table.scenes[place] = {n: float(column[index]) for n, column in scene.items()}
             cells = table.cells[place] = {}
             for result, (values, units_of) in theirs.items():
-                value, text = float(values[index]), str(written[result][index]).strip()
+                value = float(values[index])
                 fault = "malformed" if (index, result) in malformed else ""
-                fault = "infinite" if math.isinf(value) or _INFINITE.fullmatch(text) else fault
+                fault = "infinite" if math.isinf(value) else fault
                 cells[result] = _Cell(value, float(units_of[index]), fault)
 
 
@@ -411,7 +424,11 @@ def _judge(kit: Kit, results: Sequence[str], table: _Table, done: Conformance) -
             np.array([cell.unit for cell in cells]),
         )
     case = agreement.make_case(scene, theirs)
-    grades, _ = case.grade()
+    grades, relative = case.grade()
+    noise, wrong = agreement.TrialNoise(), np.flatnonzero((grades == DIFFER).any(0))
+    noise.add(case, wrong, grades, relative)
+    if noise.count:
+        grades[:, wrong[[is_noise for is_noise, *_ in noise.rows]]] = ELIMINATION
     for place, vector in enumerate(kit.vectors):
         rows = table.rows.get(place, [])
         reason, detail = _verdict(vector, place, rows, table, case, grades)

@@ -3,7 +3,6 @@
 It is fitted to all rows and reported as a number, with the known constant that it is near to.
 """
 
-import math
 from collections.abc import Iterator
 from math import pi
 from typing import Any, NamedTuple
@@ -11,10 +10,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...equations.edits import BOOLEAN_NAMES, RARE_CONVENTION, Edit
+from ...equations.edits import BOOLEAN_NAMES, FITTED, Edit
 from ...equations.evaluation import Run
-from ...equations.spelling import IMPULSES, LISTING, SHOWN, TYPED, Expression, Sides, spellings
+from ...equations.spelling import IMPULSES, LISTING, SHOWN, TYPED, Expression, Sides, Spelling
+from ...equations.wording import subject_words
 from ...names import SCENE
+from .agreement import Bools
 from .trials import MIN_FIT, Judge, Program, try_program
 
 Floats = NDArray[np.float64]
@@ -22,8 +23,12 @@ Floats = NDArray[np.float64]
 # operations by which a constant enters
 FACTOR = "*"
 OFFSET = "+"
+REPLACED = "="
+ALWAYS = " is always "
+_REPLACED_COLUMNS = {"E": 0.5, "MU": 0.5, "EM": 0.0}  # and where the fit starts
 _MAX_ITERATIONS = 12
 _MAX_MISFIT = 10.0  # in units of the limits; a fit farther off is not run
+_MIN_CONSTANT = 1e-11
 _STEP = 1e-6  # relative step of the difference quotients
 _GROUPS = (
     ("GA", "PA", "PB", "TA", "TB"),
@@ -108,15 +113,18 @@ class _Target(NamedTuple):
 
     @property
     def neutral(self) -> float:
-        """The constant that changes nothing."""
+        """The constant that changes nothing, or from which the fit starts."""
+        if self.operation == REPLACED:
+            return _REPLACED_COLUMNS[self.description]
         return 1.0 if self.operation == FACTOR else 0.0
 
-    def sides(self, constant: float) -> dict[str, Sides]:
-        """Return the statements with the constant."""
-        if self.operation == FACTOR:
-            inverse = 1 / constant if constant else math.inf  # where all results are zero
-        else:
-            inverse = -constant
+    def sides(self, constant: Any) -> dict[str, Sides]:
+        """Return the statements with the constant, one for all rows or one for each."""
+        if self.operation == REPLACED:
+            typed = self.direct[self.description]
+            return {self.description: (("+", constant, ("*", 0, typed)),)}
+        # the inverse is infinite where all results are zero
+        inverse = np.divide(1, constant) if self.operation == FACTOR else -constant
         sides: dict[str, Sides] = {}
         for key, side in self.direct.items():
             sides[key] = ((self.operation, side, constant),)
@@ -125,11 +133,12 @@ class _Target(NamedTuple):
         return sides
 
 
-def _targets(title: str, results: Any) -> Iterator[_Target]:
+def _targets(title: str, spelling: Spelling, results: Any) -> Iterator[_Target]:
     """Yield every place for a constant in a spelling: its own statements, and for the listing
     inputs and shown ``results``, alone and in groups."""
-    spelling = spellings()[title]
     if title == LISTING:
+        for name in _REPLACED_COLUMNS:
+            yield _Target(name, "", REPLACED, {name: f"{TYPED}{name}"}, {})
         inputs = [(name,) for name in SCENE if name != "M"]
         for operation in (FACTOR, OFFSET):
             for group in (*_GROUPS, *inputs):
@@ -154,58 +163,62 @@ def _targets(title: str, results: Any) -> Iterator[_Target]:
         is_own = index >= spelling.own_start or title == LISTING
         if is_computed and is_own and line.target not in BOOLEAN_NAMES:
             for operation in (FACTOR, OFFSET):
-                place = f"{line.place}, {line.target} ({line.subject})"
+                place = f"{subject_words(line.subject)} ({line.target})"
                 yield _Target(place, title, operation, {line.target: line.sides[0]}, {})
 
 
 @np.errstate(all="ignore")
-def fit_constants(judge: Judge) -> list[Program]:
-    """Return programs with one fitted constant that explain nearly all rows of a small judge; those
-    with a known constant come first."""
+def fit_constants(judge: Judge, unexplained: Bools, base: Program) -> list[Program]:
+    """Return programs with one constant more than ``base``, fitted, that explain nearly all rows
+    that are unexplained, of which a few are looked at; those with a known constant come first."""
+    judge = judge.sample(unexplained)
     programs: list[tuple[bool, bool, int, Program]] = []
-    for title in (LISTING, IMPULSES):
-        run = Run(spellings()[title], judge.scene)
+    for title in next(([edit.title] for edit in base.edits if edit.title), (LISTING, IMPULSES)):
+        spelling = base.in_spelling(title)
+        run = Run(spelling, judge.scene)
         results = [name for name in judge.theirs if SHOWN + name in run.names]
         if not results:
             continue
-        targets = list(_targets(title, results))
-        constants = np.array([target.neutral for target in targets])
+        targets = list(_targets(title, spelling, results))
+        neutral = np.array([target.neutral for target in targets])
+        # each row by itself tells the constant; what most rows tell is taken
+        each = np.repeat(neutral[:, None], judge.wrong.size, 1)
         for _ in range(_MAX_ITERATIONS):
-            constants = _gauss_newton_step(run, targets, constants, judge)
+            each = _gauss_newton_step(run, targets, each, judge)
+        constants = np.nanmedian(each[:, judge.wrong], 1)
         # a program takes longer to run: only where the fit is near in enough rows (NaN is near)
-        misfits = _misfits(run, targets, constants, judge)
-        misfits = misfits.reshape(len(targets), -1, judge.wrong.size)
+        whole = np.repeat(constants[:, None], judge.wrong.size, 1)
+        misfits = _misfits(run, targets, whole, judge)
         near = (~(np.abs(misfits) > _MAX_MISFIT)).all(1) & judge.wrong
         fits = near.sum(1) >= MIN_FIT * judge.wrong.sum()
         for target, constant, fit in zip(targets, constants.tolist(), fits, strict=True):
-            if fit and constant != target.neutral and np.isfinite(constant):
-                program = Program((_edit(target, constant),))
+            is_new = abs(constant - target.neutral) > _MIN_CONSTANT and np.isfinite(constant)
+            if fit and is_new and abs(constant) > _MIN_CONSTANT:  # 0 is an edit
+                program = Program((*base.edits, _edit(target, constant)))
                 trial = try_program(program, judge)
-                if trial.is_supported and trial.explained_count >= MIN_FIT * judge.wrong.sum():
+                if trial.explained_count >= MIN_FIT * judge.wrong.sum():
                     is_unknown, is_offset = not _nearest_known(constant), target.operation == OFFSET
                     programs.append((is_unknown, is_offset, len(programs), program))
     return [program for *_, program in sorted(programs, key=lambda x: x[:3])]
 
 
 def _gauss_newton_step(run: Run, targets: list[_Target], constants: Floats, judge: Judge) -> Floats:
-    """Return the constants after one step of Gauss-Newton, each fitted by itself."""
+    """Return the constants (targets, rows) after one step of Gauss-Newton, each by itself."""
     steps = _STEP * np.maximum(np.abs(constants), 1e-3)
     misfits = _misfits(run, targets, constants, judge)
     slopes = (_misfits(run, targets, constants + steps, judge) - misfits) / steps[:, None]
     usable = np.isfinite(slopes) & np.isfinite(misfits)
     slopes, misfits = np.where(usable, slopes, 0.0), np.where(usable, misfits, 0.0)
-    # outliers, in which the constant changes a branch, count less
-    size = np.abs(misfits)
-    weights = 1 / np.maximum(size, np.median(size, 1, keepdims=True) + 1e-300)
-    change = (weights * slopes * misfits).sum(1) / (weights * slopes * slopes).sum(1)
+    change = (slopes * misfits).sum(1) / (slopes * slopes).sum(1)
     improved = constants - change
     return np.where(np.isfinite(improved) & (change != 0), improved, constants)
 
 
 def _misfits(run: Run, targets: list[_Target], constants: Floats, judge: Judge) -> Floats:
-    """Return the misfits of results in units of their limits, (targets, results times rows)."""
+    """Return the misfits of results in units of their limits, (targets, results, rows)."""
     edits = [
-        target.sides(constant) for target, constant in zip(targets, constants.tolist(), strict=True)
+        run.spelling.compose(target.sides(row))
+        for target, row in zip(targets, constants, strict=True)
     ]
     names = {**run.names, **run.run_edits(edits)}
     shape = (len(targets), judge.wrong.size)
@@ -214,7 +227,7 @@ def _misfits(run: Run, targets: list[_Target], constants: Floats, judge: Judge) 
         for name, theirs in judge.theirs.items()
         if SHOWN + name in names
     ]
-    return np.concatenate(parts, 1)
+    return np.stack(parts, 1)
 
 
 def _nearest_known(constant: float) -> str:
@@ -229,7 +242,10 @@ def _nearest_known(constant: float) -> str:
 
 def _edit(target: _Target, constant: float) -> Edit:
     """Return the edit that puts a constant in, described with its value."""
-    sign = "×" if target.operation == FACTOR else "+"
+    if target.operation == REPLACED:
+        text = f"{target.description}{ALWAYS}{constant:.7g}"
+        return Edit("", target.sides(constant), FITTED, text)
     known = _nearest_known(constant) if target.operation == FACTOR else ""
-    text = f"{target.description} {sign} {constant:.7g}" + (f": {known}" if known else "")
-    return Edit(target.title, target.sides(constant), RARE_CONVENTION, text)
+    change = "multiplied by" if target.operation == FACTOR else "increased by"
+    text = f"{target.description}: {change} {constant:.7g}" + (f" ({known})" if known else "")
+    return Edit(target.title, target.sides(constant), FITTED, text)

@@ -1,21 +1,26 @@
-"""Explain why another program's results differ: one cause for the whole table, where one fits.
+"""Explain why another program's results differ: hypotheses in one list, with one score.
 
-Tried in turn: correct numbers written differently (floored, cut off); one mistake, then two
-(`trials`), and further ones in the rows left over; rows from several programs; coarser arithmetic.
-Ordinary scenes and their limiting cases come first, then what only scenes beyond them show (no
-mass, another MU for the pivot, overflow). A cause must also fit the rows that agree, and must get
-right many more bits than a choice among so many programs does by chance.
+A hypothesis predicts every row, those that agree included. It earns the bits by which the rows that
+disagree are off and that it gets right, loses those of the rows that agree and that it contradicts,
+and pays for what it takes to state it. That nothing is wrong but the last digits is one of them;
+others are the digits written, the order of the rows, coarser arithmetic, and programs: with a
+convention of their own, another law, one edit or several, or a constant. A program may hold where a
+condition on the scene does, which is found in half of the rows and must hold in the other half.
 """
 
 import math
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from functools import partial
+from random import Random
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...collision.doubles import doubles_of
 from ...collision.fields import FIELDS
-from ...equations.edits import RARE_CONVENTION, readings, variants
+from ...equations.edits import FITTED, RARE_CONVENTION, Edit
 from ...equations.evaluation import Run
 from ...equations.spelling import LISTING, spellings
 from ...errors import UserError
@@ -23,8 +28,10 @@ from ...mechanics.accuracy import errorbound
 from ...messages.progress import progress
 from ...names import FINAL_VELOCITIES, PIVOT, SCENE
 from ...program.vectorized import replay
-from .agreement import HALF, Bools, Case, Floats, violated_equations
-from .constants import fit_constants
+from .agreement import HALF, MAX_SLIGHT_DIFFERENCE, Bools, Case, Floats, violated_equations
+from .constants import ALWAYS, fit_constants
+from .predicates import ABOVE, BELOW, Predicate, find_predicate, scene_quantities
+from .predicates import COST as PREDICATE_COST
 from .trials import (
     MIN_FIT,
     Judge,
@@ -36,6 +43,7 @@ from .trials import (
     rank_programs,
     try_program,
 )
+from .vectors import casework
 
 PRINTED = "digits of the 1988 printout, which floors"
 FLOORED = "floored to the digits given, not rounded"
@@ -44,75 +52,81 @@ APPLESOFT = "rounding in 32 bits, as Applesoft's"
 SINGLE = "rounding in single precision"
 OTHER_ROWS = "results of other rows: the order of the rows, or of the results, is another"
 INFINITE = "infinite where there is a result"
-AGREES = "agrees to"
+AGREES = "agrees to"  # so many digits: the row's own, and no cause
 UNKNOWN = "unexplained"
-IN_THESE_ROWS = ", in these rows only"  # appended to a cause that agreeing rows contradict
 
-# Doubled on ten tables (seven mistakes, a bug, two pairs), here and in `trials`: all sizes together
-# change no cause and take 1.4 times as long; all tolerances together change no cause.
-_MAX_DISAGREEING = 45  # rows that the search looks at: three each of some ten kinds of scene
-_MAX_AGREEING = 30
-_MAX_FURTHER_EDITS = 2  # looked for in the rows that others leave; pycrash has three in all
-_MIN_FRACTION_OF_REST = 0.5
-"""Fraction of the rows left over that a further edit must explain. One row is enough for a known
-convention."""
-_MAX_MIXED_PROGRAMS = 3  # causes of a table whose rows come from several programs
-_MAX_EQUIVALENTS = 4  # other programs with the same results that are listed
+# bounds of a search
+MAX_SEARCHED = 400  # rows of each kind, that disagree and that agree, a search looks at
+MAX_REPLAYED = 4000  # rows run by the 1988 program
+MAX_SECONDS = 12.0  # of processor time, after which no further edits are looked for
+_ROWS_PER_CHUNK = 20_000  # rows on which a program is run at once
+_MAX_CAUSES = 4
+_MAX_CANDIDATES = 25  # programs with one edit for which a condition is sought
+_MAX_EQUIVALENTS = 3  # other programs with the same results that are listed
+_MIN_ROWS_LEFT = 2  # in which a further mistake is looked for
 _MIN_REORDERED_ROWS = 3  # so that no row has another's results by chance
 _MAX_TIES = 4  # rows with equal results that are tried
+
+# bits
+_COST_DIGITS = 3.0
+_COST_WIDTH = 4.0
+_COST_NAMED = 10.0  # choosing one of some 1,200 known alternatives
+_COST_EDIT = 16.0  # choosing one of some 50,000 edits
+_COST_CONSTANT = 50.0  # its place, and its value
+_NEARLY = 0.97  # of the best score: nearly as good
+_COST_LEFT_OUT = 40.0  # a result that is wrong as well, and not given
+_MIN_SCORE = 6.0
+_MAX_BITS = 40.0  # earned by a row
+_CONTRADICTED = 40.0  # lost by a row that agrees
+_MAX_LOOSE = 1e-6  # relative error bound of a row that shows anything
 _MIN_PAIR_DIFFERENCE = 1e-5
 """Relative difference below which no pair of mistakes is looked for, only coarser arithmetic."""
-# bits that a cause must get right
-_MIN_BITS = 22.0  # ten more than choosing one of 30,000 edits takes
-_MIN_BITS_NAMED = 10.0  # one more than choosing one of 500 known alternatives
-_MIN_BITS_PAIR = 32.0  # as many as choosing a pair of 30,000 edits in different equations
-_MAX_BITS_PER_ROW = 40.0  # more than any of these, so that two rows of doubles are enough
 _SAME_RTOL = 1e-9
 """Relative difference of results of the same program: more than the rounding of another way to
 compute them, no more than the effect of 3.14159265 for pi."""
-MAX_SLIGHT_DIFFERENCE = 1e-10
-"""Relative difference up to which a row agrees but for its last digits, which is given no cause:
-half of what 32 bits of mantissa leave, a twentieth of the effect of 3.14159265 for pi."""
 _MAX_FRACTION_LEFT = 0.1  # of a difference, in a row that is explained
 _MIN_AFFECTED = 0.5  # fraction of the rows able to show coarser arithmetic that it must affect
 _TYPICAL_FRACTION_OF_BOUND = 1 / 64  # error of coarser arithmetic, relative to its bound
 _WIDTHS = {SINGLE: (24, 27.0, 33.5), APPLESOFT: (32, 34.0, 40.0)}
 """Cause -> bits of the arithmetic, and lowest and highest number of bits measured against the
 bound: a typical error is some bits smaller than the bound."""
-_INVERTED = "MU's sign rule inverted"
-_SAME_VELOCITIES = (_INVERTED, "Γ half a turn on: the normal the other way round")
-"""Descriptions of two edits that give the same final velocities."""
-_OTHER_BRANCHES = (_INVERTED, "the critical ratio used in place of MU")
-"""Descriptions of the models that take the other branch, of friction's sign or of the pivot, in
-every row."""
-LOOKED_INTO = 4000
-"""Maximum number of agreeing rows that a cause must fit, and of rows replayed by the 1988 program;
-bounds the time and memory for large tables."""
 
 
 class Cause(NamedTuple):
-    """A cause that is a program with a mistake, or several.
+    """A cause of differences.
 
     Parameters
     ----------
     says : str
-        Its description.
+        What the program does.
+    formula : str
+        What is written in it, and what should be; "" for a cause that is no statement.
+    where : str
+        The condition on the scene under which it holds, "" where it always does.
     explains, disagreeing : int
-        The rows that disagree and that it reproduces, of all that disagree.
+        The rows that disagree and that it predicts, of all that disagree.
     fits, agreeing : int
-        The rows that agree and that it reproduces, of all looked at that agree.
+        The rows that agree and that it predicts, of all looked at that agree.
+    score : float
+        Bits that it gets right, less those that it takes to state it.
     equivalents : list of str
-        Descriptions of programs with the same results.
+        Other programs with the same results in this table.
+    apart : dict of str to str
+        A scene that would tell it from the first of those, {} where there is none.
     parts : dict of str to int
         Of a program with several mistakes, each with the first row that shows it.
     """
 
     says: str
+    formula: str
+    where: str
     explains: int
     disagreeing: int
     fits: int
     agreeing: int
+    score: float
     equivalents: list[str]
+    apart: dict[str, str]
     parts: dict[str, int]
 
 
@@ -132,364 +146,561 @@ class Unexplained(NamedTuple):
     violated: dict[str, int]
 
 
-class Diagnosis:
-    """Causes of the differences in a case.
+class Hypothesis(NamedTuple):
+    """A hypothesis: what it says, which rows of a case it predicts, what it costs to state, and the
+    bits that a row earns, None for those by which the row is off.
 
-    ``causes``: one for each row that disagrees, in order; ``evidence`` and ``programs``: of each
-    cause that is a program; ``equations``: number -> rows in which it was checked, and in which it
-    is violated; ``unexplained``: rows without a cause by kind of scene, {} where there are none.
+    ``program``: the program that it is, None where it is none; ``where``: the condition under which
+    it holds, and not the listing; ``names``: the results that it gives.
+    """
+
+    says: str
+    fits: Callable[[Case], Bools]
+    cost: float
+    bits: float | None = None
+    program: Program | None = None
+    where: Predicate | None = None
+    names: Sequence[str] = ()
+    equivalents: Sequence[Program] = ()
+
+    def results(self, scene: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the results that its program gives for scenes (columns of n), by name."""
+        program = self.program or Program()
+        results = program.results(scene)
+        if self.where is None:
+            return results
+        count = np.size(next(iter(scene.values())))
+        rows = self.where.rows(scene_quantities(scene, np.arange(count)))
+        ours = Program().results(scene)
+        return {n: np.where(rows, column, ours[n]) for n, column in results.items() if n in ours}
+
+
+class Diagnosis:
+    """Causes of the differences in a table, found in a sample of it.
+
+    ``case``: rows that disagree, and some that agree, in the table's order; ``rows``: their numbers
+    in the table. `assign` then gives the causes of rows, which need not be the same.
+
+    ``equations``: number -> rows in which it was checked, and in which it is violated;
+    ``unexplained``: rows without a cause by kind of scene, {} where there are none; ``skipped``:
+    what was not looked for.
     """
 
     @np.errstate(all="ignore")
-    def __init__(self, case: Case) -> None:
-        self._case, self._disagreeing = case, case.wrong
-        self._causes = np.where(self._disagreeing, UNKNOWN, "").astype(object)
-        self.evidence: list[Cause] = []
-        self.programs: list[Program] = []
-        self._explain_by_own_row()
-        wrong = self._wrong = self._open
-        violations = violated_equations(case)
-        self.equations = {
-            number: (int(wrong.sum()), int((rows & wrong).sum()))
-            for number, rows in violations.items()
-        }
+    def __init__(self, case: Case, rows: NDArray[np.intp]) -> None:
+        self.hypotheses: list[Hypothesis] = []
+        self.skipped: list[str] = []
+        self.equations: dict[str, tuple[int, int]] = {}
         self.unexplained: dict[str, Unexplained] = {}
-        if not wrong.any():
+        self._evidence: list[Cause] = []
+        self._ends = time.process_time() + MAX_SECONDS
+        self._known_rows: dict[int, tuple[Hypothesis, Bools]] = {}
+        wrong = _needs_cause(case)
+        places = _sample_rows(case, wrong)
+        self._sample = case.select_rows(places)
+        self._rows = rows[places]
+        self._wrong = wrong[places]
+        if self._wrong.any():
+            self._search()
+
+    # --- rows ---
+
+    @np.errstate(all="ignore")
+    def assign(self, case: Case, rows: NDArray[np.intp]) -> list[str]:
+        """Return the cause of each row of a case that disagrees, "" for the others; and count them
+        for the evidence."""
+        causes: list[str] = []
+        for start in range(0, rows.size, _ROWS_PER_CHUNK):
+            places = np.arange(start, min(start + _ROWS_PER_CHUNK, rows.size))
+            causes += self._assign_chunk(case.select_rows(places), rows[places])
+        return causes
+
+    def _assign_chunk(self, case: Case, rows: NDArray[np.intp]) -> list[str]:
+        wrong = case.wrong
+        causes = np.where(wrong, _own_digits(case), "").astype(object)
+        is_open = wrong & (causes == "")
+        for place, hypothesis in enumerate(self.hypotheses):
+            fits = hypothesis.fits(case)
+            holds = np.ones(fits.size, bool)
+            if hypothesis.where is not None:
+                holds = hypothesis.where.rows(scene_quantities(case.columns, rows))
+            explained = is_open & fits & holds
+            causes[explained] = self._evidence[place].says
+            is_open &= ~explained
+            self._count(place, case, rows, explained, fits | ~holds)
+        violations = violated_equations(case)
+        for number, broken in violations.items():
+            checked, violated = self.equations.get(number, (0, 0))
+            count = int((broken & wrong).sum())
+            self.equations[number] = checked + int(wrong.sum()), violated + count
+        if is_open.any() or self.unexplained:
+            self._count_unexplained(case, is_open, violations)
+        differences = _relative_differences(case).max(0, initial=0.0)
+        for row in np.flatnonzero(is_open).tolist():
+            causes[row] = _describe_unexplained(
+                [number for number, broken in violations.items() if broken[row]],
+                violations,
+                float(differences[row]),
+            )
+        return list(causes)
+
+    def _count(
+        self, place: int, case: Case, rows: NDArray[np.intp], explained: Bools, fits: Bools
+    ) -> None:
+        """Count a chunk's rows for a cause: those that it explains, and those that it predicts."""
+        cause, hypothesis = self._evidence[place], self.hypotheses[place]
+        disagreeing = _needs_cause(case)
+        agreeing = ~disagreeing & np.isfinite(case.ours).any(0)
+        parts = dict(cause.parts)
+        program = hypothesis.program
+        if program is not None and len(program.edits) > 1 and explained.any():
+            judge = _judge_of(case, disagreeing)
+            for edit in program.edits:
+                if edit.sentence not in parts:
+                    without = Program(tuple(x for x in program.edits if x is not edit))
+                    needs_edit = explained & ~try_program(without, judge).rows
+                    if needs_edit.any():
+                        parts[edit.sentence] = int(rows[int(np.argmax(needs_edit))])
+        self._evidence[place] = cause._replace(
+            explains=cause.explains + int(explained.sum()),
+            disagreeing=cause.disagreeing + int(disagreeing.sum()),
+            fits=cause.fits + int((agreeing & fits).sum()),
+            agreeing=cause.agreeing + int(agreeing.sum()),
+            parts=parts,
+        )
+
+    @property
+    def evidence(self) -> list[Cause]:
+        """The causes that explain a row, and what they explain."""
+        return [cause for cause in self._evidence if cause.explains]
+
+    def _count_unexplained(
+        self, case: Case, is_open: Bools, violations: Mapping[str, Bools]
+    ) -> None:
+        """Count the rows without a cause by kind of scene; a row counts for the first kind that it
+        fits."""
+        g = case.columns
+        bodies = np.fmin(g["MA"], g["MB"]) <= 0
+        bodies |= (g["M"] != 4) & (np.fmin(g["IA"], g["IB"]) <= 0)
+        kinds = {
+            "masses or inertias of 0 or less": bodies,
+            "point masses": g["M"] == 4,
+            "the pivot (MU = -10)": g["MU"] == PIVOT,
+            "no friction (MU = 0)": g["MU"] == 0,
+            "no moment (EM = 1)": g["EM"] == 1,
+            "all other scenes": np.ones(is_open.size, bool),
+        }
+        remaining = np.ones(is_open.size, bool)
+        for name, rows in kinds.items():
+            rows, remaining = rows & remaining, remaining & ~rows
+            open_rows = rows & is_open
+            if not rows.any():
+                continue
+            known = self.unexplained.get(name, Unexplained(0, 0, {}))
+            violated = dict(known.violated)
+            for number, broken in violations.items():
+                if count := int((broken & open_rows).sum()):
+                    violated[number] = violated.get(number, 0) + count
+            self.unexplained[name] = Unexplained(
+                known.rows + int(rows.sum()), known.unexplained + int(open_rows.sum()), violated
+            )
+
+    # --- the search ---
+
+    def _search(self) -> None:
+        """Look for the hypotheses that explain the sample."""
+        case, wrong = self._sample, self._wrong
+        self._bits = _evidence_bits(case)
+        self._agreeing = ~wrong & np.isfinite(case.ours).any(0)
+        # what the digits alone explain is no mistake
+        scored = [(self._score(x), x) for x in self._plain_hypotheses()]
+        best = max(scored, key=lambda pair: pair[0], default=None)
+        if best and best[0] >= _MIN_SCORE and best[1].cost == _COST_DIGITS:
+            rows = best[1].fits(case)
+            if (rows & wrong).sum() >= MIN_FIT * wrong.sum():
+                for _, hypothesis in sorted(scored, key=lambda pair: -pair[0]):
+                    if hypothesis.cost == _COST_DIGITS:
+                        self._add(hypothesis)
+                return
+        with progress(None, "look for the cause") as self._meter:
+            self._meter.update(0)
+            for hypothesis in self._programs():
+                scored.append((self._score(hypothesis), hypothesis))
+        explained = np.zeros(wrong.size, bool)
+        for _ in range(_MAX_CAUSES):
+            scores = [(self._score(x, explained), x) for _, x in scored]
+            highest = max((score for score, _ in scores), default=0.0)
+            if highest < _MIN_SCORE:
+                break
+            # a few rows more or fewer are rounding's: of hypotheses that explain nearly as much,
+            # the one that takes least to state
+            near = [(x.cost, -score, x) for score, x in scores if score >= _NEARLY * highest]
+            _, score, hypothesis = min(near, key=lambda each: each[:2])
+            self._add(hypothesis, -score)
+            explained |= self._fits(hypothesis) & wrong
+
+    def _fits(self, hypothesis: Hypothesis) -> Bools:
+        """Return the rows of the sample that a hypothesis predicts where it holds."""
+        if id(hypothesis) not in self._known_rows:
+            fits = hypothesis.fits(self._sample)
+            if hypothesis.where is not None:
+                fits &= hypothesis.where.rows(self._quantities)
+            self._known_rows[id(hypothesis)] = hypothesis, fits
+        return self._known_rows[id(hypothesis)][1]
+
+    def _score(self, hypothesis: Hypothesis, explained: Bools | None = None) -> float:
+        """Return the bits that a hypothesis gets right in the sample, less what it costs."""
+        fits = self._fits(hypothesis)
+        gained = fits & self._wrong
+        contradicted = ~fits & self._agreeing
+        if hypothesis.where is not None:
+            contradicted &= hypothesis.where.rows(self._quantities)
+        if explained is not None:
+            gained &= ~explained
+        if hypothesis.bits is None:
+            return float(
+                self._bits[gained].sum() - _CONTRADICTED * contradicted.sum() - hypothesis.cost
+            )
+        return float(hypothesis.bits * (gained.sum() - contradicted.sum()) - hypothesis.cost)
+
+    def _add(self, hypothesis: Hypothesis, score: float | None = None) -> None:
+        """Make a hypothesis a cause."""
+        score = self._score(hypothesis) if score is None else score
+        program = hypothesis.program
+        equivalents, apart = _tell_apart(hypothesis, self._sample)
+        self.hypotheses.append(hypothesis)
+        self._evidence.append(
+            Cause(
+                says=hypothesis.says,
+                formula=program.formula if program else "",
+                where=hypothesis.where.text if hypothesis.where else "",
+                explains=0,
+                disagreeing=0,
+                fits=0,
+                agreeing=0,
+                score=round(score, 1),
+                equivalents=equivalents,
+                apart=apart,
+                parts={},
+            )
+        )
+
+    def _plain_hypotheses(self) -> Iterator[Hypothesis]:
+        """Yield the hypotheses that are no program."""
+        for says, match in (
+            (PRINTED, _match_printout),
+            (FLOORED, lambda case: _match_cut(case, np.floor)),
+            (TRUNCATED, lambda case: _match_cut(case, np.trunc)),
+        ):
+            yield Hypothesis(says, match, _COST_DIGITS, 1.0)
+        if self._wrong.sum() >= _MIN_REORDERED_ROWS and self._sample.wrong.mean() > _MIN_AFFECTED:
+            table = self._sample
+            cost = _COST_NAMED + math.log2(self._wrong.size) * self._wrong.sum()
+            yield Hypothesis(OTHER_ROWS, lambda case: _match_other_rows(case, table), cost)
+        for says in _WIDTHS:
+            if _is_coarse(self._sample, self._wrong, says):
+                yield Hypothesis(says, partial(_match_width, says=says), _COST_WIDTH, 1.0)
+
+    def _programs(self) -> Iterator[Hypothesis]:
+        """Yield the programs that explain rows of the sample, with the conditions under which they
+        do."""
+        case = self._sample
+        judge = _judge_of(case, self._wrong)
+        # leave out near-singular rows and others in which the spelling differs from our results
+        ours = dict(zip(case.names, case.ours, strict=True))
+        clear = judge._replace(theirs={n: ours[n] for n in judge.theirs}).matches(
+            Program().results(case.columns)
+        )
+        # and rows that are wrong only in results that no spelling computes
+        clear &= ~(judge.wrong & try_program(Program(), judge).rows)
+        self._quantities = scene_quantities(case.columns, self._rows)
+        judge = judge.select_results(_independent_results(judge.select_rows(np.flatnonzero(clear))))
+        places = np.flatnonzero(clear)
+        small = judge.select_rows(places)
+        if not small.wrong.any():
             return
-        self._measure_differences()
-        if not self._explain_by_digits():
-            self._explain_by_search()
-            if self._open.sum() > (1 - MIN_FIT) * wrong.sum():
-                self._explain_by_order()
-            if self._open.sum() > (1 - MIN_FIT) * wrong.sum():
-                self._explain_by_precision()
-        if self._open.any():
-            self.unexplained = self._count_unexplained(violations)
-        self._describe_unexplained(violations)
+        self._shown = self._bits[places] > 0
+        ours = Program().results(small.scene)
+        self._names = [
+            name
+            for name in small.theirs
+            if (small.wrong & ~small.select_results([name]).matches(ours)).any()
+        ]
+        quantities = {name: column[places] for name, column in self._quantities.items()}
+        median = np.median(_relative_differences(case).max(0)[self._wrong])
+        is_large = bool(median > _MIN_PAIR_DIFFERENCE)
+        groups = small.wrong_groups()
+        best_extended = is_complete = False
+        names = [name for name in small.theirs if name in groups[0] or not _is_in(groups, name)]
+        part = small.narrow_to(names) if len(groups) > 1 else small
+        for hypothesis in self._explain(part, quantities, is_large):
+            yield hypothesis
+            if len(groups) > 1 and hypothesis.program is not None:
+                program, where = hypothesis.program, hypothesis.where
+                whole = self._hypothesis(program, small, hypothesis.equivalents, where)
+                yield whole
+                is_complete |= self._gives_nearly_all(whole)
+                if where is None and not best_extended and not is_complete:
+                    best_extended = True
+                    for extended in self._extend(program, small):
+                        yield extended
+                        is_complete |= self._gives_nearly_all(extended)
+        for group in groups[1:] if len(groups) > 1 and not is_complete else ():
+            other = small.narrow_to(group)
+            if other.wrong.any():
+                yield from self._explain(other, quantities, False)
 
-    def _explain_by_own_row(self) -> None:
-        """Name the rows whose results are their own to fewer digits, and those that are infinite:
-        neither is another row's, nor a mistake's."""
-        self._causes[self._disagreeing & np.isinf(self._case.values).any(0)] = INFINITE
-        differences = self._relative_differences().max(0, initial=0.0)
-        for row in np.flatnonzero(self._open & (differences <= MAX_SLIGHT_DIFFERENCE)):
-            digits = math.floor(-math.log10(max(differences[row], 1e-16)) + 1e-9)
-            self._causes[row] = f"{AGREES} {digits} digits"
+    def _gives_nearly_all(self, hypothesis: Hypothesis) -> bool:
+        """Return whether a hypothesis predicts nearly all rows of the sample that disagree."""
+        count = (self._fits(hypothesis) & self._wrong).sum()
+        return bool(count >= MIN_FIT * self._wrong.sum()) and self._score(hypothesis) > 0
 
-    def _relative_differences(self) -> Floats:
-        """Return the relative differences beyond the digits written, (results, rows)."""
-        case = self._case
+    def _extend(self, program: Program, judge: Judge) -> Iterator[Hypothesis]:
+        """Yield a program with an edit more, by which it gives the other results, too."""
+        trial = try_program(program, judge)
+        if not trial.is_complete:
+            for better in find_single_edits(judge, judge.wrong & ~trial.rows, program)[:2]:
+                yield self._hypothesis(better.program, judge)
+
+    def _explain(
+        self, judge: Judge, quantities: Mapping[str, Floats], is_large: bool
+    ) -> Iterator[Hypothesis]:
+        """Yield programs that explain rows of a judge: with one edit, a constant, two edits, or an
+        edit on top of the best; and where they hold."""
+        known = ~judge.wrong
+        singles = find_single_edits(judge, judge.wrong)
+        self._meter.update(1)
+        yield from self._with_conditions(singles, known, judge, quantities)
+        constants: list[Trial] = []
+        best = self._best(singles, known, judge, quantities)
+        if not self._is_explained(best, judge, quantities):
+            programs = fit_constants(judge, judge.wrong, Program())
+            constants = rank_programs(programs, judge)
+            yield from self._with_conditions(constants, known, judge, quantities)
+            best = self._best([*singles, *constants], known, judge, quantities)
+        self._meter.update(1)
+        if best is not None:
+            yield from self._explain_rest(best, judge, quantities)
+            if self._is_explained(best, judge, quantities, MIN_FIT):
+                return
+        elif not is_large:
+            self.skipped.append("two mistakes at once, for differences so small")
+            return
+        for programs in find_pairs(judge, singles):
+            self._meter.update(1)
+            trials = rank_programs(programs, judge)
+            yield from self._with_conditions(trials[:2], known, judge, quantities)
+            if trials and trials[0].is_complete:
+                return
+            if not self._has_time():
+                self.skipped.append("two mistakes at once, in some ways of writing the equations")
+                return
+
+    def _explain_rest(
+        self, best: Hypothesis, judge: Judge, quantities: Mapping[str, Floats]
+    ) -> Iterator[Hypothesis]:
+        """Yield what explains the rows that the best hypothesis leaves: another mistake beside it,
+        or on top of it."""
+        fits = self._rows_of(best, judge, quantities)
+        known, left = ~judge.wrong | fits, judge.wrong & ~fits & self._shows(judge)
+        if left.sum() < _MIN_ROWS_LEFT:
+            return
+        for base in (best.program or Program(), Program()):
+            if not self._has_time():
+                self.skipped.append("further mistakes in the rows without a cause")
+                return
+            more = find_single_edits(judge, left, base)
+            fitted = (
+                fit_constants(judge, left, base) if not any(t.is_complete for t in more) else []
+            )
+            self._meter.update(1)
+            trials = rank_programs([*(trial.program for trial in more), *fitted], judge)
+            yield from self._with_conditions(trials, known, judge, quantities)
+            if any((trial.rows & left).sum() >= MIN_FIT * left.sum() for trial in trials):
+                return
+
+    def _shows(self, judge: Judge) -> Bools:
+        """Return the rows of a judge that show anything, as rounding leaves them digits."""
+        return self._shown if judge.wrong.size == self._shown.size else judge.wrong
+
+    def _has_time(self) -> bool:
+        return time.process_time() < self._ends
+
+    def _is_explained(
+        self,
+        best: Hypothesis | None,
+        judge: Judge,
+        quantities: Mapping[str, Floats],
+        share: float = 1.0,
+    ) -> bool:
+        """Return whether a hypothesis explains the rows that disagree, or a share of them."""
+        if best is None:
+            return False
+        shown = judge.wrong & self._shows(judge)
+        fits = self._rows_of(best, judge, quantities)
+        return bool((shown & ~fits).sum() <= (1 - share) * shown.sum())
+
+    def _best(
+        self,
+        trials: Sequence[Trial],
+        known: Bools,
+        judge: Judge,
+        quantities: Mapping[str, Floats],
+    ) -> Hypothesis | None:
+        """Return the hypothesis with the highest score, None where none is worth its cost."""
+        hypotheses = list(self._with_conditions(trials, known, judge, quantities))
+        scored = [(self._score(x), x) for x in hypotheses]
+        score, best = max(scored, key=lambda pair: pair[0], default=(0.0, None))
+        return best if score >= _MIN_SCORE else None
+
+    def _rows_of(
+        self, hypothesis: Hypothesis, judge: Judge, quantities: Mapping[str, Floats]
+    ) -> Bools:
+        """Return the rows of a judge that a hypothesis predicts where it holds."""
+        rows = try_program(hypothesis.program or Program(), judge).rows
+        return rows & hypothesis.where.rows(quantities) if hypothesis.where else rows
+
+    def _with_conditions(
+        self,
+        trials: Sequence[Trial],
+        known: Bools,
+        judge: Judge,
+        quantities: Mapping[str, Floats],
+    ) -> Iterator[Hypothesis]:
+        """Yield programs as hypotheses, and those that rows contradict with the condition under
+        which they hold. ``known``: the rows that are explained without them."""
+        groups: dict[bytes, list[Trial]] = {}
+        for trial in trials:
+            groups.setdefault(trial.rows.tobytes(), []).append(trial)
+        for group in list(groups.values())[:_MAX_CANDIDATES]:
+            first, *others = sorted(group, key=_plainness)
+            programs = [trial.program for trial in others]
+            yield self._hypothesis(first.program, judge, programs)
+            inside, outside = first.rows & ~known, known & ~first.rows
+            if outside.any() and inside.any():
+                predicate = find_predicate(quantities, inside, outside)
+                if predicate is not None:
+                    yield self._hypothesis(first.program, judge, programs, predicate)
+
+    def _hypothesis(
+        self,
+        program: Program,
+        judge: Judge,
+        equivalents: Sequence[Program] = (),
+        where: Predicate | None = None,
+    ) -> Hypothesis:
+        """Return a program as a hypothesis about the judge's results."""
+        names = tuple(judge.theirs)
+        left_out = [name for name in self._names if name not in names]
+        says = _say_where(program, where) if where else program.sentence
+        if left_out:
+            says += f"; {', '.join(left_out)} {UNKNOWN}"
+        return Hypothesis(
+            says,
+            lambda case: _match_program(program, case, names),
+            sum(map(_cost_of, program.edits))
+            + (PREDICATE_COST if where else 0.0)
+            + _COST_LEFT_OUT * len(left_out),
+            program=program,
+            where=where,
+            names=names,
+            equivalents=equivalents,
+        )
+
+
+def _plainness(trial: Trial) -> tuple[int, bool, int]:
+    """Return what programs that give the same are sorted by: the likeliest first, of these one that
+    is said in words and not by a formula, and briefly."""
+    sentence = trial.program.sentence
+    return trial.rank, any(sign in sentence for sign in "*/+"), len(sentence)
+
+
+def _say_where(program: Program, where: Predicate) -> str:
+    """Return a program's sentence with its condition: a limit, where a column is one value beyond
+    it."""
+    column, _, number = program.sentence.partition(ALWAYS)
+    if number and column == where.quantity and where.relation in (ABOVE, BELOW):
+        return f"{column} is limited to {number}{' and more' if where.relation == BELOW else ''}"
+    return f"{program.sentence} {where.text}"
+
+
+def _is_in(groups: Sequence[Sequence[str]], name: str) -> bool:
+    return any(name in group for group in groups)
+
+
+def _cost_of(edit: Edit) -> float:
+    """Return the bits that it takes to state an edit."""
+    if edit.rank == FITTED:
+        return _COST_CONSTANT
+    return _COST_NAMED if edit.rank <= RARE_CONVENTION else _COST_EDIT + (edit.rank - 3)
+
+
+def _own_digits(case: Case) -> NDArray[np.object_]:
+    """Return what is said of rows whose results are their own to fewer digits, and of those that
+    are infinite: neither is another row's, nor a mistake's. "" of all others."""
+    says = np.full(case.condition.size, "", object)
+    differences = _relative_differences(case).max(0, initial=0.0)
+    is_infinite = np.isinf(case.values).any(0)
+    for row in np.flatnonzero(case.wrong & ~is_infinite & (differences <= MAX_SLIGHT_DIFFERENCE)):
+        digits = math.floor(-math.log10(max(differences[row], 1e-16)) + 1e-9)
+        says[row] = f"{AGREES} {digits} digits"
+    says[case.wrong & is_infinite] = INFINITE
+    return says
+
+
+def _needs_cause(case: Case) -> Bools:
+    """Return the rows that disagree by more than their last digits."""
+    return np.asarray(case.wrong & (_own_digits(case) == ""))
+
+
+def _relative_differences(case: Case) -> Floats:
+    """Return the relative differences beyond the digits written, (results, rows)."""
+    with np.errstate(all="ignore"):
         off, sizes = np.abs(case.values - case.ours), case.sizes
         beyond = np.maximum(off - case.units * HALF, 0.0)
         relative = np.where(sizes > 0, beyond / sizes, beyond != 0)
         return np.where(np.isfinite(off), relative, 0.0)
 
-    def _measure_differences(self) -> None:
-        """Set each row's largest relative difference beyond the digits written, the part of it that
-        digits and rounding leave open, and the limits within which a program explains a result."""
-        case, wrong = self._case, self._wrong
-        off, sizes, written = np.abs(case.values - case.ours), case.sizes, case.units * HALF
-        relative = self._relative_differences()
-        worst = relative.argmax(0), np.arange(wrong.size)
-        self._differences = relative[worst]
-        digits = np.where(np.isfinite(off) & (sizes > 0), written / sizes, 0.0)
-        loose = np.where(sizes > 0, case.loose / sizes, 0.0)
-        self._resolutions = np.fmax(digits[worst], loose[worst])
-        within_limits = np.fmin(
-            np.fmax(4 * loose, _SAME_RTOL), _MAX_FRACTION_LEFT * self._differences
-        )
-        # another program rounds its own numbers, which may be larger than anything in the scene
-        theirs = np.where(wrong & np.isfinite(case.values), np.abs(case.values), 0.0)
-        measure = np.fmax(sizes, theirs)
-        self._limits = (
-            np.where(wrong, within_limits, np.fmax(loose, _SAME_RTOL)) * measure + written
-        )
 
-    def _count_unexplained(self, violations: Mapping[str, Bools]) -> dict[str, Unexplained]:
-        """Return the rows without a cause by kind of scene; a row counts for the first kind that it
-        fits."""
-        g = self._case.columns
-        kinds = {
-            **_unusual_strata(g),
-            "point masses": g["M"] == 4,
-            "the pivot (MU = -10)": g["MU"] == PIVOT,
-            "no friction (MU = 0)": g["MU"] == 0,
-            "no moment (EM = 1)": g["EM"] == 1,
-            "all other scenes": np.ones(self._wrong.size, bool),
-        }
-        remaining = np.ones(self._wrong.size, bool)
-        counts: dict[str, Unexplained] = {}
-        for name, rows in kinds.items():
-            rows, remaining = rows & remaining, remaining & ~rows
-            open_rows = rows & self._open
-            if rows.any():
-                violated = {n: int((broken & open_rows).sum()) for n, broken in violations.items()}
-                violated = {number: count for number, count in violated.items() if count}
-                counts[name] = Unexplained(int(rows.sum()), int(open_rows.sum()), violated)
-        return counts
-
-    @property
-    def causes(self) -> list[str]:
-        """The cause of each row that disagrees."""
-        return list(self._causes[self._disagreeing])
-
-    @property
-    def _open(self) -> Bools:
-        """The rows that disagree and have no cause yet."""
-        return np.asarray(self._causes == UNKNOWN)
-
-    def _explain_by_search(self) -> None:
-        """Look for programs that give the other program's results, and assign them to rows."""
-        case = self._case
-        theirs, limits, ours = (
-            {n: row for n, row in zip(case.names, rows, strict=True) if n != "MUC"}
-            for rows in (case.values, self._limits, case.ours)
-        )
-        judge = Judge(case.columns, theirs, limits, self._wrong)
-        # leave out near-singular rows and others in which the spelling differs from our results
-        clear = judge._replace(theirs=ours).matches(Program().results(case.columns))
-        # leave out rows that are wrong only in results that no spelling computes
-        clear &= ~(judge.wrong & try_program(Program(), judge).rows)
-        strata = _unusual_strata(case.columns)
-        usual = ~np.any([*strata.values()], axis=0)
-        bits, branch_rows = self._evidence_bits(judge)
-        if (judge.wrong & clear & usual).any():
-            self._explain_by_sample(judge, clear & usual, clear, bits, branch_rows)
-        else:
-            self._explain_by_sample(judge, clear, clear, bits, branch_rows)
-        for name, rows in strata.items():
-            self._explain_stratum(name, judge, clear & rows, bits, branch_rows)
-        if not self.programs:
-            self._explain_by_constant(judge, clear & usual, bits)
-
-    def _explain_by_sample(
-        self, judge: Judge, searched: Bools, clear: Bools, bits: Floats, branch_rows: Bools
-    ) -> None:
-        """Look for programs in a sample of the rows ``searched``; assign them to all that they
-        explain, if the evidence of the ``clear`` rows suffices."""
-        rows = _sample_rows(judge, searched)
-        sample = judge.select_rows(rows)
-        if not sample.wrong.any():
-            return
-        judge = judge.select_results(_independent_results(sample))
-        agreeing = clear & ~judge.wrong
-        ours = Program().results(judge.scene)
-        wrong_results = [
-            name
-            for name in judge.theirs
-            if (judge.wrong & ~judge.select_results([name]).matches(ours)).any()
-        ]
-        is_large = bool(np.median(self._differences[rows][sample.wrong]) > _MIN_PAIR_DIFFERENCE)
-        for explanation in _explanations(sample, is_large):
-            for program, equivalents, names in explanation:
-                part = judge.narrow_to(names)
-                fits = try_program(program, part).rows
-                explained_rows = fits & part.wrong & self._open
-                if not _has_enough_bits(program, explained_rows & clear, bits, branch_rows & clear):
-                    continue
-                says = self._name_both(program.description, judge) + _limitation(fits, agreeing)
-                # a result that is right needs no cause, though the program gives another
-                if unexplained := [name for name in wrong_results if name not in names]:
-                    says += f"; {', '.join(unexplained)} {UNKNOWN}"
-                same = [trial.program.description for trial in equivalents[:_MAX_EQUIVALENTS]]
-                parts = _first_rows_of_edits(program, part, explained_rows)
-                rows_of = (explained_rows, part.wrong, fits & agreeing, agreeing)
-                self._assign(program, says, rows_of, same, parts)
-            if self.evidence:
-                return
-
-    def _assign(
-        self,
-        program: Program,
-        says: str,
-        rows: tuple[Bools, Bools, Bools, Bools],
-        equivalents: list[str],
-        parts: dict[str, int],
-    ) -> None:
-        """Make a program the cause of the rows that it explains, and record the evidence.
-
-        ``rows``: those it explains, those that disagree, those agreeing that it fits, those that
-        agree.
-        """
-        self._causes[rows[0]] = says
-        explains, disagreeing, fits, agreeing = (int(x.sum()) for x in rows)
-        cause = Cause(says, explains, disagreeing, fits, agreeing, equivalents, parts)
-        self.evidence.append(cause)
-        self.programs.append(program)
-
-    def _name_both(self, description: str, judge: Judge) -> str:
-        """Return a description, with both names of a mistake that is one of `_SAME_VELOCITIES` and
-        that the judge's results do not distinguish from the other.
-
-        Turning the normal round affects only the rule of MU's sign, and results along the normal.
-        """
-        parts = description.split("; and ")
-        if not set(parts) & set(_SAME_VELOCITIES):
-            return description
-        edits = {edit.description: edit for edit in (*variants(), *readings())}
-        inverted, turned = (
-            Program((edits[name],)).results(judge.scene) for name in _SAME_VELOCITIES
-        )
-        pair = judge._replace(theirs={n: inverted[n] for n in judge.theirs if n in inverted})
-        if (~pair.matches(turned) & judge.wrong).sum() > (1 - MIN_FIT) * judge.wrong.sum():
-            return description
-        both = ", or ".join(_SAME_VELOCITIES)
-        return "; and ".join(both if part in _SAME_VELOCITIES else part for part in parts)
-
-    def _explain_by_constant(self, judge: Judge, clear: Bools, bits: Floats) -> None:
-        """Look for a constant with a wrong value, any number, that explains nearly all rows."""
-        rows = _sample_rows(judge, clear)
-        sample = judge.select_rows(rows)
-        if not sample.wrong.any():
-            return
-        judge = judge.select_results(_independent_results(sample))
-        for program in fit_constants(judge.select_rows(rows)):
-            fits = try_program(program, judge).rows
-            explained_rows = fits & judge.wrong & self._open
-            # the fitted number itself uses up the bits of one row
-            if bits[explained_rows & clear].sum() < _MIN_BITS_NAMED + _MAX_BITS_PER_ROW:
-                continue
-            agreeing = clear & ~judge.wrong
-            if (fits & agreeing).sum() < MIN_FIT * agreeing.sum():
-                continue
-            rows_of = (explained_rows, judge.wrong, fits & agreeing, agreeing)
-            self._assign(program, program.description, rows_of, [], {})
-            return
-
-    def _explain_by_order(self) -> None:
-        """Recognise results that are those of other rows."""
-        case, wrong = self._case, self._wrong
-        usable = np.isfinite(case.ours).any(1)
-        if wrong.sum() < _MIN_REORDERED_ROWS or not usable.any():
-            return
-        # rows that may belong together are found by the first result, then compared in all
-        first = int(np.argmax(usable))
-        order = np.argsort(case.ours[first])
-        limits = case.units * HALF + np.fmax(case.loose, _SAME_RTOL * case.sizes)
-        lowest = np.searchsorted(case.ours[first, order], case.values[first] - limits[first])
-        matching_rows = np.zeros(wrong.size, bool)
-        for step in range(_MAX_TIES):
-            place = order[np.minimum(lowest + step, wrong.size - 1)]
-            within_limits = np.abs(case.values - case.ours[:, place]) <= limits
-            within_limits |= np.isnan(case.values) | ~np.isfinite(case.ours[:, place])
-            matching_rows |= within_limits.all(0)
-        if (matching_rows & wrong).sum() >= MIN_FIT * wrong.sum():
-            self._causes[matching_rows & wrong] = OTHER_ROWS
-
-    def _explain_stratum(
-        self, name: str, judge: Judge, rows: Bools, bits: Floats, branch_rows: Bools
-    ) -> None:
-        """Look for an edit that explains the rows of one kind without a cause, alone or on top of
-        the first program that explains the rest."""
-        unexplained = judge.wrong & self._open & rows
-        if not unexplained.any():
-            return
-        places = np.unique(
-            np.concatenate(
-                [pick_evenly(np.flatnonzero(x), _MAX_DISAGREEING) for x in (unexplained, rows)]
-            )
-        )
-        stratum_sample = judge.select_rows(places)._replace(wrong=unexplained[places])
-        for base in (*self.programs[:1], Program()):
-            trial = next(iter(find_single_edits(stratum_sample, stratum_sample.wrong, base)), None)
-            if (
-                trial is None
-                or trial.explained_count < _MIN_FRACTION_OF_REST * stratum_sample.wrong.sum()
-            ):
-                continue
-            new = Program(trial.program.edits[len(base.edits) :])
-            fits = try_program(trial.program, judge).rows
-            explained_rows = fits & unexplained
-            if not _has_enough_bits(new, explained_rows, bits, branch_rows & rows):
-                continue
-            agreeing = rows & ~judge.wrong
-            says = f"{name}: {trial.program.description}" + _limitation(fits, agreeing)
-            parts = _first_rows_of_edits(trial.program, judge, explained_rows)
-            rows_of = (explained_rows, unexplained, fits & agreeing, agreeing)
-            self._assign(trial.program, says, rows_of, [], parts)
-            return
-
-    def _evidence_bits(self, judge: Judge) -> tuple[Floats, Bools]:
-        """Return the bits that a cause gets right by explaining each row, 0 where it agrees; and
-        the rows that show only which branch is taken, of friction's sign or of the pivot."""
-        ratios = self._differences / np.fmax(self._resolutions, 1e-12)
-        bits = np.clip(np.log2(ratios), 0.0, _MAX_BITS_PER_ROW)
-        models = [Program((edit,)) for edit in variants() if edit.description in _OTHER_BRANCHES]
-        fits = [try_program(model, judge).rows for model in models]
-        branch_rows = judge.wrong & np.any(fits, axis=0)
-        if branch_rows.any():
-            branch_rows |= ~judge.wrong & (judge.scene["MU"] != 0) & (judge.scene["MU"] != PIVOT)
-        return np.where(judge.wrong, bits, 0.0), branch_rows
-
-    def _explain_by_digits(self) -> bool:
-        """Recognise correct numbers written as the 1988 program prints them, floored or cut off.
-
-        Returns whether nearly all rows are explained so; if not, no cause is assigned.
-        """
-        case, wrong = self._case, self._wrong
-        fits = {
-            PRINTED: _match_printout(case, wrong),
-            FLOORED: _match_cut(case, np.floor),
-            TRUNCATED: _match_cut(case, np.trunc),
-        }
-        best = max(fits, key=lambda says: int((fits[says] & wrong).sum()))
-        if (fits[best] & wrong).sum() < MIN_FIT * wrong.sum():
-            return False
-        for says in (best, *fits):
-            self._causes[self._open & fits[says]] = says
-        return True
-
-    def _explain_by_precision(self) -> None:
-        """Recognise coarser arithmetic, if it affects the whole table: most of the rows in which it
-        would be visible, and few that it does not explain."""
-        wrong, condition = self._wrong, self._case.condition
-        units = self._differences / errorbound.relative_bounds(condition, 1.0)
-        bits = -math.log2(max(float(np.median(units[wrong])), 1e-300))
-        for says, (width, low, high) in _WIDTHS.items():
-            bounds = errorbound.relative_bounds(condition, 2.0**-width)
-            visible = bounds * _TYPICAL_FRACTION_OF_BOUND > self._resolutions
-            explained_rows = wrong & (self._differences / self._case.per_unit <= 2.0**-width)
-            is_widespread = (wrong & visible).sum() >= _MIN_AFFECTED * visible.sum()
-            if (
-                low <= bits < high
-                and explained_rows.sum() >= MIN_FIT * wrong.sum()
-                and is_widespread
-            ):
-                self._causes[explained_rows & self._open] = says
-                return
-
-    def _describe_unexplained(self, violations: Mapping[str, Bools]) -> None:
-        """Say of each row without a cause how closely it agrees, or which equations it violates."""
-        for row in np.flatnonzero(self._open).tolist():
-            broken = [number for number, rows in violations.items() if rows[row]]
-            if broken and len(broken) < len(violations):
-                subject = f"Equations {', '.join(broken[:-1])} and {broken[-1]} are"
-                subject = subject if len(broken) > 1 else f"Equation {broken[0]} is"
-                self._causes[row] = f"{UNKNOWN}, but only {subject} violated"
-            elif 0 < self._differences[row] < 1e-2:
-                digits = int(-math.log10(self._differences[row]))
-                self._causes[row] = f"{UNKNOWN}, but agrees to about {digits} digits"
-            elif violations and not broken:
-                self._causes[row] = f"{UNKNOWN}; no equation is violated by the final velocities"
+def _evidence_bits(case: Case) -> Floats:
+    """Return the bits that a row earns: those by which it is off and that its digits show."""
+    relative = _relative_differences(case)
+    worst = relative.argmax(0), np.arange(relative.shape[1])
+    has_size = case.sizes > 0
+    digits = np.where(has_size, case.units * HALF / case.sizes, 0.0)
+    loose = np.where(has_size, case.loose / case.sizes, 0.0)
+    resolution = np.fmax(np.where(np.isfinite(digits), digits, 0.0)[worst], loose[worst])
+    ratios = relative[worst] / np.fmax(resolution, 1e-12)
+    bits = np.clip(np.log2(np.fmax(ratios, 1.0)), 0.0, _MAX_BITS)
+    # where rounding takes most digits, what is left of them shows nothing
+    return np.where(loose[worst] > _MAX_LOOSE, 0.0, bits)
 
 
-def _limitation(fits: Bools, agreeing: Bools) -> str:
-    """Return `IN_THESE_ROWS` for a cause that does not fit nearly all agreeing rows, else ""."""
-    return "" if (fits & agreeing).sum() >= MIN_FIT * agreeing.sum() else IN_THESE_ROWS
+def _judge_of(case: Case, wrong: Bools) -> Judge:
+    """Return the judge of a case: how far from the other program's results a program's may be."""
+    relative = _relative_differences(case)
+    differences = relative.max(0, initial=0.0)
+    sizes, written = case.sizes, case.units * HALF
+    loose = np.where(sizes > 0, case.loose / sizes, 0.0)
+    within = np.fmin(np.fmax(4 * loose, _SAME_RTOL), _MAX_FRACTION_LEFT * differences)
+    # another program rounds its own numbers, which may be larger than anything in the scene
+    theirs = np.where(wrong & np.isfinite(case.values), np.abs(case.values), 0.0)
+    measure = np.fmax(sizes, theirs)
+    limits = np.where(wrong, within, np.fmax(loose, _SAME_RTOL)) * measure + written
+    named = [
+        {n: row for n, row in zip(case.names, rows, strict=True) if n != "MUC"}
+        for rows in (case.values, limits)
+    ]
+    return Judge(case.columns, named[0], named[1], wrong)
 
 
-def _unusual_strata(g: Mapping[str, Floats]) -> dict[str, Bools]:
-    """Return the rows beyond ordinary scenes and their limiting cases, by what is unusual."""
-    bodies = np.fmin(g["MA"], g["MB"]) <= 0
-    bodies |= (g["M"] != 4) & (np.fmin(g["IA"], g["IB"]) <= 0)
-    speeds = np.max([np.abs(g[name]) for name in ("UX", "UY", "VX", "VY")], 0)
-    turned = np.any([g[name] != 0 for name in ("DA", "DB", "WA", "WB")], axis=0)
-    return {
-        "masses or inertias of 0 or less": bodies,
-        "point masses with arms or spins left": (g["M"] == 4) & turned,
-        "MU of 10 and more, or below -10": (g["MU"] >= 10) | (g["MU"] < -10),
-        "velocities beyond 1E12": speeds > 1e12,
-    }
+def _match_program(program: Program, case: Case, names: Sequence[str]) -> Bools:
+    """Return the rows of a case that a program predicts, in the results that it gives."""
+    wrong = _needs_cause(case)
+    judge = _judge_of(case, wrong).select_results(names)
+    rows = try_program(program, judge).rows
+    # a row that is wrong in other results alone is not explained by these
+    return np.asarray(rows & ~(wrong & try_program(Program(), judge).rows))
 
 
 def _match_cut(case: Case, cut: Callable[[Floats], Floats]) -> Bools:
@@ -505,147 +716,115 @@ def _match_cut(case: Case, cut: Callable[[Floats], Floats]) -> Bools:
     return np.asarray((fits | np.isnan(case.values)).all(0))
 
 
-def _match_printout(case: Case, wrong: Bools) -> Bools:
+def _match_printout(case: Case) -> Bools:
     """Return the rows whose results are the 1988 program's own digits.
 
-    At most `LOOKED_INTO` rows are replayed; where these fit, the others need only be floored.
+    At most `MAX_REPLAYED` rows that disagree are replayed; where these fit, the others need only be
+    floored.
     """
-    rows = np.zeros(wrong.size, bool)
-    places, others = np.split(np.flatnonzero(wrong), [LOOKED_INTO])
+    floored = _match_cut(case, np.floor)
+    places, others = np.split(np.flatnonzero(case.wrong), [MAX_REPLAYED])
     if not all(name in FIELDS for name in case.names):
-        return rows
+        return np.zeros(floored.size, bool)
     columns = zip(SCENE, case.scene[:, places].tolist(), strict=False)
     try:
         replayed = replay({name: [f"{x:.15G}" for x in column] for name, column in columns})
     except UserError:
-        return rows
+        return np.zeros(floored.size, bool)
+    rows = floored.copy()
     rows[places] = True
     for name, column in zip(case.names, case.values[:, places], strict=True):
         printed = replayed.printed(name).tolist()
         values = np.array([float(text) if text else np.nan for text in printed])
         rows[places] &= np.isnan(column) | (values == column)
-    rows[others] = (rows[places].mean() >= MIN_FIT) & _match_cut(case, np.floor)[others]
+    rows[others] &= bool(rows[places].mean() >= MIN_FIT) if places.size else False
     return rows
 
 
-def _first_rows_of_edits(program: Program, judge: Judge, explained_rows: Bools) -> dict[str, int]:
-    """Return each mistake of a program with several, and the first row that it takes to explain."""
-    first_rows = {}
-    for edit in program.edits if len(program.edits) > 1 else ():
-        without = Program(tuple(x for x in program.edits if x is not edit))
-        needs_edit = explained_rows & ~try_program(without, judge).rows
-        if needs_edit.any():
-            first_rows[edit.text] = int(np.argmax(needs_edit))
-    return first_rows
+def _match_other_rows(case: Case, table: Case) -> Bools:
+    """Return the rows whose results are those of another row of a table."""
+    usable = np.isfinite(table.ours).any(1)
+    matching_rows = np.zeros(case.condition.size, bool)
+    if not usable.any():
+        return matching_rows
+    # rows that may belong together are found by the first result, then compared in all
+    first = int(np.argmax(usable))
+    order = np.argsort(table.ours[first])
+    limits = case.units * HALF + np.fmax(case.loose, _SAME_RTOL * case.sizes)
+    lowest = np.searchsorted(table.ours[first, order], case.values[first] - limits[first])
+    for step in range(_MAX_TIES):
+        place = order[np.minimum(lowest + step, order.size - 1)]
+        within_limits = np.abs(case.values - table.ours[:, place]) <= limits
+        within_limits |= np.isnan(case.values) | ~np.isfinite(table.ours[:, place])
+        matching_rows |= within_limits.all(0)
+    return matching_rows
 
 
-def _has_enough_bits(
-    program: Program, explained_rows: Bools, bits: Floats, branch_rows: Bools
-) -> bool:
-    """Return whether a cause gets right the bits that it must.
+def _is_coarse(case: Case, wrong: Bools, says: str) -> bool:
+    """Return whether coarser arithmetic affects the whole table: most of the rows in which it would
+    be visible, by as many bits as it should."""
+    width, low, high = _WIDTHS[says]
+    differences = _relative_differences(case).max(0, initial=0.0)
+    units = differences / errorbound.relative_bounds(case.condition, 1.0)
+    bits = -math.log2(max(float(np.median(units[wrong])), 1e-300))
+    digits = np.where(case.sizes > 0, case.units * HALF / case.sizes, 0.0)
+    loose = np.where(case.sizes > 0, case.loose / case.sizes, 0.0)
+    resolution = np.fmax(digits, loose).max(0)
+    bounds = errorbound.relative_bounds(case.condition, 2.0**-width)
+    visible = bounds * _TYPICAL_FRACTION_OF_BOUND > resolution
+    fits = _match_width(case, says)
+    is_widespread = (wrong & visible).sum() >= _MIN_AFFECTED * visible.sum()
+    return bool(
+        low <= bits < high and (fits & wrong).sum() >= MIN_FIT * wrong.sum() and is_widespread
+    )
 
-    A branch taken counts for one bit a row, and the choice of its rows for log2 of the number of
-    choices: of k rows among n that would show it, log2(n over k).
-    """
-    count, possible = int((explained_rows & branch_rows).sum()), int(branch_rows.sum())
-    earned_bits = float(bits[explained_rows & ~branch_rows].sum()) + count
-    required_bits = _MIN_BITS_NAMED if program.edits[0].rank <= RARE_CONVENTION else _MIN_BITS
-    required_bits = _MIN_BITS_PAIR if len(program.edits) > 1 else required_bits
-    return earned_bits + math.log2(math.comb(possible, count)) >= required_bits
+
+def _match_width(case: Case, says: str) -> Bools:
+    """Return the rows that are off by no more than coarser arithmetic may be."""
+    differences = _relative_differences(case).max(0, initial=0.0)
+    return np.asarray(differences / case.per_unit <= 2.0 ** -_WIDTHS[says][0])
 
 
-def _sample_rows(judge: Judge, clear: Bools) -> NDArray[np.intp]:
-    """Return rows that disagree, then some that agree, evenly by kind of scene: the first and the
-    last of every kind at least."""
-    g = judge.scene
+def _describe_unexplained(
+    broken: Sequence[str], violations: Mapping[str, Bools], difference: float
+) -> str:
+    """Say of a row without a cause which equations it violates, or how closely it agrees."""
+    if broken and len(broken) < len(violations):
+        if len(broken) == 1:
+            return f"{UNKNOWN}, but only Equation {broken[0]} is violated"
+        return (
+            f"{UNKNOWN}, but only Equations {', '.join(broken[:-1])} and {broken[-1]} are violated"
+        )
+    if 0 < difference < 1e-2:
+        return f"{UNKNOWN}, but agrees to about {int(-math.log10(difference))} digits"
+    if violations and not broken:
+        return f"{UNKNOWN}; no equation is violated by the final velocities"
+    return UNKNOWN
+
+
+def _sample_rows(case: Case, wrong: Bools) -> NDArray[np.intp]:
+    """Return at most `MAX_SEARCHED` rows that disagree, and as many that agree, in the table's
+    order: evenly by kind of scene."""
+    g = case.columns
     conditions = (
         g["MU"] == PIVOT,
         g["M"] == 4,
         g["MU"] == 0,
         (g["WA"] == 0) & (g["WB"] == 0),
-        Program().results(g)["MUP"] == g["MU"],
         (g["DA"] == 0) & (g["DB"] == 0),
+        g["EM"] == 1,
     )
     kind = np.sum([condition << place for place, condition in enumerate(conditions)], 0)
     chosen = []
-    for rows, count in ((judge.wrong, _MAX_DISAGREEING), (~judge.wrong, _MAX_AGREEING)):
-        places = np.flatnonzero(rows & clear)
-        places = places[np.argsort(kind[places], kind="stable")]
-        _, first, counts = np.unique(kind[places], return_index=True, return_counts=True)
-        evenly = pick_evenly(np.arange(places.size), count)
-        chosen.append(places[np.unique(np.concatenate([evenly, first, first + counts - 1]))])
-    return np.concatenate(chosen)
-
-
-_Explanation = tuple[Program, Sequence[Trial], Sequence[str]]
-"""A program that explains rows, others that explain the same, and the results that it gives."""
-
-
-def _explanations(judge: Judge, is_large: bool) -> Iterator[list[_Explanation]]:
-    """Yield lists of programs that together explain a table, the simplest first.
-
-    ``is_large``: differences are so large that two mistakes are looked for.
-    """
-    with progress(20, "look for the cause") as meter:
-        meter.update(0)
-        groups = judge.select_results(_independent_results(judge)).wrong_groups()
-        first = judge.narrow_to(groups[0])
-        singles = find_single_edits(first, first.wrong)
-        complete = [trial for trial in singles if trial.is_complete]
-        stages = find_pairs(first, singles) if is_large else iter(())
-        while not complete and (programs := next(stages, None)) is not None:
-            meter.update(1)
-            complete = [trial for trial in rank_programs(programs, first) if trial.is_complete]
-        if complete:
-            wrong = {name for group in groups[1:] for name in group}
-            remaining = judge.narrow_to([name for name in judge.theirs if name not in wrong])
-            yield [_extend_to_groups(_add_edits(complete, remaining), groups, judge)]
-        yield _mixed_programs(singles, first, judge)
-
-
-def _extend_to_groups(
-    trials: Sequence[Trial], groups: Sequence[list[str]], judge: Judge
-) -> _Explanation:
-    """Choose one of the programs that explain the first group of results, and extend it to others.
-
-    Of programs equal on that group, the one that fits most rows in all results is chosen, or the
-    likeliest. Where it does not explain another group, an edit is added that does.
-    """
-    equals = [trial for trial in trials if np.array_equal(trial.rows, trials[0].rows)]
-    equals.sort(key=lambda trial: (-int(try_program(trial.program, judge).rows.sum()), trial.rank))
-    program = equals[0].program
-    wrong = [name for group in groups for name in group]
-    names = [name for name in judge.theirs if name in groups[0] or name not in wrong]
-    for group in (wrong, *groups[1:3]) if len(groups) > 1 else ():
-        part = judge.narrow_to([*names, *group])
-        trial = try_program(program, part)
-        if not trial.is_complete:
-            trial = next(iter(find_single_edits(part, part.wrong & ~trial.rows, program)), trial)
-        if trial.is_complete:
-            program, names = trial.program, [*names, *group]
-        if set(wrong) <= set(names):
-            break
-    return program, equals[1:] if program is equals[0].program else (), names
-
-
-def _add_edits(trials: Sequence[Trial], judge: Judge) -> Sequence[Trial]:
-    """Add edits to the best program while they explain most of the rows that it leaves: mistakes in
-    a branch that few rows take. Returns ``trials`` themselves where there are none."""
-    for _ in range(_MAX_FURTHER_EDITS):
-        remaining = judge.wrong & ~trials[0].rows
-        better = []
-        for trial in (
-            find_single_edits(judge, remaining, trials[0].program) if remaining.any() else ()
-        ):
-            count = (trial.rows & remaining).sum()
-            is_convention = trial.program.edits[-1].rank <= RARE_CONVENTION
-            is_enough = count >= _MIN_FRACTION_OF_REST * remaining.sum()
-            if trial.is_complete and is_enough and (count > 1 or is_convention):
-                better.append(trial)
-        if not better:
-            break
-        trials = better
-    return trials
+    for rows in (wrong, ~wrong):
+        places = np.flatnonzero(rows)
+        if places.size > MAX_SEARCHED:
+            places = places[np.argsort(kind[places], kind="stable")]
+            _, first, counts = np.unique(kind[places], return_index=True, return_counts=True)
+            evenly = pick_evenly(np.arange(places.size), MAX_SEARCHED - 2 * first.size)
+            places = places[np.unique(np.concatenate([evenly, first, first + counts - 1]))]
+        chosen.append(places)
+    return np.sort(np.concatenate(chosen))
 
 
 def _independent_results(judge: Judge) -> list[str]:
@@ -665,22 +844,39 @@ def _independent_results(judge: Judge) -> list[str]:
     return [name for name in judge.theirs if fractions.get(name, 0.0) < MIN_FIT]
 
 
-def _mixed_programs(singles: Sequence[Trial], part: Judge, judge: Judge) -> list[_Explanation]:
-    """Return a few programs that together explain nearly all rows of ``part``, each some of them;
-    none where they do not. The table then has rows of several programs.
+_SCENES_TRIED = 60  # to tell two programs apart
 
-    A program gives all results of ``judge`` where its rows fit in all, else those of ``part``.
-    """
-    remaining = part.wrong.copy()
-    chosen: list[_Explanation] = []
-    while singles and remaining.any() and len(chosen) < _MAX_MIXED_PROGRAMS:
-        best = max(singles, key=lambda trial: ((trial.rows & remaining).sum(), -trial.rank))
-        explained_rows = best.rows & remaining
-        if not explained_rows.any():
-            break
-        fits_all = (try_program(best.program, judge).rows & explained_rows).sum()
-        gives_all = fits_all >= MIN_FIT * explained_rows.sum()
-        chosen.append((best.program, (), [*(judge if gives_all else part).theirs]))
-        remaining &= ~best.rows
-    count = part.wrong.sum() - remaining.sum()
-    return chosen if count >= MIN_FIT * part.wrong.sum() else []
+
+def _tell_apart(hypothesis: Hypothesis, case: Case) -> tuple[list[str], dict[str, str]]:
+    """Return the programs that give the same in this table, those first that do not everywhere; and
+    a scene in which the first gives something else."""
+    if not hypothesis.equivalents:
+        return [], {}
+    rng = Random(88)
+    scenes = [casework(rng) for _ in range(_SCENES_TRIED)]
+    for place, scene in enumerate(scenes):
+        scene |= {"MU": "-10"} if place % 6 == 5 else {}
+    numbers = [doubles_of(scene) for scene in scenes]
+    columns = {name: np.array([row[name] for row in numbers]) for name in SCENE}
+    mine = hypothesis.results(columns)
+    same: list[str] = []
+    different: list[str] = []
+    apart: dict[str, str] = {}
+    for program in hypothesis.equivalents[: 4 * _MAX_EQUIVALENTS]:
+        results = hypothesis._replace(program=program).results(columns)
+        off = np.max([_distance(mine[name], results[name]) for name in FINAL_VELOCITIES], 0)
+        says = program.sentence
+        if off.max() <= 1e-6:
+            same.append(says)
+        else:
+            different.append(says)
+            scene = scenes[int(off.argmax())]
+            apart = apart or {name: scene[name] for name in SCENE}
+    others = dict.fromkeys(says for says in (*different, *same) if says != hypothesis.says)
+    return list(others)[:_MAX_EQUIVALENTS], apart
+
+
+def _distance(one: Any, other: Any) -> Any:
+    with np.errstate(all="ignore"):
+        off = np.abs(one - other) / (1 + np.abs(one))
+    return np.where(np.isnan(off), np.isnan(one) != np.isnan(other), off)

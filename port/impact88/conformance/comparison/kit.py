@@ -17,7 +17,7 @@ from ...files import replacing, write_folder
 from ...messages import schemas
 from ...names import RESULTS, SCENE
 from ...version import __version__
-from .vectors import vectors
+from .vectors import FROZEN_ID, FROZEN_SEED, frozen, vectors
 
 HEAD = ("id", "class", "expect", "flags")
 
@@ -34,13 +34,14 @@ def _head(vector: dict[str, Any]) -> list[str]:
     return [vector["id"], vector["class"], vector["expect"], " ".join(vector["flags"])]
 
 
-def write_kit(place: str, count: int, seed: int, reference: bool = True) -> list[str]:
+def write_kit(place: str, count: int, seed: int | None = None, reference: bool = True) -> list[str]:
     """Write the kit into a folder, which is created if needed, or into an archive (.zip).
 
-    Returns the names of its files, sorted. ``reference``: include results to 30 digits. Raises
-    UserError where the place cannot be written to, and where 30 digits need mpmath.
+    Returns the names of its files, sorted. ``seed``: of fresh vectors; by default they are those of
+    the frozen set. ``reference``: include results to 30 digits. Raises UserError where the place
+    cannot be written to, and where 30 digits of fresh vectors need mpmath.
     """
-    rows = list(vectors(count, seed, reference))
+    rows = frozen(count) if seed is None else list(vectors(count, seed, reference))
     texts = {
         "vectors.csv": "".join(csv_lines(rows)),
         "vectors.jsonl": "".join(json.dumps(row, ensure_ascii=False) + "\n" for row in rows),
@@ -55,7 +56,8 @@ def write_kit(place: str, count: int, seed: int, reference: bool = True) -> list
     about = {
         "kit": f"vectors/{schemas.NUMBERS['vectors']}",
         "impact88": __version__,
-        "seed": seed,
+        "set": FROZEN_ID if seed is None else "",
+        "seed": FROZEN_SEED if seed is None else seed,
         "vectors": len(rows),
         "sha256": {name: hashlib.sha256(data).hexdigest() for name, data in files.items()},
     }

@@ -1,12 +1,13 @@
 """Bound, row by row, the difference that rounding can make between a correct program's results and
 ours.
 
-A program counts as correct if its results lie within the rounding errors of any of the nine
+A program counts as correct if its results lie within the rounding errors of any of the
 spellings of the mechanics: a running error bound of their statements, and of eliminating their
 equations with the row's own factors (`equations.roundoff`); along any axes, and with B's velocity
-computed from A's change, or A's from B's. No bound takes a norm over quantities of different kinds,
-so none depends on the units of length and mass any more than elimination does. The errors of our
-own results are added.
+computed from A's change, or A's from B's. That by trial impulses, which loses far more, has a bound
+of its own: it counts only where a whole table looks like it. No bound takes a norm over quantities
+of different kinds, so none depends on the units of length and mass any more than elimination does.
+The errors of our own results are added.
 """
 
 from collections.abc import Collection, Mapping
@@ -20,6 +21,7 @@ from ...equations.spelling import (
     A_IMPULSE,
     IMPULSES,
     LISTING,
+    TRIAL_IMPULSES,
     parse_expression,
     spelling_of,
     spellings,
@@ -82,7 +84,7 @@ def largest_error_bounds(
     """
     bounds = {name: bound / 2 for name, bound in best.items()}
     for spelling in spellings().values():
-        if spelling.title != IMPULSES:
+        if spelling.title not in (IMPULSES, TRIAL_IMPULSES):
             own = _result_bounds(scene, running_errors(spelling, scene))
             bounds = {name: np.fmax(bound, own[name]) for name, bound in bounds.items()}
     if "MUC" in wanted:
@@ -104,6 +106,14 @@ def largest_error_bounds(
     return {name: bounds[name] + best[name] / 2 for name in {*wanted, *FINAL_VELOCITIES}}
 
 
+def trial_bounds(scene: Columns, ours: Columns) -> dict[str, Floats]:
+    """Return the bounds of a program that finds its equations by trial impulses, by name: what a
+    unit impulse changes is lost beside a large velocity. NaN for results that it lacks."""
+    errors = running_errors(spelling_of(TRIAL_IMPULSES), scene)
+    bounds = _result_bounds(scene, errors)
+    return {name: bound + 2 * np.spacing(np.abs(ours[name])) for name, bound in bounds.items()}
+
+
 # what makes a scene ordinary
 _MAX_CONDITION = 1e3
 _MAX_MASS_RATIO = 100.0
@@ -111,7 +121,7 @@ _MAX_INERTIA_RATIO = 1e3
 _MAX_ARM = 10.0  # in radii of gyration
 _MIN_DISTANCE_FROM_HALF = 0.05  # of e_m, at 1/2 of which the moment has no solution
 ORDINARY_BOUND = 1e-9
-"""Relative difference that no bound of an ordinary scene reaches; among 70,000 the largest was
+"""Relative difference that no bound of an ordinary scene reaches; among 40,000 the largest was
 a sixth of it."""
 
 

@@ -14,7 +14,15 @@ from numpy.typing import NDArray
 
 from ...equations.edits import CONVENTION, Edit, node_edits, readings, spelling_edits, variants
 from ...equations.evaluation import RESIDUAL, Columns, Run, chunks, evaluate
-from ...equations.spelling import IMPULSES, LISTING, SHOWN, Spelling, parse_expression, spellings
+from ...equations.spelling import (
+    IMPULSE_MATRIX,
+    IMPULSES,
+    LISTING,
+    SHOWN,
+    Spelling,
+    parse_expression,
+    spellings,
+)
 from ...names import FINAL_VELOCITIES
 from .agreement import Bools, Floats
 
@@ -39,27 +47,40 @@ class Program(NamedTuple):
     edits: tuple[Edit, ...] = ()
 
     @property
-    def description(self) -> str:
-        """The program's mistakes in words. A rewritten statement that a later edit rewrites again
-        is left out."""
-        texts = []
+    def sentence(self) -> str:
+        """What the program does, in words of mechanics. A rewritten statement that a later edit
+        rewrites again is left out."""
+        return "; and ".join(edit.sentence for edit in self._visible())
+
+    @property
+    def formula(self) -> str:
+        """What is written in its statements, and what should be."""
+        return "; ".join(edit.formula for edit in self._visible() if edit.formula)
+
+    def _visible(self) -> list[Edit]:
+        """Return the edits that no later one rewrites, those with names of their own first."""
+        visible = []
         for place, edit in enumerate(self.edits):
             later_keys = {key for later in self.edits[place + 1 :] for key in later.sides}
             if edit.description or not later_keys.issuperset(edit.sides):
-                texts.append(edit.text)
-        return "; and ".join(sorted(texts, key=lambda part: "should be" in part))
+                visible.append(edit)
+        return sorted(visible, key=lambda edit: not edit.description)
 
     @property
     def spelling(self) -> Spelling:
         """The edited spelling; the listing where the edits belong to none."""
-        spelling = spellings()[next((edit.title for edit in self.edits if edit.title), LISTING)]
+        return self.in_spelling(LISTING)
+
+    def in_spelling(self, title: str) -> Spelling:
+        """Return the edited spelling, that of ``title`` where the edits belong to none."""
+        spelling = spellings()[next((edit.title for edit in self.edits if edit.title), title)]
         for edit in self.edits:
             spelling = spelling.with_edits(edit.sides)
         return spelling
 
-    def results(self, scene: Columns) -> dict[str, Any]:
+    def results(self, scene: Columns, title: str = LISTING) -> dict[str, Any]:
         """Return the results that the program shows for scenes (columns of n), by name."""
-        names = Run(self.spelling, scene).names
+        names = Run(self.in_spelling(title), scene).names
         size = max(np.size(column) for column in scene.values())
         return {
             name.removeprefix(SHOWN): np.broadcast_to(column, (1, size))[0]
@@ -168,16 +189,22 @@ class Trial(NamedTuple):
 
 
 def try_program(program: Program, judge: Judge) -> Trial:
-    """Run a program on all rows of a judge."""
-    return Trial(program, judge.matches(program.results(judge.scene)), judge.wrong)
+    """Run a program on all rows of a judge.
+
+    One that belongs to no spelling is run in two, for each loses digits where the other does not.
+    """
+    rows = judge.matches(program.results(judge.scene))
+    if program.edits and not any(edit.title for edit in program.edits):
+        rows |= judge.matches(program.results(judge.scene, IMPULSE_MATRIX))
+    return Trial(program, rows, judge.wrong)
 
 
 def rank_programs(programs: Iterable[Program], judge: Judge) -> list[Trial]:
     """Run programs on all rows and sort them, best first; among equals the likeliest."""
 
-    def order(trial: Trial) -> tuple[int, int, int]:
-        explained_count = trial.explained_count * trial.is_supported
-        return -explained_count, -int((trial.rows & ~trial.wrong).sum()), trial.rank
+    def order(trial: Trial) -> tuple[bool, int, int, int]:
+        agreeing_count = int((trial.rows & ~trial.wrong).sum())
+        return not trial.is_complete, -trial.explained_count, -agreeing_count, trial.rank
 
     return sorted((try_program(program, judge) for program in programs), key=order)
 

@@ -5,6 +5,7 @@ Three classes alternate: ``casework`` (as in reports), ``edge`` (one limit or sp
 any machine.
 """
 
+import json
 from collections.abc import Callable, Iterator, Mapping
 from itertools import count as count_from
 from itertools import islice
@@ -35,9 +36,11 @@ ANSWER = "answer"
 REFUSE = "refuse"
 EITHER = "either"
 
-# the packaged vectors, whose hash is published; every label occurs in at least 16 of them
-PUBLISHED = 1000
-PUBLISHED_SEED = 1988
+# the frozen vectors, which are packaged and whose hash is published: under this id their answers
+# never change, and other vectors get another; every label occurs in at least 16 of them
+FROZEN_ID = "1988.1"
+FROZEN_COUNT = 1000
+FROZEN_SEED = 1988
 
 
 REFERENCE_BATCH = 20
@@ -84,11 +87,13 @@ def _expected(kind: str, has_solution: bool) -> str:
     return EITHER if has_solution else REFUSE
 
 
-def published() -> str:
-    """Return the packaged vectors as JSON Lines: the first `PUBLISHED` of seed `PUBLISHED_SEED`."""
+def frozen(count: int = FROZEN_COUNT, only: str | None = None) -> list[dict[str, Any]]:
+    """Return the first ``count`` vectors of the frozen set; ``only``: the class wanted."""
     import gzip
 
-    return gzip.decompress(packaged_bytes("impact88.golden", "vectors.jsonl.gz")).decode("utf-8")
+    text = gzip.decompress(packaged_bytes("impact88.golden", "vectors.jsonl.gz")).decode("utf-8")
+    vectors = map(json.loads, text.splitlines())
+    return list(islice((vector for vector in vectors if only in (None, vector["class"])), count))
 
 
 def scenes(count: int | None, seed: int = 0) -> Iterator[tuple[str, str, Texts]]:

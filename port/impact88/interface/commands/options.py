@@ -68,7 +68,13 @@ def choice(names: str, choices: Sequence[Any], meaning: str, **keywords: Any) ->
 
 
 def count(
-    name: str, least: int, most: int, meaning: str, metavar: str = "N", default: int | None = None
+    name: str,
+    least: int,
+    most: int,
+    meaning: str,
+    metavar: str = "N",
+    default: int | None = None,
+    **keywords: Any,
 ) -> Argument:
     """An option whose value is a whole number within limits, which the message says."""
 
@@ -78,7 +84,7 @@ def count(
         return number
 
     read_or_refuse = _reader(read, f"a whole number from {least:,} to {most:,}")
-    return value(name, metavar, meaning, type=read_or_refuse, default=default)
+    return value(name, metavar, meaning, type=read_or_refuse, default=default, **keywords)
 
 
 def _reader(read: Callable[[str], float], expected: str) -> Callable[[str], float]:

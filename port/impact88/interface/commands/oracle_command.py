@@ -5,10 +5,12 @@ bound, STATUS. A line that cannot be used is answered with its number and what i
 have "units" and amounts with units ("30 mph"); the program is given base units, and so it answers:
 "units" in the answer names them.
 
-With --vectors it writes labelled test vectors instead, the same on any machine for the same seed:
-casework, edge and failure in turn, or one class. --published writes the vectors that golden/README
-gives the hash of, so that two firms can name the same test. --validation answers the crash tests of
-impact88 chapter staged --validation, with what was published of them.
+With --vectors it writes labelled test vectors instead: casework, edge and failure in turn, or one
+class. These are the frozen set of this version, at once and without an extra; its id, which is said
+on standard error and in a kit, never changes its answers, and golden/README gives its hash, so that
+two firms can name the same test. With --seed they are fresh ones, the same on any machine for the
+same seed, whose 30 digits need the extra oracle. --validation answers the crash tests of impact88
+chapter staged --validation, with what was published of them.
 
 Form: impact88 schema oracle, impact88 schema vectors. Conventions (axes, signs, units, byte order,
 bounds, what each class means, and that a program that refuses a failure is right): impact88 schema
@@ -17,9 +19,10 @@ conventions.
 examples:
   impact88 oracle scenes.jsonl -o answers.jsonl
   echo '{"id": 1, "scene": {"E": 0.1, ...}}' | impact88 oracle
-  impact88 oracle --vectors 1000 --seed 7 -o vectors.jsonl
+  impact88 oracle --vectors -o vectors.jsonl
   impact88 oracle --vectors 100 --class failure
-  impact88 oracle --vectors 1000 --to csv | their-program | impact88 compare -
+  impact88 oracle --vectors 5000 --seed 7 -o vectors.jsonl
+  impact88 oracle --vectors --to csv | their-program | impact88 compare -
   impact88 oracle --kit kit          then impact88 compare --kit kit theirs.csv
 
 exit status: 0 every line was answered; 1 some lines could not be used; 2 no usable input at all
@@ -33,7 +36,7 @@ from typing import Any
 
 from ...conformance.comparison import kit, vectors
 from ...conformance.comparison.oracle import BATCH, answer, published_tests
-from ...errors import UserError
+from ...errors import UserError, note
 from ...files import LONGEST_LINE, display_name, encoding_of, open_bytes
 from ...messages.progress import progress
 from . import options
@@ -42,14 +45,15 @@ ARGUMENTS = (
     options.reads("scenes", "SCENES.jsonl", "", nargs="?", default="-"),
     options.OUTPUT,
     options.flag("--no-reference", "leave out the 30 digits"),
-    options.count("--vectors", 1, 10**7, "write N test vectors"),
     options.count(
-        "--seed",
-        0,
-        2**63,
-        f"of the test vectors (default: 0; of a kit {vectors.PUBLISHED_SEED}, the published ones)",
-        metavar="S",
+        "--vectors",
+        1,
+        10**7,
+        f"write N test vectors (default: all {vectors.FROZEN_COUNT:,} of the frozen set)",
+        nargs="?",
+        const=vectors.FROZEN_COUNT,
     ),
+    options.count("--seed", 0, 2**63, "make fresh vectors, by this random seed", metavar="S"),
     options.choice("--class", vectors.CLASSES, "vectors of this class only", dest="only"),
     options.choice("--to", ("jsonl", "csv"), "csv: the scenes of --vectors as a flat table"),
     # what is typed for --to csv; in the help --csv names a file, that of `report`
@@ -58,10 +62,9 @@ ARGUMENTS = (
         "--kit",
         "DIR",
         "write vectors, conventions, a README and programs that answer them, in five languages "
-        "and a spreadsheet, into a folder or one archive (KIT.zip); the published vectors, unless "
+        "and a spreadsheet, into a folder or one archive (KIT.zip); the frozen set, unless "
         "--vectors or --seed say otherwise",
     ),
-    options.flag("--published", "write the published vectors"),
     options.flag(
         "--validation",
         "answer the 25 published crash tests, each with its source and the numbers reported there",
@@ -72,26 +75,31 @@ ARGUMENTS = (
 
 def main(args: options.Args) -> int:
     makes_vectors = args.vectors is not None
-    if args.validation and (makes_vectors or args.published or args.only or args.seed or args.kit):
+    is_fresh = args.seed is not None
+    if args.validation and (makes_vectors or args.only or is_fresh or args.kit):
         raise UserError("--validation are published tests; expected no vectors beside it")
-    if (makes_vectors or args.published or args.validation) and args.scenes != "-":
+    if (makes_vectors or args.validation) and args.scenes != "-":
         raise UserError("vectors have their own scenes; expected no file beside them")
-    if args.published and (makes_vectors or args.only or args.seed):
-        raise UserError("--published are vectors already made; expected nothing beside it")
     for option, value in (("--class", args.only), ("--to", args.to)):
         if value and not makes_vectors:
-            raise UserError(f"{option} is for test vectors; expected --vectors N with it")
+            raise UserError(f"{option} is for test vectors; expected --vectors with it")
+    if is_fresh and not makes_vectors and args.kit is None:
+        raise UserError("--seed is for test vectors; expected --vectors N or --kit with it")
+    if makes_vectors and not is_fresh and args.vectors > vectors.FROZEN_COUNT:
+        says = f"the frozen set has {vectors.FROZEN_COUNT:,} vectors, not {args.vectors:,}"
+        raise UserError(f"{says}; expected --seed S for fresh ones")
     if args.kit is not None:
-        count = args.vectors or vectors.PUBLISHED
-        seed = vectors.PUBLISHED_SEED if args.seed is None else args.seed
-        print("\n".join(kit.write_kit(args.kit, count, seed, not args.no_reference)))
-        return 0
-    args.seed = args.seed or 0
-    if args.published:
-        print(vectors.published(), end="")
+        count = args.vectors or vectors.FROZEN_COUNT
+        print("\n".join(kit.write_kit(args.kit, count, args.seed, not args.no_reference)))
         return 0
     reference = not args.no_reference
     to = args.to or ("csv" if (args.output or "").lower().endswith(".csv") else "jsonl")
+    if makes_vectors and not is_fresh:
+        rows = vectors.frozen(args.vectors, args.only)
+        note("oracle", f"vectors of the frozen set {vectors.FROZEN_ID}")
+        lines = kit.csv_lines(rows) if to == "csv" else map(_line, rows)
+        sys.stdout.writelines(lines)
+        return 0
     if makes_vectors and to == "csv":
         kit_vectors = vectors.vectors(args.vectors, args.seed, False, args.only)
         sys.stdout.writelines(kit.csv_lines(kit_vectors))
@@ -109,7 +117,7 @@ def main(args: options.Args) -> int:
             for line in answers:
                 total += 1
                 refusals += "error" in line
-                print(options.json_text(line))
+                sys.stdout.write(_line(line))
                 meter.update(1)
             sys.stdout.flush()
     if refusals == total:
@@ -118,6 +126,10 @@ def main(args: options.Args) -> int:
             f"no line could be used ({refusals} refused)" if refusals else empty_message
         )
     return int(refusals > 0)
+
+
+def _line(entry: dict[str, Any]) -> str:
+    return options.json_text(entry) + "\n"
 
 
 def _batches(path: str) -> Iterator[list[tuple[int, str]]]:
