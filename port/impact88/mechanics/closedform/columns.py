@@ -102,7 +102,7 @@ class Block(NamedTuple):
 def examine(values: Mapping[str, Floats]) -> Block:
     """Classify the columns of a block. ``values``: columns of one length, or of length 1. Single
     scenes are examined only where a column's limits do not rule out unusable numbers."""
-    extremes = {name: (float(x.min()), float(x.max())) for name, x in values.items()}
+    extremes = {name: _extremes(column) for name, column in values.items()}
     only_points = extremes["M"] == (4.0, 4.0)
     fixed: dict[str, Floats] = {}
     varying: dict[str, Floats] = {}
@@ -143,6 +143,13 @@ def examine(values: Mapping[str, Floats]) -> Block:
     for refusal in refusals(together):
         refused |= refusal.where
     return Block(fixed, varying, kinds_in_order, refused if refused.any() else None)
+
+
+def _extremes(column: Floats) -> Limits:
+    """Return the least and the largest number of a column; both are NaN where one number is."""
+    if len(column) == 1:
+        return (float(column[0]),) * 2
+    return float(column.min()), float(column.max())
 
 
 ORDINARY: dict[str, Limits] = {

@@ -18,15 +18,13 @@ CONDITIONS = ("EQUAL", "LESS", "LESS_OR_EQUAL", "EITHER", "BOTH", "NOT")
 
 
 def _against(value: Array, slip: Array, out: Array) -> None:
-    positive = slip > 0  # out may be the memory of either operand
     np.copyto(out, value)
-    np.negative(value, out=out, where=positive)
+    np.negative(value, out=out, where=slip > 0)
 
 
-def _choose(where: Array, a: Array, b: Array, out: Array, work: Array) -> None:
-    np.copyto(work, b)
-    np.copyto(work, a, where=where)
-    np.copyto(out, work)
+def _choose(where: Array, a: Array, b: Array, out: Array) -> None:
+    np.copyto(out, b)
+    np.copyto(out, a, where=where)
 
 
 def _sine_and_cosine(angle: Array, sine: Array, cosine: Array) -> None:
@@ -37,33 +35,29 @@ def _result(value: Array, out: Array) -> None:
     np.add(value, 0.0, out=out)  # -0.0 becomes 0.0: a zero's sign depends on the path
 
 
-def _minimum(a: Array, b: Array, out: Array) -> None:
-    np.minimum(a, b, out=out)
-
-
-OPERATIONS: dict[str, tuple[Callable[..., object], int]] = {
-    "ADD": (np.add, 0),
-    "SUBTRACT": (np.subtract, 0),
-    "MULTIPLY": (np.multiply, 0),
-    "DIVIDE": (np.divide, 0),
-    "NEGATIVE": (np.negative, 0),
-    "SQRT": (np.sqrt, 0),
-    "ABSOLUTE": (np.absolute, 0),
-    "EQUAL": (np.equal, 0),
-    "LESS": (np.less, 0),
-    "LESS_OR_EQUAL": (np.less_equal, 0),
-    "BOTH": (np.logical_and, 0),
-    "EITHER": (np.logical_or, 0),
-    "MINIMUM": (_minimum, 0),
-    "NOT": (np.logical_not, 0),
-    "AGAINST": (_against, 0),
-    "CHOOSE": (_choose, 1),
-    "SINE_AND_COSINE": (_sine_and_cosine, 0),
-    "RESULT": (_result, 0),
-    "RESULT_OR_INFINITE": (_result, 0),
-    "BITS": (lambda number, out: np.copyto(out, number, casting="unsafe"), 0),
+OPERATIONS: dict[str, Callable[..., object]] = {
+    "ADD": np.add,
+    "SUBTRACT": np.subtract,
+    "MULTIPLY": np.multiply,
+    "DIVIDE": np.divide,
+    "NEGATIVE": np.negative,
+    "SQRT": np.sqrt,
+    "ABSOLUTE": np.absolute,
+    "MINIMUM": np.minimum,
+    "EQUAL": np.equal,
+    "LESS": np.less,
+    "LESS_OR_EQUAL": np.less_equal,
+    "BOTH": np.logical_and,
+    "EITHER": np.logical_or,
+    "NOT": np.logical_not,
+    "AGAINST": _against,
+    "CHOOSE": _choose,
+    "SINE_AND_COSINE": _sine_and_cosine,
+    "RESULT": _result,
+    "RESULT_OR_INFINITE": _result,
+    "BITS": lambda number, out: np.copyto(out, number, casting="unsafe"),
 }
-"""Operation -> a function of its operands, outputs and working arrays; number of working arrays."""
+"""Operation -> a function of its operands and outputs."""
 
 
 @lru_cache(maxsize=1024)
@@ -84,15 +78,13 @@ class Plan:
         self._steps: list[tuple[Callable[..., object], tuple[int, ...]]] = []
         for number, (name, places) in enumerate(program.steps):
             once = number < program.once
-            operation, work = OPERATIONS[name]
             outputs = 2 if name == "SINE_AND_COSINE" else 1
             views = [view_index(p, p in conditions, p in single) for p in places[:-outputs]]
             for place in places[-outputs:]:
                 (conditions.add if name in CONDITIONS else conditions.discard)(place)
                 (single.add if once else single.discard)(place)
                 views.append(view_index(place, place in conditions, once))
-            views += [view_index(program.places + k, False, once) for k in range(work)]
-            self._steps.append((operation, tuple(views)))
+            self._steps.append((OPERATIONS[name], tuple(views)))
 
     def run(
         self,
@@ -107,7 +99,7 @@ class Plan:
         for low in range(0, length, tile):
             high = min(low + tile, length)
             if not low or high - low < tile:
-                room = np.empty((self.program.places + 2, high - low))
+                room = np.empty((self.program.places, high - low))
                 for place, scalar in enumerate(self.program.scalars, self.program.moving):
                     room[place, 0] = fixed[scalar] if isinstance(scalar, str) else scalar
                 steps = self._steps

@@ -10,7 +10,7 @@ from typing import Any
 
 PROJECTIONS = ("sine", "cosine")
 """The two values of a sine_and_cosine step."""
-_APART = ("sine_and_cosine", "real_multiply")
+_APART = ("against", "choose", "sine_and_cosine", "real_multiply")
 """Operations that must not write over an operand."""
 
 
