@@ -109,6 +109,30 @@ def test_a_spreadsheet_is_met_to_12_digits_with_ga_either_way_round(sheet, turn,
     assert not found["status"] & IMPOSSIBLE
 
 
+@pytest.mark.parametrize("turn", [0, 180])
+@pytest.mark.parametrize("sheet", SHEETS, ids=lambda x: x["source"][-40:])
+def test_solve_and_bounds_have_a_spreadsheet_with_ga_either_way_round(
+    sheet, turn, tmp_path, capsys
+):
+    scene = {**sheet["scene"], "GA": sheet["scene"]["GA"] + turn}
+    path = tmp_path / "sheet.toml"
+    path.write_text("\n".join(f"{name} = {value!r}" for name, value in scene.items()))
+    outputs = "WAF,DVA,STATUS"
+    assert main(["solve", str(path), "--outputs", outputs, "--results-only"]) == 0
+    told = capsys.readouterr()
+    spin, change, status = map(float, told.out.splitlines()[-1].split(","))
+    assert status == 0
+    assert spin == pytest.approx(sheet["published"]["WAF"], rel=1e-12)
+    assert change == pytest.approx(sheet["published"]["DVA"], rel=1e-12)
+    is_turned = "is taken as" in told.err
+    options = ["--set", "UX=+- .1", "--outputs", "DVA", "--samples", "50", "--json"]
+    assert main(["bounds", str(path), *options]) == 0
+    told = capsys.readouterr()
+    assert ("is taken as" in told.err) == is_turned
+    nominal = json.loads(told.out)["outputs"]["DVA"]["nominal"]
+    assert nominal == pytest.approx(sheet["published"]["DVA"], rel=1e-12)
+
+
 # -- random problems, with what is known removed entry by entry
 
 

@@ -173,6 +173,10 @@ def report(
     optional = ("M", *(OPTIONAL_OF_POINTS if case.values["M"].strip() == "4" else ()))
     forward = set(scene) - {*optional} <= names <= {*scene, *MOVES}
     check_names(names, coordinate_names((*KNOWABLE, *MOVES), names), "name used here", source)
+    if forward:
+        from ...mechanics.approach import approaching
+
+        case = approaching(case)
     findings = (_forward if forward else _inverse)(case, source, samples, seed, units)
     drawing = None
     tables = [_answer(findings, units), *_details(findings, case, units)]

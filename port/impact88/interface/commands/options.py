@@ -519,6 +519,12 @@ def explore(args: Args, outputs: list[str], keep: bool = False) -> Bounds:
     changes = pairs([*args.set, *args.ranges], "--range", "NAME=RANGE, such as MU='.7 .. .9'")
     case = case_given(argparse.Namespace(**(vars(args) | {"set": []})))
     problem = "reconstruction" if args.reconstruct else "forward"
+    if problem == "forward" and "GA" not in changes:
+        from ...mechanics.approach import approaching
+
+        given, case = case, approaching(case)
+        if case is not given:
+            note(None, case.remarks["GA"])
     inputs = read_inputs(case, changes, problem)
     note_remarks(inputs.case)
     correlations = dict(inputs.correlations)

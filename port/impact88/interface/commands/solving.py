@@ -19,6 +19,7 @@ from ...collision.scenefile import case_in
 from ...collision.units import Convention, convention_named
 from ...errors import UserError, note, quoted
 from ...files import display_name, replacing
+from ...mechanics.approach import approaching
 from ...mechanics.closedform.columns import INERTIAS, UNUSED_BY_POINTS, examine, refusals
 from ...mechanics.closedform.share import resolve_share, share_of, share_typed
 from ...mechanics.closedform.solve import solve
@@ -78,6 +79,10 @@ def solve_table(args: options.Args) -> int:
         if one_scene:
             options.set_pairs(args.set, (*SCENE, *OWN_NAMES))
             case = options.case_given(argparse.Namespace(**(vars(args) | {"scene": path})))
+            if args.arithmetic != "applesoft" and not args.sweep:
+                given, case = case, approaching(case)
+                if case is not given:
+                    note("solve", case.remarks["GA"])
             options.note_remarks(case.at_nominal())
             swept = read_ranges(options.sweeps(args.sweep), case)
             source = stack.enter_context(read_sweep(case, swept))
