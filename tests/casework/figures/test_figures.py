@@ -815,7 +815,7 @@ class TestToScale:
         notes = " ".join(text.text for text in drawing.texts() if text.role == "note")
         unit = "ft" if units == "us" else "m"
         size = f"{length:.1f} by {width:.1f} {unit}".replace(".0 ", " ")
-        assert f"A and B drawn as {words} of its weight, {size}." in notes
+        assert f"A and B each drawn as {words} of its weight, {size}." in notes
 
     def test_point_masses_are_discs_that_touch(self):
         scene = sample(2)

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 MOST_PANELS = 12  # panels that fit a page
 MOST_BARS = 8  # bars that fit a panel
 BINS = 60  # bars of a histogram, two a millimetre
+WARNED = "STATUS has a warning"
+"""What is shaded along a value."""
 SWEEP = 801  # points of a sweep, ten a millimetre
 WIDEST_SWEEP = 5.0  # largest friction coefficient swept
 # in mm
@@ -389,7 +391,7 @@ def friction_sweep(scene: Any) -> Drawing:
     axis = np.linspace(max(low, -WIDEST_SWEEP), reach, SWEEP)
     groups = [["LOSS"], ["DVA", "DVB"]]
     titles = ("Energy loss and ΔV against friction", "friction coefficient as typed (MU)")
-    words = ("pivot" if values["MU"] == PIVOT else "this scene", "not admissible")
+    words = ("pivot" if values["MU"] == PIVOT else "this scene", WARNED)
     return _along(scene, "MU", axis, groups, own, faults, titles, words, limit)
 
 
@@ -399,7 +401,7 @@ def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]
     _check_count(outputs)
     units = _system(scene)
     titles = (f"Results against {quantity(name).meaning.partition(';')[0]}", _label(name, units))
-    own, words = numbers_of(scene)[name], ("this scene", "unphysical: see STATUS")
+    own, words = numbers_of(scene)[name], ("this scene", WARNED)
     groups = [[output] for output in outputs]
     axis = np.unique(np.asarray(values, float))
     if len(axis) < 2 or axis[-1] - axis[0] <= _FLAT * np.abs(axis).max():

@@ -421,7 +421,7 @@ def _sizes_words(shapes: Plan, units: System) -> str:
         return (
             f"Outlines {texts[0][1]}: not measured."
             if "I/m" in texts[0][1]
-            else (f"A and B drawn {texts[0][1]}.")
+            else (f"A and B each drawn {texts[0][1]}.")
         )
     return " ".join(f"{name} drawn {words}." for name, words in texts)
 

@@ -239,15 +239,20 @@ def _turns(ink: Image) -> list[int]:
     return [0, 2, 1, 3] if down >= across else [1, 3, 0, 2]
 
 
+_NEXT_STEP = "expected a straight scan at 200 to 300 dpi, or the page typed in as text"
+
+
 def _leaves(
     grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]], copy: Copy | None = None
 ) -> list[Leaf]:
     """Return the printouts of a grid with their verdicts."""
     if sheets and grid.clarity < _MIN_CLARITY:
         likeliest = max(sheets, key=lambda sheet: sheet.gain)
-        unread = CellJudgement(Verdict.INCOMPLETE, reason="its type stands in no clear columns")
+        unread = CellJudgement(
+            Verdict.INCOMPLETE, reason=f"its type stands in no clear columns; {_NEXT_STEP}"
+        )
         return [Leaf(grid, Read(likeliest, {}), unread)]
-    unread = CellJudgement(Verdict.INCOMPLETE, reason="no scene was found")
+    unread = CellJudgement(Verdict.INCOMPLETE, reason=f"no scene was found; {_NEXT_STEP}")
     leaves = [Leaf(grid, Read(sheet, {}), unread) for sheet in sheets]
     legible = [leaf for leaf in leaves if leaf.read.sheet.gain > _LEGIBLE_GAIN]
     costs = read_numbers(grid, [leaf.read.sheet for leaf in legible])
