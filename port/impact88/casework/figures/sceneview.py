@@ -397,7 +397,7 @@ def _cells(vehicle: Vehicle, shapes: Plan, units: System, widest: float) -> list
     if after and vehicle.change is not None:
         cells[1:3] = speed(after.speed), speed(abs(vehicle.change))
         if shapes.impulse:
-            cells[3] = f"{vehicle.pdof(shapes.impulse):.0f}°".replace("-", "−")
+            cells[3] = f"{round(vehicle.pdof(shapes.impulse)) + 0:d}°".replace("-", "−")
         spins[1] = fitting(turn * after.spin, widest)
     return cells + (["–", "–"] if shapes.numbers["M"] == 4 else spins)
 
