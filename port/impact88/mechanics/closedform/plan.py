@@ -35,6 +35,10 @@ def _result(value: Array, out: Array) -> None:
     np.add(value, 0.0, out=out)  # -0.0 becomes 0.0: a zero's sign depends on the path
 
 
+def _minimum(a: Array, b: Array, out: Array) -> None:
+    np.minimum(a, b, out=out)
+
+
 OPERATIONS: dict[str, Callable[..., object]] = {
     "ADD": np.add,
     "SUBTRACT": np.subtract,
@@ -43,7 +47,7 @@ OPERATIONS: dict[str, Callable[..., object]] = {
     "NEGATIVE": np.negative,
     "SQRT": np.sqrt,
     "ABSOLUTE": np.absolute,
-    "MINIMUM": np.minimum,
+    "MINIMUM": _minimum,
     "EQUAL": np.equal,
     "LESS": np.less,
     "LESS_OR_EQUAL": np.less_equal,
