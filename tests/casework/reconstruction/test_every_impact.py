@@ -226,6 +226,33 @@ def test_a_car_that_may_have_stood_still_has_a_least_speed_of_0():
 
 
 @pytest.mark.long
+def test_a_vehicle_that_stands_by_its_speed_stands_by_its_components():
+    known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "SA": read("8 .. 9", "SA"), "HA": 0.0}
+    known |= {"SB": 0.0, "E": 0.2}
+    shown = Measured(reconstruct(known)[0], 1000)
+    assert not shown.solution.folded
+    # (1 + e) m_b / (m_a + m_b) of the closing speed
+    factor = 1.2 * 80 / 180
+    assert shown.ranges["DVA"].lower == pytest.approx(8 * factor, rel=1e-6)
+    assert shown.ranges["DVA"].upper == pytest.approx(9 * factor, rel=1e-6)
+
+
+def test_no_interval_stands_about_an_impact_that_is_none():
+    """A pair of values that only a pulling impact fits best; possible ones lie within limits."""
+    ma, mb, k = 3000 / 32.174, 3500 / 32.174, 5280 / 3600
+    known = {"MA": ma, "MB": mb, "IA": 1800.0, "IB": 2300.0, "DA": 6.5, "DB": 5.0, "EM": 0.0}
+    known |= dict.fromkeys(("GA", "PA", "PB", "TA", "TB", "WA", "WB", "UY"), 0.0) | {"MU": 0.4}
+    known |= {"E": read("0 .. .3", "E"), "SAF": read(f"{12 * k} +- {1.5 * k}", "SAF")}
+    known |= {"SBF": read(f"{17 * k} +- {1.5 * k}", "SBF")}
+    known |= {n: read(f"0 +- {k}", n) for n in ("VX", "VY")}
+    shown = Measured(reconstruct(known)[0], 4000)
+    assert shown.solution.impossible
+    assert shown.draws.values["VC"].min() > 0
+    answer = shown.as_text().partition("velocity ")[0]
+    assert "between" not in answer
+    assert "impacts that physics allows lie within all limits" in " ".join(answer.split())
+
+
 def test_the_first_order_is_not_shown_where_it_contradicts_the_draws():
     """B may have stood still: its speed has a kink there."""
     known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "GA": 170.0, "MUP": 0.1, "UY": 0.0}

@@ -966,6 +966,18 @@ def _check_known(known: Mapping[str, Uncertain | float | str]) -> dict[str, Unce
     for name, item in values.items():
         if name in SPEEDS and item.nominal < 0:
             raise UserError(f"{name} is negative; expected a speed, its course beside it")
+    return _with_standing_vehicles(values)
+
+
+def _with_standing_vehicles(values: dict[str, Uncertain]) -> dict[str, Uncertain]:
+    """Return the values with both components of an exact speed of 0 in its place: as a condition it
+    has no slope there."""
+    courses = {speed: course for course, speed in COURSES.items()}
+    for speed, components in SPEEDS.items():
+        item = values.get(speed)
+        if item is not None and not item.varies and item.nominal == 0:
+            values = {n: x for n, x in values.items() if n not in (speed, courses[speed])}
+            values = {n: fixed_value(0.0) for n in components} | values
     return values
 
 

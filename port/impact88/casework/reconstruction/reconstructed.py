@@ -56,7 +56,7 @@ class Draws:
     @property
     def suffice(self) -> bool:
         """True if the draws tell enough to be shown."""
-        return self.effective >= MIN_SIZE or self.effective >= 0.5 * len(self.sample.branches)
+        return self.effective >= min(MIN_SIZE, 0.25 * len(self.sample.branches))
 
     def spread(self, name: str, quantiles: Sequence[float]) -> Spread:
         """Return mean, standard deviation and quantiles of the draws."""

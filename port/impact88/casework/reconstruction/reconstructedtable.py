@@ -134,7 +134,7 @@ class Measured(Impact):
             bound = ranges(solution, names[:1], seed, None, progress)[names[0]]
             self.is_empty = math.isnan(bound.lower)
         if self.is_empty:
-            self.not_drawn = _is_within_limits(solution) and not solution.impossible
+            self.not_drawn = _is_within_limits(solution)
             if not self.not_drawn:
                 self.evidence = solution.weigh_evidence(inside=False)
         if not solution.assumed:
@@ -189,7 +189,23 @@ class Measured(Impact):
         )
         if not search.single:
             rows.append(("SEARCH", search.text()))
+        if self.solution.impossible and self.draws:
+            rows.append(("POSSIBLE", f"{self._possible_speeds(units)}; their draws are below"))
+        elif self.solution.impossible and self.is_empty:
+            rows.append(("POSSIBLE", "no impact that physics allows lies within all limits"))
         return rows
+
+    def _possible_speeds(self, units: System) -> str:
+        """Return the 90 % intervals of speeds and courses of the possible impacts."""
+        assert self.draws is not None
+        parts = []
+        for name in ("SA", "HA", "SB", "HB"):
+            if name in self.draws.values:
+                ends = self.draws.spread(name, (QUANTILES[0], QUANTILES[-1])).quantiles.values()
+                low, high = sorted(units.display_unwrapped(name, end) for end in ends)
+                unit = units.unit(name)
+                parts.append(f"{name} {number(low, 3)} to {number(high, 3)} {unit}".rstrip())
+        return f"impacts that physics allows lie within all limits: 90 % have {', '.join(parts)}"
 
     @within_doubles
     def warnings(self, units: System = RULES) -> list[str]:
@@ -239,7 +255,7 @@ class Measured(Impact):
                 f"these, so no first-order deviation is given{both}"
             )
         lines += self._ill_posed_warnings(units)
-        if self.not_drawn:
+        if self.not_drawn and not solution.impossible:
             lines.append(
                 "this impact lies within the limits of all known values, but the search for draws "
                 "and bounds found none there: there are neither"

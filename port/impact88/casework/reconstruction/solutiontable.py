@@ -191,7 +191,7 @@ class Impact:
             if not units.is_bare:
                 road, factor = _ROAD.get(unit, ("", 0.0))
                 text += f" {unit}" + (f" ({number(speed * factor, 3)} {road})" if road else "")
-            if name in self.drivers:
+            if name in self.drivers and not self.impossible:  # no interval is about that
                 bound = self.ranges.get(name)
                 sizes = (self.deviations[name], *((bound.lower, bound.upper) if bound else ()))
                 deviation, *ends = (
