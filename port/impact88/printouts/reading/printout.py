@@ -33,7 +33,7 @@ from .alignment import (
 from .fieldlabels import MIN_READER_MARKS, LabelCheck, LabelState, label_checks, words_before
 from .glyphs import Gap, Page, Region, label_cost, letters, plain_glyphs
 from .labelmarks import asterisk_note, mark_checks, retyping_note
-from .rows import find_rows
+from .pagerows import find_rows
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
