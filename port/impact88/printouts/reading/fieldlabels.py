@@ -12,6 +12,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from ...collision.fields import ANGLES, FIELDS
+from .editpath import cheapest_path
 from .glyphs import COSTS, Gap, Page, label_cost, letters
 
 _DIFFERENT = 35
@@ -257,12 +258,13 @@ def _has_other_word(printed: str, read: str) -> bool:
 
 @lru_cache(maxsize=4096)
 def _distance(printed: str, read: str) -> int:
-    """Return the cost of reading a label so: an edit distance with `label_cost`."""
+    """Return the cost of reading a label so."""
     lost = COSTS["letter lost"]
-    row = [lost * count for count in range(len(read) + 1)]
-    for letter in printed:
-        before, row = row, [row[0] + lost]
-        for place, char in enumerate(read):
-            read_so = before[place] + label_cost(letter, char)
-            row.append(min(read_so, before[place + 1] + lost, row[place] + lost))
-    return row[-1]
+    cost, _ = cheapest_path(
+        len(read),
+        len(printed),
+        lambda i, j: (label_cost(printed[j], read[i]), None),
+        lambda i, j: (lost, None),
+        lambda i, j: (lost, None),
+    )
+    return int(cost)

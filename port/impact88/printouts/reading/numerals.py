@@ -12,10 +12,10 @@ from collections.abc import Callable, Iterable, Iterator
 from decimal import Decimal
 from enum import StrEnum
 from functools import cache, lru_cache
-from itertools import product
 from typing import NamedTuple
 
 from ...apple.applesoft.decimaltext import lay_out
+from .editpath import cheapest_path
 from .glyphs import (
     COSTS,
     GAP_COSTS,
@@ -189,39 +189,30 @@ def compare(region: Region, printed: str, cut: bool = False, sign_free: bool = F
 
 @lru_cache(maxsize=20000)
 def _explain(region: Glyphs, printed: str, cut: bool, sign_free: bool) -> Match:
-    """Return the cheapest explanation, an edit distance by dynamic programming.
+    """Return the cheapest explanation: a glyph for a printed character, an extra glyph, and a lost
+    character are its steps."""
 
-    The steps are a glyph for a printed character, an extra glyph, and a lost character.
-    """
-    rows, columns = len(region), len(printed)
-    least: dict[tuple[int, int], float] = {(0, 0): 0.0}
-    steps_back: dict[tuple[int, int], tuple[int, int, Doubt | None]] = {}
-    for i, j in product(range(rows + 1), range(columns + 1)):
-        steps: list[tuple[int, int, float, Doubt | None]] = []
-        if i < rows and j < columns:
-            cost, doubt = _substitution_cost(region, i, printed[j])
-            blank = j > 0 and region[i][1]
-            steps.append(
-                (1, 1, cost + _SLIGHT * bool(blank), doubt or (Doubt.BLANK if blank else None))
-            )
-        if i < rows:
-            steps.append((1, 0, *_extra_cost(region, i, printed, j, sign_free)))
-        if j < columns:
-            steps.append((0, 1, *_lost_cost(region, i, printed, j, cut)))
-        for di, dj, cost, doubt in steps:
-            place = i + di, j + dj
-            if place not in least or least[i, j] + cost < least[place]:
-                least[place], steps_back[place] = least[i, j] + cost, (di, dj, doubt)
+    def replaced(i: int, j: int) -> tuple[float, Doubt | None]:
+        cost, doubt = _substitution_cost(region, i, printed[j])
+        blank = j > 0 and region[i][1]
+        return cost + _SLIGHT * bool(blank), doubt or (Doubt.BLANK if blank else None)
+
+    cost, path = cheapest_path(
+        len(region),
+        len(printed),
+        replaced,
+        lambda i, j: _extra_cost(region, i, printed, j, sign_free),
+        lambda i, j: _lost_cost(region, i, printed, j, cut),
+    )
     spots, exact = list[Spot](), 0
-    i, j = rows, columns
-    while i or j:
-        di, dj, doubt = steps_back[i, j]
-        i, j = i - di, j - dj
+    i = j = 0
+    for di, dj, doubt in path:
         read, printed_char = region[i][0] if di else "", printed[j] if dj else ""
         exact += read == printed_char
         if doubt is not None:
             spots.append(Spot(i, read, printed_char, doubt))
-    return Match(least[rows, columns], tuple(reversed(spots)), exact)
+        i, j = i + di, j + dj
+    return Match(cost, tuple(spots), exact)
 
 
 def _substitution_cost(region: Glyphs, i: int, printed: str) -> tuple[float, Doubt | None]:
