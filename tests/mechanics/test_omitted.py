@@ -4,6 +4,7 @@ import os
 
 import numpy as np
 import pytest
+from longer import long_but
 
 import impact88
 from impact88.names import SCENE
@@ -52,7 +53,7 @@ def uses(scene: dict[str, float], name: str, result: str, rng: np.random.Generat
     return bool(np.ptp(values) > 1e-7 * sizes) if np.isfinite(values).all() else True
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", long_but(KINDS, kept=(0, 2)))
 def test_inputs_removed_one_by_one(kind):
     rng = np.random.default_rng(52)
     results = [name for name in impact88.names.RESULTS if name not in ("STATUS", "COND")]
@@ -96,6 +97,7 @@ def test_columns_lack_what_their_scenes_lack():
             assert found[name][i] == pytest.approx(value, rel=1e-12, abs=1e-9)
 
 
+@pytest.mark.long
 def test_motion_along_one_line_needs_no_contact_plane():
     """Turned and exchanged: the same, by momentum and restitution along the line."""
     rng = np.random.default_rng(3)

@@ -55,6 +55,7 @@ def test_a_genuine_page_in_any_dress_is_settled(name: str) -> None:
             check(dressed)
 
 
+@pytest.mark.long
 def test_an_altered_character_is_never_passed_over() -> None:
     """No bare IDENTICAL, unless the program prints exactly that for the scene that verify gives."""
     for page in dressedpages.altered_pages(6 * (printouts.SWEEP or 10), seed=12):

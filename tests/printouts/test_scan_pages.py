@@ -647,6 +647,7 @@ def test_a_negative_two_pages_and_a_page_on_a_dark_desk_are_turned_into_paper() 
             assert -2 < top < bottom < height + 2
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("phosphor", long_but(scanpages.PHOSPHORS))
 def test_a_screen_with_coloured_type_on_black_is_a_page(phosphor: str) -> None:
     """Polarity is decided before colour: the type is not taken for ink of another colour."""
@@ -657,6 +658,7 @@ def test_a_screen_with_coloured_type_on_black_is_a_page(phosphor: str) -> None:
     assert "negative" in "\n".join(result.remarks)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", long_but(range(4)))
 def test_a_photograph_with_a_soft_shadow_on_a_grey_desk_is_read(seed: int) -> None:
     page, _ = genuine()

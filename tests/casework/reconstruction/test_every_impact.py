@@ -190,6 +190,7 @@ def direct_impact(n, rng):
     return u[kept], v[kept]
 
 
+@pytest.mark.long
 def test_draws_are_those_of_rejection_over_approaching_impacts():
     """B is struck: that it runs away backwards meets the crush as well, and is no impact."""
     known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "GA": 180.0, "UY": 0.0, "VY": 0.0, "MUP": 0.0}
@@ -267,6 +268,7 @@ def test_the_first_order_is_not_shown_where_it_contradicts_the_draws():
             assert plain == pytest.approx(shown.draws.values[name].std(), rel=0.34)
 
 
+@pytest.mark.long
 def test_a_second_exact_value_that_is_not_linear_is_met_by_every_draw():
     """One is solved for; the other is met within a thousandth of it."""
     after = solve(SCENE, (*FINAL, "MUP"))
