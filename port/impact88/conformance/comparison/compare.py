@@ -232,7 +232,7 @@ class Comparison:
     unknown: dict[str, str] = field(default_factory=dict)
     place: dict[str, Any] = field(default_factory=dict)
     remarks: list[str] = field(default_factory=list)
-    _trials: TrialNoise = field(default_factory=TrialNoise)
+    _trials: TrialNoise = field(default_factory=TrialNoise, init=False, repr=False)
 
     @property
     def worst(self) -> list[Row]:
