@@ -48,7 +48,6 @@ CONTENTS = (
     (4, b"ftyphei", "a HEIC picture", _PICTURES),
     (4, b"ftypmif", "a HEIF picture", _PICTURES),
     (4, b"ftypavif", "an AVIF picture", _PICTURES),
-    (0, b"{\\rtf", "an RTF file", ": save it as plain text, or pandoc -t plain FILE"),
     (
         0,
         b"PK\x03\x04",

@@ -60,6 +60,10 @@ FORMS: dict[str, tuple[str | bytes, str]] = {
     "mail.txt": ("Dear all,\n" + "".join(f">> {line}\n" for line in SAMPLE.split("\n")), EXACT),
     "entities.txt": (SAMPLE.replace(" ", "&nbsp;"), EXACT),
     "page.html": (f"<html><body><pre>{html.escape(SAMPLE)}</pre></body></html>", EXACT),
+    "page.rtf": (
+        "{\\rtf1\\ansi {\\f0\\fmodern Courier;}\n"
+        + "".join(f"{line}\\par\n" for line in SAMPLE.split("\n")) + "}", EXACT
+    ),
     "windows.txt": (("Caf\u00e9 \u2013\n" + SAMPLE.replace("-", "\u2013")).encode("cp1252"), EXACT),
     "macintosh.txt": (
         ("Caf\u00e9\n" + SAMPLE.replace("-", "\u2013")).replace("\n", "\r").encode("mac_roman"),
