@@ -295,8 +295,10 @@ class Printout:
 
     @property
     def out_of_order(self) -> bool:
-        """True if rows are out of the program's order on a page of its form, with prompts or rows
-        of asterisks; one without them was retyped, in an order of its own."""
+        """True if rows of a page of the program's form are out of its order.
+
+        A page without prompts and rows of asterisks was retyped, in an order of its own.
+        """
         return bool(self.exchanged) and (bool(self.replies) or self.ended)
 
     @property
