@@ -193,7 +193,9 @@ def _drawable(scene: Any, result: Mapping[str, Any]) -> dict[str, Any]:
     speeds: dict[str, complex] = {}
     for vehicle, (x, y) in {"A": ("UX", "UY"), "B": ("VX", "VY")}.items():
         after = (float(result.get(f"V{vehicle}{axis}", math.nan)) for axis in "XY")
-        before = (double(str(values.get(name, math.nan))) for name in (x, y))
+        before = tuple(_number(values.get(name)) for name in (x, y))
+        if math.isnan(sum(before)):
+            raise UserError(f"{missing([x, y])}; the drawing shows the velocities before")
         speeds[vehicle] = complex(*before)
         course = next((v for v in (speeds[vehicle], complex(*after)) if abs(v) > 0), 0j)
         theta = math.degrees(cmath.phase(course)) + (180.0 if vehicle == "A" else 0.0)
@@ -204,6 +206,13 @@ def _drawable(scene: Any, result: Mapping[str, Any]) -> dict[str, Any]:
             raise UserError(f"{missing(['GA'])}; the drawing shows the contact plane")
         values["GA"] = math.degrees(cmath.phase(b - a)) if a != b else math.degrees(cmath.phase(-a))
     return values
+
+
+def _number(value: Any) -> float:
+    """Return a value as a double, NaN where it is not known."""
+    if value is None or isinstance(value, float):
+        return math.nan if value is None else value
+    return double(str(value))
 
 
 def _depth(point: complex, inward: complex) -> float:

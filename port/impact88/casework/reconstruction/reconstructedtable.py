@@ -205,7 +205,8 @@ class Measured(Impact):
                 low, high = sorted(units.display_unwrapped(name, end) for end in ends)
                 unit = units.unit(name)
                 parts.append(f"{name} {number(low, 3)} to {number(high, 3)} {unit}".rstrip())
-        return f"impacts that physics allows lie within all limits: 90 % have {', '.join(parts)}"
+        intervals = f": 90 % have {', '.join(parts)}" if parts else ""
+        return f"impacts that physics allows lie within all limits{intervals}"
 
     @within_doubles
     def warnings(self, units: System = RULES) -> list[str]:

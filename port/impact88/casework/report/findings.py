@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -186,8 +185,11 @@ def report(
     look = (DRAWN, "", units, case.outlines)
     verdicts = [text for text in (findings.impossible, findings.evidence) if text]
     room = _room(paper, [*summary, *answer], verdicts, remarks)
-    with suppress(UserError):  # what is not determined cannot be drawn
+    undrawn = ""
+    try:
         drawing = scene_drawing(findings.scene, findings.values, *look, tallest=room)
+    except UserError as error:  # what is not determined cannot be drawn
+        undrawn = str(error)
     page = render(
         "collision.html",
         title=title or case.title or "Planar impact of two vehicles",
@@ -208,6 +210,7 @@ def report(
         signed={name: case.given.get(name, "") for name in ("examiner", "date")},
         tables=tables,
         drawing=svg(drawing) if drawing else "",
+        undrawn=undrawn,
         room=FIRST_PAGE[paper],
         remarks=remarks,
     )
