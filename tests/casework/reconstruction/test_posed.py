@@ -252,3 +252,14 @@ def test_a_result_changes_only_if_it_uses_what_is_removed(kind):
                     )
             if name in ("TA", "TB"):
                 assert all(name in solution.absent[result] for result in ALONG_THE_CAR[name[1]])
+
+
+@pytest.mark.parametrize("way", [0, 90, 180])
+def test_what_is_left_open_is_shown_at_an_impact_that_physics_allows(way):
+    """A of unknown speed runs into a standing B whose change of speed alone is known: of the two
+    ways that B may have gone, one is an impact."""
+    known = {"M": "4", "MA": "2500", "MB": "112", "HA": str(way), "SB": "0", "DVB": "44"}
+    first = impact88.reconstruct(known)[0]
+    assert not first.impossible
+    along = {0: ("VBX", 44), 90: ("VBY", 44), 180: ("VBX", -44)}[way]
+    assert first.values[along[0]] == pytest.approx(along[1])

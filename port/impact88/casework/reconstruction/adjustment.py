@@ -1250,7 +1250,12 @@ class _Search:
         if solution.undetermined:  # keep one: any other point of the continuum is as good
             self.open_count += 1
             candidates = (*self.open_solutions, solution)
-            self.open_solutions = [min(candidates, key=lambda impact: round(impact.squares, 9))]
+            self.open_solutions = [
+                min(
+                    candidates,
+                    key=lambda impact: (round(impact.squares, 9), impact.impossible != 0),
+                )
+            ]
         else:
             self.solutions.append(solution)
 
