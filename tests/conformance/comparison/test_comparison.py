@@ -30,6 +30,7 @@ from otherprogram import RESULTS, Numbers, Program, answers
 from impact88.conformance.comparison import diagnosis
 from impact88.conformance.comparison.compare import (
     NO_RESULT,
+    NO_SCENE,
     NOTHING_HERE,
     NOTHING_THERE,
     REFUSED,
@@ -445,11 +446,24 @@ def test_what_is_not_compared_is_named(tmp_path) -> None:
     found["KI"][2] = ""
     more = {"vax": found["VAX"], "VAY_mph": found["VAY"], "mood": ["x"] * len(rows)}
     done = compared(tmp_path, {**found, **more}, rows)
-    assert skipped(done) == {NO_RESULT: [5], NOTHING_HERE: [6], NOTHING_THERE: [2]}
+    assert skipped(done) == {NO_RESULT: [5], NO_SCENE: [6], NOTHING_THERE: [2]}
+    assert done.summary.startswith("6 rows: 3 agree, 0 disagree, 1 refused, 2 not compared")
     assert done.unknown == {"vax": "VAX", "VAY_mph": "VAY", "mood": ""}
     assert done.tallies["KI"].missing == 1
     assert len(done.silent) == 6
     assert done.agreeing == 3
+
+
+def test_a_scene_that_is_none_is_named_by_its_label(tmp_path) -> None:
+    singular = {**ROWS[3], "EM": "0.5", "DA": "0", "DB": "0"}
+    rows = [ROWS[0], {**ROWS[1], "MA": "-1"}, {**ROWS[2], "IB": "-5"}, singular]
+    found = {name: list(column) for name, column in answered(Program(), rows).items()}
+    for name in FINAL_VELOCITIES:
+        found[name][1:] = ["1"] * 3
+    found = {name: found[name] for name in FINAL_VELOCITIES}
+    done = compared(tmp_path, {**found, "label": ["usual", "MA < 0", "IB < 0", "EM"]}, rows)
+    assert skipped(done) == {NO_SCENE: [2, 3], NOTHING_HERE: [4]}
+    assert done.not_compared[NO_SCENE].labels == ["MA < 0", "IB < 0"]
 
 
 def test_a_program_may_refuse_a_failure_and_nothing_else(tmp_path) -> None:

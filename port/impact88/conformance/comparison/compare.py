@@ -37,7 +37,7 @@ from .diagnosis import (
     Hypothesis,
     Unexplained,
 )
-from .vectors import FAILURE
+from .vectors import FAILURE, FROZEN_ID
 
 MAX_ROWS_KEPT = 20_000
 """Rows that disagree from which a search starts; with its causes the rest is judged as it is read,
@@ -45,16 +45,21 @@ so that the memory for large tables is bounded."""
 MAX_AGREEING_KEPT = 4000  # rows that a cause must not contradict
 MAX_ROWS_LISTED = 20  # of those that disagree most, and of those not compared for each reason
 NOT_COMPARED = ("STATUS", "COND")  # result columns
+POSITIVE = ("MA", "MB", "IA", "IB")  # a scene has no other
 CARRIED = ("id", "class", "label", "expect", "flags", "comment")
 """Columns of test vectors that identify the row."""
 
 NO_RESULT = "no result on either side: theirs refuses, and so does the mathematics"
 NOTHING_HERE = "theirs gives numbers where the equations have no solution"
+NO_SCENE = (
+    "theirs gives numbers where the scene is none: a mass or a moment of inertia is not positive, "
+    "which a program must refuse"
+)
 NOTHING_THERE = "theirs gives nothing where there is a result"
 REFUSED = "theirs refuses a vector of the class failure, as it may"
 UNREADABLE = "the row could not be read"
 NO_DIGIT = "a number shares no digit with ours, where rounding or the digits written leave none"
-REASONS = (UNREADABLE, NO_RESULT, NOTHING_HERE, REFUSED, NO_DIGIT, NOTHING_THERE)
+REASONS = (UNREADABLE, NO_RESULT, NO_SCENE, NOTHING_HERE, REFUSED, NO_DIGIT, NOTHING_THERE)
 HARMLESS = (NO_RESULT, REFUSED)
 """Reasons that are no fault of the program."""
 
@@ -164,10 +169,13 @@ class Skipped:
         Their number.
     first : list of int
         The first of them.
+    labels : list of str
+        The labels of all of them, in a table of test vectors.
     """
 
     rows: int = 0
     first: list[int] = field(default_factory=list)
+    labels: list[str] = field(default_factory=list)
 
 
 @dataclass
@@ -258,7 +266,12 @@ class Comparison:
         """The counts and the commonest cause, in one line."""
         rows = f"{self.rows} row{'s' if self.rows != 1 else ''}"
         line = f"{rows}: {self.agreeing} agree, {self.differing} disagree"
-        if skipped := sum(group.rows for group in self.not_compared.values()):
+        refused = sum(
+            self.not_compared[name].rows for name in HARMLESS if name in self.not_compared
+        )
+        if refused:
+            line += f", {refused} refused"
+        if skipped := sum(group.rows for group in self.not_compared.values()) - refused:
             line += f", {skipped} not compared"
         for cause, count in self.causes.most_common(1):
             is_cause = not cause.startswith(AGREES)
@@ -373,7 +386,10 @@ def compare(
             hint = f" ({', '.join(hints)}?)" if hints else ""
             says = f"no column of results{hint}; expected some of {' '.join(RESULTS)}, beside the "
             raise UserError(f"{says}scene's", where)
-        check_scene_columns({*reader.names, *values}, where=where)
+        advice = "--set NAME=VALUE"
+        if "id" in reader.names:
+            advice = f"where ids stand for the scenes of a kit, add --kit {FROZEN_ID}; {advice}"
+        check_scene_columns({*reader.names, *values}, advice=advice, where=where)
         comparison.tallies = {name: Tally() for name in wanted}
         with progress(reader.total, "compare", "B") as meter:
             before = 0
@@ -535,13 +551,19 @@ def _compare_block(
     solvable, answered = np.isfinite(case.ours).any(0), np.isfinite(case.values).any(0)
     kinds = rows.columns.get("class", [""] * rows.count)
     refused = solvable & ~answered & np.array([str(kind) == FAILURE for kind in kinds], bool)
-    conditions = (~readable, ~solvable & ~answered, ~solvable, refused, lost)
+    positive = np.all([scene[name] > 0 for name in POSITIVE], 0)
+    conditions = (~readable, ~solvable & ~answered, ~solvable & ~positive, ~solvable, refused, lost)
+    labels = rows.columns.get("label")
     reasons = np.select(conditions, REASONS[:-1], REASONS[-1])
     for reason in REASONS:
-        if row_numbers := (rows.first + np.flatnonzero(~compared & (reasons == reason))).tolist():
+        places = np.flatnonzero(~compared & (reasons == reason))
+        if places.size:
             skipped = comparison.not_compared.setdefault(reason, Skipped())
-            skipped.rows += len(row_numbers)
-            skipped.first = (skipped.first + row_numbers)[:MAX_ROWS_LISTED]
+            skipped.rows += places.size
+            skipped.first = (skipped.first + (rows.first + places).tolist())[:MAX_ROWS_LISTED]
+            if labels is not None:
+                found = dict.fromkeys(str(labels[place]) for place in places.tolist())
+                skipped.labels += [label for label in found if label not in skipped.labels]
     by_elimination = ~wrong & (grades == ELIMINATION)
     largest_by_row = np.where(by_elimination, relative, 0.0).max(0)
     elimination = comparison.elimination

@@ -155,7 +155,8 @@ class Conformance:
         state = "conforms" if self.conforms else "does not conform"
         count = f"{self.passed} of {len(self.verdicts)}"
         which = f"impact88 vectors/{NUMBERS['vectors']} seed {self.kit.seed}"
-        which = f"impact88 vectors {FROZEN_ID}" if self.kit.place == FROZEN_ID else which
+        is_frozen = self.kit.seed == FROZEN_SEED and len(self.verdicts) == FROZEN_COUNT
+        which = f"impact88 vectors {FROZEN_ID}" if is_frozen else which
         return f"{which}: {state}, {count} (table {self.sha256[:12]}, kit {self.kit.sha256[:12]})"
 
     def counts(self, attribute: str) -> dict[str, dict[str, int]]:

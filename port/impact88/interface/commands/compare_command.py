@@ -5,16 +5,17 @@ velocities XA YA XB YB before and XAF YAF XBF YBF after, VC VS KI KF LOSS DVA DV
 Names may be in small letters and have units (VAX [mph]); JSON may hold inputs and outputs in
 objects of their own. A note on standard error says how the table was read. Each result agrees
 
-  exactly                  to the last bit of the double
-  to the printed digits    to the digits it is written with
-  within rounding          as closely as plain elimination in double precision can in that scene
+  to the double       within the rounding errors of the best programs in double precision
+  to digits claimed   to all digits it is written with
+  as elimination      as closely as plain elimination in double precision can in that scene
 
-or it disagrees. For rows that disagree, compare tries some 50,000 small errors, in eleven ways of
+or it does not. For rows that disagree, compare tries some 50,000 small errors, in eleven ways of
 writing the equations, conventions, other laws of friction and restitution, and constants, singly
 and in pairs. It says in a sentence which of them predicts the numbers, those that agree as well,
 and under which condition on the scene ("where the closing speed is below 10"). It looks at 400 rows
 that disagree and at as many that agree, for about 15 seconds, and says what it did not look for.
-What could not be compared is listed on standard error.
+What could not be compared is listed on standard error; rows that theirs refuses where there is
+no result, or that are vectors of the class failure, are counted as refused.
 
 With --kit DIR the table is judged as answers to the vectors of that kit (impact88 oracle --kit):
 every id once, its inputs bit for bit, all final velocities, an answer where one is due and no
@@ -65,10 +66,20 @@ ARGUMENTS = (
         "(default: what rounding in double precision allows in that scene)",
         type=float,
     ),
-    options.flag("--strict", "rows, cells and columns that were not compared are failures"),
+    options.flag(
+        "--strict",
+        "rows, cells and columns that were not compared are failures, but for rows "
+        "that theirs may refuse",
+    ),
     options.flag("--no-causes", "judge only; look for no causes"),
     options.reads("--kit", "KIT", "judge as answers to the vectors of this kit, folder or .zip"),
-    options.writes("--junit", "FILE", "write a JUnit report, a test a row (with --kit: a vector)"),
+    options.writes(
+        "--junit",
+        "FILE",
+        "write a JUnit report: a test for each row "
+        "that disagrees, one for all that agree, one per reason why rows were not compared (with "
+        "--kit: one per vector)",
+    ),
     options.UNITS,
     options.ENCODING,
     options.JSON,
@@ -167,7 +178,8 @@ def _notes(comparison: Comparison) -> Iterator[str]:
     for reason, count in comparison.not_compared.items():
         if reason not in HARMLESS:
             first = ", ".join(map(str, count.first[:5])) + (", ..." if count.rows > 5 else "")
-            yield f"{count.rows} rows not compared ({first}): {reason}"
+            labels = f" (labels: {', '.join(count.labels)})" if any(count.labels) else ""
+            yield f"{count.rows} rows not compared ({first}): {reason}{labels}"
     for name, tally in comparison.tallies.items():
         if tally.missing:
             yield f"{tally.missing} cells of {name} are empty where there is a result"
@@ -243,4 +255,8 @@ def _lines(comparison: Comparison) -> Iterator[str]:
                 f"here {cell.ours:.12g}, off by {cell.relative:.2g}; {cell.cause}"
             )
     for reason, skipped_count in comparison.not_compared.items():
-        yield f"\n{skipped_count.rows} rows not compared: {reason}"
+        word = "refused" if reason in HARMLESS else "not compared"
+        labels = (
+            f" (labels: {', '.join(skipped_count.labels)})" if any(skipped_count.labels) else ""
+        )
+        yield f"\n{skipped_count.rows} rows {word}: {reason}{labels}"
