@@ -1,8 +1,8 @@
 """What each result by the closed form may be off: `errorbound.result_bounds` against 50 digits.
 
-`evolved_for_each_result.csv` holds the worst scenes that `benchmarks/evolve_each.py` made for one
-result in each family (seed 7, 30 s), when contact velocities were the sums of what centers and
-spins give: there a result was off by up to 140,000 of its own roundings (``units``).
+`evolved_for_each_result.csv` holds the worst scenes that `tests/benchmarks/evolve_each.py` made
+for one result in each family (seed 7, 30 s), when contact velocities were the sums of what centers
+and spins give: there a result was off by up to 140,000 of its own roundings (``units``).
 ``pivot_wide`` was evolved against the bound itself (``pivot --wide --bound``, seed 11). The rows
 behind it were evolved against intermediate forms of the velocities of light bodies (seeds 101 and
 88301, 40 and 180 s), but VAX of a pivot with the contact point ahead, which is made by hand.

@@ -86,9 +86,9 @@ def moment_ratio(em: Any) -> Any:
 def broken_laws(state: State) -> Array:
     """Return the laws that impacts break, as bits of STATUS (`impact88.status.IMPOSSIBLE`).
 
-    This is the one definition of an impossible impact: its contact points do not approach, the
-    normal impulse pulls, kinetic energy is gained, or E or EM is out of range. What cannot be
-    decided for lack of a value is not broken.
+    An impact is impossible where its contact points do not approach, the normal impulse pulls,
+    kinetic energy is gained, or E or EM is out of range. What cannot be decided for lack of a value
+    is not broken.
 
     Parameters
     ----------

@@ -108,13 +108,35 @@ def test_load_and_save(program, tmp_path):
     path = program('10 print "mixed Case":rem\n20 REM  as  It is\n25 data low\n')
     other = tmp_path / "Other.bas"
     done = impact88("basic", input=f"LOAD {path}\n30 PRINT 3\nSAVE {other}\nLIST 20\n")
-    assert done.stderr == ""
+    assert done.stderr == f"impact88 basic: {other}: saved, 4 lines\n"
     assert "20  REM   as  It is" in done.stdout
     saved = '10 PRINT "mixed Case": REM\n20 REM  as  It is\n25 DATA LOW\n30 PRINT 3\n'
     assert other.read_text() == saved
     done = impact88("basic", input=f"LOAD {tmp_path / 'none'}\nPRINT 5\n")
     assert "cannot be read" in done.stderr
     assert "5\n" in done.stdout
+
+
+def test_save_writes_over_no_file_but_its_own(program, tmp_path):
+    letter = tmp_path / "letter.txt"
+    letter.write_text("Dear Sir\n")
+    done = impact88("basic", input=f'NEW\n10 PRINT 1\nSAVE "{letter}"\n')
+    assert letter.read_text() == "Dear Sir\n"
+    assert "letter.txt: was neither loaded nor saved in this session" in done.stderr
+    mine = tmp_path / "mine.bas"
+    impact88("basic", input=f'NEW\n10 PRINT 1\nSAVE "{mine}"\n20 PRINT 2\nSAVE {mine}\n')
+    assert mine.read_text() == "10 PRINT 1\n20 PRINT 2\n"
+    impact88("basic", input=f"LOAD {mine}\n30 END\nSAVE {mine}\n")
+    assert mine.read_text().endswith("30 END\n")
+    path = program("10 PRINT 1\n")
+    impact88("basic", path, "--prompt", input=f"20 END\nSAVE {path}\n")
+    assert os.path.getsize(path) > len("10 PRINT 1\n")
+
+
+@pytest.mark.parametrize("word", ["SAVE", "LOAD"])
+def test_a_file_needs_a_name(word):
+    done = impact88("basic", input=f"{word}\n")
+    assert done.stderr == f"impact88 basic: {word} needs a file's name: {word} mine.bas\n"
 
 
 @pytest.mark.parametrize(
@@ -136,7 +158,7 @@ def test_a_long_line_survives_save_new_load(tmp_path):
     line = "10 " + "GOSUB9:" * 33 + "END"
     path = tmp_path / "long.bas"
     done = impact88("basic", input=f"{line}\nSAVE {path}\nNEW\nLOAD {path}\nLIST 10\n")
-    assert done.stderr == ""
+    assert "text cannot hold" not in done.stderr
     assert len(path.read_text()) > 300
     assert "".join(done.stdout.partition("LIST")[2].split()).count("GOSUB9") == 33
 

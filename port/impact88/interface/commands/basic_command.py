@@ -3,9 +3,10 @@ With a file: load that program, run it, and leave when it ends.
 
 FILE holds numbered lines as they are typed or as LIST prints them, in rows of any width, or a
 tokenised program as disk tools extract it. At the prompt LOAD FILE reads such a file and SAVE FILE
-writes text (not with --no-dos), control-C breaks a running program, control-D leaves. Graphics,
-tape, paddles, shapes and machine code are tokenised and listed, but not done: ?SYNTAX ERROR. There
-is no disk: a program's disk commands are passed over. Either is said on stderr at the end.
+writes text, over no file but one that was loaded or saved before (not with --no-dos); control-C
+breaks a running program, control-D leaves. Graphics, tape, paddles, shapes and machine code are
+tokenised and listed, but not done: ?SYNTAX ERROR. There is no disk: a program's disk commands are
+passed over. Either is said on stderr at the end.
 
 examples:
   impact88 basic                          the restored listing at the prompt
@@ -19,6 +20,7 @@ import os
 import select
 import signal
 import sys
+from collections.abc import Set
 from contextlib import ExitStack, suppress
 from stat import S_ISREG
 from typing import IO
@@ -39,7 +41,12 @@ SLOT_LINE = '190 P$ = "PR# " + "{}"'
 PROGRAM_LIMIT = 1_000_000
 """Bytes of a program's text; 48K hold some 50,000, so that twice as many change no answer."""
 LEAVE = "control-Z and RETURN leave" if sys.platform == "win32" else "control-D leaves"
-BANNER = f"impact88 basic: an Apple II Plus. LIST shows the program, RUN starts {{}}; {LEAVE}."
+BANNER = (
+    "impact88 basic: an Apple II Plus. LIST shows the program, RUN starts {}, SAVE FILE and "
+    f"LOAD FILE keep one; {LEAVE}."
+)
+
+TAPE = "there is no tape; at the prompt, SAVE FILE and LOAD FILE"
 
 ARGUMENTS = (
     options.reads("program", "FILE.bas", "a program to run", nargs="?"),
@@ -147,8 +154,11 @@ def main(args: options.Args) -> int:
             if args.prompt or not args.program:
                 if terminal.person:
                     print(BANNER.format("it" if args.program else "the 1988 listing"))
+                files = {os.path.realpath(args.program)} if args.program else set()
                 machine.prompt(
-                    lambda line: not args.no_dos and _disk_command(machine, terminal, args.printer)
+                    lambda line: (
+                        not args.no_dos and _disk_command(machine, terminal, args.printer, files)
+                    )
                 )
                 print()
         except TooManyStatements:
@@ -160,7 +170,8 @@ def main(args: options.Args) -> int:
 
 def _say_what_was_not_done(machine: Applesoft) -> None:
     for feature in machine.machine.refused:
-        note("basic", f"{feature} is not supported: text only, no machine code")
+        reason = TAPE if feature in ("LOAD", "SAVE") else "text only, no machine code"
+        note("basic", f"{feature} is not supported: {reason}")
     for sentence in machine.machine.ignored:
         note("basic", sentence)
 
@@ -191,13 +202,16 @@ def _same_file(path: str, stream: IO[str]) -> bool:
         return False
 
 
-def save_program(machine: Applesoft, path: str, printer: str | None) -> None:
-    """Write the program as text, and say on stderr if it is not what the machine holds. Raises
-    UserError, also for a file that this command reads or writes otherwise."""
+def save_program(machine: Applesoft, path: str, printer: str | None, files: Set[str]) -> None:
+    """Write the program as text, and say so on stderr, or that it is not what the machine holds.
+    Raises UserError, also for a file that this command reads or writes otherwise, and for one that
+    stands there and is none of ``files`` (real paths), which this session loaded or saved."""
     if printer and os.path.realpath(path) == os.path.realpath(printer):
         raise UserError("is the printer's paper; expected another file", path)
     if any(_same_file(path, stream) for stream in (sys.stdin, sys.stdout, sys.stderr)):
         raise UserError("is the input or the output of this command; expected another file", path)
+    if os.path.isfile(path) and os.path.realpath(path) not in files:
+        raise UserError("was neither loaded nor saved in this session; expected a new file", path)
     text = machine.source()
     with replacing(path) as file:
         file.write(text)
@@ -209,6 +223,8 @@ def save_program(machine: Applesoft, path: str, printer: str | None) -> None:
     unsaved = [line for line in machine.machine.lines() if line not in lines]
     if unsaved:
         note("basic", f"{path}: text cannot hold line {unsaved[0][0]} as it is; LOAD makes another")
+    else:
+        note("basic", f"{path}: saved, {len(lines)} line{'s' * (len(lines) != 1)}")
 
 
 def _run_file(machine: Applesoft, terminal: Terminal, *, stay: bool) -> int:
@@ -231,17 +247,25 @@ def _run_file(machine: Applesoft, terminal: Terminal, *, stay: bool) -> int:
     return int(error is not None)
 
 
-def _disk_command(machine: Applesoft, terminal: Terminal, printer: str | None) -> bool:
-    """LOAD and SAVE, which the disk system would take; whether the last line was one."""
+def _disk_command(
+    machine: Applesoft, terminal: Terminal, printer: str | None, files: set[str]
+) -> bool:
+    """LOAD and SAVE, which the disk system would take; whether the last line was one. ``files``:
+    real paths of those that were loaded or saved; this one is added."""
     word, _, name = terminal.last.strip().partition(" ")
     name = name.strip()
-    if (word := word.upper()) not in ("LOAD", "SAVE") or not name:
+    if (word := word.upper()) not in ("LOAD", "SAVE"):
         return False
+    if len(name) > 1 and name[0] == name[-1] == '"':
+        name = name[1:-1]
     try:
+        if not name:
+            raise UserError(f"{word} needs a file's name: {word} mine.bas")
         if word == "LOAD":
             load_program(machine, name)
         else:
-            save_program(machine, name, printer)
+            save_program(machine, name, printer, files)
+        files.add(os.path.realpath(name))
     except UserError as error:
         note("basic", str(error))
     return True
