@@ -22,7 +22,7 @@ from longer import long_but
 from worked_cases import RUN_1
 
 from impact88.printouts.judging import beside
-from impact88.printouts.judging.judgement import Verdict
+from impact88.printouts.judging.judgement import FieldCheck, Status, Verdict
 from impact88.printouts.recovery.replays import run_all
 from impact88.printouts.reporting.examination import Examined, Verification, examine
 from impact88.printouts.reporting.verification import (
@@ -32,6 +32,7 @@ from impact88.printouts.reporting.verification import (
     NOTES,
     lines,
     sections,
+    summary,
 )
 from impact88.printouts.scan import sheets
 from impact88.printouts.scan.claims import claims, is_of_a_printout
@@ -47,7 +48,13 @@ from impact88.printouts.scan.holding import (
     state,
 )
 from impact88.printouts.scan.layout import Place, Sheet
-from impact88.printouts.scan.scenes import MAX_CELL_COST, Candidate, Read, confirm_inputs
+from impact88.printouts.scan.scenes import (
+    MAX_CELL_COST,
+    Candidate,
+    Read,
+    confirm_inputs,
+    scene_of,
+)
 from impact88.printouts.scan.typeface import READABLE
 from impact88.program.run import run
 from impact88.program.scene import sample
@@ -264,6 +271,39 @@ def test_a_picture_larger_than_is_read_has_its_boxes_in_the_pixels_of_its_file(m
     assert result.verdict is examined("clean-001.png")[0].verdict
     for one, two in zip(result.cells, examined("clean-001.png")[0].cells, strict=True):
         assert np.allclose(one["box"], 2 * np.array(two["box"]), atol=6)
+
+
+@pytest.mark.parametrize(
+    ("typed", "shown", "found"),
+    [
+        ("117.2", "137.2", "117.2"),  # 837.2 points the same way, and is as near to the cells
+        ("837.2", "837.2", "837.2"),  # a page that has a turn or more keeps it
+    ],
+)
+def test_of_equal_angles_the_one_within_a_turn_is_taken(typed, shown, found):
+    """Where the cells tell no more."""
+    scene = {**sample(1), "PB": typed}
+    (outcome,) = run_all([scene])
+    printed = {**outcome.fields, "PB": shown}
+    costs = {
+        name: np.array([[MAX_CELL_COST * (char != is_) for char in READABLE] for is_ in text])
+        for name, text in printed.items()
+    }
+    read = Read(SimpleNamespace(rows={}), costs)
+    best = scene_of(read, [{**scene, "PB": "837.2"}])
+    assert best.outcome.fields["PB"] == found
+
+
+@pytest.mark.parametrize("verdict", [Verdict.IDENTICAL_AS_READ, Verdict.INCOMPLETE])
+def test_a_number_that_contradicts_is_named_first_on_an_incomplete_page(verdict):
+    """No verdict is based on it, and a count does not hide it."""
+    fields = [
+        FieldCheck("LOSS", "7.13", "7.03", Status.NOT_COMPARED),
+        FieldCheck("E", ".2", ".2", Status.READ),
+    ]
+    result = Verification("x.png", 1, 1, verdict, {}, fields, page=1)
+    named = summary(result)[0] == "1 number contradicts: LOSS 7.13, program 7.03"
+    assert named is (verdict is Verdict.INCOMPLETE)
 
 
 @pytest.mark.parametrize("beside", [Verdict.IDENTICAL, Verdict.INCOMPLETE])

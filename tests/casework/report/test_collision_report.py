@@ -21,6 +21,7 @@ from impact88 import solve
 from impact88.casework.reconstruction import adjustment
 from impact88.interface.commands import reconstruct_command
 from impact88.interface.commands.cli import main
+from impact88.names import quantity
 from impact88.program.scene import sample
 
 pytest.importorskip("jinja2")
@@ -82,6 +83,25 @@ def test_a_file_with_unknowns_is_reconstructed(tmp_path: Path, capsys: Any) -> N
     assert re.search(r"A: speed before 27\.\d ± 1\.\d mph", text)
     assert "not determined by what is known: WA WB WAF WBF" in text
     assert "adjusted by least squares" in text
+
+
+def test_a_page_without_a_drawing_has_its_answer_once(tmp_path: Path) -> None:
+    """With both vehicles' speeds before and changes of velocity as its numbers, whose standard
+    deviation and bounds are named."""
+    ways = {"HA": "0", "HB": "-90", "HAF": "-40", "SBF": "30 mph", "HBF": "-30"}
+    masses = {"M": "4", "MA": "4000 lb", "MB": "2600 lb", "SAF": "50 +- 5 mph"}
+    signed = ("--examiner", "N. N", "--date", "1 May")
+    page = written(tmp_path, {**masses, **ways}, *signed)
+    assert "Not drawn" in page
+    assert page.count("lower bound") == 1
+    numbers = re.findall(r"<div><b>(.*?)</b>(.*?)</div>", page)
+    assert [meaning.partition("<br>")[0] for _, meaning in numbers] == [
+        quantity(name).meaning.replace("'", "&#39;") for name in ("SA", "SB", "DVA", "DVB")
+    ]
+    for amount, below in numbers:
+        assert "±" not in amount
+        assert re.search(r"sd [\d.]+, bounds [\d.]+ to [\d.]+, 90 % within", below)
+    assert "Examiner: N. N. 1 May." in plain(page)
 
 
 def test_the_answer_is_what_the_commands_say(forward: Path, capsys: Any) -> None:

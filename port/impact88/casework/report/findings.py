@@ -160,6 +160,8 @@ def report(
     number: str = "",
     title: str = "",
     paper: str = "",
+    examiner: str = "",
+    date: str = "",
 ) -> tuple[str, list[Table]]:
     """Return the report page on a collision, and its tables.
 
@@ -207,7 +209,10 @@ def report(
         answer=answer,
         validated=_validation_text(),
         unjudged=_unjudged(case),
-        signed={name: case.given.get(name, "") for name in ("examiner", "date")},
+        signed={
+            "examiner": examiner or case.given.get("examiner", ""),
+            "date": date or case.given.get("date", ""),
+        },
         tables=tables,
         drawing=svg(drawing) if drawing else "",
         undrawn=undrawn,
@@ -435,10 +440,11 @@ def _sentences(found: Findings, units: System) -> list[str]:
 
 FIRST_PAGE = {"letter": 208, "a4": 226}
 """Height in mm of what stands on the first page below its title: the drawing takes what is left."""
+_FIGURES = 4  # both speeds and both changes of velocity
 MAIN_FORWARD = ("DVA", "DVB", "LOSS")
 """The three numbers of the first page, of a scene."""
 MAIN_INVERSE = ("SA", "SB", "DVA", "DVB", "LOSS")
-"""Candidates for the numbers of the first page of a reconstruction: the first three not given."""
+"""Candidates for the numbers of the first page of a reconstruction: the first four not given."""
 
 
 def _spoken(found: Findings, name: str, units: System) -> str:
@@ -470,21 +476,33 @@ def _chosen(found: Findings) -> list[str]:
         # what exact values settle by themselves is no finding beside what is uncertain
         open_ones = [n for n in names if math.isfinite(found.spreads.get(n, Spread()).deviation)]
         names = open_ones or names
-    return names[:3]
+    return names[:_FIGURES]
 
 
 def _figures(found: Findings, units: System) -> list[tuple[str, str, str]]:
-    """Return the three numbers of the first page: meaning, amount, limits of the draws."""
+    """Return the numbers of the first page: meaning, amount, and standard deviation and limits."""
     figures = []
     for name in _chosen(found):
         spread = found.spreads.get(name, Spread())
         ends = [_amount(name, x, units, spread.deviation) for x in (spread.low, spread.high)]
         has_limits = all(ends) and not found.contradictory
         span = f"{ends[0]} to {ends[1]} {_unit(name, units)}".strip()
-        limits = f"90 % within {span}" if has_limits else ""
         if has_limits and _is_aside(found, name):
             limits = f"90 % of the draws; {_amount(name, found.values[name], units)} fits best"
-        figures.append((quantity(name).meaning, _spoken(found, name, units), limits))
+            figures.append((quantity(name).meaning, _spoken(found, name, units), limits))
+            continue
+        parts = []
+        if math.isfinite(spread.deviation):  # not ±, which has limits behind it in the inputs
+            parts.append(f"sd {_deviation(name, spread.deviation, units)}")
+        bounds = [_amount(name, x, units, spread.deviation) for x in (spread.lower, spread.upper)]
+        if has_limits and all(bounds):
+            parts.append(f"bounds {bounds[0]} to {bounds[1]}")
+        if has_limits:
+            parts.append(f"90 % within {span}")
+        amount = _amount(name, found.values[name], units, spread.deviation)
+        figures.append(
+            (quantity(name).meaning, f"{amount} {_unit(name, units)}".strip(), ", ".join(parts))
+        )
     return figures
 
 
@@ -518,7 +536,8 @@ def _summary(found: Findings, case: Case, units: System) -> list[str]:
     elif any(math.isfinite(spread.deviation) for spread in found.spreads.values()):
         sure = (
             "What follows each ± is one standard deviation, and what is called 90 % holds so many "
-            "of the draws: they cover the limits given with the inputs and nothing else"
+            "of the draws; both follow from the limits given with the inputs and cover no other "
+            "error"
         )
     else:
         sure = "No limits were given with the inputs, so how sure this is was not computed"

@@ -2,9 +2,10 @@
 --help). A whole scene gives the velocities after the impact; any other file is reconstructed.
 
 The page stands in one file and is made to be printed. The first sheet is for a judge: what was
-asked, what was found and how sure it is, the verdict on the evidence, three numbers, the drawing to
-scale, remarks. Then each measured value beside its adjusted one, inputs as given with tolerances
-and sources, what drives the result, method, validation, versions and hashes, a line to sign.
+asked, what was found and how sure it is, the verdict on the evidence, up to four numbers, the
+drawing to scale, remarks. Then each measured value beside its adjusted one, inputs as given with
+tolerances and sources, what drives the result, method, validation, versions and hashes, a line to
+sign.
 In the file, case = "24-117" is the case's number, and UX_source = "event data recorder" (or UX =
 {value = "-25 mph", source = "event data recorder"}) says where a value comes from.
 
@@ -35,6 +36,8 @@ ARGUMENTS = (
     options.writes("-o --output", "FILE.html", "the page", required=True),
     options.value("--case", "NUMBER", "the case number", default=""),
     options.value("--title", "TEXT", "the title of the page", default=""),
+    options.value("--examiner", "NAME", "who made it, printed as given", default=""),
+    options.value("--date", "TEXT", "the date, printed as given", default=""),
     options.choice(
         "--paper",
         ("letter", "a4"),
@@ -45,6 +48,8 @@ ARGUMENTS = (
     options.writes("--csv", "FILE", "write the tables as CSV"),
     options.writes("--xlsx", "FILE", "write the tables as a workbook"),
 )
+
+_ON_PAGE = ("samples", "seed", "title", "paper", "examiner", "date")
 
 
 def main(args: options.Args) -> None:
@@ -66,7 +71,7 @@ def main(args: options.Args) -> None:
     case = options.change_case(case, changes, "--set")
     case = case.with_sources({n: "changed with --set" for n in changes if n in case.given})
     options.note_remarks(case)
-    keywords = {n: getattr(args, n) for n in ("samples", "seed", "title", "paper")}
+    keywords = {n: getattr(args, n) for n in _ON_PAGE}
     keywords["number"] = args.case
     page, tables = report(case, source, data, **keywords)
     with replacing(args.output) as out:

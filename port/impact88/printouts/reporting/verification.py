@@ -287,7 +287,7 @@ class Examined:
 def summary(result: Verification) -> list[str]:
     """Return the sentences that support a verdict: counts, and the names of missing inputs."""
     verdict, fields, missing = result.verdict, result.fields, result.missing
-    sentences = [counts(fields)]
+    sentences = [*_contradicting(result), counts(fields)]
     if verdict is Verdict.IDENTICAL:
         source = f"the copy {result.copy['file']}" if result.copy else "the program"
         sentences = [f"all {len(fields)} printed numbers are what {source} prints, digit for digit"]
@@ -333,6 +333,22 @@ def summary(result: Verification) -> list[str]:
         recomputed = "nothing could be recomputed" if missing else f"recomputed: {program_text}"
         sentences.append(f"ends with {page_text}, {recomputed}")
     return sentences
+
+
+def _contradicting(result: Verification) -> Iterator[str]:
+    """Yield a sentence on the numbers of an incomplete picture that show other digits than the
+    program prints: no verdict is based on them, and none may hide them."""
+    if result.verdict is not Verdict.INCOMPLETE or result.page is None:
+        return
+    wrong = [check for check in result.fields if check.status is Status.NOT_COMPARED]
+    named = [
+        f"{check.name} {check.printed}, program {check.recomputed}"
+        for check in wrong
+        if check.recomputed and check.printed and check.printed != check.recomputed
+    ]
+    if 0 < len(named) <= MAX_LEFT_OUT:
+        count = "1 number contradicts" if len(named) == 1 else f"{len(named)} numbers contradict"
+        yield f"{count}: {'; '.join(named)}"
 
 
 def counts(fields: Sequence[FieldCheck]) -> str:

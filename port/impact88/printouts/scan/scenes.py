@@ -7,12 +7,14 @@ cells. This is the one module of the room that knows how text is recovered.
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from decimal import Decimal
 from itertools import product
 from typing import NamedTuple, Protocol
 
 from ...apple.applesoft.decimaltext import is_number
 from ...collision.fields import ANGLES, INPUTS, REPLIES, scene_name
 from ...errors import UserError
+from ..reading.numerals import value_of
 from ..reading.printout import read_printouts
 from ..recovery.recovered import recover
 from ..recovery.replays import Outcome, run_all
@@ -25,6 +27,9 @@ MAX_CELL_COST = 6.0
 """Largest cost of a cell, in units of `read_numbers`: a contradiction counts once."""
 _SETTLED_COST = 1.0
 """Total cost of a page below which no further scenes are tried."""
+_TURN = 360  # degrees
+_MAX_ANGLE = 1_000_000
+"""Size in degrees up to which turns are taken off: beyond, rounding moves the angle."""
 _ROUNDS = 2  # times that scenes next to the best are tried
 _BEAM = 3  # best scenes whose neighbours are tried
 _TRIED_IN_COPY = 12
@@ -163,7 +168,7 @@ def scene_of(
     candidates: _Known = {}
     best = _search(read, seeds, candidates)
     if not copy:
-        return best[0] if best else None
+        return _within_a_turn(read, best[0], candidates) if best else None
     nearest = sorted(candidates.values(), key=lambda candidate: candidate.cost)[:_TRIED_IN_COPY]
     best = []
     for candidate in nearest:
@@ -213,6 +218,35 @@ def _search(read: Read, seeds: Sequence[dict[str, str]], known: _Known) -> list[
         if best and best[0].cost < _SETTLED_COST:
             break
     return best
+
+
+def _within_a_turn(read: Read, best: Candidate, known: _Known) -> Candidate:
+    """Return the scene with each angle of a turn or more replaced by the equal angle within a turn
+    that the cells are nearest to, if its page fits the cells as well.
+
+    A page that has such an angle keeps it, since no other fits the cells of its digits.
+    """
+    for name in ANGLES:
+        number = value_of(best.outcome.fields.get(name, ""))
+        if number is None or not _TURN <= abs(number) < _MAX_ANGLE:
+            continue
+        remainder = number % _TURN
+        texts = [_angle_text(remainder), _angle_text(remainder - _TURN)]
+        _rank(read, [{**best.scene, name: text} for text in texts], known)
+        equals = [
+            candidate
+            for candidate in known.values()
+            if candidate.cost <= best.cost + _SETTLED_COST
+            and candidate.scene in [{**best.scene, name: text} for text in texts]
+        ]
+        best = min(equals, key=lambda candidate: candidate.cost, default=best)
+    return best
+
+
+def _angle_text(angle: Decimal) -> str:
+    """Return an angle as the program prints it: without a nought before the point."""
+    text = f"{abs(angle):f}"
+    return "-" * (angle < 0) + (text.lstrip("0") if "." in text and angle else text)
 
 
 _Program = Callable[[Sequence[Mapping[str, str]]], list[Outcome]]
