@@ -68,7 +68,7 @@ def test_reconstructions(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
     )
     answer = impact88.reconstruct(known)
     assert len(answer) == 2
-    assert shown(answer) == printed(capsys, "reconstruct", "--samples", "0", str(path))
+    assert shown(answer) == printed(capsys, "reconstruct", "--full", "--samples", "0", str(path))
 
 
 def test_figure_of_a_scene() -> None:

@@ -524,7 +524,9 @@ class TestCommand:
         return status, captured.out, captured.err
 
     def test_section_7_in_one_command_from_one_file(self, section_7, capsys):
-        status, out, err = self.run(capsys, "reconstruct", section_7, "--samples", "2000", "--json")
+        status, out, err = self.run(
+            capsys, "reconstruct", "--full", section_7, "--samples", "2000", "--json"
+        )
         assert (status, err) == (0, "")
         (found,) = json.loads(out)["solutions"]
         chapter = {"UX": -40.21, "VY": 58.24, "DVA": 36.2, "DVB": 24.0}
@@ -532,7 +534,7 @@ class TestCommand:
             decimals = len(str(printed).partition(".")[2])
             assert round(found["values"][name], decimals) == printed
         assert found["uncertainty"]["UX"]["lower"] < -40.21 < found["uncertainty"]["UX"]["upper"]
-        status, out, _ = self.run(capsys, "reconstruct", section_7, "--samples", "2000")
+        status, out, _ = self.run(capsys, "reconstruct", "--full", section_7, "--samples", "2000")
         assert status == 0
         assert "! not determined by what is known: WA WB WAF WBF E EM" in out
         assert "VBX 70 %" in out
@@ -547,7 +549,15 @@ class TestCommand:
             for part in ("--set", text)
         ]
         status, out, err = self.run(
-            capsys, "reconstruct", section_7, *settings, "--samples", "300", "--write-scene", scene
+            capsys,
+            "reconstruct",
+            "--full",
+            section_7,
+            *settings,
+            "--samples",
+            "300",
+            "--write-scene",
+            scene,
         )
         assert status == 0
         assert f"scene written to {scene}" in err
@@ -572,7 +582,7 @@ class TestCommand:
         lines = [f'{n} = "{v!r}"' for n, v in {**VEHICLES, **after, "EM": -0.9}.items()]
         path = tmp_path / "near0.toml"
         path.write_text("\n".join([*lines, 'E = ".005 +- .002"']), encoding="utf-8")
-        status, out, _ = self.run(capsys, "reconstruct", str(path), "--samples", "500")
+        status, out, _ = self.run(capsys, "reconstruct", "--full", str(path), "--samples", "500")
         assert status == 0
         text = " ".join(out.split())
         assert "! poorly determined: UX has a standard deviation of" in text
@@ -586,7 +596,9 @@ class TestCommand:
             for n, v in {**ESTIMATES, "UX": -36.0, "VY": 58.0}.items()
             for part in ("--set", f"{n}={v}")
         ]
-        status, out, _ = self.run(capsys, "reconstruct", section_7, *exact, "--for", "MUP")
+        status, out, _ = self.run(
+            capsys, "reconstruct", "--full", section_7, *exact, "--for", "MUP"
+        )
         assert status == 0
         assert "moved, tolerances" in out
         assert "none has a tolerance" in " ".join(out.split())
@@ -600,7 +612,7 @@ class TestCommand:
         ],
     )
     def test_refuses_in_one_line(self, setting, message, section_7, capsys):
-        status, out, err = self.run(capsys, "reconstruct", section_7, "--set", setting)
+        status, out, err = self.run(capsys, "reconstruct", "--full", section_7, "--set", setting)
         assert (status, out) == (2, "")
         assert message in err
         assert err.count("\n") == 1

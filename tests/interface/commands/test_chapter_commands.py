@@ -75,7 +75,7 @@ def as_json(capsys: pytest.CaptureFixture[str], *arguments: str) -> Any:
 def test_reconstruct_shows_both_solutions_of_table_3(
     after: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    status, out, err = run(capsys, "reconstruct", after, "--contact-time", ".15")
+    status, out, err = run(capsys, "reconstruct", "--full", after, "--contact-time", ".15")
     assert (status, err) == (0, "")
     assert "SOLUTION 1 OF 2" in out
     assert "SOLUTION 2 OF 2" in out
@@ -98,7 +98,7 @@ def test_reconstruct_shows_both_solutions_of_table_3(
 def test_reconstruct_for_some_unknowns_only(after: str, capsys: pytest.CaptureFixture[str]) -> None:
     vehicles = [f"{n}=" for n in ("E", "EM", "MU", "WAF", "WBF")]
     known = " ".join([*vehicles, *(f"{n}={v}" for n, v in SECTION_7.items())])
-    status, out, err = run(capsys, "reconstruct", after, *sets(known))
+    status, out, err = run(capsys, "reconstruct", "--full", after, *sets(known))
     assert status == 2
     assert out == ""
     assert "9 quantities are unknown" in err
@@ -111,10 +111,10 @@ def test_reconstruct_for_some_unknowns_only(after: str, capsys: pytest.CaptureFi
 
 
 def test_reconstruct_flags_what_errors_do(after: str, capsys: pytest.CaptureFixture[str]) -> None:
-    status, out, _ = run(capsys, "reconstruct", after, "--set", "E=.005")
+    status, out, _ = run(capsys, "reconstruct", "--full", after, "--set", "E=.005")
     assert status == 0
     assert "! badly conditioned: errors of the known velocities are amplified" in out
-    _, out, _ = run(capsys, "reconstruct", after, *sets("UX=-36 UY=0 VX=0 VY=58.7"))
+    _, out, _ = run(capsys, "reconstruct", "--full", after, *sets("UX=-36 UY=0 VX=0 VY=58.7"))
     assert "! the known values contradict one another" in out
 
 
@@ -126,7 +126,7 @@ def test_reconstruct_says_which_law_exact_values_miss(
     setting: str, law: str, after: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """With E = 0 the velocities of Table 3 do not separate: they and E cannot all be true."""
-    _, out, _ = run(capsys, "reconstruct", after, "--set", setting)
+    _, out, _ = run(capsys, "reconstruct", "--full", after, "--set", setting)
     evidence = " ".join(out.partition("EVIDENCE")[2].partition("BEFORE IMPACT")[0].split())
     assert "these exact values contradict one another" in evidence
     assert law in evidence
@@ -203,14 +203,14 @@ POINT_MASSES = "M=4 MA=100 MB=80 GA=0 E=.1 UX=-10 UY=0 VX=0 VY=3"
 @pytest.mark.parametrize(
     ("command", "pairs", "after"),
     [
-        ("reconstruct", f"{POINT_MASSES} MU=.1", "-5.1111*"),
+        ("reconstruct --full", f"{POINT_MASSES} MU=.1", "-5.1111*"),
         ("barrier", "M=4 MA=143.5 GA=-30 E=.005 MU=.4 UX=-29.04 UY=0", "-2.0961*"),
     ],
 )
 def test_point_masses_have_no_spins(
     command: str, pairs: str, after: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    status, out, err = run(capsys, command, *sets(pairs))
+    status, out, err = run(capsys, *command.split(), *sets(pairs))
     assert (status, err) == (0, "")
     assert after in out
     assert not any(word in out for word in ("spin ", "EM ", "PM ", "contact point", "CAX"))
@@ -224,7 +224,7 @@ def test_barrier_without_mass_is_told_in_one_line(capsys: pytest.CaptureFixture[
 
 def test_pivot_tells_what_ends_the_sliding(capsys: pytest.CaptureFixture[str]) -> None:
     """Typed as MU, the ratio told is critical: it ends the sliding, and a pivot does the same."""
-    status, out, _ = run(capsys, "reconstruct", *sets(f"{POINT_MASSES} MU=-10"))
+    status, out, _ = run(capsys, "reconstruct", "--full", *sets(f"{POINT_MASSES} MU=-10"))
     assert status == 0
     (line,) = [line for line in out.splitlines() if line.startswith("MUP")]
     ratio = line.partition("P_t/P_n = ")[2].split()[0]

@@ -482,7 +482,7 @@ def test_a_reconstruction_is_the_commands_own(
     (tmp_path / "known.toml").write_text(toml(known), encoding="utf-8")
     told = reconstruction.answer(known, draws=100)
     assert told["problems"] == {}
-    printed = own("reconstruct", "known.toml", "--samples", "100").rstrip("\n")
+    printed = own("reconstruct", "--full", "known.toml", "--samples", "100").rstrip("\n")
     assert [one["printed"] for one in told["solutions"]] == [printed]
     theirs = json.loads(own("reconstruct", "--json", "known.toml", "--samples", "100"))
     assert json.loads(json.dumps(told["object"])) == theirs
@@ -550,7 +550,7 @@ def test_a_reconstruction_answers_in_its_units(tmp_path: Path, own: Own) -> None
     known = {**reconstruction.known_of_sample(3)["values"], "VAX": "-5.1 +- 1"}
     told = reconstruction.answer(known, "us", draws=100)
     (tmp_path / "known.toml").write_text('units = "us"\n' + toml(known), encoding="utf-8")
-    printed = own("reconstruct", "known.toml", "--samples", "100")
+    printed = own("reconstruct", "--full", "known.toml", "--samples", "100")
     assert [one["printed"] for one in told["solutions"]] == [printed.rstrip("\n")]
     rows = {row["name"]: row for row in told["solutions"][0]["rows"]}
     assert rows["UX"]["unit"] == "mph"
@@ -579,7 +579,7 @@ def test_what_is_known_is_saved_as_the_commands_file(
     assert {name: text for name, text in read.pop("values").items() if text} == known
     assert read == {"title": "", "units": ""}
     (tmp_path / "known.toml").write_bytes(saved.data)
-    printed = own("reconstruct", "known.toml")
+    printed = own("reconstruct", "--full", "known.toml")
     assert printed.rstrip("\n") == reconstruction.answer(known)["solutions"][0]["printed"]
     template = own("reconstruct", "--template")
     assert (

@@ -131,8 +131,9 @@ class Impact:
         return {}
 
     @within_doubles
-    def as_text(self, units: System = RULES) -> str:
-        """Return the answer, tables and remarks as text."""
+    def as_text(self, units: System = RULES, full: bool = True) -> str:
+        """Return the answer, tables and remarks as text; unless ``full``, the answer, the
+        velocities and the remarks alone."""
         remarks = self.warnings(units)
         undetermined = [paragraph(f"! {remarks.pop(0)}")] if self.undetermined else []
         clean = without_noise(self.values, deviations=self.uncertainties)
@@ -147,8 +148,8 @@ class Impact:
         blocks = [
             [*self._answer_lines(clean, len(remarks), units)],
             self._velocity_table(values, units),
-            *(self._quantity_table(names, values, units) for names in groups),
-            *self.further_tables(units),
+            *(self._quantity_table(names, values, units) for names in groups if full),
+            *(self.further_tables(units) if full else ()),
             *undetermined,
         ]
         lines = [line for block in blocks if block for line in (*block, "")]
@@ -283,9 +284,9 @@ class Impact:
         return table(rows, left=(0, 2, 3))
 
 
-def join_texts(impacts: Sequence[Impact], units: System = RULES) -> str:
+def join_texts(impacts: Sequence[Impact], units: System = RULES, full: bool = True) -> str:
     """Return the solutions one below the other, numbered where there are several."""
-    texts = [impact.as_text(units) for impact in impacts]
+    texts = [impact.as_text(units, full) for impact in impacts]
     if len(texts) == 1:
         return texts[0]
     of = f"OF {len(texts)}{impacts[0].note}"

@@ -265,13 +265,14 @@ def show(
         print("\n".join(lines()))
 
 
-def show_impacts(args: Args, found: Sequence[Impact], units: System) -> None:
+def show_impacts(args: Args, found: Sequence[Impact], units: System, full: bool = True) -> None:
+    """Print solutions as text, the answers alone unless ``full``, or as JSON."""
     from ...casework.reconstruction.solutiontable import join_texts
 
     def record() -> dict[str, Any]:
         return {"solutions": [impact.as_json(units) for impact in found]}
 
-    show(args, "reconstruct", record, lambda: [join_texts(found, units)])
+    show(args, "reconstruct", record, lambda: [join_texts(found, units, full)])
 
 
 def print_json(form: str, found: Mapping[str, Any], indent: int | None = None) -> None:

@@ -15,7 +15,7 @@ geometry (GA; with M = 6 DA DB PA PB TA TB IA IB) what the results need: momentu
 Each is a number, exact, or known within limits: "41 +- 2", "0.7 .. 0.9", "normal 41 1.5" (impact88
 bounds --help). Equations 13 to 18 always hold. With more known than needed the values with limits
 are adjusted (adjustment of observations with conditions, weighted by their tolerances): the table
-shows each as measured, as adjusted, and how many tolerances it moved. If all values are exact and
+shows each as measured, as adjusted, and how many tolerances it moved (--full). If all values are exact and
 the equations do not determine a result, the command stops and says why; --outputs asks for some
 names only. Three uncertainty estimates are shown: first order, random draws, bounds that are
 attained.
@@ -44,7 +44,8 @@ energy lost depend little on EM):
 
 examples:
   impact88 reconstruct --template -o after.toml         a file to fill in
-  impact88 reconstruct after.toml                       all that is left out
+  impact88 reconstruct after.toml                       speeds before, delta-V, what they depend on
+  impact88 reconstruct after.toml --full                all results with their intervals
   impact88 reconstruct after.toml --set E=.1            a value changed
   impact88 reconstruct after.toml --set VAX="+- 2"      known within 2
   impact88 reconstruct after.toml --set E= --set MU=    both unknown
@@ -84,6 +85,7 @@ ARGUMENTS = (
     *options.draws(
         20_000, meaning="random draws of values known within limits; 0: neither draws nor bounds"
     ),
+    options.flag("--full", "print every result with its intervals, not the answer alone"),
     options.writes("--write-scene", "FILE", "write the impact found as a scene file"),
     options.value("--scene", None, argparse.SUPPRESS, dest="old"),
     *options.SOLUTION,
@@ -112,7 +114,10 @@ def main(args: options.Args) -> None:
             *([friction] if friction else []),
             *impact.remarks,
         ]
-    options.show_impacts(args, solutions, units)
+    full = bool(args.full or output_names or args.contact_time)
+    options.show_impacts(args, solutions, units, full)
+    if not (full or args.json) and sys.stderr.isatty():
+        note("reconstruct", "--full prints impulses, energies, intervals and what they depend on")
 
 
 def _reconstruct(
