@@ -18,6 +18,7 @@ Sides = tuple[Expression, ...]
 
 _DIRECTIONS = ("normal", "tangential", "across")  # come before what they belong to
 _BODY = re.compile("(?:of|from) [AB]")
+_CONDITIONS = ("==", "<", "<=", ">", ">=")
 _COLUMNS = {
     "E": "e",
     "MU": "MU",
@@ -105,6 +106,9 @@ def name_words(node: Expression, spelling: Spelling) -> str:
         return f"{words} ({node})" if words else node
     if isinstance(node, tuple) and node[0] == "**" and isinstance(node[1], str):
         return f"the square of {name_words(node[1], spelling)}"
+    match node:
+        case ("where", "point", int() as value, str(name)):
+            return f"{name_words(name, spelling)}, {value} for point masses,"
     return format_expression(node)
 
 
@@ -130,7 +134,8 @@ def _change(correct: Expression, actual: Expression, spelling: Spelling) -> str:
         if len(changed) == 2 and changed[0] == changed[1][::-1]:
             one, other = (name_words(x, spelling) for x in changed[0])
             return f"{one} and {other} are exchanged"
-    return f"{format_expression(actual)} stands for {format_expression(correct)}"
+    what = "the condition " if isinstance(correct, tuple) and correct[0] in _CONDITIONS else ""
+    return f"{what}{format_expression(actual)} stands for {format_expression(correct)}"
 
 
 def _named_change(correct: Expression, actual: Expression, spelling: Spelling) -> str:
@@ -139,15 +144,21 @@ def _named_change(correct: Expression, actual: Expression, spelling: Spelling) -
     def words(node: Expression) -> str:
         return name_words(node, spelling)
 
+    def term(node: Expression) -> str:
+        has_name = words(node) != format_expression(node)
+        return words(node) if has_name or isinstance(node, str) else f"the term {words(node)}"
+
     match correct, actual:
         case (int() | float(), (operation, inner)) if operation == NEGATIVE and inner == correct:
             return "the sign is wrong"
         case (_, (operation, inner)) if operation == NEGATIVE and inner == correct:
-            return f"{words(correct)} has the wrong sign"
+            return f"{term(correct)} has the wrong sign"
+        case ((operation, int() | float() as inner), _) if (operation, inner) == (NEGATIVE, actual):
+            return "the sign is wrong"
         case ((operation, inner), _) if operation == NEGATIVE and inner == actual:
-            return f"{words(inner)} has the wrong sign"
+            return f"{term(inner)} has the wrong sign"
         case (("+", a, b), ("-", c, d)) | (("-", a, b), ("+", c, d)) if (a, b) == (c, d):
-            return f"{words(b)} has the wrong sign"
+            return f"{term(b)} has the wrong sign"
         case (("+" | "-", a, b), _) if actual in (a, b) and isinstance(a, int | float):
             return f"{format_expression(actual)} stands for {format_expression(correct)}"
         case (("+" | "-", a, b), _) if actual == a:
@@ -184,6 +195,8 @@ def _named_change(correct: Expression, actual: Expression, spelling: Spelling) -
             return f"the cosine of {words(a)} stands for the sine"
         case (("cos", a), ("sin", b)) if a == b:
             return f"the sine of {words(a)} stands for the cosine"
+        case (("where", "point" as p, a, b), ("where", q, x, y)) if (p, a, b) == (q, y, x):
+            return "what point masses (M = 4) and all others have is exchanged"
         case (("where", p, a, b), ("where", q, x, y)) if (p, a, b) == (q, y, x):
             return f"the two cases of {words(p)} are exchanged"
         case (("where", p, a, b), _) if actual in (a, b):

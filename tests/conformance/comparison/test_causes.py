@@ -24,7 +24,8 @@ from impact88.conformance.comparison.trials import Judge, Program
 from impact88.conformance.comparison.vectors import CASEWORK, scenes
 from impact88.equations.edits import Edit, node_edits, readings, spelling_edits, variants
 from impact88.equations.evaluation import Run, chunks
-from impact88.equations.spelling import nodes, operands, spellings
+from impact88.equations.spelling import NEGATIVE, nodes, operands, spellings
+from impact88.equations.wording import change_words
 from impact88.names import FINAL_VELOCITIES, SCENE
 
 SWEEP = os.environ.get("IMPACT88_SWEEP")
@@ -200,3 +201,23 @@ def test_every_edit_of_every_model_can_be_computed() -> None:
         run = Run(spelling, scene)
         with np.errstate(all="ignore"):
             run.distinct_edits([edit.sides for edit in edits])
+
+
+def test_a_change_is_said_in_a_sentence() -> None:
+    arm = ("where", "point", 0, "DB")
+    spelling = next(iter(spellings().values()))
+    said = [
+        change_words((correct,), (actual,), spelling)
+        for correct, actual in (
+            (arm, (NEGATIVE, arm)),
+            (("+", "Pn", ("*", "c", "s")), ("-", "Pn", ("*", "c", "s"))),
+            ((NEGATIVE, 1), 1),
+            (("==", "MU", -10), (">=", "MU", -10)),
+        )
+    ]
+    assert said == [
+        "B's arm (DB), 0 for point masses, has the wrong sign",
+        "the term c*s has the wrong sign",
+        "the sign is wrong",
+        "the condition MU >= -10 stands for MU == -10",
+    ]

@@ -194,6 +194,8 @@ def _evidence_lines(cause: Cause) -> Iterator[str]:
         f"  predicts {cause.explains} of {cause.disagreeing} rows that disagree, {cause.fits} of "
         f"{cause.agreeing} examined that agree; {cause.score:.0f} bits"
     )
+    if rest := cause.disagreeing - cause.explains:
+        yield f"  it does not explain the other {rest} rows that disagree"
     for says, row in cause.parts.items():
         yield f"  row {row} shows: {says}"
     for equivalent in cause.equivalents:
@@ -239,10 +241,10 @@ def _lines(comparison: Comparison) -> Iterator[str]:
                 yield f"  {name}: {kind.unexplained} of {kind.rows}{says}"
         broken = {number: tally for number, tally in comparison.equations.items() if tally[1]}
         if broken:
-            yield "\nequations that their final velocities violate:"
+            yield "\nequations of the chapter that their final velocities violate:"
             for number, (row_count, violations) in broken.items():
                 share = f"in {violations} of {row_count} rows that disagree"
-                yield f"  {number} ({EQUATIONS[number]}): {share}"
+                yield f"  Equation {number} ({EQUATIONS[number]}): {share}"
         elif comparison.equations:
             yield "\ntheir final velocities violate none of Equations 13 to 18"
     if comparison.differing:
