@@ -14,10 +14,11 @@ geometry (GA; with M = 6 DA DB PA PB TA TB IA IB) what the results need: momentu
 
 Each is a number, exact, or known within limits: "41 +- 2", "0.7 .. 0.9", "normal 41 1.5" (impact88
 bounds --help). Equations 13 to 18 always hold. With more known than needed the values with limits
-are adjusted (adjustment of observations with conditions, weighted by their tolerances); --full shows
-each as measured, as adjusted, and how many tolerances it moved, with three estimates of uncertainty:
-first order, random draws, bounds that are attained. If all values are exact and the equations do not
-determine a result, the command stops and says why; --outputs asks for some names only.
+are adjusted (adjustment of observations with conditions, weighted by their tolerances). --full
+shows each as measured, as adjusted, and how many tolerances it moved, with three estimates of
+uncertainty: first order, random draws, bounds that are attained. If all values are exact and the
+equations do not determine a result, the command stops and says why; --outputs asks for some names
+only.
 
 MU is the magnitude entered on line 280; friction opposes the sliding (line 400). Where the
 velocities before impact are unknown, both signs are tried and every self-consistent solution is
