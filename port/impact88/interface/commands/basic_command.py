@@ -46,7 +46,7 @@ BANNER = (
     f"LOAD FILE keep one; {LEAVE}."
 )
 
-TAPE = "there is no tape; at the prompt, SAVE FILE and LOAD FILE"
+TAPE = "there is no tape; at the prompt, with DOS, SAVE FILE and LOAD FILE keep a program"
 
 ARGUMENTS = (
     options.reads("program", "FILE.bas", "a program to run", nargs="?"),
