@@ -8,7 +8,7 @@ import pytest
 
 from impact88.casework.chapter.staged import collisions
 from impact88.collision.case import Case, remark_lines
-from impact88.collision.estimates import CARS
+from impact88.collision.estimates import CARS, with_estimates
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
 from impact88.program.scene import Scene, sample
@@ -146,3 +146,16 @@ def test_remarks_are_one_a_line_and_in_the_users_units(units, mass, inertia):
     (estimate,) = [remark for remark in remarks if "is estimated" in remark]
     assert f" {inertia} is estimated: " in estimate
     assert f"the mass in {mass}, less " in estimate
+
+
+@pytest.mark.parametrize(("mass", "is_car"), [("100", True), ("1000", False)])
+def test_of_a_vehicle_that_is_no_passenger_car_the_size_is_asked_and_the_tests_are_told(
+    mass: str, is_car: bool
+) -> None:
+    """100 slug are 3,217 lb."""
+    texts = {"MA": mass, "IA": "estimate"}
+    if not is_car:
+        with pytest.raises(UserError, match="6,000 lb, or LA and BA"):
+            with_estimates(texts, "x", "chapter")
+    _, rules, _ = with_estimates({**texts, "LA": "20", "BA": "8"}, "x", "chapter")
+    assert ("this is none" in rules["IA"]) is not is_car

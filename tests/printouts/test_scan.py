@@ -22,6 +22,7 @@ from impact88.printouts.reading import alignment, printout
 from impact88.printouts.reading.numerals import printable
 from impact88.printouts.reading.printout import Printout, read_printouts
 from impact88.printouts.reporting.examination import Verdict, Verification, verify
+from impact88.printouts.reporting.verification import EXPLAINED, sections
 from impact88.program.run import run
 from impact88.program.scene import sample
 from printouts import SAMPLE, SWEEP, doubtful
@@ -324,6 +325,15 @@ def test_a_dash_within_figures_is_a_point() -> None:
     assert result.verdict is Verdict.IDENTICAL_AS_READ
     assert [doubt.printed for doubt in doubtful(result)[0].doubts] == ["."]
     assert one(SAMPLE.replace("DA= 7.59", "DA= 7-69")).verdict is Verdict.DIFFERS
+
+
+def test_a_digit_added_behind_a_blank_is_named() -> None:
+    """Where nothing else differs; no other explanation fits it."""
+    result = one(SAMPLE.replace("-13.263", "-13.263 5"))
+    assert result.verdict is Verdict.DIFFERS
+    assert sections(result)[EXPLAINED] == ["a digit 5 stands after VAX -13.263, behind a blank"]
+    other = one(SAMPLE.replace("-13.263", "-13.268 5"))
+    assert "behind a blank" not in " ".join(sections(other).get(EXPLAINED, []))
 
 
 def test_a_page_whose_margin_is_cut_off_is_incomplete() -> None:

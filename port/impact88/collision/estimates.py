@@ -63,6 +63,8 @@ def with_estimates(
             rules[name] = (
                 f"M{vehicle} ({sizes[0]}² + {sizes[1]}²)/12, a uniform rectangle{_bias(6, 14)}"
             )
+            if units is not None and not _is_car(mass, SYSTEMS[units]):
+                rules[name] += "; they were passenger cars, and this is none"
         else:
             inertia = _inertia_from_weight(mass, name, source, units)
             rules[name] = f"{_weight_words(units)}, for passenger cars{_bias(6, 29)}"
@@ -101,6 +103,14 @@ def rule_of(
     return float(inertia) if CARS[0] <= weight <= CARS[1] else None
 
 
+def _is_car(mass: float, system: System) -> bool:
+    """Return True if a mass in base units is that of a passenger car, or its weight is unknown."""
+    if system.is_bare:
+        return True
+    weight = mass * float(system.scale(MASS) / SYMBOLS["lb"][1])
+    return CARS[0] <= round(weight, 6) <= CARS[1]
+
+
 def weight_line(mass: Any, system: System) -> tuple[Any, Any]:
     """Return the weight in lb and the inertia 1.03 W - 1206, in base units; ``mass`` may be an
     array. Valid for weights within `CARS`."""
@@ -133,7 +143,7 @@ def _inertia_from_weight(mass: float, name: str, source: str, units: str | None)
     if not CARS[0] <= weight <= CARS[1]:
         raise UserError(
             f"{name} is to be estimated from the weight, {weight:.0f} lb; expected a passenger "
-            f"car's, {CARS[0]:,} to {CARS[1]:,} lb",
+            f"car's, {CARS[0]:,} to {CARS[1]:,} lb, or {' and '.join(SIZES[name[1]])}",
             source,
         )
     return (_SLOPE * weight - _OFFSET) * float(SYSTEMS["us"].scale(INERTIA) / system.scale(INERTIA))

@@ -7,6 +7,8 @@ import json
 import math
 import os
 from itertools import product
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -774,3 +776,20 @@ def test_a_course_within_limits_across_180_degrees_does_not_jump():
     (solution,) = reconstruct(known)
     bound = ranges(solution, ["HA"])["HA"]
     assert 170 < bound.lower < 180 < bound.upper < 190
+
+
+@pytest.mark.parametrize(("courses", "status"), [({}, 1), ({"HA": "0", "HB": "90"}, 0)])
+def test_the_exit_status_says_whether_a_speed_before_was_found(
+    tmp_path: Path, capsys: Any, courses: dict[str, str], status: int
+) -> None:
+    """From two speeds after alone nothing is; the message says what is to be given, and it is
+    enough."""
+    entries = {"M": "4", "MA": "3000", "MB": "2500", "SAF": "28.9", "SBF": "32.4"}
+    entries |= {"HAF": "20", "HBF": "40", **courses}
+    source = tmp_path / "case.toml"
+    lines = [f'{name} = "{text}"' for name, text in entries.items()]
+    source.write_text("\n".join(lines), encoding="utf-8")
+    assert main(["reconstruct", str(source)]) == status
+    out = capsys.readouterr().out
+    assert ("give UX and UY, or HA and HB" in out) is bool(status)
+    assert ("A unknown" in out) is bool(status)

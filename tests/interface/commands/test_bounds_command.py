@@ -163,6 +163,14 @@ def test_unknown_key_names_the_file(capsys, scene_file):
     assert "'WEIGHT' is not a name used here" in err
 
 
+def test_an_entry_of_a_reconstruction_names_the_command_that_takes_it(capsys, scene_file):
+    with open(scene_file, "a", encoding="utf-8") as file:
+        file.write("SA = 3\n")
+    status, _, err = answer(capsys, scene_file)
+    assert status == 2
+    assert "'SA' is not a name used here; reconstruct takes it" in err
+
+
 def examples():
     """The commands under "examples" in the help, those that name no file of the user's."""
     text = (command.__doc__ or "").partition("examples:")[2]

@@ -224,6 +224,8 @@ class Impact:
             if self.helpful:
                 leading = ", ".join(self.helpful[:-1])
                 text += f": give {leading}{' and ' if leading else ''}{self.helpful[-1]}"
+                if tuple(self.helpful) == ("UX", "UY") and {"VX", "VY"} <= {*missing}:
+                    text += ", or HA and HB, courses that cross"
             rows.append(("NOT FOUND", text))
         for vehicle in vehicles:
             drivers = self.drivers.get(f"S{vehicle}", ())[:DRIVERS]

@@ -16,6 +16,7 @@ from ...collision.uncertain import Uncertain
 from ...collision.units import opposite
 from ...errors import UserError
 from ...mechanics.closedform.columns import UNUSED_BY_POINTS
+from ...mechanics.state import KNOWABLE
 from ...names import FINAL_VELOCITIES, SCENE, VELOCITIES, check_names
 
 Pair = tuple[str, str]
@@ -88,7 +89,11 @@ def read_inputs(
     source, changes = case.source, changes or {}
     forward = problem == "forward"
     scene = coordinate_names(SCENE, case.values)
-    check_names(case.values, (*scene, *AFTER, *MOVES), "name used here", source)
+    names_used = (*scene, *AFTER, *MOVES)
+    for name in case.values:
+        if name in KNOWABLE and name not in names_used:
+            raise UserError(f"{name!r} is not a name used here; reconstruct takes it", source)
+    check_names(case.values, names_used, "name used here", source)
     wanted = coordinate_names(input_names(problem), {**case.values, **changes})
     # what only the forward solution is made of has one value
     single = [name for name, text in changes.items() if not forward and not is_range(text)]

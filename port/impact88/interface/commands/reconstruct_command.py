@@ -53,7 +53,8 @@ examples:
   impact88 reconstruct after.toml --write-scene found.toml
   impact88 reconstruct after.toml --contact-time .15 --json
 
-exit status: 0 solved; 2 bad input, or unknowns that are not determined
+exit status: 0 solved, or in part: NOT FOUND names the rest; 1 no velocity before the impact found;
+2 bad input, or a result of --outputs or --write-scene that is not determined
 """
 
 import argparse
@@ -93,7 +94,11 @@ ARGUMENTS = (
 )
 
 
-def main(args: options.Args) -> None:
+_BEFORE = ("SA", "SB", "UX", "UY", "VX", "VY")
+"""Velocities before the impact: a reconstruction without any has no answer."""
+
+
+def main(args: options.Args) -> int:
     if args.old:
         raise UserError("--scene is not an option here; expected --write-scene FILE")
     output_names = options.names_given(args.outputs, QUANTITIES, "--outputs") or None
@@ -118,6 +123,8 @@ def main(args: options.Args) -> None:
     options.show_impacts(args, solutions, units, full)
     if not (full or args.json) and sys.stderr.isatty():
         note("reconstruct", "--full prints impulses, energies, intervals and what they depend on")
+    has_answer = any(name in impact.values for impact in solutions for name in _BEFORE)
+    return 0 if has_answer or output_names else 1
 
 
 def _reconstruct(

@@ -37,8 +37,8 @@ TITLES = {
 MEANINGS = {
     Verdict.IDENTICAL: "every number that was found on the page is what the 1988 program prints "
     "for the inputs on it, digit for digit, and nothing that was examined speaks against it",
-    Verdict.IDENTICAL_AS_READ: "the 1988 program's page explains the paper; what was not read "
-    "exactly, or is none of the program's, is listed, and is to be looked at on the paper",
+    Verdict.IDENTICAL_AS_READ: "the 1988 program's page explains the paper; every place that was "
+    "not read exactly and all that the program does not print are listed, to be looked at there",
     Verdict.DIFFERS: "something on the paper contradicts every scene that its inputs allow",
     Verdict.INCOMPLETE: "numbers are missing or could not be read; what could be compared agrees",
 }
@@ -555,7 +555,19 @@ def _explanation_lines(result: Verification) -> list[str]:
             entries.append(f"   or, equally well on this page: {cause}")
         last_rank = cause.rank
         entries += [f"   look at {place}" for place in cause.look[:4]]
-    return entries or ["no single slip explains this"]
+    return entries or [*_added_digits(result)] or ["no single slip explains this"]
+
+
+def _added_digits(result: Verification) -> Iterator[str]:
+    """Yield a sentence for each number that has digits after a blank, if nothing else differs."""
+    added = []
+    for check in result.differing:
+        number, blank, digits = (check.printed or "").partition(" ")
+        if not blank or number != check.recomputed or not digits.isdigit():
+            return
+        noun = f"a digit {digits} stands" if len(digits) == 1 else f"digits {digits} stand"
+        added.append(f"{noun} after {check.name} {number}, behind a blank")
+    yield from added
 
 
 def _extent(result: Verification) -> str:
