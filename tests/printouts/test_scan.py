@@ -22,7 +22,7 @@ from impact88.printouts.reading import alignment, printout
 from impact88.printouts.reading.numerals import printable
 from impact88.printouts.reading.printout import Printout, read_printouts
 from impact88.printouts.reporting.examination import Verdict, Verification, verify
-from impact88.printouts.reporting.verification import EXPLAINED, sections
+from impact88.printouts.reporting.verification import EXPLAINED, sections, summary
 from impact88.program.run import run
 from impact88.program.scene import sample
 from printouts import SAMPLE, SWEEP, doubtful
@@ -325,6 +325,16 @@ def test_a_dash_within_figures_is_a_point() -> None:
     assert result.verdict is Verdict.IDENTICAL_AS_READ
     assert [doubt.printed for doubt in doubtful(result)[0].doubts] == ["."]
     assert one(SAMPLE.replace("DA= 7.59", "DA= 7-69")).verdict is Verdict.DIFFERS
+
+
+@pytest.mark.usefixtures("whole")
+@pytest.mark.parametrize(("number", "is_told"), [(1, False), (2, True)])
+def test_what_a_page_cannot_verify_is_the_first_thing_said(number: int, is_told: bool) -> None:
+    """With M = 4 that is a third of the inputs: one misread there leaves the page identical."""
+    result = one(run(sample(number)).printout)
+    assert result.verdict is Verdict.IDENTICAL
+    told = "not verifiable on this page: IA, IB, PA, PB, TA, TB, EM"
+    assert (summary(result)[0] == told) is is_told
 
 
 def test_a_digit_added_behind_a_blank_is_named() -> None:

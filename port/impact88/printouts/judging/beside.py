@@ -33,6 +33,8 @@ _SUMS = (("PA", "TA"), ("PB", "TB"))
 MAX_LAST_PLACES = 2.0
 """Units of the last place within which results agree: equal sums of angles may differ in last
 bits."""
+_ALONE = ": nothing else on the page depends on"
+"""Words behind the names of inputs on which nothing else printed depends."""
 _TURN = 360  # degrees
 _MANY_TURNS = 1_000_000
 """Size in degrees from which 32 bits hold the angle in radians to 4e-6 or worse."""
@@ -125,7 +127,7 @@ def unseen(scene: Scene, printed: Mapping[str, str], program: Program = run_colu
     if alone:
         names = ", ".join(map(scene_name, alone))
         sentences.append(
-            f"{names}: nothing else on the page depends on {'it' if len(alone) == 1 else 'them'}, "
+            f"{names}{_ALONE} {'it' if len(alone) == 1 else 'them'}, "
             "so a misreading there would not show"
         )
     sentences += [
@@ -145,6 +147,12 @@ def unseen(scene: Scene, printed: Mapping[str, str], program: Program = run_colu
             + ", ".join(faint_texts)
         )
     return sentences
+
+
+def not_verifiable(sentences: Sequence[str]) -> str:
+    """Return the names of the inputs that no other number of the page depends on, from what
+    `unseen` gave; empty if there is none."""
+    return next((text.partition(_ALONE)[0] for text in sentences if _ALONE in text), "")
 
 
 def _other_values(scene: Scene) -> Iterator[_Trial]:

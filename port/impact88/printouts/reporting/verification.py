@@ -16,6 +16,7 @@ from ...files import display_name
 from ...messages import notebook
 from ...messages.plaintable import table
 from ...messages.schemas import with_schema
+from ..judging.beside import not_verifiable
 from ..judging.judgement import FieldCheck, Judged, Status, Verdict
 from ..reading.fieldlabels import LabelCheck, LabelState
 from ..reading.numerals import Doubt, value_of
@@ -312,8 +313,11 @@ def summary(result: Verification) -> list[str]:
             sentences.append(f"{verb} numbers that are not the page's")
     elif verdict is Verdict.IDENTICAL_AS_READ:
         sentences.append(MEANINGS[verdict])
-    if result.page is None and verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ):
-        sentences.append(_extent(result))
+    if verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ):
+        if names := not_verifiable(result.unseen):
+            sentences.insert(0, f"not verifiable on this page: {names}")
+        if result.page is None:
+            sentences.append(_extent(result))
     if missing:
         verb, it = ("is", "it") if len(missing) == 1 else ("are", "them")
         sentences.append(
