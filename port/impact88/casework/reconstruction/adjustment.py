@@ -473,8 +473,7 @@ class Searched(NamedTuple):
         if self.single:
             return impacts
         if self.solutions:
-            nonreal = f"{self.nonreal or 'none'} of them complex or at infinity"
-            return f"{impacts}; the equations' {self.solutions} solutions were all found, {nonreal}"
+            return f"{impacts}; the equations have no other"
         idle = f"the last {self.idle} found no other" if self.idle else "the last found a new one"
         if self.batches <= 1:
             return f"{impacts}, from {self.starts} starts"
