@@ -201,6 +201,7 @@ def test_a_mistake_is_named_in_other_tables(tmp_path, what: str) -> None:
 
 
 @pytest.mark.long
+@pytest.mark.xfail(reason="the first cause is told without the rows in which it holds")
 def test_two_mistakes_in_one_table_are_both_named(tmp_path, monkeypatch) -> None:
     """Rows from one program, then rows from another."""
     if not SWEEP:  # no pair explains them, and to find that out takes long
@@ -210,9 +211,10 @@ def test_two_mistakes_in_one_table_are_both_named(tmp_path, monkeypatch) -> None
     first, second = answered(one[0]), answered(other[0])
     made = {name: first[name][:half] + second[name][half:] for name in RESULTS}
     done = compared(tmp_path, made)
-    first_cause, other_cause = sorted(done.causes, key=lambda cause: other[1] in cause)
-    assert first_cause in (one[1], f"{one[1]} in the rows up to row {half}")
-    assert other_cause == f"{other[1]} in the rows after row {half}"
+    assert set(done.causes) == {
+        f"{one[1]} in the rows up to row {half}",
+        f"{other[1]} in the rows after row {half}",
+    }
     assert done.causes[f"{other[1]} in the rows after row {half}"] == len(ROWS) - half
 
 
