@@ -6,6 +6,7 @@ import argparse
 import base64
 import contextlib
 import json
+import multiprocessing
 import os
 import re
 import select
@@ -703,12 +704,19 @@ def in_thread(work: Any) -> tuple[threading.Thread, list[Any]]:
         except Exception as error:
             outcome.append(error)
 
-    thread = threading.Thread(target=caught)
+    thread = threading.Thread(target=caught, daemon=True)
     thread.start()
     return thread, outcome
 
 
+def wait_for(*threads: threading.Thread) -> None:
+    for thread in threads:
+        thread.join(90.0)
+        assert not thread.is_alive()
+
+
 def is_gone(process: int) -> bool:
+    multiprocessing.active_children()  # takes leave of those that have ended
     try:
         os.kill(process, 0)
     except ProcessLookupError:
@@ -742,8 +750,7 @@ def test_a_newer_question_ends_the_older_and_another_page_waits(
     first, first_outcome, process = ask_endlessly(asking, tmp_path)
     other, other_outcome = in_thread(lambda: asking.ask("other", 1, "repeated", text="other"))
     newer, newer_outcome = in_thread(lambda: asking.ask(page, 2, "repeated", text="newer"))
-    for thread in (first, other, newer):
-        thread.join()
+    wait_for(first, other, newer)
     assert [type(outcome) for outcome in first_outcome] == [workers.SupersededError]
     wait_until(partial(is_gone, process))
     assert (newer_outcome, other_outcome) == (["newer"], ["other"])
@@ -758,7 +765,7 @@ def test_stopping_ends_what_a_page_waits_for_and_no_other_pages(
     asking.stop("other", 7)
     assert not is_gone(process)
     asking.stop(tmp_path.name, 2)
-    thread.join()
+    wait_for(thread)
     assert [type(one) for one in outcome] == [workers.SupersededError]
     wait_until(partial(is_gone, process))
 
@@ -781,7 +788,7 @@ def test_what_arrives_after_its_stop_or_a_newer_question_is_superseded(
     assert thread.is_alive()
     assert not is_gone(int(begun.read_text()))
     asking.stop(page, 6)
-    thread.join()
+    wait_for(thread)
     assert [type(one) for one in outcome] == [workers.SupersededError]
 
 
@@ -790,7 +797,7 @@ def test_pages_that_count_no_turns_are_stopped_too(asking: workers.Bench, tmp_pa
     thread, outcome = in_thread(lambda: asking.ask("uncounted", 0, "endless", begun=str(begun)))
     wait_until(begun.exists)
     asking.stop("uncounted", 0)
-    thread.join()
+    wait_for(thread)
     assert [type(one) for one in outcome] == [workers.SupersededError]
     assert asking.ask("uncounted", 0, "repeated", text="next") == "next"
 
@@ -807,12 +814,34 @@ def test_turns_of_a_thousand_pages_are_remembered(asking: workers.Bench) -> None
 
 def test_a_process_killed_while_it_waits_is_started_again(asking: workers.Bench) -> None:
     process = asking.ask("page", 1, "own_process")
-    for turn in (2, 3):
+    for turn in range(2, 8):
         os.kill(process, signal.SIGKILL)
-        if turn == 3:
-            wait_until(partial(is_gone, process))  # the pool knows, and has given up
+        if turn % 2:
+            wait_until(partial(is_gone, process))
         before, process = process, asking.ask("page", turn, "own_process")
         assert process != before
+
+
+def test_a_process_killed_while_it_answers_is_told_and_started_again(
+    asking: workers.Bench, tmp_path: Path
+) -> None:
+    thread, outcome, process = ask_endlessly(asking, tmp_path)
+    os.kill(process, signal.SIGKILL)
+    wait_for(thread)
+    assert [type(one) for one in outcome] == [workers.BrokenError]
+    assert "ended unexpectedly" in str(outcome[0])
+    assert asking.ask(tmp_path.name, 2, "repeated", text="next") == "next"
+
+
+def test_a_closed_bench_answers_nothing(tmp_path: Path) -> None:
+    bench = workers.Bench("deskwork")
+    thread, outcome, process = ask_endlessly(bench, tmp_path)
+    bench.close()
+    wait_for(thread)
+    assert is_gone(process)
+    with pytest.raises(workers.SupersededError):
+        bench.ask("page", 1, "repeated", text="late")
+    assert [type(one) for one in outcome] == [workers.SupersededError]
 
 
 def test_too_many_questions_are_refused(asking: workers.Bench, tmp_path: Path) -> None:
@@ -834,8 +863,7 @@ def test_too_many_questions_are_refused(asking: workers.Bench, tmp_path: Path) -
 
     wait_until(refused)
     asking.stop(tmp_path.name, 2)
-    for one in (thread, *(one for one, _ in waiting)):
-        one.join()
+    wait_for(thread, *(one for one, _ in waiting))
     assert [outcome for _, outcome in waiting] == [[""]] * len(waiting)
     assert asking.ask("one more", 4, "repeated", text="room") == "room"
 
@@ -1018,7 +1046,7 @@ def test_without_the_extra_one_line_says_what_to_install(monkeypatch: pytest.Mon
     monkeypatch.setattr(serving, "find_spec", lambda name: None)
     with pytest.raises(UserError, match=r"pip install 'impact88\[desk\]'") as caught:
         serving.serve(0, False, lambda address: pytest.fail("it must not start"))
-    assert "Flask, pebble, waitress" in str(caught.value)
+    assert "Flask, waitress" in str(caught.value)
 
 
 def test_a_scene_of_the_form_is_the_scene_of_its_texts() -> None:

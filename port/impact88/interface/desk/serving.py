@@ -61,7 +61,7 @@ def serve(port: int, browser: bool, announce: Callable[[str], object]) -> None:
 
     Raises UserError where Flask or waitress is missing or the port is not available.
     """
-    wanted = {"flask": "Flask", "pebble": "pebble", "waitress": "waitress"}
+    wanted = {"flask": "Flask", "waitress": "waitress"}
     if missing := ", ".join(wanted[module] for module in wanted if find_spec(module) is None):
         raise UserError(
             f"the desk needs {missing}, which is not installed; pip install 'impact88[desk]'"

@@ -1,23 +1,26 @@
 """Processes for what takes long, so that the page stays quick and a newer question ends an older.
 
-A process can be ended from outside, a thread cannot. Each kind of work has one: pebble starts it in
-advance, keeps it between questions, ends it with its question and starts another.
+A process can be ended from outside, a thread cannot. Each kind of work has one: it is started in
+advance, kept between questions, ended with its question, and another is started.
 """
 
 import multiprocessing
+import signal
 import threading
-from concurrent.futures import CancelledError
-from concurrent.futures.process import BrokenProcessPool
 from importlib import import_module
+from multiprocessing.connection import Connection
+from types import ModuleType
 from typing import Any
-
-from pebble import ProcessExpired, ProcessFuture, ProcessPool
 
 from ...errors import UserError
 from .guard import MAX_QUESTIONS
 
 ANSWERED_WITHIN = 60.0
 """Seconds, after which the process is ended; the slowest scans at hand take ten when idle."""
+
+
+STARTED_WITHIN = 60.0
+"""Seconds, in which a process imports what it needs and takes its question."""
 
 
 _places = threading.Semaphore(MAX_QUESTIONS)
@@ -36,6 +39,62 @@ class BrokenError(Exception):
     """The process ended by itself, or a fault of this project stopped it."""
 
 
+class _NotTakenError(Exception):
+    """The process ended before it took a question: not by this one."""
+
+
+class _Question:
+    """What a page waits for, until it is answered or ``ended``."""
+
+    ended = False
+
+
+class _Worker:
+    """A process that takes questions one at a time, by a pipe that tells when it ends."""
+
+    def __init__(self, module: str) -> None:
+        spawn = multiprocessing.get_context("spawn")
+        self._connection, theirs = spawn.Pipe()
+        self._process = spawn.Process(target=_work, args=(theirs, module), daemon=True)
+        self._process.start()
+        theirs.close()  # so that the end of the process is the end of the pipe
+
+    def answer(self, function: str, arguments: dict[str, Any], seconds: float) -> Any:
+        """What the function returns or raises. Raises _NotTakenError; BrokenError where the process
+        ends, and UserError where it does not answer within the seconds: it is no more then."""
+        try:
+            self._connection.send((function, arguments))
+            if not self._connection.poll(STARTED_WITHIN):
+                raise EOFError
+            self._connection.recv()
+        except (EOFError, OSError):
+            self.close()
+            raise _NotTakenError from None
+        try:
+            if not self._connection.poll(seconds):
+                self.close()
+                raise UserError(f"is not answered within {seconds:.0f} seconds")
+            value, error = self._connection.recv()
+        except (EOFError, OSError):
+            self.close()
+            raise BrokenError("the process that computes ended unexpectedly") from None
+        if error is not None:
+            raise error
+        return value
+
+    def alive(self) -> bool:
+        return self._process.is_alive()
+
+    def kill(self) -> None:
+        """End the process, whatever it does; who waits for its answer is told."""
+        self._process.kill()
+
+    def close(self) -> None:
+        self._process.kill()
+        self._process.join()
+        self._connection.close()
+
+
 class Bench:
     """One process that answers one question at a time by the functions of a ``module``, each within
     ``seconds``. Questions of one ``page`` replace each other; those of different pages wait.
@@ -46,63 +105,76 @@ class Bench:
     def __init__(self, module: str, seconds: float = ANSWERED_WITHIN) -> None:
         self._module = module
         self._seconds = seconds
-        self._pool = self._new_pool()
-        self._lock = threading.Lock()
-        self._asked: dict[str, ProcessFuture[Any]] = {}
+        self._changed = threading.Condition()
+        self._worker: _Worker | None = None
+        self._answering: _Question | None = None
+        self._asked: dict[str, _Question] = {}
         self._turns: dict[str, int] = {}
-
-    def _new_pool(self) -> ProcessPool:
-        spawn: Any = multiprocessing.get_context("spawn")
-        return ProcessPool(1, 0, _warm, (self._module,), spawn)
+        self._closed = False
 
     def warm(self) -> None:
         """Start the process, so that the first question need not wait for it."""
-        with self._lock:
-            self._ensure_active()
+        with self._changed:
+            self._ready_worker()
 
-    def _ensure_active(self) -> None:
-        """Start a process, also where the one before could not be kept: pebble gives a pool up when
-        its process is killed while it waits for work."""
-        if not self._pool.active:
-            self._pool = self._new_pool()
-            assert self._pool.active
+    def _ready_worker(self) -> _Worker:
+        """The process that is kept, or another where that one has ended."""
+        if self._worker is not None and not self._worker.alive():
+            self._worker.close()
+            self._worker = None
+        if self._worker is None:
+            self._worker = _Worker(self._module)
+        return self._worker
 
     def ask(self, page: str, turn: int, function: str, /, **arguments: Any) -> Any:
         """Return what a function of the module returns. Raises UserError with what is wrong with
         the question, or where too many wait; SupersededError; and BrokenError."""
         if not _places.acquire(blocking=False):
             raise UserError(f"{MAX_QUESTIONS} questions wait for an answer; expected fewer pages")
+        question = _Question()
         try:
-            try:
-                return self._wait(page, turn, function, arguments)
-            except BrokenProcessPool:  # it was killed while it waited, so not by this question
-                return self._wait(page, turn, function, arguments)
+            self._wait(question, page, turn)
+            return self._answer(question, function, arguments)
         finally:
+            with self._changed:
+                if self._asked.get(page) is question:
+                    del self._asked[page]
+                if self._answering is question:
+                    self._answering = None
+                self._changed.notify_all()
             _places.release()
 
-    def _wait(self, page: str, turn: int, function: str, arguments: dict[str, Any]) -> Any:
-        with self._lock:
-            if not self._begin_turn(page, turn):
+    def _wait(self, question: _Question, page: str, turn: int) -> None:
+        """Wait until no other question is answered. Raises SupersededError."""
+        with self._changed:
+            if self._closed or not self._begin_turn(page, turn):
                 raise SupersededError
-            self._ensure_active()
-            question = self._module, function, arguments
-            asked = self._asked[page] = self._pool.schedule(_answer, question, {}, self._seconds)
+            self._asked[page] = question
+            self._changed.wait_for(lambda: question.ended or self._answering is None)
+            if question.ended:
+                raise SupersededError
+            self._answering = question
+
+    def _answer(self, question: _Question, function: str, arguments: dict[str, Any]) -> Any:
         try:
-            return asked.result()
-        except (UserError, BrokenProcessPool):
-            raise
-        except CancelledError:
+            try:
+                return self._worker_of(question).answer(function, arguments, self._seconds)
+            except _NotTakenError:  # it ended while it waited, so not by this question
+                return self._worker_of(question).answer(function, arguments, self._seconds)
+        except _NotTakenError:
+            if not question.ended:
+                raise BrokenError("the process that computes does not start") from None
             raise SupersededError from None
-        except TimeoutError:
-            raise UserError(f"is not answered within {self._seconds:.0f} seconds") from None
-        except ProcessExpired:
-            raise BrokenError("the process that computes ended unexpectedly") from None
-        except Exception as error:
-            raise BrokenError(f"{type(error).__name__}: {error}") from error
-        finally:
-            with self._lock:
-                if self._asked.get(page) is asked:
-                    del self._asked[page]
+        except BrokenError:
+            if question.ended:
+                raise SupersededError from None
+            raise
+
+    def _worker_of(self, question: _Question) -> _Worker:
+        with self._changed:
+            if question.ended:
+                raise SupersededError
+            return self._ready_worker()
 
     def _begin_turn(self, page: str, turn: int) -> bool:
         """End what the page asked before this turn; False where a newer turn came first."""
@@ -112,30 +184,52 @@ class Bench:
             del self._turns[next(iter(self._turns))]
         if turn < newest:
             return False
-        self._cancel(page)
+        self._end(page)
         return True
 
-    def _cancel(self, page: str) -> None:
-        if page in self._asked:
-            self._asked.pop(page).cancel()  # type: ignore[no-untyped-call]
+    def _end(self, page: str) -> None:
+        if (question := self._asked.pop(page, None)) is None:
+            return
+        question.ended = True
+        if self._answering is question and self._worker is not None:
+            self._worker.kill()
+        self._changed.notify_all()
 
     def stop(self, page: str, turn: int) -> None:
         """End what the page asked before this turn, also what has not arrived yet."""
-        with self._lock:
+        with self._changed:
             self._begin_turn(page, turn)
 
     def close(self) -> None:
         """End the process; nothing is answered any more."""
-        with self._lock:
+        with self._changed:
+            self._closed = True
             for page in list(self._asked):
-                self._cancel(page)
-            self._pool.stop()  # type: ignore[no-untyped-call]
-        self._pool.join()
+                self._end(page)
+            self._changed.wait_for(lambda: self._answering is None)  # its thread lets go of it
+            if self._worker is not None:
+                self._worker.close()
 
 
-def _warm(module: str) -> None:
-    import_module(module).warm()
+def _work(connection: Connection, module: str) -> None:
+    """What a process does: it takes a question, says so, and answers, until the pipe ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # control-C is the desk's, which then closes it
+    functions = import_module(module)
+    functions.warm()
+    while True:
+        try:
+            function, arguments = connection.recv()
+            connection.send(None)
+            connection.send(_outcome(functions, function, arguments))
+        except (EOFError, OSError):
+            return
 
 
-def _answer(module: str, function: str, arguments: dict[str, Any]) -> Any:
-    return getattr(import_module(module), function)(**arguments)
+def _outcome(functions: ModuleType, function: str, arguments: dict[str, Any]) -> tuple[Any, Any]:
+    """What the function returns, or the error to raise where the question was asked."""
+    try:
+        return getattr(functions, function)(**arguments), None
+    except UserError as error:
+        return None, error
+    except Exception as error:
+        return None, BrokenError(f"{type(error).__name__}: {error}")
