@@ -291,7 +291,7 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
         )
         count += len(rows)
         if count > 1_048_576:
-            raise UserError("a sheet has at most 1,048,576 rows; expected to write CSV")
+            raise UserError("a sheet has at most 1,048,576 rows; write CSV")
         for row in rows:
             sheet.append([cell(value) for value in row])
 

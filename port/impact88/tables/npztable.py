@@ -145,7 +145,7 @@ def _array(name: str, column: Column) -> NDArray[Any]:
     if 4 * longest * len(cells) > LARGEST_TEXTS:
         raise UserError(
             f"column {quoted(name)} has texts of up to {longest:,} characters, too long for "
-            ".npz; expected to write CSV or JSON Lines"
+            ".npz; write CSV or JSON Lines"
         )
     return np.array(cells, dtype=np.str_)
 

@@ -104,8 +104,8 @@ def open_writer(
             if late and not row.rows_vary:
                 raise UserError(
                     f"line {rows.late[late[0]]} has the key {quoted(late[0])}, which no row before "
-                    f"it has, and {row.noun} begins with its columns; expected to write "
-                    "JSON Lines, or the key in the first row too"
+                    f"it has, and {row.noun} begins with its columns; write JSON "
+                    "Lines, or give the key in the first row too"
                 )
             names = [*source_names, *late]
             if row.rows_vary:

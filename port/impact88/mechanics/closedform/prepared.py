@@ -249,7 +249,7 @@ class Prepared:
             try:
                 return np.array(values, np.float64)
             except OverflowError as error:
-                raise UserError(f"a value is no number: {error}") from None
+                raise UserError(f"a value is not a number: {error}") from None
         rows = [in_doubles(name, row) for name, row in zip(self.names, values, strict=True)]
         try:
             shape = np.broadcast_shapes(*(row.shape for row in rows))
