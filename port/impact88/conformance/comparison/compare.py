@@ -7,7 +7,7 @@ could not be compared are counted by reason.
 import os
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -378,9 +378,8 @@ def compare(
     search = _Search(comparison) if causes else None
     with open_table(table, form, encoding) as (reader, where):
         comparison.place, comparison.remarks = reader.place, reader.remarks
-        wanted = [name for name in reader.names if name in RESULTS and name not in NOT_COMPARED]
-        known = {*SCENE, *RESULTS, *CARRIED}
-        comparison.unknown = {name: _meant(name) for name in reader.names if name not in known}
+        wanted, unknown = result_columns(reader)
+        comparison.unknown = {name: _meant(name) for name in unknown}
         if not wanted:
             hints = [f"{name} for {meant}" for name, meant in comparison.unknown.items() if meant]
             hint = f" ({', '.join(hints)}?)" if hints else ""
@@ -391,19 +390,16 @@ def compare(
             advice = f"where ids stand for the scenes of a kit, add --kit {FROZEN_ID}; {advice}"
         check_scene_columns({*reader.names, *values}, advice=advice, where=where)
         comparison.tallies = {name: Tally() for name in wanted}
-        with progress(reader.total, "compare", "B") as meter:
-            before = 0
-            measured: TableUnits | None = None
-            for rows in reader:
-                measured = measured or TableUnits(reader.names, units, rows, wanted, where)
-                max_agreeing = max(0, MAX_AGREEING_KEPT - comparison.agreeing)
-                case, places = _compare_block(
-                    rows, values, comparison, rtol, measured, max_agreeing
-                )
-                if search is not None:
-                    search.add(case, places)
-                meter.update(rows.place - before)
-                before = rows.place
+        for rows, measured in read_blocks(reader, wanted, where, units):
+            scene = _scene_of(rows, values, measured)
+            block = compare_block(rows, scene, wanted, measured, rtol)
+            agreeing = block.agreeing[: max(0, MAX_AGREEING_KEPT - comparison.agreeing)]
+            _count(block, comparison)
+            if rtol is None:
+                comparison._trials.add(block.case, block.differing, block.grades, block.relative)
+            if search is not None:
+                kept = np.sort(np.concatenate([block.differing, agreeing]))
+                search.add(block.case.select_rows(kept), rows.first + kept)
     if not any(tally.compared for tally in comparison.tallies.values()):
         raise UserError("no result could be compared", where)
     noise = comparison._trials
@@ -512,51 +508,112 @@ def _meant(name: str) -> str:
     return next(iter(get_close_matches(upper, columns, 1, 0.75)), "")
 
 
-@np.errstate(all="ignore")
-def _compare_block(
-    rows: Rows,
-    values: Mapping[str, str],
-    comparison: Comparison,
-    rtol: float | None,
-    units: TableUnits,
-    max_agreeing: int,
-) -> tuple[Case, NDArray[np.intp]]:
-    """Compare a block of rows and add it to the comparison.
+class Block(NamedTuple):
+    """Some rows of a table, compared: grades and relative differences are (results, rows)."""
 
-    Returns the rows in which causes are looked for, and their numbers: those that disagree, and at
-    most ``max_agreeing`` that agree.
-    """
+    rows: Rows
+    scene: Mapping[str, NDArray[np.float64]]
+    case: Case
+    grades: NDArray[np.intp]
+    relative: NDArray[np.float64]
+
+    @property
+    def differing(self) -> NDArray[np.intp]:
+        """The rows with a result that disagrees."""
+        return np.flatnonzero((self.grades == DIFFER).any(0))
+
+    @property
+    def agreeing(self) -> NDArray[np.intp]:
+        """The rows that could be compared, and agree."""
+        judged = ((self.grades > ABSENT) & (self.grades < LOST)).any(0)
+        return np.flatnonzero(judged & ~np.isin(self.grades, (DIFFER, LOST)).any(0))
+
+
+def result_columns(reader: Reader) -> tuple[list[str], list[str]]:
+    """Return a table's columns of results that are compared, and those that are not recognised."""
+    results = [str(n) for n in reader.names if n in RESULTS and n not in NOT_COMPARED]
+    known = {*SCENE, *RESULTS, *CARRIED}
+    return results, [name for name in reader.names if name not in known]
+
+
+def read_blocks(
+    reader: Reader, results: Sequence[str], where: str, units: str | None = None
+) -> Iterator[tuple[Rows, TableUnits]]:
+    """Yield a table's rows, some at a time, with the units of its columns; shows the progress."""
+    measured: TableUnits | None = None
+    before = 0
+    with progress(reader.total, "compare", "B") as meter:
+        for rows in reader:
+            measured = measured or TableUnits(reader.names, units, rows, results, where)
+            yield rows, measured
+            meter.update(rows.place - before)
+            before = rows.place
+
+
+@np.errstate(all="ignore")
+def compare_block(
+    rows: Rows,
+    scene: Mapping[str, NDArray[np.float64]],
+    results: Sequence[str],
+    units: TableUnits,
+    rtol: float | None = None,
+) -> Block:
+    """Compare rows of a table with our results for scenes (columns of n). Of a row with a cell that
+    could not be read, no result is compared."""
+    theirs = {name: agreement.read_theirs(rows, name, units) for name in results}
+    unreadable = [index for index, *_ in rows.bad]
+    for column, _ in theirs.values():
+        column[unreadable] = np.nan
+    case = agreement.make_case(scene, theirs, rtol)
+    return Block(rows, scene, case, *case.grade())
+
+
+def _scene_of(
+    rows: Rows, values: Mapping[str, str], units: TableUnits
+) -> dict[str, NDArray[np.float64]]:
+    """Return the scenes of rows: their own columns, and values for all rows of those they lack."""
     constants = {"M": DEFAULT_M, **values}
     scene = {
         name: np.full(rows.count, double(text)) for name, text in constants.items() if name in SCENE
     }
-    scene |= numbers(rows, units)
-    theirs = {name: agreement.read_theirs(rows, name, units) for name in comparison.tallies}
-    readable = np.ones(rows.count, bool)
-    readable[[index for index, *_ in rows.bad]] = False
-    for column, _ in theirs.values():
-        column[~readable] = np.nan
-    case = agreement.make_case(scene, theirs, rtol)
-    grades, relative = case.grade()
-    wrong, lost = (grades == DIFFER).any(0), (grades == LOST).any(0)
-    compared = ((grades > ABSENT) & (grades < LOST)).any(0) & (wrong | ~lost)
-    solved = (grades > ABSENT).any(0) & np.isfinite(case.ours)
-    for place, tally in enumerate(comparison.tallies.values()):
-        tally.add(grades[place], relative[place])
-        tally.missing += int((solved[place] & (grades[place] == ABSENT)).sum())
+    return scene | numbers(rows, units)
+
+
+def _count(block: Block, comparison: Comparison) -> None:
+    """Count a block's rows for the comparison."""
+    rows, case, grades = block.rows, block.case, block.grades
     comparison.rows += rows.count
     comparison.bad += rows.complaints()
-    comparison.agreeing += int((compared & ~wrong).sum())
-    comparison.differing += int(wrong.sum())
+    comparison.agreeing += block.agreeing.size
+    comparison.differing += block.differing.size
+    solved = (grades > ABSENT).any(0) & np.isfinite(case.ours)
+    for place, tally in enumerate(comparison.tallies.values()):
+        tally.add(grades[place], block.relative[place])
+        tally.missing += int((solved[place] & (grades[place] == ABSENT)).sum())
+    _count_not_compared(block, comparison)
+    _count_elimination(block, comparison.elimination)
+    comparison.differences += _rows_of(block)
+
+
+def _count_not_compared(block: Block, comparison: Comparison) -> None:
+    """Count a block's rows that were not compared, by reason."""
+    rows, case, grades = block.rows, block.case, block.grades
+    unreadable = np.zeros(rows.count, bool)
+    unreadable[[index for index, *_ in rows.bad]] = True
+    skipped_rows = np.ones(rows.count, bool)
+    skipped_rows[np.concatenate([block.differing, block.agreeing])] = False
+    if not skipped_rows.any():
+        return
     solvable, answered = np.isfinite(case.ours).any(0), np.isfinite(case.values).any(0)
     kinds = rows.columns.get("class", [""] * rows.count)
     refused = solvable & ~answered & np.array([str(kind) == FAILURE for kind in kinds], bool)
-    positive = np.all([scene[name] > 0 for name in POSITIVE], 0)
-    conditions = (~readable, ~solvable & ~answered, ~solvable & ~positive, ~solvable, refused, lost)
+    positive = np.all([block.scene[name] > 0 for name in POSITIVE], 0)
+    lost = (grades == LOST).any(0)
+    conditions = (unreadable, ~solvable & ~answered, ~solvable & ~positive, ~solvable, refused)
+    reasons = np.select((*conditions, lost), REASONS[:-1], REASONS[-1])
     labels = rows.columns.get("label")
-    reasons = np.select(conditions, REASONS[:-1], REASONS[-1])
     for reason in REASONS:
-        places = np.flatnonzero(~compared & (reasons == reason))
+        places = np.flatnonzero(skipped_rows & (reasons == reason))
         if places.size:
             skipped = comparison.not_compared.setdefault(reason, Skipped())
             skipped.rows += places.size
@@ -564,40 +621,36 @@ def _compare_block(
             if labels is not None:
                 found = dict.fromkeys(str(labels[place]) for place in places.tolist())
                 skipped.labels += [label for label in found if label not in skipped.labels]
-    by_elimination = ~wrong & (grades == ELIMINATION)
-    largest_by_row = np.where(by_elimination, relative, 0.0).max(0)
-    elimination = comparison.elimination
-    elimination.rows += int(by_elimination.any(0).sum())
+
+
+def _count_elimination(block: Block, elimination: Elimination) -> None:
+    """Count a block's rows that agree as closely as elimination can."""
+    grades = block.grades
+    cells = (grades == ELIMINATION) & ~(grades == DIFFER).any(0)
+    largest_by_row = np.where(cells, block.relative, 0.0).max(0)
+    elimination.rows += int(cells.any(0).sum())
     if (largest := float(largest_by_row.max(initial=0.0))) > elimination.worst_relative:
         worst = int(largest_by_row.argmax())
-        elimination.worst_row, elimination.worst_relative = rows.first + worst, largest
-        elimination.worst_condition = float(case.condition[worst])
-    worst_results = np.where(grades == DIFFER, relative, -1.0).argmax(0)
-    places = np.flatnonzero(wrong)
-    comparison.differences += _rows_of(rows, places, worst_results, relative, case)
-    if rtol is None:
-        comparison._trials.add(case, places, grades, relative)
-    agreeing = np.flatnonzero(compared & ~wrong)[:max_agreeing]
-    kept = np.sort(np.concatenate([places, agreeing]))
-    return case.select_rows(kept), rows.first + kept
+        elimination.worst_row, elimination.worst_relative = block.rows.first + worst, largest
+        elimination.worst_condition = float(block.case.condition[worst])
 
 
-def _rows_of(
-    rows: Rows, places: NDArray[np.intp], worst: Any, relative: Any, case: Case
-) -> Iterator[Row]:
-    """Yield the rows that disagree, without a cause yet; ``worst``: index of each row's result."""
+def _rows_of(block: Block) -> Iterator[Row]:
+    """Yield the rows of a block that disagree, without a cause yet."""
+    rows, case, places = block.rows, block.case, block.differing
+    worst = np.where(block.grades == DIFFER, block.relative, -1.0).argmax(0)[places]
     ids = rows.one_per_row("id") if "id" in rows.columns else None
     written = [rows.one_per_row(name) for name in case.names]
-    for index in places.tolist():
-        result = int(worst[index])
+    ours, relative = case.ours[worst, places].tolist(), block.relative[worst, places].tolist()
+    for place, (index, result) in enumerate(zip(places.tolist(), worst.tolist(), strict=True)):
         yield Row(
             row=rows.first + index,
             line=rows.lines[index] if rows.lines else 0,
             id=str(ids[index]) if ids is not None else "",
             result=case.names[result],
             theirs=str(written[result][index]),
-            ours=float(case.ours[result, index]),
-            relative=float(relative[result, index]),
+            ours=ours[place],
+            relative=relative[place],
             cause=UNKNOWN,
         )
 

@@ -8,7 +8,6 @@ where one is due, no number where there is none. Missing rows and cells count as
 import hashlib
 import io
 import json
-import math
 import os
 import shutil
 import tempfile
@@ -20,19 +19,18 @@ from typing import Any, NamedTuple
 from zipfile import BadZipFile, ZipFile
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...collision.doubles import doubles_of
 from ...errors import UserError, one_line, quoted
 from ...files import display_name, open_bytes, read_bytes
 from ...messages.plaintable import plain
 from ...messages.schemas import NUMBERS
-from ...names import FINAL_VELOCITIES, RESULTS, SCENE
+from ...names import FINAL_VELOCITIES, SCENE
 from ...tables.cells import TableUnits, numbers
 from ...tables.rows import Rows
 from . import agreement
-from .agreement import DIFFER, ELIMINATION, LOST, Case, Floats
-from .compare import CARRIED, NOT_COMPARED, open_table
+from .agreement import DIFFER, LOST, Floats
+from .compare import Block, compare_block, open_table, read_blocks, result_columns
 from .junit import Suite
 from .kit import csv_lines
 from .vectors import (
@@ -288,28 +286,6 @@ def _vectors(count: int, seed: int) -> Iterator[Vector]:
         yield Vector(f"{seed}-{index:06d}", kind, label, expectation(kind, scene), scene)
 
 
-class _Cell(NamedTuple):
-    """A result as written: its value (NaN where there is none), the unit of its last digit, and
-    its ``fault``: malformed, infinite, or ""."""
-
-    value: float
-    unit: float
-    fault: str
-
-
-_EMPTY = _Cell(math.nan, 0.0, "")
-
-
-@dataclass
-class _Table:
-    """Answers by place of the vector: the numbers of its ``rows`` in the table, and the inputs
-    (``scenes``) and results (``cells``) of the first of them."""
-
-    rows: dict[int, list[int]] = field(default_factory=dict)
-    scenes: dict[int, dict[str, float]] = field(default_factory=dict)
-    cells: dict[int, dict[str, _Cell]] = field(default_factory=dict)
-
-
 def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = None) -> Conformance:
     """Judge a table of another program's answers to a kit's vectors, vector by vector.
 
@@ -332,7 +308,7 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
     whole = read_kit(kit)
     where = display_name(theirs)
     with _on_disk(theirs) as path, open_table(path, form, encoding) as (reader, _):
-        results = [n for n in reader.names if n in RESULTS and n not in NOT_COMPARED]
+        results, unknown = result_columns(reader)
         if "id" not in reader.names:
             raise UserError("no column id; expected the kit's ids, one a row", where)
         if missing := [name for name in FINAL_VELOCITIES if name not in results]:
@@ -340,17 +316,12 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
                 f"no column {' '.join(missing)}; expected all of {' '.join(FINAL_VELOCITIES)}",
                 where,
             )
-        done = Conformance(whole, where, _digest(path), [str(name) for name in results])
-        known = {*SCENE, *RESULTS, *CARRIED}
-        done.unknown = [str(name) for name in reader.names if name not in known]
+        done = Conformance(whole, where, _digest(path), results, unknown=list(map(str, unknown)))
         done.place, done.remarks = reader.place, reader.remarks
-        table = _Table()
-        places = {vector.id: place for place, vector in enumerate(whole.vectors)}
-        units: TableUnits | None = None
-        for rows in reader:
-            units = units or TableUnits(reader.names, None, rows, results, where)
-            _add_answers(rows, results, units, places, table, done)
-    _judge(whole, results, table, done)
+        judge = _Judge(done)
+        for rows, units in read_blocks(reader, results, where):
+            judge.add(rows, units)
+    judge.finish()
     return done
 
 
@@ -376,106 +347,98 @@ def _digest(path: str) -> str:
     return digest.hexdigest()
 
 
-def _add_answers(
-    rows: Rows,
-    results: Sequence[str],
-    units: TableUnits,
-    places: Mapping[str, int],
-    table: _Table,
-    done: Conformance,
-) -> None:
-    """Add a block's rows to ``table`` by vector; rows without a vector to the strays."""
-    ids = [str(cell) for cell in rows.one_per_row("id")]
-    scene = numbers(rows, units)
-    theirs = {name: agreement.read_theirs(rows, name, units) for name in results}
-    wrong: dict[int, str] = {}
-    for index, name, reason in rows.bad:
-        wrong.setdefault(index, f"{name}: {reason}" if name else reason)
-    malformed = {(index, name) for index, name, _ in rows.bad}
-    scene = {name: np.broadcast_to(column, (rows.count,)) for name, column in scene.items()}
-    for index, name in enumerate(ids):
-        row = rows.first + index
-        place = places.get(name)
-        if place is None:
-            if len(done.strays) < MAX_STRAYS:
-                says = f"id {quoted(name)} is no vector's" if name else "no id"
-                done.strays.append(f"row {row}: {wrong.get(index, says)}")
-            continue
-        table.rows.setdefault(place, []).append(row)
-        if len(table.rows[place]) == 1:
-            table.scenes[place] = {n: float(column[index]) for n, column in scene.items()}
-            cells = table.cells[place] = {}
-            for result, (values, units_of) in theirs.items():
-                value = float(values[index])
-                fault = "malformed" if (index, result) in malformed else ""
-                fault = "infinite" if math.isinf(value) else fault
-                cells[result] = _Cell(value, float(units_of[index]), fault)
+class _Judge:
+    """Verdicts on the vectors of a kit, by their places in it, as the table's rows are read."""
 
+    def __init__(self, done: Conformance) -> None:
+        self._done = done
+        self._places = {vector.id: place for place, vector in enumerate(done.kit.vectors)}
+        scenes = [doubles_of(vector.scene) for vector in done.kit.vectors]
+        # that of a row without a vector is none
+        self._scene = {name: np.array([*(g[name] for g in scenes), np.nan]) for name in SCENE}
+        self._verdicts: dict[int, Verdict] = {}
+        self._rows: dict[int, list[int]] = {}  # of the table, that have a vector's id
+        self._empty: set[int] = set()  # vectors without an answer
+        self._noise = agreement.TrialNoise()
+        self._noisy: list[int] = []  # the place of each of its rows
 
-def _judge(kit: Kit, results: Sequence[str], table: _Table, done: Conformance) -> None:
-    """Add a verdict on every vector."""
-    count = len(kit.vectors)
-    texts = [vector.scene for vector in kit.vectors]
-    scene = {name: np.array([doubles_of(text)[name] for text in texts]) for name in SCENE}
-    theirs: dict[str, tuple[Floats, Floats]] = {}
-    for name in results:
-        cells = [table.cells.get(place, {}).get(name, _EMPTY) for place in range(count)]
-        theirs[name] = (
-            np.array([cell.value for cell in cells]),
-            np.array([cell.unit for cell in cells]),
-        )
-    case = agreement.make_case(scene, theirs)
-    grades, relative = case.grade()
-    noise, wrong = agreement.TrialNoise(), np.flatnonzero((grades == DIFFER).any(0))
-    noise.add(case, wrong, grades, relative)
-    if noise.count:
-        grades[:, wrong[[is_noise for is_noise, *_ in noise.rows]]] = ELIMINATION
-    for place, vector in enumerate(kit.vectors):
-        rows = table.rows.get(place, [])
-        reason, detail = _verdict(vector, place, rows, table, case, grades)
-        done.verdicts.append(Verdict(vector, reason, detail, rows[0] if rows else 0))
-        is_empty = not np.isfinite(case.values[:, place]).any()
-        done.refused += int(is_empty and not reason)
+    def add(self, rows: Rows, units: TableUnits) -> None:
+        """Judge a block's rows; those without a vector are strays."""
+        ids = [str(cell) for cell in rows.one_per_row("id")]
+        places = np.array([self._places.get(name, -1) for name in ids])
+        typed = numbers(rows, units)
+        scene = {name: column[places] for name, column in self._scene.items()}
+        block = compare_block(rows, scene, self._done.results, units)
+        self._noise.add(block.case, block.differing, block.grades, block.relative)
+        self._noisy += places[block.differing].tolist()
+        for index, place in enumerate(places.tolist()):
+            row = rows.first + index
+            if place < 0:
+                self._add_stray(row, ids[index], [bad for bad in rows.bad if bad[0] == index])
+                continue
+            self._rows.setdefault(place, []).append(row)
+            if len(self._rows[place]) == 1:
+                vector = self._done.kit.vectors[place]
+                reason, detail = _verdict(vector, typed, block, index)
+                self._verdicts[place] = Verdict(vector, reason, detail, row)
+                if not np.isfinite(block.case.values[:, index]).any():
+                    self._empty.add(place)
+
+    def _add_stray(self, row: int, name: str, bad: Sequence[tuple[int, str, str]]) -> None:
+        says = f"id {quoted(name)} is no vector's" if name else "no id"
+        for _, column, reason in bad[:1]:
+            says = f"{column}: {reason}" if column else reason
+        if len(self._done.strays) < MAX_STRAYS:
+            self._done.strays.append(f"row {row}: {says}")
+
+    def finish(self) -> None:
+        """Add the verdict on every vector to the result."""
+        if self._noise.count:
+            for place, (is_noise, *_) in zip(self._noisy, self._noise.rows, strict=True):
+                verdict = self._verdicts.get(place)
+                if is_noise and verdict is not None and verdict.reason == "differs":
+                    self._verdicts[place] = verdict._replace(reason="", detail="")
+        for place, rows in self._rows.items():
+            if len(rows) > 1:
+                says = f"rows {', '.join(map(str, rows[:5]))}"
+                verdict = self._verdicts[place]
+                self._verdicts[place] = verdict._replace(reason="repeated", detail=says)
+        for place, vector in enumerate(self._done.kit.vectors):
+            verdict = self._verdicts.get(place, Verdict(vector, "missing", "", 0))
+            self._done.verdicts.append(verdict)
+            self._done.refused += int(place in self._empty and not verdict.reason)
 
 
 def _verdict(
-    vector: Vector,
-    place: int,
-    rows: Sequence[int],
-    table: _Table,
-    case: Case,
-    grades: NDArray[np.intp],
+    vector: Vector, typed: Mapping[str, Floats], block: Block, index: int
 ) -> tuple[str, str]:
-    """Return the reason for which a vector fails and its details; two empty texts if it passes."""
-    if not rows:
-        return "missing", ""
-    if len(rows) > 1:
-        return "repeated", f"rows {', '.join(map(str, rows[:5]))}"
-    for name, value in table.scenes[place].items():
-        if value != doubles_of(vector.scene)[name]:
-            return "inputs", f"{name} is {value!r}, not {vector.scene[name]}"
-    cells = table.cells[place]
-    if malformed := [name for name, cell in cells.items() if cell.fault == "malformed"]:
+    """Return the reason for which a row of a block fails as the answer to a vector, and its
+    details; two empty texts if it passes. ``typed``: the inputs in the table."""
+    case, grades = block.case, block.grades[:, index]
+    scene = doubles_of(vector.scene)
+    for name, column in typed.items():
+        if column[index] != scene[name]:
+            return "inputs", f"{name} is {float(column[index])!r}, not {vector.scene[name]}"
+    if malformed := [name for at, name, _ in block.rows.bad if at == index and name in case.names]:
         return "malformed", " ".join(malformed)
-    if infinite := [name for name, cell in cells.items() if cell.fault == "infinite"]:
+    values, ours = case.values[:, index], case.ours[:, index]
+    names, theirs, is_due = np.array(case.names), np.isfinite(values), np.isfinite(ours)
+    if np.isinf(values).any():
         says = "is infinite; a refusal leaves the cells empty"
         reason = "no answer" if vector.expect == ANSWER else "no solution"
-        return reason, f"{' '.join(infinite)} {says}"
-    theirs, ours = np.isfinite(case.values[:, place]), np.isfinite(case.ours[:, place])
-    names = np.array(case.names)
+        return reason, f"{' '.join(names[np.isinf(values)])} {says}"
     if vector.expect == REFUSE:
         return ("no solution", " ".join(names[theirs])) if theirs.any() else ("", "")
     if vector.expect == EITHER and not theirs.any():
         return "", ""
-    if (theirs & ~ours).any():
-        return "no solution", " ".join(names[theirs & ~ours])
-    if (ours & ~theirs).any():
+    if (theirs & ~is_due).any():
+        return "no solution", " ".join(names[theirs & ~is_due])
+    if (is_due & ~theirs).any():
         reason = "partial" if theirs.any() else "no answer"
-        return reason, f"{' '.join(names[ours & ~theirs])} missing"
+        return reason, f"{' '.join(names[is_due & ~theirs])} missing"
     for grade, reason in ((DIFFER, "differs"), (LOST, "no digit")):
-        for at in np.flatnonzero(grades[:, place] == grade)[:1]:
-            value, mine = case.values[at, place], case.ours[at, place]
-            return reason, f"{names[at]} is {value:.12g}, here {mine:.12g}"
+        for at in np.flatnonzero(grades == grade)[:1]:
+            return reason, f"{names[at]} is {values[at]:.12g}, here {ours[at]:.12g}"
     return "", ""
 
 
