@@ -201,7 +201,6 @@ def test_a_mistake_is_named_in_other_tables(tmp_path, what: str) -> None:
 
 
 @pytest.mark.long
-@pytest.mark.xfail(reason="the first cause is told without the rows in which it holds")
 def test_two_mistakes_in_one_table_are_both_named(tmp_path, monkeypatch) -> None:
     """Rows from one program, then rows from another."""
     if not SWEEP:  # no pair explains them, and to find that out takes long

@@ -334,7 +334,7 @@ class Diagnosis:
                 break
             # a few rows more or fewer are rounding's: of hypotheses that explain nearly as much,
             # the one that takes least to state
-            near = [(x.cost, -score, x) for score, x in scores if score >= _NEARLY * highest]
+            near = [(self._cost(x), -score, x) for score, x in scores if score >= _NEARLY * highest]
             _, score, hypothesis = min(near, key=lambda each: each[:2])
             self._add(hypothesis, -score)
             explained |= self._fits(hypothesis) & wrong
@@ -342,26 +342,37 @@ class Diagnosis:
     def _fits(self, hypothesis: Hypothesis) -> Bools:
         """Return the rows of the sample that a hypothesis predicts where it holds."""
         if id(hypothesis) not in self._known_rows:
-            fits = hypothesis.fits(self._sample)
-            if hypothesis.where is not None:
-                fits &= hypothesis.where.rows(self._quantities)
+            fits = hypothesis.fits(self._sample) & self._holds(hypothesis)
             self._known_rows[id(hypothesis)] = hypothesis, fits
         return self._known_rows[id(hypothesis)][1]
 
     def _score(self, hypothesis: Hypothesis, explained: Bools | None = None) -> float:
-        """Return the bits that a hypothesis gets right in the sample, less what it costs."""
+        """Return the bits that a hypothesis gets right in the sample, less what it costs.
+
+        ``explained``: rows that another cause explains already.
+        """
         fits = self._fits(hypothesis)
         gained = fits & self._wrong
-        contradicted = ~fits & self._agreeing
-        if hypothesis.where is not None:
-            contradicted &= hypothesis.where.rows(self._quantities)
+        contradicted = ~fits & self._agreeing & self._holds(hypothesis)
         if explained is not None:
             gained &= ~explained
+        cost = self._cost(hypothesis)
         if hypothesis.bits is None:
-            return float(
-                self._bits[gained].sum() - _CONTRADICTED * contradicted.sum() - hypothesis.cost
-            )
-        return float(hypothesis.bits * (gained.sum() - contradicted.sum()) - hypothesis.cost)
+            return float(self._bits[gained].sum() - _CONTRADICTED * contradicted.sum() - cost)
+        return float(hypothesis.bits * (gained.sum() - contradicted.sum()) - cost)
+
+    def _cost(self, hypothesis: Hypothesis) -> float:
+        """Return the bits that it takes to state a hypothesis, and which of the rows that disagree
+        it explains, where it holds: a condition that says so is worth them."""
+        rows = self._wrong & (self._bits > 0) & self._holds(hypothesis)
+        count = int((rows & self._fits(hypothesis)).sum())
+        return hypothesis.cost + math.log2(math.comb(int(rows.sum()), count))
+
+    def _holds(self, hypothesis: Hypothesis) -> Bools:
+        """Return the rows of the sample in which a hypothesis holds."""
+        if hypothesis.where is None:
+            return np.ones(self._wrong.size, bool)
+        return hypothesis.where.rows(self._quantities)
 
     def _add(self, hypothesis: Hypothesis, score: float | None = None) -> None:
         """Make a hypothesis a cause."""
@@ -430,30 +441,36 @@ class Diagnosis:
         median = np.median(_relative_differences(case).max(0)[self._wrong])
         is_large = bool(median > _MIN_PAIR_DIFFERENCE)
         groups = small.wrong_groups()
-        best_extended = is_complete = False
+        if len(groups) == 1:
+            yield from self._explain(small, quantities, is_large)
+            return
         names = [name for name in small.theirs if name in groups[0] or not _is_in(groups, name)]
-        part = small.narrow_to(names) if len(groups) > 1 else small
-        for hypothesis in self._explain(part, quantities, is_large):
-            yield hypothesis
-            if len(groups) > 1 and hypothesis.program is not None:
-                program, where = hypothesis.program, hypothesis.where
-                whole = self._hypothesis(program, small, hypothesis.equivalents, where)
-                yield whole
-                is_complete |= self._gives_nearly_all(whole)
-                if where is None and not best_extended and not is_complete:
-                    best_extended = True
-                    for extended in self._extend(program, small):
-                        yield extended
-                        is_complete |= self._gives_nearly_all(extended)
-        for group in groups[1:] if len(groups) > 1 and not is_complete else ():
+        partial_ones = list(self._explain(small.narrow_to(names), quantities, is_large))
+        yield from partial_ones
+        whole_ones = [
+            self._hypothesis(x.program, small, x.equivalents, x.where)
+            for x in partial_ones
+            if x.program is not None
+        ]
+        yield from whole_ones
+        best = self._best(partial_ones)
+        if best and best.program and not best.where and not self._give_nearly_all(whole_ones):
+            extended = list(self._extend(best.program, small))
+            yield from extended
+            whole_ones += extended
+        for group in groups[1:] if not self._give_nearly_all(whole_ones) else ():
             other = small.narrow_to(group)
             if other.wrong.any():
                 yield from self._explain(other, quantities, False)
 
-    def _gives_nearly_all(self, hypothesis: Hypothesis) -> bool:
-        """Return whether a hypothesis predicts nearly all rows of the sample that disagree."""
-        count = (self._fits(hypothesis) & self._wrong).sum()
-        return bool(count >= MIN_FIT * self._wrong.sum()) and self._score(hypothesis) > 0
+    def _give_nearly_all(self, hypotheses: Sequence[Hypothesis]) -> bool:
+        """Return whether hypotheses together predict nearly all rows of the sample that
+        disagree."""
+        explained = np.zeros(self._wrong.size, bool)
+        for hypothesis in hypotheses:
+            if self._score(hypothesis) >= _MIN_SCORE:
+                explained |= self._fits(hypothesis) & self._wrong
+        return bool(explained.sum() >= MIN_FIT * self._wrong.sum())
 
     def _extend(self, program: Program, judge: Judge) -> Iterator[Hypothesis]:
         """Yield a program with an edit more, by which it gives the other results, too."""
@@ -470,14 +487,14 @@ class Diagnosis:
         known = ~judge.wrong
         singles = find_single_edits(judge, judge.wrong)
         self._meter.update(1)
-        yield from self._with_conditions(singles, known, judge, quantities)
-        constants: list[Trial] = []
-        best = self._best(singles, known, judge, quantities)
+        hypotheses = list(self._with_conditions(singles, known, judge, quantities))
+        yield from hypotheses
+        best = self._best(hypotheses)
         if not self._is_explained(best, judge, quantities):
-            programs = fit_constants(judge, judge.wrong, Program())
-            constants = rank_programs(programs, judge)
-            yield from self._with_conditions(constants, known, judge, quantities)
-            best = self._best([*singles, *constants], known, judge, quantities)
+            constants = rank_programs(fit_constants(judge, judge.wrong, Program()), judge)
+            fitted = list(self._with_conditions(constants, known, judge, quantities))
+            yield from fitted
+            best = self._best([*hypotheses, *fitted])
         self._meter.update(1)
         if best is not None:
             yield from self._explain_rest(best, judge, quantities)
@@ -540,15 +557,8 @@ class Diagnosis:
         fits = self._rows_of(best, judge, quantities)
         return bool((shown & ~fits).sum() <= (1 - share) * shown.sum())
 
-    def _best(
-        self,
-        trials: Sequence[Trial],
-        known: Bools,
-        judge: Judge,
-        quantities: Mapping[str, Floats],
-    ) -> Hypothesis | None:
+    def _best(self, hypotheses: Sequence[Hypothesis]) -> Hypothesis | None:
         """Return the hypothesis with the highest score, None where none is worth its cost."""
-        hypotheses = list(self._with_conditions(trials, known, judge, quantities))
         scored = [(self._score(x), x) for x in hypotheses]
         score, best = max(scored, key=lambda pair: pair[0], default=(0.0, None))
         return best if score >= _MIN_SCORE else None
@@ -567,8 +577,11 @@ class Diagnosis:
         judge: Judge,
         quantities: Mapping[str, Floats],
     ) -> Iterator[Hypothesis]:
-        """Yield programs as hypotheses, and those that rows contradict with the condition under
-        which they hold. ``known``: the rows that are explained without them."""
+        """Yield programs as hypotheses, and with the conditions that keep out the rows that
+        contradict them, and those that they leave without a cause.
+
+        ``known``: the rows that are explained without them.
+        """
         groups: dict[bytes, list[Trial]] = {}
         for trial in trials:
             groups.setdefault(trial.rows.tobytes(), []).append(trial)
@@ -576,9 +589,13 @@ class Diagnosis:
             first, *others = sorted(group, key=_plainness)
             programs = [trial.program for trial in others]
             yield self._hypothesis(first.program, judge, programs)
-            inside, outside = first.rows & ~known, known & ~first.rows
-            if outside.any() and inside.any():
-                predicate = find_predicate(quantities, inside, outside)
+            inside, outside = first.rows & ~known, ~first.rows & (known | self._shows(judge))
+            conditions = [
+                find_predicate(quantities, inside, rows)
+                for rows in (outside & known, outside)
+                if rows.any() and inside.any()
+            ]
+            for predicate in dict.fromkeys(conditions):
                 if predicate is not None:
                     yield self._hypothesis(first.program, judge, programs, predicate)
 

@@ -93,9 +93,9 @@ class Predicate(NamedTuple):
             return named
         number = f"{self.value:.10g}"
         if self.quantity == ROW:
-            number = f"{math.floor(self.value)}"
-            after = f"in the rows after row {number}"
-            return after if self.relation == ABOVE else f"in the rows up to row {number}"
+            if self.relation == ABOVE:
+                return f"in the rows after row {math.floor(self.value)}"
+            return f"in the rows up to row {math.ceil(self.value) - 1}"
         relation = self.relation if self.relation in (IS, IS_NOT) else f"is {self.relation}"
         return f"where {self.quantity} {relation} {number}"
 
