@@ -182,6 +182,8 @@ def test_units_and_texts_are_read_as_solve_reads_them() -> None:
         (["MU"], None, {"UX": 3}, "missing: E EM DA"),
         (["E"], None, {**NUMBERS, "MU": [0.1, 0.2]}, "MU holds more than one number"),
         (["E"], None, {**NUMBERS, "MU": "85 %"}, "share of the critical friction"),
+        (["E"], None, {**NUMBERS, "MU": ["85 %"]}, "share of the critical friction"),
+        (["UX"], None, {**NUMBERS, "TA": "course"}, "TA = .course. follows from velocities"),
         (["E"], None, {**NUMBERS, "MU": "much"}, "much"),
         (["E"], None, {**NUMBERS, "speed": 3}, "'speed' is not a scene name"),
     ],

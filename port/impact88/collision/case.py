@@ -9,6 +9,7 @@ FILE, for every command and every kind of value.
 from __future__ import annotations
 
 import math
+import re
 from collections import namedtuple
 from collections.abc import Mapping
 from contextlib import suppress
@@ -46,6 +47,7 @@ TOLERANCES = ("+-", "±", "+/-")
 """Marks that begin a tolerance around the value already given."""
 ABOUT = ("title", "case", "examiner", "date", "correlations", "units", "axes", "headings")
 """Entries about the whole file."""
+_SHARE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+))\s*%\s*")
 _SIZES = frozenset(("LA", "BA", "LB", "BB"))
 _MOVES = ("CX", "CY")
 
@@ -374,6 +376,12 @@ def is_share_text(text: str) -> bool:
 def is_share(text: object) -> bool:
     """Return True if MU is a single percentage of the critical friction, such as ``85 %``."""
     return isinstance(text, str) and text.endswith("%") and not is_range(text)
+
+
+def share_of(text: object) -> float | None:
+    """Return the fraction a text such as ``85 %`` stands for, 0.85; None for anything else."""
+    match = _SHARE.fullmatch(text) if isinstance(text, str) else None
+    return float(match[1]) / 100 if match else None
 
 
 def is_range(text: str) -> bool:

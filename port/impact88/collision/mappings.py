@@ -12,7 +12,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError, quoted
-from .case import FACING_COURSE, RANGES, Case, case_of, check_mapping, is_share
+from ..names import SCENE
+from .case import FACING_COURSE, RANGES, Case, case_of, check_mapping, is_share, share_of
 from .doubles import digits, double
 
 if TYPE_CHECKING:
@@ -113,15 +114,51 @@ def _double(name: str, value: Any) -> float:
 
 def columns(values: Mapping[str, Any]) -> dict[str, Array]:
     """Return all values in base units as arrays of numbers that broadcast. Raises UserError."""
+    arrays = {name: in_doubles(name, value) for name, value in in_base(values).items()}
+    common_shape("columns", arrays)
+    return arrays
+
+
+def scene_columns(values: Mapping[str, Any]) -> tuple[dict[str, Array], Array]:
+    """Return a scene's values of any kinds as arrays of numbers in base units, in the table's
+    order, and the shares of the critical friction among MU, which is 0 there (NaN elsewhere).
+    Raises UserError for an unknown name and for what is no number."""
     import numpy as np
 
-    arrays = {name: in_doubles(name, value) for name, value in in_base(values).items()}
+    given = in_base(values)
+    unknown = [name for name in given if name not in SCENE]
+    if unknown:
+        raise UserError(
+            f"{unknown[0]!r} is not a scene name; expected {' '.join(SCENE)} "
+            "(impact88.solve_frame takes further columns)"
+        )
+    shares = shares_in(given.get("MU"))
+    is_share = ~np.isnan(shares)
+    if np.any(is_share):
+        given = {**given, "MU": np.where(is_share, 0.0, np.asarray(given["MU"], object))}
+    return {name: in_doubles(name, given[name]) for name in SCENE if name in given}, shares
+
+
+def shares_in(mu: Any) -> Array:
+    """Return the fractions that cells of MU are of the critical friction; NaN for all others."""
+    import numpy as np
+
+    kind = getattr(getattr(mu, "dtype", None), "kind", "f")
+    if not isinstance(mu, str | list | tuple) and kind not in "OUS":
+        return np.array(np.nan)
+    cells = np.asarray(mu, object)
+    return np.array([share_of(cell) for cell in cells.ravel()], np.float64).reshape(cells.shape)
+
+
+def common_shape(what: str, arrays: Mapping[str, Array]) -> tuple[int, ...]:
+    """Return the shape that arrays broadcast to; ``what`` they are called. Raises UserError."""
+    import numpy as np
+
     try:
-        np.broadcast_shapes(*(array.shape for array in arrays.values()))
+        return np.broadcast_shapes(*{array.shape for array in arrays.values()})
     except ValueError:
         shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
-        raise UserError(f"the columns' shapes do not broadcast together: {shapes}") from None
-    return arrays
+        raise UserError(f"the {what}' shapes do not broadcast together: {shapes}") from None
 
 
 def within_limits(values: Mapping[str, Any]) -> dict[str, Uncertain]:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...collision.case import OWN_NAMES, VALUE_LIMIT, Case, check_value, is_share
+from ...collision.case import OWN_NAMES, VALUE_LIMIT, Case, check_value, is_share, share_of
 from ...collision.doubles import double, is_number
 from ...collision.fields import ZERO_DETERMINANT
 from ...collision.needs import sentences
@@ -21,7 +21,7 @@ from ...errors import UserError, note, quoted
 from ...files import display_name, replacing
 from ...mechanics.approach import approaching
 from ...mechanics.closedform.columns import INERTIAS, UNUSED_BY_POINTS, examine, refusals
-from ...mechanics.closedform.share import resolve_share, share_of, share_typed
+from ...mechanics.closedform.share import resolve_share, share_typed
 from ...mechanics.closedform.solve import solve
 from ...messages.progress import progress
 from ...names import DEFAULT_M, RESULTS, SCENE, check_names, missing

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...collision.fields import ANGLES
-from ...collision.mappings import in_base, in_doubles
+from ...collision.mappings import common_shape
 from ...errors import UserError
 from ...names import DEFAULT_M, PIVOT, SCENE
 
@@ -48,18 +48,18 @@ def part(source: Source, start: int, stop: int) -> Floats:
 def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int, ...]]:
     """Return name -> source for every scene name, in the table's order, and the common shape.
 
-    Raises UserError for an unknown or missing name, a column that holds no numbers, and shapes that
-    do not broadcast together. M may be missing; when it is 4 throughout, so may `UNUSED_BY_POINTS`.
-    Scenes of M = 4 may have anything there, such as NaN or None.
+    Parameters
+    ----------
+    columns : mapping of str to float or array_like
+        Numbers in base units. M may be missing; when it is 4 throughout, so may
+        `UNUSED_BY_POINTS`. Scenes of M = 4 may have anything there, such as NaN.
+
+    Raises
+    ------
+    UserError
+        For a missing name and shapes that do not broadcast together.
     """
-    columns = in_base(columns)
-    unknown = [name for name in columns if name not in SCENE]
-    if unknown:
-        raise UserError(
-            f"{unknown[0]!r} is not a scene name; expected {' '.join(SCENE)} "
-            "(impact88.solve_frame takes further columns)"
-        )
-    arrays = {name: in_doubles(name, columns[name]) for name in SCENE if name in columns}
+    arrays = {name: np.asarray(columns[name]) for name in SCENE if name in columns}
     arrays.setdefault("M", np.array(float(DEFAULT_M)))
     if arrays["M"].size and bool((arrays["M"] == 4).all()):
         for name in UNUSED_BY_POINTS:
@@ -67,11 +67,7 @@ def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int
     missing = [name for name in SCENE if name not in arrays]
     if missing:
         raise UserError(f"missing: {' '.join(missing)}; a scene needs {' '.join(SCENE)}")
-    try:
-        shape = np.broadcast_shapes(*{array.shape for array in arrays.values()})
-    except ValueError:
-        shapes = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
-        raise UserError(f"the columns' shapes do not broadcast together: {shapes}") from None
+    shape = common_shape("columns", arrays)
     return {name: _source(arrays[name], shape) for name in SCENE}, shape
 
 

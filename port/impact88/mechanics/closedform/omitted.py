@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...collision.mappings import in_base, in_doubles
 from ...collision.needs import ordinary, sentences
 from ...errors import UserError
 from ...names import DEFAULT_M, PIVOT, SCENE, quantity
@@ -56,7 +55,7 @@ def not_given(columns: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the inputs that scenes lack and that their number of equations has."""
     absent = [name for name in SCENE if name not in columns and name != "M"]
     if absent and "M" in columns:
-        m = in_doubles("M", in_base({"M": columns["M"]})["M"])
+        m = np.asarray(columns["M"])
         if m.size and bool((m == 4).all()):
             absent = [name for name in absent if name not in UNUSED_BY_POINTS]
     return tuple(absent)
@@ -70,8 +69,8 @@ def solve_without(
 
     Parameters
     ----------
-    columns : mapping of str to array_like
-        What is given.
+    columns : mapping of str to ndarray
+        What is given, in base units.
     lacking : sequence of str
         What is not, see `not_given`.
     wanted : sequence of str
@@ -84,8 +83,7 @@ def solve_without(
     UserError
         If no wanted result is left.
     """
-    given = {name: in_doubles(name, value) for name, value in in_base(columns).items()}
-    given.setdefault("M", np.array(float(DEFAULT_M)))
+    given = {"M": np.array(float(DEFAULT_M)), **columns}
     rng = np.random.default_rng(1988)
     trials = {name: _trials(name, rng) for name in lacking}
     if "GA" in trials:

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...collision.case import check_mapping
-from ...collision.mappings import in_base, in_doubles
+from ...collision.case import FACING_COURSE, check_mapping
+from ...collision.mappings import common_shape, in_doubles, scene_columns
 from ...collision.units import system_of
-from ...errors import UserError
+from ...errors import UserError, quoted
 from ...messages.arguments import explains_arguments
 from ...names import RESULTS, SCENE, split_names
 from ...status import Status
@@ -20,7 +20,6 @@ from .columns import sources
 from .compiledcalls import PreparedCall
 from .impactprograms import ALL, COLUMNS
 from .plain import PLAIN, address
-from .share import share_of
 from .solve import solve
 
 Array = NDArray[Any]
@@ -123,14 +122,20 @@ class Prepared:
         self.names = names
         self.outputs = outputs
         self._scene = {name: value for name, value in scene.items() if name not in names}
-        entries = in_base(self._scene)
-        if "MU" in entries and share_of(entries["MU"]) is not None:
+        columns, shares = scene_columns(self._scene)
+        if not np.isnan(shares).all():
             raise UserError(
-                f"MU = {entries['MU']!r} is a share of the critical friction, which each scene has "
-                "for itself; expected a number"
+                f"MU = {quoted(self._scene['MU'])} is a share of the critical friction, which each "
+                "scene has for itself; expected a number"
             )
+        for name in ("TA", "TB"):  # a course of velocities that are known is a number by now
+            if isinstance(self._scene.get(name), str) and np.isnan(columns[name]):
+                raise UserError(
+                    f'{name} = "{FACING_COURSE}" follows from velocities that are given at each '
+                    "call; expected degrees"
+                )
         # a placeholder for the numbers of each call: 6 is a number that M may be, too
-        inputs, shape = sources({**entries, **dict.fromkeys(names, 6.0)})
+        inputs, shape = sources({**columns, **dict.fromkeys(names, 6.0)})
         if shape:
             arrays = [name for name, source in inputs.items() if len(source) != 1]
             raise UserError(
@@ -250,14 +255,9 @@ class Prepared:
                 return np.array(values, np.float64)
             except OverflowError as error:
                 raise UserError(f"a value is not a number: {error}") from None
-        rows = [in_doubles(name, row) for name, row in zip(self.names, values, strict=True)]
-        try:
-            shape = np.broadcast_shapes(*(row.shape for row in rows))
-        except ValueError:
-            shapes = ", ".join(f"{n} {x.shape}" for n, x in zip(self.names, rows, strict=True))
-            raise UserError(f"the rows' shapes do not broadcast together: {shapes}") from None
-        block = np.empty((len(rows), *shape))
-        for place, row in enumerate(rows):
+        rows = {name: in_doubles(name, row) for name, row in zip(self.names, values, strict=True)}
+        block = np.empty((len(rows), *common_shape("rows", rows)))
+        for place, row in enumerate(rows.values()):
             block[place] = row
         return block
 

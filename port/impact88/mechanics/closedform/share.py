@@ -6,13 +6,13 @@ is then the number to be typed at line 280: the listing turns its sign where gt 
 """
 
 import math
-import re
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...collision.case import share_of
 from ...collision.doubles import double
 from ...errors import UserError
 from ...names import DEFAULT_M, PIVOT, SCENE
@@ -20,13 +20,13 @@ from .general import quantities
 
 Array = NDArray[Any]
 
-_SHARE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+))\s*%\s*")
 
-
-def share_of(text: object) -> float | None:
-    """Return the fraction a text such as ``85 %`` stands for, 0.85; None for anything else."""
-    match = _SHARE.fullmatch(text) if isinstance(text, str) else None
-    return float(match[1]) / 100 if match else None
+def friction_typed(arrays: Mapping[str, Array], shares: Array) -> dict[str, Array]:
+    """Return a scene's columns with MU as line 280 would take it where it is one of the ``shares``
+    (NaN elsewhere)."""
+    without = {name: array for name, array in arrays.items() if name != "MU"}
+    mu = np.where(np.isnan(shares), arrays["MU"], share_typed(without, shares))
+    return {**without, "MU": mu}
 
 
 def resolve_share(texts: Mapping[str, str], source: str) -> tuple[str, str]:

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...collision.case import check_mapping
-from ...collision.mappings import in_base, in_doubles
+from ...collision.mappings import scene_columns
 from ...errors import UserError
 from ...messages.arguments import explains_arguments
 from ...names import RESULTS, split_names
@@ -21,13 +20,9 @@ from .general import solve_arrays
 from .impactprograms import ALL
 from .omitted import not_given, solve_without
 from .plain import in_order, solve_one, solve_plain
-from .share import share_of, share_typed
+from .share import friction_typed
 
 Array = NDArray[Any]
-
-_CELLS = {str, list, tuple}
-"""Types of an MU in which texts such as "85 %" may be."""
-_FLOATS = np.dtype(np.float64)
 
 
 @explains_arguments
@@ -107,44 +102,32 @@ def solve(
     >>> impact88.solve({**scene, "MU": [0.5, 0.911, -10]}, ["LOSS"])["LOSS"].round(2)
     array([44.43, 57.47, 57.56])
     """
-    if type(columns) is not dict:
-        check_mapping(columns)
     if outputs is None:
         outputs = ALL if out is None else tuple(out)
     elif isinstance(outputs, str):
         outputs = split_names(outputs)
     wanted = _check_results(tuple(outputs))
-    mu = columns.get("MU")
-    if type(mu) in _CELLS or getattr(mu, "dtype", _FLOATS).kind in "OUS":
-        columns = _with_shares_typed(in_base(columns))
-    values = in_order(columns)
+    # the short path: plain numbers and float64 arrays need no reading
+    values = in_order(columns) if isinstance(columns, dict) else ()
     if values and wanted and compiledcalls.usable():
         results = solve_one(values, wanted) if out is None else None
         if results is None:
             results = solve_plain(values, wanted, threads, out)
         if results is not None:
             return results
-    if out is None and (lacking := not_given(columns)):
+    # the long one: texts, units, lists, frames' columns, scenes that lack inputs
+    scene, shares = scene_columns(columns)
+    if shares.size and not np.isnan(shares).all():
+        scene = friction_typed(scene, shares)
+    if out is None and (lacking := not_given(scene)):
         complete = partial(solve_arrays, threads=threads)
-        return solve_without(columns, lacking, wanted, complete)
-    arrays = solve_arrays(columns, wanted, threads, out=out)
+        return solve_without(scene, lacking, wanted, complete)
+    arrays = solve_arrays(scene, wanted, threads, out=out)
     # one scene gives numbers, not arrays without dimensions
     return {
         name: array[()] if array.ndim == 0 and out is None else array
         for name, array in arrays.items()
     }
-
-
-def _with_shares_typed(columns: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the columns with numbers in place of texts such as "85 %" in MU."""
-    cells = np.asarray(columns["MU"], object)
-    shares = np.array([share_of(cell) for cell in cells.ravel()], np.float64).reshape(cells.shape)
-    is_share = ~np.isnan(shares)
-    if not is_share.any():
-        return columns
-    plain = in_doubles("MU", np.where(is_share, 0.0, cells))
-    scene = {name: value for name, value in columns.items() if name != "MU"}
-    return {**scene, "MU": np.where(is_share, share_typed(scene, shares), plain)}
 
 
 @lru_cache(maxsize=256)
