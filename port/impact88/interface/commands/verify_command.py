@@ -12,7 +12,7 @@ verdicts:
   IDENTICAL AS FAR AS READ  the program's page explains the paper; doubts are listed
   DIFFERS                   no set of inputs consistent with the page gives
                             all its numbers
-  INCOMPLETE                numbers are missing; what could be compared agrees
+  INCOMPLETE                numbers are missing or were not read, the rest decides nothing
 
 examples:
   impact88 verify printout.txt                      verdict, fields, explanations

@@ -432,6 +432,13 @@ _MAX_SURPLUS = 12  # glyphs that a number's part of the row may hold beyond its 
 _NOT_THERE = COSTS["not there"] / 100
 
 
+def has_clean_numbers(region: Region, count: int) -> bool:
+    """Return True if blanks divide glyphs into ``count`` numbers, each read beyond doubt."""
+    starts = [0, *(at for at in range(1, len(region)) if region[at].gap)]
+    parts = [region[start:stop] for start, stop in zip(starts, [*starts[1:], None], strict=True)]
+    return len(parts) == count and all(map(clean, parts))
+
+
 def cut_in_five(region: Region) -> list[tuple[tuple[str, ...], float]]:
     """Return the ways to cut glyphs into five numbers with their costs, the cheapest first."""
 

@@ -522,8 +522,13 @@ class Printout:
             return
         start, stop = min(places)[0], max(stop for _, stop in places)
         self.angle_row = glyphs[start:stop]
-        self.angles = numerals.cut_in_five(self.angle_row)
-        if not self.angles and len(places) < len(ANGLES):
+        one_is_lost = numerals.has_clean_numbers(self.angle_row, len(ANGLES) - 1)
+        self.angles = [] if one_is_lost else numerals.cut_in_five(self.angle_row)
+        if one_is_lost:  # blanks stand between all others: which of the five it is, nothing tells
+            self.angle_row = ()
+            for name in ANGLES:
+                self.fields.pop(name, None)
+        if not self.angles and (one_is_lost or len(places) < len(ANGLES)):
             row = self.page.shown(start, stop)
             self._remark("PA", start, ": expected five angles, PA PB TA TB GA", row)
 

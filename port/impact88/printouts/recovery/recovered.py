@@ -10,19 +10,24 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from ...collision.case import VALUE_LIMIT
-from ...collision.fields import ANGLES, FINAL_SPINS, INPUTS, scene_name
+from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS, scene_name
 from ...names import SCENE
 from ..reading.glyphs import letters
 from ..reading.numerals import candidates
 from ..reading.printout import Printout, Reading
 from . import replays
-from .search import Column, Search, column_of
+from .search import MISMATCH, UNREAD, Column, Evidence, Expected, Search, column_of
 from .typedtext import stored_and_printed
 
-_STAND_INS = ("1.7", "230", "-41000", "-.4")
-"""Values put in place of an input that nothing determines: a field that prints the same with each
-of them does not depend on it. Large values of EM print nearly alike, so one is of EM's size."""
+_STAND_INS = (
+    *("1.7", "230", "-41000", "-.4", "0", ".5", "-1", "1", "-.75", ".25", "12.5", "-33", "61"),
+    *("90", "-118", "164", "3.1", "-7.7", "2900"),
+)
+"""Values put in place of inputs that nothing determines, of the sizes of coefficients, arms, angles
+in all quarters, velocities and masses: a field that prints the same with each of them does not
+depend on the input. Where friction reverses, values far apart may print alike and others not."""
 MAX_TEXTS = 40  # candidate texts of one input
+MAX_RESULT_TEXTS = 60  # candidate texts of one result
 REPLY_MISMATCH = 1.0
 """Penalty where a printed number and its reply disagree, or only the reply was read."""
 PROMPT_MARK_READINGS = "7291?P"
@@ -86,7 +91,7 @@ def recover(shown: Printout, given: Mapping[str, str] | None = None) -> Recovere
     elsewhere, by scene name."""
     given = given or {}
     columns, typed, lost = _choices(shown, given)
-    search = Search(shown, typed)
+    search = Search(_evidence(shown, typed))
     best = search.best(columns)
     unconvincing = len(best.wrong) > MAX_WRONG_RESULTS
     if unconvincing:  # a mark for illegible text may stand for any number of characters
@@ -111,6 +116,18 @@ def recover(shown: Printout, given: Mapping[str, str] | None = None) -> Recovere
     )
 
 
+def _evidence(shown: Printout, typed: Mapping[str, Mapping[str, str]]) -> Evidence:
+    """Return a printout read from a text as evidence."""
+    results = []
+    for name in FIELDS:
+        if name not in INPUTS and (reading := shown.fields.get(name)):
+            legible = reading.clean or sum(map(str.isdigit, letters(reading.region))) >= 2
+            default = MISMATCH if legible else UNREAD
+            results.append(Expected(name, reading.texts(MAX_RESULT_TEXTS), default))
+    inputs = {*INPUTS} & {*shown.fields, *(ANGLES if shown.angles else ())}
+    return Evidence(results, inputs, typed, shown.ending, shown.has_final_spins)
+
+
 def without_angles(recovered: Recovered) -> Recovered:
     """Return the scene with the row of angles counted as missing."""
     missing = [*recovered.missing, *ANGLES]
@@ -122,10 +139,17 @@ def _independent_of(
     lost: list[str], scene: Mapping[str, str], outcome: replays.Outcome
 ) -> replays.Outcome:
     """Return the outcome's fields that are the same whatever the missing inputs are."""
-    scenes = [{**scene, **dict.fromkeys(lost, value)} for value in _STAND_INS[1:]]
+    count = len(_STAND_INS)
+    scenes = [
+        {**scene, **{name: _STAND_INS[(k + 5 * at) % count] for at, name in enumerate(lost)}}
+        for k in range(count)
+    ]
     fields = {name: text for name, text in outcome.fields.items() if scene_name(name) not in lost}
     for variant in replays.run_all(scenes):
-        fields = {name: text for name, text in fields.items() if variant.fields.get(name) == text}
+        if variant.ending in (None, outcome.ending):
+            fields = {
+                name: text for name, text in fields.items() if variant.fields.get(name) == text
+            }
     return replays.Outcome(fields, None)
 
 

@@ -1,4 +1,7 @@
-"""Searching for the scene a printout comes from: texts for each input, tried by what they print.
+"""Searching for the scene a page comes from: texts for each input, tried by what they print.
+
+Text and pictures are searched alike: whoever read the page gives its `Evidence`, the texts that
+each printed result may be, and a `Column` of texts for each input, all with their costs.
 
 Each input has a few texts that the page may show, with what each costs to believe. Combinations are
 screened in double precision (the kinetic energy first, which few inputs enter, then all results),
@@ -21,8 +24,6 @@ from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS, scene_name
 from ...mechanics.closedform import energy as closed_form
 from ...mechanics.closedform.solve import solve
 from ...names import VELOCITIES
-from ..reading.glyphs import letters
-from ..reading.printout import Printout
 from . import replays
 from .typedtext import mu_turned, opposite, texts_that_print
 
@@ -34,7 +35,7 @@ MISMATCH = 3.0
 """Penalty of a legible printed result that the program does not print."""
 AGREES = 1.5
 """A result with a smaller penalty counts as explained."""
-_UNREAD = 0.6
+UNREAD = 0.6
 """Penalty of a result that is hardly legible, or that the page lacks."""
 _UNSEEN_ZEROS = 0.02
 """Penalty, times the rank of the text, of a number typed with zeros that do not print."""
@@ -119,25 +120,41 @@ class Expected(NamedTuple):
         return costs
 
 
+@dataclass(frozen=True)
+class Evidence:
+    """A page as evidence of a scene, read from a text or from a picture.
+
+    Attributes
+    ----------
+    results : sequence of Expected
+        The printed results that were found.
+    inputs : set of str
+        Fields of the inputs that were found.
+    typed : mapping of str to mapping of str to str
+        By field, the text typed for a printed text, where the page or a scene file says so.
+    ending : str, optional
+        The message that ended the run.
+    has_final_spins : bool
+        True if the line of the final WA and WB was found, read or not: then M = N.
+    """
+
+    results: Sequence[Expected]
+    inputs: Collection[str]
+    typed: Mapping[str, Mapping[str, str]]
+    ending: str | None = None
+    has_final_spins: bool = False
+
+
 _cost = attrgetter("cost")
 
 
 class Search:
-    """Search for one printout's scene. ``typed``: by field, the text typed for a printed text,
-    where the page or a scene file says so."""
+    """Search for the scene of one page."""
 
-    def __init__(self, shown: Printout, typed: Mapping[str, Mapping[str, str]]) -> None:
-        self.shown = shown
-        self.expected: list[Expected] = []
-        for name in FIELDS:
-            if name not in INPUTS and (reading := shown.fields.get(name)):
-                legible = reading.clean or sum(map(str.isdigit, letters(reading.region))) >= 2
-                default = MISMATCH if legible else _UNREAD
-                self.expected.append(Expected(name, reading.texts(60), default))
-        self._typed = typed
-        on_row = ANGLES if shown.angles else ()
-        self._on_page = {name for name in INPUTS if name in shown.fields or name in on_row}
-        self._lost_inputs = set(INPUTS) - set(shown.fields)
+    def __init__(self, evidence: Evidence) -> None:
+        self.evidence = evidence
+        self.expected = evidence.results
+        self._found = {result.name for result in evidence.results} | {*INPUTS}
 
     def best(self, columns: Columns) -> Scored:
         """Return the scene of least cost among combinations of the columns' options.
@@ -147,9 +164,15 @@ class Search:
         """
         best = min(self.replay(columns, combinations(columns, 2)), key=_cost)
         if best.wrong or best.cost >= 0.05:
-            picks = self.find_candidates(columns, MAX_COMBINATIONS)
-            best = min([best, *self.replay(columns, picks)], key=_cost)
+            best = min([best, *self.nearest(columns)], key=_cost)
         return self._other_spellings(best) if best.wrong else best
+
+    def nearest(self, columns: Columns) -> list[Scored]:
+        """Return the scenes of least cost among combinations of the columns' options, the least
+        first."""
+        return sorted(
+            self.replay(columns, self.find_candidates(columns, MAX_COMBINATIONS)), key=_cost
+        )
 
     def find_candidates(
         self,
@@ -264,10 +287,10 @@ class Search:
                 for name, text in zip(column.names, texts, strict=True):
                     scene[scene_name(name)] = text
                     if not column.typed:
-                        reply = self._typed.get(name, {}).get(text)
+                        reply = self.evidence.typed.get(name, {}).get(text)
                         shortest = next(iter(texts_that_print(text, name in ANGLES)), text)
                         scene[scene_name(name)] = reply or shortest
-                        if name in self._on_page:
+                        if name in self.evidence.inputs:
                             assumed[name] = text
             if turn:
                 scene["MU"] = opposite(scene["MU"])
@@ -284,7 +307,7 @@ class Search:
         """Return the MU that was typed, given the printed one: undo the sign change of line 400,
         where it made one."""
         mu = value["MU"]
-        if "MUP" not in self._on_page:
+        if "MUP" not in self.evidence.inputs:
             return mu
         return np.where(in_doubles(value, ["MUP"])["MUP"] == -mu, -mu, mu)
 
@@ -326,13 +349,13 @@ class Search:
             wrong = {
                 name for name, text in assumed.items() if outcome.fields.get(name, text) != text
             }
-            if self.shown.ending is not None and self.shown.ending != outcome.ending:
+            if self.evidence.ending is not None and self.evidence.ending != outcome.ending:
                 wrong.add("ENDING")
-            if self.shown.has_final_spins and scene["M"] != "6":
+            if self.evidence.has_final_spins and scene["M"] != "6":
                 wrong.add("M")
             costs.update(dict.fromkeys(wrong, MISMATCH))
-            absent = set(outcome.fields) - set(self.shown.fields) - self._lost_inputs
-            total = cost + sum(costs.values()) + _UNREAD * len(absent)
+            absent = set(outcome.fields) - self._found
+            total = cost + sum(costs.values()) + UNREAD * len(absent)
             differing = frozenset(name for name, price in costs.items() if price >= AGREES)
             yield Scored(total, scene, assumed, outcome, differing)
 

@@ -41,7 +41,8 @@ MEANINGS = {
     Verdict.IDENTICAL_AS_READ: "the 1988 program's page explains the paper; every place that was "
     "not read exactly and all that the program does not print are listed, to be looked at there",
     Verdict.DIFFERS: "something on the paper contradicts every scene that its inputs allow",
-    Verdict.INCOMPLETE: "numbers are missing or could not be read; what could be compared agrees",
+    Verdict.INCOMPLETE: "numbers are missing or could not be read, and the others do not decide: "
+    "what agrees is counted, and what contradicts is named",
 }
 """Sentence that explains each verdict."""
 

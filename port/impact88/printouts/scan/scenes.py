@@ -1,37 +1,38 @@
 """The scene of a printout, found from what was read in its cells.
 
-Candidates are the numbers as read, the scenes that the recovery of text finds, and scenes that
-differ from the best in a character or two. Each is run, and costs what its page costs against all
-cells. This is the one module of the room that knows how text is recovered.
+Every cell gives a cost to each character, so that the numbers which the cells may be have costs, as
+those read from a text do; and the scene is searched for as a text's is. This is the one module of
+the room that knows how scenes are recovered.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from decimal import Decimal
-from itertools import product
 from typing import NamedTuple, Protocol
 
 from ...apple.applesoft.decimaltext import is_number
-from ...collision.fields import ANGLES, INPUTS, REPLIES, scene_name
+from ...collision.fields import ANGLES, FIELDS, INPUTS, REPLIES, scene_name
 from ...errors import UserError
-from ..reading.numerals import value_of
+from ..reading.numerals import as_printed, printable, value_of
 from ..reading.printout import read_printouts
-from ..recovery.recovered import recover
+from ..recovery.recovered import MAX_RESULT_TEXTS, MAX_TEXTS, recover
 from ..recovery.replays import Outcome, run_all
-from ..recovery.typedtext import opposite
+from ..recovery.search import MISMATCH, Column, Evidence, Expected, Search, column_of
+from ..recovery.slips import TWO_DIGITS, misreadings
+from ..recovery.typedtext import stored_and_printed
 from .ink import Floats
 from .layout import Sheet
 from .typeface import READABLE
 
 MAX_CELL_COST = 6.0
 """Largest cost of a cell, in units of `read_numbers`: a contradiction counts once."""
+_CELL_UNIT = 0.45
+"""Cost of a cell's unit in a search: a contradicted cell is a little cheaper than a result that the
+program does not print (`MISMATCH`)."""
 _SETTLED_COST = 1.0
-"""Total cost of a page below which no further scenes are tried."""
-_TURN = 360  # degrees
-_MAX_ANGLE = 1_000_000
-"""Size in degrees up to which turns are taken off: beyond, rounding moves the angle."""
-_ROUNDS = 2  # times that scenes next to the best are tried
-_BEAM = 3  # best scenes whose neighbours are tried
+"""Total cost of a page below which no further scenes are tried in an office's copy."""
+_MORE_THAN_A_TURN = 0.3
+"""Cost of an angle of a turn or more: of equal angles that the cells are as near to, the one within
+a turn is taken."""
 _TRIED_IN_COPY = 12
 """Scenes nearest by the restored listing that are run in an office's copy, 13 ms a run."""
 
@@ -58,6 +59,23 @@ class Read:
             return ""
         text = "".join(READABLE[k] for k in self.costs[name].argmin(axis=1)).strip()
         return text if name.startswith("REPLY") else text.replace(" ", "0")
+
+    def texts(self, name: str, most: int) -> dict[str, float]:
+        """Return the texts that a number may be printed as, with their costs in a search, the
+        likeliest first; with 0 for a digit that is missing in it."""
+        ways = {"": 0.0}
+        for row in self.costs[name]:
+            options = [(READABLE[k], float(row[k])) for k in (row < MAX_CELL_COST).nonzero()[0]]
+            longer = [
+                (text + char, cost + more) for text, cost in ways.items() for char, more in options
+            ]
+            ways = dict(sorted(longer, key=lambda way: way[1])[: 4 * most])
+        costs: dict[str, float] = {}
+        for text, cost in ways.items():
+            text = text.strip().replace(" ", "0")
+            if printable(text):
+                costs.setdefault(text, _CELL_UNIT * cost)
+        return dict([*costs.items()][:most])
 
     def cost(self, name: str, text: str | None) -> float:
         """Return the cost of taking a number's cells for a text, None for a number not printed."""
@@ -140,13 +158,10 @@ class Copy(Protocol):
         """Return whether it prints a line for a scene that the restored listing does not."""
 
 
-_Known = dict[tuple[tuple[str, str], ...], Candidate]
-
-
 def scene_of(
     read: Read, seeds: Sequence[dict[str, str]] = (), copy: Copy | None = None
 ) -> Candidate | None:
-    """Return the scene whose page fits the cells best, None if none can be run.
+    """Return the scene whose page fits the cells best, None if an input was not read.
 
     Parameters
     ----------
@@ -157,137 +172,92 @@ def scene_of(
         The program that printed the page, if not the restored listing. The scene is then what was
         typed into it.
     """
-    copy_candidates: _Known = {}
-    best: list[Candidate] = []
-    if copy:
-        inputs = {name: read.text(name) for name in INPUTS}
-        for scene in _scenes_as_read(read):
-            best = _rank_in_copy(read, copy, scene, inputs, copy_candidates)
-            if best and best[0].cost < _SETTLED_COST:
-                return best[0]
-    candidates: _Known = {}
-    best = _search(read, seeds, candidates)
+    columns = [*_columns(read, seeds)]
+    if not all(column.options for column in columns):
+        return None
+    search = Search(_evidence(read))
     if not copy:
-        return _within_a_turn(read, best[0], candidates) if best else None
-    nearest = sorted(candidates.values(), key=lambda candidate: candidate.cost)[:_TRIED_IN_COPY]
-    best = []
-    for candidate in nearest:
-        printed = candidate.outcome.fields
-        inputs = {name: printed[name] for name in INPUTS if name in printed}
-        best = _rank_in_copy(read, copy, candidate.scene, inputs, copy_candidates)
-        if best and best[0].cost < _SETTLED_COST:
-            break
-    return best[0] if best else None
+        best = search.best(columns)
+        return _candidate(read, best.scene, best.outcome)
+    return _scene_in_copy(read, copy, [scored.scene for scored in search.nearest(columns)])
 
 
-def _rank_in_copy(
-    read: Read, copy: Copy, scene: dict[str, str], inputs: Mapping[str, str], known: _Known
-) -> list[Candidate]:
-    """Return the best scenes in a copy, after what may have been typed for one more was run.
-
-    ``scene``: that scene; ``inputs``: its inputs as the page prints them; ``known``: the scenes
-    that were run in the copy, to which the new ones are added.
-    """
-    try:
-        scenes = [*copy.typed_scenes(scene, inputs, _typed_velocities(read))]
-    except (UserError, ValueError, OverflowError):
-        scenes = []
-    return _rank(read, scenes, known, copy.outcomes)
-
-
-def _search(read: Read, seeds: Sequence[dict[str, str]], known: _Known) -> list[Candidate]:
-    """Return the scenes that fit the cells best by the restored listing.
-
-    All scenes that are run are added to ``known``.
-    """
-    best: list[Candidate] = []
-    # the text's recovery is asked only where the numbers as read leave doubts
-    for use_recovery in (False, True):
-        for scene in (
-            scenes_in(read.page()[0]) if use_recovery else [*_scenes_as_read(read), *seeds]
-        ):
-            best = _rank(read, [scene], known)
-        for _ in range(_ROUNDS):
-            if not best or best[0].cost < _SETTLED_COST:
-                break
-            before = best[0].cost
-            for candidate in best:
-                best = _rank(read, [*_neighbours(read, candidate)], known)
-            if best[0].cost > before - 0.5:
-                break
-        if best and best[0].cost < _SETTLED_COST:
-            break
-    return best
-
-
-def _within_a_turn(read: Read, best: Candidate, known: _Known) -> Candidate:
-    """Return the scene with each angle of a turn or more replaced by the equal angle within a turn
-    that the cells are nearest to, if its page fits the cells as well.
-
-    A page that has such an angle keeps it, since no other fits the cells of its digits.
-    """
-    for name in ANGLES:
-        number = value_of(best.outcome.fields.get(name, ""))
-        if number is None or not _TURN <= abs(number) < _MAX_ANGLE:
+def _scene_in_copy(read: Read, copy: Copy, scenes: Sequence[dict[str, str]]) -> Candidate | None:
+    """Return what was typed into a copy of the listing, from scenes that are the nearest by the
+    restored one."""
+    inputs = {name: read.text(name) for name in INPUTS}
+    replies = _typed_velocities(read)
+    best: Candidate | None = None
+    for scene in scenes[:_TRIED_IN_COPY]:
+        try:
+            typed = [*copy.typed_scenes(scene, inputs, replies)]
+            pairs = zip(typed, copy.outcomes(typed), strict=True)
+            found = [_candidate(read, *pair) for pair in pairs]
+        except (UserError, ValueError, OverflowError):
             continue
-        remainder = number % _TURN
-        texts = [_angle_text(remainder), _angle_text(remainder - _TURN)]
-        _rank(read, [{**best.scene, name: text} for text in texts], known)
-        equals = [
-            candidate
-            for candidate in known.values()
-            if candidate.cost <= best.cost + _SETTLED_COST
-            and candidate.scene in [{**best.scene, name: text} for text in texts]
-        ]
-        best = min(equals, key=lambda candidate: candidate.cost, default=best)
+        best = min([*([best] if best else []), *found], key=lambda candidate: candidate.cost)
+        if best.cost < _SETTLED_COST:
+            break
     return best
 
 
-def _angle_text(angle: Decimal) -> str:
-    """Return an angle as the program prints it: without a nought before the point."""
-    text = f"{abs(angle):f}"
-    return "-" * (angle < 0) + (text.lstrip("0") if "." in text and angle else text)
+def _columns(read: Read, seeds: Sequence[Mapping[str, str]]) -> Iterator[Column]:
+    """Yield the texts of each input: what its cells may be, texts one slip away from the likeliest,
+    and those of scenes that another reader found."""
+    typed = _typed_velocities(read)
+    for name in INPUTS:
+        texts: dict[str, float] = {}
+        if name in read.costs:
+            texts = read.texts(name, MAX_TEXTS)
+            others = [*_slips(read, name), *(seed[scene_name(name)] for seed in seeds)]
+            for text in others:
+                printed = (stored_and_printed(text, name in ANGLES) or ("", ""))[1]
+                if printed and printed not in texts:
+                    texts[printed] = _CELL_UNIT * read.cost(name, printed)
+        elif name in typed and (seen := stored_and_printed(typed[name])):
+            texts = {seen[1]: 0.0}
+        if name in ANGLES:
+            for text in texts:
+                number = value_of(text)
+                texts[text] += _MORE_THAN_A_TURN * (number is None or abs(number) >= 360)
+        yield column_of(name, sorted(texts.items(), key=lambda option: option[1]))
+    # a footer may be taken for the line of final spins: then both contradict, and M is 4
+    yield column_of("M", [("4", 0.0), ("6", 0.1)], True)
 
 
-_Program = Callable[[Sequence[Mapping[str, str]]], list[Outcome]]
-"""A program that is run for scenes; it returns the outcome of each."""
+def _slips(read: Read, name: str) -> Iterator[str]:
+    """Yield the texts one slip away from a number as read; its last figure may have been erased,
+    which leaves a wider gap."""
+    as_read = read.text(name)
+    text = as_printed(as_read) or as_read
+    for base in dict.fromkeys((text, as_read.ljust(len(read.costs[name]), "0"))):
+        for other, kind in misreadings(base).items() if is_number(base) else ():
+            if kind != TWO_DIGITS and printable(other):
+                yield other
 
 
-def _rank(
-    read: Read, scenes: list[dict[str, str]], known: _Known, program: _Program = run_all
-) -> list[Candidate]:
-    """Return the best of the scenes in ``known``, after some more were run and added to it."""
-    keys = {tuple(sorted(scene.items())): scene for scene in scenes}
-    new = {key: scene for key, scene in keys.items() if key not in known}
-    for (key, scene), outcome in zip(
-        new.items(), _outcomes([*new.values()], program), strict=False
-    ):
-        fields = outcome.fields
-        cost = 2 * MAX_CELL_COST * len(set(fields) - set(read.costs))
-        for name in read.costs:
-            if not name.startswith("REPLY"):
-                cost += read.cost(name, fields.get(name))
-        known[key] = Candidate(scene, outcome, cost)
-    return sorted(known.values(), key=lambda candidate: candidate.cost)[:_BEAM]
+def _evidence(read: Read) -> Evidence:
+    """Return the numbers in the cells as evidence."""
+    results = [
+        Expected(name, read.texts(name, MAX_RESULT_TEXTS), MISMATCH)
+        for name in FIELDS
+        if name in read.costs and name not in INPUTS
+    ]
+    typed: dict[str, dict[str, str]] = {}
+    for name, text in _typed_velocities(read).items():
+        if seen := stored_and_printed(text):
+            typed[name] = {seen[1]: text}
+    return Evidence(results, {*INPUTS} & {*read.costs}, typed)
 
 
-def _outcomes(scenes: list[dict[str, str]], program: _Program = run_all) -> list[Outcome]:
-    """Return what the program prints for scenes, [] if one of them cannot be run."""
-    try:
-        return program(scenes)
-    except (UserError, ValueError, OverflowError):
-        return []
-
-
-def _scenes_as_read(read: Read) -> Iterator[dict[str, str]]:
-    """Yield the scenes of the numbers as read, with either sign of MU."""
-    texts = {name: read.text(name) for name in read.costs}
-    if all(is_number(texts.get(name, "")) for name in INPUTS):
-        direct = {scene_name(name): texts[name] for name in INPUTS}
-        # what was typed may have more figures than are printed, or fewer: 5.749 prints 5.74900001
-        for velocities, spins in product((_typed_velocities(read), {}), ("6", "4")):
-            for mu in (texts["MUP"], opposite(texts["MUP"])):
-                yield {**direct, **velocities, "M": spins, "MU": mu}
+def _candidate(read: Read, scene: dict[str, str], outcome: Outcome) -> Candidate:
+    """Return a scene with the cost of its page against all cells."""
+    fields = outcome.fields
+    cost = 2 * MAX_CELL_COST * len(set(fields) - set(read.costs))
+    for name in read.costs:
+        if not name.startswith("REPLY"):
+            cost += read.cost(name, fields.get(name))
+    return Candidate(scene, outcome, cost)
 
 
 def scenes_in(text: str) -> list[dict[str, str]]:
@@ -311,31 +281,14 @@ def confirm_inputs(
     """
     scene = candidate.scene | {scene_name(name): text for name, text in on_paper.items()}
     program = copy.outcomes if copy else run_all
-    for outcome in _outcomes([scene], program) if on_paper else ():
+    try:
+        outcomes = program([scene]) if on_paper else []
+    except (UserError, ValueError, OverflowError):
+        outcomes = []
+    for outcome in outcomes:
         if outcome.fields == {**candidate.outcome.fields, **on_paper}:
             return Candidate(scene, outcome, candidate.cost)
     return candidate
-
-
-def _neighbours(read: Read, candidate: Candidate) -> Iterator[dict[str, str]]:
-    """Yield scenes that differ in one character of one input, and those of the reply's numbers."""
-    for name in [name for name in INPUTS if name in read.costs]:
-        symbol, as_read = scene_name(name), read.text(name)
-        text = candidate.outcome.fields.get(name) or as_read
-        is_turned = symbol == "MU" and candidate.scene["MU"].startswith("-") != text.startswith("-")
-        # its last figure may have been altered to a nought, or erased
-        texts = [as_read or "0"]
-        for base in dict.fromkeys((text, as_read, as_read.ljust(len(read.costs[name]), "0"))):
-            for at, character in enumerate(base):
-                for digit in "0123456789" if character.isdigit() else "":
-                    texts.append(base[:at] + digit + base[at + 1 :])
-        if name in ANGLES:  # whose last figure, erased, leaves a wider gap
-            texts += [as_read + last for last in "0123456789"]
-        for variant in texts:
-            yield {**candidate.scene, symbol: opposite(variant) if is_turned else variant}
-        yield {**candidate.scene, symbol: opposite(text)}
-    yield {**candidate.scene, "M": "4" if candidate.scene["M"] == "6" else "6"}
-    yield {**candidate.scene, **_typed_velocities(read)}
 
 
 def _typed_velocities(read: Read) -> dict[str, str]:
