@@ -210,6 +210,8 @@ def test_standard_input_and_output(cases):
         (["{cases}", "-o", "r.csv", "--set", "MU=x"], "'x' is not a number"),
         (["{cases}", "-o", "nowhere/r.csv"], "cannot be written"),
         (["{few}", "-o", "r.csv"], "no column MU EM"),
+        (["{cases}", "-o", "r.csv", "--sweep", "MU=0:1:3"], "--sweep is for one scene"),
+        (["a.toml", "-o", "r.csv", "--scene", "b.toml"], "--scene fills a table's columns"),
     ],
 )
 def test_unusable(cases, tmp_path, monkeypatch, capsys, arguments, told):
