@@ -56,10 +56,10 @@ def _decoded(pa: Any, batches: Iterable[Any], budget: Budget) -> Iterator[Any]:
         starts = [0, *(np.flatnonzero(np.diff(parts)) + 1).tolist(), batch.num_rows]
         for start, end in itertools.pairwise(starts):
             part = batch.slice(start, end - start)
+            columns = part.columns
             for place in places:
-                name = part.schema.field(place).name
-                part = part.set_column(place, name, part.column(place).dictionary_decode())
-            yield part
+                columns[place] = columns[place].dictionary_decode()
+            yield pa.RecordBatch.from_arrays(columns, part.schema.names) if places else part
 
 
 def _is_text(pa: Any, kind: Any) -> bool:
