@@ -77,74 +77,87 @@ def _values(lines: Lines) -> Iterator[tuple[int, Any, str]]:
             yield (lines.number, *_read(text))
 
 
-def _elements(lines: Lines) -> Iterator[tuple[int, Any, str]]:
-    """Yield the elements of an array, each with the line in which it begins. Raises UserError for
-    what is no array."""
-    text, at, line = "", 0, 1
-    delimiters = "["
+class _ArrayText:
+    """The text of a JSON array, read in pieces. ``at``: the place in the text held, ``line``: its
+    line in the file."""
 
-    def fill() -> bool:
-        nonlocal text, at
-        piece = lines.read(max(_PIECE, len(text) - at))
-        text, at = text[at:] + piece, 0
+    def __init__(self, lines: Lines) -> None:
+        self._lines = lines
+        self.text, self.at, self.line = "", 0, 1
+
+    def refuse(self, says: str) -> NoReturn:
+        raise UserError(f"line {self.line} {says}", self._lines.where)
+
+    def _fill(self) -> bool:
+        """Read a further piece; return False at the end of the file."""
+        piece = self._lines.read(max(_PIECE, len(self.text) - self.at))
+        self.text, self.at = self.text[self.at :] + piece, 0
         return bool(piece)
 
-    def following() -> str:
-        """The next character that is no space; nothing at the end."""
-        nonlocal at, line
+    def next_mark(self) -> str:
+        """Go to the next character that is no space, and return it; nothing at the end."""
         while True:
-            remainder = (
-                text[at:].lstrip(_SPACE) if at < len(text) and text[at] in _SPACE else text[at:]
-            )
-            place = len(text) - len(remainder)
-            line += text.count("\n", at, place)
-            at = place
-            if remainder or not fill():
+            text, at = self.text, self.at
+            starts_blank = at < len(text) and text[at] in _SPACE
+            remainder = text[at:].lstrip(_SPACE) if starts_blank else text[at:]
+            self.at = len(text) - len(remainder)
+            self.line += text.count("\n", at, self.at)
+            if remainder or not self._fill():
                 return remainder[:1]
 
-    def refuse(says: str) -> NoReturn:
-        raise UserError(f"line {line} {says}", lines.where)
-
-    while True:
-        mark = following()
-        if not mark or mark not in delimiters:
+    def take_delimiter(self, delimiters: str) -> str:
+        """Go behind one of some characters, and return it."""
+        mark = self.next_mark()
+        if not mark:
+            self.refuse("ends within an array; expected ']'")
+        if mark not in delimiters:
             expected = " or ".join(map(quoted, delimiters))
-            refuse(
-                f"has {quoted(mark)} where {expected} is expected"
-                if mark
-                else "ends within an array; expected ']'"
-            )
-        at += 1
-        if mark == "]" or (mark == "[" and following() == "]"):
-            at += mark == "["
-            break
-        if not following():
-            refuse("ends within an array; expected ']'")
+            self.refuse(f"has {quoted(mark)} where {expected} is expected")
+        self.at += 1
+        return mark
+
+    def value(self) -> tuple[Any, str]:
+        """Return the value at the present place, and its text; the place stays."""
         while True:
+            reason = ""
             try:
-                value, end = _decoder.raw_decode(text, at)
+                value, end = _decoder.raw_decode(self.text, self.at)
                 # a number may go on in the next piece
-                if text[end : end + 1] in _AFTER:
+                if self.text[end : end + 1] in _AFTER:
                     break
-                reason = ""
             except ValueError as error:
                 reason = f"is not JSON: {error}"
             except RecursionError:
-                refuse(f"is nested deeper than {DEEPEST} levels")
-            if len(text) - at >= LONGEST_LINE:
-                refuse(f"begins a value longer than {LONGEST_LINE:,} characters")
-            if not fill():
+                self.refuse(f"is nested deeper than {DEEPEST} levels")
+            if len(self.text) - self.at >= LONGEST_LINE:
+                self.refuse(f"begins a value longer than {LONGEST_LINE:,} characters")
+            if not self._fill():
                 if reason:
-                    refuse(reason)
+                    self.refuse(reason)
                 break
-        value_text = text[at:end]
-        deep = value_text.count("[") + value_text.count("{") > DEEPEST and _depth(value) > DEEPEST
-        lines.taken += len(value_text)
-        yield line, value, f"is nested deeper than {DEEPEST} levels" if deep else ""
-        line += value_text.count("\n")
-        at, delimiters = end, ",]"
-    if following():
-        refuse("has text after the array's end; expected one array, or an object a line")
+        return value, self.text[self.at : end]
+
+
+def _elements(lines: Lines) -> Iterator[tuple[int, Any, str]]:
+    """Yield the elements of an array, each with the line in which it begins. Raises UserError for
+    what is no array."""
+    array = _ArrayText(lines)
+    array.take_delimiter("[")
+    delimiter = "]" if array.next_mark() == "]" else ","
+    if delimiter == "]":
+        array.take_delimiter("]")
+    while delimiter == ",":
+        if not array.next_mark():
+            array.refuse("ends within an array; expected ']'")
+        value, text = array.value()
+        deep = text.count("[") + text.count("{") > DEEPEST and _depth(value) > DEEPEST
+        lines.taken += len(text)
+        yield array.line, value, f"is nested deeper than {DEEPEST} levels" if deep else ""
+        array.line += text.count("\n")
+        array.at += len(text)
+        delimiter = array.take_delimiter(",]")
+    if array.next_mark():
+        array.refuse("has text after the array's end; expected one array, or an object a line")
 
 
 def _flatten(row: dict[str, Any], results: bool) -> dict[str, Any]:

@@ -174,23 +174,38 @@ def _problem(error: Exception) -> Any:
 
 
 def _addresses(desk: Desk) -> Blueprint:
+    """Return all addresses: those of the page, of papers, of a collision, of a reconstruction, and
+    of files."""
     routes = Blueprint("desk", __name__)
+    ask = partial(_ask, desk)
+    _add_page(routes, desk)
+    _add_papers(routes, ask)
+    _add_collision(routes, ask)
+    _add_reconstruction(routes, ask)
+    _add_files(routes, ask)
+    return routes
 
-    def sender() -> tuple[str, int]:
-        """Return which page asks, and in which turn; of those that count none, all are the same."""
-        turn = request.headers.get("X-Desk-Turn", "")
-        counted = turn.isascii() and turn.isdecimal() and len(turn) < 16
-        return request.headers.get("X-Desk-Page", "")[:64], int(turn) if counted else 0
 
-    def ask(bench: str, function: str, **arguments: Any) -> Any:
-        return desk.benches[bench].ask(*sender(), function, **arguments)
+Ask = Callable[..., Any]
+"""Asks a bench for the value of a function of its module: see `_ask`."""
 
-    def table(macro: str, content: Any) -> str:
-        return str(flask.get_template_attribute("answers.html", macro)(content))
 
-    routes.post("/sample/<int:which>")(collision.sample_scene)
-    routes.post("/known/<int:which>")(reconstruction.known_of_sample)
+def _ask(desk: Desk, bench: str, function: str, **arguments: Any) -> Any:
+    return desk.benches[bench].ask(*_sender(), function, **arguments)
 
+
+def _sender() -> tuple[str, int]:
+    """Return which page asks, and in which turn; of those that count none, all are the same."""
+    turn = request.headers.get("X-Desk-Turn", "")
+    counted = turn.isascii() and turn.isdecimal() and len(turn) < 16
+    return request.headers.get("X-Desk-Page", "")[:64], int(turn) if counted else 0
+
+
+def _table(macro: str, content: Any) -> str:
+    return str(flask.get_template_attribute("answers.html", macro)(content))
+
+
+def _add_page(routes: Blueprint, desk: Desk) -> None:
     @routes.get("/")
     def whole_page() -> str:
         desk.warm()  # while the page is sent
@@ -218,6 +233,15 @@ def _addresses(desk: Desk) -> Blueprint:
 
         return Response(svg(planar()), content_type="image/svg+xml")
 
+    @routes.post("/stop/<bench>")
+    def stop(bench: str) -> Any:
+        if bench not in desk.benches:
+            abort(404)
+        desk.benches[bench].stop(*_sender())
+        return {}
+
+
+def _add_papers(routes: Blueprint, ask: Ask) -> None:
     @routes.post("/judge")
     def judge() -> Any:
         bench = "edit" if request.args.get("bench") == "edit" else "paper"
@@ -241,12 +265,16 @@ def _addresses(desk: Desk) -> Blueprint:
         document = ask("edit", "report", **parts)
         return _download(document, "text/html", "report.html")
 
+
+def _add_collision(routes: Blueprint, ask: Ask) -> None:
+    routes.post("/sample/<int:which>")(collision.sample_scene)
+
     @routes.post("/collision")
     def collision_answer() -> Any:
         answer = collision.answer(**_parts(*_FORM))
         if "answer" in answer:
-            answer["first"] = table("first", answer["answer"])
-            answer["all"] = table("results", answer["results"])
+            answer["first"] = _table("first", answer["answer"])
+            answer["all"] = _table("results", answer["results"])
         return answer
 
     @routes.post("/convert")
@@ -261,7 +289,20 @@ def _addresses(desk: Desk) -> Blueprint:
     @routes.post("/bounds")
     def bounds() -> Any:
         document = ask("bounds", "bounds_answer", **_parts(*_FORM))
-        return {"found": document, "table": table("bounds", document)}
+        return {"found": document, "table": _table("bounds", document)}
+
+
+def _add_reconstruction(routes: Blueprint, ask: Ask) -> None:
+    routes.post("/known/<int:which>")(reconstruction.known_of_sample)
+
+    @routes.post("/reconstruct")
+    def reconstruct() -> Any:
+        answer = ask("reconstruction", "answer", **_parts(*_FORM))
+        return {**answer, "tables": _table("solutions", answer["solutions"])}
+
+
+def _add_files(routes: Blueprint, ask: Ask) -> None:
+    """A form's file and case report; a file into a form."""
 
     def file_of(view: str) -> tuple[str, str]:
         if view == "collision":
@@ -286,20 +327,6 @@ def _addresses(desk: Desk) -> Blueprint:
 
     routes.post("/scene", endpoint="scene")(partial(file_read, SCENE))
     routes.post("/known", endpoint="known")(partial(file_read, KNOWABLE))
-
-    @routes.post("/reconstruct")
-    def reconstruct() -> Any:
-        answer = ask("reconstruction", "answer", **_parts(*_FORM))
-        return {**answer, "tables": table("solutions", answer["solutions"])}
-
-    @routes.post("/stop/<bench>")
-    def stop(bench: str) -> Any:
-        if bench not in desk.benches:
-            abort(404)
-        desk.benches[bench].stop(*sender())
-        return {}
-
-    return routes
 
 
 def _download(text: str, kind: str, name: str) -> Response:
