@@ -31,7 +31,7 @@ from ..status import IMPOSSIBLE, Status
 from .closedform.columns import UNUSED_BY_POINTS
 from .closedform.general import quantities
 from .closedform.solve import solve
-from .closedform.statusbits import bits, findings, forward_friction
+from .closedform.statusbits import Evidence, bits, findings, forward_friction
 from .state import CHANGES, CONTACT, COURSES, FORCES, SPEEDS, State
 from .uses import inputs_of
 
@@ -122,8 +122,7 @@ def broken_laws(state: State) -> Array:
         "e": _within_range(e, 0.0, 1.0),
         "em": np.where(state.here.point, 0.0, _within_range(em, -1.0, 0.0)),
     }
-    remarks = dict.fromkeys(_ARGUMENTS_OF_REMARKS, np.array(np.nan))
-    conditions = findings(**{**remarks, **laws})
+    conditions = findings(Evidence(**laws))
     broken = bits({bit: conditions[bit] for bit in IMPOSSIBLE})
     return np.asarray(broken | forbidden, np.uint16)
 
@@ -158,24 +157,6 @@ def _forbidden_for_every_normal(state: State) -> Array:
     return result | np.where(known & out_of_range, int(Status.E_OUT_OF_RANGE), 0)
 
 
-_ARGUMENTS_OF_REMARKS = (
-    "arm_a",
-    "arm_b",
-    "da",
-    "db",
-    "friction_mu",
-    "forward",
-    "pivot_pn",
-    "limit",
-    "gt",
-    "turning",
-    "yielding",
-    "condition",
-    "sum_of_velocities",
-)
-"""Arguments of `findings` that only bits outside `IMPOSSIBLE` use."""
-
-
 def _within_range(coefficient: Any, low: float, high: float) -> Array:
     """Return a coefficient without the rounding by which it lies outside its range."""
     value = np.real(np.asarray(coefficient))
@@ -204,26 +185,28 @@ def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Ar
         normal_slip, slip, _ = state.relative_before
         turning, yielding = _slip_changes(here, value)
         conditions = findings(
-            gn=normal_slip,
-            pn=value["PN"],
-            arm_a=here.at if "GA" in given else np.array(np.nan),
-            arm_b=here.bt if "GA" in given else np.array(np.nan),
-            da=np.where(here.point, 0.0, value.get("DA", 0.0)),
-            db=np.where(here.point, 0.0, value.get("DB", 0.0)),
-            # an energy that is not known must not set NOT_FINITE
-            twice_lost=np.where(np.isnan(lost), 0.0, lost),
-            initial=np.where(np.isnan(initial), 1.0, initial),
-            e=_within_range(e, 0.0, 1.0),
-            em=np.where(here.point, 0.0, _within_range(em, -1.0, 0.0)),
-            friction_mu=friction_mu,
-            forward=forward_friction(friction_mu, pivot_pt),
-            pivot_pn=pivot_impulse["PN"],
-            limit=abs(pivot_pt),
-            gt=slip,
-            turning=turning,
-            yielding=yielding,
-            condition=np.asarray(condition),
-            sum_of_velocities=sum(velocities, np.zeros(())),
+            Evidence(
+                gn=normal_slip,
+                pn=value["PN"],
+                arm_a=here.at if "GA" in given else np.array(np.nan),
+                arm_b=here.bt if "GA" in given else np.array(np.nan),
+                da=np.where(here.point, 0.0, value.get("DA", 0.0)),
+                db=np.where(here.point, 0.0, value.get("DB", 0.0)),
+                # an energy that is not known must not set NOT_FINITE
+                twice_lost=np.where(np.isnan(lost), 0.0, lost),
+                initial=np.where(np.isnan(initial), 1.0, initial),
+                e=_within_range(e, 0.0, 1.0),
+                em=np.where(here.point, 0.0, _within_range(em, -1.0, 0.0)),
+                mu=friction_mu,
+                forward=forward_friction(friction_mu, pivot_pt),
+                pivot_pn=pivot_impulse["PN"],
+                limit=abs(pivot_pt),
+                gt=slip,
+                turning=turning,
+                yielding=yielding,
+                condition=np.asarray(condition),
+                sum_of_velocities=sum(velocities, np.zeros(())),
+            )
         )
         remarks = {bit: x for bit, x in conditions.items() if not bit & IMPOSSIBLE}
         return np.asarray(bits(remarks), np.uint16) | broken_laws(state)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...collision.mappings import columns
 from ...errors import UserError
-from ...mechanics.closedform.statusbits import bits, findings, forward_friction
+from ...mechanics.closedform.statusbits import Evidence, bits, findings, forward_friction
 from ...messages.arguments import explains_arguments
 from ...names import missing
 
@@ -142,26 +142,28 @@ def report(
     pushed = side * pn
     # no arms, no moment; mu is signed here, and -10 does not stand for the pivot
     conditions = findings(
-        gn=side * (van - vbn),
-        pn=pushed,
-        arm_a=zero,
-        arm_b=zero,
-        da=zero,
-        db=zero,
-        twice_lost=2 * (ki - kf),
-        initial=ki,
-        e=e,
-        em=zero,
-        friction_mu=mu,
-        forward=forward_friction(mu, critical * pushed),
-        pivot_pn=pushed,
-        limit=abs(critical * pn),
-        # without arms the normal impulse does not reverse the sliding
-        gt=zero,
-        turning=zero,
-        yielding=zero,
-        condition=zero,
-        sum_of_velocities=total,
+        Evidence(
+            gn=side * (van - vbn),
+            pn=pushed,
+            arm_a=zero,
+            arm_b=zero,
+            da=zero,
+            db=zero,
+            twice_lost=2 * (ki - kf),
+            initial=ki,
+            e=e,
+            em=zero,
+            mu=mu,
+            forward=forward_friction(mu, critical * pushed),
+            pivot_pn=pushed,
+            limit=abs(critical * pn),
+            # without arms the normal impulse does not reverse the sliding
+            gt=zero,
+            turning=zero,
+            yielding=zero,
+            condition=zero,
+            sum_of_velocities=total,
+        )
     )
     results = dict(zip(names, values, strict=True)) | {"STATUS": bits(conditions)}
     return {name: np.broadcast_to(value, shape) for name, value in results.items()}

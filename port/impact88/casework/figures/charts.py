@@ -391,8 +391,10 @@ def friction_sweep(scene: Any) -> Drawing:
     axis = np.linspace(max(low, -WIDEST_SWEEP), reach, SWEEP)
     groups = [["LOSS"], ["DVA", "DVB"]]
     titles = ("Energy loss and ΔV against friction", "friction coefficient as typed (MU)")
-    words = ("pivot" if values["MU"] == PIVOT else "this scene", WARNED)
-    return _along(scene, "MU", axis, groups, own, faults, titles, words, limit)
+    words = _Words(*titles, "pivot" if values["MU"] == PIVOT else "this scene")
+    curves = _Curves(scene, "MU", axis, [output for group in groups for output in group], faults)
+    own, limit = (curves.units.display_unwrapped("MU", x) for x in (own, limit))
+    return _along(curves, groups, own, words, limit)
 
 
 def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]) -> Drawing:
@@ -401,90 +403,140 @@ def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]
     _check_count(outputs)
     units = _system(scene)
     titles = (f"Results against {quantity(name).meaning.partition(';')[0]}", _label(name, units))
-    own, words = numbers_of(scene)[name], ("this scene", WARNED)
+    own, words = numbers_of(scene)[name], _Words(*titles, "this scene")
     groups = [[output] for output in outputs]
     axis = np.unique(np.asarray(values, float))
     if len(axis) < 2 or axis[-1] - axis[0] <= _FLAT * np.abs(axis).max():
         raise UserError(f"{name}: a sweep of one value is no curve; expected two or more, apart")
     if axis[0] < own < axis[-1] and own != PIVOT:
         axis = np.union1d(axis, [own])  # the curve passes through what is marked
-    return _along(scene, name, axis, groups, own, ~0, titles, words)
+    curves = _Curves(scene, name, axis, outputs, ~0)
+    return _along(curves, groups, curves.units.display_unwrapped(name, own), words)
+
+
+class _Curves:
+    """Results of a scene along one of its values, as they are shown.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    name
+        The value that runs.
+    axis
+        Its numbers, rising.
+    outputs
+        Names of the results.
+    faults
+        Bits of STATUS under which the impact is unphysical.
+
+    Attributes
+    ----------
+    axis : ndarray
+        The numbers along which the curves run.
+    values : dict of str to ndarray
+        The results along them.
+    here : dict of str to float
+        The results of the scene itself.
+    faulty : ndarray
+        Where STATUS has a fault.
+    shaded : ndarray
+        First and last number of each stretch that has one.
+    """
+
+    def __init__(
+        self, scene: Any, name: str, axis: Any, outputs: Sequence[str], faults: int
+    ) -> None:
+        from ...mechanics.closedform.solve import solve
+
+        numbers: dict[str, Any] = numbers_of(scene)
+        self.units = units = _system(scene)
+        case = getattr(scene, "case", None)
+
+        def columns(axis: Any) -> dict[str, Any]:
+            return swept_columns(case, name, axis) if case else {**numbers, name: axis}
+
+        def is_faulty(axis: Any) -> Any:
+            bits = solve(columns(axis), ["STATUS"])["STATUS"]
+            return (bits & np.uint16(faults & 0xFFFF)) != 0
+
+        results = solve(columns(axis), outputs)
+        for output in outputs:
+            d.check_drawable(results[output], output)
+        d.check_drawable(axis, name)
+        self.faulty = is_faulty(axis)
+        self.axis = units.display_unwrapped(name, axis)
+        self.shaded = units.display_unwrapped(name, faulty_stretches(axis, is_faulty))
+        self.values = {n: units.display_unwrapped(n, results[n]) for n in outputs}
+        own = solve(numbers, outputs)
+        self.here = {n: units.display_unwrapped(n, float(value)) for n, value in own.items()}
+
+
+class _Words(NamedTuple):
+    """A sweep's title, the name of its axis, and what is said of the scene's own mark."""
+
+    title: str
+    axis: str
+    own: str
 
 
 def _along(
-    scene: Any,
-    name: str,
-    axis: Any,
-    groups: Sequence[Sequence[str]],
-    own: float,
-    faults: int,
-    titles: tuple[str, str],
-    words: tuple[str, str],
-    limit: float = 0.0,
+    curves: _Curves, groups: Sequence[Sequence[str]], own: float, words: _Words, limit: float = 0.0
 ) -> Drawing:
-    """Results along a value, a panel for each of the ``groups``: the scene's ``own`` marked, where
-    STATUS has ``faults`` shaded, a line at ``limit``; ``words`` for what is marked and shaded."""
-    from ...mechanics.closedform.solve import solve
-
-    numbers: dict[str, Any] = numbers_of(scene)
-    units = _system(scene)
-    case = getattr(scene, "case", None)
-
-    def columns(axis: Any) -> dict[str, Any]:
-        return swept_columns(case, name, axis) if case else {**numbers, name: axis}
-
-    def is_faulty(axis: Any) -> Any:
-        found = solve(columns(axis), ["STATUS"])["STATUS"]
-        return (found & np.uint16(faults & 0xFFFF)) != 0
-
-    outputs = [output for group in groups for output in group]
-    found = solve(columns(axis), outputs)
-    faulty, shaded = is_faulty(axis), faulty_stretches(axis, is_faulty)
-    for output in outputs:
-        d.check_drawable(found[output], output)
-    d.check_drawable(axis, name)
-    axis, own, shaded = (units.display_unwrapped(name, x) for x in (axis, own, shaded))
-    limit = units.display_unwrapped(name, limit) if limit else limit
-    here = {
-        n: units.display_unwrapped(n, float(value)) for n, value in solve(numbers, outputs).items()
-    }
-    summary = " ".join(f"{_label(output, units)}: {short(here[output])}." for output in outputs)
-    drawing = Drawing(d.COLUMN, titles[0], f"In this scene: {summary}")
+    """Draw a panel for each of the ``groups`` of results, with the scene's ``own`` value marked,
+    faults shaded, and a line at ``limit``."""
+    units = curves.units
+    says = (f"{_label(n, units)}: {short(value)}." for n, value in curves.here.items())
+    drawing = Drawing(d.COLUMN, words.title, f"In this scene: {' '.join(says)}")
     top = drawing.heading() - _TOP
-    entries: list[tuple[str, str, Any]] = []
-    values = {output: units.display_unwrapped(output, found[output]) for output in outputs}
-    reaches = [_reach([(values[o], here[o]) for o in group], faulty) for group in groups]
+    reaches = [
+        _reach([(curves.values[o], curves.here[o]) for o in group], curves.faulty)
+        for group in groups
+    ]
     numbers_y = (text for y in reaches for _, text in ticks(*y, 4))
     left = max(_LEFT, max(d.text_width(text, TEXT) for text in numbers_y) + 3.2)
+    entries: list[tuple[str, str, Any]] = []
+    ends = float(curves.axis[0]), float(curves.axis[-1])
     for group, y in zip(groups, reaches, strict=True):
         box = Box(left, top - 27, d.COLUMN - 4, top)
         label = _label(group[0], units)
         if len(group) > 1:  # sizes
             label = f"ΔV,{label.rpartition(',')[2]}"
-        below = titles[1] if group == groups[-1] else ""
-        panel = Panel(drawing, box, (float(axis[0]), float(axis[-1])), y, below, label)
-        if y[0] < 0 < y[1]:
-            panel.line(axis[[0, -1]], [0, 0], GREY, 0.2)
-        for output, colour, dash in zip(group, (d.BLUE, d.VERMILION), ((), _DASHED), strict=False):
-            drawn = values[output]
-            drawn = np.where((drawn < y[0]) | (drawn > y[1]), np.nan, drawn)
-            panel.line(axis, drawn, colour, dash=dash, role=output)
-            if len(group) > 1:
-                entries.append((quantity(output).symbol, colour, dash))
-            if axis.min() <= own <= axis.max():
-                panel.mark(own, here[output], colour=colour if len(group) > 1 else BLACK)
-        for first, last in shaded:
+        panel = Panel(drawing, box, ends, y, words.axis if group == groups[-1] else "", label)
+        entries += _draw_curves(panel, curves, group, own)
+        for first, last in curves.shaded:
             panel.shade(first, last, _UNPHYSICAL)
         if limit:
             panel.rule(limit, dash=_DOTTED, role="critical")
         top = box.bottom - 11.5
-    entries.append((words[0], BLACK, "o"))
+    entries.append((words.own, BLACK, "o"))
     if limit:
         entries.append((f"critical: {short(limit)}", BLACK, _DOTTED))
-    if faulty.any():
-        entries.append((words[1], _UNPHYSICAL, None))
+    if curves.faulty.any():
+        entries.append((WARNED, _UNPHYSICAL, None))
     drawing.height = 2 - key(drawing, top, *entries)
     return drawing
+
+
+def _draw_curves(
+    panel: Panel, curves: _Curves, group: Sequence[str], own: float
+) -> list[tuple[str, str, Any]]:
+    """Draw a panel's curves, with the scene's own values marked; return the entries of the key,
+    which one curve alone does not need."""
+    axis, several = curves.axis, len(group) > 1
+    entries: list[tuple[str, str, Any]] = []
+    low, high = panel.y.low, panel.y.high
+    if low < 0 < high:
+        panel.line(axis[[0, -1]], [0, 0], GREY, 0.2)
+    for output, colour, dash in zip(group, (d.BLUE, d.VERMILION), ((), _DASHED), strict=False):
+        curve = curves.values[output]
+        curve = np.where((curve < low) | (curve > high), np.nan, curve)
+        panel.line(axis, curve, colour, dash=dash, role=output)
+        if several:
+            entries.append((quantity(output).symbol, colour, dash))
+        if axis.min() <= own <= axis.max():
+            panel.mark(own, curves.here[output], colour=colour if several else BLACK)
+    return entries
 
 
 def _reach(curves: Sequence[tuple[Any, float]], faulty: Any) -> tuple[float, float]:

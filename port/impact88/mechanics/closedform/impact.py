@@ -57,7 +57,7 @@ from ...names import PIVOT
 from ...status import Status
 from ..native.formulas import Expression, ExpressionTable
 from .energy import kinetic_energy
-from .statusbits import findings
+from .statusbits import Evidence, findings
 
 LARGEST, RADIAN = float_info.max, pi / 180
 MOST = 2 / 3
@@ -563,26 +563,28 @@ def _status(
     yielding = R + (at * at * ia + bt * bt * ib)
     sign_of_pivot = table.choose(pivot_determinant < 0.0, table.constant(-1.0), table.constant(1.0))
     status = findings(
-        gn=gn,
-        pn=PN,
-        arm_a=at,
-        arm_b=bt,
-        da=DA,
-        db=DB,
-        twice_lost=lost,
-        initial=KI,
-        e=E,
-        em=EM,
-        friction_mu=sliding,
-        # only signs and ratios of the pivot's impulse count: its numerators will do
-        forward=table.against(sliding, -(critical_numerator * sign_of_pivot)),
-        pivot_pn=critical_denominator * sign_of_pivot,
-        limit=absolute(critical_numerator),
-        gt=gt,
-        turning=turning,
-        yielding=yielding,
-        condition=COND,
-        sum_of_velocities=sum_of_velocities,
+        Evidence(
+            gn=gn,
+            pn=PN,
+            arm_a=at,
+            arm_b=bt,
+            da=DA,
+            db=DB,
+            twice_lost=lost,
+            initial=KI,
+            e=E,
+            em=EM,
+            mu=sliding,
+            # only signs and ratios of the pivot's impulse count: its numerators will do
+            forward=table.against(sliding, -(critical_numerator * sign_of_pivot)),
+            pivot_pn=critical_denominator * sign_of_pivot,
+            limit=absolute(critical_numerator),
+            gt=gt,
+            turning=turning,
+            yielding=yielding,
+            condition=COND,
+            sum_of_velocities=sum_of_velocities,
+        )
     )
     if pivot is True:  # of friction none is at fault
         del status[Status.FRICTION_ABOVE_CRITICAL], status[Status.FRICTION_WRONG_DIRECTION]

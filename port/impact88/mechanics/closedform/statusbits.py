@@ -5,7 +5,9 @@ comparison with NaN is false: a bit that cannot be decided stays clear.
 """
 
 from math import inf
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from ...names import PIVOT
 from ...status import Status
@@ -25,23 +27,51 @@ LISTING_MISREADS = PIVOT
 """Line 510 takes any MU up to this for a pivot."""
 
 
-def friction_faults(
-    gn: Any,
-    pn: Any,
-    mu: Any,
-    forward: Any,
-    pivot_pn: Any,
-    limit: Any,
-    gt: Any = 0.0,
-    turning: Any = 0.0,
-    yielding: Any = 0.0,
-) -> tuple[Any, Any]:
-    """Return (above critical, wrong direction): where friction cannot make an impact.
+UNKNOWN = np.float64(np.nan)
+"""A value that is not known; of numpy, whose conditions take ``~``."""
 
-    ``gn``: normal relative velocity before, ``pn``: normal impulse on A, ``mu``: P_t/P_n with its
-    sign, 0 for a pivot; ``forward``: the same with the sign of the pivot's P_t; ``pivot_pn``,
-    ``limit``: P_n and the size of P_t on A if the sliding ended at separation; ``gt``, ``turning``,
-    ``yielding``: see `slides_forth_and_back`. They broadcast.
+
+class Evidence(NamedTuple):
+    """What STATUS is judged by; a value that is `UNKNOWN` leaves clear the bits that need it,
+    but NOT_FINITE and SINGULAR. The values broadcast.
+
+    ``gn``: normal relative velocity at the contact point before, A minus B; ``pn``: normal impulse
+    on A; ``twice_lost`` and ``initial``: energies; ``e``, ``em``: E and EM.
+
+    Of the sides: ``arm_a``, ``arm_b``: the tangential lever arms, minus the distances of A's and
+    B's center from the contact plane, each towards its own side; ``da``, ``db``: the distances to
+    the contact point.
+
+    Of friction: ``mu``: MU, or P_t/P_n, with its sign, 0 for a pivot; ``forward``: the same with
+    the sign of the pivot's P_t; ``pivot_pn``, ``limit``: P_n and the size of P_t on A if the
+    sliding ended at separation; ``gt``, ``turning``, ``yielding``: see `slides_forth_and_back`.
+
+    Of the numbers: ``condition``: COND; ``sum_of_velocities``: of all six final ones.
+    """
+
+    gn: Any
+    pn: Any
+    twice_lost: Any
+    initial: Any
+    e: Any
+    em: Any
+    arm_a: Any = UNKNOWN
+    arm_b: Any = UNKNOWN
+    da: Any = UNKNOWN
+    db: Any = UNKNOWN
+    mu: Any = UNKNOWN
+    forward: Any = UNKNOWN
+    pivot_pn: Any = UNKNOWN
+    limit: Any = UNKNOWN
+    gt: Any = UNKNOWN
+    turning: Any = UNKNOWN
+    yielding: Any = UNKNOWN
+    condition: Any = UNKNOWN
+    sum_of_velocities: Any = UNKNOWN
+
+
+def friction_faults(x: Evidence) -> tuple[Any, Any]:
+    """Return (above critical, wrong direction): where friction cannot make an impact.
 
     In an approach (gn < 0, Pn > 0) friction is admissible from 0 to what ends the sliding, the
     pivot's P_t/P_n, MUC; with more it is reversed. The direction of the sliding before the impact
@@ -50,8 +80,8 @@ def friction_faults(
     would pull, no friction ends the sliding, and any in the pivot's direction is admissible. Where
     MUC is 0, none is admissible.
     """
-    above, wrong = one_way_faults(gn, pn, forward, pivot_pn, limit)
-    possible = slides_forth_and_back(pn, mu, gt, turning, yielding)
+    above, wrong = one_way_faults(x.gn, x.pn, x.forward, x.pivot_pn, x.limit)
+    possible = slides_forth_and_back(x.pn, x.mu, x.gt, x.turning, x.yielding)
     return above & ~possible, wrong & ~possible
 
 
@@ -62,7 +92,7 @@ def forward_friction(mu: Any, pivot_pt: Any) -> Any:
 
 def one_way_faults(gn: Any, pn: Any, forward: Any, pivot_pn: Any, limit: Any) -> tuple[Any, Any]:
     """Return (above critical, wrong direction) of friction that acts one way throughout; the
-    arguments are those of `friction_faults`."""
+    arguments are those of `Evidence`."""
     approach, pivot_pushes = (gn < 0) & (pn > 0), pivot_pn > 0
     backward = approach & (forward < -FRICTION_TOLERANCE)
     frictionless = pivot_pushes & (limit <= FRICTION_TOLERANCE * pivot_pn)
@@ -98,54 +128,27 @@ def slides_forth_and_back(pn: Any, mu: Any, gt: Any, turning: Any, yielding: Any
     return ~(one_way | outside | (gap < 0) | (gap * gap < 4.0 * (size * across)))
 
 
-def findings(
-    gn: Any,
-    pn: Any,
-    arm_a: Any,
-    arm_b: Any,
-    da: Any,
-    db: Any,
-    twice_lost: Any,
-    initial: Any,
-    e: Any,
-    em: Any,
-    friction_mu: Any,
-    forward: Any,
-    pivot_pn: Any,
-    limit: Any,
-    gt: Any,
-    turning: Any,
-    yielding: Any,
-    condition: Any,
-    sum_of_velocities: Any,
-) -> dict[Status, Any]:
+def findings(x: Evidence) -> dict[Status, Any]:
     """Return, for each bit, the condition under which it is set. A NaN sets only NOT_FINITE and
-    SINGULAR.
-
-    ``gn``: normal relative velocity at the contact point, A minus B; ``pn``: normal impulse on A;
-    ``arm_a``, ``arm_b``: the tangential lever arms, minus the distances of A's and B's center from
-    the contact plane, each towards its own side; ``da``, ``db``: the distances to the contact
-    point; ``twice_lost`` and ``initial``: energies; ``friction_mu``: MU with its sign, 0 for a
-    pivot; ``forward``, ``pivot_pn``, ``limit``, ``gt``, ``turning``, ``yielding``: see
-    `friction_faults`; ``condition``: COND. They broadcast.
-    """
-    sliding = gt, turning, yielding
-    above, wrong = friction_faults(gn, pn, friction_mu, forward, pivot_pn, limit, *sliding)
+    SINGULAR."""
+    above, wrong = friction_faults(x)
     # velocities that cancel in the sum are infinite in the energies and their quotients
-    finite = abs(sum_of_velocities) < inf
-    finite = finite & (abs(initial - 0.5 * twice_lost) < inf) & (abs(twice_lost / initial) < inf)
+    finite = abs(x.sum_of_velocities) < inf
+    finite = (
+        finite & (abs(x.initial - 0.5 * x.twice_lost) < inf) & (abs(x.twice_lost / x.initial) < inf)
+    )
     return {
-        Status.SEPARATING: gn >= 0,
-        Status.PULLING: pn < 0,
-        Status.ENERGY_GAINED: -twice_lost > (2 * ENERGY_TOLERANCE) * initial,
-        Status.E_OUT_OF_RANGE: (e < 0) | (e > 1),
+        Status.SEPARATING: x.gn >= 0,
+        Status.PULLING: x.pn < 0,
+        Status.ENERGY_GAINED: -x.twice_lost > (2 * ENERGY_TOLERANCE) * x.initial,
+        Status.E_OUT_OF_RANGE: (x.e < 0) | (x.e > 1),
         # a NaN in COND is 0/0: singular, too
-        Status.SINGULAR: ~(condition < SINGULAR_FROM),
-        Status.NOT_FINITE: ~(finite & (condition <= inf)),
-        Status.A_ON_WRONG_SIDE: arm_a > SIDE_TOLERANCE * abs(da),
-        Status.B_ON_WRONG_SIDE: arm_b > SIDE_TOLERANCE * abs(db),
-        Status.EM_OUT_OF_RANGE: (em < -1) | (em > 0) & ((em < 1) | (em > 1)),
-        Status.MU_OUT_OF_RANGE: friction_mu <= LISTING_MISREADS,
+        Status.SINGULAR: ~(x.condition < SINGULAR_FROM),
+        Status.NOT_FINITE: ~(finite & (x.condition <= inf)),
+        Status.A_ON_WRONG_SIDE: x.arm_a > SIDE_TOLERANCE * abs(x.da),
+        Status.B_ON_WRONG_SIDE: x.arm_b > SIDE_TOLERANCE * abs(x.db),
+        Status.EM_OUT_OF_RANGE: (x.em < -1) | (x.em > 0) & ((x.em < 1) | (x.em > 1)),
+        Status.MU_OUT_OF_RANGE: x.mu <= LISTING_MISREADS,
         Status.FRICTION_ABOVE_CRITICAL: above,
         Status.FRICTION_WRONG_DIRECTION: wrong,
     }
