@@ -18,10 +18,10 @@ from ...files import display_name, replacing
 from ...mechanics.approach import approaching
 from ...messages.progress import progress
 from ...names import RESULTS, SCENE, check_names, missing
-from ...tables.blocks import Blocks, Filling, Results
 from ...tables.cells import TableUnits, check_scene_columns
 from ...tables.csvtable import has_live_text
 from ...tables.rows import BadCell, Reader, Rows, heading
+from ...tables.rowsolver import Filling, Results, RowSolver
 from ...tables.sweep import estimates, read_ranges, read_sweep
 from ...tables.table import (
     format_of,
@@ -71,10 +71,12 @@ def solve_table(args: options.Args) -> int:
         given = _scene_given(args) if is_scene else _table_given(args, source_format)
         table = stack.enter_context(given)
         present = {*table.reader.names, *table.filling.constants}
-        blocks = Blocks(args.arithmetic, outputs, table.units, table.filling, present, table.points)
-        if args.arithmetic == "applesoft" and blocks.lacking:
-            raise UserError(missing(blocks.lacking), table.where)
-        stack.callback(_say, blocks.needs)
+        solver = RowSolver(
+            args.arithmetic, outputs, table.units, table.filling, present, table.points
+        )
+        if args.arithmetic == "applesoft" and solver.lacking:
+            raise UserError(missing(solver.lacking), table.where)
+        stack.callback(_say, solver.needs)
         if table.swept:  # the rest is the same in every row
             names = [n for n in table.reader.names if n in table.swept or n not in SCENE]
             table.reader.names = names
@@ -93,12 +95,12 @@ def solve_table(args: options.Args) -> int:
         if table.is_long and not may_wait(args.cases or ""):
             read = stack.enter_context(read_ahead(read))
         table.units.based = table.filling.constants
-        stack.callback(_say, blocks.remarks)
+        stack.callback(_say, solver.remarks)
         live: set[str] = set()
         stack.callback(_say, lambda: _live_remarks(live))
         adverse = place = 0
         for rows in read:
-            results = blocks.solve(rows)
+            results = solver.solve(rows)
             write(rows, table.units.shown(results))
             if result_format == "csv" and scene_too:
                 live |= _live_columns(rows, live)

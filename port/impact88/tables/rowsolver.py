@@ -73,7 +73,7 @@ class Filling:
         return self.case.given.get(name, "")
 
 
-class Blocks:
+class RowSolver:
     """The way of a table's rows through an arithmetic, a block at a time.
 
     Parameters
