@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from .casework.chapter.deltav import delta_v as delta_v
     from .casework.figures.canvas import Svg as Svg
     from .casework.figures.sceneview import scene_svg as scene_svg
-    from .casework.reconstruction.adjustment import Reconstruction as Reconstruction
+    from .casework.reconstruction.impact import Reconstruction as Reconstruction
     from .casework.reconstruction.reconstructedtable import Reconstructions as Reconstructions
     from .casework.reconstruction.reconstructedtable import reconstruct as reconstruct
     from .casework.reconstruction.unknowns import Solution as Solution
@@ -99,7 +99,7 @@ _LAZY = {
         "mechanics.native": "accelerated",
         "program.run": "Run run",
         "printouts.reading.printout": "Printout read_printouts",
-        "casework.reconstruction.adjustment": "Reconstruction",
+        "casework.reconstruction.impact": "Reconstruction",
         "casework.reconstruction.unknowns": "Solution solve_for",
         "program.vectorized": "Replay replay",
         "printouts.reporting.examination": "Verification Verifications verify",

@@ -22,7 +22,7 @@ from ...collision.geometry import GEOMETRY, Geometry
 from ...mechanics.posed import absent_results
 from ...mechanics.state import COURSES, CRUSH, DIRECTIONS, ENERGIES, SPEEDS, State
 from ...names import COEFFICIENTS, IMPULSES, PIVOT, VELOCITIES
-from .adjustment import Reconstruction
+from .impact import Reconstruction
 from .system import COMPLEX_STEP, System
 from .unknowns import TIE
 

@@ -22,9 +22,9 @@ from ...collision.geometry import GEOMETRY
 from ...collision.uncertain import Uncertain
 from ...mechanics.state import BARRIER_SPEEDS, CRUSH, DIRECTIONS, SPEEDS, State
 from ...names import COEFFICIENTS, VELOCITIES
-from .adjustment import NULL_TOL, Reconstruction
 from .admissible import FRICTION, LAWS, Admissible, friction_limits
 from .coordinates import OTHER_ROOT, OTHER_SIGN, Branches, Coordinates
+from .impact import NULL_TOL, Reconstruction
 from .sampler import Proposal, Sample, sample
 from .system import COMPLEX_STEP
 

@@ -17,7 +17,8 @@ from ...names import VELOCITIES
 from ..optimization.effort import granted
 from ..optimization.widening import extremes
 from ..uncertainty.boundstable import Spread
-from .adjustment import NULL_TOL, Reconstruction, pseudo_inverse
+from .impact import NULL_TOL, Reconstruction
+from .leastsquares import pseudo_inverse
 from .posterior import MAX_VELOCITY, MIN_SIZE, FeasibleRegion, Posterior
 from .sampler import Sample
 from .system import System

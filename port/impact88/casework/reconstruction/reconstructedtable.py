@@ -18,8 +18,8 @@ from ...messages.plaintable import format_fixed, number, paragraph, table
 from ...names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..uncertainty.boundstable import unbounded_sides
 from . import adjustment
-from .adjustment import Reconstruction, typed_friction
 from .admissible import ENDS
+from .impact import Reconstruction, typed_friction
 from .posterior import MAX_VELOCITY, MIN_SIZE, SIGMAS
 from .reconstructed import MIN_GAIN, Draws, Range, draws, ranges
 from .solutiontable import DRIVERS, NOISE, ROUNDING, Impact, join_texts, with_derived_values

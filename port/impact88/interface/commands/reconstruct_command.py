@@ -63,11 +63,11 @@ from collections.abc import Sequence
 from math import isclose
 
 from ...casework.reconstruction.adjustment import (
-    Reconstruction,
     needs_adjustment,
     reconstruct,
     resolve_friction,
 )
+from ...casework.reconstruction.impact import Reconstruction
 from ...casework.reconstruction.reconstructedtable import Measured
 from ...casework.reconstruction.solutiontable import Exact, Impact
 from ...collision.case import OWN_AXES, OWN_NAMES, SOURCE, Case, remark_lines

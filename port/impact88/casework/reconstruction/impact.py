@@ -1,0 +1,491 @@
+"""One impact that agrees with what is known: its values, what determines them, and their
+first-order uncertainty."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...collision.geometry import GEOMETRY, within_doubles
+from ...mechanics.outcome import outcome
+from ...mechanics.posed import absent_results, with_headings
+from ...mechanics.state import COURSES, DIRECTIONS, FORCES, QUANTITIES, SPEEDS, State
+from ...names import COEFFICIENTS, FINAL_STATE, VELOCITIES
+from ...status import IMPOSSIBLE, Status
+from .evidence import Evidence, weigh
+from .laws import missed_laws
+from .leastsquares import PENALTIES, descend, polish, pseudo_inverse
+from .system import SPINS, System
+from .unknowns import UnsolvableError, mu_to_type
+
+Floats = NDArray[np.float64]
+
+RESIDUAL_TOL = 1e-10  # largest scaled residual of conditions that hold
+NULL_TOL = 1e-7  # relative part of a gradient in the null space that counts as zero
+DIRECTION_TOL = 1e-9  # degrees
+FOLD_OFFSET = 1e-2  # scaled distance at which a fold is distinguished from a continuum
+FOLD_TOL = 1e-4  # relative singular value below which two branches nearly meet
+FOLD_GRADIENT_TOL = 1e-3  # relative part of a gradient along the fold that counts as zero
+# Unknowns that can be determined best by other evidence
+PREFERRED_MEASUREMENTS = ("WAF", "WBF", "WA", "WB", "E", "MUP", "EM")
+
+
+class Adjusted(NamedTuple):
+    """One known value as measured and as adjusted.
+
+    Parameters
+    ----------
+    name : str
+        Name of the quantity.
+    measured, tolerance, adjusted : float
+        Measured value, its tolerance, and the adjusted value.
+    """
+
+    name: str
+    measured: float
+    tolerance: float
+    adjusted: float
+
+    @property
+    def normalized_residual(self) -> float:
+        """Adjustment in tolerances."""
+        return (self.adjusted - self.measured) / self.tolerance
+
+
+class Searched(NamedTuple):
+    """Record of the search for impacts.
+
+    Parameters
+    ----------
+    starts : int
+        Random starts.
+    reached : int
+        The number of these that led to the impact found least often.
+    single : bool
+        True if the equations are linear or leave something open, so that no search is needed or
+        possible.
+    impacts, possible : int
+        Impacts that agree with what is known, and those of them that physics allows.
+    solutions : int
+        Solutions of the quadratic equations of exact values, all of which were found; 0 if they
+        were not solved.
+    nonreal : int
+        Those that are complex or at infinity.
+    """
+
+    starts: int = 0
+    reached: int = 0
+    single: bool = False
+    impacts: int = 1
+    possible: int = 1
+    solutions: int = 0
+    nonreal: int = 0
+
+    def text(self) -> str:
+        """Return a statement of the search.
+
+        Returns
+        -------
+        str
+            One sentence without its full stop.
+        """
+        impacts = "1 impact" if self.impacts == 1 else f"{self.impacts} impacts"
+        if self.possible < self.impacts:
+            impacts += f", {self.possible or 'none'} of which physics allows"
+        if self.single:
+            return impacts
+        if self.solutions:
+            return f"{impacts}; the equations have no other"
+        which = "it" if self.impacts == 1 else "the rarest"
+        return f"{impacts}; of {self.starts} random starts {self.reached} led to {which}"
+
+
+NOT_SEARCHED = Searched()
+
+
+SHOWN = ("SA", "SB", "DVA", "DVB", "LOSS")
+"""Results shown in the repr of a `Reconstruction`."""
+
+
+@dataclass(frozen=True)
+class Reconstruction:
+    """One impact that agrees with what is known.
+
+    Parameters
+    ----------
+    system : System
+        The equations, with what is known of the impact.
+    x : ndarray
+        The adjusted state.
+    values : dict of str to float
+        Every quantity determined (`state.QUANTITIES`), and the scene's values, adjusted.
+    undetermined : tuple of str
+        Velocities and coefficients that nothing known determines.
+    adjusted : tuple of Adjusted
+        What was known within a tolerance: measured and adjusted value.
+    redundancy : int
+        Known values more than needed.
+    squares : float
+        Sum of squared adjustments in standard deviations, about the redundancy when tolerances are
+        right.
+    assumed : bool
+        True where the tolerances were taken equal for all known velocities.
+    against_sign : bool
+        True where friction drives the sliding that MU's sign was chosen to oppose.
+    search : Searched
+        How impacts were searched for.
+    typed_mu : float, optional
+        MU, where it is known in size only.
+    beside : tuple
+        Every impact found, this one too, possible or not.
+    remarks : tuple of str
+        Sentences on what was made of the problem: values that are not used, a contact plane that
+        follows from the motion.
+    reached : int
+        Starts of the search that led here.
+
+    Examples
+    --------
+    >>> known = {name: text for name, text in impact88.sample(1).items() if name != "MU"}
+    >>> best, *others = impact88.reconstruct({**known, "VAX": "-13.3 +- 0.5"})
+    >>> round(best.values["MUP"], 2)
+    0.91
+    """
+
+    system: System
+    x: Floats
+    values: dict[str, float]
+    undetermined: tuple[str, ...]
+    adjusted: tuple[Adjusted, ...]
+    redundancy: int
+    squares: float
+    assumed: bool = False
+    against_sign: bool = False
+    search: Searched = NOT_SEARCHED
+    typed_mu: float | None = None
+    beside: tuple[tuple[System, Floats], ...] = field(default=(), repr=False, compare=False)
+    remarks: tuple[str, ...] = ()
+    reached: int = 0
+
+    def __repr__(self) -> str:
+        shown = ", ".join(
+            f"{name} {self.values[name]:.4g}" for name in SHOWN if name in self.values
+        )
+        adjusted = f", {len(self.adjusted)} values adjusted" if self.redundancy else ""
+        return f"<Reconstruction: {shown or 'nothing determined'}{adjusted}>"
+
+    @property
+    def absent(self) -> dict[str, frozenset[str]]:
+        """Quantities that need an input that is not given, and which."""
+        return absent_results(self.system.known)
+
+    @property
+    def collides(self) -> bool:
+        """True if the contact points approach and push each other, as far as that is known."""
+        if not self.values.get("PN", 1.0) > 0:
+            return False
+        if "VC" not in self.values:  # the contact plane or a velocity is not known
+            return True
+        return bool(self.system.state(self.x).relative_before[0] < 0)
+
+    @cached_property
+    def impossible(self) -> Status:
+        """Bits of STATUS that no real impact has, 0 if the impact is possible."""
+        bits = Status(int(outcome(self.values)["STATUS"])) & IMPOSSIBLE
+        if not self.collides:
+            bits |= Status.PULLING if self.values.get("PN", 1.0) <= 0 else Status.SEPARATING
+        return bits
+
+    @cached_property
+    def backwards(self) -> tuple[str, ...]:
+        """Known courses along which a vehicle drives backwards, and PDOFs that pull."""
+        state, system = self.system.state(self.x), self.system
+        return tuple(
+            name
+            for name in DIRECTIONS
+            if name in system.known
+            and (COURSES.get(name) or "PN") in self.values
+            and state.along_and_across(name)[0]
+            < -RESIDUAL_TOL * system.scale("PN" if name in FORCES else "UX")
+        )
+
+    @cached_property
+    def folded(self) -> tuple[str, ...]:
+        """Quantities whose first-order deviations mean nothing near a fold.
+
+        Two branches of impacts nearly meet there. The Jacobian then has weak directions w, of
+        singular values near 0, along which the residuals r change only to second order. With a
+        distance h, x + h w and x - h w give
+
+            even = r(x + h w) + r(x - h w) - 2 r(x),    about h^2 w^T r'' w,
+            odd  = r(x + h w) - r(x - h w),             about 2 h r' w.
+
+        A direction with even > odd is a fold. With odd > even the residuals change to first order:
+        the direction is only poorly determined. Quantities are named whose gradient has a part
+        along a fold.
+        """
+        rows = self.system.jacobian(self.x)
+        sizes = np.abs(rows).max(axis=1, initial=0.0)
+        rows = rows[sizes > 0] / sizes[sizes > 0, None]
+        if self.undetermined or not (len(rows) and np.isfinite(rows).all()):
+            return ()
+        _, singular, vt = np.linalg.svd(rows)
+        weak = vt[(singular > FOLD_TOL * singular[0]).sum() :].T
+        if not weak.shape[1]:
+            return ()
+        ahead, center, behind = (
+            self.system.residuals(self.system.state(self.x + side * weak))
+            for side in (FOLD_OFFSET, 0, -FOLD_OFFSET)
+        )
+        even, odd = np.abs(ahead + behind - 2 * center), np.abs(ahead - behind)
+        weak = weak[:, even.max(axis=0) > odd.max(axis=0)]
+        gradients = self.system.gradients(self.x, QUANTITIES)
+        largest = np.abs(gradients).max(axis=1, initial=0.0)
+        along = np.abs(gradients @ weak).max(axis=1, initial=0.0)
+        return tuple(
+            name
+            for name, part, size in zip(QUANTITIES, along, largest, strict=True)
+            if name in self.values and name not in self.system.known
+            if part > FOLD_GRADIENT_TOL * size
+        )
+
+    @cached_property
+    def helpful(self) -> tuple[str, ...]:
+        """Further values that would determine everything undetermined, empty if none would."""
+        _, null = pseudo_inverse(self.system.jacobian(self.x))
+        rows, names = np.zeros((0, null.shape[1])), []
+        wanted = [*dict.fromkeys((*PREFERRED_MEASUREMENTS, *self.undetermined))]
+        for name, gradient in zip(wanted, self.system.gradients(self.x, wanted), strict=True):
+            if name in self.undetermined and np.isfinite(gradient).all():
+                row = gradient @ null / np.abs(gradient).max(initial=1e-300)
+                candidate_rows = np.vstack([rows, row])
+                if np.linalg.matrix_rank(candidate_rows, tol=NULL_TOL) > len(rows):
+                    rows = candidate_rows
+                    names.append(name)
+        return tuple(names) if len(rows) == null.shape[1] else ()
+
+    @cached_property
+    def _unit_responses(self) -> tuple[Floats, Floats]:
+        """Response of the scaled variables (rows) to an error of one standard deviation in each
+        observation, and each observation's redundancy number: the part of such an error that its
+        own adjustment shows."""
+        jacobian = self.system.jacobian(self.x)
+        count = len(self.system.conditions)
+        _, feasible = pseudo_inverse(jacobian[:count])
+        projected_inverse, _ = pseudo_inverse(jacobian[count:] @ feasible)
+        responses = np.asarray(feasible @ projected_inverse)
+        return responses, 1 - np.einsum("ij,ji->i", jacobian[count:], responses)
+
+    @property
+    def _responses(self) -> Floats:
+        # assumed tolerances are scaled by the misfit
+        return np.asarray(self._unit_responses[0] * (self.evidence.widening if self.assumed else 1))
+
+    @cached_property
+    def evidence(self) -> Evidence:
+        """Verdict on the evidence: whether the measured values can all be true."""
+        return self.weigh_evidence()
+
+    @within_doubles
+    def weigh_evidence(self, inside: bool | None = None) -> Evidence:
+        """Return the verdict on the evidence, in the light of a search for feasible impacts.
+
+        Parameters
+        ----------
+        inside : bool, optional
+            True if some impact lies within the limits of all known values at once, False if none
+            does, None if that was not searched for.
+
+        Returns
+        -------
+        Evidence
+            Whether the measured values can all be true, and those most at odds.
+        """
+        redundancy_numbers = dict(
+            zip(self.system.observations, self._unit_responses[1].tolist(), strict=True)
+        )
+        known = self.system.known
+        values = {
+            item.name: (
+                item.measured,
+                item.adjusted,
+                (item.adjusted - item.measured) / known[item.name].standard_deviation,
+                redundancy_numbers[item.name],
+            )
+            for item in self.adjusted
+        }
+        laws = missed_laws(self.system.nominal) if self.assumed else ()
+        return weigh(self.squares, self.redundancy, values, inside, self.assumed, laws)
+
+    @within_doubles
+    def responses(self, names: Sequence[str]) -> Floats:
+        """Return the first-order change of quantities per standard deviation of each known value.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Names of m quantities.
+
+        Returns
+        -------
+        ndarray, shape (m, k)
+            A row for each quantity, a column for each of the k adjusted values, in the order of
+            ``adjusted``.
+        """
+        return np.asarray(self.system.gradients(self.x, names) @ self._responses)
+
+    @within_doubles
+    def deviations(self, names: Sequence[str]) -> dict[str, float]:
+        """Return first-order standard deviations of quantities, as the tolerances make them.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Names of quantities.
+
+        Returns
+        -------
+        dict of str to float
+            Standard deviation of each quantity, in its own unit.
+
+        Notes
+        -----
+        Where the known values contradict one another, the deviations mean nothing until they are
+        multiplied by ``evidence.widening``.
+        """
+        sizes = np.sqrt(np.square(self.responses(names)).sum(axis=1))
+        return dict(zip(names, sizes.tolist(), strict=True))
+
+    @within_doubles
+    def correlations(self, names: Sequence[str]) -> Floats:
+        """Return first-order correlations of quantities.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Names of m quantities.
+
+        Returns
+        -------
+        ndarray, shape (m, m)
+            Correlation coefficients, nan where a quantity does not vary.
+        """
+        responses = self.responses(names)
+        units = responses / np.sqrt(np.square(responses).sum(axis=1, keepdims=True))
+        return np.asarray(units @ units.T)
+
+    @within_doubles
+    def scene(self) -> dict[str, float]:
+        """Return the impact as a scene, with MU as line 280 of the listing would hold it.
+
+        Returns
+        -------
+        dict of str to float
+            All 21 values of a scene by name, M too.
+
+        Raises
+        ------
+        UnsolvableError
+            When a value of the scene is not determined; the message names it.
+        """
+        names = [n for n in ("E", "EM", *VELOCITIES) if not (self.system.point and n == "EM")]
+        missing = [n for n in (*names, "MUP") if n not in self.values]
+        if missing:
+            raise UnsolvableError(f"no scene: {' '.join(missing)} not determined")
+        values = {n: self.values[n] for n in (*GEOMETRY, *names) if n in self.values}
+        values |= {"MU": typed_friction(self.system.state(self.x), self.values["MUP"])}
+        return {"M": 4.0 if self.system.point else 6.0, "EM": 0.0, **values}
+
+
+def typed_friction(state: State, signed: float) -> float:
+    """Return the MU that line 400 of the listing turns into ``signed`` for this impact's
+    sliding."""
+    sliding = float(np.ravel(np.real(state.relative_before[1]))[0])
+    return float(np.ravel(mu_to_type(signed, sliding, map(np.real, state.before)))[0])
+
+
+def _is_fold(system: System, x: Floats, null: Floats) -> bool:
+    """Return True if the impact is isolated although first order leaves something undetermined: two
+    branches meet there. Iterations from points beside a fold return to it; beside a point of a
+    continuum they do not."""
+    offset_points = np.concatenate([x + FOLD_OFFSET * null, x - FOLD_OFFSET * null], axis=1)
+    for end in descend(system, offset_points, PENALTIES[1:2]).T:
+        minimum = polish(system, end[:, None])
+        nearest = end[:, None] if minimum is None else minimum
+        if not np.abs(nearest - x).max() < 0.1 * FOLD_OFFSET:
+            return False
+    return True
+
+
+def describe(system: System, x: Floats, assumed: bool) -> Reconstruction:
+    """Return the solution at ``x``: every quantity that is determined there, and the adjustments.
+
+    A quantity is undetermined where its gradient has a component in the null space of the
+    Jacobian, unless the impact is isolated (`_is_fold`). Two kinds need more than their gradient:
+
+    - A course does not change with the speed along it, so that its gradient may be zero; where a
+      component of the velocity is undetermined, the vehicle could also drive the other way, 180°
+      off.
+    - The direction of the impulse is undetermined where P_n is."""
+    state, rows = system.state(x), system.jacobian(x)
+    adjustments = system.residuals(state)[len(system.conditions) :, 0]
+    _, null = pseudo_inverse(rows)
+
+    def to_float(array: Any) -> float:
+        return float(np.ravel(array)[0])
+
+    values = {n: to_float(state.values[n]) for n in ("M", *GEOMETRY) if n in system.known}
+    absent = absent_results(system.known)
+    undetermined: list[str] = []
+    is_fold = bool(null.shape[1]) and _is_fold(system, x, null)
+    for name, gradient in zip(QUANTITIES, system.gradients(x, QUANTITIES), strict=True):
+        if name in absent or (system.point and name in (*SPINS, "PM", "EM")):
+            continue
+        is_known = name in COEFFICIENTS and name in system.known
+        if name == "MUP" and "MUC" in system.constants:
+            # MUP is then known as a fraction of MUC only, which differs from impact to impact
+            is_known = False
+        amount = to_float(state.values[name] if is_known else state[name])
+        largest = np.abs(gradient).max(initial=0.0)
+        is_open = not is_fold and np.abs(gradient @ null).max(initial=0.0) > NULL_TOL * largest
+        if name in COURSES:
+            along_open = bool({*undetermined} & {*SPEEDS[COURSES[name]]})
+            if along_open and name in system.known and not system.known[name].varies:
+                values[name] = system.known[name].nominal  # the vehicle might drive either way
+                continue
+            is_open |= along_open and name not in system.known
+        if name in FORCES and name not in system.known:
+            is_open |= "PN" not in values
+        if is_known or (np.isfinite(amount) and np.isfinite(largest) and not is_open):
+            # the direction opposite to the axis is 180, whatever rounding makes of it
+            is_opposite = name in (*COURSES, *FORCES) and amount < -180 + DIRECTION_TOL
+            values[name] = amount + 360 if is_opposite else amount
+        elif name in (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS):
+            undetermined.append(name)
+    names = (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS)
+    unknown = [n for n in names if n not in system.known and n not in absent]
+    if unknown and not any(name in values for name in unknown) and not system.observations:
+        raise UnsolvableError(
+            f"nothing of {' '.join(unknown)} is determined by what is known; expected more of it"
+        )
+    items = [
+        (n, system.known[n], to_float(system.observed_value(state, n))) for n in system.observations
+    ]
+    adjusted = tuple(
+        Adjusted(n, item.nominal, item.tolerance, adjusted_value)
+        for n, item, adjusted_value in items
+    )
+    redundancy = len(rows) - (rows.shape[1] - null.shape[1])
+    return Reconstruction(
+        system=system,
+        x=x,
+        values=with_headings(values),
+        undetermined=tuple(undetermined),
+        adjusted=adjusted,
+        redundancy=redundancy,
+        squares=float(adjustments @ adjustments),
+        assumed=assumed,
+    )
