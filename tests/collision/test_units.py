@@ -11,8 +11,16 @@ import pytest
 
 from impact88 import solve
 from impact88.casework.uncertainty.bounds import bounds
-from impact88.collision.uncertain import read
-from impact88.collision.units import SYSTEMS, UNITS, in_base, size_of
+from impact88.collision.uncertain import correlation_root, read
+from impact88.collision.units import (
+    SYSTEMS,
+    UNITS,
+    in_base,
+    middle_of,
+    reorient_text,
+    size_of,
+    system_of,
+)
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
 from impact88.program.scene import Scene, sample
@@ -364,3 +372,30 @@ def test_a_published_run_shown_in_other_units_is_the_same_collision(number, syst
     assert two["LOSS"] == pytest.approx(one["LOSS"], rel=1e-12)
     assert two["DVA"] == pytest.approx(one["DVA"] * (1 if feet else 0.3048), rel=1e-12)
     assert two["KI"] == pytest.approx(one["KI"] * (1 if feet else 1.3558179483314), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "sign", "offset", "expected"),
+    [("30", 1, 180, "210"), ("10", -1, 90, "80"), ("-.5", -1, 0, ".5"), ("0", -1, 90, "90")],
+)
+def test_an_angle_is_turned_and_offset(text, sign, offset, expected):
+    assert reorient_text("TA", text, sign, offset) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "middle"), [("-30 .. -20", "-25"), ("-10 .. 20 deg", "5 deg"), ("-10 +- 2", "-10")]
+)
+def test_the_middle_of_limits_keeps_their_signs(text, middle):
+    assert middle_of("TA", text, system_of("us"), "file") == middle
+
+
+def test_a_normal_ends_so_many_deviations_from_its_mean_or_at_its_limits():
+    assert read("normal 1 .1", "E").limits(3.0) == pytest.approx((0.7, 1.3))
+    assert read("normal 1 .1 within .9 .. 2", "E").limits(3.0) == pytest.approx((0.9, 1.3))
+
+
+def test_a_chain_of_correlations_names_all_three():
+    inputs = {name: read("1 +- .1", name) for name in ("E", "MU", "UX", "UY")}
+    names, root = correlation_root({("E", "MU"): 0.5, ("MU", "UX"): 0.25}, inputs)
+    assert names == ["E", "MU", "UX"]
+    assert root.T @ root == pytest.approx(np.array([[1, 0.5, 0], [0.5, 1, 0.25], [0, 0.25, 1]]))

@@ -421,6 +421,21 @@ def test_published_run() -> None:
     assert replayed.line.tolist() == [0]
 
 
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        ({"UX": "1E20"}, 320),
+        ({"DA": "1E21", "WA": "1E18", "IA": "1E-2"}, 340),
+        ({"DB": "1E21", "WB": "1E18", "IB": "1E-2"}, 340),
+    ],
+)
+def test_an_overflow_names_the_line_of_the_listing(changes: dict[str, str], line: int) -> None:
+    scene = {**impact88.sample(1), **changes}
+    replayed = impact88.replay(scene)
+    assert replayed.line.tolist() == [line] == [impact88.run(scene).line]
+    assert replayed.error.tolist() == [f"?OVERFLOW ERROR IN {line}"]
+
+
 def test_stored_reals_are_taken_as_they_are(awkward: list[dict[str, Any]]) -> None:
     good = [run for run in awkward if not error_of(run["printout"])][:50]
     columns = columns_of([run["scene"] for run in good])

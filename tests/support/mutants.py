@@ -1,6 +1,7 @@
 """Mutants of the core: one token changed in one line, and the tests that should notice.
 
-    python tests/support/mutants.py make [SEED]        draws them anew into mutants.patches
+    python tests/support/mutants.py make SEED [ROOM]   draws them anew into mutants.patches, of all
+                                                       rooms or of one
     python tests/support/mutants.py run [WORD ...]     runs each (those whose file has a WORD)
 
 Each mutant is a patch: a file, the line as it is, the line as it is changed. A line that is no
@@ -105,11 +106,13 @@ def mutants_of(path: str) -> Iterator[Mutant]:
         yield Mutant(path, row, line, changed)
 
 
-def make(seed: int) -> list[Mutant]:
-    """Draw the mutants of every room; not more than one a line."""
+def make(seed: int, only: str) -> list[Mutant]:
+    """Draw the mutants of every room, or of one beside those stored; not more than one a line."""
     rng = random.Random(seed)
-    drawn = []
+    drawn = [mutant for mutant in stored() if only and room_of(mutant.path) != only]
     for room, (_, count) in ROOMS.items():
+        if only not in ("", room):
+            continue
         files = sorted((ROOT / PACKAGE / room).rglob("*.py"))
         all_ = [m for file in files for m in mutants_of(file.relative_to(ROOT).as_posix())]
         by_line = {(mutant.path, mutant.number): mutant for mutant in rng.sample(all_, len(all_))}
@@ -192,10 +195,8 @@ def run(words: list[str]) -> None:
 
 if __name__ == "__main__":
     match sys.argv[1:]:
-        case ["make"]:
-            STORED.write_text(written(make(88)), encoding="utf-8")
-        case ["make", seed]:
-            STORED.write_text(written(make(int(seed))), encoding="utf-8")
+        case ["make", seed, *room] if len(room) < 2:
+            STORED.write_text(written(make(int(seed), *room or [""])), encoding="utf-8")
         case ["run", *words]:
             run(words)
         case _:
