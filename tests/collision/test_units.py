@@ -36,9 +36,7 @@ def based(**texts):
 
 DEGREE = math.pi / 180
 SIZES = {
-    "length": ("length", 1),
-    "mass": ("mass", 1),
-    "time": ("time", 1),
+    "s": ("time", 1),
     "ms": ("time", 1e-3),
     "h": ("time", 3600),
     "ft": ("length", 0.3048),
@@ -88,6 +86,15 @@ def test_every_unit_has_the_size_of_its_definition(unit):
             f"{symbol} has another size than SIZES says; next step: its row in UNITS of "
             "collision/units.py"
         )
+
+
+@pytest.mark.parametrize(
+    ("name", "rule"), [("DA", "length"), ("MA", "mass"), ("UX", "length/time")]
+)
+def test_what_is_measured_is_no_unit(name, rule):
+    assert size_of(rule, rule) is None
+    with pytest.raises(UserError, match="is not a unit"):
+        based(units="us", **{name: f"4.5 {rule}"})
 
 
 def test_every_definition_is_a_unit():

@@ -76,9 +76,7 @@ class Unit(NamedTuple):
 
 
 UNITS = (
-    Unit("length", _LENGTH, Fraction(1), ""),
-    Unit("mass", _MASS, Fraction(1), ""),
-    Unit("time s sec secs second seconds", _TIME, Fraction(1), ""),
+    Unit("s sec secs second seconds", _TIME, Fraction(1), ""),
     Unit("ms", _TIME, Fraction(1, 1000), ""),
     Unit("h hr hour hours", _TIME, Fraction(3600), ""),
     Unit("ft foot feet '", _LENGTH, _FOOT, _US),
@@ -114,6 +112,13 @@ SYMBOLS = {
     for symbol in unit.symbols.split()
 }
 """Symbol -> dimension, size in m, kg, s and radians, and system ("" if both systems use it)."""
+_RULE_SYMBOLS = {
+    **SYMBOLS,
+    "length": (_LENGTH, Fraction(1), ""),
+    "mass": (_MASS, Fraction(1), ""),
+    "time": (_TIME, Fraction(1), ""),
+}
+"""Symbols of rules, which name what is measured; an amount has units only."""
 _ARC = {"'": _DEGREE / 60, "min": _DEGREE / 60, '"': _DEGREE / 3600, "''": _DEGREE / 3600}
 """Symbols of minutes and seconds of arc, in angles only."""
 _WEIGHTS = ("lb", "lbs", "pound", "pounds")
@@ -146,11 +151,16 @@ def size_of(unit: str, rule: str) -> tuple[Fraction, str] | None:
 @lru_cache
 def _dimension(rule: str) -> Dimension:
     """Return the dimension of a rule such as "length/time"."""
-    product = _product(rule, False, False)
+    product = _product(rule, False, False, _RULE_SYMBOLS)
     return product[0] if product else (0, 0, 0, 0)
 
 
-def _product(text: str, arc: bool, force: bool) -> tuple[Dimension, Fraction, str] | None:
+def _product(
+    text: str,
+    arc: bool,
+    force: bool,
+    symbols: Mapping[str, tuple[Dimension, Fraction, str]] = SYMBOLS,
+) -> tuple[Dimension, Fraction, str] | None:
     """Return dimension, size and system of a unit; None if it has unknown symbols or mixes systems.
 
     ``arc``: accept minutes and seconds of arc; ``force``: read pounds as forces."""
@@ -164,7 +174,7 @@ def _product(text: str, arc: bool, force: bool) -> tuple[Dimension, Fraction, st
         match = _POWER.fullmatch(step[2])
         assert match is not None
         symbol, power = match[1].lower(), int(_EXPONENTS.get(match[2]) or match[3] or 1)
-        entry = SYMBOLS.get(symbol)
+        entry = symbols.get(symbol)
         if arc and symbol in _ARC:
             entry = (_ANGLE, _ARC[symbol], "")
         elif force and symbol in _WEIGHTS:
