@@ -12,16 +12,14 @@ import sys
 
 import numpy as np
 import pytest
-from captures import ROOT
 from longer import long_but
 
 import impact88
-from impact88.mechanics import loops, native
+from impact88.mechanics import native
 from impact88.mechanics.accuracy.populations import POPULATIONS, repeat_scenes, scenes, texts
 from impact88.mechanics.closedform import compiledcalls
 from impact88.mechanics.closedform import solve as solving
 from impact88.mechanics.closedform.general import TILE, quantities
-from impact88.mechanics.closedform.impactprograms import FORMULAS
 from impact88.mechanics.closedform.plain import MAX_CONVERTED
 from impact88.names import RESULTS
 from impact88.program.vectorized import blocks
@@ -52,31 +50,8 @@ def test_every_result_of_every_population(name, count):
     assert_same_bits(*both(repeat_scenes(scenes(name, min(count, 500), 11), count), threads=1))
 
 
-def test_what_is_compiled_is_what_the_formulas_say(file_regression, request):
-    file = ROOT / "port" / "impact88" / "mechanics" / "native" / "loops.h"
-    rewrite = "python -m impact88.mechanics.loops"
-    try:
-        file_regression.check(loops.text(), fullpath=file, encoding="ascii")
-    except AssertionError:
-        if request.config.getoption("force_regen"):
-            raise
-        pytest.fail(f"loops.h is not of the formulas as they are; next step: {rewrite}")
-    assert loops.digest() == FORMULAS, (
-        f'next step: FORMULAS = "{loops.digest()}" in mechanics/closedform/impactprograms.py'
-    )
+def test_the_library_is_of_these_formulas():
     assert compiledcalls.usable(), "the library is of other formulas; next step: pip install -e ."
-
-
-@pytest.mark.parametrize("kind", loops.KINDS)
-def test_little_is_executed_that_the_results_do_not_need(kind):
-    """Operations, counted: of each result, of the sets people ask for, and of any sets."""
-    rng = np.random.default_rng(51)
-    sets = [(name,) for name in RESULTS] + [SIX, tuple(RESULTS), ("DVA", "DVB", "LOSS", "STATUS")]
-    for _ in range(300):
-        sets.append(tuple(rng.choice(list(RESULTS), rng.integers(2, 12), replace=False)))
-    for names in sets:
-        executed, needed = loops.operations(kind, names)
-        assert needed <= executed <= (1.2 if names in (SIX, ("LOSS",)) else 1.5) * needed, names
 
 
 def odd(count: int, seed: int) -> dict[str, np.ndarray]:

@@ -14,6 +14,7 @@ from passes import passes
 from worked_cases import RUN_1, reference_cases, scene_of
 
 from impact88 import solve
+from impact88.collision.units import MIRRORED
 from impact88.errors import UserError
 from impact88.mechanics import native
 from impact88.mechanics.accuracy.errorbound import scales
@@ -617,3 +618,15 @@ def test_populations_are_seeded_and_usable(name):
     assert not all(np.array_equal(a[n], c[n]) for n in SCENE)
     found = solve(a)
     assert np.all(np.isfinite(found["VAX"]))
+
+
+def test_results_that_a_mirror_negates_are_those_of_the_table():
+    """MIRRORED, by which axes = "sae" reads and shows, against collisions seen in a mirror."""
+    columns = scenes("casework", 200, 5)
+    mirrored = {name: -values if name in MIRRORED else values for name, values in columns.items()}
+    seen, reflected = solve(columns, list(RESULTS)), solve(mirrored, list(RESULTS))
+    for name in RESULTS:
+        sign = -1 if name in MIRRORED else 1
+        np.testing.assert_allclose(
+            reflected[name], sign * seen[name], rtol=1e-7, atol=1e-7, err_msg=name
+        )

@@ -1,4 +1,5 @@
-"""Decimal text to double precision: the one place where a text becomes a float.
+"""Decimal text to double precision: the one place where a bare number becomes a float; an amount
+with a unit is computed exactly by `units` and then comes here.
 
 A text is a number if Applesoft's INPUT reads it as one (`applesoft.decimaltext.scan`): blanks are
 allowed anywhere; a lone sign, a lone point and a bare E count as zero; E may be in either case. The

@@ -76,7 +76,7 @@ def outcome_fields(printed: str) -> dict[str, str]:
     """Return the fields that one run printed, by name; empty if it stopped before the first.
 
     For the program's own output, whose layout is known to the last blank; old printouts are read by
-    `verification.reading`."""
+    `printouts.reading`."""
     texts: dict[str, str] = {}
     place = printed.find("MA= ")
     for name in FIELDS if place >= 0 else ():
