@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...collision.doubles import double
+from ...collision.doubles import BARE, double
 from ...equations.evaluation import LAST, NEIGHBOUR_SHIFTS, Run
 from ...equations.spelling import A_IMPULSE, spelling_of
 from ...errors import UserError, quoted
@@ -48,6 +48,9 @@ _NO_RESULT = re.compile(
 """Cells that programs write for no result: spreadsheets' errors, C's -nan(ind)."""
 _INFINITE = re.compile(r"([+-]?)(inf|infinity|1\.#INF[0-9]*)", re.IGNORECASE)
 """Cells that programs write for a number beyond all others, which is no refusal."""
+_IS_PLAIN = np.zeros(256, bool)
+_IS_PLAIN[np.frombuffer("".join(BARE - {" "}).encode(), np.uint8)] = True
+"""Characters of a number without a unit, as their codes."""
 HALF = 0.5 + 1e-9  # rounding to the last digit written, in units of that digit
 
 COLUMNS = (
@@ -283,6 +286,8 @@ def read_theirs(rows: Rows, name: str, units: TableUnits) -> tuple[Floats, Float
     column, factor = rows.one_per_row(name), units.factor(name)
     if isinstance(column, np.ndarray) and column.dtype.kind in "fiu":
         return column.astype(float) * factor, np.zeros(rows.count)
+    if (plain := _read_plain(list(column))) is not None:
+        return plain[0] * factor, plain[1] * factor
     values, last = np.full(rows.count, np.nan), np.zeros(rows.count)
     for index, cell in enumerate(column):
         if isinstance(cell, float):  # from a data frame
@@ -304,6 +309,32 @@ def read_theirs(rows: Rows, name: str, units: TableUnits) -> tuple[Floats, Float
                 values[index], last[index] = units.result(name, text)
             except UserError as error:
                 rows.bad.append((index, name, str(error).removeprefix(": ")))
+    return values, last
+
+
+def _read_plain(texts: Sequence[object]) -> tuple[Floats, Floats] | None:
+    """Return a column of plain numbers and empty cells, and the units of their last digits; None
+    where a cell needs a closer look."""
+    if not all(isinstance(text, str) for text in texts):
+        return None
+    cells = [str(text) for text in texts]
+    characters = np.frombuffer("".join(cells).encode(), np.uint8)
+    if not _IS_PLAIN[characters].all():
+        return None
+    try:
+        values = np.array([float(text or "nan") for text in cells])
+    except ValueError:
+        return None
+    ends = np.cumsum([len(text) for text in cells])
+    decimals = np.zeros(values.size, int)
+    points = np.flatnonzero(characters == ord("."))
+    rows = np.searchsorted(ends, points, "right")
+    decimals[rows] = ends[rows] - points - 1
+    last = np.array([10.0**-count for count in range(decimals.max(initial=0) + 1)])[decimals]
+    last[np.isnan(values)] = 0.0
+    exponents = np.flatnonzero((characters == ord("e")) | (characters == ord("E")))
+    for row in np.searchsorted(ends, exponents, "right").tolist():
+        last[row] = last_digit(cells[row])
     return values, last
 
 

@@ -714,10 +714,13 @@ def _judge_of(case: Case, wrong: Bools) -> Judge:
 def _match_program(program: Program, case: Case, names: Sequence[str]) -> Bools:
     """Return the rows of a case that a program predicts, in the results that it gives."""
     wrong = _needs_cause(case)
-    judge = _judge_of(case, wrong).select_results(names)
+    whole = _judge_of(case, wrong)
+    judge = whole.select_results(names)
     rows = try_program(program, judge).rows
-    # a row that is wrong in other results alone is not explained by these
-    return np.asarray(rows & ~(wrong & try_program(Program(), judge).rows))
+    if judge.theirs.keys() < whole.theirs.keys():
+        # a row that is wrong in other results alone is not explained by these
+        rows &= ~(wrong & try_program(Program(), judge).rows)
+    return rows
 
 
 def _match_cut(case: Case, cut: Callable[[Floats], Floats]) -> Bools:

@@ -193,9 +193,13 @@ def try_program(program: Program, judge: Judge) -> Trial:
 
     One that belongs to no spelling is run in two, for each loses digits where the other does not.
     """
-    rows = judge.matches(program.results(judge.scene))
-    if program.edits and not any(edit.title for edit in program.edits):
-        rows |= judge.matches(program.results(judge.scene, IMPULSE_MATRIX))
+    if not program.edits or any(edit.title for edit in program.edits):
+        return Trial(program, judge.matches(program.results(judge.scene)), judge.wrong)
+    rows = judge.matches(program.results(judge.scene, IMPULSE_MATRIX))
+    others = np.flatnonzero(~rows)
+    if others.size:
+        part = judge.select_rows(others)
+        rows[others] = part.matches(program.results(part.scene))
     return Trial(program, rows, judge.wrong)
 
 
