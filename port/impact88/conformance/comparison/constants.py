@@ -16,6 +16,7 @@ from ...equations.spelling import IMPULSES, LISTING, SHOWN, TYPED, Expression, S
 from ...equations.wording import subject_words
 from ...names import SCENE
 from .agreement import Bools
+from .predicates import ABOVE, BELOW, Predicate
 from .trials import MIN_FIT, Judge, Program, try_program
 
 Floats = NDArray[np.float64]
@@ -24,7 +25,7 @@ Floats = NDArray[np.float64]
 FACTOR = "*"
 OFFSET = "+"
 REPLACED = "="
-ALWAYS = " is always "
+_ALWAYS = " is always "
 _REPLACED_COLUMNS = {"E": 0.5, "MU": 0.5, "EM": 0.0}  # and where the fit starts
 _MAX_ITERATIONS = 12
 _MAX_MISFIT = 10.0  # in units of the limits; a fit farther off is not run
@@ -133,10 +134,26 @@ class _Target(NamedTuple):
         return sides
 
 
-def _targets(title: str, spelling: Spelling, results: Any) -> Iterator[_Target]:
-    """Yield every place for a constant in a spelling: its own statements, and for the listing
+def limit_instead(program: Program, where: Predicate) -> Program | None:
+    """Return the program that limits a column to a number, in place of one that always has it
+    beyond another; None where the program does something else."""
+    *others, last = program.edits
+    if where.relation not in (ABOVE, BELOW) or not last.description.startswith(
+        f"{where.quantity}{_ALWAYS}"
+    ):
+        return None
+    number = last.description.removeprefix(f"{where.quantity}{_ALWAYS}")
+    name = "minimum" if where.relation == ABOVE else "maximum"
+    sides = {where.quantity: ((name, f"{TYPED}{where.quantity}", float(number)),)}
+    more = "" if where.relation == ABOVE else " and more"
+    limit = Edit("", sides, FITTED, f"{where.quantity} is limited to {number}{more}")
+    return Program((*others, limit))
+
+
+def _targets(title: str, spelling: Spelling, results: Any, has_columns: bool) -> Iterator[_Target]:
+    """Yield every place for a constant in a spelling: its own statements, and with the columns
     inputs and shown ``results``, alone and in groups."""
-    if title == LISTING:
+    if has_columns:
         for name in _REPLACED_COLUMNS:
             yield _Target(name, "", REPLACED, {name: f"{TYPED}{name}"}, {})
         inputs = [(name,) for name in SCENE if name != "M"]
@@ -171,15 +188,16 @@ def _targets(title: str, spelling: Spelling, results: Any) -> Iterator[_Target]:
 def fit_constants(judge: Judge, unexplained: Bools, base: Program) -> list[Program]:
     """Return programs with one constant more than ``base``, fitted, that explain nearly all rows
     that are unexplained, of which a few are looked at; those with a known constant come first."""
-    judge = judge.sample(unexplained)
+    judge = judge._replace(wrong=unexplained).sample(unexplained)
     programs: list[tuple[bool, bool, int, Program]] = []
-    for title in next(([edit.title] for edit in base.edits if edit.title), (LISTING, IMPULSES)):
+    titles = next(([edit.title] for edit in base.edits if edit.title), [LISTING, IMPULSES])
+    for title in titles:
         spelling = base.in_spelling(title)
         run = Run(spelling, judge.scene)
         results = [name for name in judge.theirs if SHOWN + name in run.names]
         if not results:
             continue
-        targets = list(_targets(title, spelling, results))
+        targets = list(_targets(title, spelling, results, title == titles[0]))
         neutral = np.array([target.neutral for target in targets])
         # each row by itself tells the constant; what most rows tell is taken
         each = np.repeat(neutral[:, None], judge.wrong.size, 1)
@@ -243,7 +261,7 @@ def _nearest_known(constant: float) -> str:
 def _edit(target: _Target, constant: float) -> Edit:
     """Return the edit that puts a constant in, described with its value."""
     if target.operation == REPLACED:
-        text = f"{target.description}{ALWAYS}{constant:.7g}"
+        text = f"{target.description}{_ALWAYS}{constant:.7g}"
         return Edit("", target.sides(constant), FITTED, text)
     known = _nearest_known(constant) if target.operation == FACTOR else ""
     change = "multiplied by" if target.operation == FACTOR else "increased by"

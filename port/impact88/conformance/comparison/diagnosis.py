@@ -22,16 +22,16 @@ from ...collision.doubles import doubles_of
 from ...collision.fields import FIELDS
 from ...equations.edits import FITTED, RARE_CONVENTION, Edit
 from ...equations.evaluation import Run
-from ...equations.spelling import LISTING, spellings
+from ...equations.spelling import IMPULSES, LISTING, spellings
 from ...errors import UserError
 from ...mechanics.accuracy import errorbound
 from ...messages.progress import progress
 from ...names import FINAL_VELOCITIES, PIVOT, SCENE
 from ...program.vectorized import replay
 from .agreement import HALF, MAX_SLIGHT_DIFFERENCE, Bools, Case, Floats, violated_equations
-from .constants import ALWAYS, fit_constants
-from .predicates import ABOVE, BELOW, Predicate, find_predicate, scene_quantities
+from .constants import fit_constants, limit_instead
 from .predicates import COST as PREDICATE_COST
+from .predicates import Predicate, find_predicate, scene_quantities
 from .trials import (
     MIN_FIT,
     Judge,
@@ -327,6 +327,7 @@ class Diagnosis:
             for hypothesis in self._programs():
                 scored.append((self._score(hypothesis), hypothesis))
         explained = np.zeros(wrong.size, bool)
+        chosen: list[tuple[Hypothesis, float]] = []
         for _ in range(_MAX_CAUSES):
             scores = [(self._score(x, explained), x) for _, x in scored]
             highest = max((score for score, _ in scores), default=0.0)
@@ -336,8 +337,14 @@ class Diagnosis:
             # the one that takes least to state
             near = [(self._cost(x), -score, x) for score, x in scores if score >= _NEARLY * highest]
             _, score, hypothesis = min(near, key=lambda each: each[:2])
-            self._add(hypothesis, -score)
+            chosen.append((hypothesis, -score))
             explained |= self._fits(hypothesis) & wrong
+        # a program that more rows contradict than confirm is not the other one, though it has a
+        # part of it
+        left = (wrong & ~explained & (self._bits > 0)).sum()
+        for hypothesis, score in chosen:
+            if hypothesis.where or (self._fits(hypothesis) & wrong).sum() >= left:
+                self._add(hypothesis, score)
 
     def _fits(self, hypothesis: Hypothesis) -> Bools:
         """Return the rows of the sample that a hypothesis predicts where it holds."""
@@ -490,15 +497,17 @@ class Diagnosis:
         hypotheses = list(self._with_conditions(singles, known, judge, quantities))
         yield from hypotheses
         best = self._best(hypotheses)
-        if not self._is_explained(best, judge, quantities):
+        if not self._are_explained([best] if best else [], judge, quantities, 1.0):
             constants = rank_programs(fit_constants(judge, judge.wrong, Program()), judge)
             fitted = list(self._with_conditions(constants, known, judge, quantities))
             yield from fitted
-            best = self._best([*hypotheses, *fitted])
+            hypotheses += fitted
+            best = self._best(hypotheses)
         self._meter.update(1)
         if best is not None:
-            yield from self._explain_rest(best, judge, quantities)
-            if self._is_explained(best, judge, quantities, MIN_FIT):
+            more = list(self._explain_rest(best, hypotheses, judge, quantities))
+            yield from more
+            if self._are_explained([best, *more], judge, quantities, MIN_FIT):
                 return
         elif not is_large:
             self.skipped.append("two mistakes at once, for differences so small")
@@ -514,15 +523,19 @@ class Diagnosis:
                 return
 
     def _explain_rest(
-        self, best: Hypothesis, judge: Judge, quantities: Mapping[str, Floats]
+        self,
+        best: Hypothesis,
+        hypotheses: Sequence[Hypothesis],
+        judge: Judge,
+        quantities: Mapping[str, Floats],
     ) -> Iterator[Hypothesis]:
-        """Yield what explains the rows that the best hypothesis leaves: another mistake beside it,
-        or on top of it."""
+        """Yield what explains the rows that the best of the hypotheses leaves: another mistake
+        beside it, or on top of it."""
         fits = self._rows_of(best, judge, quantities)
         known, left = ~judge.wrong | fits, judge.wrong & ~fits & self._shows(judge)
         if left.sum() < _MIN_ROWS_LEFT:
             return
-        for base in (best.program or Program(), Program()):
+        for base in self._bases(best, hypotheses):
             if not self._has_time():
                 self.skipped.append("further mistakes in the rows without a cause")
                 return
@@ -533,8 +546,25 @@ class Diagnosis:
             self._meter.update(1)
             trials = rank_programs([*(trial.program for trial in more), *fitted], judge)
             yield from self._with_conditions(trials, known, judge, quantities)
-            if any((trial.rows & left).sum() >= MIN_FIT * left.sum() for trial in trials):
+            least = MIN_FIT * left.sum(), _NEARLY * known.sum()
+            if any(
+                (trial.rows & left).sum() >= least[0] and (trial.rows & known).sum() >= least[1]
+                for trial in trials
+            ):
                 return
+
+    def _bases(self, best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> list[Program]:
+        """Return the programs on top of which a second mistake is looked for: the best, one like it
+        in the spelling that other models are written in, and the correct one."""
+        bases = [best.program or Program()]
+        enough = _NEARLY * self._score(best)
+        for hypothesis in hypotheses:
+            programs = [x for x in (hypothesis.program, *hypothesis.equivalents) if x is not None]
+            models = [x for x in programs if x.spelling.title == IMPULSES]
+            if models and self._score(hypothesis) >= enough:
+                bases += [x for x in models[:1] if x not in bases]
+                break
+        return [*bases, Program()]
 
     def _shows(self, judge: Judge) -> Bools:
         """Return the rows of a judge that show anything, as rounding leaves them digits."""
@@ -543,19 +573,21 @@ class Diagnosis:
     def _has_time(self) -> bool:
         return time.process_time() < self._ends
 
-    def _is_explained(
+    def _are_explained(
         self,
-        best: Hypothesis | None,
+        hypotheses: Sequence[Hypothesis],
         judge: Judge,
         quantities: Mapping[str, Floats],
-        share: float = 1.0,
+        share: float,
     ) -> bool:
-        """Return whether a hypothesis explains the rows that disagree, or a share of them."""
-        if best is None:
-            return False
+        """Return whether those of the hypotheses that are worth their cost explain a share of the
+        rows that disagree."""
         shown = judge.wrong & self._shows(judge)
-        fits = self._rows_of(best, judge, quantities)
-        return bool((shown & ~fits).sum() <= (1 - share) * shown.sum())
+        left = shown.copy()
+        for hypothesis in hypotheses:
+            if self._score(hypothesis) >= _MIN_SCORE:
+                left &= ~self._rows_of(hypothesis, judge, quantities)
+        return bool(left.sum() <= (1 - share) * shown.sum())
 
     def _best(self, hypotheses: Sequence[Hypothesis]) -> Hypothesis | None:
         """Return the hypothesis with the highest score, None where none is worth its cost."""
@@ -589,14 +621,17 @@ class Diagnosis:
             first, *others = sorted(group, key=_plainness)
             programs = [trial.program for trial in others]
             yield self._hypothesis(first.program, judge, programs)
-            inside, outside = first.rows & ~known, ~first.rows & (known | self._shows(judge))
+            inside = first.rows & ~known & self._shows(judge)
+            outside = ~first.rows & (known | self._shows(judge))
             conditions = [
                 find_predicate(quantities, inside, rows)
                 for rows in (outside & known, outside)
                 if rows.any() and inside.any()
             ]
-            for predicate in dict.fromkeys(conditions):
-                if predicate is not None:
+            for predicate in filter(None, dict.fromkeys(conditions)):
+                if limited := limit_instead(first.program, predicate):
+                    yield self._hypothesis(limited, judge)
+                else:
                     yield self._hypothesis(first.program, judge, programs, predicate)
 
     def _hypothesis(
@@ -609,7 +644,7 @@ class Diagnosis:
         """Return a program as a hypothesis about the judge's results."""
         names = tuple(judge.theirs)
         left_out = [name for name in self._names if name not in names]
-        says = _say_where(program, where) if where else program.sentence
+        says = f"{program.sentence} {where.text}" if where else program.sentence
         if left_out:
             says += f"; {', '.join(left_out)} {UNKNOWN}"
         return Hypothesis(
@@ -630,15 +665,6 @@ def _plainness(trial: Trial) -> tuple[int, bool, int]:
     is said in words and not by a formula, and briefly."""
     sentence = trial.program.sentence
     return trial.rank, any(sign in sentence for sign in "*/+"), len(sentence)
-
-
-def _say_where(program: Program, where: Predicate) -> str:
-    """Return a program's sentence with its condition: a limit, where a column is one value beyond
-    it."""
-    column, _, number = program.sentence.partition(ALWAYS)
-    if number and column == where.quantity and where.relation in (ABOVE, BELOW):
-        return f"{column} is limited to {number}{' and more' if where.relation == BELOW else ''}"
-    return f"{program.sentence} {where.text}"
 
 
 def _is_in(groups: Sequence[Sequence[str]], name: str) -> bool:

@@ -30,8 +30,8 @@ MIN_FIT = 0.9
 """Fraction of the disagreeing rows, and of the agreeing ones, that a cause must fit."""
 _MAX_FULL_RUNS = 60  # programs run on all rows of a sample: equivalents in nine spellings, and more
 # rows that all edits are run on; the time of the search is proportional to their number
-_MAX_DISAGREEING = 10
-_MAX_AGREEING = 5
+_MAX_UNEXPLAINED = 10
+_MIN_OTHERS = 5
 _MAX_ROWS_FOR_PAIRS = 8  # disagreeing rows on which pairs are looked for; half for two readings
 _MAX_FIRST_EDITS = 4  # edits on top of which a second one is looked for
 _MIN_FRACTION = 0.1
@@ -142,11 +142,11 @@ class Judge(NamedTuple):
                 fits = fits & ((np.abs(mine - theirs) <= self.limit[name]) | np.isnan(theirs))
         return np.asarray(fits)
 
-    def sample(self, unexplained: Bools, count: int = _MAX_DISAGREEING) -> "Judge":
-        """Return the judge of at most ``count`` unexplained rows and a few that agree."""
-        agreeing = pick_evenly(np.flatnonzero(~self.wrong), _MAX_AGREEING)
-        disagreeing = pick_evenly(np.flatnonzero(unexplained), count)
-        return self.select_rows(np.concatenate([disagreeing, agreeing]))
+    def sample(self, unexplained: Bools, count: int = _MAX_UNEXPLAINED) -> "Judge":
+        """Return the judge of at most ``count`` unexplained rows and a few others."""
+        rows = pick_evenly(np.flatnonzero(unexplained), count)
+        others = pick_evenly(np.flatnonzero(~unexplained), count + _MIN_OTHERS - rows.size)
+        return self.select_rows(np.concatenate([rows, others]))
 
     @property
     def has_velocities(self) -> bool:
@@ -229,7 +229,8 @@ def _try_edits(judge: Judge, base: Program) -> Iterator[Trial]:
     base_titles = [edit.title for edit in base.edits if edit.title]
     for title in base_titles[:1] or spellings():
         spelling = Program((*base.edits, Edit(title, {}))).spelling
-        edits = [] if base_titles else [edit for edit in variants() if edit.title == title]
+        changed = {key for edit in base.edits for key in edit.sides}
+        edits = [x for x in variants() if x.title == title and changed.isdisjoint(x.sides)]
         if base_titles or title == LISTING:
             edits += [edit for edit in readings() if edit not in base.edits]
         edits += node_edits(spelling) if base_titles else spelling_edits(title)
@@ -353,12 +354,15 @@ def _pairs_by_equations(judge: Judge, full: Judge) -> Iterator[list[Program]]:
         has_impulses = {"Px", "Pn"} & {*spelling.index_of, *spelling.unknown}
         for vehicle in "AB" if has_impulses else "A":
             yield _cancelling_pairs(_clamped_residuals(spelling, judge, vehicle), edits)
-    # rank the readings by the number of equations that they leave violated
-    _, residuals_of = _clamped_residuals(spellings()[LISTING], judge, "A")
-    is_small = np.abs(residuals_of([{}, *(edit.sides for edit in input_edits)])) <= 2
-    violated = (is_small.mean(-1) < MIN_FIT).sum(1)
-    for place in np.argsort(violated[1:], kind="stable")[:_MAX_FIRST_EDITS]:
-        if violated[place + 1] < violated[0]:
+    # rank the readings by the number of equations or statements that they leave violated
+    gains = np.zeros(len(input_edits), int)
+    for title, vehicle in ((LISTING, "A"), (IMPULSES, "A"), (IMPULSES, "B")):
+        _, residuals_of = _clamped_residuals(spellings()[title], judge, vehicle)
+        is_small = np.abs(residuals_of([{}, *(edit.sides for edit in input_edits)])) <= 2
+        violated = (is_small.mean(-1) < MIN_FIT).sum(1)
+        gains = np.maximum(gains, violated[0] - violated[1:])
+    for place in np.argsort(-gains, kind="stable")[:_MAX_FIRST_EDITS]:
+        if gains[place] > 0:
             trials = find_single_edits(full, full.wrong, Program((input_edits[place],)))
             yield [trial.program for trial in trials[:2]]
 
