@@ -8,7 +8,6 @@ from __future__ import annotations
 import csv
 import hashlib
 import io
-import re
 import shutil
 import subprocess
 import tempfile
@@ -19,7 +18,15 @@ from pathlib import Path
 from impact88.names import SCENE
 
 FOLDER = Path(__file__).with_suffix("")
-PROGRAMS = ("trial.c", "phases.c", "bodies.js", "shooting.js", "gyration.awk", "momentum.awk")
+PROGRAMS = (
+    "trial.c",
+    "phases.c",
+    "columns.c",
+    "bodies.js",
+    "shooting.js",
+    "gyration.awk",
+    "momentum.awk",
+)
 TOOLS = {".c": "gcc", ".js": "node", ".awk": "awk"}
 
 Change = tuple[str, str]
@@ -62,17 +69,18 @@ def answers(
     program: str,
     changes: Sequence[Change] = (),
     flags: tuple[str, ...] = (),
-    throughout: Change | None = None,
+    throughout: Sequence[Change] = (),
 ) -> dict[str, list[str]]:
-    """What a program answers: the texts it writes, by result. ``throughout``: a word, and the one
-    that replaces it everywhere."""
+    """What a program answers: the texts it writes, by result. ``throughout``: changes of what may
+    be in it many times."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(SCENE)
     writer.writerows([scene[name] for name in SCENE] for scene in scenes)
     text = source(program, changes)
-    if throughout is not None:
-        text = re.sub(rf"\b{throughout[0]}\b", throughout[1], text)
+    for old, new in throughout:
+        assert old in text, (program, old)
+        text = text.replace(old, new)
     command = _command(program, text, flags)
     done = subprocess.run(
         command, input=out.getvalue(), capture_output=True, text=True, check=True, timeout=60

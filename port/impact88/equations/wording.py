@@ -204,6 +204,10 @@ def _named_change(correct: Expression, actual: Expression, spelling: Spelling) -
             return f"the case of {words(p)} is {holds} taken ({format_expression(actual)})"
         case (str(), str()):
             return f"{words(actual)} stands for {words(correct)}"
+        case ("point", 0 | False):
+            return "point masses (M = 4) are not told from bodies"
+        case ("point", True):
+            return "all bodies are taken for point masses"
         case (str(), 0):
             return f"{words(correct)} is left out"
     return ""

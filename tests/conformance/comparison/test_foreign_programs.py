@@ -42,6 +42,7 @@ FLAGS = {
     "reassociated": ("-O3", "-ffast-math", "-fno-finite-math-only"),
 }
 """Arithmetic -> the compiler's flags."""
+LONG_DOUBLE = [("double", "long double"), ("math.h", "tgmath.h"), ("%.17g", "%.21Lg")]
 
 
 def table(rows: Sequence[Mapping[str, str]], answers: Mapping[str, Sequence[str]]) -> list[dict]:
@@ -96,12 +97,24 @@ def test_a_correct_program_is_not_accused(program: str) -> None:
 
 @pytest.mark.parametrize("arithmetic", FLAGS)
 def test_a_correct_program_in_another_arithmetic_is_not_accused(arithmetic: str) -> None:
-    """Of trial impulses, whose equations lose digits to large velocities, and in closed form."""
+    """Of trial impulses, whose equations lose digits to large velocities, in closed form, and by
+    elimination in Fortran's order."""
     if not foreign.is_available("trial.c"):
         pytest.skip("no compiler")
     rows = [scene for kind, _, scene in scenes(240, seed=43) if kind != FAILURE]
-    for program in ("trial.c", "phases.c"):
+    for program in ("trial.c", "phases.c", "columns.c"):
         answers = foreign.answers(rows, program, (), FLAGS[arithmetic])
+        done = compare(table(rows, answers), causes=False)
+        assert done.differing == 0, (program, done.worst[:3])
+
+
+@pytest.mark.parametrize("program", ["trial.c", "phases.c", "columns.c"])
+def test_a_correct_program_in_long_doubles_is_not_accused(program: str) -> None:
+    if not foreign.is_available(program):
+        pytest.skip("no compiler")
+    rows = [scene for kind, _, scene in scenes(240, seed=43) if kind != FAILURE]
+    for printed in (LONG_DOUBLE, [*LONG_DOUBLE[:2], ("%.17g", "%.17Lg")]):
+        answers = foreign.answers(rows, program, throughout=printed)
         done = compare(table(rows, answers), causes=False)
         assert done.differing == 0, (program, done.worst[:3])
 
@@ -110,7 +123,7 @@ def test_single_precision_is_told_and_no_mistake_is_named() -> None:
     if not foreign.is_available("phases.c"):
         pytest.skip("no compiler")
     rows = [scene for kind, _, scene in scenes(90, seed=43) if kind == "casework"]
-    answers = foreign.answers(rows, "phases.c", (), (), ("double", "float"))
+    answers = foreign.answers(rows, "phases.c", throughout=[("double", "float")])
     done = compare(table(rows, answers))
     assert done.differing > 0
     assert not done.programs

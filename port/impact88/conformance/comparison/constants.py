@@ -16,7 +16,7 @@ from ...equations.spelling import IMPULSES, LISTING, SHOWN, TYPED, Expression, S
 from ...equations.wording import subject_words
 from ...names import SCENE
 from .agreement import Bools
-from .predicates import ABOVE, BELOW, Predicate
+from .predicates import ABOVE, Predicate
 from .trials import MIN_FIT, Judge, Program, try_program
 
 Floats = NDArray[np.float64]
@@ -25,7 +25,6 @@ Floats = NDArray[np.float64]
 FACTOR = "*"
 OFFSET = "+"
 REPLACED = "="
-_ALWAYS = " is always "
 _REPLACED_COLUMNS = {"E": 0.5, "MU": 0.5, "EM": 0.0}  # and where the fit starts
 _MAX_ITERATIONS = 12
 _MAX_MISFIT = 10.0  # in units of the limits; a fit farther off is not run
@@ -135,19 +134,17 @@ class _Target(NamedTuple):
 
 
 def limit_instead(program: Program, where: Predicate) -> Program | None:
-    """Return the program that limits a column to a number, in place of one that always has it
-    beyond another; None where the program does something else."""
+    """Return the program that limits a column to a number, in place of one in which it is always
+    that beyond another; None where the program does something else."""
     *others, last = program.edits
-    if where.relation not in (ABOVE, BELOW) or not last.description.startswith(
-        f"{where.quantity}{_ALWAYS}"
-    ):
-        return None
-    number = last.description.removeprefix(f"{where.quantity}{_ALWAYS}")
-    name = "minimum" if where.relation == ABOVE else "maximum"
-    sides = {where.quantity: ((name, f"{TYPED}{where.quantity}", float(number)),)}
-    more = "" if where.relation == ABOVE else " and more"
-    limit = Edit("", sides, FITTED, f"{where.quantity} is limited to {number}{more}")
-    return Program((*others, limit))
+    column = where.quantity
+    match last.sides.get(column), where.relation:
+        case ((("+", float() as number, ("*", 0, str() as typed)),), "above" | "below" as relation):
+            name, more = ("minimum", "") if relation == ABOVE else ("maximum", " and more")
+            text = f"{column} is limited to {number:.7g}{more}"
+            limited = (name, typed, float(f"{number:.7g}"))
+            return Program((*others, Edit("", {column: (limited,)}, FITTED, text)))
+    return None
 
 
 def _targets(title: str, spelling: Spelling, results: Any, has_columns: bool) -> Iterator[_Target]:
@@ -261,7 +258,7 @@ def _nearest_known(constant: float) -> str:
 def _edit(target: _Target, constant: float) -> Edit:
     """Return the edit that puts a constant in, described with its value."""
     if target.operation == REPLACED:
-        text = f"{target.description}{_ALWAYS}{constant:.7g}"
+        text = f"{target.description} is always {constant:.7g}"
         return Edit("", target.sides(constant), FITTED, text)
     known = _nearest_known(constant) if target.operation == FACTOR else ""
     change = "multiplied by" if target.operation == FACTOR else "increased by"

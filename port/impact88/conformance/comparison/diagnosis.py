@@ -424,11 +424,13 @@ class Diagnosis:
         do."""
         case = self._sample
         judge = _judge_of(case, self._wrong)
-        # leave out near-singular rows and others in which the spelling differs from our results
+        # leave out near-singular rows and others in which the spelling differs from our results:
+        # no program is contradicted by them
         ours = dict(zip(case.names, case.ours, strict=True))
         clear = judge._replace(theirs={n: ours[n] for n in judge.theirs}).matches(
             Program().results(case.columns)
         )
+        self._agreeing &= clear
         # and rows that are wrong only in results that no spelling computes
         clear &= ~(judge.wrong & try_program(Program(), judge).rows)
         self._quantities = scene_quantities(case.columns, self._rows)
@@ -491,23 +493,15 @@ class Diagnosis:
     ) -> Iterator[Hypothesis]:
         """Yield programs that explain rows of a judge: with one edit, a constant, two edits, or an
         edit on top of the best; and where they hold."""
-        known = ~judge.wrong
-        singles = find_single_edits(judge, judge.wrong)
-        self._meter.update(1)
-        hypotheses = list(self._with_conditions(singles, known, judge, quantities))
+        singles, hypotheses = self._try_one_change(
+            judge, quantities, judge.wrong, ~judge.wrong, Program()
+        )
         yield from hypotheses
         best = self._best(hypotheses)
-        if not self._are_explained([best] if best else [], judge, quantities, 1.0):
-            constants = rank_programs(fit_constants(judge, judge.wrong, Program()), judge)
-            fitted = list(self._with_conditions(constants, known, judge, quantities))
-            yield from fitted
-            hypotheses += fitted
-            best = self._best(hypotheses)
-        self._meter.update(1)
         if best is not None:
             more = list(self._explain_rest(best, hypotheses, judge, quantities))
             yield from more
-            if self._are_explained([best, *more], judge, quantities, MIN_FIT):
+            if self._are_explained([best, *more], judge, quantities):
                 return
         elif not is_large:
             self.skipped.append("two mistakes at once, for differences so small")
@@ -515,12 +509,35 @@ class Diagnosis:
         for programs in find_pairs(judge, singles):
             self._meter.update(1)
             trials = rank_programs(programs, judge)
-            yield from self._with_conditions(trials[:2], known, judge, quantities)
+            yield from self._with_conditions(trials[:2], ~judge.wrong, judge, quantities)
             if trials and trials[0].is_complete:
                 return
             if not self._has_time():
                 self.skipped.append("two mistakes at once, in some ways of writing the equations")
                 return
+
+    def _try_one_change(
+        self,
+        judge: Judge,
+        quantities: Mapping[str, Floats],
+        left: Bools,
+        known: Bools,
+        base: Program,
+    ) -> tuple[list[Trial], list[Hypothesis]]:
+        """Return the programs with one change more than ``base`` that explain rows ``left``, and
+        with the conditions under which they hold: edits, and constants where these leave rows.
+
+        ``known``: the rows that are explained without the change.
+        """
+        trials = find_single_edits(judge, left, base)
+        hypotheses = list(self._with_conditions(trials, known, judge, quantities))
+        best, shown = self._best(hypotheses), left & self._shows(judge)
+        if best is None or (shown & ~self._rows_of(best, judge, quantities)).any():
+            constants = rank_programs(fit_constants(judge, left, base), judge)
+            hypotheses += self._with_conditions(constants, known, judge, quantities)
+            trials += constants
+        self._meter.update(1)
+        return trials, hypotheses
 
     def _explain_rest(
         self,
@@ -539,13 +556,8 @@ class Diagnosis:
             if not self._has_time():
                 self.skipped.append("further mistakes in the rows without a cause")
                 return
-            more = find_single_edits(judge, left, base)
-            fitted = (
-                fit_constants(judge, left, base) if not any(t.is_complete for t in more) else []
-            )
-            self._meter.update(1)
-            trials = rank_programs([*(trial.program for trial in more), *fitted], judge)
-            yield from self._with_conditions(trials, known, judge, quantities)
+            trials, more = self._try_one_change(judge, quantities, left, known, base)
+            yield from more
             least = MIN_FIT * left.sum(), _NEARLY * known.sum()
             if any(
                 (trial.rows & left).sum() >= least[0] and (trial.rows & known).sum() >= least[1]
@@ -578,16 +590,15 @@ class Diagnosis:
         hypotheses: Sequence[Hypothesis],
         judge: Judge,
         quantities: Mapping[str, Floats],
-        share: float,
     ) -> bool:
-        """Return whether those of the hypotheses that are worth their cost explain a share of the
-        rows that disagree."""
+        """Return whether those of the hypotheses that are worth their cost explain nearly all rows
+        that disagree."""
         shown = judge.wrong & self._shows(judge)
         left = shown.copy()
         for hypothesis in hypotheses:
             if self._score(hypothesis) >= _MIN_SCORE:
                 left &= ~self._rows_of(hypothesis, judge, quantities)
-        return bool(left.sum() <= (1 - share) * shown.sum())
+        return bool(left.sum() <= (1 - MIN_FIT) * shown.sum())
 
     def _best(self, hypotheses: Sequence[Hypothesis]) -> Hypothesis | None:
         """Return the hypothesis with the highest score, None where none is worth its cost."""

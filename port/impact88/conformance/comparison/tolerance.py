@@ -53,6 +53,10 @@ _VECTORS = (
 _RATIO_ROUNDINGS = (
     4.0  # of a ratio of masses times a difference of velocities, in units of roundoff
 )
+_OWN_EQUATIONS_MARGIN = 4.0
+"""A correct program may combine the equations, and order their elimination, as no spelling does. By
+columns as Fortran does, with moments about the contact point, one in 1,600 scenes was off by more
+than the bound of any spelling, by 1.7 times at most."""
 
 
 def best_error_bounds(
@@ -103,7 +107,10 @@ def largest_error_bounds(
         relative = [bounds[name] / sizes[name] for name in FINAL_VELOCITIES]
         largest = np.max(np.where(np.isfinite(relative), relative, 0.0), 0)
         bounds |= {name: np.fmax(bounds[name], largest * sizes[name]) for name in missing}
-    return {name: bounds[name] + best[name] / 2 for name in {*wanted, *FINAL_VELOCITIES}}
+    return {
+        name: _OWN_EQUATIONS_MARGIN * bounds[name] + best[name] / 2
+        for name in {*wanted, *FINAL_VELOCITIES}
+    }
 
 
 def trial_bounds(scene: Columns, ours: Columns) -> dict[str, Floats]:
