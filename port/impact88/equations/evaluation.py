@@ -25,6 +25,7 @@ NEIGHBOUR_SHIFTS = {"before": 1, "after": -1}
 wrong row of its table."""
 LAST = "last_"
 """Prefix of a final velocity's name: what the table shows for it in the row before."""
+ROW = "the row's number"  # in the table, from 1, where the scene has it
 MAX_VALUES_PER_CHUNK = 60_000
 """Scenes times edits computed together; bounds the memory."""
 

@@ -20,7 +20,7 @@ from impact88.names import SCENE
 
 ROWS = [scene for kind, _, scene in scenes(600, seed=17) if kind != "failure"]
 NUMBERS = {name: np.array([float(row[name]) for row in ROWS]) for name in SCENE}
-QUANTITIES = scene_quantities(NUMBERS, np.arange(1, len(ROWS) + 1))
+QUANTITIES = scene_quantities(NUMBERS)
 
 
 @pytest.mark.parametrize("name", ["the closing speed", "the sliding speed", "E", "MA", "WB"])

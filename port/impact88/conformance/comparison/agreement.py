@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...collision.doubles import BARE, double
-from ...equations.evaluation import LAST, NEIGHBOUR_SHIFTS, Run
+from ...equations.evaluation import LAST, NEIGHBOUR_SHIFTS, ROW, Run
 from ...equations.spelling import A_IMPULSE, spelling_of
 from ...errors import UserError, quoted
 from ...mechanics.accuracy import errorbound
@@ -57,6 +57,7 @@ COLUMNS = (
     *SCENE,
     *(f"{row}_{name}" for row in NEIGHBOUR_SHIFTS for name in SCENE),
     *(f"{LAST}{name}" for name in FINAL_VELOCITIES),
+    ROW,
 )
 
 # grades of agreement
@@ -77,9 +78,9 @@ class Case(NamedTuple):
     """Rows of a table with our results for them: arrays (results, rows), or (rows,).
 
     ``names``: of the results; ``scene``: each row's columns, those of the rows before and after,
-    and the other program's velocities of the row before (`COLUMNS`); ``values``: the other
-    program's results; ``units``: of the last digit written (0 for binary numbers); ``ours``: our
-    results; ``sizes``: errors are relative to them; ``condition``: COND.
+    the other program's velocities of the row before, and the row's number (`COLUMNS`);
+    ``values``: the other program's results; ``units``: of the last digit written (0 for binary
+    numbers); ``ours``: our results; ``sizes``: errors are relative to them; ``condition``: COND.
     ``tight``, ``loose``: error bounds in double precision of the best programs, and of a correct
     one in any spelling (equal to the former where that was enough); ``per_unit``: the largest
     relative ``loose`` of a row's velocities per unit roundoff; ``no_digit``: relative difference
@@ -106,6 +107,11 @@ class Case(NamedTuple):
     def columns(self) -> dict[str, Floats]:
         """The scenes by name."""
         return dict(zip(COLUMNS, self.scene, strict=True))
+
+    @property
+    def rows(self) -> list[int]:
+        """The rows' numbers in the table, from 1."""
+        return [int(number) for number in self.columns[ROW]]
 
     @property
     def wrong(self) -> Bools:
@@ -136,12 +142,16 @@ def concatenate_cases(cases: Sequence[Case]) -> Case:
 
 
 def make_case(
-    scene: Columns, theirs: Mapping[str, tuple[Floats, Floats]], rtol: float | None = None
+    scene: Columns,
+    theirs: Mapping[str, tuple[Floats, Floats]],
+    rtol: float | None = None,
+    first: int = 1,
 ) -> Case:
     """Compare scenes (columns of n) with another program's results.
 
     ``theirs``: name -> values and the units of their last digits; ``rtol``: the user's own relative
-    tolerance, for all scenes, in place of the error bounds. Where rounding decides which way the
+    tolerance, for all scenes, in place of the error bounds; ``first``: number of the first row in
+    the table. Where rounding decides which way the
     contact slides, our results are those of the sliding that agrees better.
     """
     case, undecided = _compare_scenes(scene, theirs, rtol)
@@ -154,6 +164,7 @@ def make_case(
         better = other < ours
         for column, replacement in zip(case[4:], reversed_case[4:], strict=True):
             column[..., undecided[better]] = replacement[..., better]
+    case.columns[ROW][:] = np.arange(first, first + case.condition.size)
     return case
 
 
@@ -201,7 +212,7 @@ def _compare_scenes(
         per_unit[rows] = np.max(np.where(np.isfinite(relative), relative, 0.0), axis=0)
     case = Case(
         names=tuple(theirs),
-        scene=np.concatenate([columns, *neighbours, last]),
+        scene=np.concatenate([columns, *neighbours, last, last[:1]]),
         values=values,
         units=units,
         ours=ours,

@@ -399,7 +399,7 @@ def compare(
                 comparison._trials.add(block.case, block.differing, block.grades, block.relative)
             if search is not None:
                 kept = np.sort(np.concatenate([block.differing, agreeing]))
-                search.add(block.case.select_rows(kept), rows.first + kept)
+                search.add(block.case.select_rows(kept))
     if not any(tally.compared for tally in comparison.tallies.values()):
         raise UserError("no result could be compared", where)
     noise = comparison._trials
@@ -439,16 +439,16 @@ class _Search:
 
     def __init__(self, comparison: Comparison) -> None:
         self._comparison = comparison
-        self._kept: list[tuple[Case, NDArray[np.intp]]] = []
+        self._kept: list[Case] = []
         self._diagnosis: Diagnosis | None = None
         self._causes: list[str] = []
 
-    def add(self, case: Case, rows: NDArray[np.intp]) -> None:
+    def add(self, case: Case) -> None:
         """Keep a block's rows, or judge them if the causes are known."""
         if self._diagnosis is not None:
-            self._assign(self._diagnosis, case, rows)
+            self._assign(self._diagnosis, case)
             return
-        self._kept.append((case, rows))
+        self._kept.append(case)
         if self._comparison.differing >= MAX_ROWS_KEPT:
             self._diagnose()
 
@@ -467,15 +467,14 @@ class _Search:
         ]
 
     def _diagnose(self) -> Diagnosis:
-        cases, rows = zip(*self._kept, strict=True)
-        self._diagnosis = Diagnosis(agreement.concatenate_cases(cases), np.concatenate(rows))
-        for case, places in self._kept:
-            self._assign(self._diagnosis, case, places)
+        self._diagnosis = Diagnosis(agreement.concatenate_cases(self._kept))
+        for case in self._kept:
+            self._assign(self._diagnosis, case)
         self._kept = []
         return self._diagnosis
 
-    def _assign(self, diagnosis: Diagnosis, case: Case, rows: NDArray[np.intp]) -> None:
-        self._causes += filter(None, diagnosis.assign(case, rows))
+    def _assign(self, diagnosis: Diagnosis, case: Case) -> None:
+        self._causes += filter(None, diagnosis.assign(case))
 
 
 @contextmanager
@@ -564,7 +563,7 @@ def compare_block(
     unreadable = [index for index, *_ in rows.bad]
     for column, _ in theirs.values():
         column[unreadable] = np.nan
-    case = agreement.make_case(scene, theirs, rtol)
+    case = agreement.make_case(scene, theirs, rtol, rows.first)
     return Block(rows, scene, case, *case.grade())
 
 

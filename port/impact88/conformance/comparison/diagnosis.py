@@ -150,8 +150,8 @@ class Hypothesis(NamedTuple):
     """A hypothesis: what it says, which rows of a case it predicts, what it costs to state, and the
     bits that a row earns, None for those by which the row is off.
 
-    ``program``: the program that it is, None where it is none; ``where``: the condition under which
-    it holds, and not the listing; ``names``: the results that it gives.
+    ``program``: the program that it is, None where it is none; ``names``: the results that it
+    gives; ``equivalents``: other programs that predict the same rows.
     """
 
     says: str
@@ -159,27 +159,24 @@ class Hypothesis(NamedTuple):
     cost: float
     bits: float | None = None
     program: Program | None = None
-    where: Predicate | None = None
     names: Sequence[str] = ()
     equivalents: Sequence[Program] = ()
 
+    @property
+    def where(self) -> Predicate | None:
+        """The condition under which its program holds, None where it always does."""
+        return self.program.where if self.program else None
+
     def results(self, scene: Mapping[str, Any]) -> dict[str, Any]:
         """Return the results that its program gives for scenes (columns of n), by name."""
-        program = self.program or Program()
-        results = program.results(scene)
-        if self.where is None:
-            return results
-        count = np.size(next(iter(scene.values())))
-        rows = self.where.rows(scene_quantities(scene, np.arange(count)))
-        ours = Program().results(scene)
-        return {n: np.where(rows, column, ours[n]) for n, column in results.items() if n in ours}
+        return (self.program or Program()).results(scene)
 
 
 class Diagnosis:
     """Causes of the differences in a table, found in a sample of it.
 
-    ``case``: rows that disagree, and some that agree, in the table's order; ``rows``: their numbers
-    in the table. `assign` then gives the causes of rows, which need not be the same.
+    ``case``: rows that disagree, and some that agree, in the table's order. `assign` then gives the
+    causes of rows, which need not be the same.
 
     ``equations``: number -> rows in which it was checked, and in which it is violated;
     ``unexplained``: rows without a cause by kind of scene, {} where there are none; ``skipped``:
@@ -187,7 +184,7 @@ class Diagnosis:
     """
 
     @np.errstate(all="ignore")
-    def __init__(self, case: Case, rows: NDArray[np.intp]) -> None:
+    def __init__(self, case: Case) -> None:
         self.hypotheses: list[Hypothesis] = []
         self.skipped: list[str] = []
         self.equations: dict[str, tuple[int, int]] = {}
@@ -198,7 +195,6 @@ class Diagnosis:
         wrong = _needs_cause(case)
         places = _sample_rows(case, wrong)
         self._sample = case.select_rows(places)
-        self._rows = rows[places]
         self._wrong = wrong[places]
         if self._wrong.any():
             self._search()
@@ -206,28 +202,26 @@ class Diagnosis:
     # --- rows ---
 
     @np.errstate(all="ignore")
-    def assign(self, case: Case, rows: NDArray[np.intp]) -> list[str]:
+    def assign(self, case: Case) -> list[str]:
         """Return the cause of each row of a case that disagrees, "" for the others; and count them
         for the evidence."""
         causes: list[str] = []
-        for start in range(0, rows.size, _ROWS_PER_CHUNK):
-            places = np.arange(start, min(start + _ROWS_PER_CHUNK, rows.size))
-            causes += self._assign_chunk(case.select_rows(places), rows[places])
+        count = case.condition.size
+        for start in range(0, count, _ROWS_PER_CHUNK):
+            places = np.arange(start, min(start + _ROWS_PER_CHUNK, count))
+            causes += self._assign_chunk(case.select_rows(places))
         return causes
 
-    def _assign_chunk(self, case: Case, rows: NDArray[np.intp]) -> list[str]:
+    def _assign_chunk(self, case: Case) -> list[str]:
         wrong = case.wrong
         causes = np.where(wrong, _own_digits(case), "").astype(object)
         is_open = wrong & (causes == "")
         for place, hypothesis in enumerate(self.hypotheses):
             fits = hypothesis.fits(case)
-            holds = np.ones(fits.size, bool)
-            if hypothesis.where is not None:
-                holds = hypothesis.where.rows(scene_quantities(case.columns, rows))
-            explained = is_open & fits & holds
+            explained = is_open & fits
             causes[explained] = self._evidence[place].says
             is_open &= ~explained
-            self._count(place, case, rows, explained, fits | ~holds)
+            self._count(place, case, explained, fits)
         violations = violated_equations(case)
         for number, broken in violations.items():
             checked, violated = self.equations.get(number, (0, 0))
@@ -244,9 +238,7 @@ class Diagnosis:
             )
         return list(causes)
 
-    def _count(
-        self, place: int, case: Case, rows: NDArray[np.intp], explained: Bools, fits: Bools
-    ) -> None:
+    def _count(self, place: int, case: Case, explained: Bools, fits: Bools) -> None:
         """Count a chunk's rows for a cause: those that it explains, and those that it predicts."""
         cause, hypothesis = self._evidence[place], self.hypotheses[place]
         disagreeing = _needs_cause(case)
@@ -260,7 +252,7 @@ class Diagnosis:
                     without = Program(tuple(x for x in program.edits if x is not edit))
                     needs_edit = explained & ~try_program(without, judge).rows
                     if needs_edit.any():
-                        parts[edit.sentence] = int(rows[int(np.argmax(needs_edit))])
+                        parts[edit.sentence] = case.rows[int(np.argmax(needs_edit))]
         self._evidence[place] = cause._replace(
             explains=cause.explains + int(explained.sum()),
             disagreeing=cause.disagreeing + int(disagreeing.sum()),
@@ -337,8 +329,11 @@ class Diagnosis:
             # the one that takes least to state
             near = [(self._cost(x), -score, x) for score, x in scores if score >= _NEARLY * highest]
             _, score, hypothesis = min(near, key=lambda each: each[:2])
+            gained = self._fits(hypothesis) & wrong & ~explained
+            if chosen and gained.sum() < _MIN_ROWS_LEFT:
+                break
             chosen.append((hypothesis, -score))
-            explained |= self._fits(hypothesis) & wrong
+            explained |= gained
         # a program that more rows contradict than confirm is not the other one, though it has a
         # part of it
         left = (wrong & ~explained & (self._bits > 0)).sum()
@@ -347,10 +342,9 @@ class Diagnosis:
                 self._add(hypothesis, score)
 
     def _fits(self, hypothesis: Hypothesis) -> Bools:
-        """Return the rows of the sample that a hypothesis predicts where it holds."""
+        """Return the rows of the sample that a hypothesis predicts."""
         if id(hypothesis) not in self._known_rows:
-            fits = hypothesis.fits(self._sample) & self._holds(hypothesis)
-            self._known_rows[id(hypothesis)] = hypothesis, fits
+            self._known_rows[id(hypothesis)] = hypothesis, hypothesis.fits(self._sample)
         return self._known_rows[id(hypothesis)][1]
 
     def _score(self, hypothesis: Hypothesis, explained: Bools | None = None) -> float:
@@ -360,7 +354,7 @@ class Diagnosis:
         """
         fits = self._fits(hypothesis)
         gained = fits & self._wrong
-        contradicted = ~fits & self._agreeing & self._holds(hypothesis)
+        contradicted = ~fits & self._agreeing
         if explained is not None:
             gained &= ~explained
         cost = self._cost(hypothesis)
@@ -371,15 +365,11 @@ class Diagnosis:
     def _cost(self, hypothesis: Hypothesis) -> float:
         """Return the bits that it takes to state a hypothesis, and which of the rows that disagree
         it explains, where it holds: a condition that says so is worth them."""
-        rows = self._wrong & (self._bits > 0) & self._holds(hypothesis)
+        rows = self._wrong & (self._bits > 0)
+        if hypothesis.where is not None:
+            rows &= hypothesis.where.rows(self._quantities)
         count = int((rows & self._fits(hypothesis)).sum())
         return hypothesis.cost + math.log2(math.comb(int(rows.sum()), count))
-
-    def _holds(self, hypothesis: Hypothesis) -> Bools:
-        """Return the rows of the sample in which a hypothesis holds."""
-        if hypothesis.where is None:
-            return np.ones(self._wrong.size, bool)
-        return hypothesis.where.rows(self._quantities)
 
     def _add(self, hypothesis: Hypothesis, score: float | None = None) -> None:
         """Make a hypothesis a cause."""
@@ -433,7 +423,7 @@ class Diagnosis:
         self._agreeing &= clear
         # and rows that are wrong only in results that no spelling computes
         clear &= ~(judge.wrong & try_program(Program(), judge).rows)
-        self._quantities = scene_quantities(case.columns, self._rows)
+        self._quantities = scene_quantities(case.columns)
         judge = judge.select_results(_independent_results(judge.select_rows(np.flatnonzero(clear))))
         places = np.flatnonzero(clear)
         small = judge.select_rows(places)
@@ -446,18 +436,17 @@ class Diagnosis:
             for name in small.theirs
             if (small.wrong & ~small.select_results([name]).matches(ours)).any()
         ]
-        quantities = {name: column[places] for name, column in self._quantities.items()}
         median = np.median(_relative_differences(case).max(0)[self._wrong])
         is_large = bool(median > _MIN_PAIR_DIFFERENCE)
         groups = small.wrong_groups()
         if len(groups) == 1:
-            yield from self._explain(small, quantities, is_large)
+            yield from self._explain(small, is_large)
             return
         names = [name for name in small.theirs if name in groups[0] or not _is_in(groups, name)]
-        partial_ones = list(self._explain(small.narrow_to(names), quantities, is_large))
+        partial_ones = list(self._explain(small.narrow_to(names), is_large))
         yield from partial_ones
         whole_ones = [
-            self._hypothesis(x.program, small, x.equivalents, x.where)
+            self._hypothesis(x.program, small, x.equivalents)
             for x in partial_ones
             if x.program is not None
         ]
@@ -470,7 +459,7 @@ class Diagnosis:
         for group in groups[1:] if not self._give_nearly_all(whole_ones) else ():
             other = small.narrow_to(group)
             if other.wrong.any():
-                yield from self._explain(other, quantities, False)
+                yield from self._explain(other, False)
 
     def _give_nearly_all(self, hypotheses: Sequence[Hypothesis]) -> bool:
         """Return whether hypotheses together predict nearly all rows of the sample that
@@ -488,20 +477,16 @@ class Diagnosis:
             for better in find_single_edits(judge, judge.wrong & ~trial.rows, program)[:2]:
                 yield self._hypothesis(better.program, judge)
 
-    def _explain(
-        self, judge: Judge, quantities: Mapping[str, Floats], is_large: bool
-    ) -> Iterator[Hypothesis]:
+    def _explain(self, judge: Judge, is_large: bool) -> Iterator[Hypothesis]:
         """Yield programs that explain rows of a judge: with one edit, a constant, two edits, or an
         edit on top of the best; and where they hold."""
-        singles, hypotheses = self._try_one_change(
-            judge, quantities, judge.wrong, ~judge.wrong, Program()
-        )
+        singles, hypotheses = self._try_one_change(judge, judge.wrong, ~judge.wrong, Program())
         yield from hypotheses
         best = self._best(hypotheses)
         if best is not None:
-            more = list(self._explain_rest(best, hypotheses, judge, quantities))
+            more = list(self._explain_rest(best, hypotheses, judge))
             yield from more
-            if self._are_explained([best, *more], judge, quantities):
+            if self._are_explained([best, *more], judge):
                 return
         elif not is_large:
             self.skipped.append("two mistakes at once, for differences so small")
@@ -509,7 +494,7 @@ class Diagnosis:
         for programs in find_pairs(judge, singles):
             self._meter.update(1)
             trials = rank_programs(programs, judge)
-            yield from self._with_conditions(trials[:2], ~judge.wrong, judge, quantities)
+            yield from self._with_conditions(trials[:2], ~judge.wrong, judge)
             if trials and trials[0].is_complete:
                 return
             if not self._has_time():
@@ -519,7 +504,6 @@ class Diagnosis:
     def _try_one_change(
         self,
         judge: Judge,
-        quantities: Mapping[str, Floats],
         left: Bools,
         known: Bools,
         base: Program,
@@ -530,11 +514,11 @@ class Diagnosis:
         ``known``: the rows that are explained without the change.
         """
         trials = find_single_edits(judge, left, base)
-        hypotheses = list(self._with_conditions(trials, known, judge, quantities))
+        hypotheses = list(self._with_conditions(trials, known, judge))
         best, shown = self._best(hypotheses), left & self._shows(judge)
-        if best is None or (shown & ~self._rows_of(best, judge, quantities)).any():
+        if best is None or (shown & ~try_program(best.program or Program(), judge).rows).any():
             constants = rank_programs(fit_constants(judge, left, base), judge)
-            hypotheses += self._with_conditions(constants, known, judge, quantities)
+            hypotheses += self._with_conditions(constants, known, judge)
             trials += constants
         self._meter.update(1)
         return trials, hypotheses
@@ -544,11 +528,10 @@ class Diagnosis:
         best: Hypothesis,
         hypotheses: Sequence[Hypothesis],
         judge: Judge,
-        quantities: Mapping[str, Floats],
     ) -> Iterator[Hypothesis]:
         """Yield what explains the rows that the best of the hypotheses leaves: another mistake
         beside it, or on top of it."""
-        fits = self._rows_of(best, judge, quantities)
+        fits = try_program(best.program or Program(), judge).rows
         known, left = ~judge.wrong | fits, judge.wrong & ~fits & self._shows(judge)
         if left.sum() < _MIN_ROWS_LEFT:
             return
@@ -556,7 +539,7 @@ class Diagnosis:
             if not self._has_time():
                 self.skipped.append("further mistakes in the rows without a cause")
                 return
-            trials, more = self._try_one_change(judge, quantities, left, known, base)
+            trials, more = self._try_one_change(judge, left, known, base)
             yield from more
             least = MIN_FIT * left.sum(), _NEARLY * known.sum()
             if any(
@@ -568,11 +551,11 @@ class Diagnosis:
     def _bases(self, best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> list[Program]:
         """Return the programs on top of which a second mistake is looked for: the best, one like it
         in the spelling that other models are written in, and the correct one."""
-        bases = [best.program or Program()]
+        bases = [Program(best.program.edits if best.program else ())]
         enough = _NEARLY * self._score(best)
         for hypothesis in hypotheses:
             programs = [x for x in (hypothesis.program, *hypothesis.equivalents) if x is not None]
-            models = [x for x in programs if x.spelling.title == IMPULSES]
+            models = [Program(x.edits) for x in programs if x.spelling.title == IMPULSES]
             if models and self._score(hypothesis) >= enough:
                 bases += [x for x in models[:1] if x not in bases]
                 break
@@ -589,7 +572,6 @@ class Diagnosis:
         self,
         hypotheses: Sequence[Hypothesis],
         judge: Judge,
-        quantities: Mapping[str, Floats],
     ) -> bool:
         """Return whether those of the hypotheses that are worth their cost explain nearly all rows
         that disagree."""
@@ -597,7 +579,7 @@ class Diagnosis:
         left = shown.copy()
         for hypothesis in hypotheses:
             if self._score(hypothesis) >= _MIN_SCORE:
-                left &= ~self._rows_of(hypothesis, judge, quantities)
+                left &= ~try_program(hypothesis.program or Program(), judge).rows
         return bool(left.sum() <= (1 - MIN_FIT) * shown.sum())
 
     def _best(self, hypotheses: Sequence[Hypothesis]) -> Hypothesis | None:
@@ -606,31 +588,24 @@ class Diagnosis:
         score, best = max(scored, key=lambda pair: pair[0], default=(0.0, None))
         return best if score >= _MIN_SCORE else None
 
-    def _rows_of(
-        self, hypothesis: Hypothesis, judge: Judge, quantities: Mapping[str, Floats]
-    ) -> Bools:
-        """Return the rows of a judge that a hypothesis predicts where it holds."""
-        rows = try_program(hypothesis.program or Program(), judge).rows
-        return rows & hypothesis.where.rows(quantities) if hypothesis.where else rows
-
     def _with_conditions(
         self,
         trials: Sequence[Trial],
         known: Bools,
         judge: Judge,
-        quantities: Mapping[str, Floats],
     ) -> Iterator[Hypothesis]:
         """Yield programs as hypotheses, and with the conditions that keep out the rows that
         contradict them, and those that they leave without a cause.
 
         ``known``: the rows that are explained without them.
         """
+        quantities = scene_quantities(judge.scene)
         groups: dict[bytes, list[Trial]] = {}
         for trial in trials:
             groups.setdefault(trial.rows.tobytes(), []).append(trial)
         for group in list(groups.values())[:_MAX_CANDIDATES]:
-            first, *others = sorted(group, key=_plainness)
-            programs = [trial.program for trial in others]
+            first, *alike = sorted(group, key=_plainness)
+            programs = [trial.program for trial in alike]
             yield self._hypothesis(first.program, judge, programs)
             inside = first.rows & ~known & self._shows(judge)
             outside = ~first.rows & (known | self._shows(judge))
@@ -643,29 +618,26 @@ class Diagnosis:
                 if limited := limit_instead(first.program, predicate):
                     yield self._hypothesis(limited, judge)
                 else:
-                    yield self._hypothesis(first.program, judge, programs, predicate)
+                    where, *others = (
+                        program._replace(where=predicate) for program in (first.program, *programs)
+                    )
+                    yield self._hypothesis(where, judge, others)
 
     def _hypothesis(
-        self,
-        program: Program,
-        judge: Judge,
-        equivalents: Sequence[Program] = (),
-        where: Predicate | None = None,
+        self, program: Program, judge: Judge, equivalents: Sequence[Program] = ()
     ) -> Hypothesis:
         """Return a program as a hypothesis about the judge's results."""
         names = tuple(judge.theirs)
         left_out = [name for name in self._names if name not in names]
-        says = f"{program.sentence} {where.text}" if where else program.sentence
+        says = program.sentence
         if left_out:
             says += f"; {', '.join(left_out)} {UNKNOWN}"
+        cost = sum(map(_cost_of, program.edits)) + _COST_LEFT_OUT * len(left_out)
         return Hypothesis(
             says,
             lambda case: _match_program(program, case, names),
-            sum(map(_cost_of, program.edits))
-            + (PREDICATE_COST if where else 0.0)
-            + _COST_LEFT_OUT * len(left_out),
+            cost + (PREDICATE_COST if program.where else 0.0),
             program=program,
-            where=where,
             names=names,
             equivalents=equivalents,
         )

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...equations.evaluation import Run
+from ...equations.evaluation import ROW, Columns, Run
 from ...equations.spelling import IMPULSES, spellings
 from ...names import PIVOT, SCENE
 
@@ -19,7 +19,6 @@ ABOVE = "above"
 BELOW = "below"
 IS = "is"
 IS_NOT = "is not"
-ROW = "the row's number"
 COST = 8.0  # bits: which of some 60 quantities, and which of the four relations
 _MIN_BITS = 10.0  # that a condition must tell beyond its own cost
 _MIN_ROWS = 4  # inside and outside
@@ -101,15 +100,13 @@ class Predicate(NamedTuple):
 
 
 @np.errstate(all="ignore")
-def scene_quantities(scene: Mapping[str, Any], rows: NDArray[np.intp]) -> dict[str, Floats]:
-    """Return the quantities that a condition may be about, of scenes (columns of n).
-
-    ``rows``: the scenes' numbers in the table.
-    """
-    names = Run(spellings()[IMPULSES], scene).names
-    columns = {name: names[name][0] for name in SCENE}
-    quantities = {name: compute(names)[0] for name, compute in _QUANTITIES.items()}
-    return {**columns, **quantities, ROW: rows.astype(float)}
+def scene_quantities(scene: Columns) -> dict[str, Floats]:
+    """Return the quantities that a condition may be about, of scenes (columns of n)."""
+    run = Run(spellings()[IMPULSES], scene)
+    quantities = {name: run.names[name] for name in SCENE}
+    quantities |= {name: compute(run.names) for name, compute in _QUANTITIES.items()}
+    quantities[ROW] = np.asarray(scene.get(ROW, np.arange(1.0, run.size + 1)))
+    return {name: np.broadcast_to(column, (1, run.size))[0] for name, column in quantities.items()}
 
 
 def find_predicate(
@@ -169,7 +166,7 @@ def _candidates(
 
 
 def _round_value(predicate: Predicate, column: Floats, inside: Bools, outside: Bools) -> Predicate:
-    """Return the condition with the shortest number that divides all rows as well."""
+    """Return the condition with the roundest number that divides all rows as well."""
     if predicate.relation in (IS, IS_NOT):
         return predicate
     fits = predicate.rows({predicate.quantity: column})
@@ -181,10 +178,11 @@ def _round_value(predicate: Predicate, column: Floats, inside: Bools, outside: B
     low, high = float(lows.max()), float(highs.min())
     if low <= 0 <= high:
         return predicate._replace(value=0.0)
-    middle = (low + high) / 2
-    for digits in range(1, 16):
-        value = float(f"{middle:.{digits}g}")
-        above = predicate.relation == ABOVE
-        if low <= value < high if above else low < value <= high:
-            return predicate._replace(value=value)
+    above = predicate.relation == ABOVE
+    for power in range(math.floor(math.log10(max(-low, high))), -16, -1):
+        first, last = math.ceil(low / 10.0**power), math.floor(high / 10.0**power)
+        for count in sorted({first, last}, key=abs) if first <= last else ():
+            value = float(f"{count}e{power}")
+            if low <= value < high if above else low < value <= high:
+                return predicate._replace(value=value)
     return predicate

@@ -25,6 +25,7 @@ from ...equations.spelling import (
 )
 from ...names import FINAL_VELOCITIES
 from .agreement import Bools, Floats
+from .predicates import Predicate, scene_quantities
 
 MIN_FIT = 0.9
 """Fraction of the disagreeing rows, and of the agreeing ones, that a cause must fit."""
@@ -42,15 +43,18 @@ _RESIDUAL_TOL = 1e-11
 
 
 class Program(NamedTuple):
-    """A spelling with edits, each made on top of the ones before."""
+    """A spelling with edits, each made on top of the ones before; ``where``: the condition on the
+    scene under which they are made, None where they always are."""
 
     edits: tuple[Edit, ...] = ()
+    where: Predicate | None = None
 
     @property
     def sentence(self) -> str:
         """What the program does, in words of mechanics. A rewritten statement that a later edit
         rewrites again is left out."""
-        return "; and ".join(edit.sentence for edit in self._visible())
+        says = "; and ".join(edit.sentence for edit in self._visible())
+        return f"{says} {self.where.text}" if self.where else says
 
     @property
     def formula(self) -> str:
@@ -80,13 +84,16 @@ class Program(NamedTuple):
 
     def results(self, scene: Columns, title: str = LISTING) -> dict[str, Any]:
         """Return the results that the program shows for scenes (columns of n), by name."""
-        names = Run(self.in_spelling(title), scene).names
-        size = max(np.size(column) for column in scene.values())
-        return {
-            name.removeprefix(SHOWN): np.broadcast_to(column, (1, size))[0]
-            for name, column in names.items()
+        run = Run(self.in_spelling(title), scene)
+        results = {
+            name.removeprefix(SHOWN): np.broadcast_to(column, (1, run.size))[0]
+            for name, column in run.names.items()
             if name.startswith(SHOWN)
         }
+        if self.where is None:
+            return results
+        rows, correct = self.where.rows(scene_quantities(scene)), Program().results(scene)
+        return {name: np.where(rows, results[name], correct[name]) for name in correct}
 
 
 class Judge(NamedTuple):
