@@ -12,14 +12,25 @@ from typing import NamedTuple
 
 import numpy as np
 import PIL.Image
-from numpy.typing import NDArray
 from scipy import fft, ndimage
 
-from .grid import FEWEST_POINTS
-from .ink import Floats, Image, ink_of, points_of, resize
+from .ink import (
+    FEWEST_POINTS,
+    STEEP,
+    Floats,
+    Image,
+    Mask,
+    Spot,
+    darkness,
+    hole_columns,
+    ink_of,
+    paper_brightness,
+    points_of,
+    resize,
+    skew,
+    threshold,
+)
 from .picture import Picture
-
-Mask = NDArray[np.bool_]
 
 # A page and its surround, on a picture reduced to _COARSE pixels.
 _COARSE = 500  # pixels of the longer side
@@ -40,20 +51,11 @@ _MAX_GUTTER = 0.12  # width
 # Colour.
 _MIN_CHROMA = 0.2  # difference between the darkest and lightest channel of a coloured ink
 _COLOURED_TYPE = 0.5  # fraction of the ink that is coloured above which the type itself is
-_BLOCK = 24  # pixels a side of the blocks whose brightness is the paper's
-# Holes of continuous paper: half an inch apart, a fifth of an inch wide or less.
 _HOLE_DARK = 0.7  # largest brightness of a hole, relative to the paper's
-_MIN_HOLE = 0.008  # width, as a fraction of the picture's
-_MAX_HOLE = 0.06  # the same
-_SOLID = 0.65  # smallest dark fraction of the square around a hole: a disc has .79, a ring less
-_MIN_HOLES = 4  # in a strip
-_STRIP = 0.15  # fraction of the width, from a side, within which strips run
+_STRIP = 0.15  # fraction of the width, from a side, within which strips with holes run
 _MAX_OTHER = 1.5  # largest dark area in a strip, relative to that of its holes
-# Skew.
-_SKEW = 0.08  # slope from which a page is set straight: the grid's own search ends at 0.1
-_MAX_SLOPE = 0.25
-_SHARPER = 1.3  # smallest ratio of the sharpness along a steep slope to the best along a level one
-_FINE = 1200  # pixels of the longer side at which slopes are tried
+_FINE = 1200  # pixels of the longer side at which holes and slopes are looked for
+_MIN_SIDE = 72  # pixels of a picture's shorter side, below which it is left as it is
 
 
 @dataclass
@@ -84,7 +86,7 @@ class Paper:
 
 def papers_of(picture: Picture) -> Iterator[Paper]:
     """Yield the sheets of paper that a picture shows."""
-    if min(picture.shape[:2]) < 3 * _BLOCK:
+    if min(picture.shape[:2]) < _MIN_SIDE:
         yield Paper(_luminance(picture))
         return
     remarks = []
@@ -129,10 +131,9 @@ def _split_colours(picture: Picture) -> tuple[Image, Image | None]:
     grey = _luminance(picture)
     if picture.ndim == 2 or not _has_colours(picture):
         return grey, None
-    paper_light = np.stack(
-        [_paper_brightness(picture[:, :, k].astype(np.float32)) for k in range(3)], axis=-1
-    )
-    ink = 1 - np.clip(picture / np.maximum(paper_light, 1), 0, 1).astype(np.float32)
+    channels = [picture[:, :, k].astype(np.float32) for k in range(3)]
+    paper_light = np.stack([paper_brightness(channel) for channel in channels], axis=-1)
+    ink = darkness(picture, paper_light)
     weakest, strongest = ink.min(axis=2), ink.max(axis=2)
     chroma = strongest - weakest
     coloured_ink = np.where(chroma > _MIN_CHROMA, strongest, 0).astype(np.float32)
@@ -158,19 +159,6 @@ def _has_colours(picture: Picture) -> bool:
     return bool((spread > 60).mean() > 2e-4)
 
 
-def _paper_brightness(channel: Image) -> Image:
-    """Return the brightness of the paper under the ink of a channel."""
-    height, width = channel.shape
-    rows, columns = height // _BLOCK, width // _BLOCK
-    blocks = channel[: rows * _BLOCK, : columns * _BLOCK]
-    blocks = blocks.reshape(rows, _BLOCK, columns, _BLOCK).transpose(0, 2, 1, 3)
-    light = np.percentile(blocks.reshape(rows, columns, -1), 85, axis=2)
-    light = ndimage.grey_closing(light, size=(5, 5), mode="nearest")
-    light = ndimage.gaussian_filter(light, 1.0, mode="nearest").astype(np.float32)
-    brightness = PIL.Image.fromarray(light).resize((width, height), PIL.Image.Resampling.BILINEAR)
-    return np.asarray(brightness, np.float32)
-
-
 def _is_negative(grey: Image) -> bool:
     """Return True for a picture whose strokes are lighter than their surround."""
     small = grey[:: max(1, grey.shape[0] // 1200), :: max(1, grey.shape[1] // 1200)]
@@ -186,8 +174,7 @@ def _is_negative(grey: Image) -> bool:
 def _without_strips(grey: Image) -> Image | None:
     """Return a picture without the strips of holes at its sides, None where it has none.
 
-    Holes are solid, round, of one size, one below the other near a side, and nothing else is
-    between them.
+    Their columns run near a side, and nothing else is between the holes.
     """
     scale = min(1.0, _FINE / max(grey.shape))
     small = resize(grey, scale)
@@ -195,26 +182,21 @@ def _without_strips(grey: Image) -> Image | None:
     is_dark = small < _HOLE_DARK * paper
     width = is_dark.shape[1]
     labels, _ = ndimage.label(is_dark)
-    holes = []
+    spots = []
     for number, box in enumerate(ndimage.find_objects(labels), 1):
         down, across = (part.stop - part.start for part in box)
-        is_round = 0.7 < across / down < 1.4 and _MIN_HOLE < across / width < _MAX_HOLE
-        if is_round and (labels[box] == number).mean() > _SOLID:
-            holes.append((box[1].start + across / 2, box[0].start + down / 2, across))
+        filling = float((labels[box] == number).mean())
+        spots.append(
+            Spot(box[1].start + across / 2, box[0].start + down / 2, across, down, filling)
+        )
     trimmed = None
-    for on_left in (True, False):
-        on_side = [hole for hole in holes if (hole[0] < width / 2) is on_left]
-        size = float(np.median([hole[2] for hole in on_side])) if on_side else 0.0
-        middle = float(np.median([hole[0] for hole in on_side])) if on_side else 0.0
-        alike = [h for h in on_side if abs(h[2] - size) < 0.3 * size and abs(h[0] - middle) < size]
-        inset = middle if on_left else width - middle
-        if len(alike) < _MIN_HOLES or inset > _STRIP * width:
-            continue
+    for holes in hole_columns(spots, width):
+        middle, size = (float(np.median(row)) for row in np.array(holes).T[[0, 2]])
+        on_left = middle < width / 2
         start, stop = (max(round(middle + side * 0.7 * size), 0) for side in (-1, 1))
-        gaps = np.diff(sorted(hole[1] for hole in alike))
-        hole_area = len(alike) * np.pi / 4 * size**2
-        is_even = bool(gaps.max() < 1.3 * float(np.median(gaps)))
-        if is_even and is_dark[:, start:stop].sum() < _MAX_OTHER * hole_area:
+        hole_area = len(holes) * np.pi / 4 * size**2
+        is_clear = is_dark[:, start:stop].sum() < _MAX_OTHER * hole_area
+        if is_clear and min(middle, width - middle) < _STRIP * width:
             trimmed = grey.copy() if trimmed is None else trimmed
             if on_left:
                 trimmed[:, : round(stop / scale)] = paper
@@ -229,10 +211,11 @@ def _without_strips(grey: Image) -> Image | None:
 def _level(paper: Paper) -> Paper:
     """Return a sheet turned so that its lines run level.
 
-    A sheet whose lines rise or fall by less than `_SKEW` is returned as it is.
+    A sheet whose lines rise or fall by less than `STEEP` is returned as it is.
     """
-    slope = _skew(paper.grey)
-    if abs(slope) < _SKEW:
+    points = points_of(ink_of(resize(paper.grey, min(1.0, _FINE / max(paper.grey.shape)))))
+    slope, _ = skew(points) if len(points.x) >= FEWEST_POINTS else (0.0, False)
+    if abs(slope) < STEEP:
         return paper
     height, width = paper.grey.shape
     along = 1 / math.hypot(1, slope)
@@ -262,31 +245,6 @@ def _level(paper: Paper) -> Paper:
     degrees = math.degrees(math.atan(abs(slope)))
     remark = f"the page is askew by {degrees:.1f} degrees: it was set straight"
     return Paper(grey, coloured_ink, [*paper.remarks, remark], to_picture)
-
-
-def _skew(grey: Image) -> float:
-    """Return the slope of a page's lines, 0 where none is clearly steeper than `_SKEW`.
-
-    Lines run across or, on a page on its side, down. The sharpness of a slope is the sum of squared
-    differences between successive rows' ink along it; a steep slope counts from `_SHARPER` times
-    the sharpness of the best slope that the grid tries itself.
-    """
-    small = resize(grey, min(1.0, _FINE / max(grey.shape)))
-    points = points_of(ink_of(small))
-    if len(points.x) < FEWEST_POINTS:
-        return 0.0
-    sparse = slice(None, None, max(1, len(points.x) // 5000))
-    x, y = points.x[sparse], points.y[sparse]
-    slopes = np.arange(-_MAX_SLOPE, _MAX_SLOPE + 1e-9, 0.004)
-    sharpness = np.zeros((2, len(slopes)))
-    for direction, (across, down) in enumerate(((x, y), (-y, x))):
-        for at, slope in enumerate(slopes):
-            level = (down - slope * across) / 2
-            counts = np.bincount((level - level.min()).astype(int)).astype(float)
-            sharpness[direction, at] = np.sum(np.diff(counts) ** 2)
-    best = sharpness[int(sharpness.max(axis=1).argmax())]
-    level_most = best[np.abs(slopes) < _SKEW].max()
-    return float(slopes[best.argmax()]) if best.max() > _SHARPER * level_most else 0.0
 
 
 # --- pages and what surrounds them ----------------------------------------------------------------
@@ -395,17 +353,12 @@ def _page_columns(small: Image) -> list[tuple[int, int]]:
 def _page_mask(small: Image) -> Mask | None:
     """Return a mask of the page, None if nothing surrounds it.
 
-    Page and surround are separated by Otsu's threshold, after type was closed over and soft shadows
-    were taken away.
+    Page and surround are separated by the threshold between two shades, after type was closed over
+    and soft shadows were taken away.
     """
     size = max(3, round(_TYPE_WIDTH * max(small.shape)))
     plain = _without_shadows(ndimage.grey_closing(small, size=(size, size), mode="nearest"))
-    counts, edges = np.histogram(plain, 64)
-    below, total = np.cumsum(counts), np.cumsum(counts * (edges[:-1] + edges[1:]) / 2)
-    with np.errstate(all="ignore"):
-        between = (total / below - total[-1] / below[-1]) ** 2 * below / (below[-1] - below)
-    level = edges[int(np.argmax(np.nan_to_num(between[:-1]))) + 1]
-    is_bright = plain > level
+    is_bright = plain > threshold(plain)
     if is_bright.all() or not is_bright.any():
         return None
     page, surround = float(np.median(plain[is_bright])), float(np.median(plain[~is_bright]))

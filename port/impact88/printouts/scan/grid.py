@@ -44,7 +44,6 @@ _MIN_COLUMN = 0.25
 _OVERLAP = 0.75
 """Lines whose middles are nearer than this, in heights of a line, are one: no leading is below
 1."""
-FEWEST_POINTS = 500  # a page has more ink
 _MAX_COARSE = 80
 """Pieces of lines used in the coarse search for the bend: those with the clearest gaps."""
 _REACHES = (0.35, 0.35, 0.3, 0.3, 0.25, 0.25, 0.2, 0.2)

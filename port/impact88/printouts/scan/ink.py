@@ -1,9 +1,11 @@
 """Ink on paper: what is darker than its surroundings, and how its rows and columns run.
 
-The geometry works on points (places of inked pixels), so it does not depend on the resolution.
+The paper's brightness, the threshold between two shades, the skew of lines and the holes of
+continuous paper are found here, once for all that ask. The geometry works on points (places of
+inked pixels), so it does not depend on the resolution.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 from typing import NamedTuple
 
@@ -14,6 +16,7 @@ from scipy import ndimage
 
 Floats = NDArray[np.float64]
 Image = NDArray[np.float32]
+Mask = NDArray[np.bool_]
 Slope = tuple[float, float]
 
 _BLOCK = 24
@@ -23,6 +26,19 @@ _MAX_WIDE = 15.0  # pitches; bad copies join the letters of a word
 _MAX_POINTS = 150_000
 """Points of a page, drawn at random from more to save time: a page at 300 dots an inch has some
 400,000."""
+FEWEST_POINTS = 500  # a page has more ink
+STEEP = 0.08
+"""Slope of lines from which a page is set straight: the grid's own search ends at 0.1."""
+_MAX_SLOPE = 0.25  # of lines
+_SHARPER = 1.3  # smallest ratio of the sharpness along a steep slope to the best along a level one
+_MAX_SKEW_POINTS = 10_000  # points on which slopes are tried
+_ROWS = 600  # rows of ink, across the page's longer side, on which they are tried
+# Holes of continuous paper: half an inch apart, a fifth of an inch wide or less.
+_MIN_HOLE = 0.008  # width, as a fraction of the sheet's
+_MAX_HOLE = 0.06  # the same
+_SOLID = 0.65  # smallest dark fraction of the square around a hole: a disc has .79, a ring less
+_MIN_HOLES = 4  # below one another
+_UNEVEN = 0.3  # largest deviation of their distances from the usual, as a fraction of it
 
 
 def resize(picture: Image, scale: float) -> Image:
@@ -32,34 +48,48 @@ def resize(picture: Image, scale: float) -> Image:
     return np.asarray(small, np.float32)
 
 
-def ink_of(grey: Image) -> Image:
-    """Return the ink of a picture, from 0 (paper) to about 1 (full ink).
+def paper_brightness(channel: Image) -> Image:
+    """Return the brightness of the paper under the ink of a picture, or of one of its colours.
 
-    Ink is the darkness relative to the paper around, divided by the mean darkness above Otsu's
-    threshold. ``grey``: 0 (black) to 255.
+    It is the 85th percentile of blocks, closed over blocks full of ink.
     """
-    height, width = grey.shape
-    padded = np.pad(grey, ((0, -height % _BLOCK), (0, -width % _BLOCK)), "edge")
+    height, width = channel.shape
+    padded = np.pad(channel, ((0, -height % _BLOCK), (0, -width % _BLOCK)), "edge")
     rows, columns = padded.shape[0] // _BLOCK, padded.shape[1] // _BLOCK
     blocks = padded.reshape(rows, _BLOCK, columns, _BLOCK).transpose(0, 2, 1, 3)
     light = np.percentile(blocks.reshape(rows, columns, -1), 85, axis=2)
     light = ndimage.grey_closing(light, size=(3, 3), mode="nearest")
     light = ndimage.gaussian_filter(light, 1.0, mode="nearest").astype(np.float32)
-    paper = resize(light, _BLOCK)[:height, :width]
-    ink: Image = np.clip(1 - grey / np.maximum(paper, 1), 0, 1).astype(np.float32)
+    return resize(light, _BLOCK)[:height, :width]
+
+
+def darkness(channel: Image, paper: Image) -> Image:
+    """Return how much darker than the paper a picture is, 0 to 1."""
+    return np.asarray(np.clip(1 - channel / np.maximum(paper, 1), 0, 1), np.float32)
+
+
+def threshold(values: Image) -> float:
+    """Return the level with the largest variance between what is below and above (Otsu 1979)."""
+    counts, edges = np.histogram(values, 64)
+    below, total = np.cumsum(counts), np.cumsum(counts * (edges[:-1] + edges[1:]) / 2)
+    with np.errstate(all="ignore"):
+        between = (total / below - total[-1] / below[-1]) ** 2 * below / (below[-1] - below)
+    return float(edges[int(np.argmax(np.nan_to_num(between[:-1]))) + 1])
+
+
+def ink_of(grey: Image) -> Image:
+    """Return the ink of a picture, from 0 (paper) to about 1 (full ink).
+
+    Ink is the darkness relative to the paper around, divided by the mean darkness above the
+    threshold between grain and ink. ``grey``: 0 (black) to 255.
+    """
+    ink = darkness(grey, paper_brightness(grey))
     sample = ink[::3, ::3]
     sample = sample[sample > 0.08]
     if sample.size < 50:
         return ink
-    # the threshold with the largest variance between grain and ink (Otsu 1979)
-    counts, edges = np.histogram(sample, 64)
-    below, total = np.cumsum(counts), np.cumsum(counts * (edges[:-1] + edges[1:]) / 2)
-    with np.errstate(all="ignore"):
-        between = (total / below - total[-1] / below[-1]) ** 2 * below / (below[-1] - below)
-    best = int(np.argmax(np.nan_to_num(between[:-1])))
-    level = float(np.mean(sample[sample >= (edges[best] + edges[best + 1]) / 2]))
-    ink = np.clip(ink / max(level, 0.1), 0, 1.5)
-    return ink
+    level = float(np.mean(sample[sample >= threshold(sample)]))
+    return np.asarray(np.clip(ink / max(level, 0.1), 0, 1.5), np.float32)
 
 
 class Points(NamedTuple):
@@ -74,6 +104,11 @@ class Points(NamedTuple):
         x, y = self.x, self.y
         x, y = ((x, y), (y, -x), (-x, -y), (-y, x))[turns]
         return Points(x, y, self.span)
+
+    def some(self, count: int) -> "Points":
+        """Return every n-th of the places, so that they are about ``count`` at most."""
+        part = slice(None, None, max(1, len(self.x) // count))
+        return Points(self.x[part], self.y[part], self.span)
 
 
 def points_of(ink: Image, fold: int = 1) -> Points:
@@ -113,37 +148,111 @@ def without_pen(ink: Image, pitch: float, turns: int) -> Image:
     return plain
 
 
-def slopes(points: Points) -> Slope:
-    """Return the slope and keystone of lines of text.
+def _sharpest(points: Points, tilts: Iterable[Slope], width: float) -> tuple[float, Slope]:
+    """Return the largest sharpness of lines of text, and the slope and keystone that have it.
 
-    y - x (slope + keystone y / span) is constant along each line. The two maximize the sharpness,
-    which is the sum of squared differences between successive rows' ink: lines of text alternate
-    with gaps. They are found on lattices that get finer.
+    y - x (slope + keystone y / span) is constant along each line. The sharpness is the sum of
+    squared differences between the ink of successive rows of ``width`` pixels along the lines:
+    lines of text alternate with gaps.
     """
     x, y, span = points
-    step = max(1.0, span / 1200)
-    if len(x) > 40_000:
-        x, y = x[:: len(x) // 20_000], y[:: len(y) // 20_000]
 
-    def sharpest(tilts: Iterable[Slope], part: int, width: float) -> Slope:
-        """Return the slope and keystone with the largest sharpness, at rows of ``width`` pixels."""
+    def sharpness(tilt: Slope) -> float:
+        level = y - x * (tilt[0] + tilt[1] * y / span)
+        counts = np.bincount(((level - level.min()) / width).astype(int)).astype(float)
+        return float(np.sum(np.diff(counts) ** 2))
 
-        def sharpness(tilt: Slope) -> float:
-            level = (y - x * (tilt[0] + tilt[1] * y / span))[::part]
-            counts = np.bincount(((level - level.min()) / width).astype(int)).astype(float)
-            return float(np.sum(np.diff(counts) ** 2))
+    return max((sharpness(tilt), tilt) for tilt in tilts)
 
-        return max(tilts, key=sharpness)
 
-    stride = max(1, len(x) // 15_000)
-    slope, key = sharpest(
-        ((rise, 0.0) for rise in np.arange(-0.1, 0.1001, 0.004)), stride, 2 * step
+def line_slope(points: Points) -> tuple[float, float]:
+    """Return the slope of lines of text that run across, and the sharpness of the lines along it.
+
+    A slope of `STEEP` and more counts from `_SHARPER` times the sharpness of the best that is less.
+    """
+    points = points.some(_MAX_SKEW_POINTS)
+    width = points.span / _ROWS
+    lattice = np.arange(-_MAX_SLOPE, _MAX_SLOPE + 1e-9, 0.004)
+    level, steep = (
+        _sharpest(points, [(float(slope), 0.0) for slope in lattice[part]], width)
+        for part in (np.abs(lattice) < STEEP, np.abs(lattice) >= STEEP)
     )
+    sharpness, (slope, _) = steep if steep[0] > _SHARPER * level[0] else level
+    return slope, sharpness
+
+
+def skew(points: Points) -> tuple[float, bool]:
+    """Return the slope of a page's lines, and True if they run down the page, which lies on its
+    side.
+
+    The sharpness is relative to the square of the mean ink of a row: a long page has more rows.
+    """
+    (across, sharpness), (down, sharpness_down) = line_slope(points), line_slope(points.turn(1))
+    is_on_side = bool(sharpness_down * np.ptp(points.x) > sharpness * np.ptp(points.y))
+    return (down if is_on_side else across), is_on_side
+
+
+def slopes(points: Points) -> Slope:
+    """Return the slope and keystone of lines of text that run across, found on finer lattices."""
+    step = max(1.0, points.span / 1200)
+    slope, _ = line_slope(points)
+    points = points.some(20_000)
     keystones = product(np.arange(-0.12, 0.1201, 0.02), (-0.002, 0, 0.002))
-    slope, key = sharpest(
-        ((slope + turn, keystone) for keystone, turn in keystones), stride, 1.5 * step
-    )
+    tilts: list[Slope] = [(slope + turn, float(keystone)) for keystone, turn in keystones]
+    slope, key = _sharpest(points, tilts, 1.5 * step)[1]
     for width in (0.002, 0.001, 0.0005):
         steps = product((-1, 0, 1), (-8, -4, 0, 4, 8))
-        slope, key = sharpest([(slope + i * width, key + j * width) for i, j in steps], 1, step)
-    return float(slope), float(key)
+        slope, key = _sharpest(
+            points, [(slope + i * width, key + j * width) for i, j in steps], step
+        )[1]
+    return slope, key
+
+
+class Spot(NamedTuple):
+    """A connected region of ink.
+
+    Attributes
+    ----------
+    x, y : float
+        Its middle.
+    width, height : float
+        Sides of the rectangle around it.
+    filling : float
+        Inked fraction of that rectangle.
+    """
+
+    x: float
+    y: float
+    width: float
+    height: float
+    filling: float
+
+
+def hole_columns(spots: Sequence[Spot], sheet_width: float) -> Iterator[list[Spot]]:
+    """Yield the columns of holes among the regions of a sheet, `_MIN_HOLES` or more in each.
+
+    Holes are solid, round, of one size, one below the other, and evenly spaced.
+    """
+    left = [
+        spot
+        for spot in spots
+        if 0.7 < spot.width / spot.height < 1.4
+        and _MIN_HOLE < spot.width / sheet_width < _MAX_HOLE
+        and spot.filling > _SOLID
+    ]
+    while left:
+        first = left[0]
+        alike = [spot for spot in left if abs(spot.x - first.x) < first.width]
+        size = float(np.median([spot.width for spot in alike]))
+        middle = float(np.median([spot.x for spot in alike]))
+        left = [spot for spot in left if abs(spot.x - first.x) >= first.width]
+        column = [
+            spot
+            for spot in alike
+            if abs(spot.width - size) < 0.3 * size and abs(spot.x - middle) < size
+        ]
+        if len(column) < _MIN_HOLES:
+            continue
+        gaps = np.diff(sorted(spot.y for spot in column))
+        if gaps.max() < (1 + _UNEVEN) * float(np.median(gaps)):
+            yield column

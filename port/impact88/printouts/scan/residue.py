@@ -12,17 +12,14 @@ from typing import NamedTuple
 import numpy as np
 import PIL.Image
 import PIL.ImageDraw
-from numpy.typing import NDArray
 from scipy import ndimage
 
 from .claims import Claim
 from .grid import CELL_WIDTH, Grid
 from .holding import DIFFERS, FIT, INKED, Added, Cell
-from .ink import Floats, Image, resize
+from .ink import Floats, Image, Mask, Spot, hole_columns, resize
 from .layout import Place
 from .typeface import BLANK, Typeface, distances, sample_of, typeface_of
-
-Mask = NDArray[np.bool_]
 
 # Pixels are those of the sheet scaled to cells of `CELL_WIDTH`.
 _DARK = 0.3  # ink, 1 for full, from which a pixel is a mark's; shadows and show-through have less
@@ -122,8 +119,7 @@ def residue_of(ink: Image, coloured: Image | None, explained: Sequence[Explained
         The printouts of each grid.
     """
     lines_of_type = [mark for part in explained for mark in _typed_lines(part)]
-    pitch = min(part.grid.pitch for part in explained)
-    scale = min(1.0, CELL_WIDTH / pitch)
+    scale = min(1.0, CELL_WIDTH / min(part.grid.pitch for part in explained))
     small = resize(np.ascontiguousarray(ink), scale)
     is_dark = small > _DARK
     cells = [
@@ -142,15 +138,17 @@ def residue_of(ink: Image, coloured: Image | None, explained: Sequence[Explained
     if coloured is not None:
         regions.append((resize(np.ascontiguousarray(coloured), scale) > _DARK, Kind.COLOURED))
     for is_left, kind in regions:
-        for mark, area in _regions(is_left, kind, in_bands):
-            if area < _SPECK * CELL_WIDTH**2:
+        regions_of_kind = [*_regions(is_left, kind, in_bands)]
+        spots = [_spot(mark, area) for mark, area in regions_of_kind]
+        holes = {spot for column in hole_columns(spots, is_left.shape[1]) for spot in column}
+        for (mark, area), spot in zip(regions_of_kind, spots, strict=True):
+            if area < _SPECK * CELL_WIDTH**2 or (kind is Kind.STROKE and spot in holes):
                 continue
             reach = is_dark | is_left if kind is Kind.STROKE else is_left
             mark.touches = _touched_fields(mark, reach, is_left, cells, scale)
             mark.corners = mark.corners / scale
             marks.append(mark)
     marks += _small_marks(explained, marks)
-    _find_holes(marks, pitch)
     marks = [mark for mark in marks if mark.kind is not Kind.PAPER]
     marks.sort(key=lambda mark: (not mark.bears, float(mark.corners[0, 1])))
     return marks[:_MAX_MARKS]
@@ -271,6 +269,12 @@ def _typed_lines(part: Explained) -> Iterator[Mark]:
         yield Mark(Kind.TYPE, corners, read.text, place, sure=read.sure)
 
 
+def _spot(mark: Mark, area: int) -> Spot:
+    """Return a mark as a region of ink."""
+    (x, y), (width, height) = mark.corners.mean(axis=0), np.ptp(mark.corners, axis=0)
+    return Spot(float(x), float(y), float(width), float(height), float(area / width / height))
+
+
 def _mask_of(outlines: Sequence[Floats], scale: float, shape: tuple[int, ...]) -> Mask:
     """Return a mask of the insides of some outlines, on the sheet made smaller by ``scale``."""
     picture = PIL.Image.new("1", (shape[1], shape[0]))
@@ -311,18 +315,6 @@ def _regions(is_left: Mask, kind: Kind, bands: Mask) -> Iterator[tuple[Mark, int
             elif max(across, down) < 2 * CELL_WIDTH:
                 mark.kind = Kind.MARK
         yield mark, area
-
-
-def _find_holes(marks: Sequence[Mark], pitch: float) -> None:
-    """Set the kind of marks that are holes: alike, round, and below each other."""
-    sizes = np.array([np.ptp(mark.corners, axis=0) for mark in marks]).reshape(-1, 2)
-    middles = np.array([mark.corners.mean(axis=0) for mark in marks]).reshape(-1, 2)
-    for mark, size, middle in zip(marks, sizes, middles, strict=True):
-        is_round = 0.6 < size[0] / max(size[1], 1.0) < 1.7 and size.max() < 4 * pitch
-        is_alike = np.abs(sizes - size).max(axis=1) < 0.4 * size.max()
-        in_column = is_alike & (np.abs(middles[:, 0] - middle[0]) < 1.5 * pitch)
-        if is_round and in_column.sum() > 3 and mark.kind in (Kind.MARK, Kind.STROKE):
-            mark.kind = Kind.PAPER
 
 
 def _touched_fields(
