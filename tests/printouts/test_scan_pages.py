@@ -383,6 +383,105 @@ def test_a_digit_pasted_from_elsewhere_on_the_page_differs_and_is_shown() -> Non
     assert "no probability that the page at hand is genuine" in shown
 
 
+# --- rows ----------------------------------------------------------------------------------------
+
+
+def strip_of(cells: Any, name: str) -> tuple[int, int]:
+    """The upper and lower edge of a row on the page, by its first field."""
+    top, bottom = next((cell["box"][1], cell["box"][3]) for cell in cells if cell["field"] == name)
+    return round(top) - 3, round(bottom) + 3
+
+
+def rows_exchanged(page: Any, cells: Any, first: str, second: str) -> Any:
+    """The page with two of its rows in each other's place."""
+    (upper, _), (lower, foot) = strip_of(cells, first), strip_of(cells, second)
+    height, changed = foot - lower, page.copy()
+    changed.paste(page.crop((0, lower, page.width, lower + height)), (0, upper))
+    changed.paste(page.crop((0, upper, page.width, upper + height)), (0, lower))
+    return changed
+
+
+def row_doubled(page: Any, cells: Any, name: str) -> Any:
+    """The page with one of its rows once more, below itself, and all else lower."""
+    top, bottom = strip_of(cells, name)
+    longer = Pillow.new("L", (page.width, page.height + bottom - top), 255)
+    longer.paste(page.crop((0, 0, page.width, bottom)), (0, 0))
+    longer.paste(page.crop((0, top, page.width, page.height)), (0, bottom))
+    return longer
+
+
+@pytest.mark.long
+def test_exchanged_rows_of_a_picture_are_put_in_order_before_a_character_is_read() -> None:
+    """By the letters of their labels: these two have their blanks in the same places."""
+    from impact88.printouts.scan.grid import grids_of
+    from impact88.printouts.scan.ink import ink_of, points_of
+    from impact88.printouts.scan.layout import layout_of
+    from impact88.printouts.scan.rowsfirst import order_lines
+
+    page, cells = genuine()
+    for picture, expected in ((page, False), (rows_exchanged(page, cells, "VAX", "VBX"), True)):
+        ink = ink_of(np.asarray(picture, np.float32))
+        (grid,) = grids_of(ink, points_of(ink), 0)
+        order = order_lines(grid, layout_of(grid.odds(), grid.tops))
+        assert (order is not None) is expected
+        if order:
+            ((_, sentence),) = order.exchanged
+            assert "the row of VBX, and line" in sentence
+            assert "the row of VAX, stand in each other's place" in sentence
+            assert sorted(order.grid.numbers) != [*order.grid.numbers]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("first", "second"), long_but([("UX", "VX"), ("DA", "LOSS")]))
+def test_exchanged_rows_of_a_picture_are_named_in_one_sentence(first: str, second: str) -> None:
+    result = read_again(rows_exchanged(*genuine(), first, second))
+    assert result.verdict is Verdict.DIFFERS
+    assert not result.differing
+    (finding,) = result.findings
+    assert finding.endswith("stand in each other's place")
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", long_but(["MA", "VX"]))
+def test_a_row_that_a_picture_has_twice_is_named(name: str) -> None:
+    result = read_again(row_doubled(*genuine(), name))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert any("is printed a second time" in remark for remark in result.remarks)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("part", [0.3, 0.6])
+def test_a_row_cut_through_by_the_edge_of_the_page_is_not_read(part: float) -> None:
+    page, cells = genuine()
+    top, bottom = strip_of(cells, "VBX")
+    result = read_again(page.crop((0, 0, page.width, round(top + part * (bottom - top)))))
+    assert result.verdict is Verdict.INCOMPLETE
+    assert "the row of VBX, is cut through by the edge of the page" in "\n".join(result.remarks)
+    assert not [check for check in result.fields if check.name == "VBX" and check.printed]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("is_retyped", [True, False])
+def test_a_row_in_another_typeface_is_named(is_retyped: bool) -> None:
+    """Its characters squeezed and bold, at their places; a row only fainter is in the same."""
+    from PIL import ImageFilter
+
+    page, cells = genuine()
+    for cell in cells:
+        if cell["field"] in ("UX", "UY", "WA", "XA", "YA"):
+            left, top, right, bottom = box_of(cell)
+            glyph = page.crop((left, top, right, bottom))
+            if is_retyped:
+                squeezed = glyph.resize((glyph.width, round(0.7 * glyph.height)))
+                glyph = Pillow.new("L", glyph.size, 255)
+                glyph.paste(squeezed.filter(ImageFilter.MinFilter(3)), (0, 2))
+            else:
+                glyph = Pillow.eval(glyph, lambda value: 255 - round(0.7 * (255 - value)))
+            page.paste(glyph, (left, top))
+    said = "\n".join(read_again(page).remarks)
+    assert ("the row of UX, is in another typeface" in said) is is_retyped
+
+
 # --- what the program does not print -------------------------------------------------------------
 
 
@@ -524,7 +623,7 @@ def test_a_whole_line_of_the_program_is_another_printouts(text: str, whole: bool
 
 def test_text_beside_a_line_leaves_its_numbers_where_they_are() -> None:
     """And no line is taken for five asterisks with something beside them."""
-    from impact88.printouts.scan.layout import sheets_of
+    from impact88.printouts.scan.layout import layout_of
 
     page = run(sample(1)).printout
     rows = [line for line in page.split("\n") if line.strip()]
@@ -535,7 +634,7 @@ def test_text_beside_a_line_leaves_its_numbers_where_they_are() -> None:
             np.array([-6.0] + [6.0 if char.strip() else -5.0 for char in row.ljust(width)])
             for row in shown
         ]
-        (sheet,) = sheets_of(odds, 1.5 * np.arange(len(odds)))
+        (sheet,) = layout_of(odds, 1.5 * np.arange(len(odds))).sheets
         texts = {
             piece.name: "".join(shown[place.line][place.cell - 1] for place in piece.places)
             for row in sheet.rows.values()

@@ -2,7 +2,7 @@
 
 ``python tests/support/scanpages.py FOLDER COUNT [SEED [KIND ...]]`` writes COUNT pages of each of
 `KINDS` and their truth (truth.jsonl). Fonts come from Debian's packages; those not installed are
-left out.
+left out. They are looked for in the folder that IMPACT88_FONTS names, else in /usr/share/fonts.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import io
 import json
 import math
+import os
 import random
 import re
 import sys
@@ -29,13 +30,17 @@ KINDS = (
     *("pins", "carbon", "columns", "half", "turned"),
     *("sign", "point", "digit", "appended", "typedline", "beside", "word"),
     *("desk", "spread", "skew", "pen", "stamp", "holes", "shadow", "screen"),
+    *("exchanged", "doubled", "retyped", "cut"),
 )
 """The first three genuine, the next six not; five genuine, in ways of their own; on the next seven
-something was added in the page's own type; the last eight are genuine: other things than paper
-and type are on the picture, or it shows a screen."""
+something was added in the page's own type; the next eight are genuine: other things than paper
+and type are on the picture, or it shows a screen. Of the last four a whole row is hurt: two stand
+in each other's place, one is printed twice, one is in another typeface, one is cut through by the
+page's edge; no number is another."""
 FORGED = KINDS[3:9]
 ADDED = KINDS[14:21]
-SURROUNDED = KINDS[21:]
+SURROUNDED = KINDS[21:29]
+HURT_ROWS = KINDS[29:]
 FONTS = {
     "liberation": "truetype/liberation/LiberationMono-Regular.ttf",
     "courierprime": "opentype/courier-prime/Courier Prime.otf",
@@ -64,7 +69,7 @@ Grey = np.ndarray[Any, np.dtype[np.float64]]
 
 
 def _path(name: str) -> Path:
-    return Path("/usr/share/fonts") / name
+    return Path(os.environ.get("IMPACT88_FONTS", "/usr/share/fonts")) / name
 
 
 def fonts() -> list[str]:
@@ -321,9 +326,52 @@ def _added(lines: list[str], kind: str, choose: random.Random) -> tuple[list[str
     return new, (kind, " ", character, [row, column])
 
 
+_ROW_STARTS = ("MA=", "DA=", " PA ", "UX=", "VX=", " E=", "INITIAL", "VAX=", "VBX=")
+"""How the rows begin that every printout has."""
+
+
+def _row_hurt(lines: list[str], kind: str, choose: random.Random) -> tuple[list[str], Any]:
+    """The lines with two rows in each other's place, or one twice; what, and which lines of the
+    paper, from 0."""
+    new = [*lines]
+    rows = [next(k for k, line in enumerate(lines) if line.startswith(s)) for s in _ROW_STARTS]
+    if kind == "exchanged":
+        one, two = sorted(choose.sample([row for row in rows if lines[row][:4] != " PA "], 2))
+        new[one], new[two] = lines[two], lines[one]
+        return new, (kind, one, two)
+    row = choose.choice(rows)
+    count = 2 if lines[row].startswith(" PA ") else 1
+    if kind == "doubled":
+        new[row:row] = [*lines[row : row + count], *[""] * (lines[row - 1] == "")]
+        return new, (kind, row)
+    return new, (kind, row + count - 1)
+
+
+def _retype(
+    paper: Grey, lines: list[str], row: int, hand: str, font: str, pixels: int, leading: float
+) -> None:
+    """Types a row of drawn paper anew in another typeface, in the same cells."""
+    cell = _glyph(font, "0", pixels)
+    for column, character in enumerate(lines[row]):
+        glyph = _glyph(hand, character, pixels).resize(cell.size)
+        _pasted(paper, np.asarray(glyph, float), pixels, font, (row, column), leading)
+
+
+def _cut(
+    paper: Grey, row: int, font: str, pixels: int, leading: float, choose: random.Random
+) -> Grey:
+    """Drawn paper whose upper or lower edge runs through a row: what is left is the larger part."""
+    cell = _glyph(font, "0", pixels)
+    ink = 255 - paper
+    top = 3 * cell.width + row * round(cell.height * leading)
+    inked = np.flatnonzero(ink[top : top + cell.height].sum(axis=1))
+    at = top + inked[0] + round(choose.uniform(0.35, 0.65) * 0.7 * (inked[-1] - inked[0]))
+    return paper[at:] if at < 0.4 * len(paper) else paper[:at]
+
+
 def page(kind: str, choose: random.Random, of: list[str]) -> tuple[Image.Image, dict[str, Any]]:
     """One page of a kind, and its truth; ``of``: the fonts that may be used."""
-    plain = kind in ("clean", "photo", *FORGED, *ADDED, *SURROUNDED)
+    plain = kind in ("clean", "photo", *FORGED, *ADDED, *SURROUNDED, *HURT_ROWS)
     font = choose.choice([one for one in of if not plain or one not in DOTS])
     sizes = (36, 42, 48) if plain and kind not in FORGED else (30, 36, 42)
     pixels = choose.choice((22, 28, 34, 40) if kind == "hard" else sizes)
@@ -343,8 +391,16 @@ def page(kind: str, choose: random.Random, of: list[str]) -> tuple[Image.Image, 
     lines = _styled(prints if by_hand else shown, style)
     if kind in ADDED:
         lines, altered = _added(lines, kind, choose)
+    if kind in HURT_ROWS:
+        lines, altered = _row_hurt(lines, kind, choose)
     leading = choose.choice((1.0, 1.1)) if kind == "hard" else 1.0
     paper = drawn(lines, font, pixels, leading)
+    if kind == "retyped":
+        hand = choose.choice([one for one in of if one != font and one not in DOTS])
+        _retype(paper, lines, altered[1], hand, font, pixels, leading)
+        altered = (*altered, hand)
+    if kind == "cut":
+        paper = _cut(paper, altered[1], font, pixels, leading, choose)
     if altered and by_hand:
         _forge(paper, kind, lines, _styled(shown, style), font, pixels, leading, choose, of)
     if kind in SURROUNDED:

@@ -20,6 +20,7 @@ from ..scan.exhibit import character_name, exhibit
 from ..scan.grid import Grid
 from ..scan.holding import Cell, state
 from ..scan.ink import Floats
+from ..scan.layout import Place
 from ..scan.picture import Page, pages_of
 from ..scan.residue import Mark
 from ..scan.scenes import scenes_in
@@ -117,7 +118,7 @@ def _verification(
         for name in FIELDS
         if name in program_fields or name in leaf.read.costs
     ]
-    line = min((row.start for row in leaf.read.sheet.rows.values()), default=0) + 1
+    line = min((leaf.grid.number(row.start) for row in leaf.read.sheet.rows.values()), default=1)
     result = Verification(path, number, line, leaf.judged.verdict, scene, fields)
     result.converted = is_converted
     result.replies, result.page = [*_replies(leaf)], page.number
@@ -134,25 +135,29 @@ def _verification(
     result.marks = [_mark_as_json(mark, page, paper, leaf.grid) for mark in leaf.marks]
     if leaf.judged.reason:
         result.remarks.append(f"page {page.number}: {leaf.judged.reason}")
+    result.remarks += [
+        f"page {page.number}: {sentence}" for sentence in (*leaf.repeated, *leaf.retyped, *leaf.cut)
+    ]
+    result.findings += [f"page {page.number}: {sentence}" for sentence in leaf.exchanged]
     result.findings += [
-        f"page {page.number}, line {cell.place.line + 1}, cell {cell.place.cell + 1}: "
+        f"page {page.number}, {_where(cell.place, leaf.grid)}: "
         f"{cell.name or 'a label'} shows {character_name(cell.other)} where the program prints "
         f"{character_name(cell.predicted)} (margin {cell.margin:+.2f}, "
         f"{cell.count} and {cell.other_count} cells of each on the page)"
         for cell in leaf.judged.differing
     ]
     result.findings += [
-        f"page {page.number}, {_where(mark)}: the typed text {mark.reads!r} gives {claim.label} "
-        f"{claim.typed}, where the program prints {claim.printed}"
+        f"page {page.number}, {_where(mark.place, leaf.grid)}: the typed text {mark.reads!r} gives "
+        f"{claim.label} {claim.typed}, where the program prints {claim.printed}"
         for mark in leaf.marks
         for claim in mark.claims
     ]
     return result
 
 
-def _where(mark: Mark) -> str:
-    assert mark.place is not None
-    return f"line {mark.place.line + 1}, cell {mark.place.cell + 1}"
+def _where(place: Place | None, grid: Grid) -> str:
+    assert place is not None
+    return f"line {grid.number(place.line)}, cell {place.cell + 1}"
 
 
 def _check(leaf: Leaf, name: str, recomputed: str | None, cells: Sequence[Cell]) -> FieldCheck:
@@ -167,13 +172,20 @@ def _check(leaf: Leaf, name: str, recomputed: str | None, cells: Sequence[Cell])
     elif "doubtful" in states:
         status = Status.DOUBTFUL
     doubts = [
-        Doubtful(cell.place.line + 1, cell.place.cell + 1, 0, cell.other, cell.predicted, "picture")
+        Doubtful(
+            leaf.grid.number(cell.place.line),
+            cell.place.cell + 1,
+            0,
+            cell.other,
+            cell.predicted,
+            "picture",
+        )
         for cell in cells
         if state(cell) == "doubtful"
     ]
     check = FieldCheck(name, _cells_text(cells) or None, recomputed, status, doubts=doubts)
     if cells:
-        check.line, check.column = cells[0].place.line + 1, cells[0].place.cell + 1
+        check.line, check.column = leaf.grid.number(cells[0].place.line), cells[0].place.cell + 1
     return check
 
 
@@ -208,7 +220,7 @@ def _mark_as_json(mark: Mark, page: Page, paper: Paper, grid: Grid) -> dict[str,
         "box": _box(mark.corners, page, paper, grid.turns),
         "kind": str(mark.kind),
         "reads": mark.reads,
-        "line": mark.place.line + 1 if mark.place else None,
+        "line": grid.number(mark.place.line) if mark.place else None,
         "cell": mark.place.cell + 1 if mark.place else None,
         "touches": mark.touches,
         "beside": mark.beside,

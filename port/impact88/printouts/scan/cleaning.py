@@ -133,7 +133,7 @@ def _split_colours(picture: Picture) -> tuple[Image, Image | None]:
         return grey, None
     channels = [picture[:, :, k].astype(np.float32) for k in range(3)]
     paper_light = np.stack([paper_brightness(channel) for channel in channels], axis=-1)
-    ink = darkness(picture, paper_light)
+    ink = darkness(np.stack(channels, axis=-1), paper_light)
     weakest, strongest = ink.min(axis=2), ink.max(axis=2)
     chroma = strongest - weakest
     coloured_ink = np.where(chroma > _MIN_CHROMA, strongest, 0).astype(np.float32)

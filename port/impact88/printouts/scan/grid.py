@@ -44,6 +44,8 @@ _MIN_COLUMN = 0.25
 _OVERLAP = 0.75
 """Lines whose middles are nearer than this, in heights of a line, are one: no leading is below
 1."""
+_CUT = 0.8
+"""Largest height of a line that is cut through, relative to the usual: others have capitals."""
 _MAX_COARSE = 80
 """Pieces of lines used in the coarse search for the bend: those with the clearest gaps."""
 _REACHES = (0.35, 0.35, 0.3, 0.3, 0.25, 0.25, 0.2, 0.2)
@@ -72,6 +74,11 @@ class Grid(NamedTuple):
         Height and width of the picture after the turns.
     turns : int
         Quarter turns to the left by which the picture was set upright.
+    cut : frozenset of int
+        Lines through which the upper or lower edge of the page runs: the first or last, if it is
+        lower than type. A row of asterisks may be so, too.
+    numbers : sequence of int
+        Number of each line on the paper, from 1; empty where that is its place among the lines.
     """
 
     pictures: list[Image]
@@ -81,6 +88,22 @@ class Grid(NamedTuple):
     clarity: float
     size: tuple[int, ...]
     turns: int
+    cut: frozenset[int] = frozenset()
+    numbers: Sequence[int] = ()
+
+    def in_order(self, order: Sequence[int]) -> "Grid":
+        """Return the grid with its lines in another order."""
+        return self._replace(
+            pictures=[self.pictures[line] for line in order],
+            tops=self.tops[[*order]],
+            corners=[self.corners[line] for line in order],
+            cut=frozenset(at for at, line in enumerate(order) if line in self.cut),
+            numbers=[self.number(line) for line in order],
+        )
+
+    def number(self, line: int) -> int:
+        """Return the number of a line on the paper, from 1."""
+        return self.numbers[line] if self.numbers else line + 1
 
     def around(self, line: int, cell: int) -> Floats:
         """Return the corners of a cell in the upright picture, clockwise: shape (4, 2)."""
@@ -361,7 +384,11 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
     pictures = [resample(line) for line in range(len(middles))]
     edges, ends = origin + np.arange(count + 1) * pitch, np.array([-0.65, 0.65]) * height
     corners = [np.stack(place(*np.meshgrid(edges, middle + ends))).T for middle in middles]
-    return Grid(pictures, middles / pitch, corners, pitch, clarity, ink.shape, turns)
+    outermost = {0: lines[0], len(middles) - 1: lines[-1]}
+    cut = frozenset(
+        line for line, (top, bottom) in outermost.items() if bottom - top < _CUT * height
+    )
+    return Grid(pictures, middles / pitch, corners, pitch, clarity, ink.shape, turns, cut)
 
 
 def _distinct(middles: Floats, weights: Sequence[int], height: float) -> Floats:

@@ -41,6 +41,8 @@ so that no line is taken for an annex of five asterisks."""
 _HOLE = -10.0
 """Gain of a clearly blank cell within a number, in which the program prints none; a faint character
 costs as much as three letters that are missing."""
+_AS_GOOD = 12.0
+"""Difference in gain, that of four inked cells, up to which two lines of print fit as well."""
 _MIN_NUMBERS = 20
 """Numbers of a printout; with fewer it is not verified from the picture."""
 _GAPS = (1, 14)  # blanks between angles; doubled, the verdicts of 5 pages stay
@@ -217,7 +219,44 @@ def _pieces(row: Row, inked: Floats, blank: Floats) -> list[Piece]:
     return pieces[::-1]
 
 
-def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
+class LineFit(NamedTuple):
+    """A line of print, by its number in `LINES`, that may stand in a row of cells; its gain."""
+
+    gain: float
+    line: int
+    row: Row
+
+
+@dataclass
+class Layout:
+    """The printouts on a grid.
+
+    Attributes
+    ----------
+    sheets : list of Sheet
+        The printouts, their rows in the program's order.
+    """
+
+    sheets: list[Sheet]
+    _fits: "_Fits"
+    _inked: Floats
+    _blank: Floats
+
+    def divided(self, key: "_Key") -> LineFit:
+        """Return a line of print with its cells divided into its parts."""
+        gain, at, row = self._fits[key]
+        pieces = _pieces(row, self._inked[at], self._blank[at])
+        return LineFit(gain, key[2], row._replace(pieces=pieces))
+
+    def candidates(self, start: int, used: int) -> list[LineFit]:
+        """Return the lines of print that may begin on a line of the grid and take ``used`` lines of
+        it: those that gain anything there, and within `_AS_GOOD` of the most."""
+        gains = {key: fit[0] for key, fit in self._fits.items() if key[:2] == (start, used)}
+        least = max(max(gains.values(), default=0.0) - _AS_GOOD, 0.0)
+        return [self.divided(key) for key, gain in gains.items() if gain > least]
+
+
+def layout_of(odds: Sequence[Floats], tops: Floats) -> Layout:
     """Return the printouts on a grid.
 
     Each line of print is laid on each line of the grid, in a few margins, whole or broken in two;
@@ -239,7 +278,7 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
         unbroken, broken = Row(start, 1, margin), Row(start, 2, margin)
         cells = unbroken.cells(odds)
         trials.append((unbroken, cells))
-        has_next = start + 1 < len(odds) and tops[start + 1] - tops[start] <= 3.2
+        has_next = start + 1 < len(odds) and 0 < tops[start + 1] - tops[start] <= 3.2
         is_full = len(cells) >= WRAP and np.any(cells[WRAP - _BREAK_COLUMNS : WRAP] > 0)
         if has_next and is_full and not np.any(cells[WRAP:] > 2):
             trials.append((broken, broken.cells(odds)))
@@ -269,22 +308,22 @@ def sheets_of(odds: Sequence[Floats], tops: Floats) -> list[Sheet]:
     line_ink = [float(np.clip(row, 0, 6).sum()) for row in odds]
     alignments = {margin: _assign_lines(fits[margin], line_ink) for margin in margins}
     margin = max(margins, key=lambda edge: alignments[edge][0])
+    layout = Layout([], fits[margin], inked_gains, blank_gains)
     sheets = [Sheet()]
     for key in alignments[margin][1]:
         if key is None:
             sheets.append(Sheet())
             continue
-        gain, at, row = fits[margin][key]
+        gain, line, row = layout.divided(key)
         sheets[-1].gain += gain
-        sheets[-1].rows[key[2]] = row._replace(
-            pieces=_pieces(row, inked_gains[at], blank_gains[at])
-        )
-    return [
+        sheets[-1].rows[line] = row
+    layout.sheets = [
         sheet
         for sheet in sheets
         if sum(bool(piece.name) for row in sheet.rows.values() for piece in row.pieces)
         >= _MIN_NUMBERS
     ]
+    return layout
 
 
 _Key = tuple[int, int, int]

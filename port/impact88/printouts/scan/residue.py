@@ -129,6 +129,7 @@ def residue_of(ink: Image, coloured: Image | None, explained: Sequence[Explained
         if not cell.cut and (cell.predicted != BLANK or cell.added in _TYPED_CELLS)
     ]
     outlines = [around for _, around in cells] + [mark.corners for mark in lines_of_type]
+    outlines += [_outline(part.grid, line) for part in explained for line in part.grid.cut]
     is_explained = ndimage.binary_dilation(
         _mask_of(outlines, scale, is_dark.shape), iterations=_SPILL
     )
@@ -253,8 +254,8 @@ def _type_at(part: Explained, typeface: Typeface, line: int, cells: Sequence[int
 def _typed_lines(part: Explained) -> Iterator[Mark]:
     """Yield the lines of type that no printout takes, read by the page's own typeface."""
     grid, odds = part.grid, part.grid.odds()
-    free_lines = [line for line in range(len(grid.pictures)) if line not in part.lines]
-    inked_cells = {line: np.flatnonzero(odds[line] > 0) for line in free_lines}
+    free_lines = {*range(len(grid.pictures))} - part.lines - grid.cut
+    inked_cells = {line: np.flatnonzero(odds[line] > 0) for line in sorted(free_lines)}
     lines = {line: at for line, at in inked_cells.items() if len(at) >= _MIN_TYPED}
     if not lines or not part.cells:
         return
@@ -288,8 +289,12 @@ def _line_outlines(explained: Sequence[Explained]) -> Iterator[Floats]:
     """Yield the outlines of the lines that printouts take, from edge to edge of their grids."""
     for part in explained:
         for line in part.lines:
-            corners = part.grid.corners[line]
-            yield np.concatenate([corners[:, 0], corners[::-1, 1]])
+            yield _outline(part.grid, line)
+
+
+def _outline(grid: Grid, line: int) -> Floats:
+    corners = grid.corners[line]
+    return np.concatenate([corners[:, 0], corners[::-1, 1]])
 
 
 def _regions(is_left: Mask, kind: Kind, bands: Mask) -> Iterator[tuple[Mark, int]]:

@@ -47,10 +47,14 @@ class Read:
         The printout on the grid.
     costs : dict of str to ndarray, shape (cells, characters)
         By name of the number the cost of each of `READABLE` in each cell, 0 for the likeliest.
+    absent : set of str
+        Numbers of rows that are on the paper but cannot be read: that they are missing costs
+        nothing.
     """
 
     sheet: Sheet
     costs: dict[str, Floats]
+    absent: set[str] = field(default_factory=set)
     _known: dict[tuple[str, str], float] = field(default_factory=dict)
 
     def text(self, name: str) -> str:
@@ -253,7 +257,7 @@ def _evidence(read: Read) -> Evidence:
 def _candidate(read: Read, scene: dict[str, str], outcome: Outcome) -> Candidate:
     """Return a scene with the cost of its page against all cells."""
     fields = outcome.fields
-    cost = 2 * MAX_CELL_COST * len(set(fields) - set(read.costs))
+    cost = 2 * MAX_CELL_COST * len(set(fields) - set(read.costs) - read.absent)
     for name in read.costs:
         if not name.startswith("REPLY"):
             cost += read.cost(name, fields.get(name))

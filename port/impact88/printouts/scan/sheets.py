@@ -25,8 +25,9 @@ from .ink import (
     skew,
     without_pen,
 )
-from .layout import Sheet, sheets_of
+from .layout import Row, Sheet, layout_of
 from .residue import Explained, Kind, Mark, residue_of
+from .rowsfirst import Order, order_lines
 from .scenes import Candidate, Copy, Read, confirm_inputs, scene_of
 from .typeface import BLANK, read_numbers
 
@@ -43,6 +44,11 @@ MAX_CLAIMING = 2
 """Largest number of typed lines that give numbers of the page other values: more of them belong to
 another printout."""
 _IDENTICAL = (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
+_FORM = frozenset({0, 1, 10, 14})
+"""Lines that only a page of the program's own form has: its prompts and rows of asterisks."""
+RETYPED = 5.0
+"""Median distance of a row's cells from their means, in usual distances, from which the row is in
+another typeface."""
 _MIN_SIDE = 100
 """Pixels of the shorter side of a picture that is read: those of 13 lines of 5 pixels."""
 
@@ -65,6 +71,8 @@ class Leaf:
         Its cells, compared with the program's page for that scene.
     marks : list of Mark
         Marks in and near it that the program's page does not explain.
+    repeated, exchanged, retyped, cut : list of str
+        Sentences on rows printed twice, out of order, in another typeface, and cut through.
     """
 
     grid: Grid
@@ -73,6 +81,10 @@ class Leaf:
     found: Candidate | None = None
     cells: list[Cell] = field(default_factory=list)
     marks: list[Mark] = field(default_factory=list)
+    repeated: list[str] = field(default_factory=list)
+    exchanged: list[str] = field(default_factory=list)
+    retyped: list[str] = field(default_factory=list)
+    cut: list[str] = field(default_factory=list)
 
     @cached_property
     def by_name(self) -> dict[str, list[Cell]]:
@@ -136,25 +148,36 @@ def read_page(
             best = layout
         if layout.upright:
             break
-    leaves = [leaf for pair in best.grids for leaf in _leaves(*pair, seeds, copy)]
+    leaves = [leaf for on_grid in best.grids for leaf in _ordered_leaves(on_grid, seeds, copy)]
     _add_marks(ink, coloured, leaves, copy)
     return leaves
+
+
+class _OnGrid(NamedTuple):
+    """A grid with its printouts; ``order``: what was done to bring its rows into order."""
+
+    grid: Grid
+    sheets: list[Sheet]
+    order: Order | None
 
 
 class _Layout(NamedTuple):
     """Grids of a page with the printouts on each."""
 
-    grids: list[tuple[Grid, list[Sheet]]]
+    grids: list[_OnGrid]
+
+    @property
+    def sheets(self) -> list[Sheet]:
+        return [sheet for on_grid in self.grids for sheet in on_grid.sheets]
 
     @property
     def gain(self) -> float:
-        return sum(sheet.gain for _, sheets in self.grids for sheet in sheets)
+        return sum(sheet.gain for sheet in self.sheets)
 
     @property
     def upright(self) -> bool:
         """True if there is a whole printout, the right way up."""
-        sheets = [sheet for _, on_grid in self.grids for sheet in on_grid]
-        return any(sheet.whole and sheet.gain > _UPRIGHT_GAIN for sheet in sheets)
+        return any(sheet.whole and sheet.gain > _UPRIGHT_GAIN for sheet in self.sheets)
 
 
 def _layouts(ink: Image) -> Iterator[_Layout]:
@@ -176,18 +199,55 @@ def _layouts(ink: Image) -> Iterator[_Layout]:
             continue
         layout = _lay_out(ink, points, turns)
         yield layout
-        if any(sheet.gain > _UPRIGHT_GAIN for _, sheets in layout.grids for sheet in sheets):
+        if any(sheet.gain > _UPRIGHT_GAIN for sheet in layout.sheets):
             right_turn = turns
         if (fold, turns) == (1, order[0]) and layout.grids:
-            plain = points_of(without_pen(ink, layout.grids[0][0].pitch, turns))
+            plain = points_of(without_pen(ink, layout.grids[0].grid.pitch, turns))
             if len(plain.x) >= FEWEST_POINTS:
                 yield _lay_out(ink, plain, turns)
 
 
 def _lay_out(ink: Image, points: Points, turns: int) -> _Layout:
     """Return the printouts of a page after quarter ``turns`` to the left."""
-    grids = grids_of(ink, points, turns)
-    return _Layout([(grid, sheets_of(grid.odds(), grid.tops)) for grid in grids])
+    return _Layout([_lay_on_grid(grid) for grid in grids_of(ink, points, turns)])
+
+
+def _lay_on_grid(grid: Grid) -> _OnGrid:
+    """Return the printouts of a grid, its rows in the program's order."""
+    layout = layout_of(grid.odds(), grid.tops)
+    legible = sum(sheet.gain for sheet in layout.sheets) > _LEGIBLE_GAIN
+    order = order_lines(grid, layout) if legible and grid.clarity >= _MIN_CLARITY else None
+    if order:
+        grid = order.grid
+        layout = layout_of(grid.odds(), grid.tops)
+    return _OnGrid(grid, layout.sheets, order)
+
+
+def _ordered_leaves(
+    on_grid: _OnGrid, seeds: Sequence[dict[str, str]], copy: Copy | None
+) -> list[Leaf]:
+    """Return the printouts of a grid with their verdicts, and what is said of their rows.
+
+    A page of the program's form whose rows are out of order differs; one without prompts and rows
+    of asterisks was retyped, in an order of its own.
+    """
+    leaves = _leaves(on_grid.grid, on_grid.sheets, seeds, copy)
+    if not on_grid.order or not leaves:
+        return leaves
+    for is_exchange, sentences in (
+        (False, on_grid.order.repeated),
+        (True, on_grid.order.exchanged),
+    ):
+        for number, sentence in sentences:
+            owners = [
+                leaf for leaf in leaves if min(map(on_grid.grid.number, leaf.lines)) <= number
+            ]
+            leaf = (owners or leaves[:1])[-1]
+            (leaf.exchanged if is_exchange else leaf.repeated).append(sentence)
+            if leaf.judged.verdict in _IDENTICAL:
+                is_program = is_exchange and not _FORM.isdisjoint(leaf.read.sheet.rows)
+                leaf.judged.verdict = Verdict.DIFFERS if is_program else Verdict.IDENTICAL_AS_READ
+    return leaves
 
 
 def _add_marks(
@@ -253,6 +313,8 @@ def _leaves(
         return [Leaf(grid, Read(likeliest, {}), unread)]
     unread = CellJudgement(Verdict.INCOMPLETE, reason=f"no scene was found; {_NEXT_STEP}")
     leaves = [Leaf(grid, Read(sheet, {}), unread) for sheet in sheets]
+    for leaf in leaves:
+        _drop_cut_rows(leaf)
     legible = [leaf for leaf in leaves if leaf.read.sheet.gain > _LEGIBLE_GAIN]
     costs = read_numbers(grid, [leaf.read.sheet for leaf in legible])
     for leaf, number_costs in zip(legible, costs, strict=True):
@@ -275,6 +337,7 @@ def _leaves(
             if excess := _division_cost(leaf):
                 candidate = candidate._replace(cost=candidate.cost - excess)
             leaf.judged = judge_cells(leaf.read.sheet, candidate, leaf.cells)
+            _find_retyped_rows(leaf)
     # the printouts of a page share their mean characters: one misplaced spoils them for all
     if any(leaf.judged.verdict is Verdict.INCOMPLETE for leaf in leaves):
         for leaf in leaves:
@@ -282,6 +345,48 @@ def _leaves(
                 leaf.judged.verdict = Verdict.INCOMPLETE
                 leaf.judged.reason = "another printout on the page was not read"
     return leaves
+
+
+def _drop_cut_rows(leaf: Leaf) -> None:
+    """Remove the rows that an edge of the page cuts through, and say so: half a character is like
+    others."""
+    rows = leaf.read.sheet.rows
+    for line, row in [*rows.items()]:
+        if leaf.grid.cut.isdisjoint(range(row.start, row.start + row.used)):
+            continue
+        names = [piece.name for piece in row.pieces if piece.name]
+        leaf.read.absent.update(names)
+        del rows[line]
+        if names:
+            leaf.cut.append(
+                f"{_row_name(leaf.grid, row, names)} is cut through by the edge of the page: "
+                "it was not read"
+            )
+
+
+def _find_retyped_rows(leaf: Leaf) -> None:
+    """Say which rows are in another typeface than the page: most of their cells are far from the
+    means of the predicted and of the nearest other character.
+
+    A page with such a row is identical only as far as it was read.
+    """
+    for row in leaf.read.sheet.rows.values():
+        lines = range(row.start, row.start + row.used)
+        names = [piece.name for piece in row.pieces if piece.name]
+        distances = [
+            min(cell.distance, cell.other_distance)
+            for cell in leaf.cells
+            if cell.place.line in lines and cell.predicted != BLANK and not cell.cut
+        ]
+        if names and np.median(distances) > RETYPED:
+            name = _row_name(leaf.grid, row, names)
+            leaf.retyped.append(f"{name} is in another typeface than the rest of the page")
+            if leaf.judged.verdict is Verdict.IDENTICAL:
+                leaf.judged.verdict = Verdict.IDENTICAL_AS_READ
+
+
+def _row_name(grid: Grid, row: Row, names: Sequence[str]) -> str:
+    return f"line {grid.number(row.start)}, the row of {names[0]},"
 
 
 def _compare_leaves(grid: Grid, leaves: Sequence[Leaf]) -> None:
