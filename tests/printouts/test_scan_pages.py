@@ -13,6 +13,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import digitstyles
 import numpy as np
 import pytest
 import scanpages
@@ -381,6 +382,18 @@ def test_a_digit_pasted_from_elsewhere_on_the_page_differs_and_is_shown() -> Non
     shown = report([altered])
     assert "looks like" in shown
     assert "no probability that the page at hand is genuine" in shown
+
+
+@pytest.mark.parametrize("style", digitstyles.STYLES)
+def test_the_known_digits_are_those_that_their_generator_draws(style: str) -> None:
+    """Of the fonts that are installed, within what versions of a font and of FreeType change."""
+    if digitstyles.STYLES[style] and not digitstyles.path_of(style).exists():
+        pytest.skip("the font is not installed")
+    archive = np.load(digitstyles.FILE)
+    assert "".join(archive["characters"]) == digitstyles.CHARACTERS
+    kept = archive["glyphs"][archive["styles"].tolist().index(style)].astype(float)
+    drawn = digitstyles.glyphs_of(style).astype(float)
+    assert np.abs(kept - drawn).mean() < 0.02 * kept.max()
 
 
 # --- rows ----------------------------------------------------------------------------------------

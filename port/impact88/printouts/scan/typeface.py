@@ -180,7 +180,10 @@ def typeface_of(sample: Sample, names: Sequence[str]) -> Typeface:
 
 @lru_cache
 def prototypes() -> tuple[str, Vectors]:
-    """Return the known digits: characters, and glyphs (styles, characters, rows, columns)."""
+    """Return the known digits: characters, and glyphs (styles, characters, rows, columns).
+
+    ``tests/support/digitstyles.py`` draws them and names their fonts.
+    """
     with resources.files("impact88.printouts.scan").joinpath("digits.npz").open("rb") as file:
         archive = np.load(file)
         characters = "".join(archive["characters"].tolist())
