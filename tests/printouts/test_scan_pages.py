@@ -209,8 +209,8 @@ def test_an_input_that_no_result_bears_out_is_what_the_paper_shows() -> None:
     [
         (b"\x89PNG\r\n\x1a\nnothing", "is not a picture that can be read"),
         (b"%PDF-1.4 nothing", "is not a PDF that can be read"),
-        (saved(Pillow.new("L", (400, 300), 255), "PNG"), "no printout was found in the picture"),
-        (saved(Pillow.new("L", (1, 1), 255), "PNG"), "no printout was found in the picture"),
+        (saved(Pillow.new("L", (400, 300), 255), "PNG"), "a character (it has hardly any ink)"),
+        (saved(Pillow.new("L", (1, 1), 255), "PNG"), "(it is less than 100 pixels wide or high)"),
         (saved(Pillow.new("L", (1, 100_000), 0), "PNG"), "no printout was found in the picture"),
         (saved(Pillow.new("RGB", (100_000, 1)), "PNG"), "no printout was found in the picture"),
         (saved(Pillow.new("1", (8000, 8000)), "PNG"), "8000 x 8000 pixels; expected at most"),
@@ -221,6 +221,21 @@ def test_what_is_no_page(data: bytes, message: str, tmp_path: Path) -> None:
     assert examined.error is not None
     assert message in examined.error
     assert not examined.results
+
+
+def test_a_refusal_says_in_one_line_what_was_tried() -> None:
+    """Of a picture of stripes, light on dark: that, and the turns."""
+    stripes = np.zeros((300, 400), np.uint8)
+    stripes[40:260:9, 30:370] = 255
+    examined: Examined = examine("page.png", data=saved(Pillow.fromarray(stripes), "PNG"))
+    assert examined.error is not None
+    assert "\n" not in examined.error
+    assert (
+        "(the picture is a negative: it was read as a positive; tried dark type as"
+        in examined.error
+    )
+    for turn in (90, 180, 270):
+        assert f"turned by {turn} degrees" in examined.error
 
 
 @pytest.mark.parametrize(

@@ -44,9 +44,9 @@ def verify_pages(
             unread = 0
             for paper in papers_of(page.picture):
                 scenes = [*seeds, *scenes_in(page.text)]
-                leaves = read_page(paper.grey, scenes, paper.coloured, copy)
+                leaves, tried = read_page(paper.grey, scenes, paper.coloured, copy)
                 unread += not leaves
-                causes = causes or ("" if leaves else "; ".join(paper.remarks))
+                causes = causes or ("" if leaves else "; ".join([*paper.remarks, tried]))
                 for leaf in leaves:
                     number = len(results) + len(page_results) + 1
                     result = _verification(path, number, page, paper, leaf, copy)
@@ -65,7 +65,7 @@ def verify_pages(
     if not results:
         raise UserError(
             f"{display_name(path)}: no printout was found in the picture; expected lines of fixed "
-            "pitch, 10 pixels or more a character" + (f" ({causes})" if causes else "")
+            f"pitch, 10 pixels or more a character ({causes})"
         )
     if without:
         pages = ", ".join(map(str, without))

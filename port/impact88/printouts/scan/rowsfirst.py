@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..reading.alignment import ANGLE_ROW, HEADING
 from ..reading.glyphs import Page
 from ..reading.pagerows import find_rows
 from .grid import Grid
@@ -115,10 +116,13 @@ def _name_lines(grid: Grid, layout: Layout, lines: Mapping[int, LineFit]) -> dic
     named: dict[int, LineFit] = {}
     taken: set[int] = set()
     for start in range(len(grid.pictures)):
+        before = named.get(start - 1)
         fits = [
             fit
             for used in (1, 2)
             for fit in layout.candidates(start, used)
+            # numbers without labels are the angles' if they stand below their heading
+            if fit.line != ANGLE_ROW or (before and before.line == HEADING)
             if fit.gain > _MIN_SHARE * sum(line_ink[line] for line in _grid_lines(fit.row))
         ]
         if start not in taken and fits:
@@ -148,4 +152,5 @@ def _text(grid: Grid, lines: Mapping[int, LineFit]) -> str:
     sheets = [Sheet({fit.line: fit.row}) for fit in lines.values()]
     texts = [Read(*pair).page()[0] for pair in zip(sheets, read_numbers(grid, sheets), strict=True)]
     by_line = dict(zip(lines, texts, strict=True))
-    return "\n".join(by_line.get(line, "") for line in range(len(grid.pictures)))
+    # a blank at the end of each: lines of one length are not broken ones
+    return " \n".join(by_line.get(line, "") for line in range(len(grid.pictures)))

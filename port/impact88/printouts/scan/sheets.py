@@ -125,8 +125,9 @@ def read_page(
     seeds: Sequence[dict[str, str]] = (),
     coloured: Image | None = None,
     copy: Copy | None = None,
-) -> list[Leaf]:
-    """Return all printouts of a page, upright or turned by quarters, each with what else is there.
+) -> tuple[list[Leaf], str]:
+    """Return all printouts of a page, upright or turned by quarters, each with what else is there,
+    and what was tried to find them.
 
     Parameters
     ----------
@@ -140,17 +141,22 @@ def read_page(
         The program that printed the page, if not the restored listing.
     """
     if min(grey.shape) < _MIN_SIDE:
-        return []
+        return [], f"it is less than {_MIN_SIDE} pixels wide or high"
     ink = ink_of(grey)
-    best = _Layout([])
+    best = _Layout([], "")
+    tried: dict[str, None] = {}
     for layout in _layouts(ink):
+        tried[layout.way] = None
         if layout.gain > best.gain:
             best = layout
         if layout.upright:
             break
     leaves = [leaf for on_grid in best.grids for leaf in _ordered_leaves(on_grid, seeds, copy)]
     _add_marks(ink, coloured, leaves, copy)
-    return leaves
+    return leaves, "tried dark type " + ", ".join(tried) if tried else "it has hardly any ink"
+
+
+_WITHOUT_GRAIN = "all of these without the grain of the paper"
 
 
 class _OnGrid(NamedTuple):
@@ -162,9 +168,10 @@ class _OnGrid(NamedTuple):
 
 
 class _Layout(NamedTuple):
-    """Grids of a page with the printouts on each."""
+    """Grids of a page with the printouts on each; ``way``: how the page was looked at."""
 
     grids: list[_OnGrid]
+    way: str
 
     @property
     def sheets(self) -> list[Sheet]:
@@ -197,19 +204,20 @@ def _layouts(ink: Image) -> Iterator[_Layout]:
                 return
         if right_turn not in (None, turns):
             continue
-        layout = _lay_out(ink, points, turns)
+        way = f"turned by {90 * turns} degrees" if turns else "as it lies"
+        layout = _lay_out(ink, points, turns, way if fold == 1 else _WITHOUT_GRAIN)
         yield layout
         if any(sheet.gain > _UPRIGHT_GAIN for sheet in layout.sheets):
             right_turn = turns
         if (fold, turns) == (1, order[0]) and layout.grids:
             plain = points_of(without_pen(ink, layout.grids[0].grid.pitch, turns))
             if len(plain.x) >= FEWEST_POINTS:
-                yield _lay_out(ink, plain, turns)
+                yield _lay_out(ink, plain, turns, "without strokes of a pen")
 
 
-def _lay_out(ink: Image, points: Points, turns: int) -> _Layout:
+def _lay_out(ink: Image, points: Points, turns: int, way: str) -> _Layout:
     """Return the printouts of a page after quarter ``turns`` to the left."""
-    return _Layout([_lay_on_grid(grid) for grid in grids_of(ink, points, turns)])
+    return _Layout([_lay_on_grid(grid) for grid in grids_of(ink, points, turns)], way)
 
 
 def _lay_on_grid(grid: Grid) -> _OnGrid:
