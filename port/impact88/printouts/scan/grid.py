@@ -259,9 +259,10 @@ def _search_bend(phasors: _Phasors, pitch: float, span: float) -> Floats:
     curves = np.array([(keystone, bow) for keystone in keystones for bow in bows - bows.mean()])
     chosen = np.argsort(-np.abs(phasors.sums))[:_MAX_COARSE]
     sums, terms = phasors.sums[chosen], phasors.terms[:, chosen]
-    by_slant = np.exp(turn * np.outer(slants, terms[2]))
-    by_stretch = np.exp(turn * np.outer(stretches, terms[1])).T
-    by_curve = sums * np.exp(turn * curves @ terms[3:5])
+    # in single precision, for speed: it only starts the refinement
+    by_slant = np.exp(turn * np.outer(slants, terms[2])).astype(np.complex64)
+    by_stretch = np.exp(turn * np.outer(stretches, terms[1])).T.astype(np.complex64)
+    by_curve = (sums * np.exp(turn * curves @ terms[3:5])).astype(np.complex64)
     clarity = np.stack([np.abs((by_slant * row) @ by_stretch) for row in by_curve])
     clarity /= np.abs(sums).sum()
     clarity -= _STRAIN * np.abs(curves).sum(axis=1)[:, None, None] / pitch

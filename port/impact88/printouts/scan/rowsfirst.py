@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..reading.alignment import ANGLE_ROW, HEADING
+from ..reading.alignment import ANGLE_ROW, HEADING, LINES
 from ..reading.glyphs import Page
 from ..reading.pagerows import find_rows
 from .grid import Grid
@@ -46,10 +46,11 @@ def order_lines(grid: Grid, layout: Layout) -> Order | None:
         for sheet in layout.sheets
         for line, row in sheet.rows.items()
     }
-    lines = as_laid_out
-    for _ in range(_ROUNDS):
-        lines = _name_lines(grid, layout, lines)
-    if not lines or _numbers(lines) == _numbers(as_laid_out):
+    lines, before = _name_lines(grid, layout, as_laid_out), as_laid_out
+    for _ in range(_ROUNDS - 1):
+        if _prints(lines) != _prints(before):
+            lines, before = _name_lines(grid, layout, lines), lines
+    if not lines or _prints(lines) == _prints(as_laid_out):
         return None
     page = Page(_text(grid, lines))
     rows = find_rows(page)
@@ -75,9 +76,9 @@ def order_lines(grid: Grid, layout: Layout) -> Order | None:
     )
 
 
-def _numbers(lines: Mapping[int, LineFit]) -> dict[int, int]:
-    """Return the number of the line of print on each line of the grid."""
-    return {start: fit.line for start, fit in lines.items()}
+def _prints(lines: Mapping[int, LineFit]) -> dict[int, str]:
+    """Return the line of print on each line of the grid."""
+    return {start: LINES[fit.line] for start, fit in lines.items()}
 
 
 def _grid_lines(row: Row) -> range:
@@ -126,8 +127,10 @@ def _name_lines(grid: Grid, layout: Layout, lines: Mapping[int, LineFit]) -> dic
             if fit.gain > _MIN_SHARE * sum(line_ink[line] for line in _grid_lines(fit.row))
         ]
         if start not in taken and fits:
+            # of one no letter need be read
+            wrong = [len(fits) > 1 and _wrong_letters(grid, typeface, fit) for fit in fits]
             scores = [
-                fit.gain - _WRONG_LETTER * _wrong_letters(grid, typeface, fit) for fit in fits
+                fit.gain - _WRONG_LETTER * count for fit, count in zip(fits, wrong, strict=True)
             ]
             named[start] = fits[int(np.argmax(scores))]
             taken.update(_grid_lines(named[start].row))
