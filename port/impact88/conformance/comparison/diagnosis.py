@@ -442,7 +442,8 @@ class Diagnosis:
         if len(groups) == 1:
             yield from self._explain(small, is_large)
             return
-        names = [name for name in small.theirs if name in groups[0] or not _is_in(groups, name)]
+        elsewhere = {name for group in groups[1:] for name in group}
+        names = [name for name in small.theirs if name not in elsewhere]
         partial_ones = list(self._explain(small.narrow_to(names), is_large))
         yield from partial_ones
         whole_ones = [
@@ -452,23 +453,14 @@ class Diagnosis:
         ]
         yield from whole_ones
         best = self._best(partial_ones)
-        if best and best.program and not best.where and not self._give_nearly_all(whole_ones):
+        if best and best.program and not best.where and not self._are_explained(whole_ones, small):
             extended = list(self._extend(best.program, small))
             yield from extended
             whole_ones += extended
-        for group in groups[1:] if not self._give_nearly_all(whole_ones) else ():
+        for group in groups[1:] if not self._are_explained(whole_ones, small) else ():
             other = small.narrow_to(group)
             if other.wrong.any():
                 yield from self._explain(other, False)
-
-    def _give_nearly_all(self, hypotheses: Sequence[Hypothesis]) -> bool:
-        """Return whether hypotheses together predict nearly all rows of the sample that
-        disagree."""
-        explained = np.zeros(self._wrong.size, bool)
-        for hypothesis in hypotheses:
-            if self._score(hypothesis) >= _MIN_SCORE:
-                explained |= self._fits(hypothesis) & self._wrong
-        return bool(explained.sum() >= MIN_FIT * self._wrong.sum())
 
     def _extend(self, program: Program, judge: Judge) -> Iterator[Hypothesis]:
         """Yield a program with an edit more, by which it gives the other results, too."""
@@ -648,10 +640,6 @@ def _plainness(trial: Trial) -> tuple[int, bool, int]:
     is said in words and not by a formula, and briefly."""
     sentence = trial.program.sentence
     return trial.rank, any(sign in sentence for sign in "*/+"), len(sentence)
-
-
-def _is_in(groups: Sequence[Sequence[str]], name: str) -> bool:
-    return any(name in group for group in groups)
 
 
 def _cost_of(edit: Edit) -> float:
