@@ -168,7 +168,9 @@ def _sort_solutions(
     all do, those that drive backwards only where no others exist."""
     forward_solutions = [s for s in solutions if not s.backwards] or solutions
     # a solution that contradicts the measurements, such as standstill, is dropped if others agree
-    agreeing = [s for s in forward_solutions if not s.evidence.contradictory] or forward_solutions
+    agreeing = [s for s in forward_solutions if not s.evidence.contradictory]
+    if not agreeing or any(solution.limited for solution in forward_solutions):
+        agreeing = forward_solutions
     possible = [s for s in agreeing if not s.impossible]
     # A possible impact is compared with the possible ones only: an impossible one that fits better
     # must not displace it. An impossible one has to compete with all.
@@ -189,7 +191,7 @@ def _sort_solutions(
 
     search = Searched(
         sum(item.starts for item in searches),
-        min(solution.reached for solution in likely),
+        min((solution.reached for solution in likely if not solution.limited), default=0),
         all(item.single for item in searches),
         len(likely),
         sum(not solution.impossible for solution in likely),

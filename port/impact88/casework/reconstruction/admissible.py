@@ -62,6 +62,7 @@ class Admissible:
         laws = LAWS if "GA" in system.known else (ENERGY, NORMAL)
         self.rows: Sequence[str] = (*laws, *open_ones)
         self.speed, self.mass = system.speed, system.mass
+        self.spin = system.speed / system.gyration
 
     def limit_to(self, names: Collection[str]) -> None:
         """Judge by these conditions alone."""
@@ -82,6 +83,23 @@ class Admissible:
             return (state[name] - low) / (high - low)
         low, high = friction_limits(state)
         return (state["MUP"] - low) / (high - low)
+
+    def ends(self, state: State, name: str) -> tuple[Any, Any]:
+        """Return how far impacts lie within the lower and the upper end of a condition, beyond
+        where negative: the same as `row`, without its quotients, as velocities and impulses in
+        typical ones. A law has no upper end."""
+        if name in LAWS:
+            values = {
+                APPROACH: -state.relative_before[0] / self.speed,
+                PUSH: state.values["PN"] / (self.mass * self.speed),
+                ENERGY: state.energy_lost / (self.mass * self.speed**2),
+            }
+            return values[name], np.inf
+        above, below = state.quotient(name)
+        sign = np.where(np.real(below) < 0, -1.0, 1.0)
+        low, high = RANGES[name] if name in RANGES else friction_limits(state)
+        size = {"E": self.speed, "EM": self.spin}.get(name, self.mass * self.speed)
+        return sign * (above - low * below) / size, sign * (high * below - above) / size
 
     def sentence(self) -> str:
         """Return the admissible set in one sentence, without its full stop."""

@@ -26,6 +26,8 @@ Floats = NDArray[np.float64]
 RESIDUAL_TOL = 1e-10  # largest scaled residual of conditions that hold
 NULL_TOL = 1e-7  # relative part of a gradient in the null space that counts as zero
 DIRECTION_TOL = 1e-9  # degrees
+# Cut-off of normal values without limits, in standard deviations, for draws, bounds and agreement
+SIGMAS = 3.0
 FOLD_OFFSET = 1e-2  # scaled distance at which a fold is distinguished from a continuum
 FOLD_TOL = 1e-4  # relative singular value below which two branches nearly meet
 FOLD_GRADIENT_TOL = 1e-3  # relative part of a gradient along the fold that counts as zero
@@ -61,7 +63,7 @@ class Searched(NamedTuple):
     Parameters
     ----------
     starts : int
-        Random starts.
+        Starts of iterations, random ones and impacts of fewer measurements.
     reached : int
         The number of these that led to the impact found least often.
     single : bool
@@ -100,7 +102,7 @@ class Searched(NamedTuple):
         if self.solutions:
             return f"{impacts}; the equations have no other"
         which = "it" if self.impacts == 1 else "the rarest"
-        return f"{impacts}; of {self.starts} random starts {self.reached} led to {which}"
+        return f"{impacts}; of {self.starts} starts {self.reached} led to {which}"
 
 
 NOT_SEARCHED = Searched()
@@ -146,6 +148,11 @@ class Reconstruction:
         follows from the motion.
     reached : int
         Starts of the search that led here.
+    limited : tuple of str
+        Conditions of the admissible set (`admissible`) at whose border the adjusted values lie:
+        beyond, an impact that does not count fits better.
+    nearest : Reconstruction, optional
+        The nearest admissible impact, where none agrees with what is known.
 
     Examples
     --------
@@ -169,6 +176,8 @@ class Reconstruction:
     beside: tuple[tuple[System, Floats], ...] = field(default=(), repr=False, compare=False)
     remarks: tuple[str, ...] = ()
     reached: int = 0
+    limited: tuple[str, ...] = ()
+    nearest: "Reconstruction | None" = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
         shown = ", ".join(
@@ -182,22 +191,17 @@ class Reconstruction:
         """Quantities that need an input that is not given, and which."""
         return absent_results(self.system.known)
 
-    @property
-    def collides(self) -> bool:
-        """True if the contact points approach and push each other, as far as that is known."""
-        if not self.values.get("PN", 1.0) > 0:
-            return False
-        if "VC" not in self.values:  # the contact plane or a velocity is not known
-            return True
-        return bool(self.system.state(self.x).relative_before[0] < 0)
-
     @cached_property
     def impossible(self) -> Status:
         """Bits of STATUS that no real impact has, 0 if the impact is possible."""
-        bits = Status(int(outcome(self.values)["STATUS"])) & IMPOSSIBLE
-        if not self.collides:
-            bits |= Status.PULLING if self.values.get("PN", 1.0) <= 0 else Status.SEPARATING
-        return bits
+        return Status(int(outcome(self.values)["STATUS"])) & IMPOSSIBLE
+
+    @property
+    def is_within_limits(self) -> bool:
+        """True if the adjusted values lie within all limits, normal ones within `SIGMAS`."""
+        known = self.system.known
+        limits = [(item.adjusted, *known[item.name].limits(SIGMAS)) for item in self.adjusted]
+        return all(low <= value <= high for value, low, high in limits)
 
     @cached_property
     def backwards(self) -> tuple[str, ...]:
@@ -273,7 +277,7 @@ class Reconstruction:
         observation, and each observation's redundancy number: the part of such an error that its
         own adjustment shows."""
         jacobian = self.system.jacobian(self.x)
-        count = len(self.system.conditions)
+        count = self.system.condition_count
         _, feasible = pseudo_inverse(jacobian[:count])
         projected_inverse, _ = pseudo_inverse(jacobian[count:] @ feasible)
         responses = np.asarray(feasible @ projected_inverse)
@@ -431,7 +435,7 @@ def describe(system: System, x: Floats, assumed: bool) -> Reconstruction:
       off.
     - The direction of the impulse is undetermined where P_n is."""
     state, rows = system.state(x), system.jacobian(x)
-    adjustments = system.residuals(state)[len(system.conditions) :, 0]
+    adjustments = system.residuals(state)[system.condition_count :, 0]
     _, null = pseudo_inverse(rows)
 
     def to_float(array: Any) -> float:

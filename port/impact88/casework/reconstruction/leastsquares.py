@@ -40,8 +40,8 @@ def descend(system: System, starts: Floats, penalties: Sequence[float] = PENALTI
 def _descend(system: System, starts: Floats, penalty: float) -> Floats:
     """Return the ends of one stage, with this weight of conditions."""
     x = starts.copy()
-    weights = np.ones((len(system.conditions) + len(system.observations), 1))
-    weights[: len(system.conditions)] = penalty
+    weights = np.ones((system.condition_count + len(system.observations), 1))
+    weights[: system.condition_count] = penalty
     residual, jacobian = _weighted(system, x, weights)
     damping = np.full(x.shape[1], FIRST_DAMPING)
     running = np.flatnonzero(np.isfinite(residual).all(axis=0))
@@ -109,7 +109,7 @@ def _newton_step(system: System, x: Floats) -> tuple[Floats, bool]:
     which change by a unit vector along each: A Z V S⁻¹ = U, with the null space Z of C and A Z = U
     S V^T. Directions that nothing determines to first order are left out."""
     residual, jacobian = (array[..., 0] for array in system.linearize(x, system.residuals))
-    count = len(system.conditions)
+    count = system.condition_count
     inverse, null = pseudo_inverse(jacobian[:count])
     a, r = jacobian[count:], residual[count:]
     to_conditions = -inverse @ residual[:count]

@@ -24,7 +24,7 @@ from ...mechanics.state import BARRIER_SPEEDS, CRUSH, DIRECTIONS, SPEEDS, State
 from ...names import COEFFICIENTS, VELOCITIES
 from .admissible import FRICTION, LAWS, Admissible, friction_limits
 from .coordinates import OTHER_ROOT, OTHER_SIGN, Branches, Coordinates
-from .impact import NULL_TOL, Reconstruction
+from .impact import NULL_TOL, SIGMAS, Reconstruction
 from .sampler import Proposal, Sample, sample
 from .system import COMPLEX_STEP
 
@@ -44,7 +44,6 @@ BROAD_FRACTION = 0.4  # of all proposals
 JUMP_PROBABILITY = 0.1  # of a move to another branch
 
 # Limits
-SIGMAS = 3.0  # cut-off of unbounded normal values in standard deviations, for draws and bounds
 # Largest velocity before the impact, in largest known speeds. Draws that reach it are said.
 MAX_VELOCITY = 20.0
 LIMIT_TOL = 1e-9  # a value beyond a limit by less, in half-widths, is at it

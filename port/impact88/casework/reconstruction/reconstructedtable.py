@@ -20,7 +20,8 @@ from ..uncertainty.boundstable import unbounded_sides
 from . import adjustment
 from .admissible import ENDS
 from .impact import Reconstruction, typed_friction
-from .posterior import MAX_VELOCITY, MIN_SIZE, SIGMAS
+from .nearest import refusal
+from .posterior import MAX_VELOCITY, MIN_SIZE
 from .reconstructed import MIN_GAIN, Draws, Range, draws, ranges
 from .solutiontable import DRIVERS, NOISE, ROUNDING, Impact, join_texts, with_derived_values
 
@@ -53,13 +54,6 @@ def _along_an_axis(solution: Reconstruction, name: str) -> bool:
     components = SPEEDS[COURSES[name]] if name in COURSES else ()
     known = solution.system.known
     return any(n in known and known[n].nominal == 0 and not known[n].varies for n in components)
-
-
-def _is_within_limits(solution: Reconstruction) -> bool:
-    """Return True if an impact meets all limits of what is known, normal values within `SIGMAS`."""
-    known = solution.system.known
-    limits = [(item.adjusted, *known[item.name].limits(SIGMAS)) for item in solution.adjusted]
-    return all(low <= value <= high for value, low, high in limits)
 
 
 def _bounds_without_noise(bound: Range) -> tuple[float, float]:
@@ -134,7 +128,7 @@ class Measured(Impact):
             bound = ranges(solution, names[:1], seed, None, progress)[names[0]]
             self.is_empty = math.isnan(bound.lower)
         if self.is_empty:
-            self.not_drawn = _is_within_limits(solution)
+            self.not_drawn = solution.is_within_limits
             if not self.not_drawn:
                 self.evidence = solution.weigh_evidence(inside=False)
         if not solution.assumed:
@@ -191,9 +185,18 @@ class Measured(Impact):
             rows.append(("SEARCH", search.text()))
         if self.solution.impossible and self.draws:
             rows.append(("POSSIBLE", f"{self._possible_speeds(units)}; their draws are below"))
+        elif self.solution.nearest is not None:
+            row = ("NO IMPACT", self._refusal(units) or "")
+            rows.insert(1 if self.evidence.contradictory else 0, row)
         elif self.solution.impossible and self.is_empty:
             rows.append(("POSSIBLE", "no impact that physics allows lies within all limits"))
         return rows
+
+    def _refusal(self, units: System) -> str | None:
+        """Return why no impact that physics allows agrees with what is known, None if one does."""
+        if self.draws or self.solution.nearest is None:
+            return None
+        return refusal(self.solution, self.solution.nearest, units)
 
     def _possible_speeds(self, units: System) -> str:
         """Return the 90 % intervals of speeds and courses of the possible impacts."""
@@ -212,6 +215,11 @@ class Measured(Impact):
     def warnings(self, units: System = RULES) -> list[str]:
         """Return the warnings, a sentence each."""
         solution, lines = self.solution, []
+        if solution.limited:
+            ends = " and ".join(ENDS[name] for name in solution.limited)
+            lines.append(
+                f"the values fit best where {ends}: beyond, an impossible impact fits better"
+            )
         if solution.undetermined:
             lines.append(f"not determined by what is known: {' '.join(solution.undetermined)}")
         for name in solution.backwards:
@@ -496,6 +504,8 @@ class Measured(Impact):
             "sum_of_squares": solution.squares,
             "evidence": self.evidence.as_json(units),
             "search": {**solution.search._asdict(), "text": solution.search.text()},
+            "limited_by": list(solution.limited),
+            "no_impact": self._refusal(units),
             "equal_tolerances_assumed": solution.assumed,
             "uncertainty": {name: self._uncertainty_json(name, units) for name in self.names},
             "correlations": {"names": self.names, "matrix": self._correlations(units)},

@@ -18,6 +18,7 @@ from ...names import FINAL_STATE, IMPULSES, VELOCITIES
 from .impact import RESIDUAL_TOL, Reconstruction, describe
 from .laws import describe_laws, missed_laws
 from .leastsquares import PENALTIES, descend, polish, pseudo_inverse
+from .nearest import with_nearest
 from .quadrics import MAX_EQUATIONS, Paths, follow_paths, quadratic_equations
 from .system import PARAMETERS, SPINS, System
 from .unknowns import UnsolvableError
@@ -44,7 +45,7 @@ class Search:
 
     ``system``: the equations; ``exact``: the impacts that agree exactly with all nominal values
     (scaled variables, a column each); ``assumed``: exact values contradict one another, and the
-    known velocities were given tolerances; ``starts``: number of random starts; ``paths``: where
+    known velocities were given tolerances; ``starts``: number of starts; ``paths``: where
     all solutions of exact values were found."""
 
     def __init__(self, known: Mapping[str, Uncertain], progress: Progress) -> None:
@@ -130,7 +131,10 @@ class Search:
                 "the search for the impact nearest to the known values did not converge; expected "
                 "wider tolerances, or fewer values"
             )
-        return minima.solutions()
+        solutions = minima.solutions()
+        if self.assumed:
+            return solutions
+        return with_nearest(solutions, _random_starts(self.system, self.rng, FIT_STARTS))
 
     def _fits(self) -> Floats:
         """Return the ends of iterations from random starts, half of them without the first penalty,
@@ -138,11 +142,11 @@ class Search:
         system = self.system
         if self.linear:
             return descend(system, _random_starts(system, self.rng, 1))
-        self.starts += 2 * FIT_STARTS
         starts = _random_starts(system, self.rng, 2 * FIT_STARTS)
         first, others = np.split(starts, 2, axis=1)
         first = descend(system, first, PENALTIES[:1])
         roots = starts[:, :0] if self.assumed else self._impacts_of_fewer_measurements()
+        self.starts += starts.shape[1] + roots.shape[1]
         return descend(system, np.concatenate([first, others, roots], axis=1), PENALTIES[1:])
 
     def _impacts_of_fewer_measurements(self) -> Floats:
@@ -192,7 +196,7 @@ class _Minima:
     def add(self, ends: Floats, counts: Counts | None = None) -> None:
         """Add the minima near the ends of iterations, a column each, the best first. ``counts``:
         how many starts led to each end, by default 1."""
-        count = len(self.system.conditions)
+        count = self.system.condition_count
         residual = self.system.residuals(self.system.state(ends))
         violation = np.abs(residual[:count]).max(axis=0, initial=0.0)
         squares = np.square(residual[count:]).sum(axis=0)
@@ -229,7 +233,7 @@ class _Minima:
 
     def _add(self, x: Floats) -> int | None:
         """Keep a minimum. Return its index among those that determine everything."""
-        system, count = self.system, len(self.system.conditions)
+        system, count = self.system, self.system.condition_count
         residual = system.residuals(system.state(x))[:, 0]
         if not np.abs(residual[:count]).max(initial=0.0) <= RESIDUAL_TOL:
             return None

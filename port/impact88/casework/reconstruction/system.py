@@ -7,6 +7,7 @@ gyration). With exact values alone all conditions are linear, except speeds, dir
 velocity and energies."""
 
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from functools import reduce
 from typing import Any
 
@@ -108,6 +109,7 @@ class System:
             or n in (*SPEEDS, *DIRECTIONS, "ELA", "EBSA")
         ]
         self.conditions = (*self.laws, *self.exact)
+        self.limits: tuple[Callable[[State], Any], ...] = ()
         self.observations = tuple(n for n in known if n in uncertain and n not in fixed)
         self.geometry = None if set(parameters) & set(GEOMETRY) else geometry
         self.linear = (
@@ -115,6 +117,18 @@ class System:
             and "MUC" not in self.constants
             and not any(n in _NONLINEAR and _COURSE_OF.get(n) not in known for n in known)
         )
+
+    def limited_by(self, limits: Sequence[Callable[[State], Any]]) -> "System":
+        """Return the same equations with further conditions: residuals of impacts, real or
+        complex."""
+        limited = copy(self)
+        limited.limits = tuple(limits)
+        return limited
+
+    @property
+    def condition_count(self) -> int:
+        """The number of conditions, limits too."""
+        return len(self.conditions) + len(self.limits)
 
     def _typical_speed(self) -> Any:
         """Return the largest known velocity: spins times the radius of gyration, energies as the
@@ -152,6 +166,7 @@ class System:
         targets = {**self.nominal, **(targets or {})}
         rows = [state.law(n) / self.law_scale(n) for n in self.laws]
         rows += [self.exact_residual(state, n, targets) for n in self.exact]
+        rows += [limit(state) for limit in self.limits]
         for name in self.observations:
             deviation = self.observed_value(state, name) - targets[name]
             rows.append(deviation / self.known[name].standard_deviation)

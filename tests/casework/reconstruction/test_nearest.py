@@ -1,0 +1,78 @@
+"""Least squares within the admissible set: what fits best where the best fit of all is no impact,
+and what would have to move where none agrees, against sums done by hand."""
+
+import math
+
+import numpy as np
+import pytest
+
+from impact88.casework.reconstruction.adjustment import reconstruct
+from impact88.casework.reconstruction.nearest import is_admissible
+from impact88.casework.reconstruction.reconstructedtable import Measured
+from impact88.collision.uncertain import Uncertain
+from impact88.collision.units import RULES
+from impact88.status import Status
+
+MASSES = {"MA": 100.0, "MB": 80.0}
+
+
+def along_a_line(deviation, **measured):
+    """Return what is known of two points on a line: four velocities, with this deviation."""
+    known = {"M": 4.0, **MASSES, "GA": 180.0, **dict.fromkeys(("UY", "VY", "VAY", "VBY"), 0.0)}
+    for name, value in measured.items():
+        known[name] = Uncertain("normal", value, -math.inf, math.inf, deviation)
+    return known
+
+
+def squares_stuck_together(ux, vx, vax, vbx, deviation):
+    """Return the least sum of squares with one velocity after the impact: three unknowns joined by
+    momentum, by its normal equations."""
+    ma, mb = MASSES.values()
+    design = np.array([[1.0, 0.0], [0.0, 1.0], *2 * [[ma / (ma + mb), mb / (ma + mb)]]])
+    return np.linalg.lstsq(design, [ux, vx, vax, vbx], rcond=None)[1][0] / deviation**2
+
+
+def test_a_fit_ends_where_restitution_would_be_negative():
+    measured = {"UX": 20.0, "VX": -5.0, "VAX": 9.0, "VBX": 7.0}
+    best, free = reconstruct(along_a_line(1.0, **measured))
+    assert best.limited == ("E",)
+    assert not best.impossible
+    assert best.values["E"] == pytest.approx(0.0, abs=1e-9)
+    assert best.values["VAX"] == pytest.approx(best.values["VBX"])
+    assert best.squares == pytest.approx(squares_stuck_together(*measured.values(), 1.0))
+    assert free.impossible == Status.E_OUT_OF_RANGE
+    assert free.squares < best.squares
+    shown = Measured(best, 1000)
+    assert shown.draws is not None
+    assert "fit best where E would leave 0 ... 1" in " ".join(shown.warnings())
+    beside = Measured(free, 1000, like=shown)
+    assert (beside.draws, beside.ranges) == (None, {})
+
+
+@pytest.mark.parametrize(("vbx", "count"), [(8.4, 2), (9.6, 1)])
+def test_a_fit_that_counts_is_left_as_it_is(vbx, count):
+    found = reconstruct(along_a_line(1.0, UX=20.0, VX=-5.0, VAX=9.0, VBX=vbx))
+    assert len(found) == count
+    assert [is_admissible(impact) for impact in found] == [True, False][:count]
+    assert bool(found[0].limited) == (count == 2)
+
+
+def test_where_no_impact_agrees_that_is_said_with_what_would_have_to_move():
+    (free,) = reconstruct(along_a_line(0.1, UX=20.0, VX=-5.0, VAX=9.0, VBX=7.0))
+    assert free.impossible == Status.E_OUT_OF_RANGE
+    assert free.nearest is not None
+    assert free.nearest.squares == pytest.approx(squares_stuck_together(20, -5, 9, 7, 0.1))
+    shown = Measured(free, 1000)
+    text = dict(shown.headline(RULES))["NO IMPACT"]
+    ratio = (free.values["VBX"] - free.values["VAX"]) / (free.values["UX"] - free.values["VX"])
+    assert f"E is {ratio:.3g}, not from 0 to 1" in text
+    both = free.nearest.values["VBX"]
+    assert f"VBX at {both:.4g}, not 7 ({(both - 7) / 0.1:.1f} sd)" in text
+    assert (shown.draws, shown.ranges) == (None, {})
+
+
+def test_vehicles_that_separate_are_no_impact():
+    (free,) = reconstruct(along_a_line(0.1, UX=-5.0, VX=20.0, VAX=-4.0, VBX=19.0))
+    assert free.impossible & Status.SEPARATING
+    text = dict(Measured(free, 0).headline(RULES))["NO IMPACT"]
+    assert "the vehicles separate at 25" in text
