@@ -16,6 +16,7 @@ from scipy import fft, ndimage
 
 from .ink import (
     FEWEST_POINTS,
+    MIN_SIDE,
     STEEP,
     Floats,
     Image,
@@ -55,7 +56,6 @@ _HOLE_DARK = 0.7  # largest brightness of a hole, relative to the paper's
 _STRIP = 0.15  # fraction of the width, from a side, within which strips with holes run
 _MAX_OTHER = 1.5  # largest dark area in a strip, relative to that of its holes
 _FINE = 1200  # pixels of the longer side at which holes and slopes are looked for
-_MIN_SIDE = 72  # pixels of a picture's shorter side, below which it is left as it is
 
 
 @dataclass
@@ -86,7 +86,7 @@ class Paper:
 
 def papers_of(picture: Picture) -> Iterator[Paper]:
     """Yield the sheets of paper that a picture shows."""
-    if min(picture.shape[:2]) < _MIN_SIDE:
+    if min(picture.shape[:2]) < MIN_SIDE:
         yield Paper(_luminance(picture))
         return
     remarks = []

@@ -5,7 +5,7 @@ Fourier component at the pitch is strong; the phase of that component says where
 Smooth polynomials carry both over the page, which takes in turned, keystoned and bent paper.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -368,21 +368,9 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
         y = y + np.tensordot(rise, _bows(t, v * scale / _STRETCH), 1)
         return x + ink.shape[1] / 2, y + ink.shape[0] / 2
 
-    def resample(line: int) -> Image:
-        """Return the picture of a line with cells of `CELL_WIDTH` pixels."""
-        u = origin + (np.arange(count * CELL_WIDTH + 2 * SLACK) - SLACK + 0.5) / scale
-        v = middles[line] + (np.arange(tall + 2 * SLACK) - SLACK - tall / 2 + 0.5) / scale
-        # the map bends slowly: it is worked out at every eighth point
-        coarse = np.linspace(0, len(u) - 1, len(u) // 8)
-        across, down = place(*np.meshgrid(u[0] + coarse / scale, v[[0, -1]]))
-        fine, coordinates = np.arange(len(u)), []
-        for at in (down, across):
-            top, foot = (np.interp(fine, coarse, row) * scale - 0.5 for row in at)
-            coordinates.append(np.linspace(top, foot, len(v)))
-        picture: Image = ndimage.map_coordinates(small, coordinates, order=1, cval=0.0)
-        return picture
-
-    pictures = [resample(line) for line in range(len(middles))]
+    u = origin + (np.arange(count * CELL_WIDTH + 2 * SLACK) - SLACK + 0.5) / scale
+    v = (np.arange(tall + 2 * SLACK) - SLACK - tall / 2 + 0.5) / scale
+    pictures = [_resample(small, u, middle + v, place, scale) for middle in middles]
     edges, ends = origin + np.arange(count + 1) * pitch, np.array([-0.65, 0.65]) * height
     corners = [np.stack(place(*np.meshgrid(edges, middle + ends))).T for middle in middles]
     outermost = {0: lines[0], len(middles) - 1: lines[-1]}
@@ -390,6 +378,28 @@ def _grid(ink: Image, points: Points, slope: float, keystone: float, turns: int)
         line for line, (top, bottom) in outermost.items() if bottom - top < _CUT * height
     )
     return Grid(pictures, middles / pitch, corners, pitch, clarity, ink.shape, turns, cut)
+
+
+def _resample(
+    small: Image,
+    u: Floats,
+    v: Floats,
+    place: Callable[[Floats, Floats], tuple[Floats, Floats]],
+    scale: float,
+) -> Image:
+    """Return the picture of a line at points u, v of the levelled page.
+
+    ``place`` maps them to the picture, of which ``small`` is reduced by ``scale``. The map bends
+    slowly: it is worked out at every eighth point.
+    """
+    coarse = np.linspace(0, len(u) - 1, len(u) // 8)
+    across, down = place(*np.meshgrid(u[0] + coarse / scale, v[[0, -1]]))
+    fine, coordinates = np.arange(len(u)), []
+    for at in (down, across):
+        top, foot = (np.interp(fine, coarse, row) * scale - 0.5 for row in at)
+        coordinates.append(np.linspace(top, foot, len(v)))
+    picture: Image = ndimage.map_coordinates(small, coordinates, order=1, cval=0.0)
+    return picture
 
 
 def _distinct(middles: Floats, weights: Sequence[int], height: float) -> Floats:

@@ -26,6 +26,8 @@ _MAX_WIDE = 15.0  # pitches; bad copies join the letters of a word
 _MAX_POINTS = 150_000
 """Points of a page, drawn at random from more to save time: a page at 300 dots an inch has some
 400,000."""
+MIN_SIDE = 100
+"""Pixels of the shorter side of a picture that is read: those of 13 lines of 5 pixels."""
 FEWEST_POINTS = 500  # a page has more ink
 STEEP = 0.08
 """Slope of lines from which a page is set straight: the grid's own search ends at 0.1."""

@@ -269,19 +269,7 @@ def layout_of(odds: Sequence[Floats], tops: Floats) -> Layout:
     tops : ndarray
         Place of each line of the grid, in pitches down the page.
     """
-    # the cell that most lines begin in, or near it
-    begins = [int(np.argmax(row > 0)) for row in odds if np.any(row > 0)]
-    first = int(np.bincount(begins).argmax()) if begins else 0
-    margins = [margin for margin in (first, first - 1, first - 2, first + 1) if margin >= -1]
-    trials: list[tuple[Row, Floats]] = []
-    for margin, start in product(margins, range(len(odds))):
-        unbroken, broken = Row(start, 1, margin), Row(start, 2, margin)
-        cells = unbroken.cells(odds)
-        trials.append((unbroken, cells))
-        has_next = start + 1 < len(odds) and 0 < tops[start + 1] - tops[start] <= 3.2
-        is_full = len(cells) >= WRAP and np.any(cells[WRAP - _BREAK_COLUMNS : WRAP] > 0)
-        if has_next and is_full and not np.any(cells[WRAP:] > 2):
-            trials.append((broken, broken.cells(odds)))
+    trials = _trials(odds, tops)
     width = max(len(cells) for _, cells in trials)
     odds_by_trial = np.stack([np.pad(cells, (0, width - len(cells))) for _, cells in trials])
     # what cells gain when they are taken for inked or blank
@@ -292,22 +280,18 @@ def layout_of(odds: Sequence[Floats], tops: Floats) -> Layout:
         + _BROKEN_LINE * (row.used == 2)
         for row, _ in trials
     ]
-    fits: dict[int, _Fits] = {margin: {} for margin in margins}
+    fits: dict[int, _Fits] = {row.margin: {} for row, _ in trials}
     for line in range(len(LINES)):
         variants = [LINES[line], *([VARIANTS[line]] if line in VARIANTS else [])]
-        gains = np.stack(
-            [
-                _division_gains(text, inked_gains, blank_gains)[0][-1].max(axis=1)
-                for text in variants
-            ]
-        )
+        divisions = [_division_gains(text, inked_gains, blank_gains)[0] for text in variants]
+        gains = np.stack([by_part[-1].max(axis=1) for by_part in divisions])
         for at, ((row, _), variant) in enumerate(zip(trials, gains.argmax(axis=0), strict=True)):
             gain = float(gains[variant, at] - penalties[at])
             fit = gain, at, row._replace(text=variants[variant])
             fits[row.margin][row.start, row.used, line] = fit
     line_ink = [float(np.clip(row, 0, 6).sum()) for row in odds]
-    alignments = {margin: _assign_lines(fits[margin], line_ink) for margin in margins}
-    margin = max(margins, key=lambda edge: alignments[edge][0])
+    alignments = {margin: _assign_lines(fits[margin], line_ink) for margin in fits}
+    margin = max(fits, key=lambda edge: alignments[edge][0])
     layout = Layout([], fits[margin], inked_gains, blank_gains)
     sheets = [Sheet()]
     for key in alignments[margin][1]:
@@ -324,6 +308,25 @@ def layout_of(odds: Sequence[Floats], tops: Floats) -> Layout:
         >= _MIN_NUMBERS
     ]
     return layout
+
+
+def _trials(odds: Sequence[Floats], tops: Floats) -> list[tuple[Row, Floats]]:
+    """Return the rows of cells on which each line of print is laid, with their log odds: each line
+    of the grid from a few margins, by itself and with the next as a line that was broken."""
+    # the cell that most lines begin in, or near it
+    begins = [int(np.argmax(row > 0)) for row in odds if np.any(row > 0)]
+    first = int(np.bincount(begins).argmax()) if begins else 0
+    margins = [margin for margin in (first, first - 1, first - 2, first + 1) if margin >= -1]
+    trials: list[tuple[Row, Floats]] = []
+    for margin, start in product(margins, range(len(odds))):
+        unbroken, broken = Row(start, 1, margin), Row(start, 2, margin)
+        cells = unbroken.cells(odds)
+        trials.append((unbroken, cells))
+        has_next = start + 1 < len(odds) and 0 < tops[start + 1] - tops[start] <= 3.2
+        is_full = len(cells) >= WRAP and np.any(cells[WRAP - _BREAK_COLUMNS : WRAP] > 0)
+        if has_next and is_full and not np.any(cells[WRAP:] > 2):
+            trials.append((broken, broken.cells(odds)))
+    return trials
 
 
 _Key = tuple[int, int, int]

@@ -17,6 +17,7 @@ from .grid import Grid, grids_of
 from .holding import Added, Cell, CellJudgement, compare_cells, judge_cells, state
 from .ink import (
     FEWEST_POINTS,
+    MIN_SIDE,
     Floats,
     Image,
     Points,
@@ -50,8 +51,6 @@ RETYPED = 4.0
 """Median distance of a row's cells from their means, in usual distances, from which the row may be
 in another typeface: in none of 60 pages had a row more than 4.1 and the next less than 1.8."""
 RETYPED_RATIO = 2.5  # the same, relative to that of the row that is next
-_MIN_SIDE = 100
-"""Pixels of the shorter side of a picture that is read: those of 13 lines of 5 pixels."""
 
 
 @dataclass
@@ -141,8 +140,8 @@ def read_page(
     copy : Copy, optional
         The program that printed the page, if not the restored listing.
     """
-    if min(grey.shape) < _MIN_SIDE:
-        return [], f"it is less than {_MIN_SIDE} pixels wide or high"
+    if min(grey.shape) < MIN_SIDE:
+        return [], f"it is less than {MIN_SIDE} pixels wide or high"
     ink = ink_of(grey)
     best = _Layout([], "")
     tried: dict[str, None] = {}
