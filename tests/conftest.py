@@ -10,6 +10,10 @@ when all others are done.
 from __future__ import annotations
 
 import os
+
+# as the command does, before numpy is loaded: threads of small products wait for each other
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 import random
 from collections.abc import Callable, Iterator
 from contextlib import nullcontext

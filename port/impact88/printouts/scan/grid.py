@@ -48,6 +48,7 @@ _CUT = 0.8
 """Largest height of a line that is cut through, relative to the usual: others have capitals."""
 _MAX_COARSE = 80
 """Pieces of lines used in the coarse search for the bend: those with the clearest gaps."""
+_CURVES_AT_ONCE = 64  # keystones and bows of the coarse search in one product of matrices
 _REACHES = (0.35, 0.35, 0.3, 0.3, 0.25, 0.25, 0.2, 0.2)
 """Residual at which a piece of a line has 1/e of its weight, in pitches, by refinement step."""
 _RIDGE = (1e-6, 1e-4, 1e-4, 3e-4, 3e-4, 1e-2)
@@ -263,7 +264,16 @@ def _search_bend(phasors: _Phasors, pitch: float, span: float) -> Floats:
     by_slant = np.exp(turn * np.outer(slants, terms[2])).astype(np.complex64)
     by_stretch = np.exp(turn * np.outer(stretches, terms[1])).T.astype(np.complex64)
     by_curve = (sums * np.exp(turn * curves @ terms[3:5])).astype(np.complex64)
-    clarity = np.stack([np.abs((by_slant * row) @ by_stretch) for row in by_curve])
+    # some curves at once: threads cost more than products of small matrices
+    chunks = np.split(by_curve, range(_CURVES_AT_ONCE, len(by_curve), _CURVES_AT_ONCE))
+    clarity = np.concatenate(
+        [
+            np.abs((rows[:, None] * by_slant).reshape(-1, len(chosen)) @ by_stretch).reshape(
+                len(rows), len(slants), len(stretches)
+            )
+            for rows in chunks
+        ]
+    )
     clarity /= np.abs(sums).sum()
     clarity -= _STRAIN * np.abs(curves).sum(axis=1)[:, None, None] / pitch
     curve, slant, stretch = np.unravel_index(int(np.argmax(clarity)), clarity.shape)
