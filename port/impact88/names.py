@@ -213,9 +213,9 @@ def did_you_mean(word: str, known: Collection[str]) -> str:
     # short names differ by a single letter anyway; a letter typed twice (MUU) is recognized
     likeness = 0.75 if len(word) > 3 else 1.0
     matches = get_close_matches(word.lower()[:80], in_any_case, 1, likeness)
-    undoubled = re.sub(r"(.)\1+", r"\1", word.lower()[:80])
-    if not matches and undoubled in in_any_case:
-        matches = [undoubled]
+    spelling = re.sub(r"(.)\1+", r"\1", word.lower()[:80])
+    if not matches and spelling in in_any_case:
+        matches = [spelling]
     return f"; did you mean {in_any_case[matches[0]]}?" if matches else ""
 
 

@@ -118,12 +118,21 @@ def test_most_tests_of_the_core_need_the_core_alone() -> None:
     assert 3 * len(own) > 2 * len(files), sorted(path.name for path in files if path not in own)
 
 
-RUN = "import pytest; raise SystemExit(pytest.main(sys.argv[1:]))"
+RUN = """
+import pytest
+class Once:
+    '''Every test with one of its parameters: all of them have run in the checkout.'''
+    def pytest_collection_modifyitems(self, items):
+        once = {(item.path, item.originalname): item for item in reversed(items)}
+        items[:] = reversed(once.values())
+raise SystemExit(pytest.main(sys.argv[1:], plugins=[Once()]))
+"""
 
 
 @pytest.mark.long
 def test_the_core_stands_alone(tmp_path: Path) -> None:
-    """Every other wing and its tests deleted, it is built, installed and passes its own tests."""
+    """Every other wing and its tests deleted, it is built, installed and passes its own tests, each
+    with one of its parameters."""
     source, site = tmp_path / "source", tmp_path / "site"
     cruft = shutil.ignore_patterns("__pycache__", "*.egg-info", "build", "docs", "*.so", "scans")
     for name in ("port", "legacy", "golden", "tests", ".ci"):

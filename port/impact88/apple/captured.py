@@ -159,5 +159,5 @@ def session(program: str, keys: str = "", *, blanks: bool = True) -> tuple["Appl
     lines = type_lines()
     machine = Applesoft(lambda: next(lines, None), blanks=blanks)
     machine.prompt()
-    displayed = machine.take_output().removeprefix("RUN\n").removesuffix("\n]")
-    return machine, displayed.replace("\0", "")
+    output = machine.take_output().removeprefix("RUN\n").removesuffix("\n]")
+    return machine, output.replace("\0", "")

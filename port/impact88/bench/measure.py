@@ -140,32 +140,37 @@ def measure(
         for method in METHODS:
             if not applies(method, name, columns):
                 continue
-            found = method.velocities(columns)
-            error = relative_errors(found, hi, lo)
+            velocities = method.velocities(columns)
+            error = relative_errors(velocities, hi, lo)
             fine = np.isfinite(error)
-            answered, scaled = error[fine], relative_errors(found, hi, lo, sizes)[fine]
+            own_errors, scaled_errors = (
+                error[fine],
+                relative_errors(velocities, hi, lo, sizes)[fine],
+            )
             condition = solved["COND"][fine]
-            timed = max(10, round(effort * method.timed))
-            works.append((method, method.prepare(repeat_scenes(columns, timed)), []))
+            scenes_timed = max(10, round(effort * method.timed))
+            works.append((method, method.prepare(repeat_scenes(columns, scenes_timed)), []))
             mine.append(
                 {
                     "population": name,
                     "method": method.key,
                     "name": method.name,
                     "scenes": count,
-                    "timed": timed,
+                    "timed": scenes_timed,
                     "unanswered": int(count - fine.sum()),
-                    "median": float(np.median(answered)),
-                    "percentile_99": float(np.quantile(answered, 0.99)),
-                    "largest": float(answered.max()),
-                    "over_condition": float((scaled / condition).max() / method.roundoff),
-                    "over_sensitivity": float((answered / sensitive[fine]).max() / method.roundoff),
+                    "median": float(np.median(own_errors)),
+                    "percentile_99": float(np.quantile(own_errors, 0.99)),
+                    "largest": float(own_errors.max()),
+                    "over_condition": float((scaled_errors / condition).max() / method.roundoff),
+                    "over_sensitivity": float(
+                        (own_errors / sensitive[fine]).max() / method.roundoff
+                    ),
                 }
             )
             progress(1)
-        given = next(prepared for method, prepared, _ in works if method.key == "closed-form")
-        room = {result: np.zeros(len(given["MA"])) for result in ORDER}
-        move = mover({key: given[key] for key in plainc.COLUMNS}, room)
+        inputs = next(prepared for method, prepared, _ in works if method.key == "closed-form")
+        room = {result: np.zeros(len(inputs["MA"])) for result in ORDER}
+        move = mover({key: inputs[key] for key in plainc.COLUMNS}, room)
         memory: list[float] = []
         for _ in range(repeats):
             memory += medians([move], 1)
@@ -192,17 +197,20 @@ def components(populations: Sequence[str], count: int, seed: int) -> list[Row]:
 
     rows = []
     for name in populations:
-        made = scenes(name, count, seed)
-        for label, columns in ((name, made), (f"{name}, EM = 0", {**made, "EM": np.zeros(count)})):
+        columns_of_scenes = scenes(name, count, seed)
+        for label, columns in (
+            (name, columns_of_scenes),
+            (f"{name}, EM = 0", {**columns_of_scenes, "EM": np.zeros(count)}),
+        ):
             hi, lo = two_doubles(columns, COMPONENTS)
-            found = solve(columns, COMPONENTS)
-            moved = movements(columns, COMPONENTS)
+            results = solve(columns, COMPONENTS)
+            shifts = movements(columns, COMPONENTS)
             for place, result in enumerate(COMPONENTS):
                 true = hi[:, place]
-                error = np.abs((found[result] - true) - lo[:, place])
+                error = np.abs((results[result] - true) - lo[:, place])
                 usable = np.isfinite(error) & (true != 0)
                 relative = error[usable] / np.abs(true[usable])
-                over = error[usable] / (DOUBLE * (moved[result] + np.abs(true))[usable])
+                over = error[usable] / (DOUBLE * (shifts[result] + np.abs(true))[usable])
                 row: Row = {"population": label, "result": result}
                 row["median"] = float(np.median(relative)) if usable.any() else 0.0
                 row["largest"] = float(relative.max(initial=0.0))

@@ -48,8 +48,12 @@ class Method(NamedTuple):
 
     def velocities(self, columns: Columns) -> Floats:
         """The final velocities of scenes, (n, 6)."""
-        found = self.run(self.prepare(columns))
-        return found if isinstance(found, np.ndarray) else np.stack([*found.values()], axis=1)
+        velocities = self.run(self.prepare(columns))
+        return (
+            velocities
+            if isinstance(velocities, np.ndarray)
+            else np.stack([*velocities.values()], axis=1)
+        )
 
 
 def _port(arithmetic: str, read: Callable[[Any], float]) -> Callable[[list[Scene]], Floats]:
@@ -67,14 +71,14 @@ def _port(arithmetic: str, read: Callable[[Any], float]) -> Callable[[list[Scene
 
 
 def _scenes(columns: Columns) -> list[Scene]:
-    typed = texts(columns)
-    rows = zip(*typed.values(), strict=True)
-    return [Scene.from_mapping(dict(zip(typed, row, strict=True))) for row in rows]
+    cells = texts(columns)
+    rows = zip(*cells.values(), strict=True)
+    return [Scene.from_mapping(dict(zip(cells, row, strict=True))) for row in rows]
 
 
 def _replay(columns: dict[str, list[str]]) -> Floats:
-    replayed = replay(columns)
-    return np.stack([replayed.floats(name) for name in ORDER], axis=1)
+    replay_result = replay(columns)
+    return np.stack([replay_result.floats(name) for name in ORDER], axis=1)
 
 
 def _listing_elimination(matrices: tuple[Floats, Floats]) -> Floats:

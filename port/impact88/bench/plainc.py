@@ -62,13 +62,13 @@ def library(flags: str) -> Any:
         try:
             for command in (compilation, linking):
                 subprocess.run(command, capture_output=True, check=True, timeout=TIMEOUT)
-            loaded = ctypes.CDLL(str(built))
+            library = ctypes.CDLL(str(built))
         except (OSError, subprocess.SubprocessError):
             return None
-    for function in (loaded.solve_plainly, loaded.move_plainly):
+    for function in (library.solve_plainly, library.move_plainly):
         function.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64]
         function.restype = None
-    return loaded
+    return library
 
 
 def available() -> bool:

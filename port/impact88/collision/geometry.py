@@ -32,7 +32,7 @@ R = TypeVar("R")
 GEOMETRY = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")
 """The values of a scene that define its geometry; M (6 or 4) is optional."""
 ARMS = ("DA", "PA", "TA", "IA", "DB", "PB", "TB", "IB")
-"""What an impact needs beyond masses and GA for spins and moments; without one of them its
+"""Inputs that an impact needs beyond masses and GA for spins and moments; without one of them its
 vehicles are point masses."""
 _STAND_INS = dict.fromkeys(GEOMETRY, 0.0) | {"IA": 1.0, "IB": 1.0}
 """Numbers in place of what is not given. No result that is returned depends on them
@@ -46,14 +46,14 @@ def within_doubles(function: Callable[P, R]) -> Callable[P, R]:
     and so has no decomposition, fails here."""
 
     @wraps(function)
-    def silenced(*arguments: P.args, **options: P.kwargs) -> R:
+    def call_within(*arguments: P.args, **options: P.kwargs) -> R:
         with np.errstate(all="ignore"):
             try:
                 return function(*arguments, **options)
             except np.linalg.LinAlgError:
                 raise UserError(BEYOND_DOUBLES) from None
 
-    return silenced
+    return call_within
 
 
 def _numbers(value: Any) -> Array:

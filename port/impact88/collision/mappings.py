@@ -125,18 +125,23 @@ def scene_columns(values: Mapping[str, Any]) -> tuple[dict[str, Array], Array]:
     Raises UserError for an unknown name and for what is no number."""
     import numpy as np
 
-    given = in_base(values)
-    unknown = [name for name in given if name not in SCENE]
+    base_values = in_base(values)
+    unknown = [name for name in base_values if name not in SCENE]
     if unknown:
         raise UserError(
             f"{unknown[0]!r} is not a scene name; expected {' '.join(SCENE)} "
             "(impact88.solve_frame takes further columns)"
         )
-    shares = shares_in(given.get("MU"))
+    shares = shares_in(base_values.get("MU"))
     is_share = ~np.isnan(shares)
     if np.any(is_share):
-        given = {**given, "MU": np.where(is_share, 0.0, np.asarray(given["MU"], object))}
-    return {name: in_doubles(name, given[name]) for name in SCENE if name in given}, shares
+        base_values = {
+            **base_values,
+            "MU": np.where(is_share, 0.0, np.asarray(base_values["MU"], object)),
+        }
+    return {
+        name: in_doubles(name, base_values[name]) for name in SCENE if name in base_values
+    }, shares
 
 
 def shares_in(mu: Any) -> Array:

@@ -1,4 +1,4 @@
-"""What a result needs that is not given, in words; and ordinary numbers to find it out with."""
+"""Inputs that results need and lack, in words; and ordinary numbers to find them out with."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def ordinary(name: str, rng: np.random.Generator, count: int) -> NDArray[np.floa
     return np.asarray(-values if name == "EM" else values)
 
 
-def needed(needs: Mapping[str, Collection[str]]) -> list[tuple[list[str], str]]:
+def needs_in_words(needs: Mapping[str, Collection[str]]) -> list[tuple[list[str], str]]:
     """Return sentences on what results need, those with the same needs together.
 
     Parameters
@@ -42,32 +42,34 @@ def needed(needs: Mapping[str, Collection[str]]) -> list[tuple[list[str], str]]:
 
     Examples
     --------
-    >>> for _, sentence in needed({"PDOFA": ["TA"], "E": ["GA"], "VC": ["GA"]}):
+    >>> for _, sentence in needs_in_words({"PDOFA": ["TA"], "E": ["GA"], "VC": ["GA"]}):
     ...     print(sentence)
     PDOFA needs TA, the way A faces; TA = "course" takes the way it travels
     E and VC need GA (angle of the impact surface from the y axis)
     """
     groups: dict[tuple[str, ...], list[str]] = {}
     for result, inputs in needs.items():
-        ordered = tuple(name for name in (*SCENE, *RESULTS) if name in inputs)
-        groups.setdefault(ordered, []).append(result)
-    return [
-        (results, f"{_listed(results)} {'needs' if len(results) == 1 else 'need'} {_meant(inputs)}")
-        for inputs, results in groups.items()
-    ]
+        names = tuple(name for name in (*SCENE, *RESULTS) if name in inputs)
+        groups.setdefault(names, []).append(result)
+    return [(results, _sentence(results, inputs)) for inputs, results in groups.items()]
+
+
+def _sentence(results: Sequence[str], inputs: Sequence[str]) -> str:
+    verb = "needs" if len(results) == 1 else "need"
+    return f"{_join_words(results)} {verb} {_describe_inputs(inputs)}"
 
 
 def sentences(needs: Mapping[str, Collection[str]]) -> list[str]:
-    """Return the sentences of `needed`."""
-    return [sentence for _, sentence in needed(needs)]
+    """Return the sentences of `needs_in_words`."""
+    return [sentence for _, sentence in needs_in_words(needs)]
 
 
-def _listed(names: Sequence[str]) -> str:
+def _join_words(names: Sequence[str]) -> str:
     *first, last = names
     return f"{', '.join(first)} and {last}" if first else last
 
 
-def _meant(inputs: Sequence[str]) -> str:
+def _describe_inputs(inputs: Sequence[str]) -> str:
     if len(inputs) == 1 and inputs[0] in ("TA", "TB"):
         vehicle = inputs[0][1]
         return (
@@ -75,4 +77,4 @@ def _meant(inputs: Sequence[str]) -> str:
         )
     if len(inputs) == 1:
         return f"{inputs[0]} ({quantity(inputs[0]).meaning})"
-    return _listed(inputs)
+    return _join_words(inputs)

@@ -92,8 +92,8 @@ def _sizes(
         if abs(numbers.get(name, 0.0)) > longest and numbers.get("M") != 4:
             entries = [
                 f"{n} = {texts[n]}"
-                for n, replaced in arm.items()
-                if replaced == name and n in texts
+                for n, names_replaced in arm.items()
+                if names_replaced == name and n in texts
             ]
             remarks_by_name[name] = f"{', '.join(entries)}: {BEYOND_ARM}"
     for vehicle in "AB" if numbers.get("M") != 4 else "":

@@ -88,15 +88,15 @@ def suggestions(text: str, accepted: Callable[[str], bool]) -> list[str]:
     start = " ".join(text.split())
     if len(start) > MAX_LENGTH:
         return []
-    texts, reached = [start], {start}
+    texts, texts_reached = [start], {start}
     while texts:
         rewritten = []
         for source in texts:
             for pattern, forms in HABITS:
                 for form in forms:
                     result = " ".join(pattern.sub(form, source).split())
-                    if result not in reached and len(reached) < MAX_TEXTS:
-                        reached.add(result)
+                    if result not in texts_reached and len(texts_reached) < MAX_TEXTS:
+                        texts_reached.add(result)
                         rewritten.append(result)
         accepted_texts = [result for result in rewritten if accepted(result)]
         if accepted_texts:

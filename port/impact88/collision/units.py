@@ -392,8 +392,8 @@ def check_unit(unit: str, rule: str, what: str, source: str) -> None:
     if size_of(unit, rule) is None:
         measures = "a ratio" if rule == NUMBER else rule.replace("·", " ")
         units = dict.fromkeys(s.usual[rule] for s in SYSTEMS.values() if rule in s.usual)
-        expected = f"; expected {', '.join(units)}" if units else ""
-        raise UserError(f"{what}: {unit} is not a unit of {measures}{expected}", source)
+        advice = f"; expected {', '.join(units)}" if units else ""
+        raise UserError(f"{what}: {unit} is not a unit of {measures}{advice}", source)
 
 
 def display_values(values: Mapping[str, float], system: System) -> dict[str, float]:

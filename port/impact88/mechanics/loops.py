@@ -48,9 +48,10 @@ SPARE_OF_COMMON = 1.15
 COST_OF_A_LOOP = 30
 """Cost of starting a loop, in operations; one of reading or keeping a row is 1."""
 SHARES = {"FRICTION": 4, "PIVOT": 2, "POINT": 1, "POINT_PIVOT": 1}
-"""How often scenes of a kind are asked for."""
-SHARE_OF_SIX, SHARE_OF_ALL, SHARE_OF_ONE = 16, 8, 1
-"""How often the six velocities, all results, and each result alone are asked for."""
+"""Share of the calls that have scenes of a kind."""
+SHARE_OF_SIX = 16  # share of the calls that want the six velocities
+SHARE_OF_ALL = 8  # share of those that want all results
+SHARE_OF_ONE = 1  # share of those that want a result alone, for each result
 
 
 class Question(NamedTuple):
@@ -156,14 +157,14 @@ class Layout:
     def share_of(self, questions: int) -> float:
         """Return how often one of some questions is asked."""
         if questions not in self._shares:
-            asked = (q.share for k, q in enumerate(self.graph.questions) if questions >> k & 1)
-            self._shares[questions] = sum(asked)
+            shares = (q.share for k, q in enumerate(self.graph.questions) if questions >> k & 1)
+            self._shares[questions] = sum(shares)
         return self._shares[questions]
 
     def needs(self, kind: str, names: Sequence[str]) -> list[int]:
         """Return the numbers of the loops that compute results of a kind."""
-        needed = set(self.graph.needs(kind, names))
-        return [k for k, loop in enumerate(self.loops) if needed & set(loop.operations)]
+        operations = set(self.graph.needs(kind, names))
+        return [k for k, loop in enumerate(self.loops) if operations & set(loop.operations)]
 
     def _smallest_loops(self) -> list[Loop]:
         """Return a loop for the operations that the same questions need, before and after the
@@ -214,12 +215,12 @@ class Layout:
                 continue
             for k, extra in more_takes(a, b):
                 takes[k] += extra
-            joined = Loop(self, a.operations + b.operations)
+            union = Loop(self, a.operations + b.operations)
             savings = {pair: x for pair, x in savings.items() if a not in pair and b not in pair}
             loops = [loop for loop in loops if loop is not a and loop is not b]
             for loop in loops:
-                note_saving(loop, joined)
-            loops.append(joined)
+                note_saving(loop, union)
+            loops.append(union)
         return loops
 
     def _before(self, loops: Sequence[Loop]) -> dict[Loop, set[Loop]]:
@@ -283,8 +284,8 @@ def operations(kind: str, names: Sequence[str]) -> tuple[int, int]:
     """Return how many operations are executed for results of a kind of scene, and how many they
     need; a sine with its cosine is one."""
     plan = layout()
-    executed = sum(plan.loops[k].size for k in plan.needs(kind, names))
-    return executed, _count(plan.graph.needs(kind, names))
+    operations = sum(plan.loops[k].size for k in plan.needs(kind, names))
+    return operations, _count(plan.graph.needs(kind, names))
 
 
 # -- the text
@@ -390,10 +391,10 @@ def _function(plan: Layout) -> list[str]:
         "    const int64_t lanes = 8 * eights; /* vectors of any length leave no rest */",
         *_wrap_columns(),
     ]
-    fetched = _fetched_columns(plan)
+    columns_fetched = _fetched_columns(plan)
     for number, loop in enumerate(plan.loops):
         lines += _write_loop(plan, number, loop)
-        if names := fetched.get(number):
+        if names := columns_fetched.get(number):
             texts = " ".join(f"FETCH_COLUMN({name})" for name in names)
             lines.append(f"    if (HAS(loops, {number})) {{ {texts} }}")
     return [*lines, "}"]
@@ -401,13 +402,13 @@ def _function(plan: Layout) -> list[str]:
 
 def _fetched_columns(plan: Layout) -> dict[int, list[str]]:
     """Return the columns that are fetched with each loop: with that which most questions need."""
-    fetched: dict[int, list[str]] = {}
+    columns_fetched: dict[int, list[str]] = {}
     for name in COLUMNS:
         users = [k for k, loop in enumerate(plan.loops) if any(x.value == name for x in loop.given)]
         if users:
-            most = max(users, key=lambda k: plan.share_of(plan.loops[k].needed))
-            fetched.setdefault(most, []).append(name)
-    return fetched
+            largest = max(users, key=lambda k: plan.share_of(plan.loops[k].needed))
+            columns_fetched.setdefault(largest, []).append(name)
+    return columns_fetched
 
 
 def _wrap_columns() -> list[str]:
@@ -427,7 +428,7 @@ def _write_loop(plan: Layout, number: int, loop: Loop) -> list[str]:
         sine, cosine = (at(pair.table.combine(half, pair)) for half in HALVES)
         return [f"{guard} EACH SINE_AND_COSINE({at(angle)}, {sine}, {cosine});"]
     value = {x: f"({at(x)} != 0.0)" if _is_condition(x) else at(x) for x in loop.given}
-    kept = set(loop.kept)
+    columns_kept = set(loop.kept)
     lines = [f"{guard} EACH {{"]
     for place, e in enumerate(loop.operations):
         operands = (_operand(x, e.operation in ARITHMETIC, value) for x in e.operands)
@@ -436,7 +437,7 @@ def _write_loop(plan: Layout, number: int, loop: Loop) -> list[str]:
         type_of_value = "int64_t" if _is_condition(e) else "double"
         # a condition that is kept as it is would have to be converted, which AVX2 cannot do
         line = f"        {type_of_value} {name} = {formula};"
-        if e in kept:
+        if e in columns_kept:
             line += f" {at(e)} = {name}{' ? 1.0 : 0.0' if _is_condition(e) else ''};"
         lines.append(line)
     return [*lines, "    }"]

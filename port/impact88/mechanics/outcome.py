@@ -139,8 +139,8 @@ def _forbidden_for_every_normal(state: State) -> Array:
     before = contact["XA"] - contact["XB"], contact["YA"] - contact["YB"]
     after = contact["XAF"] - contact["XBF"], contact["YAF"] - contact["YBF"]
     x, y = (np.real(part) for part in state.impulse_on_a)
-    rest = -before[0] - after[0], -before[1] - after[1]
-    vectors = [(x, y), (-before[0], -before[1]), after, rest]
+    remainder = -before[0] - after[0], -before[1] - after[1]
+    vectors = [(x, y), (-before[0], -before[1]), after, remainder]
     across = [np.arctan2(b, a) + side for a, b in vectors for side in (-np.pi / 2, np.pi / 2)]
     edges = np.sort(np.stack(np.broadcast_arrays(*across)) % (2 * np.pi), axis=0)
     normals = (edges + np.concatenate([edges[1:], edges[:1] + 2 * np.pi])) / 2
@@ -151,10 +151,10 @@ def _forbidden_for_every_normal(state: State) -> Array:
     possible = (pushes > 0) & (approaches > speed)
     restituting = possible & (separates >= -speed) & (loses >= -speed)
     pulls = ~possible.any(axis=0)
-    known = np.isfinite(x + y + before[0] + before[1])
-    result = np.where(known & pulls, int(Status.PULLING), 0)
+    is_known = np.isfinite(x + y + before[0] + before[1])
+    result = np.where(is_known & pulls, int(Status.PULLING), 0)
     out_of_range = ~pulls & ~restituting.any(axis=0) & np.isfinite(after[0] + after[1])
-    return result | np.where(known & out_of_range, int(Status.E_OUT_OF_RANGE), 0)
+    return result | np.where(is_known & out_of_range, int(Status.E_OUT_OF_RANGE), 0)
 
 
 def _within_range(coefficient: Any, low: float, high: float) -> Array:
@@ -215,8 +215,8 @@ def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Ar
 def _is_complete(values: Mapping[str, Any]) -> bool:
     """Return True if the forward equations can be set up."""
     point = bool((np.asarray(values.get("M", 6.0)) == 4).all())
-    unused = ("M", *(UNUSED_BY_POINTS if point else ()))
-    return all(name in values for name in SCENE if name not in unused)
+    names_unused = ("M", *(UNUSED_BY_POINTS if point else ()))
+    return all(name in values for name in SCENE if name not in names_unused)
 
 
 def _slip_changes(here: Geometry, value: Mapping[str, Any]) -> tuple[Any, Any]:

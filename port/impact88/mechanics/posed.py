@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..collision.geometry import ARMS, GEOMETRY
-from ..collision.needs import needed
+from ..collision.needs import needs_in_words
 from ..collision.uncertain import Uncertain
 from ..names import FINAL_STATE, PIVOT, VELOCITIES
 from ..status import Status
@@ -42,7 +42,7 @@ def pose(
     """
     values, remarks = dict(known), []
     point = bool(np.all(_number(values.get("M", 6.0)) == 4))
-    line, implied = line_of_motion(values) if point else (None, False)
+    line, is_implied = line_of_motion(values) if point else (None, False)
     if line is not None:
         across = "GA" not in values
         if across:
@@ -51,11 +51,11 @@ def pose(
                 "the motion is along one line: the contact plane is taken across it, and nothing "
                 "acts along the plane"
             )
-        along = across or abs(np.remainder(_single(values["GA"]) - line + 90, 180) - 90) <= (
+        along = across or abs(np.remainder(_single_number(values["GA"]) - line + 90, 180) - 90) <= (
             PARALLEL_TOLERANCE
         )
         friction = next((n for n in ("MUP", "MU") if n in values), None)
-        if along and friction is None and not implied:
+        if along and friction is None and not is_implied:
             values["MUP"] = fixed(0.0)
         elif across and friction and np.any(_number(values[friction]) != PIVOT):
             del values[friction]
@@ -71,7 +71,7 @@ def _leave_out_unusable(values: dict[str, Any], point: bool) -> list[str]:
     armless = not point and not absent.isdisjoint(ARMS)
     friction = _number(values.get("MUP", values.get("MU", np.nan)))
     is_pivot = bool(np.all(friction == PIVOT))
-    locked = is_pivot and bool(np.all(_number(values.get("E", np.nan)) == 0)) and not armless
+    is_locked = is_pivot and bool(np.all(_number(values.get("E", np.nan)) == 0)) and not armless
     unusable: dict[str, frozenset[str]] = {}
     for name in [n for n in values if n in KNOWABLE and n not in GEOMETRY and n != "M"]:
         if name in (*VELOCITIES, *FINAL_STATE):
@@ -81,13 +81,13 @@ def _leave_out_unusable(values: dict[str, Any], point: bool) -> list[str]:
         needs = inputs_of(law, point) & absent
         if armless and name in _ENERGIES:
             needs = frozenset(absent & {*ARMS})
-        if needs and not (locked and name in ("E", "MU", "MUP")):
+        if needs and not (is_locked and name in ("E", "MU", "MUP")):
             unusable[name] = needs
     for name in unusable:
         del values[name]
     return [
         f"{text}, and {'is' if len(names) == 1 else 'are'} not used"
-        for names, text in needed(unusable)
+        for names, text in needs_in_words(unusable)
     ]
 
 
@@ -168,8 +168,8 @@ def line_of_motion(known: Mapping[str, Any]) -> tuple[float | None, bool]:
     moving = {name: angle for name, angle in directions.items() if angle is not None}
     if not moving:
         return nowhere
-    first, *others = moving.values()
-    if any(abs((other - first + 90) % 180 - 90) > PARALLEL_TOLERANCE for other in others):
+    first, *other_courses = moving.values()
+    if any(abs((other - first + 90) % 180 - 90) > PARALLEL_TOLERANCE for other in other_courses):
         return nowhere
     for speed in SPEEDS:
         if speed not in directions and _may_leave(known, speed, first):
@@ -192,18 +192,18 @@ def _direction(known: Mapping[str, Any], speed: str) -> float | None:
     not known exactly."""
     parts = [known.get(name) for name in SPEEDS[speed]]
     course = known.get(_COURSE_OF[speed])
-    if speed in known and _is_exact(known[speed]) and _single(known[speed]) == 0:
+    if speed in known and _is_exact(known[speed]) and _single_number(known[speed]) == 0:
         return np.nan
     if all(part is not None for part in parts):
-        x, y = (_single(part) for part in parts)
-        zero = [_is_exact(part) and _single(part) == 0 for part in parts]
+        x, y = (_single_number(part) for part in parts)
+        zero = [_is_exact(part) and _single_number(part) == 0 for part in parts]
         if all(zero):
             return np.nan
         if any(zero) or all(map(_is_exact, parts)):
             return float(np.degrees(np.arctan2(y, x)))
         return None
     if course is not None and _is_exact(course):
-        return _single(course)
+        return _single_number(course)
     return None
 
 
@@ -211,11 +211,11 @@ def _number(value: Any) -> Any:
     return value.nominal if isinstance(value, Uncertain) else value
 
 
-def _single(value: Any) -> float:
+def _single_number(value: Any) -> float:
     """Return the one number that a value is, NaN for an array of several."""
     numbers: Iterable[float] = np.unique(np.ravel(np.asarray(_number(value), np.float64)))
-    first, *others = numbers
-    return float(first) if not others else np.nan
+    first, *other_numbers = numbers
+    return float(first) if not other_numbers else np.nan
 
 
 def _is_exact(value: Any) -> bool:

@@ -251,8 +251,8 @@ class State:
         """Return a PDOF in degrees, above -180 and up to 180; NaN without impulse."""
         vehicle, (x, y) = FORCES[name], self._vector(name)
         clockwise = self._facing(vehicle) + 180 - course(x, y)
-        reduced = clockwise - 360 * np.ceil((np.real(clockwise) - 180) / 360)
-        return np.where((x == 0) & (y == 0), np.nan, reduced)
+        angle = clockwise - 360 * np.ceil((np.real(clockwise) - 180) / 360)
+        return np.where((x == 0) & (y == 0), np.nan, angle)
 
     # -- quantities
 
@@ -333,10 +333,10 @@ def _first_two_unknowns(rows: list[list[Any]], right: list[Any]) -> tuple[Any, A
         )
 
     columns = [[row[i] for row in rows] for i in range(3)]
-    whole = determinant(*columns)
+    total = determinant(*columns)
     first = determinant(right, columns[1], columns[2])
     second = determinant(columns[0], right, columns[2])
-    return first / whole, second / whole
+    return first / total, second / total
 
 
 def _size(x: Any, y: Any) -> Any:

@@ -111,8 +111,8 @@ class Scene(Mapping[str, str]):
         check_names(values, SCENE, "value of a scene", source)
         # a vehicle at rest that faces the way it travels has no heading yet
         absent = [name for name in SCENE if values.get(name, FACING_COURSE) == FACING_COURSE]
-        if needed := [name for name in absent if name not in may_omit]:
-            raise UserError(missing(needed), source)
+        if names := [name for name in absent if name not in may_omit]:
+            raise UserError(missing(names), source)
         self.omitted = tuple(absent)
         values |= {name: "1" if name in INERTIAS else "0" for name in absent}
         self.remarks = dict(nominal_case.remarks)

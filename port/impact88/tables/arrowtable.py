@@ -38,7 +38,7 @@ def _text_sizes(pa: Any, array: Any) -> Any:
     return sizes.take(array.indices.fill_null(0)).to_numpy(zero_copy_only=False).astype(np.int64)
 
 
-def _decoded(pa: Any, batches: Iterable[Any], budget: Budget) -> Iterator[Any]:
+def _decode_column(pa: Any, batches: Iterable[Any], budget: Budget) -> Iterator[Any]:
     """Yield the batches with their texts decoded, in parts that hold `BLOCK_CHARACTERS` each or one
     row. Raises UserError past the budget."""
     for batch in batches:
@@ -119,7 +119,7 @@ def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[
             )
             batches = file.iter_batches(BLOCK_ROWS, use_threads=pa.cpu_count() > 1)
         names = scene_names(headings, path, results)
-        batches = _decoded(pa, _validate_each(batches, path), budget)
+        batches = _decode_column(pa, _validate_each(batches, path), budget)
         yield Reader(names, _blocks(pa, names, batches, path), count)
 
 
@@ -174,14 +174,14 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
         repeating = [field.name for field in schema if not pa.types.is_floating(field.type)]
         return parquet.ParquetWriter(file, schema, use_dictionary=repeating)
 
-    def put(columns: Named) -> None:
+    def put_block(columns: Named) -> None:
         table = pa.table([array(*column) for column in columns], headings)
         if not writer_and_schema:
             writer_and_schema.extend((writer(table.schema), table.schema))
         writer_and_schema[0].write_table(table.cast(writer_and_schema[1]))
 
     with replacing(path, "wb") as file:
-        yield put
+        yield put_block
         if not writer_and_schema:  # no row at all
             writer_and_schema.append(writer(pa.schema([(name, pa.float64()) for name in headings])))
         writer_and_schema[0].close()

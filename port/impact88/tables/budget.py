@@ -1,4 +1,4 @@
-"""What a table may hold: one budget for all readers of what a file decodes to.
+"""The limits of a table: one budget for all readers of what a file decodes to.
 
 Anybody may have made a file: a packed one, a dictionary of texts or a cell far away decode to a
 thousand times its size. Every reader takes from a `Budget` before it uses the memory.

@@ -39,7 +39,7 @@ _MEASURING = ("length", "length/time", "mass", "mass·length²", "mass·length²
 _NUMBERS = re.compile(r"(?<![a-zA-Z^])(?:[0-9][0-9,]*\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _WRITTEN = re.compile(r"[+-]?[0-9]*(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?")
 RATIOS = ("1", "-", "–", "—", "")
-"""What stands for no unit."""
+"""Texts that stand for no unit."""
 
 
 class TableUnits:
@@ -127,7 +127,7 @@ class TableUnits:
         size, magnitude = last_digit(number), abs(doubles.double(number))
         return value, size * abs(value) / magnitude if magnitude else size * self.factor(name)
 
-    def turned(self, name: str, values: Any) -> Any:
+    def in_listing_axes(self, name: str, values: Any) -> Any:
         """Return numbers in base units in the listing's axes."""
         turn = self.convention.sign_and_offset(name) if self.convention else None
         return values if turn is None or name in self.based else turn[1] + turn[0] * values
@@ -214,16 +214,14 @@ def numbers(rows: Rows, units: TableUnits) -> dict[str, NDArray[np.float64]]:
     """The scene columns of ``rows`` as doubles in base units. A cell that is not a number is NaN,
     and a complaint is added to ``rows.bad`` (unless its row has one already, or is a point mass
     that does not look at the cell)."""
-    expected, all_rows = ~point_masses(rows), np.ones(rows.count, np.bool_)
+    is_read, all_rows = ~point_masses(rows), np.ones(rows.count, np.bool_)
     return {
-        name: _numbers(
-            rows, name, column, units, expected if name in UNUSED_BY_POINTS else all_rows
-        )
+        name: _numbers(rows, name, column, units, is_read if name in UNUSED_BY_POINTS else all_rows)
         for name, column in rows.scene().items()
     }
 
 
-def vanished(
+def find_vanished(
     rows: Rows, columns: Mapping[str, NDArray[np.float64]]
 ) -> Iterator[tuple[str, Remark]]:
     """Yield a remark on each column with numbers too small for a double, which count as 0."""
@@ -269,7 +267,7 @@ def _numbers(
     values = None if bare_refused else _plain_numbers(column)
     if values is not None:
         products = values if factor == 1 else values * factor
-        return np.asarray(units.turned(name, products))
+        return np.asarray(units.in_listing_axes(name, products))
     values = np.full(rows.count, np.nan)
     cells = list(column)
     already = {index for index, *_ in rows.bad}
@@ -279,12 +277,12 @@ def _numbers(
         number = _number(cell)
         try:
             if not isinstance(number, str):
-                values[index] = units.turned(name, number * factor)
+                values[index] = units.in_listing_axes(name, number * factor)
                 if bare_refused and number:
                     raise UserError(f"some values have units and {cell} does not; add a unit")
             elif isinstance(cell, str) and any(map(str.isdigit, cell)):
                 values[index] = doubles.double(units.cell(name, cell))
-                number = float(units.turned(name, values[index]) / factor)
+                number = float(units.in_listing_axes(name, values[index]) / factor)
                 cells[index] = Amount(doubles.digits(number), number)
                 rows.columns[name] = cells
             else:

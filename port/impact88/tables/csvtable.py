@@ -118,8 +118,8 @@ def _parse_plain(
             break
         is_blank &= compute.equal(array, "").to_numpy(zero_copy_only=False)
     if is_blank.any():
-        kept = pa.array(~is_blank)
-        arrays, numbers = [array.filter(kept) for array in arrays], numbers[~is_blank]
+        mask = pa.array(~is_blank)
+        arrays, numbers = [array.filter(mask) for array in arrays], numbers[~is_blank]
     return list(map(ArrowTexts, arrays)), numbers
 
 
@@ -321,8 +321,8 @@ def has_live_text(column: Column) -> bool:
     if isinstance(column, ArrowTexts):
         from pyarrow import compute
 
-        marked = (compute.starts_with(column.array, mark) for mark in _LIVE)
-        return any(compute.any(mask).as_py() for mask in marked)
+        starts = (compute.starts_with(column.array, mark) for mark in _LIVE)
+        return any(compute.any(mask).as_py() for mask in starts)
     if isinstance(column, np.ndarray) and column.dtype.kind not in "USO":
         return False
     return any(isinstance(cell, str) and cell.startswith(_LIVE) for cell in column)
@@ -340,7 +340,7 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
             return texts
         return ['"{}"'.format(t.replace('"', '""')) if re.search(ends, t) else t for t in texts]
 
-    def put(columns: Named) -> None:
+    def put_block(columns: Named) -> None:
         cell_count = sum(len(column) for _, column in columns)
         worth = through_arrow and (cell_count >= WORTH_ARROW_CELLS or "pyarrow" in sys.modules)
         candidates = (_in_arrow(column) for _, column in columns if worth)
@@ -354,6 +354,6 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
 
     with writing(path) as file:
         through_arrow = False
-        put([(text, [text]) for text in headings])
+        put_block([(text, [text]) for text in headings])
         through_arrow = arrow_available() and hasattr(file, "buffer")
-        yield put
+        yield put_block

@@ -57,7 +57,7 @@ class _Header(NamedTuple):
 
 
 class _Marks(NamedTuple):
-    """What a sheet says of its cells beside their values: hidden rows, and by (row, column) the
+    """Facts that a sheet gives of its cells beside values: hidden rows, and by (row, column) the
     first cell of those that each other merged cell belongs to."""
 
     hidden: list[int]
@@ -226,9 +226,9 @@ def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[
 
 def _hidden_words(rows: list[int]) -> str:
     first = ", ".join(map(str, rows[:MAX_HIDDEN_LISTED]))
-    more = ", ..." if len(rows) > MAX_HIDDEN_LISTED else ""
+    ellipsis = ", ..." if len(rows) > MAX_HIDDEN_LISTED else ""
     are = "s {} are" if len(rows) > 1 else " {} is"
-    return f"row{are.format(first + more)} hidden in the sheet, and read like the others"
+    return f"row{are.format(first + ellipsis)} hidden in the sheet, and read like the others"
 
 
 class _Archive(zipfile.ZipFile):
@@ -283,7 +283,7 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
     sheet.append([cell(text) for text in headings])
     count = 1
 
-    def put(columns: Named) -> None:
+    def put_block(columns: Named) -> None:
         nonlocal count
         cells = (typed_cells(*column) for column in columns)
         rows = list(
@@ -299,7 +299,7 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
         archive = io.BytesIO()  # a zip file that cannot be finished complains on stderr
         try:
             try:
-                yield put
+                yield put_block
             finally:  # and so does a sheet left open
                 sheet.close()
             openpyxl.writer.excel.ExcelWriter(book, _Archive(archive, "w")).save()

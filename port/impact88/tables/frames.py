@@ -95,7 +95,7 @@ def solve_frame(
     amiss: list[Remark] = []
     lacking: list[str] = []
 
-    def solved(names: Sequence[str], column: Callable[[str], Any]) -> dict[str, Array]:
+    def solve_columns(names: Sequence[str], column: Callable[[str], Any]) -> dict[str, Array]:
         """The results of a frame's columns, by heading."""
         # pandas names columns by numbers, too
         scene_headings = [name for name in scene_names(list(map(str, names))) if name in SCENE]
@@ -113,9 +113,9 @@ def solve_frame(
                 columns.setdefault(name, _numbers(name, [value], table)[0])
         all_points = "M" in columns and bool(np.all(np.asarray(columns["M"]) == 4))
         check_scene_columns(columns, all_points, "scene=")
-        found = solve(columns, outputs, threads=threads)
-        lacking.extend(sentences(getattr(found, "absent", {})))
-        results = table.shown(found)
+        solution = solve(columns, outputs, threads=threads)
+        lacking.extend(sentences(getattr(solution, "absent", {})))
+        results = table.shown(solution)
         amiss.extend(
             remarks(columns, table.system, partial(_cell, scene_columns, scene), False).values()
         )
@@ -123,13 +123,13 @@ def solve_frame(
 
     result: Any
     if isinstance(frame, np.ndarray):
-        result = _extend_structured(frame, solved)
+        result = _extend_structured(frame, solve_columns)
     elif isinstance(frame, Mapping) and not _is_dataset(frame):
-        result = {**frame, **solved(list(frame), lambda name: frame[name])}
+        result = {**frame, **solve_columns(list(frame), lambda name: frame[name])}
     elif isinstance(frame, list | tuple):
-        result = _dicts(frame, solved)
+        result = _dicts(frame, solve_columns)
     else:
-        result = _narwhals(frame, solved)
+        result = _narwhals(frame, solve_columns)
     for sentence in lacking:
         warnings.warn(sentence, PlausibilityWarning, stacklevel=3)
     for remark in amiss:
@@ -190,10 +190,10 @@ def _numbers(name: str, values: Any, units: TableUnits) -> Array:
     return numbers(Rows(array.size, {name: column}), units)[name].reshape(array.shape)
 
 
-def _extend_structured(frame: Array, solved: Solver) -> Array:
+def _extend_structured(frame: Array, solve_columns: Solver) -> Array:
     names = _names_of(frame)
     columns = {n: frame[n] for n in names}
-    all_columns = columns | solved(names, lambda name: columns[name])
+    all_columns = columns | solve_columns(names, lambda name: columns[name])
     result = np.empty(frame.shape, [(name, column.dtype) for name, column in all_columns.items()])
     for name, column in all_columns.items():
         result[name] = column
@@ -217,19 +217,19 @@ def _check_dicts(rows: Sequence[Any]) -> Sequence[Any]:
     return rows
 
 
-def _dicts(rows: Sequence[Any], solved: Solver) -> list[dict[str, Any]]:
+def _dicts(rows: Sequence[Any], solve_columns: Solver) -> list[dict[str, Any]]:
     if not _check_dicts(rows):
         return []
     names = list(dict.fromkeys(name for row in rows for name in row))
-    named_columns = solved(names, lambda name: [row.get(name) for row in rows])
+    named_columns = solve_columns(names, lambda name: [row.get(name) for row in rows])
     results = {name: column.tolist() for name, column in named_columns.items()}
     return [{**row, **{n: c[at] for n, c in results.items()}} for at, row in enumerate(rows)]
 
 
-def _narwhals(frame: Any, solved: Solver) -> Any:
+def _narwhals(frame: Any, solve_columns: Solver) -> Any:
     nw, table = _table(frame)
     make = partial(nw.new_series, native_namespace=nw.get_native_namespace(table))
-    results = solved(table.columns, partial(_cells, table)).items()
+    results = solve_columns(table.columns, partial(_cells, table)).items()
     spread = ((name, np.broadcast_to(array, (len(table),)).copy()) for name, array in results)
     return table.with_columns(*(make(*column) for column in spread)).to_native()
 

@@ -111,8 +111,8 @@ class _ArrayText:
         if not mark:
             self.refuse("ends within an array; expected ']'")
         if mark not in delimiters:
-            expected = " or ".join(map(quoted, delimiters))
-            self.refuse(f"has {quoted(mark)} where {expected} is expected")
+            choices = " or ".join(map(quoted, delimiters))
+            self.refuse(f"has {quoted(mark)} where {choices} is expected")
         self.at += 1
         return mark
 
@@ -282,7 +282,7 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
     with writing(path) as file:
         mark = "[\n" if is_array else ""
 
-        def put(columns: Named) -> None:
+        def put_block(columns: Named) -> None:
             nonlocal mark
             keys = [json.dumps(heading(name), ensure_ascii=False) for name, _ in columns]
             cells = zip(*(_cells(*column) for column in columns), strict=True)
@@ -297,6 +297,6 @@ def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iter
                 file.write(mark + line)
                 mark = ",\n"
 
-        yield put
+        yield put_block
         if is_array:
             file.write(("[" if mark == "[\n" else "\n") + "]\n")

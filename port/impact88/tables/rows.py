@@ -268,10 +268,12 @@ def heading_remarks(names: Sequence[str], results: bool = False) -> list[str]:
     and which stand beside the column that is read."""
     remarks: list[str] = []
     present = set(names)
-    renamed = [name for name in names if _taken_apart(heading(name))[0] != name.strip()]
-    renamed = [name for name in renamed if isinstance(name, Heading)]
-    if renamed:
-        remarks.append(f"columns {' '.join(map(heading, renamed))} are read as {' '.join(renamed)}")
+    names_read = [name for name in names if _taken_apart(heading(name))[0] != name.strip()]
+    names_read = [name for name in names_read if isinstance(name, Heading)]
+    if names_read:
+        remarks.append(
+            f"columns {' '.join(map(heading, names_read))} are read as {' '.join(names_read)}"
+        )
     for name in names:
         bare = _taken_apart(name)[0].upper()
         if bare != name and bare in present and (bare in SCENE or (results and bare in RESULTS)):

@@ -21,7 +21,7 @@ from ..mechanics.closedform.share import resolve_share, share_typed
 from ..mechanics.closedform.solve import solve
 from ..names import DEFAULT_M, SCENE
 from ..status import Status
-from .cells import Amount, TableUnits, fill_blanks, numbers, point_masses, vanished
+from .cells import Amount, TableUnits, fill_blanks, find_vanished, numbers, point_masses
 from .remarks import Remark, remarks
 from .rows import Rows, shortest
 
@@ -30,7 +30,7 @@ Results = dict[str, NDArray[Any]]
 
 @dataclass
 class Filling:
-    """What fills columns that a table lacks, or takes their place.
+    """Texts that fill columns which a table lacks, or take their place.
 
     ``constants``: texts in base units, the same in all rows; ``inertias``: yaw inertias, each the
     function that estimates it from the text of a row's mass; ``case``: the scene that these are of,
@@ -47,9 +47,9 @@ class Filling:
             rows.columns.pop(name, None)  # and with it the heading of another unit
             rows.columns[name] = [text] * rows.count
         for name, estimate in self.inertias.items():
-            rows.columns[name] = self._estimated(rows, units, name, estimate)
+            rows.columns[name] = self._estimate_column(rows, units, name, estimate)
 
-    def _estimated(
+    def _estimate_column(
         self, rows: Rows, units: TableUnits, name: str, estimate: Callable[[str], str]
     ) -> list[str | None]:
         """Return a column of inertias estimated from each row's own mass; nothing for a mass that
@@ -60,8 +60,8 @@ class Filling:
         for cell in rows.columns.get(mass_name) or [None] * rows.count:
             try:
                 mass = cell if isinstance(cell, str) else repr(float(cell)).upper()
-                shown = self.case.display_texts({mass_name: units.cell(mass_name, mass)})
-                texts.append(estimate(shown[mass_name]))
+                display = self.case.display_texts({mass_name: units.cell(mass_name, mass)})
+                texts.append(estimate(display[mass_name]))
             except (UserError, TypeError, ValueError):
                 texts.append(None)
         return texts
@@ -143,8 +143,8 @@ class RowSolver:
                 return shortest(np.array([number]))[0].removesuffix(".0")
             return str(column[index])
 
-        found = remarks(columns, self._units.system, cell)
-        for name, remark in (*vanished(rows, columns), *found.items()):
+        table_remarks = remarks(columns, self._units.system, cell)
+        for name, remark in (*find_vanished(rows, columns), *table_remarks.items()):
             if name in self._filling.noted:
                 continue
             if name in self._remarks:
@@ -178,8 +178,8 @@ class RowSolver:
 
         points = point_masses(rows)
         columns = {n: _texts(n, column, self._units) for n, column in rows.scene().items()}
-        resolved = Rows(rows.count, rows.columns, rows.lines, first=rows.first)
-        self._remark(resolved, numbers(resolved, self._units))
+        rows_resolved = Rows(rows.count, rows.columns, rows.lines, first=rows.first)
+        self._remark(rows_resolved, numbers(rows_resolved, self._units))
         _fill_unused(columns, np.flatnonzero(points).tolist())
         _resolve_shares(rows, columns)
         unread = {index for index, *_ in rows.bad}
@@ -214,8 +214,8 @@ def _refuse(rows: Rows, columns: Mapping[str, NDArray[np.float64]], unread: set[
         return
     for refusal in refusals(complete):
         values = np.broadcast_to(complete[refusal.column], rows.count)
-        refused = np.flatnonzero(np.broadcast_to(refusal.where, rows.count)).tolist()
-        for index in sorted({*refused} - unread):
+        places = np.flatnonzero(np.broadcast_to(refusal.where, rows.count)).tolist()
+        for index in sorted({*places} - unread):
             unread.add(index)
             rows.bad.append((index, refusal.column, f"{float(values[index])!r} {refusal.reason}"))
 

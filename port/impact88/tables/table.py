@@ -61,19 +61,19 @@ def _read_units_row(reader: Reader, results: bool) -> None:
     blocks = iter(reader.blocks)
     first = next(blocks, None)
     reader.blocks = blocks if first is None else chain([first], blocks)
-    known = [n for n in reader.names if n in SCENE or (results and n in RESULTS)]
-    if first is None or not first.lines or any(n not in first.columns for n in known):
+    names_known = [n for n in reader.names if n in SCENE or (results and n in RESULTS)]
+    if first is None or not first.lines or any(n not in first.columns for n in names_known):
         return
-    cells = {n: str(first.columns[n][0] or "").strip().strip("[]()") for n in known}
+    cells = {n: str(first.columns[n][0] or "").strip().strip("[]()") for n in names_known}
     units = {n: cell for n, cell in cells.items() if cell and cell not in RATIOS}
     if not units:
         return
     for name, unit in units.items():
         if size_of(unit, quantity(name).unit) is None:
             return
-    written = {n: f"{heading(n)} [{unit}]" for n, unit in units.items()}
+    headings = {n: f"{heading(n)} [{unit}]" for n, unit in units.items()}
     reader.names = [
-        Heading(n, written[n], units[n]) if n in units and not getattr(n, "unit", "") else n
+        Heading(n, headings[n], units[n]) if n in units and not getattr(n, "unit", "") else n
         for n in reader.names
     ]
     reader.remarks.append(f"line {first.lines[0]} is read as the units of its columns")
@@ -94,13 +94,13 @@ def open_writer(
     if path == "-" and not row.is_text and (not row.pipes_out or sys.stdout.isatty()):
         place = "a terminal" if row.pipes_out else "standard output"
         raise UserError(f"{form} is not for {place}; expected -o FILE{row.endings[0]}")
-    omitted = {*results, *(() if scene_too else SCENE)}
-    source_names = [name for name in source.names if name not in omitted]
+    names_omitted = {*results, *(() if scene_too else SCENE)}
+    source_names = [name for name in source.names if name not in names_omitted]
     headings = [heading(name) for name in (*source_names, *results)]
     with row.load().write(path, form, source.delimiter, headings) as put:
 
         def write(rows: Rows, solved: Mapping[str, NDArray[Any]]) -> None:
-            late = [name for name in rows.late if name not in omitted]
+            late = [name for name in rows.late if name not in names_omitted]
             if late and not row.rows_vary:
                 raise UserError(
                     f"line {rows.late[late[0]]} has the key {quoted(late[0])}, which no row before "

@@ -38,7 +38,7 @@ from impact88.casework.uncertainty.ranges import read_inputs
 from impact88.errors import UserError
 from impact88.interface.commands import figure_command as command
 from impact88.interface.commands.cli import main
-from impact88.interface.commands.figure_command import solved
+from impact88.interface.commands.figure_command import solve_scene
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import RESULTS, SCENE, quantity
 from impact88.program.scene import Scene, sample
@@ -87,7 +87,7 @@ SCENES = {
 @pytest.fixture(params=SCENES, scope="module")
 def drawn(request):
     scene = SCENES[request.param]
-    return scene, scene_drawing(scene, solved(scene))
+    return scene, scene_drawing(scene, solve_scene(scene))
 
 
 def overlaps(drawing: Drawing) -> list[tuple[str, str]]:
@@ -143,7 +143,7 @@ class TestScene:
 
     def test_arrows_point_as_the_velocities_do(self, drawn):
         scene, drawing = drawn
-        value = {name: float(scene[name]) for name in scene} | solved(scene)
+        value = {name: float(scene[name]) for name in scene} | solve_scene(scene)
         roles = {path.role for path in drawing.paths()}
         velocities = {
             "A before": complex(value["UX"], value["UY"]),
@@ -166,7 +166,7 @@ class TestScene:
         if not expected:
             assert "impulse" not in {path.role for path in drawing.paths()}
             return
-        shapes = plan(scene, solved(scene))
+        shapes = plan(scene, solve_scene(scene))
         assert shapes.impulse == pytest.approx(expected, rel=1e-6)
         found = direction(one(drawing, "impulse"))
         assert found == pytest.approx(expected / abs(expected), abs=1e-5)
@@ -211,7 +211,7 @@ class TestPlan:
 
     def test_crush_of_both_is_visible(self):
         """Dashed lines lie over every ground."""
-        items = scene_drawing(sample(1), solved(sample(1))).items
+        items = scene_drawing(sample(1), solve_scene(sample(1))).items
         roles = [item.role for item in items]
         grounds = [at for at, role in enumerate(roles) if role == "body"]
         for vehicle in "AB":
@@ -222,7 +222,7 @@ class TestPlan:
         text = sample(1).to_toml().replace('units = "chapter"', 'units = "us"', 1)
         path.write_text(text, encoding="utf-8")
         scene = Scene.from_toml(str(path))
-        drawing = scene_drawing(scene, solved(scene), title=scene.title)
+        drawing = scene_drawing(scene, solve_scene(scene), title=scene.title)
         texts = [item.text for item in drawing.texts()]
         assert "Appendix, first sample run" in texts
         assert "10 mph" in texts
@@ -247,7 +247,7 @@ class TestPlan:
 
     def test_wall(self):
         scene = SCENES["wall"]
-        drawing = scene_drawing(scene, solved(scene))
+        drawing = scene_drawing(scene, solve_scene(scene))
         assert plan(scene).vehicles[1].wall
         roles = [item.role for item in drawing.items if isinstance(item, Path)]
         assert "B wall" in roles
@@ -258,7 +258,7 @@ class TestPlan:
         assert not plan(SCENES["wall"].replaced({"VX": "1"})).vehicles[1].wall
 
     def test_before_ends_and_after_starts_at_the_center(self):
-        drawing = scene_drawing(sample(1), solved(sample(1)))
+        drawing = scene_drawing(sample(1), solve_scene(sample(1)))
         center = np.mean(one(drawing, "A center").points)
         after = one(drawing, "A after").points
         assert after[0] == pytest.approx(center, abs=1e-6)
@@ -267,12 +267,12 @@ class TestPlan:
 
     def test_rebound_on_one_line_is_drawn_beside(self):
         scene = sample(2).replaced({"GA": "0", "MU": "0", "E": "1", "VX": "30", "VY": "0"})
-        drawing = scene_drawing(scene, solved(scene))
+        drawing = scene_drawing(scene, solve_scene(scene))
         before, after = one(drawing, "A before"), one(drawing, "A after")
         assert abs(before.points[0].imag - after.points[0].imag) > 0.5
 
     def test_scale_bar(self):
-        drawing = scene_drawing(sample(1), solved(sample(1)))
+        drawing = scene_drawing(sample(1), solve_scene(sample(1)))
         bar = one(drawing, "speed scale")
         shaft, head = one(drawing, "A before"), one(drawing, "A before head")
         length = abs(shaft.points[0] - head.points[0])
@@ -288,7 +288,7 @@ class TestPlan:
 
     def test_spins_turn_the_way_they_do(self):
         scene = sample(1).replaced({"WA": "2"})
-        drawing = scene_drawing(scene, solved(scene))
+        drawing = scene_drawing(scene, solve_scene(scene))
         arcs = [i for i in drawing.items if isinstance(i, Path) and i.role == "A spin"]
         spins = [2.0, float(solve({n: float(scene[n]) for n in scene}, ["WAF"])["WAF"])]
         assert spins[1] < 0 or spins[1] > 0
@@ -300,7 +300,9 @@ class TestPlan:
     def test_remarks_stand_under_the_drawing(self):
         scene = SCENES["separating"]
         notes = " ".join(
-            text.text for text in scene_drawing(scene, solved(scene)).texts() if text.role == "note"
+            text.text
+            for text in scene_drawing(scene, solve_scene(scene)).texts()
+            if text.role == "note"
         )
         assert "kinetic energy is gained" in notes
 
@@ -312,7 +314,7 @@ class TestPlan:
         assert overlaps(drawing) == []
 
     def test_table_has_the_numbers(self):
-        texts = [t.text for t in scene_drawing(sample(1), solved(sample(1))).texts()]
+        texts = [t.text for t in scene_drawing(sample(1), solve_scene(sample(1))).texts()]
         for text in ("29.04", "13.7", "16.15", "24.19", "−1.745", "−0.8201"):
             assert text in texts
 
@@ -327,7 +329,7 @@ class TestPlan:
 class TestSvg:
     def test_self_contained_and_whole(self, drawn):
         scene, drawing = drawn
-        text = scene_svg(scene, solved(scene))
+        text = scene_svg(scene, solve_scene(scene))
         root = ElementTree.fromstring(text)
         name = "{http://www.w3.org/2000/svg}"
         assert root.tag == f"{name}svg"
@@ -436,7 +438,7 @@ class TestCanvas:
     @pytest.mark.long
     def test_ink_of_texts_does_not_overlap(self, monkeypatch):
         """What matplotlib paints keeps to the boxes that the layout reckons with."""
-        drawing = scene_drawing(sample(1), solved(sample(1)))
+        drawing = scene_drawing(sample(1), solve_scene(sample(1)))
         import matplotlib
 
         # as files are written
@@ -789,7 +791,7 @@ class TestToScale:
         a, b = plan(scene, None, scene.case.outlines).vehicles
         assert (a.length, a.width) == (16, 6)
         assert b.length / b.width == pytest.approx(2.6)
-        drawing = scene_drawing(scene, solved(scene))
+        drawing = scene_drawing(scene, solve_scene(scene))
         notes = " ".join(text.text for text in drawing.texts() if text.role == "note")
         assert "A drawn as measured, 16 by 6 ft." in notes
         assert "B drawn as a car of its weight, 15.1 by 5.9 ft." in notes
@@ -811,7 +813,7 @@ class TestToScale:
     def test_a_vehicle_has_the_size_of_its_class(self, units, mass, inertia, length, width, words):
         values = {**sample(1), "units": units, "DA": "0.3", "DB": "0.3"}
         scene = Scene({**values, "MA": mass, "IA": inertia, "MB": mass, "IB": inertia})
-        drawing = scene_drawing(scene, solved(scene))
+        drawing = scene_drawing(scene, solve_scene(scene))
         notes = " ".join(text.text for text in drawing.texts() if text.role == "note")
         unit = "ft" if units == "us" else "m"
         size = f"{length:.1f} by {width:.1f} {unit}".replace(".0 ", " ")
@@ -819,12 +821,12 @@ class TestToScale:
 
     def test_point_masses_are_discs_that_touch(self):
         scene = sample(2)
-        shapes = plan(scene, solved(scene), units=scene.case.system)
+        shapes = plan(scene, solve_scene(scene), units=scene.case.system)
         for vehicle in shapes.vehicles:
             distances = [abs(point - vehicle.center) for point in vehicle.outline]
             assert distances == pytest.approx([vehicle.length / 2] * len(distances))
             assert abs(vehicle.center) == pytest.approx(vehicle.length / 2)
-        drawing = scene_drawing(scene, solved(scene))
+        drawing = scene_drawing(scene, solve_scene(scene))
         notes = " ".join(text.text for text in drawing.texts() if text.role == "note")
         assert "Point masses: drawn as discs, moved apart along n." in notes
         assert one(drawing, "impulse")
@@ -832,10 +834,10 @@ class TestToScale:
 
     def test_force_and_change_of_velocity(self):
         scene = sample(1)
-        drawing = scene_drawing(scene, solved(scene))
+        drawing = scene_drawing(scene, solve_scene(scene))
         for vehicle, x, y in (("A", "UX", "UY"), ("B", "VX", "VY")):
             after = {"A": ("VAX", "VAY"), "B": ("VBX", "VBY")}[vehicle]
-            result = solved(scene)
+            result = solve_scene(scene)
             change = complex(result[after[0]], result[after[1]])
             change -= complex(float(scene[x]), float(scene[y]))
             found = direction(one(drawing, f"{vehicle} change"))
@@ -849,7 +851,7 @@ class TestToScale:
         from impact88.casework.figures.views import strip_drawing
 
         scene = sample(1)
-        drawing = strip_drawing(scene, solved(scene))
+        drawing = strip_drawing(scene, solve_scene(scene))
         assert overlaps(drawing) == []
         assert off_page(drawing) == []
         assert drawing.width == 170
@@ -857,7 +859,7 @@ class TestToScale:
         sides = [np.subtract(*outline.points[1:3]) for outline in (outlines[0], outlines[2])]
         before, after = np.angle(sides)
         size = plan(scene, units=scene.case.system).vehicles[0].length
-        expected = solved(scene)["WAF"] * size / math.hypot(14.52, 25.15)
+        expected = solve_scene(scene)["WAF"] * size / math.hypot(14.52, 25.15)
         assert after - before == pytest.approx(expected, abs=1e-3)
 
     def test_an_exhibit_is_the_same_drawing_larger(self, tmp_path):
@@ -977,8 +979,8 @@ class TestExtremes:
     def drawings(self, scene):
         inputs = read_inputs(dict(scene), {"UX": "+- 1%", "MA": "+- 3%", "GA": "+- 2"})
         found = bounds(inputs.values, samples=300, keep_draws=True)
-        yield scene_drawing(scene, solved(scene))
-        yield views.strip_drawing(scene, solved(scene))
+        yield scene_drawing(scene, solve_scene(scene))
+        yield views.strip_drawing(scene, solve_scene(scene))
         yield charts.histograms(found)
         yield charts.tornado(found, ["DVA", "LOSS", "WAF"])
         yield charts.friction_sweep(scene)
@@ -1036,10 +1038,10 @@ class TestExtremes:
             {"GA": "-30", "PA": "10", "PB": "-60", "TA": "0", "TB": "90", "DA": "6.5", "DB": "5"}
             | {"UX": "-51", "UY": "0", "VX": "0", "VY": "37", "E": ".15", "MU": ".5", "EM": "-1"}
         )
-        a, b = plan(scene, solved(scene)).vehicles
+        a, b = plan(scene, solve_scene(scene)).vehicles
         once = a.length / 51
         assert not views.are_apart((a, b), once)
-        drawing = views.strip_drawing(scene, solved(scene))
+        drawing = views.strip_drawing(scene, solve_scene(scene))
         ends = [
             [p for p in drawing.paths() if p.role == f"{name} outline"][-1].points for name in "AB"
         ]

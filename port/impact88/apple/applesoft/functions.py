@@ -196,8 +196,8 @@ def cosine(x: Number) -> Number:
 
 def tangent(x: Number) -> Number:
     """TAN of x radians: the sine divided by the cosine of the same reduced argument."""
-    of_sine, flag, reduced, _ = _sine(real.rounded(x))
-    f = real.add(QUARTER, real.negate(real.absolute(reduced)))
+    of_sine, flag, remainder, _ = _sine(real.rounded(x))
+    f = real.add(QUARTER, real.negate(real.absolute(remainder)))
     if flag:
         f = real.negate(f)
     return real.divide(of_sine, odd_polynomial(SIN_COEFFICIENTS, f))

@@ -52,9 +52,9 @@ class InputOutput(Expressions):
 
     def show(self, text: bytes) -> None:
         """STRPRT: send a string's characters. A line feed moves down and keeps the column."""
-        first, *more = text.decode("latin-1").split("\n")
+        first, *further = text.decode("latin-1").split("\n")
         self.put(first)
-        for text_part in more:
+        for text_part in further:
             column = self.screen.column
             self.put("\n")
             self.screen.stay_at(column)

@@ -119,9 +119,9 @@ def _rows(text: str) -> list[Row]:
         row = row.strip("\f")
         for column, character in enumerate(row, 1):
             if not " " <= character <= "~" and (character > "~" or character in "\t\0"):
-                what = "a tab" if character == "\t" else f"character {_code(character)}"
+                name = "a tab" if character == "\t" else f"character {_code(character)}"
                 place = f"row {number}, column {column}"
-                raise UserError(f"{place}: {what}; expected characters that an Apple's keys type")
+                raise UserError(f"{place}: {name}; expected characters that an Apple's keys type")
         if row.strip(" "):
             rows.append(Row(number, row))
     while rows and _PROMPT.match(rows[0].text):

@@ -178,8 +178,8 @@ class Variables(Memory):
             raise ApplesoftError("STRING TOO LONG")
         address = self.allocate(length)
         self.move(self.word(left + 1), address, size)
-        added, source = self.free_string(right)
-        self.move(source, address + size, added)
+        suffix, source = self.free_string(right)
+        self.move(source, address + size, suffix)
         self.free_string(left)
         return self.temporary(length, address, left >> 8)
 

@@ -139,12 +139,12 @@ def report(
     zero, total = np.zeros(()), final[0] + final[1] + final[2] + final[3]
     # A is on the side that it approaches from, whichever way n points
     side = np.where(van > vbn, -1.0, 1.0)
-    pushed = side * pn
+    impulse = side * pn
     # no arms, no moment; mu is signed here, and -10 does not stand for the pivot
     conditions = findings(
         Evidence(
             gn=side * (van - vbn),
-            pn=pushed,
+            pn=impulse,
             arm_a=zero,
             arm_b=zero,
             da=zero,
@@ -154,8 +154,8 @@ def report(
             e=e,
             em=zero,
             mu=mu,
-            forward=forward_friction(mu, critical * pushed),
-            pivot_pn=pushed,
+            forward=forward_friction(mu, critical * impulse),
+            pivot_pn=impulse,
             limit=abs(critical * pn),
             # without arms the normal impulse does not reverse the sliding
             gt=zero,

@@ -190,8 +190,8 @@ def _equation_19(
 
 
 def _coefficients(vehicles: dict[str, float]) -> Step:
-    known = {**vehicles, **ESTIMATES, **NO_SWERVING, **NO_TURNING, **SPIN_ESTIMATE}
-    (solution,) = solve_for(known)
+    values = {**vehicles, **ESTIMATES, **NO_SWERVING, **NO_TURNING, **SPIN_ESTIMATE}
+    (solution,) = solve_for(values)
     worst, em = float(solution.amplification["EM"]), float(solution["EM"])
     ratio = float(moment_ratio(em))
     return Step(
@@ -220,18 +220,18 @@ def _both_spins(vehicles: dict[str, float], initial: dict[str, float]) -> Step:
     state = State.of_known({**scene, **after})
     here, e = state.here, float(state["E"])
     # what A and B gain of linear and angular momentum
-    gained = closure(Collision(0, "", scene, after, {}))
-    x, y, on_a, on_b = (gained[name] for name in ("x_of_a", "y_of_a", "spin_of_a", "spin_of_b"))
+    closed = closure(Collision(0, "", scene, after, {}))
+    x, y, on_a, on_b = (closed[name] for name in ("x_of_a", "y_of_a", "spin_of_a", "spin_of_b"))
     pn, pt = float(x * here.cosine + y * here.sine), float(y * here.cosine - x * here.sine)
     spin, bracket = after["WBF"] - after["WAF"], on_a / scene["IA"] + on_b / scene["IB"]
-    measured = {
+    measurements = {
         name: Uncertain("uniform", value, value - tolerance, value + tolerance)
         for estimates, kind in ((ESTIMATES, "velocity"), (BOTH_SPINS, "spin"))
         for tolerance in [TOLERANCES[kind]]
         for name, value in estimates.items()
     }
-    (adjusted,) = reconstruct({**vehicles, **NO_SWERVING, **NO_TURNING, **measured})
-    values = adjusted.values
+    (solution,) = reconstruct({**vehicles, **NO_SWERVING, **NO_TURNING, **measurements})
+    values = solution.values
     return Step(
         "Coefficients from both final spins, WAF -2.9 and WBF -0.9 rad/s",
         "Equations 15, 16 and 18",

@@ -1,5 +1,5 @@
-"""What the chapter says in numbers or comparisons, checked: `claims`, a row for every such sentence
-of its Sections I to VII.
+"""The chapter's statements in numbers or comparisons, checked: `claims`, a row for every such
+sentence of its Sections I to VII.
 
 What is said of the method, and of the eleven staged collisions, is computed on these; the numbers
 of Section VII are those of `chapter.example`; the rest names where it is checked, or why it cannot
@@ -59,7 +59,7 @@ def _extent(rule: Callable[[Collision], Array], alike: list[Collision]) -> tuple
 
 
 @cache
-def _varied() -> tuple[Claim, ...]:
+def _varied_checks() -> tuple[Claim, ...]:
     """Return the claims that something hardly matters, each with what it does to the eleven
     collisions."""
 
@@ -83,7 +83,7 @@ def _varied() -> tuple[Claim, ...]:
         return np.concatenate([delta_v_change(c, {n: c.scene[n] + turns}) for n in names])
 
     sides = [c for c in collisions() if _are_sides(c)]
-    rest = [c for c in collisions() if not _are_sides(c)]
+    remaining = [c for c in collisions() if not _are_sides(c)]
     around = np.radians(np.arange(0, 360, 5.0))
     contact = {"CX": np.cos(around), "CY": np.sin(around)}
     moments = np.linspace(-1, 0, 21)
@@ -139,15 +139,15 @@ def _varied() -> tuple[Claim, ...]:
     )
     return tuple(
         Claim(
-            where,
+            place,
             text,
             verdict,
             varied=varied,
             sides=_extent(rule, sides),
-            others=_extent(rule, rest),
+            others=_extent(rule, remaining),
             unit=unit,
         )
-        for where, text, varied, rule, unit, verdict in rows
+        for place, text, varied, rule, unit, verdict in rows
     )
 
 
@@ -174,16 +174,16 @@ def _of_tables() -> tuple[Claim, ...]:
     """Return the claims of Section V and VI about the staged collisions' own numbers."""
     tests = collisions()
     sides = [c for c in tests if _are_sides(c)]
-    others = [c for c in tests if not _are_sides(c)]
+    remaining = [c for c in tests if not _are_sides(c)]
     e = [c.table2["e"] for c in tests]
     fastest = max(np.hypot(c.scene[x], c.scene[y]) for c in tests for x, y in _SPEEDS)
     em_sides = {c.number: c.table2["em"] for c in sides}
-    em_others = [c.table2["em"] for c in others]
+    em_others = [c.table2["em"] for c in remaining]
     smallest = max(em_sides, key=lambda number: em_sides[number])
     slid = [abs(_sliding(c)) for c in tests]
     friction = [abs(c.table2["mu"]) for c in tests]
     among_sides = np.corrcoef([abs(_sliding(c)) for c in sides], friction[: len(sides)])[0, 1]
-    among_others = np.corrcoef([abs(_sliding(c)) for c in others], friction[len(sides) :])[0, 1]
+    among_others = np.corrcoef([abs(_sliding(c)) for c in remaining], friction[len(sides) :])[0, 1]
     losses: dict[str, list[float]] = {}
     for c in tests:
         losses.setdefault(c.category.lower(), []).append(c.table2["loss"])
@@ -246,7 +246,7 @@ def _of_tables() -> tuple[Claim, ...]:
             "V",
             "the last five collisions are nearly direct, and μ is near zero",
             "true",
-            _range([c.table2["mu"] for c in others]),
+            _range([c.table2["mu"] for c in remaining]),
         ),
         Claim(
             "V",
@@ -301,24 +301,24 @@ def _of_forces() -> Claim:
 
 def _of_example() -> tuple[Claim, ...]:
     """Return the numbers of Section VII, recomputed."""
-    found = []
+    checks = []
     for step in example.steps():
         numbers = [number for number in step.numbers if number.printed is not None]
         if not numbers:
             continue
-        printed = ", ".join(f"{n.name} {n.printed}" for n in numbers)
+        texts = ", ".join(f"{n.name} {n.printed}" for n in numbers)
         agree = all(number.agrees for number in numbers)
         values = ", ".join(f"{n.value:.5g}" for n in numbers)
         words = step.remark.replace(" (below)", "") if "need the factor" in step.remark else ""
-        found.append(
+        checks.append(
             Claim(
                 "VII",
-                f"{step.title}: {printed}",
+                f"{step.title}: {texts}",
                 _verdict_of_example(agree, bool(words)),
                 f"{values}{'. ' + words if words else ''} (impact88 chapter example)",
             )
         )
-    return tuple(found)
+    return tuple(checks)
 
 
 def _verdict_of_example(agrees: bool, is_of_other_values: bool) -> str:
@@ -370,6 +370,6 @@ _ELSEWHERE = (
 @cache
 def claims() -> tuple[Claim, ...]:
     """Return every sentence of the chapter that states a number or a comparison, with its check."""
-    rows = (*_ELSEWHERE, _of_forces(), *_varied(), *_of_tables(), *_of_example())
+    rows = (*_ELSEWHERE, _of_forces(), *_varied_checks(), *_of_tables(), *_of_example())
     sections = ("I", "III", "IV", "IV-A", "V", "VI", "VII")
     return tuple(sorted(rows, key=lambda claim: sections.index(claim.where)))

@@ -97,11 +97,11 @@ def cells() -> tuple[Cell, ...]:
         for row in _rows(f"table{table}.csv"):
             name = row["row" if table == 1 else "collision"]
             texts = {column: row[keys.get(column, column)] for column in columns}
-            printed = _printed_1(row) if table == 1 else texts
+            row_texts = _printed_1(row) if table == 1 else texts
             for column, text in texts.items():
                 remark = _remark(table, name, column)
-                emended = remark.emended if remark and table == 2 else text
-                result.append(Cell(table, name, column, printed[column], emended, remark))
+                text_read = remark.emended if remark and table == 2 else text
+                result.append(Cell(table, name, column, row_texts[column], text_read, remark))
     return tuple(result)
 
 
@@ -153,17 +153,17 @@ def collisions() -> tuple[Collision, ...]:
     result = []
     for number in (name for name in rows if name.isdigit()):
         scene = {"GA": float(rows[f"{number}/A"]["Gamma"]), "WA": 0.0, "WB": 0.0}
-        measured: dict[str, float] = {}
+        measurements: dict[str, float] = {}
         for v, x, y in (("A", "UX", "UY"), ("B", "VX", "VY")):
             row = rows[f"{number}/{v}"]
             names = {"M": "m", "I": "I", "D": "d", "P": "phi", "T": "theta"}
             scene |= {f"{name}{v}": float(row[column]) for name, column in names.items()}
             scene |= {x: float(row["vx"]), y: float(row["vy"])}
             after = {f"V{v}X": row["Vx"], f"V{v}Y": row["Vy"], f"W{v}F": row["Omega"]}
-            measured |= {name: float(text or "nan") for name, text in after.items()}
+            measurements |= {name: float(text or "nan") for name, text in after.items()}
         table2 = {column: float(text) for column, text in rows[number].items()}
         category = rows[f"{number}/A"]["category"]
-        result.append(Collision(int(number), category, scene, measured, table2))
+        result.append(Collision(int(number), category, scene, measurements, table2))
     return tuple(result)
 
 
@@ -253,12 +253,12 @@ def comparison(printed: Sequence[Collision] | None = None) -> list[Compared]:
             n: x + o for (n, x), o in zip(collision.coefficients.items(), offsets, strict=True)
         }
         centre, spread = forward(collision), forward(collision, coefficients)
-        measured = experimental(collision)
+        measurements = experimental(collision)
         rounded_loss = collision.table2["loss"] + np.array([0, -_HALF_DIGIT, _HALF_DIGIT])
         equation_19 = predicted(collision, rounded_loss)
         values: dict[str, tuple[float, Any]] = {"loss": (float(centre["LOSS"]), spread["LOSS"])}
         for vehicle, name in (("a", "DVA"), ("b", "DVB")):
-            values[f"dV{vehicle}_exp"] = (measured[name], measured[name])
+            values[f"dV{vehicle}_exp"] = (measurements[name], measurements[name])
             values[f"dV{vehicle}_comp"] = (float(centre[name]), spread[name])
             values[f"dV{vehicle}_pred"] = (float(equation_19[name][0]), equation_19[name])
         for column in filter(values.__contains__, COLUMNS_2):

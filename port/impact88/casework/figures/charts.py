@@ -26,7 +26,7 @@ MOST_PANELS = 12  # panels that fit a page
 MOST_BARS = 8  # bars that fit a panel
 BINS = 60  # bars of a histogram, two a millimetre
 WARNED = "STATUS has a warning"
-"""What is shaded along a value."""
+"""The key's text for stretches that are shaded."""
 SWEEP = 801  # points of a sweep, ten a millimetre
 WIDEST_SWEEP = 5.0  # largest friction coefficient swept
 # in mm
@@ -71,8 +71,8 @@ def span(values: Any, margin: float = 0.05) -> tuple[float, float]:
     values = values[np.isfinite(values)]
     low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
     flat = high - low <= _FLAT * max(abs(low), abs(high))
-    more = (0.05 * abs(low) or 1.0) if flat else margin * (high - low)
-    return low - more, high + more
+    extension = (0.05 * abs(low) or 1.0) if flat else margin * (high - low)
+    return low - extension, high + extension
 
 
 def ticks(low: float, high: float, most: int) -> list[tuple[float, str]]:
@@ -90,8 +90,8 @@ def ticks(low: float, high: float, most: int) -> list[tuple[float, str]]:
     else:
         digits = max(0, math.floor(math.log10(largest)) - power_)
         texts = [f"{number * size:.{digits}e}" for number in numbers]
-    named = zip(numbers, texts, strict=True)
-    return [(n * size, t.replace("-", "−") if n else "0") for n, t in named]
+    entries = zip(numbers, texts, strict=True)
+    return [(n * size, t.replace("-", "−") if n else "0") for n, t in entries]
 
 
 def powers(low: float, high: float, step: int) -> list[tuple[float, str]]:
@@ -114,21 +114,21 @@ def fitting_ticks(axis: Axis, most: int, page: float) -> list[tuple[float, str]]
             i for i, (x, half) in enumerate(places) if min(x - half, page - x - half) >= _EDGE
         ]
         for step in range(1, max(2, len(inside))):
-            shown = inside[::step]
+            indices = inside[::step]
             gaps = (
                 places[b][0] - places[a][0] - places[a][1] - places[b][1]
-                for a, b in pairwise(shown)
+                for a, b in pairwise(indices)
             )
-            if all(gap >= _APART for gap in gaps) and (len(shown) > 1 or count == 1):
-                return [(v, text if i in shown else "") for i, (v, text) in enumerate(marks)]
+            if all(gap >= _APART for gap in gaps) and (len(indices) > 1 or count == 1):
+                return [(v, text if i in indices else "") for i, (v, text) in enumerate(marks)]
     return marks
 
 
 def label_lines(drawing: Drawing, box: Box, label: str) -> list[str]:
     """Return the lines of the name below an axis: in its middle, and clear of the page's edges."""
     middle = (box.left + box.right) / 2
-    beside = min(middle, drawing.width - middle) - _CLEAR
-    return d.wrap_text(label, min(box.width + 8, 2 * beside))
+    space = min(middle, drawing.width - middle) - _CLEAR
+    return d.wrap_text(label, min(box.width + 8, 2 * space))
 
 
 class Panel:
@@ -241,11 +241,11 @@ def key(drawing: Drawing, y: float, *entries: tuple[str, str, Any], note: str = 
 def _label(name: str, units: System) -> str:
     """The name of an axis: the quantity's meaning, without what its table says besides, and the
     unit where it has one."""
-    what = quantity(name)
-    meaning: str = what.meaning.partition(";")[0]
-    if what.unit == "1":
+    row = quantity(name)
+    meaning: str = row.meaning.partition(";")[0]
+    if row.unit == "1":
         return meaning
-    unit = {"percent": "%"}.get(what.unit, units.label(what.unit))
+    unit = {"percent": "%"}.get(row.unit, units.label(row.unit))
     return f"{meaning}, {unit}"
 
 
@@ -268,8 +268,8 @@ def _start_drawing(
     names, units = list(outputs or result.bounds), system_of(result.units)
     for name in names:
         if name not in result.bounds:
-            known = " ".join(result.bounds)
-            raise UserError(f"{name!r} is not among the results; expected {known}")
+            names_known = " ".join(result.bounds)
+            raise UserError(f"{name!r} is not among the results; expected {names_known}")
     _check_count(names)
     bounds = [(_label(name, units), result.bounds[name]) for name in names]
     sentences = (
@@ -379,22 +379,22 @@ def friction_sweep(scene: Any) -> Drawing:
     from ...mechanics.closedform.solve import solve
 
     values: dict[str, Any] = numbers_of(scene)
-    signed = solve({**values, "MU": PIVOT}, ["MUC"])
+    pivot = solve({**values, "MU": PIVOT}, ["MUC"])
     # as one would type it: line 400 turns the sign of what is typed where gt > 0
     sign = float(np.sign(solve({**values, "MU": 1.0}, ["MUP"])["MUP"]))
-    critical = sign * float(signed["MUC"])
-    own = critical if values["MU"] == PIVOT else values["MU"]
+    critical = sign * float(pivot["MUC"])
+    marked_value = critical if values["MU"] == PIVOT else values["MU"]
     limit = critical if np.isfinite(critical) and 0 < critical <= WIDEST_SWEEP else 0.0
-    reach = min(max(1.0, 1.3 * limit, 1.2 * own), WIDEST_SWEEP)
-    low = min(0.0, 1.2 * own)  # a scene whose friction drives the sliding shows itself
+    reach = min(max(1.0, 1.3 * limit, 1.2 * marked_value), WIDEST_SWEEP)
+    low = min(0.0, 1.2 * marked_value)  # a scene whose friction drives the sliding shows itself
     faults = Status.FRICTION_ABOVE_CRITICAL | Status.FRICTION_WRONG_DIRECTION
     axis = np.linspace(max(low, -WIDEST_SWEEP), reach, SWEEP)
     groups = [["LOSS"], ["DVA", "DVB"]]
     titles = ("Energy loss and ΔV against friction", "friction coefficient as typed (MU)")
     words = _Words(*titles, "pivot" if values["MU"] == PIVOT else "this scene")
     curves = _Curves(scene, "MU", axis, [output for group in groups for output in group], faults)
-    own, limit = (curves.units.display_unwrapped("MU", x) for x in (own, limit))
-    return _along(curves, groups, own, words, limit)
+    marked_value, limit = (curves.units.display_unwrapped("MU", x) for x in (marked_value, limit))
+    return _along(curves, groups, marked_value, words, limit)
 
 
 def swept(scene: Any, name: str, values: Sequence[float], outputs: Sequence[str]) -> Drawing:
@@ -543,13 +543,13 @@ def _reach(curves: Sequence[tuple[Any, float]], faulty: Any) -> tuple[float, flo
     """Return the ends of the axis of a panel's curves, each with its value in this scene: of the
     physical part and half of that beyond it where all would squeeze it. Several curves are sizes,
     from 0 on."""
-    whole = span([x for curve, here in curves for x in (*curve, here)])
+    ends = span([x for curve, here in curves for x in (*curve, here)])
     if faulty.any() and not faulty.all():
         low, high = span([x for curve, here in curves for x in (*curve[~faulty], here)])
-        if whole[1] - whole[0] > _SQUEEZED * (high - low):
-            more = 0.5 * (high - low)
-            whole = max(whole[0], low - more), min(whole[1], high + more)
-    return (0.0, whole[1]) if len(curves) > 1 else whole
+        if ends[1] - ends[0] > _SQUEEZED * (high - low):
+            extension = 0.5 * (high - low)
+            ends = max(ends[0], low - extension), min(ends[1], high + extension)
+    return (0.0, ends[1]) if len(curves) > 1 else ends
 
 
 def faulty_stretches(axis: Any, is_faulty: Callable[[Any], Any]) -> Any:
@@ -560,8 +560,8 @@ def faulty_stretches(axis: Any, is_faulty: Callable[[Any], Any]) -> Any:
     low, high = axis[at].astype(float), axis[at + 1].astype(float)
     for _ in range(40 if len(at) else 0):
         middle = (low + high) / 2
-        changed = is_faulty(middle) != faulty[at]
-        low, high = np.where(changed, low, middle), np.where(changed, middle, high)
+        has_changed = is_faulty(middle) != faulty[at]
+        low, high = np.where(has_changed, low, middle), np.where(has_changed, middle, high)
     ends = [*([axis[0]] if faulty[0] else []), *high, *([axis[-1]] if faulty[-1] else [])]
     return np.reshape(ends, (-1, 2))
 
@@ -575,9 +575,13 @@ def figure_5() -> Drawing:
     series: Mapping[str, list[tuple[float, float, str]]]
     series = {"impact equations": [], "Equation 19": []}
     for collision in collisions():
-        measured = experimental(collision)
-        for name, printed in (("DVA", "dVa_exp"), ("DVB", "dVb_exp")):
-            x = measured[name] if math.isfinite(measured[name]) else collision.table2[printed]
+        measurements = experimental(collision)
+        for name, column in (("DVA", "dVa_exp"), ("DVB", "dVb_exp")):
+            x = (
+                measurements[name]
+                if math.isfinite(measurements[name])
+                else collision.table2[column]
+            )
             for points, rule in zip(series.values(), (forward, predicted), strict=True):
                 points.append((x, float(rule(collision)[name]), name[-1]))
     drawing = Drawing(
@@ -587,11 +591,11 @@ def figure_5() -> Drawing:
         "the line is where they are equal.",
     )
     top = drawing.heading() - _TOP
-    most = 1.06 * max(max(x, y) for points in series.values() for x, y, _ in points)
+    limit = 1.06 * max(max(x, y) for points in series.values() for x, y, _ in points)
     box = Box(_LEFT, top - 65, _LEFT + 65, top)
     names = ("experimental ΔV, ft/s", "calculated ΔV, ft/s")
-    panel = Panel(drawing, box, (0.0, most), (0.0, most), *names, y_ticks=6)
-    panel.line([0, most], [0, most], GREY, 0.3)
+    panel = Panel(drawing, box, (0.0, limit), (0.0, limit), *names, y_ticks=6)
+    panel.line([0, limit], [0, limit], GREY, 0.3)
     looks = {"impact equations": ("o", d.BLUE), "Equation 19": ("^", d.VERMILION)}
     for name, points in series.items():
         for x, y, vehicle in points:

@@ -206,16 +206,16 @@ class Drawing:
 
 def pieces(text: str) -> list[tuple[str, bool]]:
     r"""``text`` cut at its subscripts: (piece, whether it is one); ``\_`` is an underscore."""
-    found = re.finditer(r"_\{([^}]*)\}|_([^\W_]+)|_|\\_|[^_\\]+|\\", text)
+    matches = re.finditer(r"_\{([^}]*)\}|_([^\W_]+)|_|\\_|[^_\\]+|\\", text)
     cut = [
         (m[1] or m[2] or "", True) if m[0][0] == "_" else (m[0].replace(r"\_", "_"), False)
-        for m in found
+        for m in matches
     ]
-    joined: list[tuple[str, bool]] = []
+    spans: list[tuple[str, bool]] = []
     for below, alike in groupby(cut, lambda piece: piece[1]):
         texts = [piece for piece, _ in alike]
-        joined += [(piece, True) for piece in texts] if below else [("".join(texts), False)]
-    return joined
+        spans += [(piece, True) for piece in texts] if below else [("".join(texts), False)]
+    return spans
 
 
 def text_width(text: str, size: float, bold: bool = False) -> float:
@@ -287,8 +287,8 @@ def _add_head(
     shaft: tuple[complex, ...], tip: complex, along: complex, look: tuple[Any, ...], role: str
 ) -> list[Path]:
     head = (tip, tip - along * (1 - 0.36j), tip - along * (1 + 0.36j))
-    filled = Path(head, None, fill=look[0], role=role and f"{role} head")
-    return [Path(shaft, *look)._replace(role=role), filled]
+    arrowhead = Path(head, None, fill=look[0], role=role and f"{role} head")
+    return [Path(shaft, *look)._replace(role=role), arrowhead]
 
 
 def turning_arrow(
@@ -314,21 +314,21 @@ def circle(center: complex, radius: float) -> tuple[complex, ...]:
 
 def dashes(points: Sequence[complex], pattern: Sequence[float]) -> list[tuple[complex, ...]]:
     """The drawn pieces of a line dashed by ``pattern`` (drawn, left out, drawn ... in mm)."""
-    drawn, piece, count, left = [], [points[0]], 0, pattern[0]
+    dashes, piece, count, left = [], [points[0]], 0, pattern[0]
     for start, end in pairwise(points):
-        length, done = abs(end - start), 0.0
-        while length - done > left:
-            done += left
-            place = start + done / length * (end - start)
+        length, place_along = abs(end - start), 0.0
+        while length - place_along > left:
+            place_along += left
+            place = start + place_along / length * (end - start)
             if count % 2 == 0:
-                drawn.append((*piece, place))
+                dashes.append((*piece, place))
             count += 1
             piece, left = [place], pattern[count % len(pattern)]
-        left -= length - done
+        left -= length - place_along
         piece.append(end)
     if count % 2 == 0:
-        drawn.append(tuple(piece))
-    return drawn
+        dashes.append(tuple(piece))
+    return dashes
 
 
 def extent(points: Iterable[complex]) -> Box:
@@ -363,7 +363,7 @@ def place(drawing: Drawing, frame: Box) -> None:
     lines = [_samples(path) for path in drawing.paths()]
     points, weights = (np.concatenate(parts) for parts in zip(*lines, strict=True))
     x, y = points.real.copy(), points.imag.copy()  # side by side in memory
-    taken = [text_box(text) for text in drawing.texts()]
+    boxes = [text_box(text) for text in drawing.texts()]
     for label in drawing.labels:
         text = Text(0j, label.text, label.size, "start", *label[4:])
         box = text_box(text)
@@ -375,14 +375,14 @@ def place(drawing: Drawing, frame: Box) -> None:
         low, high = middles[:, None] - half, middles[:, None] + half
         wish = label.towards / abs(label.towards) if label.towards else 0j
         own_cost = 0.6 * reach + 1.5 * (1 - (wish.conjugate() * along).real) + (reach > LEADER_FROM)
-        left, bottom, right, top = np.array(taken).reshape(-1, 4).T
-        near = (low.real < right + GAP) & (high.real > left - GAP)
-        near &= (low.imag < top + GAP) & (high.imag > bottom - GAP)
+        left, bottom, right, top = np.array(boxes).reshape(-1, 4).T
+        is_near = (low.real < right + GAP) & (high.real > left - GAP)
+        is_near &= (low.imag < top + GAP) & (high.imag > bottom - GAP)
         inside = (low.real >= frame.left) & (high.real <= frame.right)
         inside &= (low.imag >= frame.bottom) & (high.imag <= frame.top)
-        misplaced = 1e4 * near.sum(1) + 1e3 * ~inside[:, 0]
+        penalty = 1e4 * is_near.sum(1) + 1e3 * ~inside[:, 0]
         covering = partial(_covering, low, high, x, y, weights)
-        best = _cheapest_place(own_cost, misplaced, covering)
+        best = _cheapest_place(own_cost, penalty, covering)
         text = text._replace(at=complex(low[best, 0]) - complex(box.left, box.bottom))
         box = text_box(text)
         if reach[best] > LEADER_FROM:
@@ -393,7 +393,7 @@ def place(drawing: Drawing, frame: Box) -> None:
             start = label.at + min(0.8 / abs(end - label.at), 1.0) * (end - label.at)
             drawing.add(Path((start, end), label.colour, 0.12, role="leader"))
         drawing.add(text)
-        taken.append(box)
+        boxes.append(box)
     drawing.labels.clear()
 
 
@@ -424,10 +424,10 @@ def _covering(
     within = (low.real.min() < x) & (x < high.real.max())
     within &= (low.imag.min() < y) & (y < high.imag.max())
     across, up = x[within], y[within]
-    covered = (low.real.copy() < across) & (across < high.real.copy())
-    covered &= (low.imag.copy() < up) & (up < high.imag.copy())
+    is_covered = (low.real.copy() < across) & (across < high.real.copy())
+    is_covered &= (low.imag.copy() < up) & (up < high.imag.copy())
     # einsum: a product by BLAS would wake its threads, which then spin
-    return np.asarray(np.einsum("ij,j->i", covered, weights[within]))
+    return np.asarray(np.einsum("ij,j->i", is_covered, weights[within]))
 
 
 @lru_cache(maxsize=256)

@@ -129,11 +129,13 @@ def plan(
         "B": Motion(complex(values["VX"], values["VY"]), values["WB"]),
     }
     finals = {name: (result or {}).get(name) for name in FINAL_VELOCITIES}
-    given = {name: float(value) for name, value in finals.items() if value is not None}
+    numbers = {name: float(value) for name, value in finals.items() if value is not None}
     after: dict[str, Motion] = {}
-    if all(math.isfinite(given.get(name, math.nan)) for name in FINAL_VELOCITIES[:4]):
+    if all(math.isfinite(numbers.get(name, math.nan)) for name in FINAL_VELOCITIES[:4]):
         for v in "AB":
-            after[v] = Motion(complex(given[f"V{v}X"], given[f"V{v}Y"]), given.get(f"W{v}F", 0.0))
+            after[v] = Motion(
+                complex(numbers[f"V{v}X"], numbers[f"V{v}Y"]), numbers.get(f"W{v}F", 0.0)
+            )
     reach = {
         "A": -values["DA"] * unit(values["TA"] + values["PA"]),
         "B": values["DB"] * unit(values["TB"] + values["PB"]),
@@ -150,8 +152,8 @@ def plan(
         if points:
             length = width = 2 * DISC * length
         if apart:
-            turned = front[name] * normal.conjugate()
-            half = (abs(turned.real) * length + abs(turned.imag) * width) / 2
+            direction = front[name] * normal.conjugate()
+            half = (abs(direction.real) * length + abs(direction.imag) * width) / 2
             center = inward * (length / 2 if points else half)
         corners = ((1, -1), (1, 1), (-1, 1), (-1, -1))
         outline = tuple(
@@ -161,25 +163,25 @@ def plan(
             rim = (cmath.rect(length / 2, math.tau * k / DISC_CORNERS) for k in range(DISC_CORNERS))
             outline = tuple(center + point for point in rim)
         cut = not points and _depth(center, inward) > 0.15 * width
-        kept = _clip_outline(outline, inward) if cut else outline
+        outline_left = _clip_outline(outline, inward) if cut else outline
         heavy, light = (abs(values[f"M{which}"]) for which in (name, "B" if name == "A" else "A"))
         wall = heavy >= WALL * light and before[name] == (0, 0)
         motions = before[name], after.get(name)
-        size = length, width, outline, kept
+        size = length, width, outline, outline_left
         vehicles.append(Vehicle(name, center, front[name], *size, wall, points, *motions))
     # momentum of the lighter vehicle: a wall's change of velocity has no digits left
     moved, sense = (vehicles[1], -1) if vehicles[0].wall else (vehicles[0], 1)
     impulse = None if moved.change is None else sense * values[f"M{moved.name}"] * moved.change
-    known = {**values, **(result or {})}
-    remarks = tuple(sentences(int(known.get("STATUS") or 0), known))
-    both = vehicles[0], vehicles[1]
-    return Plan(both, normal, 1j * normal, impulse, apart, remarks, values, sizes_from)
+    all_values = {**values, **(result or {})}
+    remarks = tuple(sentences(int(all_values.get("STATUS") or 0), all_values))
+    pair = vehicles[0], vehicles[1]
+    return Plan(pair, normal, 1j * normal, impulse, apart, remarks, values, sizes_from)
 
 
 _OF_NO_EFFECT = dict.fromkeys(
     ("DA", "DB", "PA", "PB", "WA", "WB", "IA", "IB", "E", "MU", "EM"), 0.0
 )
-"""What a drawing of point masses does not show, where it is not given."""
+"""Values that a drawing of point masses does not show, where they are not given."""
 
 
 def _drawable(scene: Any, result: Mapping[str, Any]) -> dict[str, Any]:

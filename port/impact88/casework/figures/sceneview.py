@@ -158,8 +158,8 @@ class _Field:
         if vehicle.after.speed > least:
             run = self.per_speed * vehicle.after.velocity
             start = center
-            turned = run * coming.conjugate()
-            if "before" in result and turned.real < -0.97 * abs(turned):
+            direction = run * coming.conjugate()
+            if "before" in result and direction.real < -0.97 * abs(direction):
                 # coming and going on one line: the way back is drawn beside the way in
                 start += 0.06j * self.size * coming / abs(coming)
             result["after"] = (start, start + run)
@@ -345,8 +345,10 @@ def _key(drawing: Drawing, field: _Field, y: float, units: System, left_edge: fl
     for x, column in columns:
         for row, (paths, text) in enumerate(column):
             start = complex(x, y - ROW * row)
-            moved = [p._replace(points=tuple(start + point for point in p.points)) for p in paths]
-            drawing.items += moved
+            shifted_paths = [
+                p._replace(points=tuple(start + point for point in p.points)) for p in paths
+            ]
+            drawing.items += shifted_paths
             end = max(sample, d.extent(paths[0].points).right) + 1.5 - 0.8j
             drawing.add(Text(start + end, text, role="legend"))
     return y - ROW * (max(len(column) for _, column in columns) - 1)

@@ -8,7 +8,7 @@ from textwrap import wrap
 from typing import Any, Self
 
 from ...collision.geometry import clock, within_doubles
-from ...collision.needs import needed
+from ...collision.needs import needs_in_words
 from ...collision.units import RULES, VELOCITY, System, display_values
 from ...errors import UserError
 from ...mechanics.outcome import forces, moment_ratio, outcome
@@ -119,7 +119,7 @@ class Impact:
 
     def warnings(self, units: System = RULES) -> list[str]:
         """Return the warnings, a sentence each."""
-        needs = [f"{sentence}" for _, sentence in needed(self.absent)]
+        needs = [f"{sentence}" for _, sentence in needs_in_words(self.absent)]
         return [*sentences(int(self.values.get("STATUS", 0)), self.values), *self.remarks, *needs]
 
     def further_tables(self, units: System) -> list[list[str]]:

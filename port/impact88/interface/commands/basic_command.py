@@ -220,9 +220,11 @@ def save_program(machine: Applesoft, path: str, printer: str | None, files: Set[
     except UserError as error:
         note("basic", f"{path}: text cannot hold this program: {error}")
         return
-    unsaved = [line for line in machine.machine.lines() if line not in lines]
-    if unsaved:
-        note("basic", f"{path}: text cannot hold line {unsaved[0][0]} as it is; LOAD makes another")
+    new_lines = [line for line in machine.machine.lines() if line not in lines]
+    if new_lines:
+        note(
+            "basic", f"{path}: text cannot hold line {new_lines[0][0]} as it is; LOAD makes another"
+        )
     else:
         note("basic", f"{path}: saved, {len(lines)} line{'s' * (len(lines) != 1)}")
 

@@ -62,11 +62,11 @@ def _dispatch(arguments: Sequence[str]) -> int:
     if name == "help" and arguments_left:  # help COMMAND is COMMAND --help
         name, *arguments_left = [*arguments_left, "--help"]
     commands = [*COMMANDS, "chapter"]
-    listed = [command for command in COMMANDS if command not in CHAPTER] + ["chapter"]
+    names = [command for command in COMMANDS if command not in CHAPTER] + ["chapter"]
     page = "overview" if name in ("-h", "--help", "help") else ""
     if name == "chapter":
         name, *arguments_left = arguments_left or ["--help"]
-        commands = listed = [*CHAPTER]
+        commands = names = [*CHAPTER]
         page = "chapter_overview" if name in ("-h", "--help") else ""
     if page:
         print(getattr(import_module(".helptext", __package__), page)())
@@ -76,7 +76,7 @@ def _dispatch(arguments: Sequence[str]) -> int:
         return _run(name, arguments_left)
     else:
         hint = did_you_mean(name, commands)
-        raise UserError(f"{name!r} is not a command{hint} (expected one of: {' '.join(listed)})")
+        raise UserError(f"{name!r} is not a command{hint} (expected one of: {' '.join(names)})")
     return 0
 
 
@@ -137,16 +137,16 @@ def _orderly() -> Iterator[None]:
     thread, where Python takes no handlers, nothing changes."""
     usual = {"SIGINT": signal.default_int_handler, "SIGTERM": signal.SIG_DFL}
     usual["SIGHUP"] = signal.SIG_DFL  # none on Windows
-    replaced = {}
+    old_handlers = {}
     with suppress(ValueError):  # not the main thread
         for name, handler in usual.items():
             number = getattr(signal, name, None)
             if number is not None and signal.getsignal(number) == handler:
-                replaced[number] = signal.signal(number, _leave)
+                old_handlers[number] = signal.signal(number, _leave)
     try:
         yield
     finally:
-        for number, handler in replaced.items():
+        for number, handler in old_handlers.items():
             signal.signal(number, handler)
 
 

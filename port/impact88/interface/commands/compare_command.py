@@ -194,8 +194,8 @@ def _evidence_lines(cause: Cause) -> Iterator[str]:
         f"  predicts {cause.explains} of {cause.disagreeing} rows that disagree, {cause.fits} of "
         f"{cause.agreeing} examined that agree; {cause.score:.0f} bits"
     )
-    if rest := cause.disagreeing - cause.explains:
-        yield f"  it does not explain the other {rest} rows that disagree"
+    if remaining := cause.disagreeing - cause.explains:
+        yield f"  it does not explain the other {remaining} rows that disagree"
     for says, row in cause.parts.items():
         yield f"  row {row} shows: {says}"
     for equivalent in cause.equivalents:

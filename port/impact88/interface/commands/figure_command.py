@@ -106,8 +106,8 @@ def _draw(args: options.Args) -> Drawing:
     if kind == "strip":
         from ...casework.figures.views import strip_drawing
 
-        return strip_drawing(scene, solved(scene), scene.title or "Before, impact and after")
-    return scene_drawing(scene, solved(scene), title=scene.title or "Scene from above")
+        return strip_drawing(scene, solve_scene(scene), scene.title or "Before, impact and after")
+    return scene_drawing(scene, solve_scene(scene), title=scene.title or "Scene from above")
 
 
 def _of_nothing(kind: str) -> Drawing:
@@ -164,17 +164,17 @@ def _swept(args: options.Args) -> Drawing:
     return swept(scene, name, run.values(), outputs or ["LOSS", "DVA", "DVB"])
 
 
-def solved(scene: Scene) -> dict[str, Any]:
+def solve_scene(scene: Scene) -> dict[str, Any]:
     """The results of one scene as numbers, for a drawing."""
-    given = {name: double(text) for name, text in scene.given.items()}
-    results = solve(given, (*FINAL_VELOCITIES, "STATUS"))
+    numbers = {name: double(text) for name, text in scene.given.items()}
+    results = solve(numbers, (*FINAL_VELOCITIES, "STATUS"))
     for sentence in sentences(getattr(results, "absent", {})):
         note("figure", sentence)
     return {name: value.item() for name, value in results.items()}
 
 
 OF_POINTS = (*UNUSED_BY_POINTS, "GA", "E", "MU", "WA", "WB")
-"""What the drawing of point masses does without."""
+"""Inputs that the drawing of point masses does without."""
 
 
 def _point_masses(args: options.Args) -> bool:

@@ -476,8 +476,8 @@ def scene_given(args: Args, based: str = "", may_omit: Collection[str] = ()) -> 
     moves = Case({"CX": parts[0], "CY": parts[1]}, "--move-contact", case.units).values
     numbers = [double(check_value(name, moves[name], "--move-contact")) for name in ("CX", "CY")]
     texts = case.display_texts(moved_texts(scene, *numbers))
-    cleared = {name: "" for pair in OWN_AXES.values() for name in pair if name in case.texts}
-    return Scene.of(case.replaced({**cleared, **texts}, "--move-contact"))
+    blanks = {name: "" for pair in OWN_AXES.values() for name in pair if name in case.texts}
+    return Scene.of(case.replaced({**blanks, **texts}, "--move-contact"))
 
 
 def one_scene(args: Args, may_omit: Collection[str] = ()) -> Scene:

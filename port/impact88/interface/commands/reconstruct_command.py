@@ -140,13 +140,13 @@ def _reconstruct(
             raise UserError(f"{name} is not determined by what is known", options.source_of(args))
     if args.write_scene:
         _write_scene(solutions, args, case)
-    measured: list[Measured] = []
+    measurements: list[Measured] = []
     for solution in solutions:
         with progress(None, "reconstruct", "impacts") as meter:
             options_of_all = (args.samples, args.seed, wanted, args.contact_time)
-            like = measured[0] if measured else None
-            measured.append(Measured(solution, *options_of_all, meter.update, like))
-    return measured
+            like = measurements[0] if measurements else None
+            measurements.append(Measured(solution, *options_of_all, meter.update, like))
+    return measurements
 
 
 def _write_scene(solutions: list[Reconstruction], args: options.Args, case: Case) -> None:

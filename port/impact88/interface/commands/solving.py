@@ -68,8 +68,8 @@ def solve_table(args: options.Args) -> int:
     result_format = format_of(args.output, to)
     outputs = _outputs(args)
     with ExitStack() as stack:
-        given = _scene_given(args) if is_scene else _table_given(args, source_format)
-        table = stack.enter_context(given)
+        opening = _scene_given(args) if is_scene else _table_given(args, source_format)
+        table = stack.enter_context(opening)
         present = {*table.reader.names, *table.filling.constants}
         solver = RowSolver(
             args.arithmetic, outputs, table.units, table.filling, present, table.points
@@ -146,14 +146,14 @@ def _table_given(args: options.Args, form: str) -> Iterator[_Table]:
     where = display_name(args.cases)
     with open_reader(args.cases, form, args.encoding) as reader:
         first, blocks = _first_block(reader)
-        beside = _scene_beside(args) if args.scene else None
-        system = (beside.units if beside else None) or args.units
+        extra_case = _scene_beside(args) if args.scene else None
+        system = (extra_case.units if extra_case else None) or args.units
         units = TableUnits(reader.names, system, first, where=where)
-        if beside:
-            units.convention = beside.system.convention
+        if extra_case:
+            units.convention = extra_case.system.convention
         else:
             units.convention = convention_named(args.axes, args.headings, "")
-        filling = _filling(args, beside, units, reader.names)
+        filling = _filling(args, extra_case, units, reader.names)
         present = {*reader.names, *filling.constants}
         points = filling.constants.get("M", "4" if "M" in reader.names else "6") == "4"
         check_scene_columns(present, points, where=where)
@@ -196,8 +196,8 @@ def _filling(
         for name, estimate in estimates(case).items()
         if name in constants and f"M{name[1]}" in columns
     }
-    noted = [name for name in case.remarks if name not in columns] if args.scene else []
-    return Filling(constants, inertias, case, noted)
+    names_noted = [name for name in case.remarks if name not in columns] if args.scene else []
+    return Filling(constants, inertias, case, names_noted)
 
 
 def _refuse_bare(case: Case, units: TableUnits) -> None:

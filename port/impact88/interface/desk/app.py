@@ -30,7 +30,7 @@ from ...names import DEFAULT_M, SCENE, quantity
 from ...program.scene import SAMPLES, sample
 from ...version import __version__
 from . import collision, reconstruction
-from .formview import converted, digits, filled_in
+from .formview import convert_values, digits, filled_in
 from .guard import HEADERS, LARGEST_BODY, TOO_LONG, refusal
 from .workers import Bench, BrokenError, SupersededError
 
@@ -197,8 +197,8 @@ def _ask(desk: Desk, bench: str, function: str, **arguments: Any) -> Any:
 def _sender() -> tuple[str, int]:
     """Return which page asks, and in which turn; of those that count none, all are the same."""
     turn = request.headers.get("X-Desk-Turn", "")
-    counted = turn.isascii() and turn.isdecimal() and len(turn) < 16
-    return request.headers.get("X-Desk-Page", "")[:64], int(turn) if counted else 0
+    is_count = turn.isascii() and turn.isdecimal() and len(turn) < 16
+    return request.headers.get("X-Desk-Page", "")[:64], int(turn) if is_count else 0
 
 
 def _table(macro: str, content: Any) -> str:
@@ -279,7 +279,7 @@ def _add_collision(routes: Blueprint, ask: Ask) -> None:
 
     @routes.post("/convert")
     def convert() -> Any:
-        return {"values": converted(**_parts(*_FORM, "to"))}
+        return {"values": convert_values(**_parts(*_FORM, "to"))}
 
     @routes.post("/figure")
     def figure() -> Response:

@@ -49,11 +49,11 @@ _ANSWER = (
     ("Friction coefficient as printed (-10: pivot)", "MUP"),
     ("critical friction coefficient", "MUC"),
 )
-"""What is asked of a collision: words, and a name for each vehicle or one for both."""
+"""The questions of a collision: words, and a name for each vehicle or one for both."""
 
 
 OPTIONAL_OF_POINTS = (*UNUSED_BY_POINTS, "GA", "MU", "WA", "WB")
-"""What a form of point masses may lack: not all results use it."""
+"""Inputs that a form of point masses may lack: not all results use it."""
 
 
 class Form(NamedTuple):
@@ -94,12 +94,12 @@ def read(values: Mapping[str, str], units: str = "", title: str = "") -> Form:
     if double_or_none(case.values["M"]) not in (4, 6):
         problems["M"] = "M: expected 6, or 4 for point masses"
     # a form shows the M that it takes
-    given = {n for n in case.values if n != "M" or "M" in case.given}
+    entries_given = {n for n in case.values if n != "M" or "M" in case.given}
     optional = OPTIONAL_OF_POINTS if double_or_none(case.values["M"]) == 4 else ()
     missing = [
         name
-        for name in coordinate_names(SCENE, given)
-        if name not in given | problems.keys() and name not in optional
+        for name in coordinate_names(SCENE, entries_given)
+        if name not in entries_given | problems.keys() and name not in optional
     ]
     scene = None
     if not problems and not missing:
@@ -136,31 +136,31 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
 
     form = read(values, units)
     parts = ("problems", "missing", "ranges", "remarks")
-    found: dict[str, Any] = {part: getattr(form, part) for part in parts}
-    found["units"] = units_shown(form.system)
+    document: dict[str, Any] = {part: getattr(form, part) for part in parts}
+    document["units"] = units_shown(form.system)
     if form.scene:
         scene = form.scene
-        known = oracle([scene], reference=False)[0]
-        results, system, machine = known["results"], form.system, load_machine(scene)
+        answer_known = oracle([scene], reference=False)[0]
+        results, system, machine = answer_known["results"], form.system, load_machine(scene)
         exact = {n: row["double"] for n, row in results.items() if row["double"] is not None}
         warnings = beside.warnings(scene)
         if scene.omitted:  # nothing is judged by a 0 that was typed for want of a value
             exact, lines = _without(scene, results)
             warnings = []
-            found["remarks"] += lines
+            document["remarks"] += lines
         run_machine(machine)
-        found |= {
-            "oracle": with_schema("oracle", {"id": None, "scene": dict(scene), **known}),
+        document |= {
+            "oracle": with_schema("oracle", {"id": None, "scene": dict(scene), **answer_known}),
             "answer": _answer(scene, exact, system),
-            "page": page(known["printout"]),
+            "page": page(answer_known["printout"]),
             "screen": [screen_runs(row) for row in machine.screen_rows()],
             "results": _rows(results, without_rounding(exact, _ROUNDING), system),
             "warnings": warnings,
         }
-    return found
+    return document
 
 
-def _known(scene: Scene) -> dict[str, float]:
+def _known_numbers(scene: Scene) -> dict[str, float]:
     """Return what is given of a scene, `state.COURSE` for a heading that is the course."""
     facing = {n for n in ("TA", "TB") if scene.case.values.get(n) == FACING_COURSE}
     return {**doubles_of(scene.given), **dict.fromkeys(facing & {*scene.omitted}, math.nan)}
@@ -172,14 +172,14 @@ def _without(scene: Scene, results: Collection[str]) -> tuple[dict[str, float], 
     from ...mechanics.closedform.solve import solve
     from ...mechanics.posed import absent_results
 
-    given = _known(scene)
-    solved = solve(given)
-    needs = {**absent_results(given), **getattr(solved, "absent", {})}
-    answered = {name for _, *names in _ANSWER for name in names} - {*solved}
-    typed = [n if scene[n] == "0" else f"{n} (1: it divides)" for n in scene.omitted]
-    lines = [f"0 is typed for what is not given: {' '.join(typed)}"]
-    lines += status.sentences(int(solved.get("STATUS", 0)), {**given, **solved})
-    lines += needs_in_words({name: x for name, x in needs.items() if name in answered})
+    columns = _known_numbers(scene)
+    solved = solve(columns)
+    needs = {**absent_results(columns), **getattr(solved, "absent", {})}
+    unanswered = {name for _, *names in _ANSWER for name in names} - {*solved}
+    omitted_names = [n if scene[n] == "0" else f"{n} (1: it divides)" for n in scene.omitted]
+    lines = [f"0 is typed for what is not given: {' '.join(omitted_names)}"]
+    lines += status.sentences(int(solved.get("STATUS", 0)), {**columns, **solved})
+    lines += needs_in_words({name: x for name, x in needs.items() if name in unanswered})
     return {name: float(x) for name, x in solved.items() if name in results}, lines
 
 
@@ -188,8 +188,8 @@ def _answer(scene: Scene, exact: Mapping[str, float], system: System) -> list[di
     one or one for each vehicle."""
     from ...casework.reconstruction.solutiontable import with_derived_values
 
-    given = _known(scene)
-    values = without_rounding(with_derived_values({**given, **exact}, None), _ROUNDING)
+    columns = _known_numbers(scene)
+    values = without_rounding(with_derived_values({**columns, **exact}, None), _ROUNDING)
     rows = []
     for words, *names in _ANSWER:
         if not values.keys() >= set(names):

@@ -1,4 +1,4 @@
-"""How a connection of the desk ends: after a refusal, with the answer read by who asked.
+"""The end of a connection of the desk: after a refusal, with the answer read by who asked.
 
 A server that closes a socket with unread bytes sends a reset, which can overtake its own answer: a
 body that is too long is therefore read to its end, or for a while, and thrown away.

@@ -53,7 +53,7 @@ def entries(values: Mapping[str, str], units: str, title: str = "") -> Form:
     return Form(None, problems or {UNITS: together})
 
 
-def converted(values: Mapping[str, str], units: str, to: str) -> dict[str, str]:
+def convert_values(values: Mapping[str, str], units: str, to: str) -> dict[str, str]:
     """Return the texts of a form in another system: numbers are converted, and a range keeps the
     unit it was in. Raises UserError."""
     case, problems = entries(values, units)
@@ -64,8 +64,8 @@ def converted(values: Mapping[str, str], units: str, to: str) -> dict[str, str]:
     for name, entry in case.entries.items():
         if entry.kind in ("range", "tolerance") and entry.unit and not units_in(name, entry.text):
             texts[name] = f"{entry.text} {entry.unit}"
-    shown = Case(texts, "").shown_in(to).texts
-    return {name: text for name, text in shown.items() if name != UNITS}
+    converted_texts = Case(texts, "").shown_in(to).texts
+    return {name: text for name, text in converted_texts.items() if name != UNITS}
 
 
 def units_shown(system: System) -> dict[str, Any]:
@@ -107,16 +107,16 @@ def filled_in(data: bytes, name: str, allowed: Collection[str]) -> dict[str, Any
     if len(data) > LARGEST:
         raise UserError(f"is larger than {LARGEST:,} bytes, the limit here", name)
     texts = toml_texts(decode(data, name), name)
-    own = tuple(axis for axes in OWN_AXES.values() for axis in axes)
+    axis_names = tuple(axis for axes in OWN_AXES.values() for axis in axes)
     entries = [entry for entry in texts if entry not in ABOUT and not entry.endswith(SOURCE)]
-    check_names(entries, (*allowed, *own, *OUTLINES), "name used here", name)
+    check_names(entries, (*allowed, *axis_names, *OUTLINES), "name used here", name)
     values = {entry: text for entry, text in texts.items() if entry in allowed}
     if "M" in allowed:
         values.setdefault("M", DEFAULT_M)
-    shown = ("title", "units")
-    read: dict[str, Any] = {part: texts.get(part, "") for part in shown}
+    entries_shown = ("title", "units")
+    read: dict[str, Any] = {part: texts.get(part, "") for part in entries_shown}
     read["units"] = read["units"].lower()
-    extra = {n: t for n, t in texts.items() if n not in values and n not in shown}
+    extra = {n: t for n, t in texts.items() if n not in values and n not in entries_shown}
     if extra:
         read["extra"] = extra
     return {**read, "values": values}

@@ -12,7 +12,7 @@ from typing import Protocol
 LARGEST_BODY = 16_000_000
 """Bytes of the largest request that is taken: a box of printouts for one report."""
 TOO_LONG = f"more than {LARGEST_BODY:,} bytes, the limit here"
-"""What a request with a larger body is answered."""
+"""The answer to a request with a larger body."""
 REFUSALS = frozenset((403, 404, 405, 413))
 """Statuses after which a connection is closed: who sends one such request may send many."""
 MAX_QUESTIONS = 56

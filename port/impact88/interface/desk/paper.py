@@ -87,11 +87,11 @@ def _words(result: Verification) -> dict[str, Any]:
 def report(papers: Sequence[Mapping[str, str]], words: Mapping[str, str]) -> str:
     """Return the page of `impact88 verify --report` for papers, each with ``name`` and ``data``
     (base 64); ``words``: printed on it as given. Raises UserError."""
-    given = {name: str(words.get(name) or "").strip() or None for name in WORDS}
-    for name, text in given.items():
+    header = {name: str(words.get(name) or "").strip() or None for name in WORDS}
+    for name, text in header.items():
         if text and len(text) > LONGEST_WORDS:
             raise UserError(f"has more than {LONGEST_WORDS} characters", name)
     if not papers:
         raise UserError("there is nothing to report on")
-    examined = [_examine(paper.get("name", ""), b64decode(paper["data"])) for paper in papers]
-    return report_page(examined, given["date"], given["case"], given["examiner"])
+    examinations = [_examine(paper.get("name", ""), b64decode(paper["data"])) for paper in papers]
+    return report_page(examinations, header["date"], header["case"], header["examiner"])

@@ -61,8 +61,8 @@ def serve(port: int, browser: bool, announce: Callable[[str], object]) -> None:
 
     Raises UserError where Flask or waitress is missing or the port is not available.
     """
-    wanted = {"flask": "Flask", "waitress": "waitress"}
-    if missing := ", ".join(wanted[module] for module in wanted if find_spec(module) is None):
+    packages = {"flask": "Flask", "waitress": "waitress"}
+    if missing := ", ".join(packages[module] for module in packages if find_spec(module) is None):
         raise UserError(
             f"the desk needs {missing}, which is not installed; pip install 'impact88[desk]'"
         )
@@ -73,9 +73,9 @@ def serve(port: int, browser: bool, announce: Callable[[str], object]) -> None:
         announce(address)
         with ExitStack() as stack:
             if browser:
-                opened = stack.enter_context(leading_file(address))
+                file = stack.enter_context(leading_file(address))
                 # the connection is queued by the socket, so the browser starts while we import
-                threading.Thread(target=webbrowser.open, args=(opened,), daemon=True).start()
+                threading.Thread(target=webbrowser.open, args=(file,), daemon=True).start()
             _run(listener, number, token)
 
 

@@ -196,8 +196,8 @@ def result_bounds(columns: Mapping[str, Any]) -> dict[str, Floats]:
         for body in "AB":
             # next to a singularity the numerator of a spin that a large inertia keeps cancels, as
             # the determinant does
-            kept = np.where(point, 0.0, np.abs(g[f"W{body}"]))
-            near_singular = np.where(kept == 0, 0.0, f["COND"] * kept)
+            spin = np.where(point, 0.0, np.abs(g[f"W{body}"]))
+            near_singular = np.where(spin == 0, 0.0, f["COND"] * spin)
             bound[f"W{body}F"] = bound[f"W{body}F"] + 4 * DOUBLE * near_singular
             arm = np.where(point, 0.0, g[f"D{body}"])
             from_spin = np.where(arm == 0, 0.0, np.abs(arm) * bound[f"W{body}F"])

@@ -116,8 +116,8 @@ def singular(rng: Generator, count: int) -> Columns:
         quantities({**g, "MU": mu}, ["determinant"], 1.0)["determinant"] for mu in (0.0, 1.0)
     )
     critical = at_0 / (at_0 - at_1)
-    near = 1 + _powers(rng, -9, -1, 4 * count) * rng.choice([-1, 1], 4 * count)
-    g["MU"] = np.where(quantities(g, ["gt"])["gt"] > 0, -critical, critical) * near
+    factor = 1 + _powers(rng, -9, -1, 4 * count) * rng.choice([-1, 1], 4 * count)
+    g["MU"] = np.where(quantities(g, ["gt"])["gt"] > 0, -critical, critical) * factor
     usable = np.resize(np.flatnonzero(np.abs(critical) < 9), count)  # some three in four are
     return {name: values[usable] for name, values in g.items()}
 
@@ -156,8 +156,8 @@ def cancelling(rng: Generator, count: int) -> Columns:
     g = casework(rng, count)
     sine, _ = sin_cos(g["TA"] + g["PA"] - g["GA"])
     arm = g["DA"] * np.where(np.abs(sine) < 0.1, 0.1, sine)
-    rest = quantities({**g, "WA": 0.0}, ["gn"])["gn"]
-    return {**g, "WA": -rest / arm * (1 + _powers(rng, -15, -1, count))}
+    slip = quantities({**g, "WA": 0.0}, ["gn"])["gn"]
+    return {**g, "WA": -slip / arm * (1 + _powers(rng, -15, -1, count))}
 
 
 @_population("average", "EM within 1e-1 to 1e-16 of 1/2")
@@ -213,8 +213,8 @@ def evolved(rng: Generator, count: int) -> Columns:
 @_population("average", "pivots, half of them of extreme masses", listing=False)
 def pivots(rng: Generator, count: int) -> Columns:
     g = casework(rng, count)
-    other = extreme(rng, count)
+    scenes = extreme(rng, count)
     hard = rng.random(count) < 0.5
     for name in ("MA", "MB", "IA", "IB"):
-        g[name] = np.where(hard, other[name], g[name])
+        g[name] = np.where(hard, scenes[name], g[name])
     return {**g, "MU": np.full(count, -10.0)}

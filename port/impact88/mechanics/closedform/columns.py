@@ -135,10 +135,10 @@ def examine(values: Mapping[str, Floats]) -> Block:
     if usable and _at_rest_where_infinite(kinds):
         return Block(fixed, varying, kinds_in_order, None)
     together = {name: fixed[name] if name in fixed else varying[name] for name in SCENE}
-    refused = np.zeros(max(map(len, values.values())), np.bool_)
+    is_refused = np.zeros(max(map(len, values.values())), np.bool_)
     for refusal in refusals(together):
-        refused |= refusal.where
-    return Block(fixed, varying, kinds_in_order, refused if refused.any() else None)
+        is_refused |= refusal.where
+    return Block(fixed, varying, kinds_in_order, is_refused if is_refused.any() else None)
 
 
 def _extremes(column: Floats) -> Limits:
@@ -195,11 +195,11 @@ def refusals(columns: Mapping[str, Floats]) -> Iterator[Refusal]:
     for name, column in columns.items():
         if name == "M":
             continue
-        examined = ~point if name in UNUSED_BY_POINTS else True
+        is_examined = ~point if name in UNUSED_BY_POINTS else True
         if name in INERTIAS:
-            yield Refusal(name, "is not above 0", ~(column > 0) & examined)
+            yield Refusal(name, "is not above 0", ~(column > 0) & is_examined)
         else:
-            yield Refusal(name, "is not finite", ~np.isfinite(column) & examined)
+            yield Refusal(name, "is not finite", ~np.isfinite(column) & is_examined)
     infinite = []
     for mass, inertia, velocities, spin in BODIES:
         no_shift = columns[mass] == np.inf

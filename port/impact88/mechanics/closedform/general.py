@@ -75,12 +75,12 @@ def _solve_part(
 ) -> None:
     """Solve scenes ``start`` to ``stop``, block by block: by the compiled library where that is
     usable, else by numpy."""
-    compiled = sign is None and compiledcalls.usable()
+    use_library = sign is None and compiledcalls.usable()
     for at in range(start, stop, 2 * tile):
         end = min(at + 2 * tile, stop)
         values = {name: part(source, at, end) for name, source in inputs.items()}
         targets = {name: array[at:end] for name, array in results.items()}
-        if compiled:
+        if use_library:
             starts = [address(target) for target in targets.values()]
             compiledcalls.solve_columns(list(values.values()), tuple(results), starts, end - at)
             continue

@@ -59,7 +59,9 @@ from ..native.formulas import Expression, ExpressionTable
 from .energy import kinetic_energy
 from .statusbits import Evidence, findings
 
-LARGEST, RADIAN = float_info.max, pi / 180
+LARGEST = float_info.max
+RADIAN = pi / 180
+"""A degree in radians."""
 MOST = 2 / 3
 """Fraction of a center's velocity that an impact without rebound takes away. Above it, the velocity
 after is computed from the other body's."""
@@ -70,7 +72,7 @@ Condition = bool | Expression
 
 
 class Given:
-    """What all formulas share: a scene as they take it, its geometry, inertia and motion before.
+    """The part that all formulas share: a scene as they take it, geometry, inertia, motion before.
 
     ``pivot``, ``point``, ``infinite``, ``sign``: see `impact`. Groups of values are in the order
     in which they are unpacked everywhere.
@@ -123,8 +125,8 @@ class Given:
         return b * of_a - a * of_b
 
     def _set_geometry(self) -> None:
-        """What a spin adds to the contact velocity along n and t, of A, and of B with the sign that
-        the relative velocity a - b takes; and line 330's numbers."""
+        """Set the arms: what a spin adds to the contact velocity along n and t, of A, and of B with
+        the sign that the relative velocity a - b takes; and line 330's numbers."""
         scene, sine_and_cosine = self.scene, self.table.sine_and_cosine
         self.axes = sine_and_cosine(scene["GA"])
 

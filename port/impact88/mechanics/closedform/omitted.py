@@ -83,44 +83,52 @@ def solve_without(
     UserError
         If no wanted result is left.
     """
-    given = {"M": np.array(float(DEFAULT_M)), **columns}
+    columns_known = {"M": np.array(float(DEFAULT_M)), **columns}
     rng = np.random.default_rng(1988)
     trials = {name: _trials(name, rng) for name in lacking}
     if "GA" in trials:
         trials["GA"] = [360.0 / TRIALS * trial for trial in range(TRIALS)]
-    along = _along_a_line(given, lacking)
+    along = _along_a_line(columns_known, lacking)
     completed = [
-        _completed(given, {name: values[trial] for name, values in trials.items()}, along)
+        _complete_scene(
+            columns_known, {name: values[trial] for name, values in trials.items()}, along
+        )
         for trial in range(TRIALS)
     ]
     names = [name for name in wanted if name != "STATUS"]
     if len(names) < len(wanted) and "KF" not in names:
         names.append("KF")
-    first, *others = [solve(scene, names) for scene in completed]
-    stands = _same(first, others, first)
-    zero = [n for n in names if all(not np.any(x[n]) for x in (first, *others))]
+    first, *other_trials = [solve(scene, names) for scene in completed]
+    stands = _same(first, other_trials, first)
+    zero = [n for n in names if all(not np.any(x[n]) for x in (first, *other_trials))]
     if zero:  # one that is not below 0, such as EESA where energy is gained, hides its inputs
-        scenes = _ordinary_scenes(given, rng)
+        scenes = _ordinary_scenes(columns_known, rng)
         elsewhere = [
-            solve(_completed(scenes, {n: x[trial] for n, x in trials.items()}, np.zeros(())), names)
+            solve(
+                _complete_scene(scenes, {n: x[trial] for n, x in trials.items()}, np.zeros(())),
+                names,
+            )
             for trial in range(TRIALS)
         ]
         same = _same(elsewhere[0], elsewhere[1:], elsewhere[0])
         stands |= {name: stands[name] & (np.all(same[name]) | along) for name in zero}
     results = {name: np.where(stands[name], first[name], np.nan) for name in names}
     absent: dict[str, tuple[str, ...]] = {}
-    changed = [name for name in names if not np.any(stands[name])]
-    if changed:
+    names_changed = [name for name in names if not np.any(stands[name])]
+    if names_changed:
         one_by_one = {
-            name: [solve({**completed[1], name: other[name]}, changed) for other in completed[2:5]]
+            name: [
+                solve({**completed[1], name: other[name]}, names_changed)
+                for other in completed[2:5]
+            ]
             for name in lacking
         }
-        for result in changed:
-            base = {result: others[0][result]}
+        for result in names_changed:
+            base = {result: other_trials[0][result]}
             needs = tuple(
                 name
                 for name, changes in one_by_one.items()
-                if not np.all(_same(base, changes, others[0])[result])
+                if not np.all(_same(base, changes, other_trials[0])[result])
             )
             absent[result] = needs or tuple(lacking)
             del results[result]
@@ -160,9 +168,9 @@ def _ordinary_scenes(given: Mapping[str, Array], rng: np.random.Generator) -> di
     scenes = {}
     for name, value in given.items():
         special = {0.0, np.inf, *SPECIAL.get(name, ())}
-        kept = name == "M" or (value.size and np.ptp(value) == 0 and value.flat[0] in special)
-        kept = kept or (np.isinf(value).all() and bool(value.size))
-        scenes[name] = value.flat[0] if kept else ordinary(name, rng, 2 * TRIALS)
+        is_kept = name == "M" or (value.size and np.ptp(value) == 0 and value.flat[0] in special)
+        is_kept = is_kept or (np.isinf(value).all() and bool(value.size))
+        scenes[name] = value.flat[0] if is_kept else ordinary(name, rng, 2 * TRIALS)
     return {name: np.asarray(value, np.float64) for name, value in scenes.items()}
 
 
@@ -220,7 +228,7 @@ def _line(given: Mapping[str, Array]) -> Array:
     return np.asarray(np.degrees(np.arctan2(-y + 0.0, -x + 0.0)))
 
 
-def _completed(
+def _complete_scene(
     given: Mapping[str, Array], trial: Mapping[str, float], along: Array
 ) -> dict[str, Any]:
     """Return scenes with values in place of what they lack: where they move along one line the

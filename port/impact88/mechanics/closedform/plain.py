@@ -195,16 +195,16 @@ def results_into(
 
     ``column_starts``: the addresses of columns that are all contiguous and of the results' size.
     """
-    given = _check_output_arrays(out, wanted, shape)
+    addresses = _check_output_arrays(out, wanted, shape)
     size = 8 * math.prod(shape)
-    every = sorted([*given.values(), *(column_starts or ())])
+    every = sorted([*addresses.values(), *(column_starts or ())])
     if column_starts is None or any(b - a < size for a, b in pairwise(every)):
-        _check_apart(out, given, columns)
+        _check_apart(out, addresses, columns)
     if len(out) == len(wanted):
-        return {name: out[name] for name in wanted}, [given[name] for name in wanted]
+        return {name: out[name] for name in wanted}, [addresses[name] for name in wanted]
     missing = [name for name in wanted if name not in out]
     arrays, starts = allocate_results(missing, shape)
-    starts_by_name = {**given, **dict(zip(missing, starts, strict=True))}
+    starts_by_name = {**addresses, **dict(zip(missing, starts, strict=True))}
     arrays = {name: out[name] if name in out else arrays[name] for name in wanted}
     return arrays, [starts_by_name[name] for name in wanted]
 

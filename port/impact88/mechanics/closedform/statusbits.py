@@ -32,8 +32,8 @@ UNKNOWN = np.float64(np.nan)
 
 
 class Evidence(NamedTuple):
-    """What STATUS is judged by; a value that is `UNKNOWN` leaves clear the bits that need it,
-    but NOT_FINITE and SINGULAR. The values broadcast.
+    """Numbers that STATUS is judged by, which broadcast. One that is `UNKNOWN` leaves clear the
+    bits that need it, but NOT_FINITE and SINGULAR.
 
     ``gn``: normal relative velocity at the contact point before, A minus B; ``pn``: normal impulse
     on A; ``twice_lost`` and ``initial``: energies; ``e``, ``em``: E and EM.

@@ -16,8 +16,8 @@ def idle_processors() -> int:
     process's own: two threads on a busy machine take longer than one."""
     if not hasattr(os, "getloadavg"):
         return processors()
-    others = round(os.getloadavg()[0]) - 1
-    return min(processors(), max(1, (os.cpu_count() or 1) - others))
+    busy = round(os.getloadavg()[0]) - 1
+    return min(processors(), max(1, (os.cpu_count() or 1) - busy))
 
 
 def workers(count: int, threads: int | None, share: int) -> int:

@@ -49,7 +49,7 @@ def text(name: str) -> str:
         return packaged_text(__name__, f"{name}.md")
     import json
 
-    from .forms import expanded
+    from .forms import expand_form
 
-    schema = expanded(packaged_text(__name__, f"{name}.txt"), f"impact88/{name}/{NUMBERS[name]}")
+    schema = expand_form(packaged_text(__name__, f"{name}.txt"), f"impact88/{name}/{NUMBERS[name]}")
     return json.dumps(schema, indent=1, ensure_ascii=False) + "\n"

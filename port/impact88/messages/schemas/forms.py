@@ -21,10 +21,10 @@ _OWN = {
     "schema": "name and number of this schema",
     "version": "version of impact88 that wrote the object",
 }
-"""What every object has that is printed by itself."""
+"""Properties of every object that is printed by itself."""
 
 
-def expanded(lines: str, name: str) -> dict[str, Any]:
+def expand_form(lines: str, name: str) -> dict[str, Any]:
     """Return the JSON Schema of a form, called ``name``, from its lines."""
     head, _, body = lines.partition("\n\n")
     fields, _, parts = body.partition("$defs:\n")
@@ -34,10 +34,10 @@ def expanded(lines: str, name: str) -> dict[str, Any]:
         schema |= json.loads(schema.pop("raw"))
     if fields.strip():
         schema |= _object(_rows(fields))
-        own = {"schema": {"const": name, "description": _OWN["schema"]}}
-        own["version"] = {"type": "string", "description": _OWN["version"]}
-        schema["properties"] = own | schema["properties"]
-        schema["required"] = [*own, *schema.get("required", ())]
+        constants = {"schema": {"const": name, "description": _OWN["schema"]}}
+        constants["version"] = {"type": "string", "description": _OWN["version"]}
+        schema["properties"] = constants | schema["properties"]
+        schema["required"] = [*constants, *schema.get("required", ())]
     if parts:
         schema["$defs"] = _object(_rows(parts))["properties"]
     return schema
@@ -58,15 +58,15 @@ def _rows(text: str) -> list[_Row]:
 
 def _object(rows: list[_Row]) -> dict[str, Any]:
     """Return an object whose fields are the rows of least indent, with those below each."""
-    properties, required = {}, []
+    properties, names = {}, []
     for row, below in _groups(rows):
-        properties[row["name"]] = _typed(row["type"], below)
+        properties[row["name"]] = _with_type(row["type"], below)
         if row["says"]:
             properties[row["name"]]["description"] = row["says"]
         if not row["maybe"]:
-            required.append(row["name"])
+            names.append(row["name"])
     schema = {"type": "object", "properties": properties}
-    return schema | {"required": required} if required else schema
+    return schema | {"required": names} if names else schema
 
 
 def _groups(rows: list[_Row]) -> Iterator[tuple[re.Match[str], list[_Row]]]:
@@ -76,7 +76,7 @@ def _groups(rows: list[_Row]) -> Iterator[tuple[re.Match[str], list[_Row]]]:
         yield rows[start][1], rows[start + 1 : stop]
 
 
-def _typed(text: str, below: list[_Row]) -> dict[str, Any]:
+def _with_type(text: str, below: list[_Row]) -> dict[str, Any]:
     """Return the schema of a type; ``below``: the fields of the object in it."""
     if text.startswith("raw "):
         schema: dict[str, Any] = json.loads(text[4:])
@@ -86,13 +86,13 @@ def _typed(text: str, below: list[_Row]) -> dict[str, Any]:
     if text.startswith("#") and " or " not in text:
         return {"$ref": f"#/$defs/{text[1:]}"}
     if text.startswith("{"):
-        return {"type": "object", "additionalProperties": _typed(text[1:-1], below)}
-    if listed := _SIZES.fullmatch(text):
-        item, low, high = listed.groups()
+        return {"type": "object", "additionalProperties": _with_type(text[1:-1], below)}
+    if match := _SIZES.fullmatch(text):
+        item, low, high = match.groups()
         sizes = {"minItems": int(low), "maxItems": int(high)} if low else {}
-        return {"type": "array", "items": _typed(item, below), **sizes}
+        return {"type": "array", "items": _with_type(item, below), **sizes}
     if " or " in text:
-        return {"anyOf": [_typed(part, below) for part in text.split(" or ")]}
+        return {"anyOf": [_with_type(part, below) for part in text.split(" or ")]}
     if text.startswith('"'):
         return {"enum": json.loads(f"[{text.replace('|', ',')}]")}
     kinds = text.split("|")

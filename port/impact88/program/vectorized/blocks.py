@@ -76,10 +76,10 @@ def _blocks(
     for M in (6, 4):
         for is_pivot in (False, True):
             kind = statements.Kind(M, is_pivot)
-            selected = pending & (six == (M == 6)) & (pivot == is_pivot)
-            if selected.all():
-                return [(slice(at, at + block), kind) for at in range(0, selected.size, block)]
-            rows = np.flatnonzero(selected)
+            is_selected = pending & (six == (M == 6)) & (pivot == is_pivot)
+            if is_selected.all():
+                return [(slice(at, at + block), kind) for at in range(0, is_selected.size, block)]
+            rows = np.flatnonzero(is_selected)
             result += [(rows[at : at + block], kind) for at in range(0, rows.size, block)]
     return result
 

@@ -66,12 +66,12 @@ def read_columns(columns: Mapping[str, Any]) -> Scenes:
 def _read_texts(texts: dict[str, Sequence[str]], values: dict[str, Floats], first: Ints) -> None:
     """Read columns of texts in one call; add their reals to ``values``, their errors to
     ``first``."""
-    joined, *other_columns = texts.values()
+    cells, *other_columns = texts.values()
     if other_columns:
-        joined = [text for column in texts.values() for text in column]
+        cells = [text for column in texts.values() for text in column]
     sizes = [len(column) for column in texts.values()]
     starts = np.concatenate([[0], np.cumsum(sizes)])
-    unit = Unit(len(joined))
+    unit = Unit(len(cells))
     unit.place = np.repeat([key(*PLACES[name]) for name in texts], sizes)
 
     def place_of(index: int) -> str:
@@ -79,7 +79,7 @@ def _read_texts(texts: dict[str, Sequence[str]], values: dict[str, Floats], firs
         row = f", row {index - starts[column] + 1}" if sizes[column] > 1 else ""
         return list(texts)[column] + row
 
-    x = read(joined, unit, place_of).rounded()
+    x = read(cells, unit, place_of).rounded()
     for name, start, size in zip(texts, starts, sizes, strict=False):
         values[name] = x.v[start : start + size]
         np.minimum(first, unit.first[start : start + size], out=first)

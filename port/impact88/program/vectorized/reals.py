@@ -388,8 +388,10 @@ def _divide(left: Reals, right: Reals) -> Reals:
     if overflows.any():
         result.record_error(overflows, OVERFLOW)
         v[overflows] = 0.0
-    unsigned = np.broadcast_to(difference == -128, v.shape)  # the ROM loses the sign at exponent 0
-    v[unsigned] = np.abs(v[unsigned])
+    loses_sign = np.broadcast_to(
+        difference == -128, v.shape
+    )  # the ROM loses the sign at exponent 0
+    v[loses_sign] = np.abs(v[loses_sign])
     return result._check_exponents()
 
 

@@ -162,8 +162,8 @@ class Replay:
             The bytes of each scene as one number, which ``f"{x:010x}"`` writes in hexadecimal, 0
             for a scene without the result.
         """
-        stored = from_floats(self._values[name].copy(), None, True).pack()
-        return np.where(self.present(name), stored, np.uint64(0))
+        packed_reals = from_floats(self._values[name].copy(), None, True).pack()
+        return np.where(self.present(name), packed_reals, np.uint64(0))
 
     def printed(self, name: str) -> Strings:
         """Return a field of the printout, character for character.
