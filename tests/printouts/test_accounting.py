@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import unicodedata
+from collections import Counter
 
 import dressedpages
 import pytest
@@ -57,11 +58,14 @@ def test_a_genuine_page_in_any_dress_is_settled(name: str) -> None:
 
 @pytest.mark.long
 def test_an_altered_character_is_never_passed_over() -> None:
-    """No bare IDENTICAL, unless the program prints exactly that for the scene that verify gives."""
+    """No bare IDENTICAL, unless the program prints exactly that for the scene that verify gives;
+    and 85 % differ, or are doubted in the place that was altered."""
+    scores = Counter[str]()
     for page in dressedpages.altered_pages(6 * (printouts.SWEEP or 10), seed=12):
-        for result in check(page.text):
-            if result.verdict is Verdict.IDENTICAL:
-                assert dressedpages.is_printed_so(page.text), page
+        check(page.text)
+        scores[dressedpages.score_of(page)] += 1
+    assert not scores["IDENTICAL"]
+    assert sum(scores[score] for score in dressedpages.FOUND) >= 0.85 * scores.total()
 
 
 def test_any_text_is_accounted_for() -> None:

@@ -13,10 +13,11 @@ from ...collision.case import VALUE_LIMIT
 from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS, scene_name
 from ...names import SCENE
 from ..reading.glyphs import letters
-from ..reading.numerals import candidates
+from ..reading.numerals import candidates, printable
 from ..reading.printout import Printout, Reading
 from . import replays
 from .search import MISMATCH, UNREAD, Column, Evidence, Expected, Search, column_of
+from .slips import TWO_DIGITS, slips_of
 from .typedtext import stored_and_printed
 
 _STAND_INS = (
@@ -161,7 +162,7 @@ def _choices(
     columns, typed, missing = [], {}, set()
     single_inputs = list(INPUTS)
     if shown.angles and given.keys().isdisjoint(ANGLES):
-        columns.append(Column(ANGLES, shown.angles))
+        columns.append(Column(ANGLES, _rows_of_angles(shown)))
         single_inputs = [name for name in INPUTS if name not in ANGLES]
     for name in single_inputs:
         scene = scene_name(name)
@@ -181,6 +182,19 @@ def _choices(
     if "M" in given or shown.has_final_spins:
         ms = [(given.get("M", "6"), 0.0)]
     return [*columns, column_of("M", ms, True)], typed, missing
+
+
+def _rows_of_angles(shown: Printout) -> list[tuple[tuple[str, ...], float]]:
+    """Return the texts that a row of angles may be, and those one slip away from the likeliest:
+    what is not read for certain is not clean, and may be a slip as well."""
+    row, least = shown.angles[0]
+    rows = dict(shown.angles)
+    for at, (name, text) in enumerate(zip(ANGLES, row, strict=True)):
+        for cost, change in slips_of(name, text):
+            other = (*row[:at], change.would_be, *row[at + 1 :])
+            if printable(change.would_be) and change.kind != TWO_DIGITS:
+                rows[other] = min(least + cost, rows.get(other, least + cost))
+    return sorted(rows.items(), key=lambda option: option[1])
 
 
 def _candidates(name: str, shown: Printout) -> tuple[dict[str, float], dict[str, str]]:

@@ -6,19 +6,23 @@ moved, one digit lost or doubled, two digits of one number. Nothing here is a ve
 names what is found, and `judging` says when a reader's slips may be looked past.
 """
 
+from __future__ import annotations
+
 import re
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from itertools import combinations
 from operator import ne
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ...collision.doubles import double
 from ...collision.fields import ANGLES, INPUTS, scene_name
 from ..reading.numerals import is_number, printable
-from .recovered import Recovered
 from .search import Column, Scored, column_of, one_each
 from .typedtext import opposite
+
+if TYPE_CHECKING:
+    from .recovered import Recovered
 
 DIGIT = "digit misread"
 SWAP = "digits swapped"
@@ -62,6 +66,16 @@ class Change(NamedTuple):
         if bits and self.field in ANGLES and abs(double(self.would_be)) > 360:
             bits += BITS[DIGIT]  # nobody types more than a full turn
         return bits
+
+
+def slips_of(name: str, text: str) -> list[tuple[float, Change]]:
+    """Return the texts that are a number and one slip away from a field's, each with its prior
+    penalty, smallest first. One slip (2.7) is cheaper than a result that differs (3.0), two are
+    dearer."""
+    changes = (Change(kind, name, text, other) for other, kind in misreadings(text).items())
+    possible = [change for change in changes if is_number(change.would_be)]
+    some = [(0.7 + change.bits / 5, change) for change in possible]
+    return sorted(some, key=lambda pair: (pair[0], pair[1].would_be))
 
 
 class Reread(NamedTuple):
@@ -131,17 +145,15 @@ class Rereading:
 
     @cached_property
     def _slips(self) -> dict[str, list[tuple[float, Change]]]:
-        """Corrections of every input with their prior penalties, smallest first. One slip (2.7) is
-        cheaper than a result that differs (3.0), two are dearer."""
-        slips = {}
-        for name, text in self._base.items():
-            possible = printable if name in self._recovered.assumed else is_number
-            changes = (Change(kind, name, text, other) for other, kind in misreadings(text).items())
-            some = [
-                (0.7 + change.bits / 5, change) for change in changes if possible(change.would_be)
+        """Corrections of every input with their prior penalties; printed ones are printable."""
+        return {
+            name: [
+                (cost, change)
+                for cost, change in slips_of(name, text)
+                if name not in self._recovered.assumed or printable(change.would_be)
             ]
-            slips[name] = sorted(some, key=lambda pair: (pair[0], pair[1].would_be))
-        return slips
+            for name, text in self._base.items()
+        }
 
 
 def misreadings(text: str) -> dict[str, str]:
