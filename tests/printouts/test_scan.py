@@ -17,7 +17,8 @@ import printouts
 from impact88.collision.fields import INPUTS, outcome_fields
 from impact88.errors import UserError
 from impact88.printouts.judging import beside
-from impact88.printouts.judging.judgement import Status, is_reader_error
+from impact88.printouts.judging.judgement import Status
+from impact88.printouts.judging.reader import is_reader_error
 from impact88.printouts.reading import alignment, printout
 from impact88.printouts.reading.numerals import printable
 from impact88.printouts.reading.printout import Printout, read_printouts

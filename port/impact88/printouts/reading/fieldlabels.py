@@ -21,10 +21,11 @@ which one is read so less than once in 600."""
 _MIN_ADVANTAGE = 25
 """Cost by which another label must be cheaper to be the one read; U for V, the likeliest, costs
 29."""
-MIN_READER_MARKS = 3
-"""Other signs of an optical reader from which a contradictory label is attributed to it: of 15,300
-labels of given scans 373 read as other words, 7 of them on pages with fewer signs. No two labels of
-a page read as each other: such labels were exchanged, whoever read the page."""
+MACHINE_READ = 3
+"""Misread letters of labels and damaged numbers from which a machine read the page: people do not
+type PE for PB. From as many other signs a contradictory label is attributed to the machine: of
+15,300 labels of given scans 373 read as other words, 7 of them on pages with fewer signs. No two
+labels of a page read as each other: such labels were exchanged, whoever read the page."""
 
 
 _NO_WORD = frozenset("0123456789=.(),:")
@@ -123,7 +124,7 @@ def label_checks(
         )
     marks += sum(check.state is LabelState.DAMAGED for check in checks)
     pairs = {(check.printed, check.read) for check in checks}
-    for at, check in enumerate(checks if marks >= MIN_READER_MARKS else ()):
+    for at, check in enumerate(checks if marks >= MACHINE_READ else ()):
         if check.state is LabelState.CONTRADICTORY and (check.read, check.printed) not in pairs:
             checks[at] = check._replace(state=LabelState.DAMAGED)
     return checks

@@ -86,17 +86,9 @@ def mark_checks(
             continue
         at = [places[state] for state in token.states if state in places]
         read = letters(page.glyphs[index] for index in at)
-        is_apart = at and text in (*_BEHIND, "=") and page.glyphs[at[0]].gap is Gap.LINE
-        if read == text and is_apart and not machine_read:
-            place = page.span(at[0], at[0] + 1)
-            checks.append(
-                LabelCheck(name, text, read, LabelState.MOVED, True, *page.place(place[0]), *place)
-            )
+        state = _state(page, token, at, slots, machine_read)
+        if state is LabelState.EXACT:
             continue
-        if read == text or (machine_read and _is_like(text, read)):
-            continue
-        if name in FIELDS and text in letters(page.glyphs[slots[name][0] - 1 : slots[name][1] + 1]):
-            continue  # it was read as part of the number
         if at and reported.issuperset(page.glyphs[index].offset for index in at):
             continue
         start = stop = _gap(page, token, places, slots)
@@ -105,8 +97,8 @@ def mark_checks(
         if name not in FIELDS and end_of_last == token.states.start:  # words side by side
             before = checks.pop()
             text, read, start = f"{before.printed} {text}", before.read + read, before.start
-        end_of_last = token.states.stop
-        state = LabelState.DAMAGED if read else LabelState.MISSING
+        if state is not LabelState.MOVED:
+            end_of_last = token.states.stop
         checks.append(LabelCheck(name, text, read, state, True, *page.place(start), start, stop))
     if not machine_read:
         checks += _broken_asterisks(page, places, slots)
@@ -119,6 +111,25 @@ def mark_checks(
         else check
         for check in checks
     ]
+
+
+def _state(
+    page: Page,
+    token: _Token,
+    at: Sequence[int],
+    slots: Mapping[str, tuple[int, int]],
+    machine_read: bool,
+) -> LabelState:
+    """Return the state of a mark or a word, of which the glyphs ``at`` were read."""
+    read = letters(page.glyphs[index] for index in at)
+    if read == token.text:
+        is_apart = token.text in (*_BEHIND, "=") and page.glyphs[at[0]].gap is Gap.LINE
+        return LabelState.MOVED if is_apart and not machine_read else LabelState.EXACT
+    start, stop = slots[token.name]
+    in_number = token.name in FIELDS and token.text in letters(page.glyphs[start - 1 : stop + 1])
+    if in_number or (machine_read and _is_like(token.text, read)):
+        return LabelState.EXACT
+    return LabelState.DAMAGED if read else LabelState.MISSING
 
 
 def _is_like(text: str, read: str) -> bool:

@@ -413,18 +413,17 @@ def _extensions(
 
 
 def _possible_characters(region: Glyphs, index: int, any_char: bool) -> dict[str, float]:
-    """Return the characters that a glyph may be, with their costs.
+    """Return the characters that a glyph may be, with what it costs to read them so.
 
     ``any_char``: True for a foreign glyph that may be any character.
     """
     char = region[index][0]
-    if char in NUMERIC:
-        is_dash = char == "-" and _between_digits(region, index)
-        return {char: 0.0} | ({"-": _MARK} if char == "+" else {".": _MARK} if is_dash else {})
     if any_char:
-        price = _MARK if char == ILLEGIBLE else _FOREIGN
-        return dict.fromkeys(".0123456789" if index else "-0123456789", price)
-    return printed_for(char)
+        possible = ".0123456789" if index else "-0123456789"
+    else:
+        possible = char + "-." * (char in "+-") if char in NUMERIC else "".join(printed_for(char))
+    costs = {other: _substitution_cost(region, index, other) for other in possible}
+    return {other: cost for other, (cost, doubt) in costs.items() if doubt is not Doubt.CONTRADICTS}
 
 
 _MAX_CUTS = 400  # ways to cut the row; doubled, 4 of 47 texts have more of them

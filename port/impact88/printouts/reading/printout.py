@@ -30,7 +30,7 @@ from .alignment import (
     align,
     letter_of,
 )
-from .fieldlabels import MIN_READER_MARKS, LabelCheck, LabelState, label_checks, words_before
+from .fieldlabels import MACHINE_READ, LabelCheck, LabelState, label_checks, words_before
 from .glyphs import Gap, Page, Region, label_cost, letters, plain_glyphs
 from .labelmarks import asterisk_note, mark_checks, retyping_note
 from .pagerows import find_rows
@@ -41,8 +41,6 @@ BADLY_READ = 17
 """Misread letters, asterisks and numbers from which a page is badly read: of the given scans that
 differ 58 of 88 readings of genuine pages have as many, and 2 of 84 of pages with an altered
 digit."""
-MACHINE_READ = 3
-"""Misread letters of labels from which a machine read the page: people do not type PE for PB."""
 _MIN_NUMBERS = 15
 """Numbers of a page; labels of a smaller piece do not tell which numbers it holds."""
 _MIN_NOTE_LETTERS = 5
@@ -302,6 +300,11 @@ class Printout:
         return bool(self.exchanged) and (bool(self.replies) or self.ended)
 
     @property
+    def is_of_another_form(self) -> bool:
+        """True if labels or the order of rows contradict: no reader of the page did that."""
+        return bool(self.mislabelled) or self.out_of_order
+
+    @property
     def marks(self) -> int:
         """Number of signs of an optical reader on its numbers.
 
@@ -419,9 +422,7 @@ class Printout:
         """Set ``labels`` and ``misread_letters``: the number that each label names, and marks."""
         read = {name: self._slots[name] for name in self.fields if name in self._slots}
         marks = (
-            self.marks + self._misread("*")
-            if len(self.fields) >= _MIN_NUMBERS
-            else MIN_READER_MARKS
+            self.marks + self._misread("*") if len(self.fields) >= _MIN_NUMBERS else MACHINE_READ
         )
         label_glyphs = [
             (

@@ -185,8 +185,10 @@ def _choices(
 
 
 def _rows_of_angles(shown: Printout) -> list[tuple[tuple[str, ...], float]]:
-    """Return the texts that a row of angles may be, and those one slip away from the likeliest:
-    what is not read for certain is not clean, and may be a slip as well."""
+    """Return the texts that a row of angles may be; and those one slip away from the likeliest,
+    where no machine read the page: a machine damages a row in more ways than a slip."""
+    if shown.machine_read:
+        return shown.angles
     row, least = shown.angles[0]
     rows = dict(shown.angles)
     for at, (name, text) in enumerate(zip(ANGLES, row, strict=True)):

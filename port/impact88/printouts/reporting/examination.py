@@ -19,7 +19,8 @@ from ...collision.mappings import texts
 from ...errors import UserError, quoted
 from ...messages.arguments import explains_arguments
 from ..judging import beside
-from ..judging.judgement import Judged, Status, Verdict, attribute_to_reader, judge
+from ..judging.judgement import Judged, Status, Verdict, judge
+from ..judging.reader import attribute_to_reader, is_alteration
 from ..reading.plaintext import decode
 from ..reading.printout import LARGEST_FILE, Printout, read_printouts
 from ..recovery.recovered import recover, without_angles
@@ -34,10 +35,6 @@ if TYPE_CHECKING:
 PICTURE_STARTS = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"II*\x00", b"MM\x00*", b"%PDF-")
 """First bytes of PNG, JPEG, TIFF (of either byte order) and PDF files."""
 LARGEST_PICTURE = 100_000_000  # bytes of a picture or PDF
-MOST_ALTERED = 2
-"""Changes up to which an explanation counts as an alteration, on a machine-read page: it holds for
-28 of 28 readings of test pages with one altered digit; 10 of 17 genuine ones that differed have no
-such explanation."""
 BUDGET = 2.0
 """Seconds of processor time after which no slower causes are tried; the slowest of 471 test scans
 takes 1.9."""
@@ -211,8 +208,7 @@ def _verify_printout(paper: Printout, given: Mapping[str, str] | None) -> Verifi
     rereading = Rereading(scene, apart=True)
     judgement, attributed = judge(paper, scene), None
     is_open = in_doubt or judgement.verdict in (Verdict.DIFFERS, Verdict.INCOMPLETE)
-    is_of_another_form = bool(paper.mislabelled) or paper.out_of_order
-    if is_open and not is_of_another_form:
+    if is_open and not paper.is_of_another_form:
         attributed = attribute_to_reader(judgement, rereading)
     if in_doubt and not attributed:
         judgement = judge(paper, without_angles(scene))
@@ -223,8 +219,7 @@ def _verify_printout(paper: Printout, given: Mapping[str, str] | None) -> Verifi
         result.explanations = explain(
             judgement, rereading, lambda: process_time() - start_time < BUDGET
         )
-        is_alteration = any(len(cause.changes) <= MOST_ALTERED for cause in result.explanations[:1])
-        if paper.machine_read and not is_alteration and not is_of_another_form:
+        if not is_alteration(paper, [len(cause.changes) for cause in result.explanations]):
             result.verdict, result.explanations = Verdict.INCOMPLETE, []
     if result.verdict is Verdict.INCOMPLETE and paper.machine_read and result.differing:
         result.remarks.append(
