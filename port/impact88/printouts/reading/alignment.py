@@ -67,8 +67,6 @@ FIRST_STARS = 11
 SPINS = 14
 STARS = 15
 _OPTIONAL = (0, 1, HEADING, RETYPED_ANGLES, FIRST_STARS, SPINS, STARS)
-_LOOSE_WORDS = {"INITIALKE=": 7, "KELOSS=": 2}
-"""Number of a label's first letters that retyped pages leave out, as they do prompts."""
 _INFINITE: int = np.iinfo(np.int16).max // 3
 """Cost of what is impossible; three of them still fit into an int16."""
 
@@ -92,29 +90,63 @@ class State(NamedTuple):
     line: int
 
 
-def _page() -> tuple[list[State], list[tuple[str, list[int]]]]:
-    """Return `STATES` and `LABELS`."""
+class Token(NamedTuple):
+    """A word, a mark, or a number (its field in braces) that the program prints in a line of
+    `ROWS`; the number that it belongs to, "" for asterisks; and the states of its characters."""
+
+    text: str
+    name: str
+    line: int
+    states: range
+
+    @property
+    def is_word(self) -> bool:
+        """True for letters."""
+        return self.text.isalpha()
+
+
+BEHIND = (")", "%")
+"""Marks that belong to the number before them; all others belong to the one behind them."""
+
+
+def _page() -> tuple[list[State], list[Token]]:
+    """Return `STATES` and `TOKENS`."""
     states = [State("outside", "", -1)]
-    labels = []
-    for number, line in enumerate(ROWS):
-        states.append(State("between", "", number))
-        squeezed = line.replace(" ", "").upper()
-        for text, name in re.findall(r"([^{]*)(?:{(\w+)}|$)", squeezed):
-            loose = len(text) if number < PROMPTS else _LOOSE_WORDS.get(text, 0)
-            fields = ANGLES if number == HEADING and text else [name] if text and name else []
-            letters_at = [len(states) + at for at, letter in enumerate(text) if letter.isalpha()]
-            size = len(letters_at) // max(len(fields), 1)
-            labels += [(field, letters_at[at * size :][:size]) for at, field in enumerate(fields)]
-            for place, letter in enumerate(text):
-                states.append(State("loose" if place < loose else "letter", letter, number))
-            if name:
-                states.append(State("number", name, number))
-    return states, labels
+    tokens = []
+    for line, template in enumerate(ROWS):
+        states.append(State("between", "", line))
+        parts = re.findall(r"{\w+}|[A-Z]+|\S", template.upper())
+        for at, part in enumerate(parts):
+            start = len(states)
+            around = parts[at::-1] if part in BEHIND else parts[at:]
+            name = next((text[1:-1] for text in around if text.startswith("{")), "")
+            if part.startswith("{"):
+                states.append(State("number", name, line))
+            else:
+                # retyped pages leave out the first words of a label, as they do prompts
+                is_first = part.isalpha() and "".join(parts[at + 1 : at + 2]).isalpha()
+                is_loose = line < PROMPTS or (is_first and line != HEADING)
+                states += [State("loose" if is_loose else "letter", char, line) for char in part]
+            tokens.append(
+                Token(part, part if line == HEADING else name, line, range(start, len(states)))
+            )
+    return states, tokens
 
 
-STATES, LABELS = _page()
-"""The states, the first of which is the text outside any printout; and for each label the field
-that it names (a prompt: its reply's slot) with the states of its letters."""
+def _labels() -> list[tuple[str, list[int]]]:
+    """Return `LABELS`."""
+    labels: dict[tuple[int, str], list[int]] = {}
+    for token in TOKENS:
+        if token.is_word:
+            labels.setdefault((token.line, token.name), []).extend(token.states)
+    return [(name, states) for (_, name), states in labels.items()]
+
+
+STATES, TOKENS = _page()
+"""The states, the first of which is the text outside any printout; and the tokens of the page."""
+LABELS = _labels()
+"""For each label the field that it names (a prompt: its reply's slot) with the states of its
+letters."""
 
 
 def letter_of(state: int) -> str:

@@ -8,46 +8,22 @@ only counted: of 41 readings of given pages that are exact otherwise 24 lack som
 another mark.
 """
 
-import re
 from collections.abc import Collection, Container, Iterator, Mapping, Sequence
-from functools import lru_cache
-from typing import NamedTuple
 
-from ...collision.fields import FIELDS, REPLIES
-from .alignment import FIRST_STARS, LABELS, PROMPTS, RETYPED_ANGLES, ROWS, STARS, STATES
+from ...collision.fields import FIELDS
+from .alignment import BEHIND, FIRST_STARS, PROMPTS, RETYPED_ANGLES, STARS, STATES, TOKENS, Token
 from .fieldlabels import LabelCheck, LabelState
 from .glyphs import Gap, Page, is_look_alike, letters
 
-_BEHIND = (")", "%")
-"""Marks that belong to the number before them; all others belong to the one behind them."""
-
-
-class _Token(NamedTuple):
-    """A mark or a word that the program prints, the number it belongs to, and the states of its
-    letters."""
-
-    text: str
-    name: str
-    states: range
-
-
-@lru_cache(maxsize=1)
-def _tokens() -> list[_Token]:
-    """Return the marks, and the words of the prompts, in the order of the page."""
-    of_labels = {state for _, own in LABELS[len(REPLIES) :] for state in own}
-    tokens = []
-    for row, template in enumerate(ROWS):
-        parts = re.findall(r"{\w+}|[A-Z]+|\S", template.upper())
-        state = next(at for at, entry in enumerate(STATES) if entry.line == row) + 1
-        for place, part in enumerate(parts):
-            states = range(state, state + (1 if part.startswith("{") else len(part)))
-            state = states.stop
-            around = reversed(parts[:place]) if part in _BEHIND else parts[place:]
-            name = next((text[1:-1] for text in around if text.startswith("{")), "")
-            is_label = part.startswith("{") or not of_labels.isdisjoint(states)
-            if name and not is_label and row != RETYPED_ANGLES:
-                tokens.append(_Token(part, name, states))
-    return tokens
+_MARKS = [
+    token
+    for token in TOKENS
+    if token.name
+    and not token.text.startswith("{")
+    and (token.line < PROMPTS or not token.is_word)
+    and token.line != RETYPED_ANGLES
+]
+"""The marks, and the words of the prompts, in the order of the page."""
 
 
 def mark_checks(
@@ -80,7 +56,7 @@ def mark_checks(
         places.setdefault(states[index], index)
     checks: list[LabelCheck] = []
     end_of_last = 0  # of the states of the last token reported
-    for token in _tokens():
+    for token in _MARKS:
         name, text = token.name, token.text
         if name not in slots or (text == "=" and name in without_label):
             continue
@@ -115,7 +91,7 @@ def mark_checks(
 
 def _state(
     page: Page,
-    token: _Token,
+    token: Token,
     at: Sequence[int],
     slots: Mapping[str, tuple[int, int]],
     machine_read: bool,
@@ -123,7 +99,7 @@ def _state(
     """Return the state of a mark or a word, of which the glyphs ``at`` were read."""
     read = letters(page.glyphs[index] for index in at)
     if read == token.text:
-        is_apart = token.text in (*_BEHIND, "=") and page.glyphs[at[0]].gap is Gap.LINE
+        is_apart = token.text in (*BEHIND, "=") and page.glyphs[at[0]].gap is Gap.LINE
         return LabelState.MOVED if is_apart and not machine_read else LabelState.EXACT
     start, stop = slots[token.name]
     in_number = token.name in FIELDS and token.text in letters(page.glyphs[start - 1 : stop + 1])
@@ -142,7 +118,7 @@ def _broken_asterisks(
     """Yield a check of each row of asterisks of which some are not on the page, or another
     character stands among them."""
     for row, (field, _) in _STARS.items():
-        own = [at for at, state in enumerate(STATES) if state.line == row and state.name == "*"]
+        own = _asterisks(row)
         at = [places[state] for state in own if state in places]
         read = letters(page.glyphs[index] for index in at)
         if field in slots and at and read != "*" * len(own):
@@ -167,10 +143,10 @@ def retyping_note(labels: Sequence[LabelCheck]) -> list[str]:
 
 
 def _gap(
-    page: Page, token: _Token, places: Mapping[int, int], slots: Mapping[str, tuple[int, int]]
+    page: Page, token: Token, places: Mapping[int, int], slots: Mapping[str, tuple[int, int]]
 ) -> int:
     """Return the offset in the text at which a missing mark or word would stand."""
-    if token.text in _BEHIND:
+    if token.text in BEHIND:
         return page.span(*slots[token.name])[1]
     before = [state for state in places if state < token.states.start]
     if STATES[token.states.start].line < PROMPTS and before:
@@ -187,6 +163,11 @@ _STARS = {
 """The rows of asterisks: a number beside each, and where it stands."""
 
 
+def _asterisks(row: int) -> list[int]:
+    """Return the states of a row of asterisks."""
+    return [state for token in TOKENS if token.line == row for state in token.states]
+
+
 def asterisk_note(states: Collection[int], fields: Container[str]) -> list[str]:
     """Return a note on asterisks that the program prints and that were not read, or none.
 
@@ -194,7 +175,7 @@ def asterisk_note(states: Collection[int], fields: Container[str]) -> list[str]:
     """
     counts = []
     for row, (field, where) in _STARS.items():
-        own = [at for at, state in enumerate(STATES) if state.line == row and state.name == "*"]
+        own = _asterisks(row)
         count = sum(at in states for at in own)
         if count < len(own) and field in fields:
             counts.append(f"{count} of {len(own)} {where}")
