@@ -297,8 +297,9 @@ def test_a_picture_larger_than_is_read_has_its_boxes_in_the_pixels_of_its_file(m
     ],
 )
 def test_of_equal_angles_the_one_within_a_turn_is_taken(typed, shown, found):
-    """Where the cells tell no more."""
-    scene = {**sample(1), "PB": typed}
+    """Where the cells tell no more. TB, of which the results show the sum with PB, is no slip away
+    from a number that makes up for PB."""
+    scene = {**sample(1), "PB": typed, "TB": "8"}
     (outcome,) = run_all([scene])
     printed = {**outcome.fields, "PB": shown}
     costs = {
@@ -308,6 +309,29 @@ def test_of_equal_angles_the_one_within_a_turn_is_taken(typed, shown, found):
     read = Read(SimpleNamespace(rows={}), costs)
     best = scene_of(read, [{**scene, "PB": "837.2"}])
     assert best.outcome.fields["PB"] == found
+
+
+@pytest.mark.parametrize(
+    "shown",
+    [
+        {"MA": "148.5"},
+        {"GA": "-80"},
+        {"MUP": ".971"},
+        {"IB": "1691"},
+        {"UX": "-29.84", "TB": "66"},
+        {"VY": "25.75", "VAX": "-18.263"},
+    ],
+)
+def test_the_scene_is_that_of_the_results_where_an_input_was_altered(shown):
+    """A digit or two in clear cells; with a result altered as well."""
+    scene = {**sample(1)}
+    (outcome,) = run_all([scene])
+    costs = {
+        name: np.array([[MAX_CELL_COST * (char != is_) for char in READABLE] for is_ in text])
+        for name, text in {**outcome.fields, **shown}.items()
+    }
+    best = scene_of(Read(SimpleNamespace(rows={}), costs))
+    assert best.outcome.fields == outcome.fields
 
 
 @pytest.mark.parametrize("verdict", [Verdict.IDENTICAL_AS_READ, Verdict.INCOMPLETE])

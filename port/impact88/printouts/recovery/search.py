@@ -162,17 +162,20 @@ class Search:
         The two most plausible combinations are replayed first; only if neither explains the page
         does the search by kinetic energy follow.
         """
-        best = min(self.replay(columns, combinations(columns, 2)), key=_cost)
+        best = min(self.likeliest(columns), key=_cost)
         if best.wrong or best.cost >= 0.05:
             best = min([best, *self.nearest(columns)], key=_cost)
         return self._other_spellings(best) if best.wrong else best
 
+    def likeliest(self, columns: Columns) -> list[Scored]:
+        """Return the scenes of the two combinations of least prior penalty, whatever they print."""
+        return self.replay(columns, combinations(columns, 2))
+
     def nearest(self, columns: Columns) -> list[Scored]:
         """Return the scenes of least cost among combinations of the columns' options, the least
         first."""
-        return sorted(
-            self.replay(columns, self.find_candidates(columns, MAX_COMBINATIONS)), key=_cost
-        )
+        scores = self.replay(columns, self.find_candidates(columns, MAX_COMBINATIONS))
+        return sorted(scores, key=_cost)
 
     def find_candidates(
         self,

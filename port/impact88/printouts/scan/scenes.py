@@ -17,7 +17,7 @@ from ..reading.printout import read_printouts
 from ..recovery.recovered import MAX_RESULT_TEXTS, MAX_TEXTS, recover
 from ..recovery.replays import Outcome, run_all
 from ..recovery.search import MISMATCH, Column, Evidence, Expected, Search, column_of
-from ..recovery.slips import TWO_DIGITS, misreadings
+from ..recovery.slips import TWO_DIGITS, slips_of
 from ..recovery.typedtext import stored_and_printed
 from .ink import Floats
 from .layout import Sheet
@@ -183,12 +183,13 @@ def scene_of(
     if not copy:
         best = search.best(columns)
         return _candidate(read, best.scene, best.outcome)
-    return _scene_in_copy(read, copy, [scored.scene for scored in search.nearest(columns)])
+    scores = [*search.likeliest(columns), *search.nearest(columns)]
+    return _scene_in_copy(read, copy, [scored.scene for scored in scores])
 
 
 def _scene_in_copy(read: Read, copy: Copy, scenes: Sequence[dict[str, str]]) -> Candidate | None:
-    """Return what was typed into a copy of the listing, from scenes that are the nearest by the
-    restored one."""
+    """Return what was typed into a copy of the listing, from the scenes of the numbers as read and
+    those that are the nearest by the restored one."""
     inputs = {name: read.text(name) for name in INPUTS}
     replies = _typed_velocities(read)
     best: Candidate | None = None
@@ -213,11 +214,11 @@ def _columns(read: Read, seeds: Sequence[Mapping[str, str]]) -> Iterator[Column]
         texts: dict[str, float] = {}
         if name in read.costs:
             texts = read.texts(name, MAX_TEXTS)
-            others = [*_slips(read, name), *(seed[scene_name(name)] for seed in seeds)]
-            for text in others:
+            others = dict.fromkeys((seed[scene_name(name)] for seed in seeds), MISMATCH)
+            for text, cost in {**others, **_slips(read, name)}.items():
                 printed = (stored_and_printed(text, name in ANGLES) or ("", ""))[1]
                 if printed and printed not in texts:
-                    texts[printed] = _CELL_UNIT * read.cost(name, printed)
+                    texts[printed] = min(cost, _CELL_UNIT * read.cost(name, printed))
         elif name in typed and (seen := stored_and_printed(typed[name])):
             texts = {seen[1]: 0.0}
         if name in ANGLES:
@@ -229,15 +230,18 @@ def _columns(read: Read, seeds: Sequence[Mapping[str, str]]) -> Iterator[Column]
     yield column_of("M", [("4", 0.0), ("6", 0.1)], True)
 
 
-def _slips(read: Read, name: str) -> Iterator[str]:
-    """Yield the texts one slip away from a number as read; its last figure may have been erased,
-    which leaves a wider gap."""
+def _slips(read: Read, name: str) -> dict[str, float]:
+    """Return the texts one slip away from a number as read, with their prior penalties. Its last
+    figure may have been erased, which leaves a wider gap."""
     as_read = read.text(name)
     text = as_printed(as_read) or as_read
-    for base in dict.fromkeys((text, as_read.ljust(len(read.costs[name]), "0"))):
-        for other, kind in misreadings(base).items() if is_number(base) else ():
-            if kind != TWO_DIGITS and printable(other):
-                yield other
+    return {
+        change.would_be: cost
+        for base in (as_read.ljust(len(read.costs[name]), "0"), text)
+        if is_number(base)
+        for cost, change in slips_of(name, base)
+        if change.kind != TWO_DIGITS and printable(change.would_be)
+    }
 
 
 def _evidence(read: Read) -> Evidence:
