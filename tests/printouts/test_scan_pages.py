@@ -338,13 +338,16 @@ def test_the_scene_is_that_of_the_results_where_an_input_was_altered(shown):
 
 
 @pytest.mark.parametrize("verdict", [Verdict.IDENTICAL_AS_READ, Verdict.INCOMPLETE])
-def test_a_number_that_contradicts_is_named_first_on_an_incomplete_page(verdict):
+@pytest.mark.parametrize(
+    ("page", "status"), [(1, Status.NOT_COMPARED), (None, Status.CONTRADICTED)]
+)
+def test_a_number_that_contradicts_is_named_first_on_an_incomplete_page(verdict, page, status):
     """No verdict is based on it, and a count does not hide it."""
     fields = [
-        FieldCheck("LOSS", "7.13", "7.03", Status.NOT_COMPARED),
+        FieldCheck("LOSS", "7.13", "7.03", status),
         FieldCheck("E", ".2", ".2", Status.READ),
     ]
-    result = Verification("x.png", 1, 1, verdict, {}, fields, page=1)
+    result = Verification("x.png", 1, 1, verdict, {}, fields, page=page)
     named = summary(result)[0] == "1 number contradicts: LOSS 7.13, program 7.03"
     assert named is (verdict is Verdict.INCOMPLETE)
 

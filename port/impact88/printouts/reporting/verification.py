@@ -341,14 +341,14 @@ def summary(result: Verification) -> list[str]:
 
 
 def _contradicting(result: Verification) -> Iterator[str]:
-    """Yield a sentence on the numbers of an incomplete picture that show other digits than the
-    program prints: no verdict is based on them, and none may hide them."""
-    if result.verdict is not Verdict.INCOMPLETE or result.page is None:
+    """Yield a sentence on the numbers of an incomplete page that show other digits than the program
+    prints: no verdict is based on them, and none may hide them."""
+    if result.verdict is not Verdict.INCOMPLETE:
         return
-    wrong = [check for check in result.fields if check.status is Status.NOT_COMPARED]
     named = [
         f"{check.name} {check.printed}, program {check.recomputed}"
-        for check in wrong
+        for check in result.fields
+        if check.status in (Status.CONTRADICTED, Status.NOT_COMPARED)
         if check.recomputed and check.printed and check.printed != check.recomputed
     ]
     if 0 < len(named) <= MAX_LEFT_OUT:
