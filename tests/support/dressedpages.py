@@ -12,13 +12,13 @@ import random
 import re
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import captures
 
 import impact88
-from impact88.printouts.reporting.verification import DOUBTFUL, NOTES, sections
+from impact88.printouts.reporting.verification import DOUBTFUL, NOTES, Verification, sections
 
 Dress = Callable[[str], str | bytes]
 
@@ -259,13 +259,19 @@ def characters(page: str) -> str:
 SETTLED = ("IDENTICAL", "IDENTICAL_AS_READ")
 
 
-def verdict_of(data: str | bytes) -> str:
-    """The verdict on the only printout of a text; ``count printouts`` for several."""
+def results_of(data: str | bytes) -> Sequence[Verification]:
+    """The verdicts on the printouts of a text, none if it is refused."""
     try:
-        results = impact88.verify(data if isinstance(data, bytes) else data.encode())
+        return impact88.verify(data if isinstance(data, bytes) else data.encode())
     except impact88.UserError:
-        return "refused"
-    return results[0].verdict.name if len(results) == 1 else f"{len(results)} printouts"
+        return []
+
+
+def verdict_of(results: Sequence[Verification]) -> str:
+    """The verdict on the only printout of a text; ``count printouts`` for several."""
+    if len(results) != 1:
+        return f"{len(results)} printouts" if results else "refused"
+    return results[0].verdict.name
 
 
 NOT_NAMED = "IDENTICAL_AS_READ, place not named"
@@ -273,20 +279,19 @@ FOUND = ("DIFFERS", "IDENTICAL_AS_READ", "printed so")
 """Scores of an altered page of which nothing is passed over."""
 
 
-def score_of(page: Altered) -> str:
+def score_of(page: Altered, results: Sequence[Verification]) -> str:
     """The verdict on an altered page; whether the altered place is named where it is no more than a
     doubt, and whether the program prints just that where it is none."""
-    verdict = verdict_of(page.text)
+    verdict = verdict_of(results)
     if verdict == "IDENTICAL" and is_printed_so(page.text):
         return "printed so"
-    if verdict == "IDENTICAL_AS_READ" and not is_named(page):
+    if verdict == "IDENTICAL_AS_READ" and not is_named(page, results[0]):
         return NOT_NAMED
     return verdict
 
 
-def is_named(page: Altered) -> bool:
+def is_named(page: Altered, result: Verification) -> bool:
     """Whether a doubt or a note is on a line that was altered."""
-    (result,) = impact88.verify(page.text.encode())
     parts = sections(result)
     told = " ".join([*parts.get(DOUBTFUL, []), *parts.get(NOTES, [])])
     pairs = zip(page.genuine.split("\n"), page.text.split("\n"), strict=True)
@@ -307,9 +312,11 @@ def main(genuine: int = 300, altered: int = 600, seed: int = 1) -> None:
     names = list(DRESSES)
     for at, page in enumerate(fresh_pages(genuine, seed)):
         name = names[at % len(names)]
-        rows.setdefault(f"genuine: {name}", Counter())[verdict_of(DRESSES[name](page))] += 1
+        rows.setdefault(f"genuine: {name}", Counter())[
+            verdict_of(results_of(DRESSES[name](page)))
+        ] += 1
     for page in altered_pages(altered, seed + 1):
-        score = score_of(page)
+        score = score_of(page, results_of(page.text))
         if score not in FOUND:
             print(f"{score}, {page.how}:", _difference(page), file=sys.stderr)
         rows.setdefault(f"altered: {page.how}", Counter())[score] += 1
