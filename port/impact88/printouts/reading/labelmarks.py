@@ -73,6 +73,7 @@ def mark_checks(
         if name not in FIELDS and end_of_last == token.states.start:  # words side by side
             before = checks.pop()
             text, read, start = f"{before.printed} {text}", before.read + read, before.start
+            state = LabelState.DAMAGED if read else LabelState.MISSING
         if state is not LabelState.MOVED:
             end_of_last = token.states.stop
         checks.append(LabelCheck(name, text, read, state, True, *page.place(start), start, stop))
