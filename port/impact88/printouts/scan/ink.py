@@ -33,7 +33,7 @@ STEEP = 0.08
 """Slope of lines from which a page is set straight: the grid's own search ends at 0.1."""
 _MAX_SLOPE = 0.25  # of lines
 _SHARPER = 1.3  # smallest ratio of the sharpness along a steep slope to the best along a level one
-_MAX_SKEW_POINTS = 10_000  # points on which slopes are tried
+_MAX_SKEW_POINTS = 20_000  # points on which slopes are tried
 _ROWS = 600  # rows of ink, across the page's longer side, on which they are tried
 _COARSE_ROWS = 150  # the same, on which the lines' direction is found
 # Holes of continuous paper: half an inch apart, a fifth of an inch wide or less.
@@ -211,7 +211,7 @@ def slopes(points: Points) -> Slope:
     """Return the slope and keystone of lines of text that run across, found on finer lattices."""
     step = max(1.0, points.span / 1200)
     slope = line_slope(points)
-    points = points.some(20_000)
+    points = points.some(_MAX_SKEW_POINTS)
     keystones = product(np.arange(-0.12, 0.1201, 0.02), (-0.002, 0, 0.002))
     tilts: list[Slope] = [(slope + turn, float(keystone)) for keystone, turn in keystones]
     slope, key = _sharpest(points, tilts, 1.5 * step)[1]

@@ -18,7 +18,6 @@ from .layout import Layout, LineFit, Place, Row, Sheet
 from .scenes import Read
 from .typeface import BLANK, Typeface, distances, read_numbers, sample_of, typeface_of
 
-_ROUNDS = 2  # times that lines are named, by the letters of those that were named before
 _WRONG_LETTER = 3.0  # log odds that a label's cell loses which is more like another letter
 _MIN_SHARE = 0.7  # smallest gain of a line of print, relative to that of its ink if all were its
 
@@ -46,15 +45,16 @@ def order_lines(grid: Grid, layout: Layout) -> Order | None:
         for sheet in layout.sheets
         for line, row in sheet.rows.items()
     }
-    lines, before = _name_lines(grid, layout, as_laid_out), as_laid_out
-    for _ in range(_ROUNDS - 1):
-        if _prints(lines) != _prints(before):
-            lines, before = _name_lines(grid, layout, lines), lines
-    if not lines or _prints(lines) == _prints(as_laid_out):
+    lines = _name_lines(grid, layout, as_laid_out)
+    if _prints(lines) == _prints(as_laid_out):
+        return None
+    # once more by the letters of the rows' right names
+    lines = _name_lines(grid, layout, lines)
+    if not lines:
         return None
     page = Page(_text(grid, lines))
     rows = find_rows(page)
-    if not (rows.exchanged or rows.repeated):
+    if not (rows.exchanged or rows.repeated) or len(page.lines) != len(lines):
         return None
     doubled = {at for at, line in enumerate(page.lines) if line.start in rows.doubled}
     named = [[*_grid_lines(lines[start].row)] for start in sorted(lines)]
