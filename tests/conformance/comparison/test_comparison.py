@@ -22,12 +22,15 @@ import heldout
 import numpy as np
 import pytest
 import strangers
+from hypothesis import given
+from hypothesis import strategies as st
 from installed import impact88
 from longer import long_but
 from mistakes import DEGREES, MISTAKES, MPH, SPINS, Squared, each, scaled, scaling
 from otherprogram import RESULTS, Numbers, Program, answers
 
 from impact88.conformance.comparison import diagnosis
+from impact88.conformance.comparison.agreement import read_theirs
 from impact88.conformance.comparison.compare import (
     NO_RESULT,
     NO_SCENE,
@@ -44,6 +47,8 @@ from impact88.mechanics.accuracy import errorbound
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_VELOCITIES, SCENE
 from impact88.program.vectorized import replay
+from impact88.tables.cells import TableUnits
+from impact88.tables.rows import Rows
 
 ROWS = [scene for kind, _, scene in scenes(90, seed=11) if kind == CASEWORK]
 MIXED = [scene for _, _, scene in scenes(45, seed=4)]
@@ -139,6 +144,23 @@ def test_rounded_results_agree_to_the_digits_claimed(tmp_path, places: int) -> N
     assert done.tallies["VAX"].digits > 0
 
 
+NUMBER = st.one_of(
+    st.just(""),
+    st.sampled_from(["1.", "-.5", "+3", "-0.0", "007.50", "1E5", "1.25e-7", "3.e2", ".5E+3"]),
+    st.floats(allow_nan=False, allow_infinity=False).map(repr),
+    st.decimals(-9, 9, places=12).map(str),
+)
+
+
+@given(st.lists(NUMBER, min_size=1, max_size=9))
+def test_plain_numbers_are_read_as_beside_a_cell_that_needs_a_closer_look(cells) -> None:
+    units = TableUnits(["VAX"], None, None, ["VAX"], "")
+    plain = read_theirs(Rows(len(cells), {"VAX": cells}), "VAX", units)
+    closer = read_theirs(Rows(len(cells) + 1, {"VAX": [*cells, "n/a"]}), "VAX", units)
+    for column, other in zip(plain, closer, strict=True):
+        np.testing.assert_array_equal(column, other[:-1])
+
+
 def test_a_tolerance_of_ones_own(tmp_path) -> None:
     made = {name: [repr(float(x) * (1 + 1e-6)) for x in OURS[name]] for name in FINAL_VELOCITIES}
     assert compared(tmp_path, made, causes=False).differing == len(ROWS)
@@ -215,6 +237,26 @@ def test_two_mistakes_in_one_table_are_both_named(tmp_path, monkeypatch) -> None
         f"{other[1]} in the rows after row {half}",
     }
     assert done.causes[f"{other[1]} in the rows after row {half}"] == len(ROWS) - half
+
+
+@pytest.mark.long
+def test_a_program_that_most_rows_contradict_is_not_named(tmp_path, monkeypatch) -> None:
+    """A third of the rows from a program with a mistake, the rest from none: numbers by chance."""
+    monkeypatch.setattr(diagnosis, "find_pairs", lambda *_: iter(()))
+    monkeypatch.setattr(diagnosis, "MAX_SECONDS", 0.0)  # no second mistake is looked for
+    rng = np.random.default_rng(4)
+    squared = answered(MISTAKES["e squared"][0], names=FINAL_VELOCITIES)
+    is_squared = rng.random(len(ROWS)) < 1 / 3
+    made = {
+        name: [
+            text if is_known else repr(float(text) + rng.normal())
+            for text, is_known in zip(column, is_squared, strict=True)
+        ]
+        for name, column in squared.items()
+    }
+    done = compared(tmp_path, made)
+    assert not done.programs
+    assert all(cause.startswith(UNKNOWN) for cause in done.causes)
 
 
 class RestitutionAcross(Program):

@@ -24,7 +24,7 @@ from impact88.names import FINAL_VELOCITIES, SCENE
 
 SWEEP = os.environ.get("IMPACT88_SWEEP")
 MISTAKES = [*foreignmistakes.SINGLES, *foreignmistakes.PAIRS]
-FEW = [mistake for mistake in MISTAKES if mistake.key in ("p8", "b4 b8")]
+FEW = [mistake for mistake in MISTAKES if mistake.key in ("p8 p6", "b4 b8")]
 FEET = 0.3048
 UNITS = {
     "feet, slug": (1.0, 1.0, 1.0),
