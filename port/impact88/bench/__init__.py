@@ -2,5 +2,7 @@
 
 Needs: `mechanics` and `program` (the methods), `apple`, `casework` (the figure).
 In: populations of scenes. Out: tables, JSON, a figure.
-Used by: who decides which method to use, or changes one (`impact88 bench`).
+Used by: who has a million scenes and chooses a method for a machine of their own, and who changes
+one (`impact88 bench`): speed is shown here, never by timed tests, and README's figure and
+`port/docs/measurements.md` are its output.
 """
