@@ -147,14 +147,13 @@ def brief_search() -> Iterator[None]:
     from impact88.casework.optimization.effort import Effort, granting
 
     brief = Effort(
-        particles=800,
-        burn_in_moves=6,
+        particles=400,
+        burn_in_moves=4,
         draws_of_bounds=200,
         spread_points=200,
         spread_steps=3,
         starts=1,
         rounds=1,
-        generations=4,
     )
     with granting(brief):
         yield

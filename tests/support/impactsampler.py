@@ -229,7 +229,8 @@ class Problem:
 
     def _fit(self, theta, w, components, rng):
         """A mixture fitted to weighted points: k means, then the spread about each, widened."""
-        chosen = theta[:, rng.choice(theta.shape[1], 8000, p=w / w.sum())]
+        number = min(8000, theta.shape[1] // 2)
+        chosen = theta[:, rng.choice(theta.shape[1], number, p=w / w.sum())]
         scale = chosen.std(axis=1, keepdims=True) + 1e-12
         points = (chosen / scale).T
         points = points + 1e-3 * rng.standard_normal(points.shape)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impact88.casework.optimization import widening
 from impact88.casework.optimization.effort import THOROUGH
 from impact88.casework.optimization.extremes import Piece
+from impact88.casework.optimization.search import pool_of, spread
 
 SEED = 7
 
@@ -81,7 +81,7 @@ class Needle:
 
     def evaluate(self, u, states):
         values = (u == self.point).all(axis=1).astype(float)[:, None]
-        return states[0], values, np.full((len(u), 1), 0.5), np.ones(len(u), bool)
+        return states, values, np.full((len(u), 1), 0.5), np.ones(len(u), bool)
 
 
 def test_points_given_stay_where_they_are_while_others_are_spread():
@@ -89,10 +89,10 @@ def test_points_given_stay_where_they_are_while_others_are_spread():
     points = np.random.default_rng(SEED).random((3000, 2))
     given = points.copy()
     for row in (0, 2999):
-        pool, _ = widening._evaluate(Needle(points[row].copy()), points, np.zeros(3000))
-        tail = pool[-THOROUGH.spread_points :]
+        pool, _ = pool_of(Needle(points[row].copy()), points, np.zeros((1, 3000)))
+        tail = pool.chosen(slice(-THOROUGH.spread_points, None))
         problem, rng = Needle(points[row].copy()), np.random.default_rng(SEED)
-        spread = widening._spread_points(problem, tail, rng)
+        widened = spread(problem, tail, rng)
         assert np.array_equal(points, given)
         assert pool.functions.sum() == 1
-        assert (spread.u != tail.u).any()
+        assert (widened.u != tail.u).any()

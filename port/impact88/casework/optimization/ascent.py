@@ -1,13 +1,14 @@
-"""Sequential linear programming over the unit cube, from many search points together.
+"""Sequential quadratic programming over the unit cube, from many search points together.
 
 A function of k coordinates, each from 0 to 1, with r constraints (functions that must stay from 0
-to 1, too) is linearized within a trust region around each search point. The linear programs that
-remain are solved by a primal-dual interior-point method. Where a step leaves the feasible region
-because the constraints are curved, the program is solved again with the curvature added to its
-limits (a second-order correction). A step that improves the function doubles the trust region, one
-that does not cuts it to a quarter."""
+to 1, too) is linearized within a trust region around each search point; the curvature of function
+and constraints along the steps taken is learnt from their slopes (the symmetric rank-one update,
+Conn, Gould and Toint, 1991), and what is concave of it bends the program. The programs are solved
+by a primal-dual interior-point method. A step may leave the feasible region, as constraints are
+curved: what it gains counts less a penalty for what is exceeded, twice the largest multiplier. A
+step that is better doubles the trust region, one that is not cuts it to a quarter."""
 
-from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
 from typing import Protocol
 
 import numpy as np
@@ -16,17 +17,18 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-# Chosen on 26 problems of bounds. Doubling any of these moves no bound by 1e-4 of its range, but
-# for MAX_ROUNDS.
 MAX_STEP = 0.5  # initial and largest trust-region radius, per coordinate
 MIN_STEP = 1e-7  # a search point has converged when its trust region is smaller
 CONSTRAINT_TOL = 1e-9  # a constraint exceeded by no more counts as met
-# A vertex takes about ten rounds, a curved constraint twenty to forty. Twice as many move one
-# bound by 2e-4 of its range.
-MAX_ROUNDS = 80
-# Second-order corrections of a step. With a single one, bounds of reconstructions are up to 8 %
-# narrower.
-MAX_CORRECTIONS = 3
+MAX_ROUNDS = 60
+RESTORATIONS = 5  # last steps of points that are still beyond limits
+RESTORING_STEP = 1e-2  # and their length at most, per coordinate
+# Rounds of all searches for an extreme; then the best of them goes on alone. Nearly all that reach
+# the extreme have converged by then.
+ROUNDS_OF_ALL = 20
+ABANDONED = -1.0  # trust region of a search that does not go on
+# Cosine between a step and the change of gradient that is missing; with less nothing is learnt
+LEAST_CURVATURE = 1e-8
 MAX_BARRIER_ITERATIONS = 30  # interior-point method: each cuts the gap to about a fifth
 MAX_COMPLEMENTARITY = 1e-11  # it stops below
 
@@ -55,128 +57,156 @@ def climb(
     sense: Array,
     min_gain: Array,
 ) -> tuple[Array, Array, Array, Flags]:
-    """Maximize or minimize a function from each of c search points, by sequential linear
-    programming.
+    """Maximize or minimize a function from each of c search points.
 
     ``u`` (c x k) and ``x`` (s x c): the points to start from and their states. ``index``: which
-    function each optimizes; -1 for a point that only seeks the feasible region. ``sense``: +1
-    maximizes, -1 minimizes. ``min_gain``: stop where the linear model promises less.
+    function each optimizes. ``sense``: +1 maximizes, -1 minimizes. ``min_gain``: stop where the
+    model promises less.
 
     Return coordinates, states and all functions at the end, and True for each point that
     converged."""
-    x, functions, constraint_values, usable = problem.evaluate(u, x)
-    u, reach = u.copy(), np.where(usable, MAX_STEP, 0.0)
-    for _ in range(MAX_ROUNDS):
-        active = np.flatnonzero(reach >= MIN_STEP)
-        if not u[active].size:
+    search = _Climb(problem, u, x, index, sense)
+    for round_number in range(MAX_ROUNDS):
+        if round_number == ROUNDS_OF_ALL:
+            search.keep_best()
+        if not search.advance(min_gain):
             break
-        slopes, constraint_slopes, state_slopes = problem.slopes(u[active], x[:, active])
-        start, constraints = u[active], constraint_values[active]
+    search.restore()
+    return search.u, search.x, search.functions, (search.reach >= 0) & (search.reach < MIN_STEP)
+
+
+class _Climb:
+    """Search points, one row each: where they are (``u``, states ``x``), what they have there, how
+    far their model is trusted (``reach``), and what is learnt of the ``curvature``."""
+
+    def __init__(
+        self, problem: SearchProblem, u: Array, x: Array, index: NDArray[np.intp], sense: Array
+    ) -> None:
+        self.problem, self.index, self.sense = problem, index, sense
+        self.x, self.functions, self.constraints, usable = problem.evaluate(u, x)
+        self.u, (count, dimensions) = u.copy(), u.shape
+        self.reach = np.where(usable, MAX_STEP, 0.0)
+        self.curvature = np.zeros((count, dimensions, dimensions))
+        self.steps = np.zeros((count, dimensions))
+        self.gradients = np.zeros((count, dimensions))
+        self.multipliers = np.zeros((count, self.constraints.shape[1]))
+        self.penalty = np.zeros(count)
+
+    def advance(self, min_gain: Array) -> bool:
+        """Take one step from each point that has not converged; return False if there is none."""
+        active = np.flatnonzero(self.reach >= MIN_STEP)
+        if not active.size or not self.u.shape[1]:
+            self.reach[:] = 0.0
+            return False
+        slopes, constraint_slopes, state_slopes = self.problem.slopes(
+            self.u[active], self.x[:, active]
+        )
         rows = np.arange(len(active))
-        objective = sense[active, None] * slopes[rows, index[active]]
-        value = _objective_values(functions[active], constraints, index[active], sense[active])
-        seeking = index[active] < 0
-        inward = (constraints < 0).astype(float) - (constraints > 1)
-        objective[seeking] = np.einsum("cr,crk->ck", inward, constraint_slopes)[seeking]
-        low, high = (
-            np.maximum(-start, -reach[active, None]),
-            np.minimum(1 - start, reach[active, None]),
-        )
-        # an infeasible point may not become more infeasible
-        below, above = np.minimum(-constraints, 0.0), np.maximum(1 - constraints, 0.0)
-        max_violation = np.maximum(
-            np.maximum(-constraints, constraints - 1).max(axis=1, initial=0.0), CONSTRAINT_TOL
-        )
-        curvature = np.zeros_like(constraints)
-        step = solve_linear_programs(objective, low, high, constraint_slopes, below, above)
+        objective = self.sense[active, None] * slopes[rows, self.index[active]]
+        self._learn(active, objective, constraint_slopes)
+        programs = self._programs(active, objective, constraint_slopes, self.curvature[active])
+        step, multipliers = programs.solve()
         predicted_gain = (objective * step).sum(axis=1)
-        for correction in range(MAX_CORRECTIONS):
-            trial = np.clip(start + step, 0.0, 1.0)
-            guess = x[:, active] + np.einsum("csk,ck->sc", state_slopes, trial - start)
-            trial_states, trial_values, trial_constraints, usable_trial = problem.evaluate(
-                trial, guess
-            )
-            excess = np.maximum(-trial_constraints, trial_constraints - 1).max(axis=1, initial=0.0)
-            outside = usable_trial & (excess > max_violation)
-            if not outside.any() or correction == MAX_CORRECTIONS - 1:
+        largest = np.abs(multipliers).max(axis=1, initial=0.0)
+        self.penalty[active] = np.maximum(self.penalty[active], 2 * largest)
+        u = np.clip(self.u[active] + step, 0.0, 1.0)
+        change = np.einsum("csk,ck->sc", state_slopes, u - self.u[active])
+        reached = self.problem.evaluate(u, self.x[:, active] + change)
+        lagrangian = objective - np.einsum("cr,crk->ck", multipliers, constraint_slopes)
+        better = self._accept(active, u, reached)
+        self.multipliers[active[better]] = multipliers[better]
+        self.gradients[active[better]] = lagrangian[better]
+        # the model predicts no further gain
+        is_inside = excess(self.constraints[active]).max(axis=1, initial=0.0) <= CONSTRAINT_TOL
+        self.reach[active[(predicted_gain <= min_gain[active]) & is_inside]] = 0.0
+        return True
+
+    def restore(self) -> None:
+        """Move the points that are still beyond limits by the least steps that meet them."""
+        for _ in range(RESTORATIONS):
+            beyond = excess(self.constraints).max(axis=1, initial=0.0)
+            active = np.flatnonzero(beyond > CONSTRAINT_TOL)
+            if not active.size:
                 break
-            curvature[outside] = (
-                trial_constraints
-                - constraints
-                - np.einsum("crk,ck->cr", constraint_slopes, trial - start)
-            )[outside]
-            step[outside] = solve_linear_programs(
-                *(
-                    part[outside]
-                    for part in (
-                        objective,
-                        low,
-                        high,
-                        constraint_slopes,
-                        below - curvature,
-                        above - curvature,
-                    )
-                )
+            _, rows, _ = self.problem.slopes(self.u[active], self.x[:, active])
+            nowhere, dimensions = np.zeros_like(self.u[active]), self.u.shape[1]
+            self.reach[active] = np.maximum(self.reach[active], RESTORING_STEP)
+            nearness = np.broadcast_to(np.eye(dimensions), (len(active), dimensions, dimensions))
+            step, _ = self._programs(active, nowhere, rows, nearness).solve()
+            u = np.clip(self.u[active] + step, 0.0, 1.0)
+            x, functions, constraints, usable = self.problem.evaluate(u, self.x[:, active])
+            better = usable & (excess(constraints).max(axis=1, initial=0.0) < beyond[active])
+            moving = active[better]
+            self.u[moving], self.x[:, moving] = u[better], x[:, better]
+            self.functions[moving], self.constraints[moving] = (
+                functions[better],
+                constraints[better],
             )
-        gain = (
-            _objective_values(trial_values, trial_constraints, index[active], sense[active]) - value
+
+    def keep_best(self) -> None:
+        """End all searches but the best for each function and sense."""
+        values = self._merit(np.arange(len(self.u)), self.functions, self.constraints)
+        order = np.lexsort((-values, self.sense, self.index))
+        goals = np.stack([self.index, self.sense])[:, order]
+        is_best = np.append(True, (goals[:, 1:] != goals[:, :-1]).any(axis=0))
+        self.reach[order[~is_best]] = ABANDONED
+
+    def _learn(self, active: NDArray[np.intp], objective: Array, rows: Array) -> None:
+        """Correct the curvature of the Lagrangian by how its gradient has changed along the last
+        step."""
+        multipliers = self.multipliers[active]
+        gradient = objective - np.einsum("cr,crk->ck", multipliers, rows)
+        step = self.steps[active]
+        missing = (self.gradients[active] - gradient) - np.einsum(
+            "ckl,cl->ck", self.curvature[active], step
         )
-        better = usable_trial & ~outside & (gain > 0)
+        along = (missing * step).sum(axis=1)
+        sizes = np.linalg.norm(missing, axis=1) * np.linalg.norm(step, axis=1)
+        learns = (np.abs(along) > LEAST_CURVATURE * sizes) & (sizes > 0)
+        update = (
+            missing[:, :, None] * missing[:, None] / np.where(learns, along, 1.0)[:, None, None]
+        )
+        self.curvature[active[learns]] += update[learns]
+        self.steps[active] = 0.0
+
+    def _programs(
+        self, active: NDArray[np.intp], objective: Array, rows: Array, curvature: Array
+    ) -> "_Programs":
+        start, constraints = self.u[active], self.constraints[active]
+        reach = self.reach[active, None]
+        values, vectors = np.linalg.eigh(curvature)
+        concave = (vectors * np.maximum(values, 0.0)[:, None]) @ vectors.swapaxes(1, 2)
+        low, high = np.maximum(-start, -reach), np.minimum(1 - start, reach)
+        # what is exceeded is to be met, as far as the trust region reaches
+        lowest, highest = (
+            np.einsum("crk,ck->cr", np.maximum(rows, 0.0), first)
+            + np.einsum("crk,ck->cr", np.minimum(rows, 0.0), second)
+            for first, second in ((low, high), (high, low))
+        )
+        below = np.minimum(-constraints, 0.5 * highest)
+        above = np.maximum(1 - constraints, 0.5 * lowest)
+        return _Programs(objective, concave, low, high, rows, below, above)
+
+    def _accept(
+        self, active: NDArray[np.intp], u: Array, reached: tuple[Array, Array, Array, Flags]
+    ) -> Flags:
+        """Move to the points ``u`` that are better: by what is maximized, less a penalty for what
+        is beyond limits. Return True for each."""
+        x, functions, constraints, usable = reached
+        before = self._merit(active, self.functions[active], self.constraints[active])
+        better = usable & (self._merit(active, functions, constraints) > before)
         moving = active[better]
-        u[moving], x[:, moving] = trial[better], trial_states[:, better]
-        functions[moving], constraint_values[moving] = (
-            trial_values[better],
-            trial_constraints[better],
-        )
-        reach[active] = np.where(better, np.minimum(2 * reach[active], MAX_STEP), reach[active] / 4)
-        # the linear model predicts no further gain
-        reach[active[predicted_gain <= min_gain[active]]] = 0.0
-    return u, x, functions, reach < MIN_STEP
+        self.steps[moving] = (u - self.u[active])[better]
+        self.u[moving], self.x[:, moving] = u[better], x[:, better]
+        self.functions[moving], self.constraints[moving] = functions[better], constraints[better]
+        reach = self.reach[active]
+        self.reach[active] = np.where(better, np.minimum(2 * reach, MAX_STEP), reach / 4)
+        return np.asarray(better)
 
-
-def find_extremes(
-    problem: SearchProblem,
-    points: Array,
-    functions: Array,
-    groups: Sequence[NDArray[np.intp]],
-    starts: int,
-    gain: float,
-    states: Callable[[Array], Array],
-) -> tuple[Array, Array, Flags]:
-    """Return the lowest and the highest values of m functions (2 x m), where they lie (2 x m x k),
-    and True for each search that converged.
-
-    Searches start from the best ``starts`` points of each group (row numbers of ``points``), in the
-    states that ``states`` computes for them. A value is nan where the function has none at any
-    point. ``gain``: stop where the predicted gain is a smaller fraction of a function's range."""
-    count = functions.shape[1]
-    index, sense = np.tile(np.arange(count), 2), np.repeat([-1.0, 1.0], count)
-    values = replace_nonfinite(functions[:, index] * sense)
-    start_numbers = np.concatenate(
-        [group[np.argsort(-values[group], axis=0, kind="stable")[:starts]] for group in groups]
-    )
-    largest = values.max(axis=0)
-    min_gain = gain * np.maximum(np.nan_to_num(largest + np.roll(largest, count), neginf=0.0), 0.0)
-    start_points = points[start_numbers.reshape(-1)]
-    index, sense, min_gain = (
-        np.tile(array, len(start_numbers)) for array in (index, sense, min_gain)
-    )
-    u, _, end_functions, converged_ends = climb(
-        problem, start_points, states(start_points), index, sense, min_gain
-    )
-    end_values = replace_nonfinite(end_functions[np.arange(len(u)), index] * sense).reshape(
-        start_numbers.shape
-    )
-    winners, columns = end_values.argmax(axis=0), np.arange(2 * count)
-    best_values = end_values[winners, columns]
-    extreme_points: Array = u.reshape(*start_numbers.shape, points.shape[1])[winners, columns]
-    extremes = sense[: 2 * count] * np.where(np.isneginf(best_values), np.nan, best_values)
-    converged = converged_ends.reshape(start_numbers.shape)[winners, columns]
-    return (
-        extremes.reshape(2, count),
-        extreme_points.reshape(2, count, -1),
-        converged.reshape(2, count),
-    )
+    def _merit(self, active: NDArray[np.intp], functions: Array, constraints: Array) -> Array:
+        rows = np.arange(len(active))
+        values = self.sense[active] * functions[rows, self.index[active]]
+        return np.asarray(values - self.penalty[active] * excess(constraints).sum(axis=1))
 
 
 def replace_nonfinite(values: Array) -> Array:
@@ -184,97 +214,101 @@ def replace_nonfinite(values: Array) -> Array:
     return np.where(np.isfinite(values), values, -np.inf)
 
 
-def latin_hypercube(dimensions: int, count: int, rng: np.random.Generator) -> Array:
-    """Return ``count`` points of a Latin hypercube: each coordinate has one point in each of
-    ``count`` strata."""
-    strata = rng.permuted(np.tile(np.arange(count), (dimensions, 1)), axis=1).T
-    return (strata + rng.random(strata.shape)) / count
+def excess(constraints: Array) -> Array:
+    """Return by how much constraints are beyond their limits, 0 within."""
+    return np.asarray(np.maximum(np.maximum(-constraints, constraints - 1), 0.0))
 
 
-def _objective_values(
-    functions: Array, constraints: Array, index: NDArray[np.intp], sense: Array
-) -> Array:
-    """Return the value each search point maximizes: its function times its sense, or minus the sum
-    of constraint violations for a point that seeks the feasible region."""
-    values = sense * functions[np.arange(len(functions)), index]
-    violation = np.maximum(np.maximum(-constraints, constraints - 1), 0.0).sum(axis=1)
-    return np.where(index < 0, -violation, values)
+@dataclass(frozen=True)
+class _Programs:
+    """c concave quadratic programs of one size: maximize ``objectives`` (c x k) times a step, less
+    half of ``curvatures`` (c x k x k) times it twice, between ``low`` and ``high``, while ``rows``
+    (c x r x k) times the step stays between ``below`` and ``above``."""
+
+    objectives: Array
+    curvatures: Array
+    low: Array
+    high: Array
+    rows: Array
+    below: Array
+    above: Array
+
+    def chosen(self, which: Flags) -> "_Programs":
+        """Return some of the programs."""
+        return _Programs(*(getattr(self, part.name)[which] for part in fields(self)))
+
+    def solve(self) -> tuple[Array, Array]:
+        """Return the steps (c x k) and the multipliers of the rows (c x r). A program without a
+        solution gets any step within ``low`` and ``high``."""
+        steps = np.where(self.objectives > 0, self.high, np.where(self.objectives < 0, self.low, 0))
+        multipliers = np.zeros(self.below.shape)
+        row_values = np.einsum("crk,ck->cr", self.rows, steps)
+        is_limited = ((row_values < self.below) | (row_values > self.above)).any(axis=1)
+        is_limited |= self.curvatures.any(axis=(1, 2))
+        if is_limited.any():
+            limited = self.chosen(is_limited)
+            steps[is_limited], multipliers[is_limited] = limited._by_interior_points()
+        return steps, multipliers
+
+    def _by_interior_points(self) -> tuple[Array, Array]:
+        """Solve all by a primal-dual interior-point method.
+
+        In units of the trust region each program is: maximize g·y - y·B y / 2 subject to A y + s =
+        b, s >= 0, with multipliers z >= 0. Newton's method is applied to B y + A^T z = g, A y + s =
+        b and s z = mu, with mu a tenth of the mean of s z; steps end 1 % before a slack or
+        multiplier reaches 0."""
+        count, row_count, dimensions = self.rows.shape
+        size = np.abs(self.objectives).max(axis=1, keepdims=True)
+        size = np.where(size > 0, size, 1.0)
+        unit = np.maximum(self.high, -self.low).max(axis=1)[:, None]
+        objectives = self.objectives / size
+        curvatures = self.curvatures * (unit / size)[:, :, None]
+        identity = np.broadcast_to(np.eye(dimensions), (count, dimensions, dimensions))
+        half = np.concatenate([identity, self.rows], axis=1)
+        matrix = np.concatenate([half, -half], axis=1)
+        transposed = np.ascontiguousarray(matrix.swapaxes(1, 2))
+        ends = [self.high, self.above, -self.low, -self.below]
+        limits = np.concatenate(ends, axis=1) / unit
+        step = 0.5 * (self.low + self.high) / unit
+        upper, lower = np.split(limits, 2, axis=1)
+        width = np.maximum(upper + lower, 1e-12)
+        widths = np.concatenate([width, width], axis=1)
+        slacks = np.clip(limits - _times(matrix, step), 0.1 * widths, widths)
+        multipliers = 1 / np.maximum(slacks, 0.1)
+        for _ in range(MAX_BARRIER_ITERATIONS):
+            target_product = 0.1 * (slacks * multipliers).mean(axis=1)[:, None]
+            running = target_product > MAX_COMPLEMENTARITY
+            if not running.any():
+                break
+            residual = limits - _times(matrix, step) - slacks
+            terms = (target_product - multipliers * residual) / slacks
+            right_side = objectives - _times(curvatures, step) - _times(transposed, terms)
+            normal = transposed @ (matrix * (multipliers / slacks)[:, :, None]) + curvatures
+            finite = np.isfinite(normal).all(axis=(1, 2)) & np.isfinite(right_side).all(axis=1)
+            normal[~finite], right_side[~finite] = np.eye(dimensions), 0.0
+            try:
+                newton_step = np.linalg.solve(normal, right_side[:, :, None])[:, :, 0]
+            except np.linalg.LinAlgError:
+                break
+            slack_step = residual - _times(matrix, newton_step)
+            multiplier_step = (target_product - multipliers * (slacks + slack_step)) / slacks
+            primal_length = running * _fraction_to_zero(slacks, slack_step)
+            dual_length = running * _fraction_to_zero(multipliers, multiplier_step)
+            step = step + primal_length * newton_step
+            slacks = slacks + primal_length * slack_step
+            multipliers = multipliers + dual_length * multiplier_step
+        of_rows = multipliers[:, dimensions : dimensions + row_count]
+        of_rows = of_rows - multipliers[:, 2 * dimensions + row_count :]
+        steps = np.clip(np.nan_to_num(step * unit), self.low, self.high)
+        return np.asarray(steps), np.asarray(np.nan_to_num(of_rows * size))
 
 
-def solve_linear_programs(
-    objectives: Array, low: Array, high: Array, rows: Array, below: Array, above: Array
-) -> Array:
-    """Return the steps (c x k) that maximize the linear ``objectives`` between ``low`` and ``high``
-    while ``rows`` (c x r x k) times the step stays between ``below`` and ``above``.
-
-    These are c linear programs of one size. Where the unconstrained step violates a row, a
-    primal-dual interior-point method solves the program. A program without a solution gets any step
-    within ``low`` and ``high``."""
-    steps = np.where(objectives > 0, high, np.where(objectives < 0, low, 0.0))
-    row_values = np.einsum("crk,ck->cr", rows, steps)
-    is_limited = ((row_values < below) | (row_values > above)).any(axis=1)
-    if is_limited.any():
-        arguments = (objectives, low, high, rows, below, above)
-        steps[is_limited] = _solve_constrained(*(argument[is_limited] for argument in arguments))
-    return steps
+def _times(matrices: Array, vectors: Array) -> Array:
+    """Return the products of c matrices and c vectors."""
+    return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])
 
 
-def _solve_constrained(
-    objectives: Array, low: Array, high: Array, rows: Array, below: Array, above: Array
-) -> Array:
-    """Solve the linear programs of `solve_linear_programs` whose rows are active.
-
-    In units of the trust region each program is: maximize g·y subject to A y + s = b, s >= 0, with
-    multipliers z >= 0. Newton's method is applied to A^T z = g, A y + s = b and s z = mu, with mu a
-    tenth of the mean of s z; steps end 1 % before a slack or multiplier reaches 0."""
-    count, row_count, dimensions = rows.shape
-    objective_size = np.abs(objectives).max(axis=1, keepdims=True)
-    unit = np.maximum(high, -low).max(axis=1)[:, None]
-    scaled_objectives = objectives / np.where(objective_size > 0, objective_size, 1.0)
-    matrix = np.concatenate(
-        [np.broadcast_to(np.eye(dimensions), (count, dimensions, dimensions)), rows], axis=1
-    )
-    matrix = np.concatenate([matrix, -matrix], axis=1)
-    limits = np.concatenate([high, above, -low, -below], axis=1) / unit
-
-    def max_fraction(values: Array, changes: Array) -> Array:
-        """Return the largest fraction of the changes, up to 1, that keeps all values positive."""
-        fractions = np.where(changes < 0, -values / np.where(changes < 0, changes, -1.0), np.inf)
-        return np.asarray(np.minimum(1.0, 0.99 * fractions.min(axis=1))[:, None])
-
-    step = 0.5 * (low + high) / unit
-    widths = np.tile(
-        np.maximum(
-            limits[:, : dimensions + row_count] + limits[:, dimensions + row_count :], 1e-12
-        ),
-        2,
-    )
-    slacks = np.clip(limits - np.einsum("crk,ck->cr", matrix, step), 0.1 * widths, widths)
-    multipliers = 1 / np.maximum(slacks, 0.1)
-    for _ in range(MAX_BARRIER_ITERATIONS):
-        target_product = 0.1 * (slacks * multipliers).mean(axis=1)[:, None]
-        running = target_product > MAX_COMPLEMENTARITY
-        if not running.any():
-            break
-        primal_residual = limits - np.einsum("crk,ck->cr", matrix, step) - slacks
-        multiplier_terms = (target_product - multipliers * primal_residual) / slacks
-        right_side = scaled_objectives - np.einsum("crk,cr->ck", matrix, multiplier_terms)
-        normal_matrix = matrix.swapaxes(1, 2) @ (matrix * (multipliers / slacks)[:, :, None])
-        finite = np.isfinite(normal_matrix).all(axis=(1, 2)) & np.isfinite(right_side).all(axis=1)
-        normal_matrix[~finite], right_side[~finite] = np.eye(dimensions), 0.0
-        try:
-            newton_step = np.linalg.solve(normal_matrix, right_side[:, :, None])[:, :, 0]
-        except np.linalg.LinAlgError:
-            break
-        slack_step = primal_residual - np.einsum("crk,ck->cr", matrix, newton_step)
-        multiplier_step = (target_product - multipliers * (slacks + slack_step)) / slacks
-        primal_length, dual_length = (
-            running * max_fraction(slacks, slack_step),
-            running * max_fraction(multipliers, multiplier_step),
-        )
-        step, slacks, multipliers = (
-            step + primal_length * newton_step,
-            slacks + primal_length * slack_step,
-            multipliers + dual_length * multiplier_step,
-        )
-    return np.asarray(np.clip(np.nan_to_num(step * unit), low, high))
+def _fraction_to_zero(values: Array, changes: Array) -> Array:
+    """Return the largest fraction of the changes, up to 1, that keeps all values positive."""
+    fractions = np.where(changes < 0, -values / np.where(changes < 0, changes, -1.0), np.inf)
+    return np.asarray(np.minimum(1.0, 0.99 * fractions.min(axis=1))[:, None])

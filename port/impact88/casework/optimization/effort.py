@@ -9,22 +9,20 @@ from typing import NamedTuple
 class Effort(NamedTuple):
     """What a search may take; the defaults are what answers are found with."""
 
-    particles: int = 4000
+    particles: int = 1000
     """Points that a sampler moves at a time, at most."""
-    burn_in_moves: int = 40
+    burn_in_moves: int = 8
     """Moves of each before the first draws are taken."""
     draws_of_bounds: int = 2000
     """Draws from which bounds are searched for, where none are given."""
     spread_points: int = 2000
     """Points spread over the feasible region."""
-    spread_steps: int = 30
+    spread_steps: int = 10
     """Random steps that spread them."""
-    starts: int = 4
-    """Local searches per extreme in the first round."""
-    rounds: int = 6
-    """Of local search and evolution, at most."""
-    generations: int = 40
-    """Of each evolution."""
+    starts: int = 1
+    """Searches per extreme from each group of points."""
+    rounds: int = 3
+    """Of searches from where those for other extremes ended, at most."""
 
 
 THOROUGH = Effort()

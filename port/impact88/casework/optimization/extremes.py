@@ -2,10 +2,9 @@
 
 The functions come as one array function on the unit cube, smooth within a `Piece`. Where results
 jump (line 400 changes the sign of MU), each side of the jump is a piece of its own, bounded by a
-margin function that acts as a constraint. The search runs sequential linear programming (`ascent`)
-from the best of corners, points on faces and points in the interior. Where a denominator changes
-its sign inside the box, the functions divided by it may have a pole: they are evaluated on both
-sides of its zero.
+margin function that acts as a constraint. The search (`search`) begins at the best of corners,
+points on faces and points in the interior. Where a denominator changes its sign inside the box, the
+functions divided by it may have a pole: they are evaluated on both sides of its zero.
 
 Each extreme returned is attained (or, at the boundary of the other piece, approached). It is no
 proof that no value lies farther."""
@@ -17,7 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .ascent import CONSTRAINT_TOL, find_extremes, latin_hypercube, replace_nonfinite
+from .ascent import CONSTRAINT_TOL, replace_nonfinite
+from .search import Pool, find_extremes
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -29,7 +29,6 @@ MAX_FULL_CORNERS = 12  # up to this many coordinates all 2^k corners are evaluat
 RANDOM_POINTS = 4096
 STARTS = 3  # searches per extreme, from each of corners, interior and faces
 DIFFERENCE_STEP = 1e-5  # central differences, half width
-MIN_GAIN = 1e-10  # of a function's range: a search stops below
 BISECTIONS = 34  # to locate a denominator's zero; 17 do as well
 # A function is compared at these two distances from a zero, as fractions of the bracket: a pole
 # makes it a hundred times as large at the second. Thresholds from 3 to 60 find the same poles.
@@ -107,15 +106,13 @@ class Piece:
             self.deepest = float(np.abs(self.margin(points)).max())
         values = self.values(points)
         ends = np.cumsum([len(group) for group in groups])
-        bounds, points_there, _ = find_extremes(
+        found = find_extremes(
             self,
-            points,
-            values,
-            groups=np.split(np.arange(len(points)), ends[:-1]),
-            starts=STARTS,
-            gain=MIN_GAIN,
-            states=lambda begin: np.empty((0, len(begin))),
+            Pool(points, np.empty((0, len(points))), values),
+            np.split(np.arange(len(points)), ends[:-1]),
+            STARTS,
         )
+        bounds, points_there = found.values, found.at
         valueless = np.isnan(values[:, : self.size]).any(axis=1)
         if self.margin is not None:
             valueless &= self.margin(points) >= 0
@@ -150,15 +147,16 @@ class Piece:
 
     def constraints(self, points: Array) -> Array:
         """Return the margin scaled to lie from 0 to 1 inside the piece, shifted by the search's
-        tolerance so that points it accepts are inside."""
+        tolerance so that points it accepts are inside, and one at the edge is accepted."""
         if self.margin is None:
             return np.empty((len(points), 0))
         fractions = self.margin(points)[:, None] / (4 * self.deepest or 1.0)
-        return np.where(np.isnan(fractions), -1.0, fractions - 2 * CONSTRAINT_TOL)
+        return np.where(np.isnan(fractions), -1.0, fractions - CONSTRAINT_TOL)
 
     def evaluate(self, u: Array, guess: Array) -> tuple[Array, Array, Array, Flags]:
         """Evaluate points (`ascent.SearchProblem`); there are no states."""
-        values = self.values(u)
+        values = self.function(u)
+        self.taken += len(u)
         values = np.where(np.isfinite(values), values, np.nan)
         return guess, values, self.constraints(u), np.ones(len(u), bool)
 
@@ -249,3 +247,10 @@ class Piece:
                 for function in np.flatnonzero(diverging.any(axis=0)).tolist():
                     bounds[end, function] = sign * np.inf
                     points_there[end, function] = places[1][diverging[:, function].argmax()]
+
+
+def latin_hypercube(dimensions: int, count: int, rng: np.random.Generator) -> Array:
+    """Return ``count`` points of a Latin hypercube: each coordinate has one point in each of
+    ``count`` strata."""
+    strata = rng.permuted(np.tile(np.arange(count), (dimensions, 1)), axis=1).T
+    return (strata + rng.random(strata.shape)) / count

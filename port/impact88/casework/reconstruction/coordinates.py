@@ -5,6 +5,10 @@ An impact is its velocities before and its impulse, the unknowns. For given vehi
 linear in these; what they leave open has an orthonormal basis, and the coordinates are the
 components along it, so that every point is one impact. Vehicles that vary are coordinates, too.
 
+EM, where it is not exact, is a coordinate of its own in place of the moment impulse: over
+velocities and impulses it is a quotient whose denominator may have either sign, and its density has
+a pole between the two.
+
 One exact value may be quadratic: a speed, a change of velocity or an energy. It is solved for the
 last component. Any further value that is not linear is left to the density (`narrow`).
 
@@ -22,6 +26,7 @@ from ...collision.geometry import GEOMETRY, Geometry
 from ...mechanics.posed import absent_results
 from ...mechanics.state import COURSES, CRUSH, DIRECTIONS, ENERGIES, SPEEDS, State
 from ...names import COEFFICIENTS, IMPULSES, PIVOT, VELOCITIES
+from .admissible import RANGES
 from .impact import Reconstruction
 from .system import COMPLEX_STEP, System
 from .unknowns import TIE
@@ -30,6 +35,7 @@ Floats = NDArray[np.float64]
 Array = NDArray[Any]
 Branches = NDArray[np.int64]
 
+LEAST_MOMENT = 1e-3  # part of a direction that is a moment impulse; with less, EM is no coordinate
 RANK_TOL = 1e-10  # singular values below, relative to the largest, count as zero
 
 OTHER_SIGN = 1  # bit of a branch: friction with the sign opposite to the first impact's
@@ -59,10 +65,12 @@ class Coordinates:
     ``unknown``: names of the unknowns; ``exact_laws``: coefficients known exactly, ``linear``:
     other linear exact values, ``quadratic``: the quadratic one or None, ``narrow``: exact values
     that are left to the density; ``inputs``: vehicles and energies of one vehicle that vary.
-    ``usable``: False where the conditions have no solution. ``free``: number of components,
-    ``size``: of coordinates. ``centers`` and ``branches``: all impacts found."""
+    ``moment``: the direction of unknowns that EM stands for as the first coordinate, or None; with
+    ``with_moment`` False there is none. ``usable``: False where the conditions have no solution.
+    ``free``: number of components, with EM; ``size``: of coordinates. ``centers`` and ``branches``:
+    all impacts found."""
 
-    def __init__(self, solution: Reconstruction) -> None:
+    def __init__(self, solution: Reconstruction, with_moment: bool = True) -> None:
         self.system = system = solution.system
         self.known = known = system.known
         self.unknown = [n for n in system.variables if n in (*VELOCITIES, *IMPULSES)]
@@ -102,11 +110,13 @@ class Coordinates:
             self.narrow.append("MUP")
         self.linear = [n for n in exact if n not in curved]
         self.implied: list[str] = []
+        is_open = with_moment and "EM" in self.laws and "EM" not in self.exact_laws
+        self.moment: Floats | None = None
         self.pinned = np.empty((0, len(self.unknown)))
         self.pins = np.empty(0)
-        self._find_basis(solution)
+        self._find_basis(solution, is_open and "PM" in self.unknown)
 
-    def _find_basis(self, solution: Reconstruction) -> None:
+    def _find_basis(self, solution: Reconstruction, with_moment: bool) -> None:
         """Find the basis, and the coordinates of all impacts found."""
         impacts: Sequence[tuple[System, Floats]] = solution.beside or ((self.system, solution.x),)
         unknowns, inputs, signs = [], [], []
@@ -123,15 +133,19 @@ class Coordinates:
         rank = int((s > RANK_TOL * s.max(initial=0.0)).sum())
         self.usable = rank == len(rows)
         self.basis = unique_basis(vt[rank:])
+        if with_moment:
+            self._take_moment_out()
         if self.quadratic is not None and len(self.basis):
             self._turn_last_component_along_slope(unknowns[0], inputs[0])
-        self.free = len(self.basis) - (self.quadratic is not None)
+        self.free = len(self.basis) - (self.quadratic is not None) + (self.moment is not None)
         self.size = self.free + len(self.inputs)
         self.usable &= self.free >= 0
         self.centers: list[Floats] = []
         self.branches: list[int] = []
         for y, own_inputs, sign in zip(unknowns, inputs, signs, strict=True):
             z = self.basis @ y
+            if self.moment is not None:
+                z = np.concatenate([[self._moment_coefficient(y, own_inputs)], z])
             self.centers.append(np.concatenate([z[: self.free], own_inputs]))
             self.branches.append(sign)
             if self.quadratic is not None and self.usable:
@@ -140,6 +154,22 @@ class Coordinates:
                 last = np.real(self._last_component(*self._split(points), roots)[0])
                 nearest = np.nan_to_num(np.abs(last - z[-1]), nan=np.inf).argmin()
                 self.branches[-1] = int(roots[nearest])
+
+    def _take_moment_out(self) -> None:
+        """Make the direction that changes the moment impulse most ``moment``, and the basis that of
+        the others."""
+        along = self.basis[:, self.unknown.index("PM")]
+        size = np.linalg.norm(along)
+        if size < LEAST_MOMENT:
+            return
+        self.moment = (along / size) @ self.basis
+        self.basis = unique_basis(np.linalg.svd(along[None])[2][1:]) @ self.basis
+
+    def _moment_coefficient(self, y: Floats, inputs: Floats) -> float:
+        """Return EM of an impact, the nearest within its range where it is not known."""
+        above, below = self._state(y[:, None], inputs[:, None]).quotient("EM")
+        value = _number(above) / (_number(below) or 1e-300)
+        return value if "EM" in self.known else float(np.clip(value, *RANGES["EM"]))
 
     def _drop_implied(self, inputs: Floats) -> None:
         """Move exact values that follow from those before them from ``linear`` to ``implied``, such
@@ -229,10 +259,26 @@ class Coordinates:
 
     def _unknowns(self, z: Array, inputs: Array, branches: Branches) -> tuple[Array, Array]:
         """Return the scaled unknowns with these components, and the log determinant of the map."""
+        if self.moment is None:
+            return self._along_basis(z, inputs, branches)
+        start, volume = self._along_basis(np.concatenate([0 * z[:1], z[1:]]), inputs, branches)
+        # EM's law is linear in the moment impulse
+        ahead = self._along_basis(np.concatenate([0 * z[:1] + 1, z[1:]]), inputs, branches)[0]
+        here, there = (self._state(y, inputs).quotient("EM") for y in (start, ahead))
+        law, slope = here[0] - z[0] * here[1], there[0] - here[0] - z[0] * (there[1] - here[1])
+        distance = -law / slope
+        denominator = here[1] + distance * (there[1] - here[1])
+        volume = volume + np.log(np.abs(denominator)) - np.log(np.abs(slope))
+        return start + distance * (ahead - start), volume
+
+    def _along_basis(self, z: Array, inputs: Array, branches: Branches) -> tuple[Array, Array]:
+        """Return the scaled unknowns at components along ``moment`` and the basis, and the log
+        determinant of the map."""
+        rows = self.basis if self.moment is None else np.vstack([self.moment, self.basis])
         if self.varied:
             conditions = self._conditions(inputs, branches)
             count = z.shape[1]
-            basis = np.broadcast_to(self.basis[:, :, None], (*self.basis.shape, count))
+            basis = np.broadcast_to(rows[:, :, None], (*rows.shape, count))
             matrix = np.concatenate([conditions.matrix, basis]).transpose(2, 0, 1)
             y = solve_each(matrix, np.concatenate([conditions.right, z]).T).T
             return y, -np.linalg.slogdet(matrix)[1]
@@ -242,7 +288,7 @@ class Coordinates:
             own = (branches & OTHER_SIGN) == sign
             if own.any():
                 conditions = self._conditions(np.zeros((len(self.inputs), 1)), np.array([sign]))
-                matrix = np.concatenate([conditions.matrix[:, :, 0], self.basis])
+                matrix = np.concatenate([conditions.matrix[:, :, 0], rows])
                 inverse, count = np.linalg.inv(matrix), len(conditions.right)
                 y[:, own] = inverse[:, :count] @ conditions.right + inverse[:, count:] @ z[:, own]
                 volume[own] = -np.linalg.slogdet(matrix)[1]

@@ -73,7 +73,7 @@ class Posterior:
         self.progress = progress
         self.system, self.known = solution.system, solution.system.known
         self.nominal = solution.values
-        self.coordinates = here = Coordinates(solution)
+        self.coordinates = here = Coordinates(solution, with_moment=False)
         self.admissible = Admissible(self.system)
         varying = [n for n in self.known if self.known[n].varies and n not in CRUSH]
         names = [n for n in varying if n in (*here.inputs, *self.system.observations)]
@@ -85,6 +85,8 @@ class Posterior:
             self.whole = False
             self._pin_what_is_open(solution)
             self.is_usable = here.size > 0
+        elif self.is_usable:
+            self.coordinates = Coordinates(solution)
 
     def _with_limits(self, name: str) -> Uncertain:
         """Return a known value with both limits, unbounded ones at `SIGMAS` standard deviations."""
@@ -288,6 +290,8 @@ class Posterior:
         deviations = np.array([self.known[n].standard_deviation for n in here.inputs])
         broad_root = np.diag(np.concatenate([np.full(here.free, BROAD_WIDTH), deviations]))
         at_rest = np.concatenate([np.zeros(here.free), here.centers[0][here.free :]])
+        if here.moment is not None:
+            at_rest[0] = here.centers[0][0]
         broad_modes = [*modes, *((at_rest, branch) for branch in {branch for _, branch in modes})]
         if here.quadratic is not None:
             broad_modes += [(center, branch ^ OTHER_ROOT) for center, branch in broad_modes]
@@ -328,31 +332,29 @@ class Posterior:
         """Return ``count`` random draws, None where no impact was found within all limits."""
         return sample(self, count, rng) if self.is_usable else None
 
-    def conditions(self, points: Floats, branches: Branches) -> dict[str, Floats]:
-        """Return each condition of the admissible set at points: laws end at 0 only."""
-        blocks: dict[str, list[Floats]] = {name: [] for name in self.admissible.rows}
-        for first in range(0, points.shape[1], CHUNK):
-            part = slice(first, first + CHUNK)
-            state, _, _ = self.coordinates.impacts(points[:, part], branches[part])
-            count = points[:, part].shape[1]
-            for name, parts in blocks.items():
-                row = np.broadcast_to(self.admissible.row(state, name), count)
-                parts.append(np.minimum(row, 0.5) if name in LAWS else row)
-        return {name: np.concatenate(parts) for name, parts in blocks.items()}
-
-    def fraction_beyond_strict_friction(self, points: Floats, branches: Branches) -> float:
-        """Return the fraction of impacts with friction beyond its limits before they are
+    def described(
+        self, points: Floats, branches: Branches, names: Sequence[str]
+    ) -> tuple[Floats, dict[str, Floats], Flags]:
+        """Return of the impacts at points the quantities ``names`` (rows), each condition of the
+        admissible set (laws end at 0 only), and True for friction beyond its limits before they are
         widened."""
-        if FRICTION not in self.admissible.rows:
-            return 0.0
-        beyond = 0
+        blocks = []
         for first in range(0, points.shape[1], CHUNK):
             part = slice(first, first + CHUNK)
             state, _, _ = self.coordinates.impacts(points[:, part], branches[part])
-            low, high = friction_limits(state, strict=True)
-            is_beyond = (state["MUP"] < low) | (state["MUP"] > high)
-            beyond += int(np.count_nonzero(is_beyond))
-        return beyond / int(points.shape[1])
+            rows = [self.value(state, n) for n in names]
+            for name in self.admissible.rows:
+                row = self.admissible.row(state, name)
+                rows.append(np.minimum(row, 0.5) if name in LAWS else row)
+            if FRICTION in self.admissible.rows:
+                low, high = friction_limits(state, strict=True)
+                rows.append((state["MUP"] < low) | (state["MUP"] > high))
+            count = points[:, part].shape[1]
+            blocks.append(np.array([np.broadcast_to(row, count) for row in rows], dtype=float))
+        table = np.concatenate([block.reshape(len(rows), -1) for block in blocks], axis=1)
+        conditions = dict(zip(self.admissible.rows, table[len(names) :], strict=False))
+        is_beyond = table[-1] > 0 if FRICTION in self.admissible.rows else np.zeros(len(branches))
+        return table[: len(names)], conditions, is_beyond.astype(bool)
 
 
 class FeasibleRegion:

@@ -2,7 +2,7 @@
 
 Both are over the admissible impacts within the limits of what is known, of all branches
 (`posterior`): draws by sequential Monte Carlo (`sampler`), bounds by a search from the draws
-(`optimization.widening`)."""
+(`optimization.search`)."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ from ...collision.uncertain import Uncertain, fixed_value, random_numbers
 from ...mechanics.state import SPEEDS
 from ...names import VELOCITIES
 from ..optimization.effort import granted
-from ..optimization.widening import extremes
+from ..optimization.search import find_extremes, pool_of, spread
 from ..uncertainty.boundstable import Spread
 from .impact import NULL_TOL, Reconstruction
 from .leastsquares import pseudo_inverse
@@ -26,6 +26,7 @@ from .system import System
 Floats = NDArray[np.float64]
 Progress = Callable[[int], object]
 
+GROUPS = 8  # of draws; searches begin at the best of each
 MIN_GAIN = 1e-7  # of a quantity's range: the resolution of bounds
 STANDSTILL_STARTS = 16  # slowest draws, from which a standstill is searched for
 LIMIT_REACHED = 0.5  # of the largest velocity: draws beyond hang on that limit
@@ -93,16 +94,16 @@ def draws(
     sample = posterior.sample(count, random_numbers(seed, 1))
     if sample is None:
         return None
-    rows = posterior.values(sample.points, sample.branches, names)
+    all_names = [*names, *VELOCITIES]
+    rows, conditions, is_beyond = posterior.described(sample.points, sample.branches, all_names)
+    rows, speeds = rows[: len(names)], rows[len(names) :]
     values = dict(zip(names, rows, strict=True))
     effective = min((sample.effective_size(row) for row in rows), default=float(count))
-    speeds = posterior.values(sample.points, sample.branches, VELOCITIES)
     limits = np.array([[MAX_VELOCITY * posterior.system.scale(n)] for n in VELOCITIES])
     unlimited = (np.abs(speeds) > LIMIT_REACHED * limits).any(axis=0).mean()
-    beyond = posterior.fraction_beyond_strict_friction(sample.points, sample.branches)
-    conditions = posterior.conditions(sample.points, sample.branches)
     cut_by = {name: _ends(row, conditions) for name, row in values.items()}
     counted = posterior.admissible.sentence()
+    beyond = float(is_beyond.mean())
     return Draws(values, sample, effective, beyond, float(unlimited), cut_by, counted)
 
 
@@ -142,16 +143,16 @@ def ranges(
     near = region.near_exact(sample.points, sample.branches)
     if not len(near):
         return {name: Range(np.nan, np.nan, {}, {}) for name in names}
-    found = extremes(
-        region,
-        region.fractions(sample.points[:, near]),
-        sample.branches[near].astype(float),
-        random_numbers(seed, 2),
-    )
+    u, states = region.fractions(sample.points[:, near]), sample.branches[None, near].astype(float)
+    pool, _ = pool_of(region, u, states)
+    last = pool.chosen(slice(-granted().spread_points, None))  # the most widely spread
+    pool = pool.joined(spread(region, last, random_numbers(seed, 2)))
+    groups = [np.arange(i, len(pool.u), GROUPS) for i in range(min(GROUPS, len(pool.u)))]
+    found = find_extremes(region, pool, groups, granted().starts)
     components = slice(0, posterior.coordinates.free)
     results = {}
     for i, name in enumerate(names):
-        ends, branches = found.at[:, i], found.states[:, i]
+        ends, branches = found.at[:, i], found.states[0, :, i]
         low, high = (region.known_values(ends[side], branches[side]) for side in (0, 1))
         is_inside = (np.abs(ends[:, components] - 0.5) < 0.5).all()
         bound = Range(

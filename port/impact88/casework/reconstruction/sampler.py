@@ -22,19 +22,27 @@ Floats = NDArray[np.float64]
 Branches = NDArray[np.int64]
 
 PROPOSAL_FACTOR = 12  # proposals per particle, so that thin parts of the distribution are found
-MOVES_PER_STAGE = 6  # moves of every particle after each hardening of the limits
+MOVES_PER_STAGE = 4  # moves of every particle after each hardening of the limits
+MOVES_ALIKE = 4  # moves before proposals are fitted anew
 ENOUGH = 1000  # effective draws of every coordinate; with fewer, moves go on
 MAX_BURN_INS = 6
-THINNING = 6  # moves between one set of draws and the next
+THINNING = 2  # moves between one set of draws and the next
 MAX_STAGES = 80  # hardenings of the limits; if these do not suffice, no impact lies within limits
 MIN_EFFECTIVE = 0.5  # fraction of particles that stay effective from stage to stage
 MAX_HARDNESS = 40.0  # logarithm of the hardness where limits count as hard
 # Probability of a step by the full difference of two particles, which leads to another branch
 JUMP_PROBABILITY = 0.1
-MIN_FAMILIES = 100  # fewer, and families are counted anew
 _GRID = 1e-7  # grid of coordinates, relative to the spread of the proposals
 _CHUNK = 1 << 13  # points at a time, bounds the memory
 DEGREES_OF_FREEDOM = 4.0  # of the proposals, Student's t
+# Independent proposals: Student's t about clusters of the particles, and a broad one about all
+CLUSTERS = 8  # on each branch
+CLUSTER_ROUNDS = 10
+WIDENING = 1.3  # of a cluster's covariance
+SHARE_OF_ALL = 0.02  # of the covariance of all, added to a cluster's
+BROAD = 0.1  # fraction of the broad proposals
+BROADER = 3.0  # widening of their covariance
+FLOOR = 1e-6  # least variance, relative to that of each coordinate
 
 
 @dataclass(frozen=True)
@@ -124,15 +132,19 @@ def sample(density: Density, count: int, rng: np.random.Generator) -> Sample | N
 
 
 class _Sampler:
+    """``mixture``: what independent moves propose; ``partners``: points along whose differences
+    others move. Both are taken from all particles and then stay for some moves."""
+
     def __init__(self, density: Density, rng: np.random.Generator) -> None:
         self.density, self.rng = density, rng
-        self.proposals = density.proposals()
-        self.inverses = [np.linalg.inv(proposal.root) for proposal in self.proposals]
-        self.grid = _GRID * np.linalg.norm(self.proposals[0].root, axis=1)[:, None]
+        self.first = _Mixture(density.proposals())
+        self.mixture, self.partners = self.first, np.empty((0, 0))
+        self.grid = _GRID * np.linalg.norm(self.first.parts[0].root, axis=1)[:, None]
+        self.families = 0
 
     def run(self, count: int) -> Sample | None:
-        size = len(self.proposals[0].center)
-        number = min(granted().particles, max(count, 4 * size, 200)) // 2 * 2
+        size = len(self.first.parts[0].center)
+        number = min(granted().particles, max(count, 4 * size, 200))
         particles = self._propose(PROPOSAL_FACTOR * number)
         hardness = 0.0
         for _ in range(MAX_STAGES):
@@ -143,18 +155,14 @@ class _Sampler:
                 return None
             weights = particles.log_density(next_hardness) - particles.log_density(hardness)
             particles = particles.chosen(_resample(np.exp(_shifted(weights)), number, self.rng))
-            if len(np.unique(particles.families)) < MIN_FAMILIES:
-                particles.families = np.arange(number)
             hardness = next_hardness
-            for _ in range(MOVES_PER_STAGE):
-                self._move(particles, hardness)
+            self._move(particles, hardness, MOVES_PER_STAGE)
             if hardness == np.inf:
                 break
         else:
             return None
         for _ in range(MAX_BURN_INS):
-            for _ in range(granted().burn_in_moves):
-                self._move(particles, np.inf)
+            self._move(particles, np.inf, granted().burn_in_moves)
             drawn = self._collect(particles, count)
             if min(map(drawn.effective_size, drawn.points)) >= min(ENOUGH, 0.25 * count):
                 break
@@ -163,9 +171,10 @@ class _Sampler:
     def _collect(self, particles: _Particles, count: int) -> Sample:
         """Return draws from particles as they move."""
         number, parts = len(particles.branches), []
+        self._adapt(particles)
         for first in range(0, count, number):
-            for _ in range(THINNING if first else 0):
-                self._move(particles, np.inf)
+            if first:
+                self._move(particles, np.inf, THINNING, adapts=False)
             order = self.rng.permutation(number)[: count - first]
             parts.append(particles.chosen(order))
         return Sample(
@@ -194,16 +203,9 @@ class _Sampler:
 
     def _propose(self, count: int) -> _Particles:
         """Return the first particles."""
-        fractions = np.array([proposal.fraction for proposal in self.proposals])
-        chosen = self.rng.choice(len(self.proposals), size=count, p=fractions / fractions.sum())
-        size = len(self.proposals[0].center)
-        normal = self.rng.standard_normal((count, size))
-        chi = np.sqrt(self.rng.chisquare(DEGREES_OF_FREEDOM, count) / DEGREES_OF_FREEDOM)
-        roots = np.stack([proposal.root for proposal in self.proposals])
-        steps = (roots[chosen] @ (normal / chi[:, None])[:, :, None])[:, :, 0]
-        centers = np.stack([proposal.center for proposal in self.proposals])
-        points = self._on_grid((centers[chosen] + steps).T)
-        branches = np.array([proposal.branch for proposal in self.proposals])[chosen]
+        points, branches = self.first.draw(count, self.rng)
+        points = self._on_grid(points)
+        self.families = count
         return _Particles(points, branches, self._logarithms(points, branches), np.arange(count))
 
     def _logarithms(self, points: Floats, branches: Branches) -> tuple[Floats, Floats, Floats]:
@@ -213,53 +215,156 @@ class _Sampler:
         return (
             np.concatenate([row[0] for row in rows]),
             np.concatenate([row[1] for row in rows]),
-            self._proposal_density(points, branches),
+            self.first.log_density(points, branches),
         )
-
-    def _proposal_density(self, points: Floats, branches: Branches) -> Floats:
-        total, size = np.full(points.shape[1], -np.inf), len(points)
-        for proposal, inverse in zip(self.proposals, self.inverses, strict=True):
-            square = np.square(inverse @ (points - proposal.center[:, None])).sum(axis=0)
-            log = -(DEGREES_OF_FREEDOM + size) / 2 * np.log1p(square / DEGREES_OF_FREEDOM)
-            log += np.linalg.slogdet(inverse)[1] + np.log(proposal.fraction)
-            total = np.logaddexp(total, np.where(branches == proposal.branch, log, -np.inf))
-        return total
 
     def _on_grid(self, points: Floats) -> Floats:
         """Return points rounded to a fine grid. Differential evolution multiplies rounding errors:
         without a grid, draws would depend on the system of units."""
-        center = self.proposals[0].center[:, None]
+        center = self.first.parts[0].center[:, None]
         return np.asarray(center + np.round((points - center) / self.grid) * self.grid)
 
-    def _move(self, particles: _Particles, hardness: float) -> None:
-        """Move all particles by one step of differential evolution, each half along differences of
-        the other half, accepted by the Metropolis rule."""
+    def _adapt(self, particles: _Particles) -> None:
+        """Let the next moves propose what these particles resemble."""
+        if parts := _fit(particles.points, particles.branches, self.rng):
+            self.mixture = _Mixture(parts)
+        self.partners = particles.points.copy()
+
+    def _move(
+        self, particles: _Particles, hardness: float, moves: int, adapts: bool = True
+    ) -> None:
+        """Move all particles, by independent proposals and along differences of others in turns,
+        accepted by the Metropolis rule."""
+        for move in range(moves):
+            if adapts and move % MOVES_ALIKE == 0:
+                self._adapt(particles)
+            if move % 2:
+                self._move_along_differences(particles, hardness)
+            else:
+                self._move_independently(particles, hardness)
+
+    def _move_independently(self, particles: _Particles, hardness: float) -> None:
+        number = len(particles.branches)
+        points, branches = self.mixture.draw(number, self.rng)
+        points = self._on_grid(points)
+        families = self.families + np.arange(number)
+        self.families += number
+        trial = _Particles(points, branches, self._logarithms(points, branches), families)
+        here, there = (
+            self.mixture.log_density(part.points, part.branches) for part in (particles, trial)
+        )
+        self._accept(particles, trial, hardness, here - there)
+
+    def _move_along_differences(self, particles: _Particles, hardness: float) -> None:
+        """Move by a step of differential evolution."""
         rng, (size, number) = self.rng, particles.points.shape
-        order = rng.permutation(number)
-        for moving, partners in (
-            (order[: number // 2], order[number // 2 :]),
-            (order[number // 2 :], order[: number // 2]),
+        first, second = rng.integers(self.partners.shape[1], size=(2, number))
+        length = 2.38 / np.sqrt(2 * size) * np.exp(0.5 * rng.standard_normal(number))
+        length = np.where(rng.random(number) < JUMP_PROBABILITY, 1.0, length)
+        spread = self.partners.std(axis=1, keepdims=True)
+        step = length * (self.partners[:, first] - self.partners[:, second])
+        step = step + 1e-3 * spread * rng.standard_normal((size, number))
+        points = self._on_grid(particles.points + step)
+        branches = self.density.neighbours(particles.branches, rng)
+        logs = self._logarithms(points, branches)
+        trial = _Particles(points, branches, logs, particles.families)
+        self._accept(particles, trial, hardness, np.zeros(number))
+
+    def _accept(
+        self, particles: _Particles, trial: _Particles, hardness: float, proposed: Floats
+    ) -> None:
+        """Replace particles by their trials, where the Metropolis rule accepts them. ``proposed``:
+        how much likelier the move back is proposed, as a logarithm."""
+        gain = trial.log_density(hardness) - particles.log_density(hardness) + proposed
+        rows = -self.rng.standard_exponential(len(gain)) < gain
+        particles.points[:, rows] = trial.points[:, rows]
+        particles.branches[rows] = trial.branches[rows]
+        particles.families[rows] = trial.families[rows]
+        for log, trial_log in zip(particles.logs, trial.logs, strict=True):
+            log[rows] = trial_log[rows]
+
+
+class _Mixture:
+    """Student's t of several centers and branches."""
+
+    def __init__(self, parts: Sequence[Proposal]) -> None:
+        self.parts = parts
+        fractions = np.array([part.fraction for part in parts])
+        self.fractions = fractions / fractions.sum()
+        self.inverses = [np.linalg.inv(part.root) for part in parts]
+
+    def draw(self, count: int, rng: np.random.Generator) -> tuple[Floats, Branches]:
+        """Return random points and their branches."""
+        chosen = np.sort(rng.choice(len(self.parts), size=count, p=self.fractions))
+        normal = rng.standard_normal((len(self.parts[0].center), count))
+        chi = np.sqrt(rng.chisquare(DEGREES_OF_FREEDOM, count) / DEGREES_OF_FREEDOM)
+        ends = np.searchsorted(chosen, np.arange(len(self.parts) + 1))
+        points = np.concatenate(
+            [
+                part.center[:, None] + part.root @ (normal / chi)[:, first:last]
+                for part, first, last in zip(self.parts, ends[:-1], ends[1:], strict=True)
+            ],
+            axis=1,
+        )
+        order = rng.permutation(count)
+        branches = np.array([part.branch for part in self.parts])[chosen]
+        return points[:, order], branches[order]
+
+    def log_density(self, points: Floats, branches: Branches) -> Floats:
+        size = len(points)
+        logs = np.full((len(self.parts), points.shape[1]), -np.inf)
+        for row, part, inverse, fraction in zip(
+            logs, self.parts, self.inverses, self.fractions, strict=True
         ):
-            count = len(moving)
-            first, second = (rng.choice(partners, count) for _ in range(2))
-            length = 2.38 / np.sqrt(2 * size) * np.exp(0.5 * rng.standard_normal(count))
-            length = np.where(rng.random(count) < JUMP_PROBABILITY, 1.0, length)
-            spread = particles.points[:, partners].std(axis=1, keepdims=True)
-            step = length * (particles.points[:, first] - particles.points[:, second])
-            step = step + 1e-3 * spread * rng.standard_normal((size, count))
-            points = self._on_grid(particles.points[:, moving] + step)
-            present = particles.chosen(moving)
-            branches = self.density.neighbours(present.branches, rng)
-            trial = _Particles(
-                points, branches, self._logarithms(points, branches), present.families
+            own = branches == part.branch
+            square = np.square(inverse @ (points[:, own] - part.center[:, None])).sum(axis=0)
+            log = -(DEGREES_OF_FREEDOM + size) / 2 * np.log1p(square / DEGREES_OF_FREEDOM)
+            row[own] = log + np.linalg.slogdet(inverse)[1] + np.log(fraction)
+        return np.asarray(np.logaddexp.reduce(logs, axis=0))
+
+
+def _fit(points: Floats, branches: Branches, rng: np.random.Generator) -> list[Proposal]:
+    """Return Student's t that resemble points: on each branch some about the means of clusters, and
+    one about all."""
+    proposals, count = [], len(branches)
+    for branch in np.unique(branches):
+        own = points[:, branches == branch].T
+        spread = own.std(axis=0)
+        if len(own) < 2 * own.shape[1] or not spread.all():
+            continue
+        scaled = own / spread
+        whole = np.cov(scaled.T).reshape(len(spread), len(spread)) + FLOOR * np.eye(len(spread))
+        clusters = _clusters(scaled, rng)
+        numbers = np.bincount(clusters, minlength=CLUSTERS)
+        mixture = [(BROAD, scaled.mean(axis=0), BROADER * whole)]
+        for cluster in np.flatnonzero(numbers > 4 * len(spread)):
+            part = scaled[clusters == cluster]
+            covariance = WIDENING * np.cov(part.T).reshape(whole.shape) + SHARE_OF_ALL * whole
+            fraction = (1 - BROAD) * numbers[cluster] / len(own)
+            mixture.append((fraction, part.mean(axis=0), covariance))
+        proposals += [
+            Proposal(
+                center * spread,
+                int(branch),
+                spread[:, None] * np.linalg.cholesky(covariance),
+                fraction * len(own) / count,
             )
-            gain = trial.log_density(hardness) - present.log_density(hardness)
-            accepted = -rng.standard_exponential(count) < gain
-            rows = moving[accepted]
-            particles.points[:, rows] = points[:, accepted]
-            particles.branches[rows] = branches[accepted]
-            for log, trial_log in zip(particles.logs, trial.logs, strict=True):
-                log[rows] = trial_log[accepted]
+            for fraction, center, covariance in mixture
+        ]
+    return proposals
+
+
+def _clusters(points: Floats, rng: np.random.Generator) -> NDArray[np.intp]:
+    """Return the cluster of each point (n, coordinates), by k means."""
+    centers = points[rng.integers(len(points), size=CLUSTERS)]
+    for _ in range(CLUSTER_ROUNDS):
+        # less |point|², which all have
+        distances = np.square(centers).sum(axis=1) - 2 * points @ centers.T
+        nearest = distances.argmin(axis=1)
+        numbers = np.bincount(nearest, minlength=CLUSTERS)
+        sums = (nearest[:, None] == np.arange(CLUSTERS)).astype(float).T @ points
+        centers = np.where(numbers[:, None], sums / np.maximum(numbers, 1)[:, None], centers)
+    return np.asarray(nearest)
 
 
 def _shifted(logarithms: Floats) -> Floats:
