@@ -51,9 +51,9 @@ if TYPE_CHECKING:
     from .casework.chapter.deltav import delta_v as delta_v
     from .casework.figures.canvas import Svg as Svg
     from .casework.figures.sceneview import scene_svg as scene_svg
-    from .casework.reconstruction.impact import Reconstruction as Reconstruction
     from .casework.reconstruction.reconstructedtable import Reconstructions as Reconstructions
     from .casework.reconstruction.reconstructedtable import reconstruct as reconstruct
+    from .casework.reconstruction.solution import Reconstruction as Reconstruction
     from .casework.reconstruction.unknowns import Solution as Solution
     from .casework.reconstruction.unknowns import solve_for as solve_for
     from .casework.uncertainty.bounds import bounds as bounds
@@ -99,7 +99,7 @@ _LAZY = {
         "mechanics.native": "accelerated",
         "program.run": "Run run",
         "printouts.reading.printout": "Printout read_printouts",
-        "casework.reconstruction.impact": "Reconstruction",
+        "casework.reconstruction.solution": "Reconstruction",
         "casework.reconstruction.unknowns": "Solution solve_for",
         "program.vectorized": "Replay replay",
         "printouts.reporting.examination": "Verification Verifications verify",

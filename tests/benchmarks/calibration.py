@@ -29,8 +29,8 @@ from impactsampler import Known, Problem, exact, impact, possible
 from impact88.casework.optimization.effort import Effort, granting
 from impact88.casework.reconstruction.admissible import APPROACH, PUSH
 from impact88.casework.reconstruction.coordinates import Coordinates
-from impact88.casework.reconstruction.impact import Reconstruction
 from impact88.casework.reconstruction.posterior import Posterior
+from impact88.casework.reconstruction.solution import Reconstruction
 from impact88.casework.reconstruction.system import System
 from impact88.collision.uncertain import read
 

@@ -16,7 +16,8 @@ from impact88.printouts.reading.numerals import as_printed
 from impact88.printouts.reading.printout import FIELDS, read_printouts
 from impact88.printouts.recovery import replays
 from impact88.printouts.recovery.recovered import recover
-from impact88.printouts.recovery.slips import BITS, Change, Rereading, slip
+from impact88.printouts.recovery.rereading import Rereading
+from impact88.printouts.recovery.slips import BITS, Change, slip
 from impact88.printouts.recovery.typedtext import opposite
 from impact88.printouts.reporting.examination import Verdict, verify
 from impact88.program.run import run

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from impact88.casework.optimization.boxsearch import pool_of, spread
 from impact88.casework.optimization.effort import THOROUGH
 from impact88.casework.optimization.extremes import Piece
-from impact88.casework.optimization.search import pool_of, spread
 
 SEED = 7
 

@@ -19,7 +19,7 @@ from longer import long_but
 
 from impact88.conformance.comparison.compare import Comparison, compare
 from impact88.conformance.comparison.constants import KNOWN, fit_constants
-from impact88.conformance.comparison.hypotheses import OTHER_ROWS
+from impact88.conformance.comparison.tablehypotheses import OTHER_ROWS
 from impact88.conformance.comparison.trials import Judge, Program
 from impact88.conformance.comparison.vectors import CASEWORK, scenes
 from impact88.equations.edits import Edit, node_edits, readings, spelling_edits, variants

@@ -40,7 +40,7 @@ from impact88.conformance.comparison.compare import (
     Comparison,
     compare,
 )
-from impact88.conformance.comparison.hypotheses import INFINITE, SINGLE, UNKNOWN
+from impact88.conformance.comparison.tablehypotheses import INFINITE, SINGLE, UNKNOWN
 from impact88.conformance.comparison.vectors import CASEWORK, FAILURE, casework, scenes
 from impact88.errors import UserError
 from impact88.mechanics.accuracy import errorbound

@@ -2,7 +2,7 @@
 
 The functions come as one array function on the unit cube, smooth within a `Piece`. Where results
 jump (line 400 changes the sign of MU), each side of the jump is a piece of its own, bounded by a
-margin function that acts as a constraint. The search (`search`) begins at the best of corners,
+margin function that acts as a constraint. The search (`boxsearch`) begins at the best of corners,
 points on faces and points in the interior. Where a denominator changes its sign inside the box, the
 functions divided by it may have a pole: they are evaluated on both sides of its zero.
 
@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .ascent import CONSTRAINT_TOL, replace_nonfinite
-from .search import Pool, find_extremes
+from .boxsearch import Pool, find_extremes
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -2,8 +2,8 @@
 
 What is known of an impact is adjusted so that the laws and the exact values hold (`system.System`:
 the conditions) and the sum of squared adjustments, each in units of its standard deviation, is
-least. Here the problem is posed, each reading of it searched (`search`), and what was found put in
-the order of physics."""
+least. Here the problem is posed, each reading of it searched (`impactsearch`), and what was found
+put in the order of physics."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -25,9 +25,9 @@ from ...mechanics.posed import is_wrong_way, pose, turned, turned_sentence
 from ...mechanics.state import COURSES, CRUSH, KNOWABLE, OTHERS, SPEEDS
 from ...names import PIVOT, SCENE, VELOCITIES, check_names
 from ...status import Status
-from .impact import Reconstruction, Searched, typed_friction
+from .impactsearch import MAX_SQUARES_RATIO, Search
 from .laws import missed_laws
-from .search import MAX_SQUARES_RATIO, Search
+from .solution import Reconstruction, Searched, typed_friction
 from .system import SPINS
 from .unknowns import UnsolvableError, check_physical, solve_for
 

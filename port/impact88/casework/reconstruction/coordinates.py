@@ -27,7 +27,7 @@ from ...mechanics.posed import absent_results
 from ...mechanics.state import COURSES, CRUSH, DIRECTIONS, ENERGIES, SPEEDS, State
 from ...names import COEFFICIENTS, IMPULSES, PIVOT, VELOCITIES
 from .admissible import RANGES
-from .impact import Reconstruction
+from .solution import Reconstruction
 from .system import COMPLEX_STEP, System
 from .unknowns import TIE
 

@@ -28,8 +28,8 @@ from .admissible import (
     Admissible,
     friction_limits,
 )
-from .impact import Adjusted, Reconstruction, describe
 from .leastsquares import descend, polish
+from .solution import Adjusted, Reconstruction, describe
 from .system import System
 
 Floats = NDArray[np.float64]

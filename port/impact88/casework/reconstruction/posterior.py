@@ -24,8 +24,8 @@ from ...mechanics.state import BARRIER_SPEEDS, CRUSH, DIRECTIONS, SPEEDS, State
 from ...names import COEFFICIENTS, VELOCITIES
 from .admissible import FRICTION, LAWS, Admissible, friction_limits
 from .coordinates import OTHER_ROOT, OTHER_SIGN, Branches, Coordinates
-from .impact import NULL_TOL, SIGMAS, Reconstruction
 from .sampler import Proposal, Sample, sample
+from .solution import NULL_TOL, SIGMAS, Reconstruction
 from .system import COMPLEX_STEP
 
 Floats = NDArray[np.float64]

@@ -2,7 +2,7 @@
 
 Both are over the admissible impacts within the limits of what is known, of all branches
 (`posterior`): draws by sequential Monte Carlo (`sampler`), bounds by a search from the draws
-(`optimization.search`)."""
+(`optimization.boxsearch`)."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -14,13 +14,13 @@ from ...collision.geometry import within_doubles
 from ...collision.uncertain import Uncertain, fixed_value, random_numbers
 from ...mechanics.state import SPEEDS
 from ...names import VELOCITIES
+from ..optimization.boxsearch import find_extremes, pool_of, spread
 from ..optimization.effort import granted
-from ..optimization.search import find_extremes, pool_of, spread
 from ..uncertainty.boundstable import Spread
-from .impact import NULL_TOL, Reconstruction
 from .leastsquares import pseudo_inverse
 from .posterior import MAX_VELOCITY, MIN_SIZE, FeasibleRegion, Posterior
 from .sampler import Sample
+from .solution import NULL_TOL, Reconstruction
 from .system import System
 
 Floats = NDArray[np.float64]

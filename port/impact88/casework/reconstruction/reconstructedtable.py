@@ -19,10 +19,10 @@ from ...names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..uncertainty.boundstable import unbounded_sides
 from . import adjustment
 from .admissible import ENDS
-from .impact import Reconstruction, typed_friction
 from .nearest import refusal
 from .posterior import MAX_VELOCITY, MIN_SIZE
 from .reconstructed import MIN_GAIN, Draws, Range, draws, ranges
+from .solution import Reconstruction, typed_friction
 from .solutiontable import DRIVERS, NOISE, ROUNDING, Impact, join_texts, with_derived_values
 
 _RESULTS = (

@@ -26,7 +26,7 @@ from ..uncertainty.ranges import OPTIONAL_OF_POINTS
 from .frame import render
 
 if TYPE_CHECKING:
-    from ..reconstruction.impact import Adjusted
+    from ..reconstruction.solution import Adjusted
 
 DRIVERS = 3
 """Inputs named for each result: they fill a line."""

@@ -30,7 +30,7 @@ from ...tables.table import format_of, open_reader
 from . import agreement
 from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, Case, TrialNoise
 from .diagnosis import Cause, Diagnosis, Unexplained
-from .hypotheses import AGREES, UNKNOWN, Hypothesis
+from .tablehypotheses import AGREES, UNKNOWN, Hypothesis
 from .vectors import FAILURE, FROZEN_ID
 
 MAX_ROWS_KEPT = 20_000

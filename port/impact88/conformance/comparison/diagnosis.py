@@ -25,7 +25,9 @@ from ...messages.progress import progress
 from ...names import FINAL_VELOCITIES, PIVOT, SCENE
 from .agreement import Bools, Case, violated_equations
 from .constants import fit_constants, limit_instead
-from .hypotheses import (
+from .predicates import COST as PREDICATE_COST
+from .predicates import find_predicate, scene_quantities
+from .tablehypotheses import (
     COST_DIGITS,
     COST_NAMED,
     UNKNOWN,
@@ -39,8 +41,6 @@ from .hypotheses import (
     plain_hypotheses,
     relative_differences,
 )
-from .predicates import COST as PREDICATE_COST
-from .predicates import find_predicate, scene_quantities
 from .trials import (
     MIN_FIT,
     Judge,

@@ -67,8 +67,8 @@ from ...casework.reconstruction.adjustment import (
     reconstruct,
     resolve_friction,
 )
-from ...casework.reconstruction.impact import Reconstruction
 from ...casework.reconstruction.reconstructedtable import Measured
+from ...casework.reconstruction.solution import Reconstruction
 from ...casework.reconstruction.solutiontable import Exact, Impact
 from ...collision.case import OWN_AXES, OWN_NAMES, SOURCE, Case, remark_lines
 from ...collision.scenefile import template

@@ -21,8 +21,9 @@ from ...collision.fields import ANGLES, FIELDS, INPUTS, scene_name
 from ..judging.judgement import Judged
 from ..recovery import slips
 from ..recovery.replays import run_all
+from ..recovery.rereading import Reread, Rereading
 from ..recovery.search import in_doubles
-from ..recovery.slips import Change, Reread, Rereading
+from ..recovery.slips import Change
 from ..recovery.typedtext import longer_texts, mu_turned, opposite
 from . import machines
 from .causes import (

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from ..reading.numerals import Doubt
 from ..reading.printout import Printout
-from ..recovery.slips import Rereading
+from ..recovery.rereading import Rereading
 from .judgement import FieldCheck, Judged, Status, Verdict, judge
 
 TIE_COST = 1.0

@@ -1,5 +1,4 @@
-"""Slips of a reader or typist: texts one slip away from a number, and the slips in the inputs that,
-when corrected, make the page agree with itself.
+"""Slips of a reader or typist: the texts one slip away from a number.
 
 One digit taken for another, two adjacent digits swapped, a sign or a decimal point lost, added or
 moved, one digit lost or doubled, two digits of one number. Nothing here is a verdict: `explaining`
@@ -9,20 +8,15 @@ names what is found, and `judging` says when a reader's slips may be looked past
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
-from functools import cached_property
+from collections.abc import Iterator
 from itertools import combinations
 from operator import ne
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ...collision.doubles import double
-from ...collision.fields import ANGLES, INPUTS, scene_name
-from ..reading.numerals import is_number, printable
-from .search import Column, Scored, column_of, one_each
+from ...collision.fields import ANGLES
+from ..reading.numerals import is_number
 from .typedtext import opposite
-
-if TYPE_CHECKING:
-    from .recovered import Recovered
 
 DIGIT = "digit misread"
 SWAP = "digits swapped"
@@ -37,10 +31,6 @@ on a page, and the other kinds are about as likely by their number; chosen so th
 test pages are named first."""
 UNLIKE_SHAPE_BITS = 0.4
 """Bits added for each rank of dissimilarity between two digits' shapes."""
-MAX_TWO_SLIPS_PENALTY = 6.05
-"""Prior penalty of the rarest two slips: two digits misread as those least like them, 3.02 each."""
-MAX_REPLAYED_SLIPS = 60  # combinations of slips that are replayed
-MAX_SLIP_COMBINATIONS = 100_000  # combinations of slips that are screened
 _ALIKE = {
     text[0]: text[1:]
     for text in "0869 1742 2713 3859 4917 5638 6805 7129 83069 94807".split()
@@ -76,84 +66,6 @@ def slips_of(name: str, text: str) -> list[tuple[float, Change]]:
     possible = [change for change in changes if is_number(change.would_be)]
     some = [(0.7 + change.bits / 5, change) for change in possible]
     return sorted(some, key=lambda pair: (pair[0], pair[1].would_be))
-
-
-class Reread(NamedTuple):
-    """A replayed scene with some inputs corrected."""
-
-    changes: tuple[Change, ...]
-    scored: Scored
-
-
-class Rereading:
-    """Search for slips in one printout's inputs. With ``apart``, inputs that are not on the page
-    but were given separately may have slips, too; their texts are taken as INPUT reads them,
-    without blanks and in capitals."""
-
-    def __init__(self, recovered: Recovered, apart: bool = False) -> None:
-        self._recovered = recovered
-        self._base = {name: recovered.assumed[name] for name in INPUTS if name in recovered.assumed}
-        for name in recovered.apart if apart else ():
-            self._base[name] = recovered.scene[scene_name(name)].replace(" ", "").upper()
-
-    def best(
-        self, single: bool = False, exchanged: Mapping[str, str] | None = None
-    ) -> list[Reread]:
-        """Return scenes with up to two corrected inputs, those of least cost first.
-
-        ``single``: correct one input only; ``exchanged``: texts that replace printed ones, by
-        field, and are not corrected further.
-        """
-        columns = [*self._columns]
-        for name, text in (exchanged or {}).items():
-            place = INPUTS.index(name)
-            columns[place] = column_of(name, [(text, 0.0)], columns[place].typed)
-        search = self._recovered.search
-        if single:
-            count = 2 if exchanged else MAX_REPLAYED_SLIPS
-            picks = search.screen(columns, one_each(columns), count)
-        else:
-            wrong = self._recovered.wrong
-            picks = search.find_candidates(
-                columns,
-                MAX_SLIP_COMBINATIONS,
-                MAX_REPLAYED_SLIPS,
-                MAX_TWO_SLIPS_PENALTY,
-                wrong,
-            )
-        rereads = []
-        for pick, scored in zip(picks.tolist(), search.replay(columns, picks), strict=True):
-            taken = zip(INPUTS, pick, strict=False)
-            changes = tuple(self._slips[name][at - 1][1] for name, at in taken if at)
-            rereads.append(Reread(changes, scored))
-        return sorted(rereads, key=lambda reread: reread.scored.cost)
-
-    @cached_property
-    def _columns(self) -> list[Column]:
-        """Options of every input: its text as it is, then the texts one slip away."""
-        scene, columns = self._recovered.scene, []
-        for name in INPUTS:
-            text = self._base.get(name, scene[scene_name(name)])
-            slips = [(slip.would_be, cost) for cost, slip in self._slips.get(name, [])]
-            apart = name not in self._recovered.assumed
-            columns.append(column_of(name, [(text, 0.0), *slips], apart))
-        return [*columns, column_of("M", [(scene["M"], 0.0)], True)]
-
-    def single_changes(self) -> Iterator[Change]:
-        """Return every correction of one slip in one input."""
-        return (slip for slips in self._slips.values() for _, slip in slips)
-
-    @cached_property
-    def _slips(self) -> dict[str, list[tuple[float, Change]]]:
-        """Corrections of every input with their prior penalties; printed ones are printable."""
-        return {
-            name: [
-                (cost, change)
-                for cost, change in slips_of(name, text)
-                if name not in self._recovered.assumed or printable(change.would_be)
-            ]
-            for name, text in self._base.items()
-        }
 
 
 def misreadings(text: str) -> dict[str, str]:

@@ -23,7 +23,7 @@ from ..judging.reader import attribute_to_reader, is_alteration
 from ..reading.plaintext import decode
 from ..reading.printout import LARGEST_FILE, Printout, read_printouts
 from ..recovery.recovered import recover, without_angles
-from ..recovery.slips import Rereading
+from ..recovery.rereading import Rereading
 from . import verification
 from .verification import Examined, Verification, Verifications
 

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from ...collision.geometry import GEOMETRY
 from ...collision.uncertain import Uncertain
 from ...names import FINAL_STATE, IMPULSES, VELOCITIES
-from .impact import RESIDUAL_TOL, Reconstruction, describe
 from .laws import describe_laws, missed_laws
 from .leastsquares import PENALTIES, descend, polish, pseudo_inverse
 from .nearest import with_nearest
 from .quadrics import MAX_EQUATIONS, Paths, follow_paths, quadratic_equations
+from .solution import RESIDUAL_TOL, Reconstruction, describe
 from .system import PARAMETERS, SPINS, System
 from .unknowns import UnsolvableError
 
