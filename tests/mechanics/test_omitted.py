@@ -7,6 +7,7 @@ import pytest
 from longer import long_but
 
 import impact88
+from impact88.errors import UserError
 from impact88.names import SCENE
 from impact88.status import Status
 
@@ -134,3 +135,16 @@ def test_an_impact_that_is_not_known_is_not_judged():
     scene = impact88.sample(1).numbers()
     found = impact88.solve({name: value for name, value in scene.items() if name != "MU"})
     assert found.absent["STATUS"] == ("MU",)
+
+
+@pytest.mark.parametrize(("plane", "needs_friction"), [(30, False), (210, False), (-30, True)])
+def test_a_plane_across_the_line_of_motion_needs_no_friction(plane, needs_friction):
+    """Along 30 degrees: no friction acts where the normal is that line, whichever way it points."""
+    x, y = np.cos(np.radians(30.0)), np.sin(np.radians(30.0))
+    scene = {"M": 4, "MA": 100, "MB": 80, "E": 0.2, "GA": plane}
+    scene |= {"UX": -20 * x, "UY": -20 * y, "VX": 10 * x, "VY": 10 * y}
+    if needs_friction:
+        with pytest.raises(UserError, match="needs MU"):
+            impact88.solve(scene, ["DVA"])
+    else:  # m_b/(m_a + m_b) (1 + e) of the closing speed
+        assert impact88.solve(scene, ["DVA"])["DVA"] == pytest.approx(80 / 180 * 1.2 * 30)

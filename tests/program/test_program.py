@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from decimal import Decimal
-from importlib.resources import files
+from importlib.resources import as_file, files
 
 import pytest
 
 from impact88.apple.captured import session
+from impact88.program.emulated import ListingCopy
 from impact88.program.run import run
 from impact88.program.scene import sample
 
@@ -35,6 +36,14 @@ def test_printout_is_the_golden_file_to_the_character(
     number: int, name: str, golden_printout: Callable[[str, str], None]
 ) -> None:
     golden_printout(run(sample(number)).printout, name)
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_a_copy_of_the_listing_prints_the_page_of_its_port(number: int) -> None:
+    """On an Apple with a disk system, which takes line 190's PR# for itself."""
+    with as_file(files("impact88.legacy") / "impact.bas") as path:
+        copy = ListingCopy(str(path))
+    assert copy.run(sample(number)).page == run(sample(number)).page
 
 
 def test_an_apple_printed_these_numbers_in_1980_and_no_double_does() -> None:

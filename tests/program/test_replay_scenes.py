@@ -427,6 +427,11 @@ def test_published_run() -> None:
         ({"UX": "1E20"}, 320),
         ({"DA": "1E21", "WA": "1E18", "IA": "1E-2"}, 340),
         ({"DB": "1E21", "WB": "1E18", "IB": "1E-2"}, 340),
+        # one statement of the line alone: XA, YA, XB, YB
+        ({"DA": "1E21", "WA": "1E18", "IA": "1E-2", "PA": "0", "TA": "0"}, 340),
+        ({"DA": "1E21", "WA": "1E18", "IA": "1E-2", "PA": "0", "TA": "90"}, 340),
+        ({"DB": "1E21", "WB": "1E18", "IB": "1E-2", "PB": "0", "TB": "90"}, 340),
+        ({"DB": "1E21", "WB": "1E18", "IB": "1E-2", "PB": "0", "TB": "0"}, 340),
     ],
 )
 def test_an_overflow_names_the_line_of_the_listing(changes: dict[str, str], line: int) -> None:

@@ -109,6 +109,7 @@ class Expressions(Variables):
         ``pending`` holds the content of the stack, for each operator that waits for its right
         operand: the precedence before it, the operator, its left operand, its relation. Operators
         are applied as soon as one of no higher precedence follows."""
+        # not split: the ROM's one loop, and the emulator spends most of its time in it
         ram, atoms = self.ram, self.atoms
         pos = self.txtptr
         pending: list[tuple[int, int, Number, int]] = []

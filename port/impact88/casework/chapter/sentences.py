@@ -62,6 +62,7 @@ def _extent(rule: Callable[[Collision], Array], alike: list[Collision]) -> tuple
 def _varied_checks() -> tuple[Claim, ...]:
     """Return the claims that something hardly matters, each with what it does to the eleven
     collisions."""
+    # not split, as `_of_tables`: a row for each claim
 
     def solve_changed(c: Collision, changes: Mapping[str, Any]) -> dict[str, Array]:
         """Solve with Table 2's coefficients and some values changed. Friction keeps the sign of

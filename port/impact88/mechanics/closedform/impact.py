@@ -207,6 +207,7 @@ class Found(NamedTuple):
 
 def _friction(g: Given) -> Found:
     """The impact with friction: everything along the direction (1, mu) of the impulse."""
+    # not split: a formula a line, each used by those that follow
     table, E, EM, z, mu, mean, turn = g.table, g.E, g.EM, g.z, g.mu, g.mean, g.turn
     absolute, to_fixed_axes, cross_with_spins = table.absolute, g.to_fixed_axes, g.cross_with_spins
     (MA, MB), (ma, mb, ia, ib), (R, both, Ired, J) = g.masses, g.inverses, g.reduced

@@ -90,6 +90,7 @@ def run(
     ``scene``: stored reals by the listing's names, without M; ``unit`` records the errors, after
     which a scene's values have no meaning; ``matrix``: also return the elements of A as the program
     leaves them, named "A(1,1)"."""
+    # not split: the listing's lines in order, as in `program.listing`
     E, MU, EM, DA, DB = (scene[name] for name in ("E", "MU", "EM", "DA", "DB"))
     MA, MB, IA, IB = (scene[name] for name in ("MA", "MB", "IA", "IB"))
     UX, UY, WA, VX, VY, WB = (scene[name] for name in ("UX", "UY", "WA", "VX", "VY", "WB"))
