@@ -137,11 +137,16 @@ def find_predicate(
             if any(count > (size > _FEW) + _MAX_MISHELD * size for size, count in wrong[1]):
                 continue
             misfits = sum(int(count) for half in wrong for _, count in half)
-            widened = _round_value(predicate, column, inside, outside)
             key = float(misfits), rank + 100 * (name == ROW)
             if best is None or key < best[:2]:
-                best = (*key, widened)
-    return best[2] if best else None
+                best = (*key, predicate)
+    if best is None:
+        return None
+    # its border by all rows
+    predicate, column = best[2], quantities[best[2].quantity]
+    borders = _candidates(predicate.quantity, column, *places)
+    predicate = next((x for x in borders if x.relation == predicate.relation), predicate)
+    return _round_value(predicate, column, inside, outside)
 
 
 def _candidates(
