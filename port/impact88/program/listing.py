@@ -60,7 +60,6 @@ def impact(
     (`stepping.variables` sorts them out). Raises the arithmetic's errors, `End` after ZERO
     DETERMINANT, and `console.EndOfInput`; the variables are then in the traceback's frame.
     """
-    # not split: as long as the listing, whose variables are all global
     LET, NEXT, INT, ABS, SIN, COS = (
         arithmetic.LET,
         arithmetic.NEXT,
