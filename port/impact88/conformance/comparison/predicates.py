@@ -181,9 +181,9 @@ def _round_value(predicate: Predicate, column: Floats, inside: Bools, outside: B
     if not lows.size or not highs.size:
         return predicate
     low, high = float(lows.max()), float(highs.min())
-    if low <= 0 <= high:
-        return predicate._replace(value=0.0)
     above = predicate.relation == ABOVE
+    if low <= 0 < high if above else low < 0 <= high:
+        return predicate._replace(value=0.0)
     for power in range(math.floor(math.log10(max(-low, high))), -16, -1):
         first, last = math.ceil(low / 10.0**power), math.floor(high / 10.0**power)
         for count in sorted({first, last}, key=abs) if first <= last else ():
