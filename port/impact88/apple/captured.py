@@ -117,10 +117,10 @@ def result(text: str) -> str:
     top bit of the sign byte counts."""
     if text.count(":") != 2:
         return text
-    stored, raw, extension = text.split(":")
+    stored_bytes, raw, extension = text.split(":")
     if raw.startswith("00"):
         return "zero"
-    return f"{stored}:{raw[:10]}{int(raw[10:], 16) >> 7}:{extension}"
+    return f"{stored_bytes}:{raw[:10]}{int(raw[10:], 16) >> 7}:{extension}"
 
 
 def normalize_zero(stored: str) -> str:

@@ -132,8 +132,8 @@ def measure(
         hi, lo = two_doubles(columns)
         reference_seconds = (time.process_time() - start) / count
         progress(1)
-        solved, sensitive = solve(columns), sensitivity(columns)
-        by_name = scales(columns, solved)
+        solutions, sensitive = solve(columns), sensitivity(columns)
+        by_name = scales(columns, solutions)
         sizes = np.stack([by_name[result] for result in ORDER], axis=1)
         works: list[tuple[Method, Any, list[float]]] = []
         mine: list[Row] = []
@@ -147,7 +147,7 @@ def measure(
                 error[fine],
                 relative_errors(velocities, hi, lo, sizes)[fine],
             )
-            condition = solved["COND"][fine]
+            condition = solutions["COND"][fine]
             scenes_timed = max(10, round(effort * method.timed))
             works.append((method, method.prepare(repeat_scenes(columns, scenes_timed)), []))
             mine.append(

@@ -192,7 +192,7 @@ def fill_blanks(column: Column, text: str) -> Column:
     if isinstance(column, np.ndarray):
         return column
     if isinstance(column, ArrowTexts):
-        return column.filled(text)
+        return column.with_default(text)
     return [
         text if cell in (None, "") and not isinstance(cell, Merged) else cell for cell in column
     ]

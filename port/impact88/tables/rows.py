@@ -91,7 +91,7 @@ class ArrowTexts(ArrowColumn):
 
         return ArrowTexts(compute.replace_substring(self.array, old, new))
 
-    def filled(self, text: str) -> "ArrowTexts":
+    def with_default(self, text: str) -> "ArrowTexts":
         """The column with ``text`` where there is none."""
         from pyarrow import compute
 

@@ -15,7 +15,7 @@ from impact88.casework.chapter.deltav import (
     loss_of,
     speeds_before,
 )
-from impact88.casework.chapter.staged import collisions, predicted
+from impact88.casework.chapter.staged import collisions, predict_delta_v
 from impact88.errors import UserError
 
 SLIPS = {(6, "b")}
@@ -24,7 +24,7 @@ SLIPS = {(6, "b")}
 def test_the_default_reproduces_the_predicted_column_of_table_2() -> None:
     differing = set()
     for collision in collisions():
-        found = predicted(collision)
+        found = predict_delta_v(collision)
         for vehicle in "ab":
             value = float(found[f"DV{vehicle.upper()}"])
             # to the last printed digit, the loss being printed to a tenth of a percent

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from impact88.casework.chapter.staged import collisions, experimental, forward, predicted
+from impact88.casework.chapter.staged import collisions, experimental, forward, predict_delta_v
 from impact88.casework.figures import canvas, charts, views
 from impact88.casework.figures.canvas import svg
 from impact88.casework.figures.drawing import (
@@ -668,7 +668,7 @@ class TestCharts:
         assert [len(series) for series in points.values()] == [22, 22]
         one_ = next(item for item in collisions() if item.number == 1)
         measured = experimental(one_)["DVA"]
-        for name, computed in (("impact equations", forward), ("Equation 19", predicted)):
+        for name, computed in (("impact equations", forward), ("Equation 19", predict_delta_v)):
             expected = (measured, float(computed(one_)["DVA"]))
             assert any(point == pytest.approx(expected, rel=1e-3) for point in points[name])
         # collision 8's measured velocity of A is lost: Table 2's value stands in

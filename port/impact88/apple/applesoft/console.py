@@ -146,12 +146,12 @@ class Console:
 
     def _take_keys(self) -> bool:
         """Take the keyboard's next line as keys; False if there is none."""
-        typed = self.keyboard()
-        if typed is not None:
+        line = self.keyboard()
+        if line is not None:
             self._keys = (
-                keyboard_codes(typed) if isinstance(typed, Keys) else keyboard_codes(typed) + RETURN
+                keyboard_codes(line) if isinstance(line, Keys) else keyboard_codes(line) + RETURN
             )
-        return typed is not None
+        return line is not None
 
     def key_code(self, *, wait: bool = False) -> int:
         """Return the byte at $C000: the code of the last key, its top bit set until it is read or
@@ -193,12 +193,12 @@ class Console:
         """GETLN1: read a line, convert it to upper case, edit and echo it, and return the monitor's
         buffer, one character an element; those before ``start`` are "". ``prompt``: shown again
         after an abandoned line. Raises EndOfInput."""
-        typed = capitals(self._typed_line())
-        if typed.isprintable() and start + len(typed) <= BELL_LENGTH:
-            self.editor.echo(typed, self._echo)
-            buffer = [""] * start + [*typed]
+        line = capitals(self._typed_line())
+        if line.isprintable() and start + len(line) <= BELL_LENGTH:
+            self.editor.echo(line, self._echo)
+            buffer = [""] * start + [*line]
         else:
-            buffer = self._edit_line(prompt, typed, start)
+            buffer = self._edit_line(prompt, line, start)
         self.editor.end_line(not self.echo)
         self._echo("\n")
         self._line_begins = True

@@ -224,8 +224,8 @@ class InputOutput(Expressions):
                 self._more_values(source, sp)
             self.txtptr += 1
             self.character()
-            refused = call_at(sp - 4, self._take_item, source, sp)
-            if refused or not (self.at_end() or ram[self.txtptr] == COMMA):
+            is_refused = call_at(sp - 4, self._take_item, source, sp)
+            if is_refused or not (self.at_end() or ram[self.txtptr] == COMMA):
                 if source != FROM_REPLY:
                     self.curlin = self.datlin if source == FROM_DATA else AFTER_GET
                     raise Fault("SYNTAX", sp)

@@ -431,8 +431,8 @@ class _Image(NamedTuple):
         """1 for a program as SAVE writes it, else the share of lines that a statement may begin."""
         if self.lines and self.is_ended and not self.wrong_links:
             return 1.0
-        begun = sum(_begins_line(tokens.lstrip(b" :")) for _, tokens in self.lines)
-        return begun / max(1, len(self.lines))
+        lines_begun = sum(_begins_line(tokens.lstrip(b" :")) for _, tokens in self.lines)
+        return lines_begun / max(1, len(self.lines))
 
 
 def _read_image(data: bytes) -> Program | None:

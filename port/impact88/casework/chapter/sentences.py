@@ -18,7 +18,7 @@ from ...collision.geometry import resolve_contact_point
 from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import forces
 from . import example
-from .staged import Collision, collisions, forward, predicted, typed_friction
+from .staged import Collision, collisions, forward, predict_delta_v, typed_friction
 
 Array = NDArray[np.float64]
 
@@ -143,12 +143,12 @@ def _varied_checks() -> tuple[Claim, ...]:
             place,
             text,
             verdict,
-            varied=varied,
+            varied=variations,
             sides=_extent(rule, sides),
             others=_extent(rule, remaining),
             unit=unit,
         )
-        for place, text, varied, rule, unit, verdict in rows
+        for place, text, variations, rule, unit, verdict in rows
     )
 
 
@@ -189,7 +189,9 @@ def _of_tables() -> tuple[Claim, ...]:
     for c in tests:
         losses.setdefault(c.category.lower(), []).append(c.table2["loss"])
     misses = [
-        float(predicted(c)[f"DV{v}"]) - c.table2[f"dV{v.lower()}_exp"] for c in tests for v in "AB"
+        float(predict_delta_v(c)[f"DV{v}"]) - c.table2[f"dV{v.lower()}_exp"]
+        for c in tests
+        for v in "AB"
     ]
     of_sides = misses[: 2 * len(sides)]
     of_others = misses[2 * len(sides) :]

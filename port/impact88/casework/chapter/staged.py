@@ -4,7 +4,7 @@ The tables are kept as printed (``legacy/table1.csv``, ``table2.csv``) with ever
 its evidence (``legacy/emendations.csv``). Two ways from Table 1 to Table 2:
 
 - `forward`: the impact solved with Table 2's own e, e_m and μ: energy loss and computed ΔV;
-- `predicted`: ΔV by Equation 19 (with the factor 2/3, see `chapter.deltav`).
+- `predict_delta_v`: ΔV by Equation 19 (with the factor 2/3, see `chapter.deltav`).
 
 `comparison` puts them beside Table 2, cell by cell.
 
@@ -167,7 +167,7 @@ def collisions() -> tuple[Collision, ...]:
     return tuple(result)
 
 
-# -- forward, experimental, predicted
+# -- forward, experimental, predict_delta_v
 
 
 def typed_friction(scene: Mapping[str, Any], signed: Any) -> Array:
@@ -194,7 +194,7 @@ def experimental(collision: Collision) -> dict[str, float]:
     return {name: float(state[name]) for name in ("DVA", "DVB")}
 
 
-def predicted(collision: Collision, loss: Any = None) -> dict[str, Array]:
+def predict_delta_v(collision: Collision, loss: Any = None) -> dict[str, Array]:
     """Return DVA and DVB by Equation 19 from the energy loss in percent, by default Table 2's."""
     scene = collision.scene
     speeds = {"SA": np.hypot(scene["UX"], scene["UY"]), "SB": np.hypot(scene["VX"], scene["VY"])}
@@ -255,7 +255,7 @@ def comparison(printed: Sequence[Collision] | None = None) -> list[Compared]:
         centre, spread = forward(collision), forward(collision, coefficients)
         measurements = experimental(collision)
         rounded_loss = collision.table2["loss"] + np.array([0, -_HALF_DIGIT, _HALF_DIGIT])
-        equation_19 = predicted(collision, rounded_loss)
+        equation_19 = predict_delta_v(collision, rounded_loss)
         values: dict[str, tuple[float, Any]] = {"loss": (float(centre["LOSS"]), spread["LOSS"])}
         for vehicle, name in (("a", "DVA"), ("b", "DVB")):
             values[f"dV{vehicle}_exp"] = (measurements[name], measurements[name])

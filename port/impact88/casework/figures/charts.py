@@ -570,7 +570,7 @@ def figure_5() -> Drawing:
     """Figure 5 from our own computation: the impact equations with Table 2's coefficients, and
     Equation 19 with its energy loss, against the measured ΔV (Table 2's where Table 1's is lost).
     """
-    from ..chapter.staged import collisions, experimental, forward, predicted
+    from ..chapter.staged import collisions, experimental, forward, predict_delta_v
 
     series: Mapping[str, list[tuple[float, float, str]]]
     series = {"impact equations": [], "Equation 19": []}
@@ -582,7 +582,7 @@ def figure_5() -> Drawing:
                 if math.isfinite(measurements[name])
                 else collision.table2[column]
             )
-            for points, rule in zip(series.values(), (forward, predicted), strict=True):
+            for points, rule in zip(series.values(), (forward, predict_delta_v), strict=True):
                 points.append((x, float(rule(collision)[name]), name[-1]))
     drawing = Drawing(
         d.COLUMN,

@@ -141,8 +141,8 @@ class Box(NamedTuple):
         return tuple(complex(*point) for point in points)
 
     def overlaps(self, other: "Box") -> bool:
-        beside = self.left >= other.right or other.left >= self.right
-        return not beside and self.bottom < other.top and other.bottom < self.top
+        is_beside = self.left >= other.right or other.left >= self.right
+        return not is_beside and self.bottom < other.top and other.bottom < self.top
 
 
 class View(NamedTuple):

@@ -170,8 +170,8 @@ def plan(
         size = length, width, outline, outline_left
         vehicles.append(Vehicle(name, center, front[name], *size, wall, points, *motions))
     # momentum of the lighter vehicle: a wall's change of velocity has no digits left
-    moved, sense = (vehicles[1], -1) if vehicles[0].wall else (vehicles[0], 1)
-    impulse = None if moved.change is None else sense * values[f"M{moved.name}"] * moved.change
+    mover, sense = (vehicles[1], -1) if vehicles[0].wall else (vehicles[0], 1)
+    impulse = None if mover.change is None else sense * values[f"M{mover.name}"] * mover.change
     all_values = {**values, **(result or {})}
     remarks = tuple(sentences(int(all_values.get("STATUS") or 0), all_values))
     pair = vehicles[0], vehicles[1]

@@ -274,11 +274,11 @@ def draw_bodies(drawing: Drawing, vehicles: Sequence[Vehicle], at: View) -> None
     for vehicle in vehicles:
         drawing.add(Path(at.all(vehicle.kept), None, fill=TINTS[vehicle.name], role="body"))
     for vehicle in vehicles:
-        name, whole, kept = vehicle.name, vehicle.outline, vehicle.kept
+        name, outline, outline_kept = vehicle.name, vehicle.outline, vehicle.kept
         lines: list[tuple[tuple[complex, ...], float, tuple[float, ...], str]]
-        lines = [((*kept, kept[0]), 0.45, (), f"{name} outline")]
-        if kept != whole:
-            lines.insert(0, ((*whole, whole[0]), 0.25, (0.7, 0.5), f"{name} whole"))
+        lines = [((*outline_kept, outline_kept[0]), 0.45, (), f"{name} outline")]
+        if outline_kept != outline:
+            lines.insert(0, ((*outline, outline[0]), 0.25, (0.7, 0.5), f"{name} whole"))
         if vehicle.point:
             for points, width, dash, role in lines:
                 drawing.add(Path(at.all(points), COLOURS[name], width, dash, role=role))

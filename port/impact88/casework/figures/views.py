@@ -100,10 +100,10 @@ def are_apart(vehicles: Sequence[Vehicle], time: float) -> bool:
     def beyond(one: Vehicle, other: Vehicle) -> bool:
         for first, second in pairwise((*one.outline, one.outline[0])):
             across = 1j * (second - first)
-            own, others = (
+            own, other_shapes = (
                 [(point / across).real for point in vehicle.outline] for vehicle in (one, other)
             )
-            if min(own) >= max(others) or min(others) >= max(own):
+            if min(own) >= max(other_shapes) or min(other_shapes) >= max(own):
                 return True
         return False
 
@@ -217,12 +217,12 @@ def planar(scene: Any = None, velocities: bool = False) -> Drawing:
     left = (drawing.width - scale * (box.left + box.right)) / 2
     at = View(complex(left, -_MARGIN - scale * box.top), scale)
     for vehicle in shapes.vehicles:
-        moved = View(at(apart[vehicle.name]), scale)
-        _body(drawing, shapes, vehicle, moved, scale * size)
+        placed_view = View(at(apart[vehicle.name]), scale)
+        _body(drawing, shapes, vehicle, placed_view, scale * size)
         if velocities:
             low, colour = vehicle.name.lower(), COLOURS[vehicle.name]
             side = -0.9j if vehicle.name == "A" else 0.9j  # where P_t is not
-            base = moved(vehicle.center + side * vehicle.width)
+            base = placed_view(vehicle.center + side * vehicle.width)
             end = base + 8 * vehicle.before.velocity / vehicle.before.speed
             drawing.add(*view.velocity_arrow(vehicle, "before", base, end, role="velocity"))
             drawing.add(Label(base, base - end, f"v_{{{low}n}}, v_{{{low}t}}", colour=colour))
