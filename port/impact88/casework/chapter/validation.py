@@ -133,8 +133,8 @@ def _nhtsa() -> list[Check]:
             ("change of spin, B", "°/s", "delta_omega2_deg_s", abs(degrees(values["WBF"]))),
             ("ΔV, B", "mph", "delta_v2_mph", values["DVB"] / FEET_PER_SECOND),
         )
-        for quantity, unit, column, result in pairs:
-            fields = NHTSA, row["test"], quantity, unit, PUBLISHED, float(row[column]), result
+        for quantity, unit, column, number in pairs:
+            fields = NHTSA, row["test"], quantity, unit, PUBLISHED, float(row[column]), number
             checks.append(Check(*fields))
     return checks
 
@@ -162,7 +162,7 @@ def _iihs() -> list[Check]:
             ("ΔV across it", "ft/s", "delta_vy_ft_s", values["VAY"]),
             ("change of spin", "°/s", "delta_omega_deg_s", abs(degrees(values["WAF"]))),
         )
-        for quantity, unit, column, result in pairs:
-            fields = IIHS, row["test"], quantity, unit, MEASURED, float(row[column]), result
+        for quantity, unit, column, number in pairs:
+            fields = IIHS, row["test"], quantity, unit, MEASURED, float(row[column]), number
             checks.append(Check(*fields))
     return checks
