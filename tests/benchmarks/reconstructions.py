@@ -21,6 +21,7 @@ import time
 import numpy as np
 from impactsampler import BEFORE, KINDS, problem, quantiles
 
+from impact88.casework.reconstruction import reconstructed
 from impact88.casework.reconstruction.adjustment import reconstruct
 from impact88.casework.reconstruction.posterior import Posterior
 from impact88.casework.reconstruction.reconstructedtable import Measured
@@ -33,7 +34,23 @@ NINE = (*BEFORE, "E", "EM", "MUP")
 MOST_WIDTH = (0.9, 1.1)
 MOST_MEDIAN = 0.15  # standard deviations
 LEAST_JUDGE = 1500.0  # effective impacts of the judge
+INWARDS = 1e-5  # of the distance to the nearest draw
 AT_LIMIT = 1e-6  # of a limit's half-width, by rounding
+
+
+ENDS = []
+"""Points and branches at which the bounds of the last reconstruction lie."""
+
+
+def find_extremes(region, *given):
+    """`search.find_extremes`, which keeps where the extremes lie."""
+    found = SEARCH(region, *given)
+    u = found.at.reshape(-1, found.at.shape[-1])
+    ENDS[:] = region.points(u), found.states[0].ravel().astype(np.int64)
+    return found
+
+
+SEARCH, reconstructed.find_extremes = reconstructed.find_extremes, find_extremes
 
 
 def found(given):
@@ -61,6 +78,13 @@ def compared(given, best):
     sample = best.draws.sample
     values = posterior.values(sample.points, sample.branches, NINE)
     report = {"judge": effective, "outside": outside(given, dict(zip(NINE, values, strict=True)))}
+    ends = posterior.values(*ENDS, NINE)
+    # bounds lie at limits, by rounding at either side: a step towards the nearest draw is inside
+    scale = values.std(axis=1)[:, None, None] + 1e-12
+    distance = np.square((ends[:, :, None] - values[:, None, ::10]) / scale).sum(axis=0)
+    nearest = values[:, ::10][:, distance.argmin(axis=1)]
+    ends = ends + INWARDS * (nearest - ends)
+    report["outside"] += outside(given, dict(zip(NINE, ends, strict=True)))
     ratios, medians, exceeded = {}, {}, {}
     drawn = posterior.values(sample.points, sample.branches, JUDGED)
     for name, row in zip(JUDGED, drawn, strict=True):

@@ -5,9 +5,9 @@ An impact is its velocities before and its impulse, the unknowns. For given vehi
 linear in these; what they leave open has an orthonormal basis, and the coordinates are the
 components along it, so that every point is one impact. Vehicles that vary are coordinates, too.
 
-EM, where it is not exact, is a coordinate of its own in place of the moment impulse: over
-velocities and impulses it is a quotient whose denominator may have either sign, and its density has
-a pole between the two.
+Coefficients that are not exact are coordinates of their own, in place of directions of impulses:
+over velocities and impulses they are quotients, and where a denominator vanishes, as at a closing
+speed of 0, the density has a pole.
 
 One exact value may be quadratic: a speed, a change of velocity or an energy. It is solved for the
 last component. Any further value that is not linear is left to the density (`narrow`).
@@ -26,7 +26,7 @@ from ...collision.geometry import GEOMETRY, Geometry
 from ...mechanics.posed import absent_results
 from ...mechanics.state import COURSES, CRUSH, DIRECTIONS, ENERGIES, SPEEDS, State
 from ...names import COEFFICIENTS, IMPULSES, PIVOT, VELOCITIES
-from .admissible import RANGES
+from .admissible import LARGEST_FRICTION, RANGES
 from .solution import Reconstruction
 from .system import COMPLEX_STEP, System
 from .unknowns import TIE
@@ -35,7 +35,9 @@ Floats = NDArray[np.float64]
 Array = NDArray[Any]
 Branches = NDArray[np.int64]
 
-LEAST_MOMENT = 1e-3  # part of a direction that is a moment impulse; with less, EM is no coordinate
+# Least ratio of how the laws depend on the directions of impulses that coefficients stand for; with
+# less, they are no coordinates
+LEAST_DEPENDENCE = 1e-6
 RANK_TOL = 1e-10  # singular values below, relative to the largest, count as zero
 
 OTHER_SIGN = 1  # bit of a branch: friction with the sign opposite to the first impact's
@@ -65,12 +67,12 @@ class Coordinates:
     ``unknown``: names of the unknowns; ``exact_laws``: coefficients known exactly, ``linear``:
     other linear exact values, ``quadratic``: the quadratic one or None, ``narrow``: exact values
     that are left to the density; ``inputs``: vehicles and energies of one vehicle that vary.
-    ``moment``: the direction of unknowns that EM stands for as the first coordinate, or None; with
-    ``with_moment`` False there is none. ``usable``: False where the conditions have no solution.
-    ``free``: number of components, with EM; ``size``: of coordinates. ``centers`` and ``branches``:
-    all impacts found."""
+    ``coefficients``: those that are the first coordinates, and ``directions`` (rows) of unknowns
+    they stand for; none unless ``with_coefficients``. ``usable``: False where the conditions have
+    no solution. ``free``: number of components, with the coefficients; ``size``: of coordinates.
+    ``centers`` and ``branches``: all impacts found."""
 
-    def __init__(self, solution: Reconstruction, with_moment: bool = True) -> None:
+    def __init__(self, solution: Reconstruction, with_coefficients: bool = True) -> None:
         self.system = system = solution.system
         self.known = known = system.known
         self.unknown = [n for n in system.variables if n in (*VELOCITIES, *IMPULSES)]
@@ -110,13 +112,13 @@ class Coordinates:
             self.narrow.append("MUP")
         self.linear = [n for n in exact if n not in curved]
         self.implied: list[str] = []
-        is_open = with_moment and "EM" in self.laws and "EM" not in self.exact_laws
-        self.moment: Floats | None = None
+        self.coefficients: list[str] = []
+        self.directions = np.empty((0, len(self.unknown)))
         self.pinned = np.empty((0, len(self.unknown)))
         self.pins = np.empty(0)
-        self._find_basis(solution, is_open and "PM" in self.unknown)
+        self._find_basis(solution, with_coefficients)
 
-    def _find_basis(self, solution: Reconstruction, with_moment: bool) -> None:
+    def _find_basis(self, solution: Reconstruction, with_coefficients: bool) -> None:
         """Find the basis, and the coordinates of all impacts found."""
         impacts: Sequence[tuple[System, Floats]] = solution.beside or ((self.system, solution.x),)
         unknowns, inputs, signs = [], [], []
@@ -133,19 +135,18 @@ class Coordinates:
         rank = int((s > RANK_TOL * s.max(initial=0.0)).sum())
         self.usable = rank == len(rows)
         self.basis = unique_basis(vt[rank:])
-        if with_moment:
-            self._take_moment_out()
+        if with_coefficients:
+            self._take_coefficients_out(unknowns[0], inputs[0])
         if self.quadratic is not None and len(self.basis):
             self._turn_last_component_along_slope(unknowns[0], inputs[0])
-        self.free = len(self.basis) - (self.quadratic is not None) + (self.moment is not None)
+        self.free = len(self.basis) - (self.quadratic is not None) + len(self.coefficients)
         self.size = self.free + len(self.inputs)
         self.usable &= self.free >= 0
         self.centers: list[Floats] = []
         self.branches: list[int] = []
         for y, own_inputs, sign in zip(unknowns, inputs, signs, strict=True):
             z = self.basis @ y
-            if self.moment is not None:
-                z = np.concatenate([[self._moment_coefficient(y, own_inputs)], z])
+            z = np.concatenate([self._coefficients_of(y, own_inputs), z])
             self.centers.append(np.concatenate([z[: self.free], own_inputs]))
             self.branches.append(sign)
             if self.quadratic is not None and self.usable:
@@ -155,21 +156,48 @@ class Coordinates:
                 nearest = np.nan_to_num(np.abs(last - z[-1]), nan=np.inf).argmin()
                 self.branches[-1] = int(roots[nearest])
 
-    def _take_moment_out(self) -> None:
-        """Make the direction that changes the moment impulse most ``moment``, and the basis that of
-        the others."""
-        along = self.basis[:, self.unknown.index("PM")]
-        size = np.linalg.norm(along)
-        if size < LEAST_MOMENT:
-            return
-        self.moment = (along / size) @ self.basis
-        self.basis = unique_basis(np.linalg.svd(along[None])[2][1:]) @ self.basis
+    def _take_coefficients_out(self, y: Floats, inputs: Floats) -> None:
+        """Make the directions in which impulses change the laws most ``directions``, and the basis
+        that of the others."""
+        open_ones = [n for n in self.laws if n not in self.exact_laws]
+        for names in (open_ones, [n for n in open_ones if n == "EM"]):
+            self.coefficients = names
+            values = self._coefficients_of(y, inputs)
+            above, below = self._quotients(inputs[:, None])
+            rows = (above - values[:, None, None] * below)[:, :-1, 0]
+            is_impulse = np.array([n in IMPULSES for n in self.unknown])
+            _, sizes, vt = np.linalg.svd((rows * is_impulse) @ self.basis.T)
+            count = len(names)
+            if count and count <= len(sizes) and sizes[-1] > LEAST_DEPENDENCE * sizes[0]:
+                self.directions = vt[:count] @ self.basis
+                self.basis = unique_basis(vt[count:]) @ self.basis
+                return
+        self.coefficients = []
 
-    def _moment_coefficient(self, y: Floats, inputs: Floats) -> float:
-        """Return EM of an impact, the nearest within its range where it is not known."""
-        above, below = self._state(y[:, None], inputs[:, None]).quotient("EM")
-        value = _number(above) / (_number(below) or 1e-300)
-        return value if "EM" in self.known else float(np.clip(value, *RANGES["EM"]))
+    def _coefficients_of(self, y: Floats, inputs: Floats) -> Floats:
+        """Return the coefficients of an impact, the nearest within their ranges where they are not
+        known."""
+        state, values = self._state(y[:, None], inputs[:, None]), []
+        for name in self.coefficients:
+            above, below = map(_number, state.quotient(name))
+            value = above / (below or 1e-300)
+            ends = RANGES.get(name, (-LARGEST_FRICTION, LARGEST_FRICTION))
+            values.append(value if name in self.known else float(np.clip(value, *ends)))
+        return np.array(values)
+
+    def _quotients(self, inputs: Array) -> tuple[Array, Array]:
+        """Return numerators and denominators of the coefficients as linear functions of the scaled
+        unknowns: what each unknown adds, then what stands without (coefficients, unknowns + 1,
+        points)."""
+        state, size = self._state_at_units(inputs), len(self.unknown) + 1
+        parts = []
+        for part in zip(*(state.quotient(n) for n in self.coefficients), strict=True):
+            rows = np.array(np.broadcast_arrays(*part, np.empty((size, 1))))[:-1]
+            rows[:, :-1] -= rows[:, -1:]
+            parts.append(rows)
+        if not parts:
+            return np.empty((0, size, 1)), np.empty((0, size, 1))
+        return parts[0], parts[1]
 
     def _drop_implied(self, inputs: Floats) -> None:
         """Move exact values that follow from those before them from ``linear`` to ``implied``, such
@@ -259,22 +287,30 @@ class Coordinates:
 
     def _unknowns(self, z: Array, inputs: Array, branches: Branches) -> tuple[Array, Array]:
         """Return the scaled unknowns with these components, and the log determinant of the map."""
-        if self.moment is None:
+        count = len(self.coefficients)
+        if not count:
             return self._along_basis(z, inputs, branches)
-        start, volume = self._along_basis(np.concatenate([0 * z[:1], z[1:]]), inputs, branches)
-        # EM's law is linear in the moment impulse
-        ahead = self._along_basis(np.concatenate([0 * z[:1] + 1, z[1:]]), inputs, branches)[0]
-        here, there = (self._state(y, inputs).quotient("EM") for y in (start, ahead))
-        law, slope = here[0] - z[0] * here[1], there[0] - here[0] - z[0] * (there[1] - here[1])
-        distance = -law / slope
-        denominator = here[1] + distance * (there[1] - here[1])
-        volume = volume + np.log(np.abs(denominator)) - np.log(np.abs(slope))
-        return start + distance * (ahead - start), volume
+        values, rest = z[:count], z[count:]
+        start, volume = self._along_basis(np.vstack([0 * values, rest]), inputs, branches)
+        aheads = [
+            self._along_basis(np.vstack([0 * values + unit[:, None], rest]), inputs, branches)[0]
+            for unit in np.eye(count)
+        ]
+        steps = np.array([ahead - start for ahead in aheads])
+        # the laws are linear in the unknowns
+        above, below = self._quotients(inputs if self.varied else inputs[:, :1])
+        at_start = [np.einsum("ckn,kn->cn", p[:, :-1], start) + p[:, -1] for p in (above, below)]
+        slopes = [np.einsum("ckn,jkn->ncj", p[:, :-1], steps) for p in (above, below)]
+        laws = slopes[0] - values.T[:, :, None] * slopes[1]
+        along = solve_each(laws, (values * at_start[1] - at_start[0]).T)
+        denominators = at_start[1].T + np.einsum("ncj,nj->nc", slopes[1], along)
+        volume = volume + np.log(np.abs(denominators)).sum(axis=1) - np.linalg.slogdet(laws)[1]
+        return start + np.einsum("nj,jkn->kn", along, steps), volume
 
     def _along_basis(self, z: Array, inputs: Array, branches: Branches) -> tuple[Array, Array]:
-        """Return the scaled unknowns at components along ``moment`` and the basis, and the log
-        determinant of the map."""
-        rows = self.basis if self.moment is None else np.vstack([self.moment, self.basis])
+        """Return the scaled unknowns at components along ``directions`` and the basis, and the
+        log determinant of the map."""
+        rows = np.vstack([self.directions, self.basis])
         if self.varied:
             conditions = self._conditions(inputs, branches)
             count = z.shape[1]

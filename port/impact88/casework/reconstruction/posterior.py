@@ -73,7 +73,7 @@ class Posterior:
         self.progress = progress
         self.system, self.known = solution.system, solution.system.known
         self.nominal = solution.values
-        self.coordinates = here = Coordinates(solution, with_moment=False)
+        self.coordinates = here = Coordinates(solution, with_coefficients=False)
         self.admissible = Admissible(self.system)
         varying = [n for n in self.known if self.known[n].varies and n not in CRUSH]
         names = [n for n in varying if n in (*here.inputs, *self.system.observations)]
@@ -290,8 +290,8 @@ class Posterior:
         deviations = np.array([self.known[n].standard_deviation for n in here.inputs])
         broad_root = np.diag(np.concatenate([np.full(here.free, BROAD_WIDTH), deviations]))
         at_rest = np.concatenate([np.zeros(here.free), here.centers[0][here.free :]])
-        if here.moment is not None:
-            at_rest[0] = here.centers[0][0]
+        count = len(here.coefficients)
+        at_rest[:count] = here.centers[0][:count]
         broad_modes = [*modes, *((at_rest, branch) for branch in {branch for _, branch in modes})]
         if here.quadratic is not None:
             broad_modes += [(center, branch ^ OTHER_ROOT) for center, branch in broad_modes]
