@@ -133,8 +133,8 @@ def test_impacts_beside_a_pole_do_not_end_the_draws():
 @pytest.mark.long
 def test_draws_pass_the_pole_of_em():
     """Spins known after the impact and EM not: its denominator may have either sign, and over
-    impulses the density has a pole between. Without coefficients as coordinates, medians are off by .15 to
-    .3 standard deviations, in every one of four seeds."""
+    impulses the density has a pole between. Without coefficients as coordinates, medians are off by
+    .15 to .3 standard deviations, in every one of four seeds."""
     given = problem("spins", 101)
     (first, *_) = reconstruct({n: read(v.text(), n) for n, v in given.known.items()} | {"M": 6.0})
     names = ("UX", "VX", "DVA", "LOSS")
