@@ -18,7 +18,7 @@ from types import MappingProxyType
 
 from ..errors import BEYOND_DOUBLES, UserError, quoted
 from ..names import DEFAULT_M, NO_AMOUNTS, quantity
-from .doubles import BARE, digits, double, is_number
+from .doubles import BARE, digits, double, double_or_none, is_number
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -207,6 +207,11 @@ class Case:
 
     def __repr__(self) -> str:
         return f"Case({dict(self.texts)!r}, {self.source!r})"
+
+    @property
+    def of_points(self) -> bool:
+        """True where M is 4, however it is written: point masses."""
+        return double_or_none(self.values["M"]) == 4
 
     @property
     def entries(self) -> dict[str, Entry]:

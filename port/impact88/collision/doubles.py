@@ -45,6 +45,11 @@ def double(text: str) -> float:
     return read(text)[0]
 
 
+def double_or_none(text: str) -> float | None:
+    """Return the number that a text is, None for another."""
+    return double(text) if is_number(text) else None
+
+
 def doubles_of(texts: Mapping[str, str]) -> dict[str, float]:
     """Return the `double` of each text, by name."""
     return {name: double(text) for name, text in texts.items()}

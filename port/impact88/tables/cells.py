@@ -27,13 +27,11 @@ from ..collision.units import (
     units_in,
 )
 from ..errors import UserError, quoted
-from ..mechanics.closedform.columns import UNUSED_BY_POINTS
+from ..mechanics.closedform.columns import OPTIONAL_OF_POINTS, UNUSED_BY_POINTS
 from ..names import RESULTS, SCENE, quantity
 from .remarks import Remark
 from .rows import ArrowTexts, Column, Heading, Rows, heading
 
-OPTIONAL_OF_POINTS = (*UNUSED_BY_POINTS, "GA", "E", "MU", "WA", "WB")
-"""Columns that a table of point masses may lack."""
 _MEASURING = ("length", "length/time", "mass", "mass·length²", "mass·length²/time²")
 """Quantities whose bare column leaves its unit open beside columns with units."""
 _NUMBERS = re.compile(r"(?<![a-zA-Z^])(?:[0-9][0-9,]*\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")

@@ -324,8 +324,8 @@ def test_the_case_report_is_the_commands_own(
     ],
 )
 def test_each_value_is_judged_alone(name: str, text: str, problem: str | None) -> None:
-    told = collision.answer({**sample(1), name: text, "E": ""})
-    assert told["missing"] == ["E"]
+    told = collision.answer({**sample(1), name: text, "MA": ""})
+    assert told["missing"] == ["MA"]
     if problem is None:
         assert told["problems"] == {}
     else:

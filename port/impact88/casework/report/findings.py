@@ -15,6 +15,7 @@ from ...collision.needs import sentences as needs_in_words
 from ...collision.units import System, base_of
 from ...errors import UserError, library
 from ...files import replacing
+from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
 from ...mechanics.state import COURSES, KNOWABLE
 from ...messages.plaintable import format_fixed, number
 from ...names import DEFAULT_M, SCENE, check_names, quantity
@@ -22,7 +23,6 @@ from ...status import sentences
 from ..figures.canvas import svg
 from ..figures.sceneview import scene_drawing
 from ..reconstruction.solutiontable import without_noise
-from ..uncertainty.ranges import OPTIONAL_OF_POINTS
 from .frame import render
 
 if TYPE_CHECKING:
@@ -171,7 +171,7 @@ def report(
     units = case.system
     names = {n for n, text in case.values.items() if text.strip()}
     scene = coordinate_names(SCENE, names)
-    optional = ("M", *(OPTIONAL_OF_POINTS if case.values["M"].strip() == "4" else ()))
+    optional = ("M", *(OPTIONAL_OF_POINTS if case.of_points else ()))
     forward = set(scene) - {*optional} <= names <= {*scene, *MOVES}
     check_names(names, coordinate_names((*KNOWABLE, *MOVES), names), "name used here", source)
     if forward:

@@ -15,7 +15,7 @@ from ...collision.geometry import MOVES, coordinate_names, resolve_contact_point
 from ...collision.uncertain import Uncertain
 from ...collision.units import opposite
 from ...errors import UserError
-from ...mechanics.closedform.columns import UNUSED_BY_POINTS
+from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
 from ...mechanics.state import KNOWABLE
 from ...names import FINAL_VELOCITIES, SCENE, VELOCITIES, check_names
 
@@ -42,10 +42,6 @@ def input_names(problem: str) -> tuple[str, ...]:
     before = (*VELOCITIES, "MU")
     common = (name for name in SCENE if name not in before)
     return (*common, *(before if problem == "forward" else AFTER))
-
-
-OPTIONAL_OF_POINTS = (*UNUSED_BY_POINTS, "GA", "E", "MU", "WA", "WB")
-"""What point masses may lack: not all results use it."""
 
 
 def complete(

@@ -35,7 +35,7 @@ from ...casework.figures.sceneview import scene_drawing
 from ...collision.doubles import double
 from ...collision.needs import sentences
 from ...errors import UserError, note
-from ...mechanics.closedform.columns import UNUSED_BY_POINTS
+from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
 from ...mechanics.closedform.solve import solve
 from ...names import FINAL_VELOCITIES, RESULTS, missing
 from ...program.scene import Scene
@@ -93,7 +93,8 @@ def _draw(args: options.Args) -> Drawing:
         )
     if kind == "barrier":
         return _barrier(args)
-    may_omit = OF_POINTS if kind in ("scene", "strip") and _point_masses(args) else ()
+    drawn = kind in ("scene", "strip")
+    may_omit = OPTIONAL_OF_POINTS if drawn and options.case_given(args).of_points else ()
     scene = options.one_scene(args, may_omit) if kind != "planar" or scene_source else None
     if kind == "planar" or scene is None:
         from ...casework.figures.views import planar
@@ -171,11 +172,3 @@ def solve_scene(scene: Scene) -> dict[str, Any]:
     for sentence in sentences(getattr(results, "absent", {})):
         note("figure", sentence)
     return {name: value.item() for name, value in results.items()}
-
-
-OF_POINTS = (*UNUSED_BY_POINTS, "GA", "E", "MU", "WA", "WB")
-"""Inputs that the drawing of point masses does without."""
-
-
-def _point_masses(args: options.Args) -> bool:
-    return options.case_given(args).values.get("M", "6").strip() in ("4", "4.0")

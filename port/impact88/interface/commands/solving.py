@@ -10,6 +10,7 @@ from itertools import chain
 import numpy as np
 
 from ...collision.case import OWN_NAMES, Case, check_value, is_share
+from ...collision.doubles import double_or_none
 from ...collision.fields import ZERO_DETERMINANT
 from ...collision.scenefile import case_in
 from ...collision.units import convention_named
@@ -136,7 +137,7 @@ def _scene_given(args: options.Args) -> Iterator[_Table]:
         units = TableUnits(reader.names, case.units or args.units, first, where=where)
         units.convention = case.system.convention
         filling = Filling(case=case, noted=[*case.at_nominal().remarks])
-        points = case.values["M"].strip() == "4"
+        points = case.of_points
         yield _Table(reader, blocks, units, filling, where, points, swept, bool(swept))
 
 
@@ -155,7 +156,8 @@ def _table_given(args: options.Args, form: str) -> Iterator[_Table]:
             units.convention = convention_named(args.axes, args.headings, "")
         filling = _filling(args, extra_case, units, reader.names)
         present = {*reader.names, *filling.constants}
-        points = filling.constants.get("M", "4" if "M" in reader.names else "6") == "4"
+        m = filling.constants.get("M", "4" if "M" in reader.names else "6")
+        points = double_or_none(m) == 4
         check_scene_columns(present, points, where=where)
         is_long = not is_short(args.cases)
         yield _Table(reader, blocks, units, filling, where, points, (), is_long)

@@ -14,13 +14,13 @@ from ... import status
 from ...apple.emulator.screen import shown_character
 from ...collision import uncertain
 from ...collision.case import FACING_COURSE, Case, check_value, remark_lines
-from ...collision.doubles import double, doubles_of, is_number
+from ...collision.doubles import double_or_none, doubles_of, is_number
 from ...collision.geometry import coordinate_names
 from ...collision.needs import sentences as needs_in_words
 from ...collision.scenefile import template, toml_texts
 from ...collision.units import RULES, System
 from ...errors import UserError
-from ...mechanics.closedform.columns import UNUSED_BY_POINTS
+from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
 from ...messages.plaintable import number
 from ...messages.schemas import with_schema
 from ...names import FINAL_VELOCITIES, RESULTS, SCENE, quantity
@@ -50,10 +50,6 @@ _ANSWER = (
     ("critical friction coefficient", "MUC"),
 )
 """The questions of a collision: words, and a name for each vehicle or one for both."""
-
-
-OPTIONAL_OF_POINTS = (*UNUSED_BY_POINTS, "GA", "MU", "WA", "WB")
-"""Inputs that a form of point masses may lack: not all results use it."""
 
 
 class Form(NamedTuple):
@@ -95,7 +91,7 @@ def read(values: Mapping[str, str], units: str = "", title: str = "") -> Form:
         problems["M"] = "M: expected 6, or 4 for point masses"
     # a form shows the M that it takes
     entries_given = {n for n in case.values if n != "M" or "M" in case.given}
-    optional = OPTIONAL_OF_POINTS if double_or_none(case.values["M"]) == 4 else ()
+    optional = OPTIONAL_OF_POINTS if case.of_points else ()
     missing = [
         name
         for name in coordinate_names(SCENE, entries_given)
@@ -117,11 +113,6 @@ def _varies(name: str, text: str) -> bool:
         check_value(name, text, "")
         return False
     return uncertain.read(text, name).varies
-
-
-def double_or_none(text: str) -> float | None:
-    """Return the number that a text is, None for another."""
-    return double(text) if is_number(text) else None
 
 
 def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:

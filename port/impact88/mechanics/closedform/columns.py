@@ -24,6 +24,8 @@ BODIES = (("MA", "IA", ("UX", "UY"), "WA"), ("MB", "IB", ("VX", "VY"), "WB"))
 """Mass, inertia, velocities and spin of A and of B."""
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
 """Names that a point-mass scene (M = 4) ignores."""
+OPTIONAL_OF_POINTS = (*UNUSED_BY_POINTS, "GA", "E", "MU", "WA", "WB")
+"""Names that it may lack: not every result uses them."""
 
 LARGE_ANGLE = 720.0
 """Angles beyond this, in degrees, are taken modulo 360 (which is exact) before they are added up:
