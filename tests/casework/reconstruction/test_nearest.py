@@ -76,3 +76,17 @@ def test_vehicles_that_separate_are_no_impact():
     assert free.impossible & Status.SEPARATING
     text = dict(Measured(free, 0).headline(RULES))["NO IMPACT"]
     assert "the vehicles separate at 25" in text
+
+
+def test_an_impact_with_more_friction_than_there_is_stands_behind_one_that_counts():
+    """The truth has UX = -49.4 and P_t/P_n = 0.68. Another impact fits better, with a P_t/P_n of -3
+    where friction along the sliding is positive."""
+    known = {"M": 6.0, "DA": 4.0252, "DB": 4.9666, "GA": -83.919, "PA": 15.293, "PB": -53.596}
+    known |= {"TA": -173.98, "TB": 45.392, "MA": 108.43, "MB": 91.696, "IA": 2372.2, "IB": 1895.1}
+    known |= {"WA": 0.0, "WB": 0.0, "VAX": "-42.381 .. -37.185", "VAY": "normal 42.426 1.5"}
+    known |= {"VBX": "-26.263 .. -21.067", "VBY": "39.944 .. 45.14", "EL": "35494 .. 46913"}
+    known |= {"UY": "normal 53.744 1.5", "E": "0 .. 0.42", "EM": "-0.95 .. 0"}
+    first, second = reconstruct(known)
+    assert first.values["UX"] == pytest.approx(-49.4, abs=1.0)
+    assert second.squares < first.squares
+    assert [is_admissible(first), is_admissible(second)] == [True, False]

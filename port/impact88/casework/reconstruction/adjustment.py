@@ -27,7 +27,8 @@ from ...names import PIVOT, SCENE, VELOCITIES, check_names
 from ...status import Status
 from .impactsearch import MAX_SQUARES_RATIO, Search
 from .laws import missed_laws
-from .solution import Reconstruction, Searched, typed_friction
+from .nearest import counts
+from .solution import Reconstruction, Searched, invariants, typed_friction
 from .system import SPINS
 from .unknowns import UnsolvableError, check_physical, solve_for
 
@@ -134,51 +135,29 @@ def _impacts(values: dict[str, Uncertain], progress: Progress) -> list[Reconstru
     )
 
 
-def _invariants(values: Mapping[str, float]) -> list[float]:
-    """Return what does not depend on axes, names of vehicles or units, to six digits: the
-    fraction of the initial kinetic energy that is in spins, e and that energy first, then
-    everything else in which impacts differ."""
-    pairs = [("A", "B"), ("AF", "BF")]
-    spin_energies = [
-        sum(
-            # a product of huge spins is infinite, a power of them an error
-            values.get(spin, 0.0) * values.get(spin, 0.0) * values[inertia] / 2
-            for spin, inertia in (("WA" + after, "IA"), ("WB" + after, "IB"))
-            if math.isfinite(values.get(inertia, math.inf))
-        )
-        for after in ("", "F")
-    ]
-    energy = values.get("KI", 0.0)
-    fractions = [x / energy if energy else 0.0 for x in spin_energies]
-    speeds = [sum(values.get("S" + x, 0.0) for x in pair) for pair in pairs]
-    sizes = [abs(values.get(name, 0.0)) for name in ("E", "VC", "PN", "PT", "PM", "MUP", "EM")]
-    sums = [values.get("DVA", 0.0) + values.get("DVB", 0.0), values.get("EL", 0.0)]
-    ranks = [fractions[0], sizes[0], energy, fractions[1], *speeds, *sums, *sizes[1:]]
-    return [float(f"{x:.5e}") if abs(x) > 1e-9 else 0.0 for x in ranks]
-
-
 def _sort_solutions(
     solutions: list[Reconstruction], searches: "Sequence[Search]", mu: Uncertain | None
 ) -> list[Reconstruction]:
     """Return the likely solutions, sorted by physics.
 
-    First possible impacts, then those that break physics or drive backwards along a known course,
-    then those that separate or pull; among these by the sum of squared adjustments, ties by
-    `_invariants`, the smaller first. Solutions that contradict the measurements are kept only where
-    all do, those that drive backwards only where no others exist."""
+    First impacts that count (`nearest.counts`), then possible ones, then those that break physics
+    or drive backwards along a known course, then those that separate or pull; among these by the
+    sum of squared adjustments, ties by `invariants`, the smaller first. Solutions that contradict
+    the measurements are kept only where all do, those that drive backwards only where no others
+    exist."""
     forward_solutions = [s for s in solutions if not s.backwards] or solutions
     # a solution that contradicts the measurements, such as standstill, is dropped if others agree
     agreeing = [s for s in forward_solutions if not s.evidence.contradictory]
     if not agreeing or any(solution.limited for solution in forward_solutions):
         agreeing = forward_solutions
-    possible = [s for s in agreeing if not s.impossible]
-    # A possible impact is compared with the possible ones only: an impossible one that fits better
-    # must not displace it. An impossible one has to compete with all.
-    least_possible = min((s.squares for s in possible), default=0.0)
+    is_counted = {id(s): counts(s) for s in agreeing}
+    # One that counts is compared with these only: another that fits better must not displace it.
+    # Others have to compete with all.
+    least_counted = min((s.squares for s in agreeing if is_counted[id(s)]), default=0.0)
     least_of_all = min((s.squares for s in agreeing), default=0.0)
     likely = []
-    for solution in [*possible, *(s for s in agreeing if s.impossible)]:
-        least = least_of_all if solution.impossible else least_possible
+    for solution in agreeing:
+        least = least_counted if is_counted[id(solution)] else least_of_all
         if solution.squares <= max(MAX_SQUARES_RATIO * least, 1e-9):
             likely.append(solution)
 
@@ -186,8 +165,15 @@ def _sort_solutions(
         squares = float(f"{max(solution.squares, 1e-9):.6e}")
         broken = solution.impossible
         no_impact = bool(broken & (Status.SEPARATING | Status.PULLING))
-        ranks = _invariants(solution.values)
-        return bool(broken), no_impact, squares, broken.bit_count(), *ranks
+        ranks = invariants(solution.values)
+        return (
+            not is_counted[id(solution)],
+            bool(broken),
+            no_impact,
+            squares,
+            broken.bit_count(),
+            *ranks,
+        )
 
     search = Searched(
         sum(item.starts for item in searches),

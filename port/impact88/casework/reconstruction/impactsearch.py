@@ -19,7 +19,7 @@ from .laws import describe_laws, missed_laws
 from .leastsquares import PENALTIES, descend, polish, pseudo_inverse
 from .nearest import with_nearest
 from .quadrics import MAX_EQUATIONS, Paths, follow_paths, quadratic_equations
-from .solution import RESIDUAL_TOL, Reconstruction, describe
+from .solution import RESIDUAL_TOL, Reconstruction, describe, invariants
 from .system import PARAMETERS, SPINS, System
 from .unknowns import UnsolvableError
 
@@ -254,7 +254,7 @@ class _Minima:
             return len(self.closed) - 1
         self.open_count += 1
         candidates = (*self.open, solution)
-        self.open = [min(candidates, key=lambda s: (round(s.squares, 9), s.impossible != 0))]
+        self.open = [min(candidates, key=_order_of_open)]
         return None
 
     def solutions(self) -> list[Reconstruction]:
@@ -262,6 +262,13 @@ class _Minima:
         least_squares = min((solution.squares for solution in self.closed), default=math.inf)
         likely = [s for s in self.open if MAX_SQUARES_RATIO * s.squares + 1e-9 < least_squares]
         return likely + self.closed
+
+
+def _order_of_open(solution: Reconstruction) -> tuple[float, ...]:
+    """Return what minima that leave something undetermined are put in order by: equally good ones
+    of two continua by what is the same seen from elsewhere."""
+    squares = float(f"{max(solution.squares, 1e-9):.6e}")
+    return squares, solution.impossible != 0, *invariants(solution.values)
 
 
 def _equal_tolerances(known: Mapping[str, Uncertain], exact_system: System) -> dict[str, Uncertain]:

@@ -94,6 +94,11 @@ def is_admissible(solution: Reconstruction) -> bool:
     )
 
 
+def counts(solution: Reconstruction) -> bool:
+    """Return True if an impact found is possible and admissible, as far as it is determined."""
+    return not solution.impossible and (bool(solution.undetermined) or is_admissible(solution))
+
+
 def with_nearest(solutions: list[Reconstruction], starts: Floats) -> list[Reconstruction]:
     """Return the solutions and the nearest admissible impact, where none of them is admissible:
     first, if it agrees with what is known, and else beside each."""

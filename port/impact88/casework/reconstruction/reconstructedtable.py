@@ -19,7 +19,7 @@ from ...names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..uncertainty.boundstable import unbounded_sides
 from . import adjustment
 from .admissible import ENDS
-from .nearest import refusal
+from .nearest import counts, refusal
 from .posterior import MAX_VELOCITY, MIN_SIZE
 from .reconstructed import MIN_GAIN, Draws, Range, draws, ranges
 from .solution import Reconstruction, typed_friction
@@ -89,16 +89,46 @@ class Measured(Impact):
             values["MU"] = typed_friction(solution.system.state(solution.x), values["MUP"])
         super().__init__(known, with_derived_values(values, contact_time))
         self.solution, self.undetermined = solution, solution.undetermined
-        has_alternatives = solution.search.impacts > 1 and not solution.search.possible
-        if any(item.varies for item in known.values()):
-            # other impacts within the limits may be possible
-            self.subject = "the impact that fits best"
-            if has_alternatives:
-                self.subject = "each of the impacts that fit best"
-        elif has_alternatives:
-            self.subject = "every impact that agrees with what is known"
+        self.subject = self._name_subject()
         self.helpful = solution.helpful if solution.undetermined else ()
         self.remarks, self.absent = solution.remarks, solution.absent
+        self.names = self._uncertain_results(wanted)
+        self.correlations = solution.correlations(self.names)
+        self.evidence = solution.evidence
+        self.draws: Draws | None = None
+        self.ranges: dict[str, Range] = {}
+        self.refused: Draws | None = None
+        self.is_empty = self.not_drawn = False
+        if like is not None:
+            self._take_draws_of(like)
+        elif samples and self.names:
+            self._draw(samples, seed, progress)
+        if self.is_empty:
+            self.not_drawn = solution.is_within_limits
+            if not self.not_drawn:
+                self.evidence = solution.weigh_evidence(inside=False)
+        self.deviations = solution.deviations(self.names)
+        self.first_order: dict[str, float | None] = {}
+        self._judge_first_order()
+        self.drivers = self._find_drivers()
+
+    def _name_subject(self) -> str:
+        """Return what a sentence on broken physics is about."""
+        solution = self.solution
+        has_alternatives = solution.search.impacts > 1 and not solution.search.possible
+        if any(item.varies for item in solution.system.known.values()):
+            # other impacts within the limits may be possible
+            return (
+                "each of the impacts that fit best"
+                if has_alternatives
+                else ("the impact that fits best")
+            )
+        return "every impact that agrees with what is known" if has_alternatives else self.subject
+
+    def _uncertain_results(self, wanted: Sequence[str] | None) -> list[str]:
+        """Return the results asked for, by default what was not known, without those that exact
+        values determine."""
+        solution, known = self.solution, self.solution.system.known
         results = wanted or [
             n
             for n in _RESULTS
@@ -106,56 +136,56 @@ class Measured(Impact):
             and not _along_an_axis(solution, n)
         ]
         names = [name for name in results if name in solution.values]
-        self.deviations = solution.deviations(names)
-        # results that exact values determine are not uncertain
-        names = [n for n in names if self.deviations[n] > 1e-9 * solution.system.scale(n)]
-        self.names, self.correlations = names, solution.correlations(names)
-        self.draws: Draws | None = None
-        self.ranges: dict[str, Range] = {}
-        self.evidence = solution.evidence
-        self.is_empty = self.not_drawn = False
-        self.refused: Draws | None = None
-        wants_draws = bool(samples and names)
-        if like is not None and like.draws and {*names} <= {*like.draws.values}:
-            # all impacts have one distribution; an impossible one has no part in it
-            if not solution.impossible:
-                self.draws, self.ranges = like.draws, {n: like.ranges[n] for n in names}
-        elif like is not None:
-            self.refused = like.refused
-        elif wants_draws and not self.evidence.contradictory:
-            self._draw(samples, seed, progress)
-        elif wants_draws and not solution.assumed:
-            bound = ranges(solution, names[:1], seed, None, progress)[names[0]]
-            self.is_empty = math.isnan(bound.lower)
-        if self.is_empty:
-            self.not_drawn = solution.is_within_limits
-            if not self.not_drawn:
-                self.evidence = solution.weigh_evidence(inside=False)
-        if not solution.assumed:
+        deviations = solution.deviations(names)
+        return [n for n in names if deviations[n] > 1e-9 * solution.system.scale(n)]
+
+    def _take_draws_of(self, other: "Measured") -> None:
+        """Take draws and bounds from another impact of the same distribution; one that does not
+        count has no part in it."""
+        self.refused = other.refused
+        if other.draws and {*self.names} <= {*other.draws.values} and counts(self.solution):
+            self.draws, self.ranges = other.draws, {n: other.ranges[n] for n in self.names}
+
+    def _judge_first_order(self) -> None:
+        """Widen first-order deviations by the misfit, and leave out those that the draws
+        contradict, or that mean nothing where branches meet."""
+        if not self.solution.assumed:
             widening = max(self.evidence.widening, 1.0)
             self.deviations = {n: x * widening for n, x in self.deviations.items()}
-        self.first_order: dict[str, float | None] = {**self.deviations}
-        for name in names if self.draws else ():
-            draws_deviation = (
-                float(np.nanstd(self.draws.values[name], ddof=1)) if self.draws else math.nan
-            )
-            if (
-                not abs(self.deviations[name] - draws_deviation)
-                <= FIRST_ORDER_RTOL * draws_deviation
-            ):
-                self.first_order[name], self.deviations[name] = None, draws_deviation
-        for name in {*names} & {*solution.folded}:
+        deviations = dict(self.deviations)
+        self.first_order = {**deviations}
+        for name in self.names if self.draws else ():
+            assert self.draws is not None
+            drawn = float(np.nanstd(self.draws.values[name], ddof=1))
+            if not abs(deviations[name] - drawn) <= FIRST_ORDER_RTOL * drawn:
+                self.first_order[name], deviations[name] = None, drawn
+        for name in {*self.names} & {*self.solution.folded}:
             self.first_order[name] = None
             if not self.draws:
-                self.deviations[name] = math.nan
-        self.drivers: dict[str, list[tuple[str, float]]] = {}
-        for name, responses in zip(names, solution.responses(names), strict=True):
-            fractions = responses**2 / (np.square(responses).sum() or 1.0)
+                deviations[name] = math.nan
+        self.deviations = deviations
+
+    def _find_drivers(self) -> dict[str, list[tuple[str, float]]]:
+        """Return for each result the known values that cause its uncertainty, with their fractions
+        of its variance, the largest first."""
+        drivers = {}
+        responses = self.solution.responses(self.names)
+        for name, row in zip(self.names, responses, strict=True):
+            fractions = row**2 / (np.square(row).sum() or 1.0)
             order = np.argsort(-fractions, kind="stable")
-            self.drivers[name] = [(solution.system.observations[i], fractions[i]) for i in order]
+            observations = self.solution.system.observations
+            drivers[name] = [(observations[i], fractions[i]) for i in order]
+        return drivers
 
     def _draw(self, samples: int, seed: int, progress: Callable[[int], object]) -> None:
-        """Draw, and search for bounds; ``refused``: draws that do not suffice."""
+        """Draw, and search for bounds; ``refused``: draws that do not suffice. Of values that
+        contradict one another only whether any impact lies within their limits."""
+        if self.evidence.contradictory:
+            if not self.solution.assumed:
+                name = self.names[0]
+                bound = ranges(self.solution, [name], seed, None, progress)[name]
+                self.is_empty = math.isnan(bound.lower)
+            return
         drawn = draws(self.solution, self.names, samples, seed, progress)
         self.is_empty = drawn is None
         if drawn is None:

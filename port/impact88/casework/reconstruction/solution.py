@@ -1,7 +1,8 @@
 """One impact that agrees with what is known: its values, what determines them, and their
 first-order uncertainty."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -17,7 +18,7 @@ from ...names import COEFFICIENTS, FINAL_STATE, VELOCITIES
 from ...status import IMPOSSIBLE, Status
 from .evidence import Evidence, weigh
 from .laws import missed_laws
-from .leastsquares import PENALTIES, descend, polish, pseudo_inverse
+from .leastsquares import polish, pseudo_inverse
 from .system import SPINS, System
 from .unknowns import UnsolvableError, mu_to_type
 
@@ -29,6 +30,7 @@ DIRECTION_TOL = 1e-9  # degrees
 # Cut-off of normal values without limits, in standard deviations, for draws, bounds and agreement
 SIGMAS = 3.0
 FOLD_OFFSET = 1e-2  # scaled distance at which a fold is distinguished from a continuum
+FOLD_MISFIT = 1e-9  # a sum of squares that is larger by less is as good
 FOLD_TOL = 1e-4  # relative singular value below which two branches nearly meet
 FOLD_GRADIENT_TOL = 1e-3  # relative part of a gradient along the fold that counts as zero
 # Unknowns that can be determined best by other evidence
@@ -411,17 +413,54 @@ def typed_friction(state: State, signed: float) -> float:
     return float(np.ravel(mu_to_type(signed, sliding, map(np.real, state.before)))[0])
 
 
+def invariants(values: Mapping[str, float]) -> list[float]:
+    """Return what does not depend on axes, names of vehicles or units, to six digits: the
+    fraction of the initial kinetic energy that is in spins, e and that energy first, then
+    everything else in which impacts differ."""
+    pairs = [("A", "B"), ("AF", "BF")]
+    spin_energies = [
+        sum(
+            # a product of huge spins is infinite, a power of them an error
+            values.get(spin, 0.0) * values.get(spin, 0.0) * values[inertia] / 2
+            for spin, inertia in (("WA" + after, "IA"), ("WB" + after, "IB"))
+            if math.isfinite(values.get(inertia, math.inf))
+        )
+        for after in ("", "F")
+    ]
+    energy = values.get("KI", 0.0)
+    fractions = [x / energy if energy else 0.0 for x in spin_energies]
+    speeds = [sum(values.get("S" + x, 0.0) for x in pair) for pair in pairs]
+    sizes = [abs(values.get(name, 0.0)) for name in ("E", "VC", "PN", "PT", "PM", "MUP", "EM")]
+    sums = [values.get("DVA", 0.0) + values.get("DVB", 0.0), values.get("EL", 0.0)]
+    ranks = [fractions[0], sizes[0], energy, fractions[1], *speeds, *sums, *sizes[1:]]
+    return [float(f"{x:.5e}") if abs(x) > 1e-9 else 0.0 for x in ranks]
+
+
 def _is_fold(system: System, x: Floats, null: Floats) -> bool:
     """Return True if the impact is isolated although first order leaves something undetermined: two
-    branches meet there. Iterations from points beside a fold return to it; beside a point of a
-    continuum they do not."""
-    offset_points = np.concatenate([x + FOLD_OFFSET * null, x - FOLD_OFFSET * null], axis=1)
-    for end in descend(system, offset_points, PENALTIES[1:2]).T:
-        minimum = polish(system, end[:, None])
-        nearest = end[:, None] if minimum is None else minimum
-        if not np.abs(nearest - x).max() < 0.1 * FOLD_OFFSET:
+    branches meet there. Beside a point of a continuum, where one component is held, there is a
+    minimum that is as good; beside a fold there is none."""
+    least = _misfit(system, x)
+    for direction in (*null.T, *-null.T):
+        place = direction @ x[:, 0] + FOLD_OFFSET
+
+        def distance(state: State, direction: Floats = direction, place: float = place) -> Any:
+            rows = zip(system.variables, system.scales, direction, strict=True)
+            return sum(part * state.values[n] / scale for n, scale, part in rows) - place
+
+        beside = polish(
+            system.limited_by([*system.limits, distance]), x + FOLD_OFFSET * direction[:, None]
+        )
+        if beside is not None and _misfit(system, beside) < least + FOLD_MISFIT:
             return False
     return True
+
+
+def _misfit(system: System, x: Floats) -> float:
+    """Return the sum of squared adjustments, infinite where conditions do not hold."""
+    residual, count = system.residuals(system.state(x))[:, 0], system.condition_count
+    holds = np.abs(residual[:count]).max(initial=0.0) <= RESIDUAL_TOL
+    return float(np.square(residual[count:]).sum()) if holds else np.inf
 
 
 def describe(system: System, x: Floats, assumed: bool) -> Reconstruction:
