@@ -34,7 +34,8 @@ NINE = (*BEFORE, "E", "EM", "MUP")
 MOST_WIDTH = (0.9, 1.1)
 MOST_MEDIAN = 0.15  # standard deviations
 LEAST_JUDGE = 1500.0  # effective impacts of the judge
-INWARDS = 1e-5  # of the distance to the nearest draw
+NEIGHBOURS = 10  # draws beside a bound
+INWARDS = (1e-6, 1e-4)  # of the distance to them
 AT_LIMIT = 1e-6  # of a limit's half-width, by rounding
 
 
@@ -71,6 +72,23 @@ def outside(given, points):
     return int((~(ok & (np.sqrt(beyond) < AT_LIMIT))).sum())
 
 
+def ends_outside(given, ends, draws):
+    """How many impacts at which bounds lie (nine numbers, n) are not admitted: they meet all
+    limits, and beside them, towards one of the nearest draws, is an impact that physics allows."""
+
+    def terms(points):
+        named = dict(zip(NINE, points, strict=True))
+        return given.terms(np.array([named[n] for n in given.open]))
+
+    scale = draws.std(axis=1)[:, None, None] + 1e-12
+    distance = np.square((ends[:, :, None] - draws[:, None]) / scale).sum(axis=0)
+    _, _, beyond, is_admitted = terms(ends)
+    for neighbour in np.argsort(distance, axis=1)[:, :NEIGHBOURS].T:
+        for part in INWARDS:
+            is_admitted = is_admitted | terms(ends + part * (draws[:, neighbour] - ends))[3]
+    return int((~(is_admitted & (np.sqrt(beyond) < AT_LIMIT))).sum())
+
+
 def compared(given, best):
     """The worst width ratio, the worst distance of medians, draws outside, bounds exceeded."""
     own, weights, effective = given.sample(60_000, np.random.default_rng(3))
@@ -81,12 +99,7 @@ def compared(given, best):
     # at a closing speed of 0 the nine numbers are quotients of rounding
     closing = posterior.values(*ENDS, ["VC"])[0] > AT_LIMIT * best.solution.system.speed
     ends = posterior.values(*ENDS, NINE)[:, closing]
-    # bounds lie at limits, by rounding at either side: a step towards the nearest draw is inside
-    scale = values.std(axis=1)[:, None, None] + 1e-12
-    distance = np.square((ends[:, :, None] - values[:, None, ::10]) / scale).sum(axis=0)
-    nearest = values[:, ::10][:, distance.argmin(axis=1)]
-    ends = ends + INWARDS * (nearest - ends)
-    report["outside"] += outside(given, dict(zip(NINE, ends, strict=True)))
+    report["outside"] += ends_outside(given, ends, values[:, ::10])
     ratios, medians, exceeded = {}, {}, {}
     drawn = posterior.values(sample.points, sample.branches, JUDGED)
     for name, row in zip(JUDGED, drawn, strict=True):
