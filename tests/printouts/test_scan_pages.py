@@ -3,6 +3,7 @@ IMPACT88_SWEEP all of them."""
 
 from __future__ import annotations
 
+import dataclasses
 import io
 import json
 import os
@@ -48,7 +49,7 @@ from impact88.printouts.scan.holding import (
     judge_cells,
     state,
 )
-from impact88.printouts.scan.layout import Place, Sheet
+from impact88.printouts.scan.layout import Piece, Place, Row, Sheet
 from impact88.printouts.scan.scenes import (
     MAX_CELL_COST,
     Candidate,
@@ -56,6 +57,7 @@ from impact88.printouts.scan.scenes import (
     confirm_inputs,
     scene_of,
 )
+from impact88.printouts.scan.sheets import RETYPED, RETYPED_RATIO
 from impact88.printouts.scan.typeface import READABLE
 from impact88.program.run import run
 from impact88.program.scene import sample
@@ -520,22 +522,41 @@ def test_a_row_cut_through_by_the_edge_of_the_page_is_not_read(part: float) -> N
     assert not [check for check in result.fields if check.name == "VBX" and check.printed]
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("is_retyped", [True, False])
-def test_a_row_in_another_typeface_is_named(is_retyped: bool) -> None:
-    """Its characters lower, at their places; a row only fainter is in the same."""
-    page, cells = genuine()
-    top, bottom = strip_of(cells, "UX")
-    row = page.crop((0, top, page.width, bottom))
-    if is_retyped:
-        low = row.resize((row.width, round(0.8 * row.height)))
-        row = Pillow.new("L", row.size, 255)
-        row.paste(low, (0, 3))
-    else:
-        row = Pillow.eval(row, lambda value: 255 - round(0.7 * (255 - value)))
-    page.paste(row, (0, top))
-    said = "\n".join(read_again(page).remarks)
-    assert ("the row of UX, is in another typeface" in said) is is_retyped
+@pytest.mark.parametrize(
+    ("far", "next_to_it", "is_told"),
+    [
+        (RETYPED + 0.1, 1.0, True),
+        (RETYPED - 0.1, 1.0, False),
+        (10.0, 10.0 / RETYPED_RATIO + 0.1, False),  # the page is worn, or has two such rows
+        (10.0, 10.0 / RETYPED_RATIO - 0.1, True),
+    ],
+)
+def test_a_row_far_from_the_pages_characters_is_in_another_typeface(
+    far: float, next_to_it: float, is_told: bool
+) -> None:
+    """One that is less than others from any character: far from both is a typeface."""
+    distances = {6: far, 7: next_to_it, 8: 1.0}
+    rows = {
+        line: Row(line, 1, 0, "", [Piece(name, "", [])])
+        for line, name in zip(distances, ("UX", "VX", "E"), strict=True)
+    }
+    cells = [
+        dataclasses.replace(cell(name, distance=value, other_distance=30.0), place=Place(line, at))
+        for line, value in distances.items()
+        for at, name in enumerate(("", "UX", "UX"))
+    ]
+    leaf = sheets.Leaf(
+        SimpleNamespace(number=lambda line: line + 1),  # type: ignore[arg-type]
+        Read(Sheet(rows), {}),
+        CellJudgement(Verdict.IDENTICAL),
+        cells=cells,
+    )
+    sheets._find_retyped_row(leaf)
+    assert (
+        leaf.retyped
+        == ["line 7, the row of UX, is in another typeface than the rest of the page"] * is_told
+    )
+    assert leaf.judged.verdict is (Verdict.IDENTICAL_AS_READ if is_told else Verdict.IDENTICAL)
 
 
 # --- what the program does not print -------------------------------------------------------------

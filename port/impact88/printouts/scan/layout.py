@@ -41,7 +41,7 @@ so that no line is taken for an annex of five asterisks."""
 _HOLE = -10.0
 """Gain of a clearly blank cell within a number, in which the program prints none; a faint character
 costs as much as three letters that are missing."""
-_AS_GOOD = 12.0
+AS_GOOD = 12.0
 """Difference in gain, that of four inked cells, up to which two lines of print fit as well."""
 _MIN_NUMBERS = 20
 """Numbers of a printout; with fewer it is not verified from the picture."""
@@ -250,9 +250,9 @@ class Layout:
 
     def candidates(self, start: int, used: int) -> list[LineFit]:
         """Return the lines of print that may begin on a line of the grid and take ``used`` lines of
-        it: those that gain anything there, and within `_AS_GOOD` of the most."""
+        it: those that gain anything there, and within `AS_GOOD` of the most."""
         gains = {key: fit[0] for key, fit in self._fits.items() if key[:2] == (start, used)}
-        least = max(max(gains.values(), default=0.0) - _AS_GOOD, 0.0)
+        least = max(max(gains.values(), default=0.0) - AS_GOOD, 0.0)
         return [self.divided(key) for key, gain in gains.items() if gain > least]
 
 
