@@ -159,7 +159,8 @@ class Coordinates:
     def _take_coefficients_out(self, y: Floats, inputs: Floats) -> None:
         """Make the directions in which impulses change the laws most ``directions``, and the basis
         that of the others."""
-        open_ones = [n for n in self.laws if n not in self.exact_laws]
+        # one that is left to the density is a condition, not a direction to move along
+        open_ones = [n for n in self.laws if n not in (*self.exact_laws, *self.narrow)]
         for names in (open_ones, [n for n in open_ones if n == "EM"]):
             self.coefficients = names
             values = self._coefficients_of(y, inputs)
