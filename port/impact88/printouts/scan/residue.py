@@ -95,11 +95,13 @@ class Mark:
 
 @dataclass
 class Explained:
-    """Ink that a grid's printouts explain: their cells, and the lines of the grid they take."""
+    """Ink that a grid's printouts explain: their cells, the lines of the grid they take, and those
+    of their rows that are cut through and were not read."""
 
     grid: Grid
     cells: Sequence[Cell]
     lines: set[int]
+    cut_lines: set[int]
 
     def typeface(self) -> Typeface:
         """Return the page's typeface under the predicted names."""
@@ -129,7 +131,7 @@ def residue_of(ink: Image, coloured: Image | None, explained: Sequence[Explained
         if not cell.cut and (cell.predicted != BLANK or cell.added in _TYPED_CELLS)
     ]
     outlines = [around for _, around in cells] + [mark.corners for mark in lines_of_type]
-    outlines += [_outline(part.grid, line) for part in explained for line in part.grid.cut]
+    outlines += [_outline(part.grid, line) for part in explained for line in part.cut_lines]
     is_explained = ndimage.binary_dilation(
         _mask_of(outlines, scale, is_dark.shape), iterations=_SPILL
     )
@@ -254,7 +256,7 @@ def _type_at(part: Explained, typeface: Typeface, line: int, cells: Sequence[int
 def _typed_lines(part: Explained) -> Iterator[Mark]:
     """Yield the lines of type that no printout takes, read by the page's own typeface."""
     grid, odds = part.grid, part.grid.odds()
-    free_lines = {*range(len(grid.pictures))} - part.lines - grid.cut
+    free_lines = {*range(len(grid.pictures))} - part.lines - part.cut_lines
     inked_cells = {line: np.flatnonzero(odds[line] > 0) for line in sorted(free_lines)}
     lines = {line: at for line, at in inked_cells.items() if len(at) >= _MIN_TYPED}
     if not lines or not part.cells:

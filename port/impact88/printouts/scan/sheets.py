@@ -74,6 +74,8 @@ class Leaf:
         Marks in and near it that the program's page does not explain.
     repeated, exchanged, retyped, cut : list of str
         Sentences on rows printed twice, out of order, in another typeface, and cut through.
+    cut_lines : set of int
+        Lines of the grid that its rows take which are cut through.
     """
 
     grid: Grid
@@ -86,6 +88,7 @@ class Leaf:
     exchanged: list[str] = field(default_factory=list)
     retyped: list[str] = field(default_factory=list)
     cut: list[str] = field(default_factory=list)
+    cut_lines: set[int] = field(default_factory=set)
 
     @cached_property
     def by_name(self) -> dict[str, list[Cell]]:
@@ -232,7 +235,7 @@ def _lay_on_grid(grid: Grid) -> _OnGrid:
     ):
         in_order = layout_of(order.grid.odds(), order.grid.tops)
         # rows that were exchanged fit at least as well where the program prints them
-        if _gain(in_order.sheets) > gain - AS_GOOD:
+        if not order.exchanged or _gain(in_order.sheets) > gain - AS_GOOD:
             return _OnGrid(order.grid, in_order.sheets, order)
     return _OnGrid(grid, layout.sheets, None)
 
@@ -280,7 +283,9 @@ def _add_marks(
     for key, grid in grids.items():
         on_grid = [leaf for leaf in leaves if id(leaf.grid) == key]
         cells = [cell for leaf in on_grid for cell in leaf.cells]
-        explained.append(Explained(grid, cells, {line for leaf in on_grid for line in leaf.lines}))
+        lines = {line for leaf in on_grid for line in leaf.lines}
+        cut_lines = {line for leaf in on_grid for line in leaf.cut_lines}
+        explained.append(Explained(grid, cells, lines, cut_lines))
     upright = None if coloured is None else np.rot90(coloured, turns)
     for mark in residue_of(np.rot90(ink, turns), upright, explained):
         leaf = min(leaves, key=lambda leaf: leaf.distance_to(mark.corners))
@@ -374,6 +379,7 @@ def _drop_cut_rows(leaf: Leaf) -> None:
             continue
         names = [piece.name for piece in row.pieces if piece.name]
         leaf.read.absent.update(names)
+        leaf.cut_lines.update(range(row.start, row.start + row.used))
         del rows[line]
         if names:
             leaf.cut.append(
