@@ -5,9 +5,10 @@ An impact is its velocities before and its impulse, the unknowns. For given vehi
 linear in these; what they leave open has an orthonormal basis, and the coordinates are the
 components along it, so that every point is one impact. Vehicles that vary are coordinates, too.
 
-Coefficients that are not exact are coordinates of their own, in place of directions of impulses:
-over velocities and impulses they are quotients, and where a denominator vanishes, as at a closing
-speed of 0, the density has a pole.
+EM, where it is not exact, is a coordinate of its own, in place of a direction of impulses: over
+velocities and impulses it is a quotient whose denominator may have either sign, and its density has
+a pole between the two. E and P_t/P_n have none but at a closing speed of 0: as coordinates they
+bend the density so far that draws miss its tails.
 
 One exact value may be quadratic: a speed, a change of velocity or an energy. It is solved for the
 last component. Any further value that is not linear is left to the density (`narrow`).
@@ -159,20 +160,16 @@ class Coordinates:
     def _take_coefficients_out(self, y: Floats, inputs: Floats) -> None:
         """Make the directions in which impulses change the laws most ``directions``, and the basis
         that of the others."""
-        # one that is left to the density is a condition, not a direction to move along
-        open_ones = [n for n in self.laws if n not in (*self.exact_laws, *self.narrow)]
-        for names in (open_ones, [n for n in open_ones if n == "EM"]):
-            self.coefficients = names
-            values = self._coefficients_of(y, inputs)
-            above, below = self._quotients(inputs[:, None])
-            rows = (above - values[:, None, None] * below)[:, :-1, 0]
-            is_impulse = np.array([n in IMPULSES for n in self.unknown])
-            _, sizes, vt = np.linalg.svd((rows * is_impulse) @ self.basis.T)
-            count = len(names)
-            if count and count <= len(sizes) and sizes[-1] > LEAST_DEPENDENCE * sizes[0]:
-                self.directions = vt[:count] @ self.basis
-                self.basis = unique_basis(vt[count:]) @ self.basis
-                return
+        self.coefficients = [n for n in self.laws if n == "EM" and n not in self.exact_laws]
+        count, values = len(self.coefficients), self._coefficients_of(y, inputs)
+        above, below = self._quotients(inputs[:, None])
+        rows = (above - values[:, None, None] * below)[:, :-1, 0]
+        is_impulse = np.array([n in IMPULSES for n in self.unknown])
+        _, sizes, vt = np.linalg.svd((rows * is_impulse) @ self.basis.T)
+        if count and count <= len(sizes) and sizes[-1] > LEAST_DEPENDENCE * np.abs(rows).max():
+            self.directions = vt[:count] @ self.basis
+            self.basis = unique_basis(vt[count:]) @ self.basis
+            return
         self.coefficients = []
 
     def _coefficients_of(self, y: Floats, inputs: Floats) -> Floats:
