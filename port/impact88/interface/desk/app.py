@@ -39,6 +39,7 @@ BENCHES = {
     "paper": "paper",
     "bounds": "collision",
     "reconstruction": "reconstruction",
+    "report": "collision",
 }
 """Kinds of slow work, and the module that does each; an edited text overtakes waiting papers."""
 _FORM = ("values", "units")
@@ -319,7 +320,7 @@ def _add_files(routes: Blueprint, ask: Ask) -> None:
     @routes.post("/case-report/<view>")
     def case_report(view: str) -> Response:
         text, name = file_of(view)
-        document = ask("bounds", "case_report", text=text, name=name)
+        document = ask("report", "case_report", text=text, name=name)
         return _download(document, "text/html", "case.html")
 
     def file_read(names: Collection[str]) -> Any:

@@ -2,7 +2,7 @@
 
 const ID = crypto.randomUUID();
 let turn = 0; // requests arrive in any order: each says which it is
-const STOPPABLE = ["paper", "edit", "bounds", "reconstruction"];
+const STOPPABLE = ["paper", "edit", "bounds", "reconstruction", "report"];
 
 /** Input that cannot be used, or a fault; the message is the program's sentence. */
 export class Problem extends Error {}

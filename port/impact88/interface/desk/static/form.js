@@ -118,7 +118,7 @@ export function formView(view, { sample, file, read, put, answer, loaded = () =>
     at("save").addEventListener("click", () => doing(async () => save(await ask(`file/${view}`, question()))));
     at("report").addEventListener("click", () => doing(async () => {
       const writing = ask(`case-report/${view}`, question());
-      const response = await watched(at("busy"), "Writing the report", "bounds", writing);
+      const response = await watched(at("busy"), "Writing the report", "report", writing);
       if (response) await save(response);
     }));
     at("print").addEventListener("click", () => print());
