@@ -742,6 +742,17 @@ class TestWhatAnEngineerKnows:
         assert item.high == pytest.approx(math.sqrt(2 * 0.8 * gravity * 64))
         with pytest.raises(UserError, match="needs units"):
             read("skid 62 at 0.7", "SAF")
+
+    @pytest.mark.parametrize("distance", ["60", "60 +- 2", "normal 60 2", "56 .. 64"])
+    @pytest.mark.parametrize("friction", ["0.7", "0.7 +- .05", "normal 0.7 .03", "0.5 .. 0.9"])
+    def test_a_skid_spreads_as_its_distance_and_friction_do(self, distance, friction):
+        rng = np.random.default_rng(11)
+        drawn = [read(text, "SAF").draws(rng, 200_000) for text in (distance, friction)]
+        spread = np.sqrt(2 * 9.80665 / 0.3048 * drawn[0] * drawn[1]).std()
+        speed = read(f"skid {distance} at {friction}", "SAF", units="us")
+        assert speed.draws(rng, 200_000).std() == pytest.approx(spread, rel=0.15, abs=1e-9)
+
+    def test_what_is_no_skid(self):
         with pytest.raises(UserError, match="is not a skid"):
             read("skid 62", "SAF", units="us")
 

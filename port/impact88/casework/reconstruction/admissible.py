@@ -24,7 +24,7 @@ Array = NDArray[Any]
 
 WIDER = 0.2  # widening of friction's limits on either side, relative to their distance
 MORE = 0.1  # and beside that
-# Where nothing ends the sliding, P_t/P_n has no other limit. The listing takes -10 for a pivot.
+# Where nothing ends the sliding, P_t/P_n has no other limit; 10, as MU = -10 is the listing's pivot
 LARGEST_FRICTION = 10.0
 
 APPROACH = "approach"
@@ -109,8 +109,8 @@ class Admissible:
                 parts.append(f"{name} lies from {low:g} to {high:g}")
         if FRICTION in self.rows:
             parts.append(
-                "P_t/P_n lies between 0 and what ends the sliding, a fifth and 0.1 more on either "
-                f"side, and within {LARGEST_FRICTION:g}"
+                f"P_t/P_n lies between 0 and what ends the sliding, {WIDER:.0%} of that and "
+                f"{MORE:g} more on either side, and within {LARGEST_FRICTION:g}"
             )
         return f"{', '.join(parts[:-1])} and {parts[-1]}" if parts[1:] else parts[0]
 

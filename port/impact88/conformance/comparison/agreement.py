@@ -329,7 +329,10 @@ def _read_plain(texts: Sequence[object]) -> tuple[Floats, Floats] | None:
     if not all(isinstance(text, str) for text in texts):
         return None
     cells = [str(text) for text in texts]
-    characters = np.frombuffer("".join(cells).encode(), np.uint8)
+    joined = "".join(cells)
+    if not joined.isascii():  # half a surrogate pair cannot even be encoded
+        return None
+    characters = np.frombuffer(joined.encode(), np.uint8)
     if not _IS_PLAIN[characters].all():
         return None
     try:
