@@ -925,6 +925,9 @@ def test_a_speck_before_an_angle_moves_none_of_its_cells() -> None:
     assert read.shift("TA", "-87") == 0
     assert read.shift("TB", "87") == 0
     assert read.shift("TB", "-87") == -1
+    read.costs["GA"] = costs(".87.")
+    assert read.shift("GA", "87") == 1
+    assert read.cost("GA", "87") == 2 * 5.0
 
 
 def test_lines_that_overlap_are_one() -> None:

@@ -21,7 +21,7 @@ from ..recovery.slips import TWO_DIGITS, slips_of
 from ..recovery.typedtext import stored_and_printed
 from .ink import Floats
 from .layout import Sheet
-from .typeface import READABLE
+from .typeface import BLANK, READABLE
 
 MAX_CELL_COST = 6.0
 """Largest cost of a cell, in units of `read_numbers`: a contradiction counts once."""
@@ -96,20 +96,17 @@ class Read:
         spare = len(costs) - len(text)
         if spare == -1 and self.cost(name, text[1:]) < self.cost(name, text[:-1]):
             return -1
-        rightward, leftward = (
-            _text_cost(costs, side) for side in (text.rjust(len(costs)), text.ljust(len(costs)))
-        )
-        return spare if spare > 0 and rightward < leftward else 0
+        places = _placements(costs, text)
+        return min(range(len(places)), key=places.__getitem__)
 
     def _cost(self, costs: Floats, text: str) -> float:
-        """Return the cost of cells for a text, flush left or flush right."""
+        """Return the cost of cells for a text, wherever it begins in them."""
         total = MAX_CELL_COST * max(0, len(text) - len(costs))
         if len(text) == len(costs) + 1 and text.startswith("-"):
             # a faint sign before an angle is taken for a blank
             return MAX_CELL_COST + min(self._cost(costs, text[1:]), self._cost(costs, text[:-1]))
         # a character added before a number moves none of its others
-        sides = {text.ljust(len(costs)), text.rjust(len(costs))}
-        return total + min(_text_cost(costs, side) for side in sides)
+        return total + min(_placements(costs, text))
 
     def page(self, known: Mapping[str, str] | None = None) -> tuple[str, dict[str, int]]:
         """Return the printout as text, and where in it each number begins.
@@ -124,6 +121,15 @@ class Read:
                     starts[name] = len(page)
                 page += (known or {}).get(name) or self.text(name) if name else text
         return page, starts
+
+
+def _placements(costs: Floats, text: str) -> list[float]:
+    """Return the cost of cells for a text that begins in the first of them, the second ..., with
+    blanks around: specks may be taken for characters on either side."""
+    return [
+        _text_cost(costs, (BLANK * start + text).ljust(len(costs)))
+        for start in range(max(len(costs) - len(text), 0) + 1)
+    ]
 
 
 def _text_cost(costs: Floats, text: str) -> float:
