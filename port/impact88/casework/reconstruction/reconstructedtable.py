@@ -19,6 +19,7 @@ from ...names import COEFFICIENTS, FINAL_STATE, VELOCITIES, quantity
 from ..uncertainty.boundstable import unbounded_sides
 from . import adjustment
 from .admissible import ENDS
+from .evidence import AGREE
 from .nearest import counts, refusal
 from .posterior import MAX_VELOCITY, MIN_SIZE
 from .reconstructed import MIN_GAIN, Draws, Range, draws, ranges
@@ -207,7 +208,10 @@ class Measured(Impact):
         """Return labels and texts to print above the answer: broken physics, the evidence, the
         search."""
         broken_rules = [*super().headline(units)]
-        search, evidence = self.solution.search, ("EVIDENCE", self.evidence.text(units))
+        search, verdict = self.solution.search, self.evidence.text(units)
+        if self.solution.impossible and self.evidence.verdict == AGREE:
+            verdict = f"in an impact that physics forbids, {verdict}"
+        evidence = ("EVIDENCE", verdict)
         rows = (
             [evidence, *broken_rules] if self.evidence.contradictory else [*broken_rules, evidence]
         )

@@ -131,7 +131,7 @@ class Reconstruction:
     adjusted : tuple of Adjusted
         What was known within a tolerance: measured and adjusted value.
     redundancy : int
-        Known values more than needed.
+        Measured values more than needed: what only exact values say tests no measurement.
     squares : float
         Sum of squared adjustments in standard deviations, about the redundancy when tolerances are
         right.
@@ -521,7 +521,9 @@ def describe(system: System, x: Floats, assumed: bool) -> Reconstruction:
         Adjusted(n, item.nominal, item.tolerance, adjusted_value)
         for n, item, adjusted_value in items
     )
-    redundancy = len(rows) - (rows.shape[1] - null.shape[1])
+    _, feasible = pseudo_inverse(rows[: system.condition_count])
+    _, left_open = pseudo_inverse(rows[system.condition_count :] @ feasible)
+    redundancy = len(items) - (feasible.shape[1] - left_open.shape[1])
     return Reconstruction(
         system=system,
         x=x,
