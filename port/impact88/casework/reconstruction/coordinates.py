@@ -27,7 +27,7 @@ from ...collision.geometry import GEOMETRY, Geometry
 from ...mechanics.posed import absent_results
 from ...mechanics.state import COURSES, CRUSH, DIRECTIONS, ENERGIES, SPEEDS, State
 from ...names import COEFFICIENTS, IMPULSES, PIVOT, VELOCITIES
-from .admissible import LARGEST_FRICTION, RANGES
+from .admissible import RANGES
 from .solution import Reconstruction
 from .system import COMPLEX_STEP, System
 from .unknowns import TIE
@@ -160,13 +160,15 @@ class Coordinates:
     def _take_coefficients_out(self, y: Floats, inputs: Floats) -> None:
         """Make the directions in which impulses change the laws most ``directions``, and the basis
         that of the others."""
-        self.coefficients = [n for n in self.laws if n == "EM" and n not in self.exact_laws]
+        if "EM" not in self.laws or "EM" in self.exact_laws:
+            return
+        self.coefficients = ["EM"]
         count, values = len(self.coefficients), self._coefficients_of(y, inputs)
         above, below = self._quotients(inputs[:, None])
         rows = (above - values[:, None, None] * below)[:, :-1, 0]
         is_impulse = np.array([n in IMPULSES for n in self.unknown])
         _, sizes, vt = np.linalg.svd((rows * is_impulse) @ self.basis.T)
-        if count and count <= len(sizes) and sizes[-1] > LEAST_DEPENDENCE * np.abs(rows).max():
+        if count <= len(sizes) and sizes[-1] > LEAST_DEPENDENCE * np.abs(rows).max():
             self.directions = vt[:count] @ self.basis
             self.basis = unique_basis(vt[count:]) @ self.basis
             return
@@ -179,8 +181,7 @@ class Coordinates:
         for name in self.coefficients:
             above, below = map(_number, state.quotient(name))
             value = above / (below or 1e-300)
-            ends = RANGES.get(name, (-LARGEST_FRICTION, LARGEST_FRICTION))
-            values.append(value if name in self.known else float(np.clip(value, *ends)))
+            values.append(value if name in self.known else float(np.clip(value, *RANGES[name])))
         return np.array(values)
 
     def _quotients(self, inputs: Array) -> tuple[Array, Array]:
@@ -193,8 +194,6 @@ class Coordinates:
             rows = np.array(np.broadcast_arrays(*part, np.empty((size, 1))))[:-1]
             rows[:, :-1] -= rows[:, -1:]
             parts.append(rows)
-        if not parts:
-            return np.empty((0, size, 1)), np.empty((0, size, 1))
         return parts[0], parts[1]
 
     def _drop_implied(self, inputs: Floats) -> None:

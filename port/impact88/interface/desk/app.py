@@ -41,7 +41,8 @@ BENCHES = {
     "reconstruction": "reconstruction",
     "report": "collision",
 }
-"""Kinds of slow work, and the module that does each; an edited text overtakes waiting papers."""
+"""Kinds of slow work, and the module that does each, in a process of its own: an edited text
+overtakes waiting papers, and a case report is not ended by newer ranges."""
 _FORM = ("values", "units")
 
 GROUPS = {

@@ -1,7 +1,8 @@
 """Processes for what takes long, so that the page stays quick and a newer question ends an older.
 
 A process can be ended from outside, a thread cannot. Each kind of work has one: it is started in
-advance, kept between questions, ended with its question, and another is started.
+advance and kept between questions; where a question is ended the process is, too, and another is
+started for the next.
 """
 
 import multiprocessing
