@@ -752,6 +752,24 @@ class TestWhatAnEngineerKnows:
         speed = read(f"skid {distance} at {friction}", "SAF", units="us")
         assert speed.draws(rng, 200_000).std() == pytest.approx(spread, rel=0.15, abs=1e-9)
 
+    def test_a_skid_of_two_ranges_is_that_of_one_where_the_other_is_narrow(self):
+        rng = np.random.default_rng(11)
+        of_one, of_two = (
+            read(f"skid {distance} at 0.5 .. 0.9", "SAF", units="us").draws(rng, 200_000).std()
+            for distance in ("60", "60 +- .1")
+        )
+        assert of_two == pytest.approx(of_one, rel=0.02)
+
+    def test_a_skid_and_an_exact_restitution_have_draws(self):
+        """Along one line, where friction is not given and nothing acts along the plane."""
+        known = {"M": "4", "MA": "1000", "MB": "2200", "HA": "0", "SB": "0", "E": "0", "HAF": "0"}
+        known |= {"SAF": "skid 2.5 .. 3 m at 0.40 +- .05", "units": "si"}
+        (solution,) = reconstruct(known)
+        drawn = Measured(solution, 4000, 0, ["SA"])
+        speed = np.sqrt(2 * 9.80665 * np.outer((2.5, 3), (0.35, 0.45)))
+        assert drawn.ranges["SA"].lower == pytest.approx(3.2 * speed.min(), rel=1e-4)
+        assert drawn.ranges["SA"].upper == pytest.approx(3.2 * speed.max(), rel=1e-4)
+
     def test_what_is_no_skid(self):
         with pytest.raises(UserError, match="is not a skid"):
             read("skid 62", "SAF", units="us")
