@@ -10,7 +10,7 @@ import pytest
 from longer import long_but
 
 import printouts
-from impact88.printouts.reading.fieldlabels import LabelState
+from impact88.printouts.reading.differences import Kind
 from impact88.printouts.reading.printout import read_printouts
 from impact88.printouts.reporting.examination import Verdict, Verification, verify
 from impact88.printouts.reporting.verification import lines
@@ -105,7 +105,7 @@ def test_results_given_to_the_other_vehicle() -> None:
 def test_a_missing_label_is_told(name: str) -> None:
     result = one(SAMPLE.replace(f"{name}= ", "", 1))
     assert result.verdict is Verdict.IDENTICAL_AS_READ
-    assert [check.state for check in result.labels].count(LabelState.MISSING) == 1
+    assert [label.kind for label in result.labels].count(Kind.MISSING) == 1
     assert f"the program prints {name.replace(' ', '')}" in "\n".join(lines(result))
 
 
@@ -116,8 +116,8 @@ def test_a_missing_label_is_told(name: str) -> None:
 def test_a_damaged_label_leaves_a_doubt_on_a_page_that_no_machine_read(old: str, new: str) -> None:
     result = one(SAMPLE.replace(old, new, 1))
     assert result.verdict is Verdict.IDENTICAL_AS_READ
-    (damaged,) = (check for check in result.labels if check.state is LabelState.DAMAGED)
-    assert damaged.doubt
+    (damaged,) = (label for label in result.labels if label.kind is Kind.LOOK_ALIKE)
+    assert damaged.bears
     assert f"line {damaged.line}: the label" in "\n".join(lines(result))
 
 
@@ -161,7 +161,7 @@ def test_a_line_that_is_none_of_the_programs_is_told_whole(
     result = one(page)
     bars = bars or where == "inside"
     assert result.verdict is (Verdict.IDENTICAL_AS_READ if bars else Verdict.IDENTICAL)
-    assert [piece.text for piece in result.left_over if piece.whole] == [text]
+    assert [piece.read for piece in result.left_over if piece.kind is Kind.FOREIGN_LINE] == [text]
     assert text in "\n".join(lines(result))
 
 
@@ -351,8 +351,8 @@ def test_each_mark_that_the_page_lacks_is_told() -> None:
         mark = TRANSCRIPT[start:stop]
         line = TRANSCRIPT.count("\n", 0, start) + 1
         (shown,) = read_printouts(TRANSCRIPT[:start] + TRANSCRIPT[stop:])
-        (label,) = [label for label in shown.labels if label.doubt]
-        assert (label.printed, label.line, label.state) == (mark, line, LabelState.MISSING)
+        (label,) = [label for label in shown.labels if label.bears]
+        assert (label.printed, label.line, label.kind) == (mark, line, Kind.MISSING)
         if number % 6:
             continue
         result = verify(shown)
@@ -381,7 +381,7 @@ def test_a_lost_percent_sign_is_told_with_its_number_and_in_json() -> None:
     described = result.as_json()
     assert described["verdict"] == "identical_as_read"
     (mark,) = [label for label in described["labels"] if label["printed"] == "%"]
-    assert (mark["name"], mark["state"], mark["read"]) == ("LOSS", "missing", "")
+    assert (mark["name"], mark["kind"], mark["read"]) == ("LOSS", "missing", "")
 
 
 def test_a_page_retyped_without_any_equals_sign_is_told_once() -> None:

@@ -179,7 +179,7 @@ def test_every_glyph_ends_in_a_number_a_label_or_left_over() -> None:
     text = SAMPLE.replace("XA= -29.04 YA= 0", "XA= -29.04 YA= 0     <- checked 11/88")
     result = one(text)
     assert result.verdict is Verdict.IDENTICAL_AS_READ
-    told = {place.text for place in result.left_over if place.beside}
+    told = {place.read for place in result.left_over if place.bears}
     told |= {doubt.read for check in result.fields for doubt in check.doubts}
     assert "<" in "".join(told)
 
@@ -187,7 +187,7 @@ def test_every_glyph_ends_in_a_number_a_label_or_left_over() -> None:
 def test_fragments_and_second_pages_are_told() -> None:
     results = [verify(one) for one in read_printouts(SAMPLE + "\n PAGE 2\n\nMA= 143.5 MB= 95.8\n")]
     assert [result.verdict for result in results] == [Verdict.IDENTICAL, Verdict.INCOMPLETE]
-    assert "PAGE 2" in {piece.text for piece in results[0].left_over}
+    assert "PAGE 2" in {piece.read for piece in results[0].left_over}
 
 
 @pytest.mark.long
@@ -592,10 +592,10 @@ def test_a_reader_that_reads_all_else_loses_no_mark() -> None:
             found = read_printouts(row["read"])
         for shown in found:
             numbers = [field.clean for field in shown.fields.values()]
-            beside = [piece for piece in shown.left_over if piece.beside]
-            labels = [label for label in shown.labels if label.doubt and not label.is_mark]
+            beside = [piece for piece in shown.left_over if piece.bears]
+            labels = [label for label in shown.labels if label.bears and not label.is_mark]
             if len(numbers) == 36 and all(numbers) and not (shown.remarks or beside or labels):
                 exact += 1
                 without_asterisks += any("asterisks" in note for note in shown.notes)
-                assert not any(label.doubt for label in shown.labels), row["name"]
+                assert not any(label.bears for label in shown.labels), row["name"]
     assert (exact, without_asterisks) == (4, 1)

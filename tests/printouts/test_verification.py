@@ -288,7 +288,7 @@ def test_a_digit_in_the_first_prompt_is_left_over() -> None:
     page = run(sample(1)).page.replace("Vax,Vay", "Vax,Va5y", 1)
     (found,) = verify(page)
     assert found.verdict is Verdict.IDENTICAL_AS_READ
-    assert [piece.text for piece in found.left_over] == ["5"]
+    assert [piece.read for piece in found.left_over] == ["5"]
 
 
 # --- what a reader lost or damaged accuses nobody ------------------------------------------------

@@ -13,7 +13,7 @@ from ...collision.fields import FIELDS
 from ...errors import UserError
 from ...names import FINAL_VELOCITIES, quantity
 from ...printouts.judging.judgement import Status, Verdict
-from ...printouts.reading.fieldlabels import LabelState
+from ...printouts.reading.differences import Kind
 from ...printouts.reporting.verification import (
     MEANINGS,
     TITLES,
@@ -123,7 +123,7 @@ def _marks(result: Verification) -> Iterator[tuple[int, int, str]]:
         for start, read in places or [(check.start, "")]:
             yield start, start + max(1, len(read)), "doubtful"
     for label in result.labels:
-        wrong = label.state is LabelState.CONTRADICTORY
-        if wrong or label.doubt:
+        if label.bears:
+            wrong = label.kind is Kind.CONTRADICTS
             yield label.start, label.stop, "differs" if wrong else "doubtful"
-    yield from ((piece.start, piece.stop, "over") for piece in result.left_over if piece.beside)
+    yield from ((piece.start, piece.stop, "over") for piece in result.left_over if piece.bears)

@@ -19,6 +19,8 @@ import numpy as np
 from ...collision.doubles import double
 from ...collision.fields import ANGLES, FIELDS, INPUTS, scene_name
 from ..judging.judgement import Judged
+from ..reading.differences import Kind, differences_along
+from ..reading.numerals import compare
 from ..recovery import slips
 from ..recovery.replays import run_all
 from ..recovery.rereading import Reread, Rereading
@@ -323,20 +325,17 @@ def _change_as_json(page: PageEvidence, change: Change) -> dict[str, Any]:
     readings = page.paper.replies if name.startswith("reply ") else page.paper.fields
     name = name.removeprefix("reply ")
     reading = readings.get(name)
-    label = kind in (LABELS_EXCHANGED, LABEL_WRONG)
-    place = next((check for check in page.paper.labels if label and check.name == name), reading)
-    line, column = (place.line, place.column) if place else (None, None)
-    look = ""
-    if place and (label or kind in slips.BITS):
-        at, alternatives = (line, column), f"{page_text} or {would_be}"
-        if kind == slips.DIGIT and reading is not None:
-            index = next(at for at in range(len(page_text)) if page_text[at] != would_be[at])
-            alternatives = (
-                f"{page_text[index]} {'an' if would_be[index] == '8' else 'a'} {would_be[index]}"
-            )
-            if index < len(reading.region):
-                at = page.paper.page.place(reading.region[index].offset)
-        look = f"line {at[0]}, column {at[1]}: is this {alternatives}?"
+    labels = [label for label in page.paper.mislabelled if label.name == name]
+    line, column, look = None, None, ""
+    if kind in (LABELS_EXCHANGED, LABEL_WRONG):
+        line, column = labels[0].line, labels[0].column
+        look = f"line {line}, column {column}: is this {page_text} or {would_be}?"
+    elif reading is not None:
+        line, column = reading.line, reading.column
+        path = compare(reading.region, would_be).path
+        places = [*differences_along(page.paper.page, name, reading.region, would_be, path)]
+        places = [one for one in places if one.kind is Kind.CONTRADICTS] or places
+        look = "; ".join(one.question for one in places) if kind in slips.BITS else ""
     return {
         "kind": kind, "field": name, "printed": page_text, "would_be": would_be,
         "line": line, "column": column, "look": look,

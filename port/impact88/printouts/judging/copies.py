@@ -21,7 +21,6 @@ from ...errors import UserError
 from ...program.emulated import ListingCopy
 from ...program.run import run
 from ...program.scene import sample
-from ..reading.fieldlabels import LabelState
 from ..reading.numerals import value_of
 from ..reading.printout import Printout, read_printouts
 from ..recovery.recovered import Recovered
@@ -243,14 +242,13 @@ class CopyPages:
         scene: dict[str, str],
         besides: Mapping[int, str],
     ) -> Judged:
-        """Judge the printout by the copy's page for one scene. The copy's own labels count as
-        exact; the numbers of a line that only the copy prints are compared, too."""
+        """Judge the printout by the copy's page for one scene. The copy's own labels are no
+        differences; the numbers of a line that only the copy prints are compared, too."""
         outcome, lines = self._run(scene)
         labels = [
-            label._replace(state=LabelState.EXACT, doubt=False)
-            if self._labels.get((label.name, label.printed), label.printed) == label.read
-            else label
+            label
             for label in paper.labels
+            if self._labels.get((label.name, label.printed)) != label.read
         ]
         paper = replace(paper, labels=labels)
         plain_lines = set(map(_plain, lines))

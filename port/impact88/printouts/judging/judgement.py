@@ -5,18 +5,17 @@ prints fits them), contradicted (cleanly read, and not what the program prints) 
 verdict follows from these alone.
 """
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from itertools import groupby
-from typing import Any, NamedTuple
+from typing import Any
 
 from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES
-from ..reading.fieldlabels import LabelState
+from ..reading.differences import Difference, Kind, difference_at, differences_along
 from ..reading.glyphs import Region
-from ..reading.numerals import LONGEST, Doubt, Match, Spot, compare, cut_as, note_start
-from ..reading.printout import Piece, Printout, Reading, reading_of
+from ..reading.numerals import Match, compare, cut_as, note_start
+from ..reading.printout import Printout, Reading, reading_of
 from ..recovery.recovered import Recovered, reply_candidates, without_mark
 from ..recovery.typedtext import stored_and_printed
 
@@ -45,27 +44,6 @@ class Status(StrEnum):
     NOT_COMPARED = "not compared"
 
 
-class Doubtful(NamedTuple):
-    """One place where the paper was not read as the program prints it.
-
-    Parameters
-    ----------
-    line, column, start : int
-        Line and column from 1, and the offset in the text.
-    read, printed : str
-        What was read and what the program prints; either may be empty.
-    how : str
-        Kind of the difference (`numerals.Doubt`).
-    """
-
-    line: int
-    column: int
-    start: int
-    read: str
-    printed: str
-    how: str
-
-
 @dataclass
 class FieldCheck:
     """One printed number compared with the program's.
@@ -84,7 +62,7 @@ class FieldCheck:
         The number in exact arithmetic, and the printed number less that.
     line, column, start, stop : int, optional
         Its place in the text: line and column from 1, and offsets.
-    doubts : list of Doubtful
+    doubts : list of Difference
         The places at which it was not read as the program prints it.
     """
 
@@ -98,7 +76,7 @@ class FieldCheck:
     column: int | None = None
     start: int | None = None
     stop: int | None = None
-    doubts: list[Doubtful] = field(default_factory=list)
+    doubts: list[Difference] = field(default_factory=list)
 
     @property
     def same(self) -> bool | None:
@@ -132,28 +110,16 @@ class FieldCheck:
         return [
             (doubt.printed, doubt.read)
             for doubt in self.doubts
-            if doubt.how == Doubt.CONTRADICTS and doubt.read.isdigit() and doubt.printed.isdigit()
+            if doubt.kind is Kind.CONTRADICTS and doubt.read.isdigit() and doubt.printed.isdigit()
         ]
-
-
-class Standing(StrEnum):
-    """What a character of the page is: as the program prints it there, a reading of what it prints
-    there, or nothing that it prints."""
-
-    MATCHED = "matched"
-    DOUBTFUL = "doubtful"
-    LEFT_OVER = "left over"
-
-
-Standings = dict[int, Standing]
-"""Standing of characters, by their offset in the text."""
 
 
 @dataclass
 class Judged:
     """A printout compared with the page of the recovered scene: every number, the replies, the
-    ending, and the verdict. ``notes``: text typed beside a number that was read exactly;
-    ``standings``: of every character that the printout accounts for."""
+    ending, and the verdict. ``notes``: text typed beside a number, or in a number's place and not
+    compared; ``account``: by the offset of every character that the printout accounts for, the
+    difference that it belongs to, None for one that is as printed."""
 
     paper: Printout
     recovered: Recovered
@@ -161,14 +127,17 @@ class Judged:
     replies: list[FieldCheck]
     ending: FieldCheck
     verdict: Verdict
-    notes: list[Piece] = field(default_factory=list)
-    standings: Standings = field(default_factory=dict)
+    notes: list[Difference] = field(default_factory=list)
+    account: dict[int, Difference | None] = field(default_factory=dict)
 
     def characters(self) -> dict[str, int]:
-        """Return the numbers of characters by standing; markup is left over."""
-        counts = Counter(self.standings.values())
-        counts[Standing.LEFT_OVER] += self.paper.markup
-        return {standing.name.lower(): counts[standing] for standing in Standing}
+        """Return the numbers of characters that are matched (as the program prints them there),
+        doubtful (readings of what it prints there) and left over; markup is left over."""
+        counts = {"matched": 0, "doubtful": 0, "left_over": self.paper.markup}
+        for one in self.account.values():
+            is_reading = one is not None and (one.printed or one.kind is Kind.ILLEGIBLE)
+            counts["matched" if one is None else "doubtful" if is_reading else "left_over"] += 1
+        return counts
 
     @property
     def contradicted(self) -> list[FieldCheck]:
@@ -180,18 +149,15 @@ class Judged:
 def judge(paper: Printout, recovered: Recovered, others: Sequence[FieldCheck] = ()) -> Judged:
     """Compare a printout with the recovered scene's page. ``others``: replies compared
     elsewhere."""
-    numbers: Standings = {}
-    replies = [
-        _reply(paper, recovered, name, reading, numbers) for name, reading in paper.replies.items()
-    ]
-    checks, notes = _fields(paper, recovered, numbers)
+    replies = [_reply(paper, recovered, name, reading) for name, reading in paper.replies.items()]
+    checks, notes = _fields(paper, recovered)
     if all(check.status != Status.CONTRADICTED for check in checks):
         _doubt_damaged_replies(paper, replies)
     ending = _ending(paper, recovered)
-    standings = _account(paper, numbers)
-    notes += _unlisted(paper, standings, {*numbers})
+    notes += _not_compared(paper, [*checks, *replies], notes)
+    account = _account(paper, [*checks, *replies], notes)
     judgement = Judged(
-        paper, recovered, checks, [*replies, *others], ending, Verdict.IDENTICAL, notes, standings
+        paper, recovered, checks, [*replies, *others], ending, Verdict.IDENTICAL, notes, account
     )
     judgement.verdict = _verdict(judgement)
     return judgement
@@ -209,62 +175,58 @@ def _verdict(found: Judged) -> Verdict:
         return Verdict.INCOMPLETE
     doubtful = any(check.status != Status.READ for check in [*found.fields, *found.replies])
     extra_text = any(piece.bears for piece in paper.left_over) or bool(found.notes or paper.remarks)
-    if doubtful or extra_text or any(label.doubt for label in paper.labels):
+    if doubtful or extra_text or any(label.bears for label in paper.labels):
         return Verdict.IDENTICAL_AS_READ
     return Verdict.IDENTICAL
 
 
-def _account(paper: Printout, numbers: Standings) -> Standings:
-    """Return the standing of every character that a printout accounts for. ``numbers``: of those in
-    numbers that were compared; in others nothing is what the program prints."""
-    standings: Standings = {}
+def _account(
+    paper: Printout, checks: Sequence[FieldCheck], notes: Sequence[Difference]
+) -> dict[int, Difference | None]:
+    """Return the difference that each character of a printout belongs to, by its offset."""
+    account: dict[int, Difference | None] = {
+        paper.page.glyphs[index].offset: None for index in paper.own
+    }
+    differences = [*paper.misread(), *paper.left_over, *notes]
+    for check in checks:
+        if check.start is not None and check.stop is not None and check.same is not True:
+            span, printed = (check.start, check.stop), check.recomputed or ""
+            whole = difference_at(paper.page, Kind.ILLEGIBLE, check.name, printed, span)
+            differences += check.doubts or [whole]
+    for one in differences:
+        for at in range(one.start, one.stop):
+            if at in account and at not in paper.echoed:
+                account[at] = one
+    return account
+
+
+def _not_compared(
+    paper: Printout, checks: Sequence[FieldCheck], notes: Sequence[Difference]
+) -> Iterator[Difference]:
+    """Yield what stands in a number's place and is in none of the numbers compared, such as a reply
+    before the one that counts."""
+    spans = [(check.start or 0, check.stop or 0) for check in checks]
+    spans += [(one.start, one.stop) for one in [*paper.left_over, *notes]]
+    known = paper.echoed | {at for span in spans for at in range(*span)}
     roles, glyphs = paper.roles(), paper.page.glyphs
-    apart = [piece for piece in paper.left_over if piece.whole]
-    outside = {at for piece in apart for at in range(piece.start, piece.stop)}
-    for index in paper.own:
-        offset, role = glyphs[index].offset, roles.get(index)
-        standing = Standing.LEFT_OVER
-        if offset in paper.echoed or (role == "exact" and offset not in outside):
-            standing = Standing.MATCHED
-        elif role == "letter" and offset not in outside:
-            standing = Standing.DOUBTFUL
-        standings[offset] = numbers.get(offset, standing)
-    return standings
-
-
-def _unlisted(paper: Printout, standings: Standings, listed: set[int]) -> Iterator[Piece]:
-    """Yield what is left over in a number's place, such as a reply before the one that counts.
-    ``listed``: offsets of characters that are listed with a number."""
-    listed |= {at for piece in paper.left_over for at in range(piece.start, piece.stop)}
     loose = [
         index
         for index in paper.own
-        if standings[offset := paper.page.glyphs[index].offset] is Standing.LEFT_OVER
-        if offset not in listed
+        if roles.get(index) == "number" and glyphs[index].offset not in known
     ]
     for _, pairs in groupby(enumerate(loose), lambda pair: pair[1] - pair[0]):
         run = [index for _, index in pairs]
-        yield _note(paper, paper.page.glyphs[run[0] : run[-1] + 1])
-
-
-def _standings_of(region: Region, spots: Sequence[Spot]) -> Standings:
-    """Return the standing of a number's glyphs, from their differences from the program's text."""
-    standings = {glyph.offset: Standing.MATCHED for glyph in region}
-    for spot in spots:
-        standing = Standing.DOUBTFUL if spot.printed else Standing.LEFT_OVER
-        for glyph in region[spot.at :][: len(spot.read)]:
-            standings[glyph.offset] = standing
-    return standings | {glyph.offset: Standing.LEFT_OVER for glyph in region[LONGEST:]}
+        yield difference_at(
+            paper.page, Kind.LEFT_OVER, "", "", paper.page.span(run[0], run[-1] + 1)
+        )
 
 
 # --- numbers -------------------------------------------------------------------------------------
 
 
-def _fields(
-    paper: Printout, recovered: Recovered, standings: Standings
-) -> tuple[list[FieldCheck], list[Piece]]:
+def _fields(paper: Printout, recovered: Recovered) -> tuple[list[FieldCheck], list[Difference]]:
     """Return a check of every field that is printed or should be, in the order of the printout; and
-    the notes typed beside numbers that were read. ``standings`` takes those of their glyphs."""
+    the notes typed beside numbers that were read."""
     checks, notes = [], []
     row = _angle_row(paper, recovered)
     for name in FIELDS:
@@ -279,29 +241,26 @@ def _fields(
             check.status = Status.NOT_READ
         elif text is not None:
             note_at = note_start(reading.region)
-            if note_at < len(reading.region) and reading.region[:note_at]:
-                number_match = compare(reading.region[:note_at], text)
-                if not number_match.contradicts:
-                    notes.append(_note(paper, reading.region[note_at:]))
-                    standings |= {g.offset: Standing.LEFT_OVER for g in reading.region[note_at:]}
-                    check.stop = reading.region[note_at - 1].offset + 1
-                    reading = replace(reading, region=reading.region[:note_at], stop=check.stop)
+            number, rest = reading.region[:note_at], reading.region[note_at:]
+            if rest and number and not compare(number, text).contradicts:
+                span = rest[0].offset, rest[-1].offset + 1
+                notes.append(difference_at(paper.page, Kind.LEFT_OVER, name, "", span))
+                check.stop = number[-1].offset + 1
+                reading = replace(reading, region=number, stop=check.stop)
             match = compare(reading.region, text, reading.cut, reading.sign_free)
-            standings |= _standings_of(reading.region, match.spots)
+            check.doubts = _differences(paper, name, reading, text, match)
             if name in row and name != ANGLES[0] and not reading.region[0].gap:
-                match = match._replace(spots=(Spot(0, "", "", Doubt.BLANK), *match.spots))
-            check.status = _status(match, reading.region, text)
-            check.doubts = _doubts(paper, reading, match.spots)
+                joint = difference_at(paper.page, Kind.BLANK, name, "", (reading.start,) * 2, "")
+                check.doubts.insert(0, joint)
+            check.status = _status(check.doubts, reading.region, text)
             if check.status is Status.READ:
                 check.printed = text
             elif check.printed == text or (
                 check.status is Status.CONTRADICTED and not reading.clean
             ):
                 check.printed = _paper_text(paper, reading)
-        else:
-            if not recovered.missing:
-                check.status = Status.CONTRADICTED
-            standings |= {glyph.offset: Standing.DOUBTFUL for glyph in reading.region}
+        elif not recovered.missing:
+            check.status = Status.CONTRADICTED
         checks.append(check)
     return checks, notes
 
@@ -316,12 +275,6 @@ def _paper_text(paper: Printout, reading: Reading) -> str:
     return text if len(text) <= MAX_SHOWN else text[: MAX_SHOWN - 3] + "..."
 
 
-def _note(paper: Printout, region: Region) -> Piece:
-    start, stop = region[0].offset, region[-1].offset + 1
-    text = " ".join(paper.page.text[start:stop].split())
-    return Piece(text, *paper.page.place(start), start, stop, beside=True)
-
-
 def _check(name: str, reading: Reading | None, text: str | None) -> FieldCheck:
     check = FieldCheck(name, reading.text if reading else None, text)
     if reading:
@@ -330,25 +283,29 @@ def _check(name: str, reading: Reading | None, text: str | None) -> FieldCheck:
     return check
 
 
-def _status(match: Match, region: Region, text: str) -> Status:
-    """Return the status of a number from the match of its glyphs with the program's text."""
-    if not match.spots:
+def _status(differences: Sequence[Difference], region: Region, text: str) -> Status:
+    """Return the status of a number from the differences of its glyphs from the program's text."""
+    if not differences:
         return Status.READ
-    if any(spot.doubt is Doubt.CUT for spot in match.spots) and not match.contradicts:
+    kinds = {one.kind for one in differences}
+    contradicts = Kind.CONTRADICTS in kinds
+    if Kind.CUT in kinds and not contradicts:
         return Status.NOT_READ
     foreign = any(not glyph.char.isdigit() and glyph.char not in "-.+" for glyph in region)
-    if (foreign or not match.contradicts) and _hardly_read(match, text):
+    if (foreign or not contradicts) and _hardly_read(differences, text):
         return Status.NOT_READ
-    return Status.CONTRADICTED if match.contradicts else Status.DOUBTFUL
+    return Status.CONTRADICTED if contradicts else Status.DOUBTFUL
 
 
-def _hardly_read(match: Match, text: str) -> bool:
-    if any(spot.doubt is Doubt.RETYPED for spot in match.spots):
+def _hardly_read(differences: Sequence[Difference], text: str) -> bool:
+    """Return True if fewer than half of a number's characters were read, look-alikes as halves."""
+    if any(one.kind is Kind.OTHER_FORM for one in differences):
         return False
-    alike = sum(spot.doubt in (Doubt.LOOK_ALIKE, Doubt.BLANK) for spot in match.spots)
-    if not match.exact and not alike:
+    exact = len(text) - sum(len(one.printed) for one in differences if one.kind is not Kind.BLANK)
+    alike = sum(one.kind in (Kind.LOOK_ALIKE, Kind.BLANK) for one in differences)
+    if not exact and not alike:
         return True
-    return len(text) > 2 and 2 * match.exact + alike < len(text)
+    return len(text) > 2 and 2 * exact + alike < len(text)
 
 
 def _angle_row(paper: Printout, recovered: Recovered) -> dict[str, Region]:
@@ -360,59 +317,47 @@ def _angle_row(paper: Printout, recovered: Recovered) -> dict[str, Region]:
     return {name: paper.angle_row[start:stop] for name, (start, stop) in pairs}
 
 
-def _doubts(paper: Printout, reading: Reading, spots: Sequence[Spot]) -> list[Doubtful]:
-    starts = [*(glyph.offset for glyph in reading.region), reading.stop]
-    doubts = []
-    for spot in spots:
-        start = starts[spot.at]
-        _, read, printed, doubt = spot
-        # glyphs are capitals; the page may have a small letter here
-        typed = paper.page.text[start : start + len(read)]
-        read = typed if typed.upper() == read else read
-        doubts.append(Doubtful(*paper.page.place(start), start, read, printed, str(doubt)))
-    return doubts
+def _differences(
+    paper: Printout, name: str, reading: Reading, text: str, match: Match
+) -> list[Difference]:
+    return [*differences_along(paper.page, name, reading.region, text, match.path)]
 
 
 # --- replies, and the ending ---------------------------------------------------------------------
 
 
-def _reply(
-    paper: Printout, recovered: Recovered, name: str, reading: Reading, standings: Standings
-) -> FieldCheck:
+def _reply(paper: Printout, recovered: Recovered, name: str, reading: Reading) -> FieldCheck:
     """Compare a reply at a prompt with the scene's velocity, by value; then with its text as typed
-    or as printed, with or without the first glyph, whichever matches best. ``standings`` takes
-    those of its glyphs."""
+    or as printed, with or without the first glyph, whichever matches best."""
     value = recovered.typed.get(name, recovered.scene[name])
-    standings |= {glyph.offset: Standing.DOUBTFUL for glyph in reading.region}
     if name in recovered.missing:
         return _check(name, reading, None)
     check = _check(name, reading, value)
     if reading.clean and same_value(reading.text, value):
         check.status = Status.READ
-        standings |= {glyph.offset: Standing.MATCHED for glyph in reading.region}
         return check
     stored = stored_and_printed(value)
     texts = sorted({value, stored[1]} if stored else {value})
     parts = filter(None, (reading, without_mark(reading)))
-    matches = [(part, compare(part.region, text)) for part in parts for text in texts]
-    part, match = min(matches, key=lambda pair: pair[1].cost)
-    standings |= _standings_of(part.region, match.spots)
-    check.status, how = Status.NOT_READ, Doubt.ILLEGIBLE
+    matches = [(part, text, compare(part.region, text)) for part in parts for text in texts]
+    part, text, match = min(matches, key=lambda found: found[2].cost)
+    differences = _differences(paper, name, part, text, match)
+    check.status, kind = Status.NOT_READ, Kind.ILLEGIBLE
     if any(same_value(text, value) for text, _, _ in reply_candidates(reading)):
-        check.status, how = Status.DOUBTFUL, Doubt.LOOK_ALIKE
-    elif reading.clean or (match.contradicts and not _hardly_read(match, value)):
-        check.status, check.doubts = Status.CONTRADICTED, _doubts(paper, part, match.spots)
+        check.status, kind = Status.DOUBTFUL, Kind.LOOK_ALIKE
+    elif reading.clean or (match.contradicts and not _hardly_read(differences, text)):
+        check.status, check.doubts = Status.CONTRADICTED, differences
         return check
-    place = reading.line, reading.column, reading.start
-    reply_text = reading.text if reading.text != value else _paper_text(paper, reading)
-    check.doubts = [Doubtful(*place, reply_text, value, str(how))]
+    span = reading.start, reading.stop
+    read = reading.text if reading.text != value else _paper_text(paper, reading)
+    check.doubts = [difference_at(paper.page, kind, name, value, span, read)]
     return check
 
 
 def _doubt_damaged_replies(paper: Printout, replies: Sequence[FieldCheck]) -> None:
     """Doubt the replies at a prompt that was itself misread, its letters or its question mark,
     where every printed number is the program's: the reader damaged that line."""
-    misread = {label.name for label in paper.labels if label.state is LabelState.DAMAGED}
+    misread = {label.name for label in paper.labels if label.kind is Kind.LOOK_ALIKE}
     by_name = {check.name: check for check in replies}
     for side, names in REPLIES.items():
         side_checks = [by_name[name] for name in names if name in by_name]
@@ -425,9 +370,9 @@ def _doubt_damaged_replies(paper: Printout, replies: Sequence[FieldCheck]) -> No
         for check in side_checks if mark or f"REPLY_{side}" in misread else ():
             if check.status is Status.CONTRADICTED:
                 check.status = Status.DOUBTFUL
-                place = check.line or 0, check.column or 0, check.start or 0
-                reply_text, program_text = check.printed or "", check.recomputed or ""
-                check.doubts = [Doubtful(*place, reply_text, program_text, str(Doubt.LOOK_ALIKE))]
+                span = check.start or 0, check.stop or 0
+                texts = check.recomputed or "", span, check.printed or ""
+                check.doubts = [difference_at(paper.page, Kind.LOOK_ALIKE, check.name, *texts)]
 
 
 def same_value(text: str, other: str) -> bool:

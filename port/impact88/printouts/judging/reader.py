@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
-from ..reading.numerals import Doubt
+from ..reading.differences import Kind
 from ..reading.printout import Printout
 from ..recovery.rereading import Rereading
 from .judgement import FieldCheck, Judged, Status, Verdict, judge
@@ -85,7 +85,7 @@ def is_reader_error(checks: Sequence[FieldCheck], replies: Sequence[FieldCheck])
 def _digits_lost_or_added(check: FieldCheck) -> int:
     """Return the number of digits that were not read, or read where none is printed. Digits lost
     behind a final point count as one, for the program ends no number with a point."""
-    wrong = [doubt for doubt in check.doubts if doubt.how == Doubt.CONTRADICTS]
+    wrong = [doubt for doubt in check.doubts if doubt.kind is Kind.CONTRADICTS]
     if check.printed and check.printed.endswith(".") and not any(doubt.read for doubt in wrong):
         return 1
     return sum(

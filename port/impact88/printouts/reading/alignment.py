@@ -55,18 +55,18 @@ LINES = (
 MAY_BE_MISSING = (0, 1, 10, 13, 14)
 """Lines that genuine pages lack: the prompts, rows of asterisks, the final spins where M = 4."""
 _LABELLED = "PA={PA}PB={PB}TA={TA}TB={TB}GA={GA}"
-"""The angles as some people retype them."""
+"""The angles with a label each, as some people type them."""
 ROWS = (*LINES[:6], _LABELLED, *LINES[6:])
-"""Lines that pages have: the program's, and the retyped angles as line 6."""
+"""Lines that pages have: the program's, and angles with labels as line 6."""
 # Indices of lines in `ROWS`.
 PROMPTS = 2  # the lines before this one are prompts
 HEADING = 4
 ANGLE_ROW = 5
-RETYPED_ANGLES = 6
+LABELLED_ANGLES = 6
 FIRST_STARS = 11
 SPINS = 14
 STARS = 15
-_OPTIONAL = (0, 1, HEADING, RETYPED_ANGLES, FIRST_STARS, SPINS, STARS)
+_OPTIONAL = (0, 1, HEADING, LABELLED_ANGLES, FIRST_STARS, SPINS, STARS)
 _INFINITE: int = np.iinfo(np.int16).max // 3
 """Cost of what is impossible; three of them still fit into an int16."""
 

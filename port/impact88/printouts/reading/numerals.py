@@ -10,12 +10,12 @@ by blanks only. Costs are in units of one wrong letter (`glyphs.COSTS` in hundre
 import re
 from collections.abc import Callable, Iterable, Iterator
 from decimal import Decimal
-from enum import StrEnum
 from functools import cache, lru_cache
 from typing import NamedTuple
 
 from ...apple.applesoft.decimaltext import lay_out
-from .editpath import cheapest_path
+from .differences import Kind
+from .editpath import Step, cheapest_path
 from .glyphs import (
     COSTS,
     GAP_COSTS,
@@ -28,37 +28,6 @@ from .glyphs import (
 )
 
 
-class Doubt(StrEnum):
-    """Kinds of differences between a glyph and what the program prints there."""
-
-    LOOK_ALIKE = "look-alike"
-    ILLEGIBLE = "illegible"
-    BLANK = "blank inside"
-    LEFT_OVER = "left over"
-    RETYPED = "never printed so"
-    CUT = "cut off"
-    CONTRADICTS = "contradicts"
-
-
-class Spot(NamedTuple):
-    """One place where the glyphs differ from the printed text.
-
-    Attributes
-    ----------
-    at : int
-        The glyph's index in the region; the region's length if there is none.
-    read, printed : str
-        What was read, and what the program prints.
-    doubt : Doubt
-        The kind of difference.
-    """
-
-    at: int
-    read: str
-    printed: str
-    doubt: Doubt
-
-
 class Match(NamedTuple):
     """An explanation of glyphs by a printed text.
 
@@ -66,20 +35,17 @@ class Match(NamedTuple):
     ----------
     cost : float
         0 for glyphs that are the text.
-    spots : tuple of Spot
-        All differences.
-    exact : int
-        Number of glyphs that are as printed.
+    path : tuple of Step
+        The steps from the glyphs to the text, each with its kind of difference, None for none.
     """
 
     cost: float
-    spots: tuple[Spot, ...]
-    exact: int
+    path: tuple[Step, ...]
 
     @property
     def contradicts(self) -> bool:
         """True if some glyph, cleanly read, is not what the program prints."""
-        return any(spot.doubt is Doubt.CONTRADICTS for spot in self.spots)
+        return any(kind is Kind.CONTRADICTS for _, _, kind in self.path)
 
 
 Glyphs = tuple[tuple[str, Gap], ...]
@@ -178,12 +144,13 @@ def compare(region: Region, printed: str, cut: bool = False, sign_free: bool = F
     """
     text = letters(region)
     number = clean(region)
+    whole = len(region), len(printed)
     if number == printed:
-        return Match(0.0, (), len(printed))
+        return Match(0.0, ((*whole, None),))
     if printed == "0" and _is_broken_zero(text):
-        return Match(_SPECK, (Spot(0, text, printed, Doubt.LOOK_ALIKE),), 0)
+        return Match(_SPECK, ((*whole, Kind.LOOK_ALIKE),))
     if number is not None and value_of(number) == value_of(printed):
-        return Match(_SLIGHT, (Spot(0, text, printed, Doubt.RETYPED),), len(printed))
+        return Match(_SLIGHT, ((*whole, Kind.OTHER_FORM),))
     return _explain(tuple(glyph[:2] for glyph in region[:LONGEST]), printed, cut, sign_free)
 
 
@@ -192,10 +159,10 @@ def _explain(region: Glyphs, printed: str, cut: bool, sign_free: bool) -> Match:
     """Return the cheapest explanation: a glyph for a printed character, an extra glyph, and a lost
     character are its steps."""
 
-    def replaced(i: int, j: int) -> tuple[float, Doubt | None]:
-        cost, doubt = _substitution_cost(region, i, printed[j])
+    def replaced(i: int, j: int) -> tuple[float, Kind | None]:
+        cost, kind = _substitution_cost(region, i, printed[j])
         blank = j > 0 and region[i][1]
-        return cost + _SLIGHT * bool(blank), doubt or (Doubt.BLANK if blank else None)
+        return cost + _SLIGHT * bool(blank), kind or (Kind.BLANK if blank else None)
 
     cost, path = cheapest_path(
         len(region),
@@ -204,76 +171,68 @@ def _explain(region: Glyphs, printed: str, cut: bool, sign_free: bool) -> Match:
         lambda i, j: _extra_cost(region, i, printed, j, sign_free),
         lambda i, j: _lost_cost(region, i, printed, j, cut),
     )
-    spots, exact = list[Spot](), 0
-    i = j = 0
-    for di, dj, doubt in path:
-        read, printed_char = region[i][0] if di else "", printed[j] if dj else ""
-        exact += read == printed_char
-        if doubt is not None:
-            spots.append(Spot(i, read, printed_char, doubt))
-        i, j = i + di, j + dj
-    return Match(cost, tuple(spots), exact)
+    return Match(cost, tuple(path))
 
 
-def _substitution_cost(region: Glyphs, i: int, printed: str) -> tuple[float, Doubt | None]:
-    """Return cost and doubt of reading a printed character as glyph i."""
+def _substitution_cost(region: Glyphs, i: int, printed: str) -> tuple[float, Kind | None]:
+    """Return cost and kind of reading a printed character as glyph i."""
     char = region[i][0]
     likely = {} if char == "E" else printed_for(char)
     if char == printed:
         return 0.0, None
     if char == ILLEGIBLE:
-        return _MARK, Doubt.ILLEGIBLE
+        return _MARK, Kind.ILLEGIBLE
     if char + printed == "+-" or (char + printed == "-." and _between_digits(region, i)):
-        return _MARK, Doubt.LOOK_ALIKE
+        return _MARK, Kind.LOOK_ALIKE
     if char in NUMERIC and char != "E":
-        return _CONTRADICTION, Doubt.CONTRADICTS
+        return _CONTRADICTION, Kind.CONTRADICTS
     if printed in likely:
-        return likely[printed], Doubt.LOOK_ALIKE
+        return likely[printed], Kind.LOOK_ALIKE
     if printed in "-." and char in _SPECKS:
-        return _MARK, Doubt.LOOK_ALIKE
+        return _MARK, Kind.LOOK_ALIKE
     if char in "OQØ©®@IL|!ZSB$&":  # the look-alike of another digit
-        return _CONTRADICTION, Doubt.CONTRADICTS
-    return _FOREIGN, Doubt.ILLEGIBLE
+        return _CONTRADICTION, Kind.CONTRADICTS
+    return _FOREIGN, Kind.ILLEGIBLE
 
 
 def _extra_cost(
     region: Glyphs, i: int, printed: str, j: int, sign_free: bool
-) -> tuple[float, Doubt]:
-    """Return cost and doubt of glyph i, for which the program prints nothing."""
+) -> tuple[float, Kind]:
+    """Return cost and kind of glyph i, for which the program prints nothing."""
     char, gap = region[i]
     after, gap_after = region[i + 1] if i + 1 < len(region) else ("", Gap.NONE)
     if (char == "+" and after and j == 0) or (
         char == "0" and j < 2 and printed[j : j + 1] == "." == after and not gap_after
     ):
-        return _SLIGHT, Doubt.RETYPED
+        return _SLIGHT, Kind.OTHER_FORM
     if char.isdigit():
         is_note = j == len(printed) and _in_a_note(region, i)
-        return (_SPECK, Doubt.LEFT_OVER) if is_note else (_CONTRADICTION, Doubt.CONTRADICTS)
+        return (_SPECK, Kind.LEFT_OVER) if is_note else (_CONTRADICTION, Kind.CONTRADICTS)
     if char == "-":
         if i == j == 0 and sign_free:
-            return _SLIGHT, Doubt.LEFT_OVER
+            return _SLIGHT, Kind.LEFT_OVER
         if j == len(printed) or "-" in (after, region[i - 1][0] if i else ""):
-            return _SPECK, Doubt.LEFT_OVER
+            return _SPECK, Kind.LEFT_OVER
         if (i and gap) or gap_after:
-            return _FOREIGN, Doubt.LEFT_OVER
+            return _FOREIGN, Kind.LEFT_OVER
     inside = 0 < j < len(printed)
     is_full = char in _FULL and inside and not gap and after and not gap_after
     if char == "-" or is_full or (char == "." and _between_digits(region, i)):
-        return _CONTRADICTION - _FOREIGN / 2, Doubt.CONTRADICTS
+        return _CONTRADICTION - _FOREIGN / 2, Kind.CONTRADICTS
     is_speck = char == "." or (char in _SPECKS and not inside)
-    return _SPECK if is_speck else _MARK, Doubt.LEFT_OVER
+    return _SPECK if is_speck else _MARK, Kind.LEFT_OVER
 
 
-def _lost_cost(region: Glyphs, i: int, printed: str, j: int, cut: bool) -> tuple[float, Doubt]:
-    """Return cost and doubt of printed character j, for which there is no glyph."""
+def _lost_cost(region: Glyphs, i: int, printed: str, j: int, cut: bool) -> tuple[float, Kind]:
+    """Return cost and kind of printed character j, for which there is no glyph."""
     if cut and i == len(region) and j:
-        return _SLIGHT, Doubt.CUT
+        return _SLIGHT, Kind.CUT
     is_parted = printed[j] == "." and 0 < i < len(region) and region[i][1] is Gap.BLANK
     neighbours = region[max(i - 1, 0) : i + 1]
     if is_parted or any(char not in NUMERIC or char == "E" for char, _ in neighbours):
         # a glyph beside it is foreign, and may be more than one character run together
-        return _FOREIGN, Doubt.ILLEGIBLE
-    return _CONTRADICTION - _SPECK * (not printed[j].isdigit()), Doubt.CONTRADICTS
+        return _FOREIGN, Kind.ILLEGIBLE
+    return _CONTRADICTION - _SPECK * (not printed[j].isdigit()), Kind.CONTRADICTS
 
 
 def _between_digits(region: Glyphs, i: int) -> bool:
@@ -423,7 +382,7 @@ def _possible_characters(region: Glyphs, index: int, any_char: bool) -> dict[str
     else:
         possible = char + "-." * (char in "+-") if char in NUMERIC else "".join(printed_for(char))
     costs = {other: _substitution_cost(region, index, other) for other in possible}
-    return {other: cost for other, (cost, doubt) in costs.items() if doubt is not Doubt.CONTRADICTS}
+    return {other: cost for other, (cost, kind) in costs.items() if kind is not Kind.CONTRADICTS}
 
 
 _MAX_CUTS = 400  # ways to cut the row; doubled, 4 of 47 texts have more of them

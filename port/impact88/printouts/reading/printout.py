@@ -8,10 +8,9 @@ row of angles is cut, and what belongs nowhere is kept as left over.
 import re
 import unicodedata
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
-from typing import NamedTuple
 
 from ...apple.applesoft.errorcodes import CODES
 from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT
@@ -30,13 +29,24 @@ from .alignment import (
     align,
     letter_of,
 )
-from .fieldlabels import MACHINE_READ, LabelCheck, LabelState, label_checks, words_before
+from .differences import Difference, Kind, difference_at
 from .glyphs import Gap, Page, Region, label_cost, letters, plain_glyphs
-from .labelmarks import asterisk_note, mark_checks, retyping_note
+from .labels import (
+    asterisk_note,
+    form_note,
+    has_gaps_only,
+    label_differences,
+    mark_differences,
+    weigh_labels,
+    words_before,
+)
 from .pagerows import find_rows
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
+MACHINE_READ = 3
+"""Misread letters of labels and damaged numbers from which a machine read the page: people do not
+type PE for PB."""
 BADLY_READ = 17
 """Misread letters, asterisks and numbers from which a page is badly read: of the given scans that
 differ 58 of 88 readings of genuine pages have as many, and 2 of 84 of pages with an altered
@@ -105,38 +115,6 @@ class Reading:
         return dict(ways)
 
 
-class Piece(NamedTuple):
-    """Text that belongs to no field and no label.
-
-    Parameters
-    ----------
-    text : str
-        The text.
-    line, column, start, stop : int
-        Its place: line and column from 1, and offsets.
-    beside : bool
-        True if it bears on the page: it stands beside a number or a label, or holds a label.
-    whole : bool
-        True if it is a whole line.
-    within : bool
-        True if it stands between the first and the last line of a printout.
-    """
-
-    text: str
-    line: int
-    column: int
-    start: int
-    stop: int
-    beside: bool
-    whole: bool = False
-    within: bool = False
-
-    @property
-    def bears(self) -> bool:
-        """True if the page with it is not all that the program prints."""
-        return self.beside or self.within
-
-
 @dataclass(repr=False)
 class Printout:
     """One printout as read from a text, by `read_printouts`.
@@ -166,12 +144,12 @@ class Printout:
         True if anything of the last row of asterisks was found.
     has_final_spins : bool
         True if the line of the final WA and WB was found, read or not: then M = N.
-    left_over : list of Piece
+    left_over : list of Difference
         Text that belongs to no field and no label.
     remarks : list of str
         What could not be read, and its place.
-    labels : list of LabelCheck
-        How each number is named.
+    labels : list of Difference
+        Labels and marks that are not as the program prints them.
     notes : list of str
         What was normalised or passed over.
     unread : str
@@ -210,9 +188,9 @@ class Printout:
     ending: str | None = None
     ended: bool = False
     has_final_spins: bool = False
-    left_over: list[Piece] = field(default_factory=list)
+    left_over: list[Difference] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
-    labels: list[LabelCheck] = field(default_factory=list)
+    labels: list[Difference] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     unread: str = ""
     misread_letters: int = 0
@@ -287,15 +265,15 @@ class Printout:
         return f"<Printout at line {self.line}: {len(self.fields)} numbers read>"
 
     @property
-    def mislabelled(self) -> list[LabelCheck]:
+    def mislabelled(self) -> list[Difference]:
         """Labels that name another number than the one beside them."""
-        return [label for label in self.labels if label.state is LabelState.CONTRADICTORY]
+        return [label for label in self.labels if label.kind is Kind.CONTRADICTS]
 
     @property
     def out_of_order(self) -> bool:
         """True if rows of a page of the program's form are out of its order.
 
-        A page without prompts and rows of asterisks was retyped, in an order of its own.
+        A page without prompts and rows of asterisks is a list of numbers, in an order of its own.
         """
         return bool(self.exchanged) and (bool(self.replies) or self.ended)
 
@@ -305,31 +283,32 @@ class Printout:
         return bool(self.mislabelled) or self.out_of_order
 
     @property
-    def marks(self) -> int:
-        """Number of signs of an optical reader on its numbers.
+    def signs_of_reader(self) -> int:
+        """Number of signs of an optical reader.
 
-        Counted are numbers that nobody would type so, in pieces or with more than O for 0 and l
-        for 1, and specks beside numbers.
+        Counted are misread letters of labels, and labels that lack some; numbers that nobody would
+        type so, in pieces or with more than O for 0 and l for 1; and specks beside numbers.
         """
         specks = (
-            piece.beside and not piece.whole and len(piece.text) <= 3 for piece in self.left_over
+            piece.kind is Kind.LEFT_OVER and bool(piece.name) and len(piece.read) <= 3
+            for piece in self.left_over
         )
-        return sum(specks) + sum(
+        return self.misread_letters + sum(specks) + sum(
             any(glyph.gap for glyph in region[1:]) or not _TYPED.issuperset(letters(region))
             for region in (
                 field.region[: numerals.note_start(field.region)] for field in self.fields.values()
             )
-        )
+        )  # fmt: skip
 
     @property
     def machine_read(self) -> bool:
         """True if the text shows signs of an optical reader: misread labels, damaged numbers."""
-        return self.misread_letters + self.marks >= MACHINE_READ
+        return self.signs_of_reader >= MACHINE_READ
 
     @property
     def badly_read(self) -> bool:
         """True if too much was misread to tell an altered digit from a misread one."""
-        return self.misread_letters + self.marks >= BADLY_READ
+        return self.signs_of_reader >= BADLY_READ
 
     @property
     def fragment(self) -> bool:
@@ -419,11 +398,8 @@ class Printout:
         return stop
 
     def check_labels(self) -> None:
-        """Set ``labels`` and ``misread_letters``: the number that each label names, and marks."""
+        """Set ``labels`` and ``misread_letters``: labels and marks that are not the program's."""
         read = {name: self._slots[name] for name in self.fields if name in self._slots}
-        marks = (
-            self.marks + self._misread("*") if len(self.fields) >= _MIN_NUMBERS else MACHINE_READ
-        )
         label_glyphs = [
             (
                 name,
@@ -432,20 +408,32 @@ class Printout:
             )
             for name, own in LABELS
         ]
-        self.labels = label_checks(self.page, label_glyphs, read, marks)
-        wrong = {label.name for label in self.mislabelled}
-        self.misread_letters = self._misread("*ABCDEFGHIJKLMNOPQRSTUVWXYZ", wrong)
-        if not self.machine_read:  # nobody typed another letter by reading it so
-            self.labels = [
-                label._replace(doubt=True)
-                if label.state is LabelState.DAMAGED and label.name in FIELDS
-                else label
-                for label in self.labels
-            ]
+        self.labels = label_differences(self.page, label_glyphs, read)
+        self.misread_letters = self._count_misread()
+        is_piece = len(self.fields) < _MIN_NUMBERS
+        self.labels = weigh_labels(self.labels, self.machine_read, is_piece)
+        self.misread_letters = self._count_misread()
         replies = {name: slot for name, slot in self._slots.items() if name not in FIELDS}
-        self.labels += mark_checks(
+        self.labels += mark_differences(
             self.page, self._states, read | replies, self.labels, self.machine_read
         )
+
+    def misread(self) -> list[Difference]:
+        """Return the characters of labels, marks and prompts that are read as others.
+
+        Returns
+        -------
+        list of Difference
+            One for each, in the order of the page.
+        """
+        return [
+            difference_at(
+                self.page, Kind.LOOK_ALIKE if self._letter(index) else Kind.ILLEGIBLE, "",
+                self._letter(index), self.page.span(index, index + 1), self.page.glyphs[index].char,
+            )
+            for index, role in sorted(self.roles().items())
+            if role == "letter"
+        ]  # fmt: skip
 
     def read_otherwise(self) -> list[str]:
         """Return a note on misread letters of labels that leave no doubt which number is meant.
@@ -456,17 +444,14 @@ class Printout:
             One note with the letters by line, or none.
         """
         reported = {
-            at for label in self.labels if label.doubt for at in range(label.start, label.stop)
+            at for label in self.labels if label.bears for at in range(label.start, label.stop)
         }
-        reported |= {at for label in self.mislabelled for at in range(label.start, label.stop)}
-        places: dict[int, list[str]] = {}
-        for index, role in self.roles().items():
-            glyph, letter = self.page.glyphs[index], self._letter(index)
-            if role == "letter" and letter and glyph.offset not in reported:
-                line, _ = self.page.place(glyph.offset)
-                places.setdefault(line, []).append(f"{glyph.char} for {letter}")
-        by_line = [f"line {line}: {', '.join(marks)}" for line, marks in sorted(places.items())]
-        return [f"letters and marks read as others: {'; '.join(by_line)}"] if by_line else []
+        by_line: dict[int, list[str]] = {}
+        for one in self.misread():
+            if one.start not in reported and one.printed:
+                by_line.setdefault(one.line, []).append(f"{one.read} for {one.printed}")
+        said = [f"line {line}: {', '.join(marks)}" for line, marks in sorted(by_line.items())]
+        return [f"letters and marks read as others: {'; '.join(said)}"] if said else []
 
     def _drop_cropped(self) -> None:
         """Drop numbers at the beginning of lines if the left margin is cut off.
@@ -483,17 +468,17 @@ class Printout:
                     self._remark(name, start, "begins where the margin is cut off")
                     del self._slots[name]
 
-    def _misread(self, letters_of: str, wrong: Collection[str] = ()) -> int:
-        """Return how many letters of labels were read as other letters or figures.
-
-        ``letters_of``: the letters and marks that count; ``wrong``: labels that are left out.
-        """
+    def _count_misread(self) -> int:
+        """Return how many letters of labels were read as other letters or figures, and how many
+        labels lack letters only; labels that contradict are left out."""
+        wrong = {label.name for label in self.mislabelled}
         excluded = {state for name, own in LABELS if name in wrong for state in own}
-        return sum(
+        damaged = (label for label in self.labels if label.kind is Kind.LOOK_ALIKE)
+        return sum(has_gaps_only(label.printed, label.read) for label in damaged) + sum(
             self.page.glyphs[index].char != letter and self.page.glyphs[index].char.isalnum()
             for index, state in self._states.items()
             if state not in excluded and state != self._states.get(index - 1)
-            and (letter := letter_of(state)) and letter in letters_of
+            and ((letter := letter_of(state)) == "*" or letter.isalpha())
         )  # fmt: skip
 
     def _is_worth_reporting(self) -> bool:
@@ -678,21 +663,21 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     return found
 
 
-def _markup_pieces(printout: Printout, text: str, stripped: str) -> list[Piece]:
+def _markup_pieces(printout: Printout, text: str, stripped: str) -> list[Difference]:
     """Return the markup that a printout has once only: characters typed there, rather than the form
     of the text."""
     last, _ = printout.page.place(printout.stop - 1)
     lines = zip(text.split("\n"), stripped.split("\n"), strict=False)
-    pieces, start = dict[str, list[Piece]](), 0
+    pieces, start = dict[str, list[Difference]](), 0
     for number, (line, stripped_line) in enumerate(lines, 1):
         if printout.line <= number <= last and line.strip():
             runs = [at for at, char in enumerate(line) if stripped_line[at : at + 1] != char]
             places = range(printout.start - start, printout.stop - start)
             runs = [at for at in runs if at in places and not line[at].isspace()]
             if runs:
-                span = runs[0], runs[-1] + 1
-                place = (span[0] + 1, start + span[0], start + span[1])
-                piece = Piece(line[slice(*span)], number, *place, False, within=True)
+                first, end = runs[0], runs[-1] + 1
+                place = (number, first + 1, start + first, start + end)
+                piece = Difference(Kind.LEFT_OVER, "", line[first:end], "", *place)
                 removed = Counter(line[at] for at in runs if not line[at].isalnum())
                 pieces.setdefault("".join(sorted(removed)), []).extend(
                     [piece] * max(removed.values(), default=1)
@@ -735,7 +720,7 @@ def _read_column(text: str) -> tuple[list[Printout], str]:
         printout.check_labels()
         printout.notes += _character_notes(page.text[printout.start : printout.stop])
         printout.notes += printout.read_otherwise()
-        printout.notes += retyping_note(printout.labels)
+        printout.notes += form_note(printout.labels)
         printout.notes += asterisk_note({*printout._states.values()}, printout.fields)
     return printouts, reason
 
@@ -816,31 +801,36 @@ def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
         printout.own = range(start, stop)
     spans = [(printout.line, page.place(printout.stop - 1)[0]) for printout in found]
     roles = {index: role for printout in found for index, role in printout.roles().items()}
+    fields = {
+        index: name
+        for printout in found
+        for name, span in printout._slots.items()
+        for index in range(*span)
+    }
     for line in page.lines:
         kinds = [roles.get(index) for index in line]
-        has_number = "number" in kinds
+        numbers = [index for index in line if index in fields]
         alike = sum(label_cost("*", page.glyphs[index].char) < 40 for index in line)
         stars = len(line) <= len("*****") + 2 and 2 * alike > len(line)
-        is_whole = not (has_number or stars or 2 * kinds.count("exact") >= len(kinds))
+        is_whole = not (numbers or stars or 2 * kinds.count("exact") >= len(kinds))
         loose = [at for at in line if is_whole or at not in roles]
         for _, pairs in groupby(enumerate(loose), lambda pair: pair[1] - pair[0]):
             run = [index for _, index in pairs]
             start, stop = run[0], run[-1] + 1
             if not _SLOT_COMMAND.fullmatch(letters(page.glyphs[start:stop])):
-                text, span = page.shown(start, stop), page.span(start, stop)
-                number, column = page.place(span[0])
-                words = re.split(r"[^A-Za-z]+", text) if is_whole else ()
+                kind = Kind.FOREIGN_LINE if is_whole else Kind.LEFT_OVER
+                near = min(numbers, key=lambda at: abs(at - start), default=-1)
+                piece = difference_at(page, kind, fields.get(near, ""), "", page.span(start, stop))
+                words = re.split(r"[^A-Za-z]+", piece.read) if is_whole else ()
                 label_words = {
                     word.upper() if len(word) > 2 else word for word in words
                 } & _LABEL_WORDS
-                is_word = not (is_whole or stars) and re.search("[A-Za-z]{2}", text)
-                is_named = is_whole and _NAMED_NUMBER.search(text)
-                is_beside = has_number or bool(label_words or is_word or is_named)
-                is_within = any(first <= number <= last for first, last in spans)
+                is_word = not (is_whole or stars) and re.search("[A-Za-z]{2}", piece.read)
+                is_named = is_whole and _NAMED_NUMBER.search(piece.read)
+                is_beside = bool(numbers or label_words or is_word or is_named)
+                is_within = any(first <= piece.line <= last for first, last in spans)
                 owner = next(printout for printout in found if start in printout.own)
-                owner.left_over.append(
-                    Piece(text, number, column, *span, is_beside, is_whole, is_within)
-                )
+                owner.left_over.append(piece._replace(bears=is_beside or is_within))
 
 
 def _character_notes(text: str) -> list[str]:

@@ -13,7 +13,8 @@ from ...files import display_name
 from ...messages.progress import progress
 from ...names import SCENE
 from ..judging.copies import CopyPages, as_printed, converted_inputs
-from ..judging.judgement import Doubtful, FieldCheck, Status, Verdict
+from ..judging.judgement import FieldCheck, Status, Verdict
+from ..reading.differences import Difference, Kind
 from ..reading.printout import read_printouts
 from ..scan.cleaning import Paper, papers_of
 from ..scan.exhibit import character_name, exhibit
@@ -172,17 +173,13 @@ def _check(leaf: Leaf, name: str, recomputed: str | None, cells: Sequence[Cell])
     elif "doubtful" in states:
         status = Status.DOUBTFUL
     doubts = [
-        Doubtful(
-            leaf.grid.number(cell.place.line),
-            cell.place.cell + 1,
-            0,
-            cell.other,
-            cell.predicted,
-            "picture",
+        Difference(
+            Kind.PICTURE, name, cell.other, cell.predicted, leaf.grid.number(cell.place.line),
+            cell.place.cell + 1, 0, 0,
         )
         for cell in cells
         if state(cell) == "doubtful"
-    ]
+    ]  # fmt: skip
     check = FieldCheck(name, _cells_text(cells) or None, recomputed, status, doubts=doubts)
     if cells:
         check.line, check.column = leaf.grid.number(cells[0].place.line), cells[0].place.cell + 1

@@ -18,9 +18,8 @@ from ...messages.plaintable import table
 from ...messages.schemas import with_schema
 from ..judging.beside import not_verifiable
 from ..judging.judgement import FieldCheck, Judged, Status, Verdict
-from ..reading.fieldlabels import LabelCheck, LabelState
-from ..reading.numerals import Doubt, value_of
-from ..reading.printout import Piece
+from ..reading.differences import Difference, Kind
+from ..reading.numerals import value_of
 from ..recovery.replays import run_once
 from ..recovery.typedtext import stored_and_printed
 
@@ -83,10 +82,10 @@ class Verification:
         What would make a differing page agree.
     findings, warnings, remarks : list of str
         Other findings, warnings of the mechanics, and notes on how the page was read.
-    left_over : list of Piece
+    left_over : list of Difference
         Text that belongs to no field and no label.
-    labels : list of LabelCheck
-        Labels that are not the program's.
+    labels : list of Difference
+        Labels, marks and words of the prompts that are not as the program prints them.
     cells, marks : list of dict
         Of a picture, the cells of the printed characters, and all ink in and near the printout that
         the program does not print.
@@ -132,8 +131,8 @@ class Verification:
     findings: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
-    left_over: list[Piece] = field(default_factory=list)
-    labels: list[LabelCheck] = field(default_factory=list)
+    left_over: list[Difference] = field(default_factory=list)
+    labels: list[Difference] = field(default_factory=list)
     cells: list[dict[str, Any]] = field(default_factory=list)
     marks: list[dict[str, Any]] = field(default_factory=list)
     exhibit: Callable[[], dict[str, Any]] | None = field(default=None, repr=False)
@@ -262,7 +261,7 @@ def _plain(value: Any) -> Any:
         return list(map(_plain, value))
     if hasattr(value, "as_json"):
         return value.as_json()
-    return value._asdict() if isinstance(value, Piece | LabelCheck) else value
+    return value._asdict() if isinstance(value, Difference) else value
 
 
 @dataclass
@@ -305,7 +304,7 @@ def summary(result: Verification) -> list[str]:
         if replies:
             noun = "reply at a prompt differs" if replies == 1 else "replies at prompts differ"
             sentences.append(f"{replies} {noun} from the velocities printed")
-        if wrong := sum(label.state is LabelState.CONTRADICTORY for label in result.labels):
+        if wrong := sum(label.kind is Kind.CONTRADICTS for label in result.labels):
             sentences.append("1 label contradicts" if wrong == 1 else f"{wrong} labels contradict")
         if any(cause.kind == ROWS_EXCHANGED for cause in result.explanations):
             sentences.append("its rows stand in another order than the program prints them")
@@ -434,95 +433,74 @@ def _marks(marks: Sequence[Mapping[str, Any]]) -> Iterator[str]:
 
 _TYPED = ("character", "type")
 
-_DOUBTS: dict[str, str] = {
-    Doubt.LOOK_ALIKE: "read {read!r} where the program prints {printed!r} ({program})",
-    Doubt.ILLEGIBLE: "illegible (read {read!r}) where the program prints {printed!r} ({program})",
-    Doubt.BLANK: "a blank or a joint in it; the program prints {program}",
-    Doubt.RETYPED: "read {whole}; the program prints {program}, never this form",
-    Doubt.CUT: "cut off; the program prints {program}",
-    Doubt.LEFT_OVER: "{read!r} left over beside {program}",
-    "picture": "nearly as much like {read!r} as {printed!r} ({program})",
+_DOUBTS = {
+    Kind.LOOK_ALIKE: "read {read!r} where the program prints {printed!r} ({program})",
+    Kind.ILLEGIBLE: "illegible (read {read!r}) where the program prints {printed!r} ({program})",
+    Kind.BLANK: "a blank or a joint in it; the program prints {program}",
+    Kind.OTHER_FORM: "read {whole}; the program prints {program}, never this form",
+    Kind.CUT: "cut off; the program prints {program}",
+    Kind.LEFT_OVER: "{read!r} left over beside {program}",
+    Kind.PICTURE: "nearly as much like {read!r} as {printed!r} ({program})",
 }
 
 
 def _doubts(check: FieldCheck) -> Iterator[str]:
     for doubt in check.doubts:
-        if doubt.how in _DOUBTS:
+        if doubt.kind in _DOUBTS:
             words = {**doubt._asdict(), "program": check.recomputed or "", "whole": check.printed}
-            sentence = _DOUBTS[doubt.how].format(**words)
+            sentence = _DOUBTS[doubt.kind].format(**words)
             yield f"line {doubt.line}, column {doubt.column}: {check.name} {sentence}"
 
 
-def look(check: FieldCheck) -> Iterator[str]:
-    """Yield the places to look at on the paper for a misread digit."""
-    for doubt in check.doubts:
-        if doubt.how == Doubt.CONTRADICTS:
-            digit = f"{'an' if doubt.printed[:1] == '8' else 'a'} {doubt.printed}"
-            question = f"is {digit} missing here"
-            if doubt.read:
-                part = digit if doubt.printed else "part of the number"
-                question = f"is this {doubt.read} {part}"
-            yield f"line {doubt.line}, column {doubt.column}: {question}?"
+def look(check: FieldCheck) -> list[str]:
+    """Return the places to look at on the paper for a misread digit."""
+    return [doubt.question for doubt in _of_kind(check.doubts, Kind.CONTRADICTS)]
 
 
-_LABELS = {
-    LabelState.CONTRADICTORY: "labelled {read} where the program prints {printed}",
-    LabelState.DAMAGED: "the label {printed} is read {read}",
-}
-
-
-def _labels(checks: Sequence[LabelCheck]) -> list[str]:
-    """Return the labels and marks that are not the program's, contradictory labels first."""
-    doubted = [check for check in checks if check.doubt or check.state is LabelState.CONTRADICTORY]
-    labels = [check for check in doubted if not check.is_mark]
-    marks = [check for check in doubted if check.is_mark]
-    return [
-        *(
-            f"line {label.line}: " + text.format(read=printable(label.read), printed=label.printed)
-            for state, text in _LABELS.items()
-            for label in labels
-            if label.state is state
-        ),
-        *_missing_labels([label for label in labels if label.state is LabelState.MISSING]),
-        *_missing_marks([mark for mark in marks if mark.state is LabelState.MISSING]),
-        *_other_marks([mark for mark in marks if mark.state is LabelState.DAMAGED]),
-        *(
-            f"line {mark.line}: {_of_number(mark)} stands on another line than its number"
-            for mark in marks
-            if mark.state is LabelState.MOVED
-        ),
-    ]
-
-
-def _missing_labels(labels: Sequence[LabelCheck]) -> Iterator[str]:
-    """Yield a sentence on the labels that each line lacks."""
-    for line in dict.fromkeys(label.line for label in labels):
-        names = [label.printed for label in labels if label.line == line]
-        nouns = "label before the number" if len(names) == 1 else "labels before the numbers"
-        yield f"line {line}: no {nouns} where the program prints {', '.join(names)}"
-
-
-def _missing_marks(marks: Sequence[LabelCheck]) -> Iterator[str]:
-    """Yield a sentence on the marks that the page lacks, by line."""
-    by_line = [
-        f"line {line}: no {', '.join(_of_number(mark) for mark in marks if mark.line == line)}"
-        for line in dict.fromkeys(mark.line for mark in marks)
-    ]
-    if by_line:
-        it = "it" if len(marks) == 1 else "them"
+def _labels(differences: Sequence[Difference]) -> Iterator[str]:
+    """Yield sentences on the labels and marks that are not the program's, contradictory labels
+    first, and then marks after labels."""
+    bearing = [one for one in differences if one.bears]
+    labels = [one for one in bearing if not one.is_mark]
+    marks = [one for one in bearing if one.is_mark]
+    for kind, words in (
+        (Kind.CONTRADICTS, "labelled {0.read} where the program prints {0.printed}"),
+        (Kind.LOOK_ALIKE, "the label {0.printed} is read {0.read}"),
+    ):
+        for label in _of_kind(labels, kind):
+            yield f"line {label.line}: {printable(words.format(label))}"
+    for line, missing in _by_line(_of_kind(labels, Kind.MISSING)).items():
+        nouns = "label before the number" if len(missing) == 1 else "labels before the numbers"
+        names = ", ".join(label.printed for label in missing)
+        yield f"line {line}: no {nouns} where the program prints {names}"
+    if lost := _of_kind(marks, Kind.MISSING):
+        by_line = [
+            f"line {line}: no {', '.join(map(_of_number, missing))}"
+            for line, missing in _by_line(lost).items()
+        ]
+        it = "it" if len(lost) == 1 else "them"
         yield f"{'; '.join(by_line)}, where the program prints {it}"
-
-
-def _other_marks(marks: Sequence[LabelCheck]) -> Iterator[str]:
-    """Yield a sentence on the marks in place of which something else was read."""
-    if marks:
+    if others := _of_kind(marks, Kind.LOOK_ALIKE):
         yield "; ".join(
             f"line {mark.line}: {mark.read!r} where the program prints {_of_number(mark)}"
-            for mark in marks
+            for mark in others
         )
+    for mark in _of_kind(marks, Kind.MOVED):
+        yield f"line {mark.line}: {_of_number(mark)} stands on another line than its number"
 
 
-def _of_number(mark: LabelCheck) -> str:
+def _of_kind(differences: Sequence[Difference], kind: Kind) -> list[Difference]:
+    return [one for one in differences if one.kind is kind]
+
+
+def _by_line(differences: Sequence[Difference]) -> dict[int, list[Difference]]:
+    by_line: dict[int, list[Difference]] = {}
+    for one in differences:
+        by_line.setdefault(one.line, []).append(one)
+    return by_line
+
+
+def _of_number(mark: Difference) -> str:
     return f"{mark.printed!r} of {mark.name if mark.name in FIELDS else 'the prompt'}"
 
 
@@ -530,17 +508,15 @@ MAX_LEFT_OUT = 6  # numbers that were not compared, named in one line
 MAX_FOREIGN_LINES = 12  # lines listed that do not belong to the program's page
 
 
-def _left_over(pieces: Sequence[Piece]) -> Iterator[str]:
-    """Yield a sentence for each text that belongs to no number and no label: beside a number, or a
-    whole line."""
-    for piece in pieces:
-        if not piece.whole:
-            text = piece.text if len(piece.text) <= 40 else piece.text[:37] + "..."
-            location = f"line {piece.line}, column {piece.column}"
-            yield f"{location}: {text!r} left over{' beside a number' * piece.beside}"
-    lines = sorted((piece for piece in pieces if piece.whole), key=lambda piece: not piece.beside)
+def _left_over(pieces: Sequence[Difference]) -> Iterator[str]:
+    """Yield a sentence for each text that belongs to no number and no label, whole lines last."""
+    for piece in _of_kind(pieces, Kind.LEFT_OVER):
+        text = piece.read if len(piece.read) <= 40 else piece.read[:37] + "..."
+        beside = " beside a number" * bool(piece.name)
+        yield f"line {piece.line}, column {piece.column}: {text!r} left over{beside}"
+    lines = sorted(_of_kind(pieces, Kind.FOREIGN_LINE), key=lambda piece: not piece.bears)
     for piece in sorted(lines[:MAX_FOREIGN_LINES], key=lambda piece: piece.line):
-        yield f"line {piece.line} does not belong to the program's page: {printable(piece.text)}"
+        yield f"line {piece.line} does not belong to the program's page: {printable(piece.read)}"
     if len(lines) > MAX_FOREIGN_LINES:
         count = len(lines) - MAX_FOREIGN_LINES
         yield f"and {count} more lines that do not belong to the program's page"
@@ -584,7 +560,7 @@ def _extent(result: Verification) -> str:
     remainder = "nothing else stands on the page"
     if result.left_over or result.characters.get("left_over"):
         remainder = "what else stands on the page is listed below"
-    elif result.characters.get("doubtful") or any(label.doubt for label in result.labels):
+    elif result.characters.get("doubtful") or any(label.bears for label in result.labels):
         remainder = "what is not read as the program prints it is listed below"
     return f"examined: {examined}; {remainder}"
 
@@ -595,7 +571,7 @@ def _of_another_copy(result: Verification) -> Iterator[str]:
     if result.differing or result.copy or result.page is not None or not result.complete_scene:
         return
     wrong_replies = [check for check in result.replies if check.same is False]
-    labels = [label for label in result.labels if label.state is LabelState.CONTRADICTORY]
+    labels = [label for label in result.labels if label.kind is Kind.CONTRADICTS]
     if not wrong_replies and not labels:
         return
     finding = "what was typed at the prompts is not what it computed with"
@@ -627,14 +603,14 @@ def findings(found: Judged) -> Iterator[str]:
     """Yield forms that the program never prints, and the M that a page without final spins is read
     as."""
     scene = found.recovered
-    retyped_names = [
+    other_forms = [
         check.name
         for check in found.fields
-        if any(doubt.how == Doubt.RETYPED for doubt in check.doubts)
+        if any(doubt.kind is Kind.OTHER_FORM for doubt in check.doubts)
     ]
-    if retyped_names:
+    if other_forms:
         yield (
-            f"{', '.join(retyped_names)} in a form Applesoft never prints (a zero before the "
+            f"{', '.join(other_forms)} in a form Applesoft never prints (a zero before the "
             "point or at the end, a plus sign): retyped, or made by another program"
         )
     regions = [reading.region[:-1] for reading in found.paper.fields.values()]
@@ -653,7 +629,7 @@ def findings(found: Judged) -> Iterator[str]:
         yield "no line of final spins: the results are those of M = 4, not of M = 6"
 
 
-_MISREADINGS = (Doubt.LOOK_ALIKE, Doubt.ILLEGIBLE, Doubt.CONTRADICTS)
+_MISREADINGS = (Kind.LOOK_ALIKE, Kind.ILLEGIBLE, Kind.CONTRADICTS)
 
 
 def attributed_digits(found: Judged) -> Iterator[str]:
@@ -664,7 +640,7 @@ def attributed_digits(found: Judged) -> Iterator[str]:
         for program_digit, read in check.swapped()
     ]
     misread_count = sum(
-        any(doubt.how in _MISREADINGS and doubt.read != doubt.printed for doubt in check.doubts)
+        any(doubt.kind in _MISREADINGS and doubt.read != doubt.printed for doubt in check.doubts)
         for check in found.fields
     )
     if misread_digits:

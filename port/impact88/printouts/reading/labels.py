@@ -1,0 +1,400 @@
+"""What the program prints beside its numbers, as differences: labels, marks, the words of prompts.
+
+A number stands where it stands by its place on the page; its label says so a second time, and the
+two must agree. A label that reads as another of the program's, or as a word that is not this one,
+contradicts. One that is damaged within the reach of the glyph table, or missing, leaves a doubt.
+
+A mark that was not read is missing on the paper or was lost by the page's reader; where one was
+read as a glyph that no reader was seen to take for it, something else was typed. Either is
+reported, and then the page is not all that the program prints. On a page without a single equals
+sign, of another form such as a table, missing marks leave no doubt. Asterisks are only counted: of
+41 readings of given pages that are exact otherwise 24 lack some, and none lacks another mark.
+"""
+
+import re
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
+
+from ...collision.fields import ANGLES, FIELDS
+from .alignment import BEHIND, FIRST_STARS, LABELLED_ANGLES, PROMPTS, STARS, STATES, TOKENS, Token
+from .differences import Difference, Kind, difference_at
+from .editpath import cheapest_path
+from .glyphs import COSTS, Gap, Page, is_look_alike, label_cost, letters
+
+_DIFFERENT = 35
+"""Cost per letter from which a word is another label, not this one misread: that of two letters of
+which one is read so less than once in 600."""
+_MIN_ADVANTAGE = 25
+"""Cost by which another label must be cheaper to be the one read; U for V, the likeliest, costs
+29."""
+_NO_WORD = frozenset("0123456789=.(),:")
+
+
+Found = Sequence[tuple[str, str, Sequence[int]]]
+"""For each label the field that it names (a prompt: its reply), its letters, and the glyphs aligned
+with them."""
+
+
+def words_before(page: Page, slots: Mapping[str, tuple[int, int]]) -> dict[str, tuple[int, int]]:
+    """Return the range of glyphs of the word that an equals sign joins to each number.
+
+    Numbers without such a sign before them are left out.
+    """
+    glyphs = page.glyphs
+    words = {}
+    for name, (start, stop) in slots.items():
+        signs = (place for place in range(max(start, 1), stop) if glyphs[place].char == "=")
+        first = sign = max(signs, default=start - 1)
+        while first > 0 and not glyphs[first].gap and glyphs[first - 1].char not in _NO_WORD:
+            first -= 1
+        if glyphs[sign].char == "=" and first < sign:
+            words[name] = (first, sign)
+    return words
+
+
+def label_differences(
+    page: Page, found: Found, slots: Mapping[str, tuple[int, int]]
+) -> list[Difference]:
+    """Return the labels of one printout that are not the program's, in the order of the page.
+
+    Parameters
+    ----------
+    page : Page
+    found : sequence of (str, str, list of int)
+        For each label its field, its letters, and the glyphs that were aligned with them.
+    slots : mapping of str to (int, int)
+        Range of glyphs of every number, by field.
+    """
+    differences = []
+    for name, letters_printed, start, stop, read in _labels_read(page, found, slots):
+        if read == letters_printed:
+            continue
+        other_labels = {text for label, text, _ in found if _kind(label) == _kind(name)} - {
+            letters_printed
+        }
+        kind, is_open = _compare_label(_kind(name), letters_printed, read, other_labels)
+        difference = difference_at(page, kind, name, letters_printed, (start, stop), read)
+        differences.append(difference._replace(bears=is_open))
+    return differences
+
+
+def weigh_labels(
+    labels: Sequence[Difference], machine_read: bool, fragment: bool
+) -> list[Difference]:
+    """Return the labels with those that contradict, or leave a doubt, for who read the page.
+
+    A person types no other label by reading it so. A machine does: of 15,300 labels of given scans
+    373 read as other words, 7 of them on pages with few signs of a reader. But no two labels of a
+    page read as each other: such labels were exchanged, whoever read the page. Labels of a fragment
+    do not tell which numbers it holds.
+    """
+    pairs = {(label.printed, label.read) for label in labels}
+    weighed = []
+    for label in labels:
+        is_misread = (machine_read or fragment) and (label.read, label.printed) not in pairs
+        if label.kind is Kind.CONTRADICTS and is_misread:
+            label = label._replace(kind=Kind.LOOK_ALIKE)
+        is_typed = not machine_read and label.name in FIELDS and label.kind is Kind.LOOK_ALIKE
+        weighed.append(
+            label._replace(bears=label.bears or is_typed or label.kind is Kind.CONTRADICTS)
+        )
+    return weighed
+
+
+def _kind(name: str) -> str:
+    """Return the kind of a label: it may be mistaken for others of its kind only."""
+    return "prompt" if name not in FIELDS else "angle" if name in ANGLES else "number"
+
+
+def _labels_read(
+    page: Page, found: Found, slots: Mapping[str, tuple[int, int]]
+) -> Iterator[tuple[str, str, int, int, str]]:
+    """Yield the labels of numbers that were read, and those of which letters were read.
+
+    Each is the field, the letters that the program prints, start and stop in the text, and the
+    letters that were read.
+    """
+
+    def read(at: Iterable[int]) -> str:
+        return letters(page.glyphs[index] for index in at)
+
+    words = words_before(page, slots)
+    of_angles = [place for place, (name, _, _) in enumerate(found) if name in ANGLES]
+    heading, row = of_angles[: len(ANGLES)], of_angles[len(ANGLES) :]
+    heading_at = [index for place in heading for index in found[place][2]]
+    if heading_at:
+        yield from _heading(page, min(heading_at), max(heading_at))
+    is_named = bool(heading_at) or any(found[place][2] for place in row)
+    for place, (name, letters_printed, at) in enumerate(found):
+        if (place in heading and is_named) or (place in row and not at):
+            continue
+        word = range(*words.get(name, (0, 0)))
+        if word and read(at[-len(word) :]) != read(word):
+            at = word
+        if at:
+            yield name, letters_printed, *page.span(at[0], at[-1] + 1), read(at)
+        elif name in slots:
+            begin = page.span(*slots[name])[0]
+            yield name, letters_printed, begin, begin, ""
+
+
+def _heading(page: Page, first: int, last: int) -> Iterator[tuple[str, str, int, int, str]]:
+    """Yield the five labels of the heading, by its words or, if these are not five, in pairs."""
+    glyphs, end = page.glyphs, last + 1
+    outside = _outside_brackets(page, last)
+    starts = [at for at in outside if at == outside[0] or glyphs[at].gap or at - 1 not in outside]
+    if len(starts) == len(ANGLES):
+        for name, start, stop in zip(ANGLES, starts, [*starts[1:], outside[-1] + 1], strict=True):
+            word = [at for at in outside if start <= at < stop]
+            yield name, name, *page.span(start, word[-1] + 1), letters(glyphs[at] for at in word)
+        return
+    while first and glyphs[first].gap is not Gap.LINE and glyphs[first - 1].char.isalpha():
+        first -= 1
+    while end < len(glyphs) and glyphs[end].gap is not Gap.LINE and glyphs[end].char.isalpha():
+        end += 1
+    starts = [at for at in range(first, end) if at == first or glyphs[at].gap]
+    if len(starts) != len(ANGLES):
+        starts = [*range(first, end, 2)]
+    exact = "".join(ANGLES) in letters(glyphs[first:end])
+    for number, name in enumerate(ANGLES):
+        if len(starts) == len(ANGLES):
+            start, stop = [*starts, end][number : number + 2]
+            yield name, name, *page.span(start, stop), letters(glyphs[start:stop])
+        else:
+            yield name, name, *page.span(first, end), name if exact else ""
+
+
+def _outside_brackets(page: Page, last: int) -> list[int]:
+    """Return the glyphs of a line that stand outside brackets such as ``(DEG)``; none if it has no
+    brackets."""
+    line = next(line for line in page.lines if last in line)
+    text = letters(page.glyphs[line.start : line.stop])
+    inside = {at for match in re.finditer(r"\([^()]*\)", text) for at in range(*match.span())}
+    return [at for at in line if at - line.start not in inside] if inside else []
+
+
+def _compare_label(kind: str, printed: str, read: str, others: set[str]) -> tuple[Kind, bool]:
+    """Return how a label differs, and True if it leaves a doubt which number is meant.
+
+    There is a doubt where the letters that were read as printed fit another label, too.
+    """
+    cost = _distance(printed, read)
+    cost_of_other = min(_distance(text, read) for text in others)
+    matches = {(at, char) for at, char in enumerate(read) if printed[at : at + 1] == char}
+    alike = (matches.issubset(enumerate(text)) for text in others if len(text) == len(printed))
+    doubt = len(read) != len(printed) or not matches or any(alike)
+    if not any(map(str.isalnum, read)):
+        return Kind.MISSING, doubt
+    if kind == "prompt":
+        contradicts = cost_of_other < cost - COSTS["unseen"]
+        return Kind.CONTRADICTS if contradicts else Kind.LOOK_ALIKE, False
+    # itself, with gaps
+    is_gapped = read not in others and has_gaps_only(printed, read)
+    if len(read + printed) > len("EL") and not is_gapped:
+        is_word = read.isascii() and read.isalpha()
+        is_strange = is_word and (
+            cost >= _DIFFERENT * len(printed) or _has_other_word(printed, read)
+        )
+        if cost_of_other < cost - _MIN_ADVANTAGE or is_strange:
+            return Kind.CONTRADICTS, doubt
+    return Kind.LOOK_ALIKE, doubt
+
+
+def has_gaps_only(printed: str, read: str) -> bool:
+    """Return True for a word of which letters are lost and none is misread."""
+    remaining = iter(printed)
+    return all(letter in remaining for letter in read)
+
+
+_WORDS = {"INITIALKE": 7, "KELOSS": 2}
+"""Labels of two words: the letters of the first."""
+
+
+def _has_other_word(printed: str, read: str) -> bool:
+    """Return True for a label of two words, one of which is read as a different word."""
+    if printed not in _WORDS:
+        return False
+    words = printed[: _WORDS[printed]], printed[_WORDS[printed] :]
+    splits = ((read[:at], read[at:]) for at in range(len(read) + 1))
+    parts = min(splits, key=lambda parts: sum(map(_distance, words, parts)))
+    for word, part in zip(words, parts, strict=True):
+        matches = sum(letter == char for letter, char in zip(word, part, strict=False))
+        if (
+            not has_gaps_only(word, part)
+            and 2 * matches < len(word)
+            and _distance(word, part) >= _DIFFERENT * len(word)
+        ):
+            return True
+    return False
+
+
+@lru_cache(maxsize=4096)
+def _distance(printed: str, read: str) -> int:
+    """Return the cost of reading a label so."""
+    lost = COSTS["letter lost"]
+    cost, _ = cheapest_path(
+        len(read),
+        len(printed),
+        lambda i, j: (label_cost(printed[j], read[i]), None),
+        lambda i, j: (lost, None),
+        lambda i, j: (lost, None),
+    )
+    return int(cost)
+
+
+_MARKS = [
+    token
+    for token in TOKENS
+    if token.name
+    and not token.text.startswith("{")
+    and (token.line < PROMPTS or not token.is_word)
+    and token.line != LABELLED_ANGLES
+]
+"""The marks, and the words of the prompts, in the order of the page."""
+
+
+def mark_differences(
+    page: Page,
+    states: Mapping[int, int],
+    slots: Mapping[str, tuple[int, int]],
+    labels: Sequence[Difference],
+    machine_read: bool,
+) -> list[Difference]:
+    """Return the marks, asterisks and words of prompts that are not as the program prints them.
+
+    Parameters
+    ----------
+    page : Page
+    states : mapping of int to int
+        State of each glyph of the printout.
+    slots : mapping of str to (int, int)
+        Range of glyphs of every number that was read, and of the replies.
+    labels : sequence of Difference
+        The labels: an equals sign goes unreported where the whole label is missing, and a bracket
+        where it counts as a letter of the label.
+    machine_read : bool
+        True for a page of an optical reader, which may take a mark for one that looks like it, lose
+        asterisks, and put a mark on another line.
+    """
+    without_label = {label.name for label in labels if label.kind is Kind.MISSING}
+    reported = {at for label in labels if label.bears for at in range(label.start, label.stop)}
+    places: dict[int, int] = {}
+    for index in sorted(states):
+        places.setdefault(states[index], index)
+    differences: list[Difference] = []
+    end_of_last = 0  # of the states of the last token reported
+    for token in _MARKS:
+        name, text = token.name, token.text
+        if name not in slots or (text == "=" and name in without_label):
+            continue
+        at = [places[state] for state in token.states if state in places]
+        read = letters(page.glyphs[index] for index in at)
+        kind = _compare_mark(page, token, at, slots, machine_read)
+        if kind is None:
+            continue
+        if at and reported.issuperset(page.glyphs[index].offset for index in at):
+            continue
+        start = stop = _gap(page, token, places, slots)
+        if at:
+            start, stop = page.span(at[0], at[-1] + 1)
+        if name not in FIELDS and end_of_last == token.states.start:  # words side by side
+            before = differences.pop()
+            text, read, start = f"{before.printed} {text}", before.read + read, before.start
+            kind = Kind.LOOK_ALIKE if read else Kind.MISSING
+        if kind is not Kind.MOVED:
+            end_of_last = token.states.stop
+        differences.append(difference_at(page, kind, name, text, (start, stop), read))
+    if not machine_read:
+        differences += _broken_asterisks(page, places, slots)
+    signs = {page.glyphs[at].char for at, state in states.items() if STATES[state].name == "="}
+    return [
+        # of another form, with colons for example
+        mark._replace(bears="=" in signs or not _is_of_form(mark))
+        for mark in differences
+    ]
+
+
+def _is_of_form(mark: Difference) -> bool:
+    """Return True for a mark that a page without equals signs is not expected to have."""
+    return mark.name in FIELDS and (mark.kind is Kind.MISSING or mark.printed == "=")
+
+
+def _compare_mark(
+    page: Page,
+    token: Token,
+    at: Sequence[int],
+    slots: Mapping[str, tuple[int, int]],
+    machine_read: bool,
+) -> Kind | None:
+    """Return how a mark or a word differs, of which the glyphs ``at`` were read; None if not."""
+    read = letters(page.glyphs[index] for index in at)
+    if read == token.text:
+        is_apart = token.text in (*BEHIND, "=") and page.glyphs[at[0]].gap is Gap.LINE
+        return Kind.MOVED if is_apart and not machine_read else None
+    start, stop = slots[token.name]
+    in_number = token.name in FIELDS and token.text in letters(page.glyphs[start - 1 : stop + 1])
+    is_alike = len(read) == len(token.text) and all(map(is_look_alike, token.text, read))
+    if in_number or (machine_read and is_alike):
+        return None
+    return Kind.LOOK_ALIKE if read else Kind.MISSING
+
+
+def _broken_asterisks(
+    page: Page, places: Mapping[int, int], slots: Container[str]
+) -> Iterator[Difference]:
+    """Yield the rows of asterisks of which some are not on the page, or another character stands
+    among them."""
+    for row, (field, _) in _STARS.items():
+        own = _asterisks(row)
+        at = [places[state] for state in own if state in places]
+        read = letters(page.glyphs[index] for index in at)
+        if field in slots and at and read != "*" * len(own):
+            span = page.span(at[0], at[-1] + 1)
+            yield difference_at(page, Kind.LOOK_ALIKE, field, "*" * len(own), span, read)
+
+
+def form_note(marks: Sequence[Difference]) -> list[str]:
+    """Return a note on the marks of a page of another form, without equals signs, or none."""
+    missing = [mark for mark in marks if mark.is_mark and mark.kind is Kind.MISSING]
+    texts = dict.fromkeys(repr(mark.printed) for mark in missing if not mark.bears)
+    return [f"retyped in another form: the page has no {', '.join(texts)}"] if texts else []
+
+
+def _gap(
+    page: Page, token: Token, places: Mapping[int, int], slots: Mapping[str, tuple[int, int]]
+) -> int:
+    """Return the offset in the text at which a missing mark or word would stand."""
+    if token.text in BEHIND:
+        return page.span(*slots[token.name])[1]
+    before = [state for state in places if state < token.states.start]
+    if STATES[token.states.start].line < PROMPTS and before:
+        last = max(before)
+        if STATES[last].line == STATES[token.states.start].line:
+            return page.glyphs[places[last]].offset + 1
+    return page.span(*slots[token.name])[0]
+
+
+_STARS = {
+    FIRST_STARS: ("VAX", "above the final velocities"),
+    STARS: ("VBY", "below them"),
+}
+"""The rows of asterisks: a number beside each, and where it stands."""
+
+
+def _asterisks(row: int) -> list[int]:
+    """Return the states of a row of asterisks."""
+    return [state for token in TOKENS if token.line == row for state in token.states]
+
+
+def asterisk_note(states: Collection[int], fields: Container[str]) -> list[str]:
+    """Return a note on asterisks that the program prints and that were not read, or none.
+
+    ``states``: the states of the printout's glyphs; ``fields``: the numbers read.
+    """
+    counts = []
+    for row, (field, where) in _STARS.items():
+        own = _asterisks(row)
+        count = sum(at in states for at in own)
+        if count < len(own) and field in fields:
+            counts.append(f"{count} of {len(own)} {where}")
+    return [f"asterisks read: {', '.join(counts)}"] if counts else []
