@@ -359,14 +359,6 @@ class TestWhatIsExplored:
         assert main([*line, "UX=-30 lb:-15:2"]) == 2
         assert "lb is not a unit of length/time" in capsys.readouterr().err
 
-    @pytest.mark.parametrize("kind", ["tornado", "histogram", "sweep"])
-    def test_figures_say_their_units(self, kind, us, tmp_path):
-        pytest.importorskip("matplotlib")
-        out = tmp_path / "out.svg"
-        how = ["--sweep", "UX=-30:-15:5"] if kind == "sweep" else ["--range", "UX=+- 2"]
-        assert main(["figure", kind, us, *how, "--outputs", "DVA", "-o", str(out)]) == 0
-        assert ", mph" in out.read_text("utf-8")
-
 
 @pytest.mark.parametrize("system", ["us", "chapter", "metric", "si"])
 @pytest.mark.parametrize("number", [1, 2, 3])

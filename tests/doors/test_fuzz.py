@@ -28,13 +28,11 @@ LONG = (
     "printout-5",
     "printout-70",
     "printout-decimals",
-    "figure-friction",
     "csv-row-of-quotes",
     "compare-every-result-zero",
     "extremes-a.1066",
     "extremes-e.5751",
     "printout-number-of-many-digits",
-    "figure-histogram-of-a-constant",
     "verify-scene-plus-sign",
     "typed-5.0.353",
 )

@@ -341,7 +341,6 @@ COMMANDS = (
     "bounds {file} --samples 20 --outputs DVA",
     "reconstruct {file} --samples 0 --json",  # draws take most of the time; `bounds` has some
     "figure scene {file} -o drawn.svg",
-    "figure sweep {file} --sweep EM=-.9:-.5:3 -o drawn.svg",
     "chapter delta-v {file} --like front --json",
     "report {file} --samples 20 -o page.html --csv drawn.svg",
 )

@@ -5,5 +5,5 @@ column may hold, the results), `program` (the results of 1988).
 In: files, frames, ranges of a sweep; a block of rows at a time. Out: columns, and the same kind of
 file or frame with the results.
 Used by: who has a million scenes (`impact88 solve`, `solve_frame`); `conformance`, which reads
-other programs' tables; `casework`, which draws a sweep.
+other programs' tables.
 """

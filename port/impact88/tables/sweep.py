@@ -1,11 +1,11 @@
 """A scene swept: a table whose rows are one scene with some values running through ranges."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import lru_cache
 from itertools import islice, product
 from math import isfinite, prod
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ..collision.case import Case, is_share
 from ..collision.doubles import digits, double, is_number
@@ -94,21 +94,6 @@ def estimates(case: Case) -> dict[str, Callable[[str], str]]:
         return estimate
 
     return {name: estimate_of(name) for name in case.estimated}
-
-
-def swept_columns(case: Case, name: str, run: Sequence[float]) -> dict[str, Any]:
-    """Return a case's values in base units as `impact88.solve` takes them, one of them running:
-    numbers, a share of the critical friction, and inertias estimated from a mass that runs."""
-    values = case.at_nominal().values
-    columns: dict[str, Any] = {
-        n: values[n] if is_share(values[n]) else double(values[n]) for n in SCENE
-    }
-    for inertia in estimates(case):
-        if name == f"M{inertia[1]}":
-            masses = [case.display_texts({name: float(mass)})[name] for mass in run]
-            singles = [case.replaced({name: mass}).at_nominal() for mass in masses]
-            columns[inertia] = [double(single.values[inertia]) for single in singles]
-    return {**columns, name: run}
 
 
 @contextmanager

@@ -510,22 +510,6 @@ def extremes_case(rng: Random) -> Case:
     return Case("extremes", arguments, files=files)
 
 
-def figure_case(rng: Random) -> Case:
-    """A figure that matplotlib draws; slow."""
-    kind = rng.choice(["friction", "scene", "planar", "histogram", "tornado", "sweep"])
-    arguments = ["figure", kind, "--sample", rng.choice("123"), "-o", "f.png"]
-    name = rng.choice(list(SCENE))
-    size = rng.choice(EXTREMES) if rng.random() < 0.5 else number(rng)
-    if kind in ("histogram", "tornado"):
-        arguments += ["--samples", "50", "--range", f"{name}=+- {size}", "--outputs", "DVA"]
-    elif kind == "sweep":
-        low, high = rng.sample(EXTREMES, 2)
-        arguments += ["--sweep", f"{name}={low}:{high}:{rng.choice('1279')}", "--outputs", "DVA"]
-    if kind != "sweep" or rng.random() < 0.5:
-        arguments += ["--set", f"{rng.choice(list(SCENE))}={size}"]
-    return Case("figure", arguments)
-
-
 @cache
 def _typed_tables() -> dict[str, bytes]:
     """A table in each of others' formats."""
@@ -612,7 +596,6 @@ KINDS: dict[str, tuple[Callable[[Random], Case], int]] = {
     "bounds": (bounds_case, 1),
     "junk": (junk_case, 9),
     "replay": (replay_case, 1),
-    "figure": (figure_case, 0),
     "typed": (typed_case, 0),
 }
 """Kind -> what makes a case of it, and how many of a hundred are of it."""

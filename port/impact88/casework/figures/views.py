@@ -1,23 +1,18 @@
-"""Drawings of several views: before, impact and after; of the chapter Figure 4, configurations, and
-Figures 2 and 3, free bodies pulled apart along the normal: each shows the impulses on it."""
+"""The chapter's figures of bodies: Figure 4, configurations, and Figures 2 and 3, free bodies pulled
+apart along the normal: each shows the impulses on it."""
 
-import cmath
 import math
-from collections.abc import Mapping, Sequence
-from itertools import pairwise
 from typing import Any
 
 from ...collision.units import SYSTEMS
-from ...errors import UserError
 from ...program.scene import sample
 from . import drawing as d
 from . import sceneview as view
-from .drawing import ROW, Box, Drawing, Label, Path, Text, View, place
-from .scenegeometry import Motion, Plan, Vehicle, plan
+from .drawing import Box, Drawing, Label, Path, Text, View, place
+from .scenegeometry import Plan, Vehicle, plan
 from .sceneview import COLOURS, IMPULSE, PLANE, TINTS, draw_axes, name_label
 
 # in mm
-_GAP = 6.0  # between the views of a strip
 _PANEL_GAP = 4.0  # between panels
 _TITLE = 5.0  # height of a panel's title
 _PAD = 3.5  # within a panel
@@ -25,101 +20,6 @@ _MARGIN = 7.5  # beside a free body
 _TALLEST = 95.0  # height of a free body
 _MOMENT = 3.4  # radius of a moment's arrow
 _ANGLE = "#444444"  # colour of angles
-
-
-def strip_drawing(
-    scene: Any, result: Mapping[str, Any], title: str = "Before, impact and after"
-) -> Drawing:
-    """Before, impact and after side by side, two columns wide, in one scale; the vehicles move and
-    turn for the time in which the faster one goes its own length, or up to three times that until
-    they are drawn apart. Arguments as `scene_drawing`. Raises UserError without final
-    velocities."""
-    shapes, units = view.plan_with_units(scene, result, None, None)
-    if not all(vehicle.after for vehicle in shapes.vehicles):
-        raise UserError("there are no velocities after the impact to draw")
-    bodies = shapes.bodies
-    size = max(vehicle.length for vehicle in bodies)
-    speed = max(m.speed for v in bodies for m in (v.before, v.after) if m)
-    once = size / speed if speed else 0.0
-    longer = (once * factor for factor in (1.0, 1.5, 2.0, 2.5, 3.0))
-    time = next((time for time in longer if are_apart(bodies, time)), once)
-    frames = {
-        "before": [_move_vehicle(v, v.before, -time) for v in bodies],
-        "impact": bodies,
-        "after": [_move_vehicle(v, v.after, time) for v in bodies if v.after],
-    }
-    boxes = {
-        kind: d.extent(p for v in moved for p in (*v.outline, _tip(v, kind, 0.5 * time)))
-        for kind, moved in frames.items()
-    }
-    drawing = Drawing(2 * d.COLUMN, title, view.description(shapes, units))
-    top = drawing.heading() - 2 * ROW
-    room = drawing.width - 4.0 - 2 * _GAP
-    wide, high = sum(b.width for b in boxes.values()), max(b.height for b in boxes.values())
-    scale = min(room / wide, view.FIELD / high)
-    left, bottom = 2.0 + (room - scale * wide) / 2, top - scale * high - 2
-    for kind, moved in frames.items():
-        box = boxes[kind]
-        low = bottom + scale * (high - box.height) / 2
-        at = View(complex(left - scale * box.left, low - scale * box.bottom), scale)
-        view.draw_bodies(drawing, moved, at)
-        for vehicle in moved:
-            tail, tip = at.all((vehicle.center, _tip(vehicle, kind, 0.5 * time)))
-            if abs(tip - tail) > 0.5:
-                drawing.add(*view.velocity_arrow(vehicle, kind, tail, tip))
-            drawing.add(name_label(vehicle, tail, -vehicle.front))
-        if kind == "impact" and shapes.impulse:
-            force = 0.5 * size * shapes.impulse / abs(shapes.impulse)
-            for end in (force, -force):
-                drawing.add(*d.arrow(at(0), at(end), IMPULSE, 0.7, head=2.4, role="impulse"))
-        middle = complex(left + scale * box.width / 2, top + 0.8 * ROW)
-        drawing.add(Text(middle, kind, 7.5, "middle", bold=True, role="caption"))
-        place(drawing, Box(0.8, bottom, drawing.width - 0.8, top))
-        left += scale * box.width + _GAP
-    view.table_and_notes(drawing, shapes, bottom, units)
-    return drawing
-
-
-def _move_vehicle(vehicle: Vehicle, motion: Motion, time: float) -> Vehicle:
-    """A vehicle, uncrushed, after it has moved and turned for a time, which may be negative."""
-    center = vehicle.center + time * motion.velocity
-    turn = cmath.rect(1.0, motion.spin * time)
-    outline = tuple(center + turn * (point - vehicle.center) for point in vehicle.outline)
-    front = turn * vehicle.front
-    return vehicle._replace(center=center, front=front, outline=outline, kept=outline)
-
-
-def are_apart(vehicles: Sequence[Vehicle], time: float) -> bool:
-    """Return whether no outline covers another ``time`` after the impact, nor before it.
-
-    Some side then has all corners of the other beyond it.
-    """
-    if len(vehicles) < 2:
-        return True
-
-    def beyond(one: Vehicle, other: Vehicle) -> bool:
-        for first, second in pairwise((*one.outline, one.outline[0])):
-            across = 1j * (second - first)
-            own, other_shapes = (
-                [(point / across).real for point in vehicle.outline] for vehicle in (one, other)
-            )
-            if min(own) >= max(other_shapes) or min(other_shapes) >= max(own):
-                return True
-        return False
-
-    for sign in (-1.0, 1.0):
-        a, b = (
-            _move_vehicle(v, v.after if sign > 0 and v.after else v.before, sign * time)
-            for v in vehicles
-        )
-        if not (beyond(a, b) or beyond(b, a)):
-            return False
-    return True
-
-
-def _tip(vehicle: Vehicle, kind: str, time: float) -> complex:
-    motion = vehicle.after if kind == "after" and vehicle.after else vehicle.before
-    return vehicle.center + (time if kind != "impact" else 0.0) * motion.velocity
 
 
 def configurations() -> Drawing:

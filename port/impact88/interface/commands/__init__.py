@@ -27,7 +27,7 @@ ROWS = (
     Command("solve", _COLLISIONS, "solve a table of scenes, in double precision or as the Apple"),
     Command("bounds", _COLLISIONS, "bounds, quantiles and drivers from ranges of the inputs"),
     Command("reconstruct", _COLLISIONS, "solve the equations for any unknowns, with tolerances"),
-    Command("figure", _COLLISIONS, "draw a scene, its bounds or a figure of the chapter"),
+    Command("figure", _COLLISIONS, "draw a scene or a figure of the chapter"),
     Command("report", _COLLISIONS, "a page for the case file: answer, drawing, inputs, method"),
     Command("oracle", _PROGRAMS, "compute reference answers for scenes"),
     Command("compare", _PROGRAMS, "say where another program's results differ, and why"),

@@ -1,29 +1,20 @@
 """kinds:
   scene            from above: vehicles, contact plane, velocities, impulse
-  strip            before, impact and after side by side, two columns wide
   barrier          one vehicle against a barrier; FILE.toml as chapter barrier's
-  friction         energy loss and delta-V against MU, with the critical value
-  sweep            results as a value runs through a range (--sweep, --outputs)
-  histogram        the draws of uncertain results; options as impact88 bounds
-  tornado          how far each uncertain input takes each result
   staged           Figure 5: staged collisions, calculated and measured delta-V
   force            Figure 1: force between vehicles and its impulse
   colinear         Figure 2: free bodies, direct colinear impact
   planar           Figure 3: free bodies, planar impact, of any scene
   configurations   Figure 4: the staged collisions' configurations
 
-The ending of FILE says how it is written: .svg, .png or .pdf; all but strip are one column (85 mm)
-wide, or --width. .png and .pdf take pip install 'impact88[plot]'. Vehicles are drawn as measured
-where the file gives LA BA, LB BB.
+The ending of FILE says how it is written: .svg, .png or .pdf; one column (85 mm) wide, or --width.
+.png and .pdf take pip install 'impact88[plot]'. Vehicles are drawn as measured where the file gives
+LA BA, LB BB.
 
 examples:
   impact88 figure scene --sample 1 -o scene.svg
   impact88 figure scene crash.toml --set MU=-10 -o pivot.pdf
-  impact88 figure strip crash.toml -o board.pdf --width 900
   impact88 figure barrier car.toml -o barrier.svg
-  impact88 figure friction --sample 3 -o friction.png
-  impact88 figure sweep --sample 1 --sweep GA=-50:-10:81 -o gamma.svg
-  impact88 figure tornado --sample 1 --range GA="+- 10" -o tornado.pdf
   impact88 figure staged -o figure5.pdf
 """
 
@@ -37,26 +28,24 @@ from ...collision.needs import sentences
 from ...errors import UserError, note
 from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
 from ...mechanics.closedform.solve import solve
-from ...names import FINAL_VELOCITIES, RESULTS, missing
+from ...names import FINAL_VELOCITIES, missing
 from ...program.scene import Scene
 from . import options
 
-OF_RANGES = ("histogram", "tornado")
 OF_NOTHING = ("staged", "force", "colinear", "configurations")
-KINDS = ("scene", "strip", "friction", "sweep", "barrier", *OF_RANGES, "planar", *OF_NOTHING)
+KINDS = ("scene", "barrier", "planar", *OF_NOTHING)
 
 ARGUMENTS = (
     options.value("kind", "KIND", "see kinds below", choices=KINDS),
     options.writes("-o --output", "FILE", "where to write: .svg, .png or .pdf", required=True),
-    *options.EXPLORED,
+    *options.ONE_SCENE,
+    options.setting("change a value of the scene"),
     options.MOVE,
-    options.SWEEP,
-    options.names_option("--outputs", "the results wanted"),
     options.count(
         "--width",
         40,
         3000,
-        "how wide it is written, such as 900 for an exhibit board (default: 85, strip 170)",
+        "how wide it is written, such as 900 for an exhibit board (default: 85)",
         metavar="MM",
     ),
 )
@@ -73,41 +62,17 @@ def main(args: options.Args) -> None:
 def _draw(args: options.Args) -> Drawing:
     kind, scene_source = args.kind, args.scene or args.sample or args.set
     if kind in OF_NOTHING:
-        if scene_source or args.ranges:
+        if scene_source:
             raise UserError(f"{kind} is drawn from the chapter alone and takes no scene")
         return _of_nothing(kind)
-    if kind in OF_RANGES:
-        from ...casework.figures import charts
-
-        draw = charts.histograms if kind == "histogram" else charts.tornado
-        outputs = args.outputs
-        if kind == "tornado" and not outputs:
-            outputs = ["SA", "SB", "LOSS"] if args.reconstruct else ["DVA", "DVB", "LOSS"]
-        return draw(options.explore(args, outputs, keep=kind == "histogram"))
-    if kind == "sweep":
-        return _swept(args)
-    if args.ranges or args.outputs:
-        raise UserError(
-            f"{kind} shows one scene as it is; --range and --outputs are for histogram "
-            "and tornado, --set changes a value"
-        )
     if kind == "barrier":
         return _barrier(args)
-    drawn = kind in ("scene", "strip")
-    may_omit = OPTIONAL_OF_POINTS if drawn and options.case_given(args).of_points else ()
-    scene = options.one_scene(args, may_omit) if kind != "planar" or scene_source else None
-    if kind == "planar" or scene is None:
+    if kind == "planar":
         from ...casework.figures.views import planar
 
-        return planar(scene)
-    if kind == "friction":
-        from ...casework.figures.charts import friction_sweep
-
-        return friction_sweep(scene)
-    if kind == "strip":
-        from ...casework.figures.views import strip_drawing
-
-        return strip_drawing(scene, solve_scene(scene), scene.title or "Before, impact and after")
+        return planar(options.one_scene(args) if scene_source else None)
+    may_omit = OPTIONAL_OF_POINTS if options.case_given(args).of_points else ()
+    scene = options.one_scene(args, may_omit)
     return scene_drawing(scene, solve_scene(scene), title=scene.title or "Scene from above")
 
 
@@ -143,26 +108,6 @@ def _barrier(args: options.Args) -> Drawing:
         units=case.system,
         outlines=case.outlines,
     )
-
-
-def _swept(args: options.Args) -> Drawing:
-    """One result a panel, along the one value swept."""
-    from ...casework.figures.charts import swept
-    from ...tables.sweep import read_ranges
-
-    if args.ranges:
-        raise UserError("sweep takes --sweep NAME=LOW:HIGH:COUNT, not --range")
-    scene = options.one_scene(args)
-    ranges = read_ranges(options.sweeps(args.sweep), scene.case)
-    if len(ranges) != 1:
-        raise UserError("expected one --sweep NAME=LOW:HIGH:COUNT, such as --sweep MU=0:1:51")
-    ((name, run),) = ranges.items()
-    if run.unit:
-        raise UserError(
-            f"--sweep {name}: shares of the critical friction have no axis; expected numbers"
-        )
-    outputs = options.names_given(args.outputs, tuple(RESULTS), "--outputs")
-    return swept(scene, name, run.values(), outputs or ["LOSS", "DVA", "DVB"])
 
 
 def solve_scene(scene: Scene) -> dict[str, Any]:

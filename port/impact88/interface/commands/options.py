@@ -508,7 +508,7 @@ EXPLORED = (
 """Options for the uncertain inputs, and for exploring them."""
 
 
-def explore(args: Args, outputs: list[str], keep: bool = False) -> Bounds:
+def explore(args: Args, outputs: list[str]) -> Bounds:
     """Return the bounds that the options ask for, in the units of the inputs. Raises UserError."""
     from ...casework.uncertainty.bounds import bounds
     from ...casework.uncertainty.boundstable import in_units
@@ -551,7 +551,6 @@ def explore(args: Args, outputs: list[str], keep: bool = False) -> Bounds:
             correlations=correlations,
             sigmas=args.sigmas,
             exclude=[name.upper() for name in args.exclude],
-            keep_draws=keep,
             progress=meter.update,
         )
     return in_units(result, inputs.case.system)
