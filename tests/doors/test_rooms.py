@@ -167,7 +167,7 @@ def test_only_commands_import_commands() -> None:
     assert not below
 
 
-SHARE = "impact88.program.scene", "impact88.mechanics.closedform.share"
+SHARE = "impact88.program.scene", "impact88.mechanics.closedform.general"
 """An MU of "85 %" is no typed digit: it is computed first, as over arrays."""
 
 

@@ -97,6 +97,23 @@ def test_a_python_column_has_shares_beside_numbers() -> None:
     assert float(alone["MUP"]) == abs(float(sample(1).replaced({"MU": "85 %", "UX": "-60"})["MU"]))
 
 
+def test_a_share_of_scenes_that_lack_inputs() -> None:
+    """What stands without an input is what the complete scene has, whatever the input is."""
+    scene = {**sample(1).numbers(), "MU": ["85 %", 0.5]}
+    for lacking in ("IA", "TB", "EM"):
+        found = solve({name: value for name, value in scene.items() if name != lacking})
+        assert found["MUP"][1] == 0.5
+        assert np.isnan(found.pop("MUP")[0])
+        complete = solve(scene)
+        assert {"YA", "VC", "VS"} <= found.keys()
+        assert "VAX" in found.absent
+        assert all(complete[name] == pytest.approx(found[name]) for name in found)
+    points = {name: scene[name] for name in ("MA", "MB", "UX", "UY", "VX", "VY", "E", "GA", "MU")}
+    complete = solve({**scene, "M": 4}, ["DVA", "MUP"])
+    for name, values in solve({**points, "M": 4}, ["DVA", "MUP"]).items():
+        assert values.tolist() == complete[name].tolist()
+
+
 def test_bounds_of_a_share() -> None:
     inputs = read_inputs({**sample(1), "MU": "80 .. 90 %"}, {"DA": "+- 1"}).values
     found = bounds(inputs, ["MUP"], samples=2000)

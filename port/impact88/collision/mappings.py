@@ -8,7 +8,7 @@ computes in double precision reads its values here, so that a text means the sam
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError, quoted
@@ -28,11 +28,18 @@ def in_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return the values in base units; texts become texts of plain numbers or ranges.
 
     If there is an entry ``units``, numbers and arrays are in that system, too. Raises UserError."""
-    return _in_base(values)[0]
+    return _in_base(values, _number_in_base)[0]
 
 
-def _in_base(values: Mapping[str, Any]) -> tuple[Mapping[str, Any], str | None]:
-    """Return `in_base` and the name of the system of units, None without units."""
+def _number_in_base(name: str, value: Any, factor: float) -> Array:
+    return in_doubles(name, value) / factor
+
+
+def _in_base(
+    values: Mapping[str, Any], convert: Callable[[str, Any, float], Any]
+) -> tuple[Mapping[str, Any], str | None]:
+    """Return `in_base` and the name of the system of units, None without units. ``convert``: makes
+    of a name, what it is in that system, and the factor between the two what is in base units."""
     check_mapping(values)
     texts = {name: value for name, value in values.items() if isinstance(value, str)}
     if case_of(values) or not texts:
@@ -42,11 +49,7 @@ def _in_base(values: Mapping[str, Any]) -> tuple[Mapping[str, Any], str | None]:
     case = Case(texts, "values")
     numbers = {name: value for name, value in values.items() if name not in texts}
     if case.units:
-        from .uncertain import Uncertain
-
-        for n, v in numbers.items():
-            factor = case.system.factor(n)
-            numbers[n] = v.over(factor) if isinstance(v, Uncertain) else in_doubles(n, v) / factor
+        numbers = {n: convert(n, v, case.system.factor(n)) for n, v in numbers.items()}
     base_values = dict(case.values)
     if "M" not in texts:  # the default 6 is set where it is needed
         del base_values["M"]
@@ -63,7 +66,7 @@ def base_system(values: Mapping[str, Any]) -> str | None:
     from .units import system_of
 
     case = case_of(values)
-    units = case.units if case else _in_base(values)[1]
+    units = case.units if case else _in_base(values, lambda *_: None)[1]
     return None if units is None else system_of(units).base_name
 
 
@@ -119,10 +122,10 @@ def columns(values: Mapping[str, Any]) -> dict[str, Array]:
     return arrays
 
 
-def scene_columns(values: Mapping[str, Any]) -> tuple[dict[str, Array], Array]:
+def scene_columns(values: Mapping[str, Any]) -> tuple[dict[str, Array], Array | None]:
     """Return a scene's values of any kinds as arrays of numbers in base units, in the table's
-    order, and the shares of the critical friction among MU, which is 0 there (NaN elsewhere).
-    Raises UserError for an unknown name and for what is no number."""
+    order, and the shares of the critical friction among MU, which is 0 there (NaN elsewhere; None
+    without any). Raises UserError for an unknown name and for what is no number."""
     import numpy as np
 
     base_values = in_base(values)
@@ -132,27 +135,26 @@ def scene_columns(values: Mapping[str, Any]) -> tuple[dict[str, Array], Array]:
             f"{unknown[0]!r} is not a scene name; expected {' '.join(SCENE)} "
             "(impact88.solve_frame takes further columns)"
         )
-    shares = shares_in(base_values.get("MU"))
-    is_share = ~np.isnan(shares)
-    if np.any(is_share):
-        base_values = {
-            **base_values,
-            "MU": np.where(is_share, 0.0, np.asarray(base_values["MU"], object)),
-        }
+    shares = _shares_in(base_values.get("MU"))
+    if shares is not None:
+        mu = np.where(np.isnan(shares), np.asarray(base_values["MU"], object), 0.0)
+        base_values = {**base_values, "MU": mu}
     return {
         name: in_doubles(name, base_values[name]) for name in SCENE if name in base_values
     }, shares
 
 
-def shares_in(mu: Any) -> Array:
-    """Return the fractions that cells of MU are of the critical friction; NaN for all others."""
+def _shares_in(mu: Any) -> Array | None:
+    """Return the fractions that cells of MU are of the critical friction, NaN for all others; None
+    without any."""
     import numpy as np
 
     kind = getattr(getattr(mu, "dtype", None), "kind", "f")
     if not isinstance(mu, str | list | tuple) and kind not in "OUS":
-        return np.array(np.nan)
+        return None
     cells = np.asarray(mu, object)
-    return np.array([share_of(cell) for cell in cells.ravel()], np.float64).reshape(cells.shape)
+    shares = np.array([share_of(cell) for cell in cells.ravel()], np.float64)
+    return None if np.isnan(shares).all() else shares.reshape(cells.shape)
 
 
 def common_shape(what: str, arrays: Mapping[str, Array]) -> tuple[int, ...]:
@@ -173,7 +175,11 @@ def within_limits(values: Mapping[str, Any]) -> dict[str, Uncertain]:
 
     from .uncertain import Uncertain, fixed_value, read
 
-    base_values, units = _in_base(values)
+    def converted(name: str, value: Any, factor: float) -> Any:
+        is_uncertain = isinstance(value, Uncertain)
+        return value.over(factor) if is_uncertain else _number_in_base(name, value, factor)
+
+    base_values, units = _in_base(values, converted)
 
     def to_uncertain(name: str, value: Any) -> Uncertain:
         if isinstance(value, Uncertain):

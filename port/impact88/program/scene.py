@@ -117,7 +117,7 @@ class Scene(Mapping[str, str]):
         values |= {name: "1" if name in INERTIAS else "0" for name in absent}
         self.remarks = dict(nominal_case.remarks)
         if is_share(values["MU"]):
-            from ..mechanics.closedform.share import resolve_share  # needed for a share only
+            from ..mechanics.closedform.general import resolve_share  # needed for a share only
 
             texts = {
                 n: check_value(n, text, case.place(n)) for n, text in values.items() if n != "MU"

@@ -17,7 +17,7 @@ from ..collision.fields import ZERO_DETERMINANT
 from ..collision.needs import sentences
 from ..errors import UserError, quoted
 from ..mechanics.closedform.columns import INERTIAS, UNUSED_BY_POINTS, examine, refusals
-from ..mechanics.closedform.share import resolve_share, share_typed
+from ..mechanics.closedform.general import resolve_share, share_typed
 from ..mechanics.closedform.solve import solve
 from ..names import DEFAULT_M, SCENE
 from ..status import Status

@@ -18,7 +18,7 @@ from ...collision.geometry import within_doubles
 from ...collision.mappings import within_limits
 from ...collision.uncertain import Uncertain, fixed_value
 from ...errors import UserError
-from ...mechanics.closedform.share import share_typed
+from ...mechanics.closedform.general import share_typed
 from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import outcome
 from ...mechanics.posed import is_wrong_way, pose, turned, turned_sentence

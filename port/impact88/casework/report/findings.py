@@ -258,7 +258,7 @@ def _cell(text: str) -> float | str | None:
 
 
 def _forward(case: Case, source: str, samples: int, seed: int, units: System) -> Findings:
-    from ...mechanics.closedform.share import share_typed
+    from ...mechanics.closedform.general import share_typed
     from ...mechanics.closedform.solve import solve
     from ...mechanics.posed import absent_results
     from ..reconstruction.solutiontable import with_derived_values

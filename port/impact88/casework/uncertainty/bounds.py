@@ -30,9 +30,8 @@ from ...collision.uncertain import (
     random_numbers,
 )
 from ...errors import UserError
-from ...mechanics.closedform.general import quantities
+from ...mechanics.closedform.general import quantities, share_typed
 from ...mechanics.closedform.omitted import not_given
-from ...mechanics.closedform.share import share_typed
 from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import forward_model, reconstruction_model
 from ...mechanics.posed import line_of_motion

@@ -139,7 +139,7 @@ def _forward_solution(case: Case) -> dict[str, str]:
             f"({' '.join(missing)} missing)",
             case.source,
         )
-    from ...mechanics.closedform.share import share_typed
+    from ...mechanics.closedform.general import share_typed
     from ...mechanics.closedform.solve import solve
 
     scene = resolve_contact_point({name: item.nominal for name, item in values.items()})

@@ -1,4 +1,8 @@
-"""The general path of `solve`: columns of any types and shapes that broadcast, block by block."""
+"""The general path of `solve`: columns of any types and shapes that broadcast, block by block.
+
+MU may be a share of the critical friction ("85 %"), of the one that just ends the sliding at
+separation, MUC: it is solved for first.
+"""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -8,6 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...collision.case import share_of
+from ...collision.doubles import double
+from ...errors import UserError
+from ...names import DEFAULT_M, PIVOT, SCENE
 from ...status import Status
 from ..native.processors import run_in_threads, workers
 from . import compiledcalls
@@ -34,9 +42,14 @@ def solve_arrays(
     threads: int | None,
     sign: float | None = None,
     out: Mapping[str, Array] | None = None,
+    shares: Array | None = None,
 ) -> dict[str, Array]:
     """Solve columns of any types and shapes. ``out``, ``threads``: as in `solve`; ``sign``: see
-    `quantities`."""
+    `quantities`; ``shares``: of the critical friction, in place of MU where they are not NaN."""
+    if shares is not None:
+        numbers: Any = columns["MU"]
+        mu = np.where(np.isnan(shares), numbers, share_typed(columns, shares))
+        columns = {**columns, "MU": mu}
     inputs, shape = sources(columns)
     count = math.prod(shape)
     if out is None:
@@ -62,6 +75,33 @@ def quantities(
     ``sign``: +1 keeps MU's sign in all scenes, -1 changes it; None applies line 400's rule.
     """
     return solve_arrays(columns, tuple(names), 1, sign)
+
+
+def share_typed(columns: Mapping[str, Any], share: Any) -> Array:
+    """Return the friction for a share of each scene's critical friction (MUC), a fraction of
+    P_t/P_n, as line 280 would take it: line 400 turns its sign where gt > 0. NaN where no friction
+    ends the sliding. The ``columns``' own MU is not looked at."""
+    critical = quantities({**columns, "MU": PIVOT}, ("MUC", "PN", "gt"))
+    with np.errstate(invalid="ignore"):
+        mu = np.where(critical["PN"] > 0, np.asarray(share) * critical["MUC"], np.nan)
+        return np.asarray(np.where(critical["gt"] > 0, -mu, mu) + 0.0)
+
+
+def resolve_share(texts: Mapping[str, str], source: str) -> tuple[str, str]:
+    """Return MU's number as text for a scene whose MU is a share, and a remark that says so. Raises
+    UserError."""
+    share = share_of(texts["MU"])
+    if share is None:
+        raise UserError(f"MU = {texts['MU']!r} is not a share; expected one such as 85 %", source)
+    numbers = {"M": double(DEFAULT_M)}
+    numbers |= {name: double(texts[name]) for name in SCENE if name in texts and name != "MU"}
+    mu = float(share_typed(numbers, share))
+    if not math.isfinite(mu):
+        raise UserError(
+            f"MU = {texts['MU']}: no friction ends the sliding here; expected a number", source
+        )
+    number = repr(mu).removesuffix(".0").upper()
+    return number, f"MU = {number} is {100 * share:g} % of the critical friction"
 
 
 @np.errstate(all="ignore")

@@ -8,7 +8,7 @@ contact planes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,9 +19,9 @@ from ...errors import UserError
 from ...names import DEFAULT_M, PIVOT, SCENE, quantity
 from ...status import IMPOSSIBLE, Status
 from .columns import BODIES, UNUSED_BY_POINTS
+from .general import solve_arrays
 
 Array = NDArray[Any]
-Solve = Callable[[Mapping[str, Any], Sequence[str]], Mapping[str, Array]]
 
 TRIALS = 24  # values of each input that is not given; directions are 15 degrees apart
 SPECIAL = {"E": (0.0, 1.0), "MU": (0.0, PIVOT), "EM": (0.0, 1.0)}
@@ -63,7 +63,11 @@ def not_given(columns: Mapping[str, Any]) -> tuple[str, ...]:
 
 @np.errstate(all="ignore")
 def solve_without(
-    columns: Mapping[str, Any], lacking: Sequence[str], wanted: Sequence[str], solve: Solve
+    columns: Mapping[str, Any],
+    shares: Array | None,
+    lacking: Sequence[str],
+    wanted: Sequence[str],
+    threads: int | None,
 ) -> Results:
     """Return the wanted results of scenes that lack inputs, as far as they do not use them.
 
@@ -71,18 +75,24 @@ def solve_without(
     ----------
     columns : mapping of str to ndarray
         What is given, in base units.
+    shares : ndarray or None
+        Of the critical friction, in place of MU, as `general.solve_arrays` takes them.
     lacking : sequence of str
         What is not, see `not_given`.
     wanted : sequence of str
         Names of results.
-    solve : callable
-        Solves complete scenes.
+    threads : int or None
+        As in `solve.solve`.
 
     Raises
     ------
     UserError
         If no wanted result is left.
     """
+
+    def solve(scene: Mapping[str, Any], names: Sequence[str]) -> dict[str, Array]:
+        return solve_arrays(scene, tuple(names), threads, shares=shares)
+
     columns_known = {"M": np.array(float(DEFAULT_M)), **columns}
     rng = np.random.default_rng(1988)
     trials = {name: _trials(name, rng) for name in lacking}
@@ -102,14 +112,12 @@ def solve_without(
     stands = _same(first, other_trials, first)
     zero = [n for n in names if all(not np.any(x[n]) for x in (first, *other_trials))]
     if zero:  # one that is not below 0, such as EESA where energy is gained, hides its inputs
-        scenes = _ordinary_scenes(columns_known, rng)
-        elsewhere = [
-            solve(
-                _complete_scene(scenes, {n: x[trial] for n, x in trials.items()}, np.zeros(())),
-                names,
-            )
+        scenes = _ordinary_scenes(columns_known, shares is not None, rng)
+        ordinary_trials = [
+            _complete_scene(scenes, {n: x[trial] for n, x in trials.items()}, np.zeros(()))
             for trial in range(TRIALS)
         ]
+        elsewhere = [solve_arrays(scene, tuple(names), threads) for scene in ordinary_trials]
         same = _same(elsewhere[0], elsewhere[1:], elsewhere[0])
         stands |= {name: stands[name] & (np.all(same[name]) | along) for name in zero}
     results = {name: np.where(stands[name], first[name], np.nan) for name in names}
@@ -162,14 +170,17 @@ def _trials(name: str, rng: np.random.Generator) -> list[float]:
     return [float(value) for value in values]
 
 
-def _ordinary_scenes(given: Mapping[str, Array], rng: np.random.Generator) -> dict[str, Array]:
+def _ordinary_scenes(
+    given: Mapping[str, Array], has_shares: bool, rng: np.random.Generator
+) -> dict[str, Array]:
     """Return ordinary scenes with the special values that are given: zeros, infinite bodies, the
-    pivot and no moment."""
+    pivot and no moment. ``has_shares``: the friction is not what MU says."""
     scenes = {}
     for name, value in given.items():
         special = {0.0, np.inf, *SPECIAL.get(name, ())}
         is_kept = name == "M" or (value.size and np.ptp(value) == 0 and value.flat[0] in special)
         is_kept = is_kept or (np.isinf(value).all() and bool(value.size))
+        is_kept = is_kept and not (name == "MU" and has_shares)
         scenes[name] = value.flat[0] if is_kept else ordinary(name, rng, 2 * TRIALS)
     return {name: np.asarray(value, np.float64) for name, value in scenes.items()}
 

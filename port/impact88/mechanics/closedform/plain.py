@@ -38,31 +38,6 @@ lives as long as any of them. Larger arrays the C library maps anew each time.""
 _in_order = itemgetter(*NAMES)
 
 
-def in_order(columns: Mapping[str, object]) -> tuple[Any, ...]:
-    """Return the scene's values in the table's order; () where names are missing or unknown."""
-    if "M" not in columns:
-        columns = {**columns, "M": 6.0}
-    try:
-        return _in_order(columns) if len(columns) == len(NAMES) else ()
-    except KeyError:
-        return ()
-
-
-def solve_one(values: tuple[Any, ...], wanted: tuple[str, ...]) -> dict[str, Any] | None:
-    """Return the results ``wanted`` of one scene (values as from `in_order`) as numpy's float64,
-    STATUS as uint16; None where the values are not all plain numbers."""
-    if not PLAIN.issuperset(map(type, values)):
-        return None
-    free = free_calls(wanted, CallOfOneScene)
-    call = free.pop() if free else CallOfOneScene(wanted)
-    try:
-        return call.solve(values)
-    except OverflowError:  # a whole number that no double holds
-        return None
-    finally:
-        free.append(call)
-
-
 class _Layout:
     """Places of columns and of numbers among a scene's values, by the types of these.
 
@@ -83,26 +58,47 @@ class _Layout:
 
 @lru_cache(maxsize=256)
 def _layout(types: tuple[type, ...]) -> _Layout | None:
-    """Return the layout of values of these types; None unless all are arrays or plain numbers, at
-    least one an array."""
+    """Return the layout of values of these types; None unless all are arrays or plain numbers."""
     plain = all(kind is np.ndarray or kind in PLAIN for kind in types)
-    return _Layout(types) if plain and np.ndarray in types else None
+    return _Layout(types) if plain else None
 
 
 def solve_plain(
+    columns: Mapping[str, Any],
+    wanted: tuple[str, ...],
+    threads: int | None,
+    out: Mapping[str, Array] | None,
+) -> dict[str, Any] | None:
+    """Return the results ``wanted`` of plain columns of one shape and numbers, or of one scene of
+    plain numbers, which gives numbers (numpy's float64, STATUS uint16); None where the general path
+    has to look at them.
+
+    ``threads``, ``out``: as in `solve`.
+    """
+    if "M" not in columns:
+        columns = {**columns, "M": 6.0}
+    try:
+        values = _in_order(columns)
+    except KeyError:
+        return None
+    if len(columns) != len(NAMES):
+        return None
+    layout = _layout(tuple(map(type, values)))
+    if layout is None:
+        return None
+    if layout.columns:
+        return _solve_columns(layout, values, wanted, threads, out)
+    return _solve_one(values, wanted) if out is None else None
+
+
+def _solve_columns(
+    layout: _Layout,
     values: tuple[Any, ...],
     wanted: tuple[str, ...],
     threads: int | None,
     out: Mapping[str, Array] | None,
-) -> dict[str, Array] | None:
-    """Return the results ``wanted`` of values in the table's order; None where these are not plain
-    columns of one shape and numbers, and the general path has to look at them.
-
-    ``threads``, ``out``: as in `solve`.
-    """
-    layout = _layout(tuple(map(type, values)))
-    if layout is None:
-        return None
+) -> dict[str, Any] | None:
+    """Return the results of columns of one shape and numbers, laid out as ``layout`` says."""
     arrays = [values[i] for i in layout.columns]
     shape, count = arrays[0].shape, arrays[0].size
     if count < 2 or not all(array.shape == shape for array in arrays):
@@ -125,6 +121,18 @@ def solve_plain(
     call.run(result_starts, count, threads)
     free.append(call)
     return by_name
+
+
+def _solve_one(values: tuple[Any, ...], wanted: tuple[str, ...]) -> dict[str, Any] | None:
+    """Return the results of one scene's numbers; None where a whole number is no double."""
+    free = free_calls(wanted, CallOfOneScene)
+    call = free.pop() if free else CallOfOneScene(wanted)
+    try:
+        return call.solve(values)
+    except OverflowError:
+        return None
+    finally:
+        free.append(call)
 
 
 def _inputs(

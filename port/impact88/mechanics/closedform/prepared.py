@@ -123,7 +123,7 @@ class Prepared:
         self.outputs = outputs
         self._scene = {name: value for name, value in scene.items() if name not in names}
         columns, shares = scene_columns(self._scene)
-        if not np.isnan(shares).all():
+        if shares is not None:
             raise UserError(
                 f"MU = {quoted(self._scene['MU'])} is a share of the critical friction, which each "
                 "scene has for itself; expected a number"

@@ -5,10 +5,9 @@ point masses) with exact pi, by the closed form of `closedform.impact`.
 """
 
 from collections.abc import Mapping, Sequence
-from functools import lru_cache, partial
+from functools import lru_cache
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from ...collision.mappings import scene_columns
@@ -19,8 +18,7 @@ from . import compiledcalls
 from .general import solve_arrays
 from .impactprograms import ALL
 from .omitted import not_given, solve_without
-from .plain import in_order, solve_one, solve_plain
-from .share import friction_typed
+from .plain import solve_plain
 
 Array = NDArray[Any]
 
@@ -108,21 +106,15 @@ def solve(
         outputs = split_names(outputs)
     wanted = _check_results(tuple(outputs))
     # the short path: plain numbers and float64 arrays need no reading
-    values = in_order(columns) if isinstance(columns, dict) else ()
-    if values and wanted and compiledcalls.usable():
-        results = solve_one(values, wanted) if out is None else None
-        if results is None:
-            results = solve_plain(values, wanted, threads, out)
+    if isinstance(columns, dict) and wanted and compiledcalls.usable():
+        results = solve_plain(columns, wanted, threads, out)
         if results is not None:
             return results
     # the long one: texts, units, lists, frames' columns, scenes that lack inputs
     scene, shares = scene_columns(columns)
-    if shares.size and not np.isnan(shares).all():
-        scene = friction_typed(scene, shares)
     if out is None and (lacking := not_given(scene)):
-        complete = partial(solve_arrays, threads=threads)
-        return solve_without(scene, lacking, wanted, complete)
-    arrays = solve_arrays(scene, wanted, threads, out=out)
+        return solve_without(scene, shares, lacking, wanted, threads)
+    arrays = solve_arrays(scene, wanted, threads, out=out, shares=shares)
     # one scene gives numbers, not arrays without dimensions
     return {
         name: array[()] if array.ndim == 0 and out is None else array
