@@ -1,5 +1,5 @@
-"""The chapter's figures of bodies: Figure 4, configurations, and Figures 2 and 3, free bodies pulled
-apart along the normal: each shows the impulses on it."""
+"""Figure 4 of the chapter, configurations, and Figures 2 and 3, free bodies pulled apart along the
+normal: each shows the impulses on it."""
 
 import math
 from typing import Any

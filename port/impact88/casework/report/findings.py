@@ -1,5 +1,4 @@
-"""The report of a collision: forward from a scene, inverse from a reconstruction file; and its
-tables as a workbook."""
+"""The report of a collision: forward from a scene, inverse from a reconstruction file."""
 
 from __future__ import annotations
 
@@ -13,8 +12,7 @@ from ...collision.case import ABOUT, Case, remark_lines
 from ...collision.geometry import MOVES, clock, coordinate_names, resolve_contact_point
 from ...collision.needs import sentences as needs_in_words
 from ...collision.units import System, base_of
-from ...errors import UserError, library
-from ...files import replacing
+from ...errors import UserError
 from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
 from ...mechanics.state import COURSES, KNOWABLE
 from ...messages.plaintable import format_fixed, number
@@ -162,8 +160,8 @@ def report(
     paper: str = "",
     examiner: str = "",
     date: str = "",
-) -> tuple[str, list[Table]]:
-    """Return the report page on a collision, and its tables.
+) -> str:
+    """Return the report page on a collision.
 
     ``source`` is the name of the case's file and ``data`` its bytes. A complete scene with nothing
     known after the impact is computed forward, any other reconstructed. Raises UserError.
@@ -192,7 +190,7 @@ def report(
         drawing = scene_drawing(findings.scene, findings.values, *look, tallest=room)
     except UserError as error:  # what is not determined cannot be drawn
         undrawn = str(error)
-    page = render(
+    return render(
         "collision.html",
         title=title or case.title or "Planar impact of two vehicles",
         case=number or case.case or "",
@@ -219,7 +217,6 @@ def report(
         room=FIRST_PAGE[paper],
         remarks=remarks,
     )
-    return page, tables
 
 
 def _unjudged(case: Case) -> list[str]:
@@ -236,25 +233,6 @@ def _unjudged(case: Case) -> list[str]:
         *sentences,
         "Motion before and after the impact, crush and injury: nothing of them is computed here.",
     ]
-
-
-def write_workbook(path: str, tables: Sequence[Table]) -> None:
-    """Write a sheet for each table; cells that are numbers are numbers. Raises UserError."""
-    book = library("openpyxl", "excel", "an .xlsx").Workbook()
-    book.remove(book.active)
-    for table in tables:
-        sheet = book.create_sheet(table.title[:31])
-        for row in (table.headings, *table.rows):
-            sheet.append([_cell(text) for text in row])
-    with replacing(path, "wb") as file:
-        book.save(file)
-
-
-def _cell(text: str) -> float | str | None:
-    try:
-        return float(text)
-    except ValueError:
-        return text or None
 
 
 def _forward(case: Case, source: str, samples: int, seed: int, units: System) -> Findings:

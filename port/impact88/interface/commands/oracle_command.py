@@ -28,7 +28,6 @@ examples:
 exit status: 0 every line was answered; 1 some lines could not be used; 2 no usable input at all
 """
 
-import argparse
 import codecs
 import sys
 from collections.abc import Iterable, Iterator
@@ -56,8 +55,6 @@ ARGUMENTS = (
     options.count("--seed", 0, 2**63, "make fresh vectors, by this random seed", metavar="S"),
     options.choice("--class", vectors.CLASSES, "vectors of this class only", dest="only"),
     options.choice("--to", ("jsonl", "csv"), "csv: the scenes of --vectors as a flat table"),
-    # what is typed for --to csv; in the help --csv names a file, that of `report`
-    options.value("--csv", None, argparse.SUPPRESS, dest="to", action="store_const", const="csv"),
     options.writes(
         "--kit",
         "DIR",

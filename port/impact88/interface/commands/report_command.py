@@ -17,7 +17,7 @@ The same input, options and version give the same bytes.
 examples:
   impact88 report crash.toml -o case.html
   impact88 report crash.toml -o case.html --case 24-117 --paper a4 --seed 7
-  impact88 report after.toml -o case.html --csv tables.csv --xlsx tables.xlsx
+  impact88 report after.toml -o case.html
   impact88 report crash.toml -o case.html --set MU=.5    a value changed
 
 exit status: 0 written; 2 bad input
@@ -45,15 +45,13 @@ ARGUMENTS = (
         default="",
     ),
     *options.draws(20_000),
-    options.writes("--csv", "FILE", "write the tables as CSV"),
-    options.writes("--xlsx", "FILE", "write the tables as a workbook"),
 )
 
 _ON_PAGE = ("samples", "seed", "title", "paper", "examiner", "date")
 
 
 def main(args: options.Args) -> None:
-    from ...casework.report.findings import report, write_workbook
+    from ...casework.report.findings import report
     from ...casework.report.frame import check_page_name
 
     check_page_name(args.output)
@@ -73,14 +71,6 @@ def main(args: options.Args) -> None:
     options.note_remarks(case)
     keywords = {n: getattr(args, n) for n in _ON_PAGE}
     keywords["number"] = args.case
-    page, tables = report(case, source, data, **keywords)
+    page = report(case, source, data, **keywords)
     with replacing(args.output) as out:
         out.write(page)
-    if args.csv:
-        import csv
-
-        rows = [r for table in tables for r in ([table.title], table.headings, *table.rows, [])]
-        with replacing(args.csv) as out:
-            csv.writer(out, lineterminator="\n").writerows(rows)
-    if args.xlsx:
-        write_workbook(args.xlsx, tables)

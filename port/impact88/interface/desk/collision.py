@@ -269,4 +269,4 @@ def case_report(text: str, name: str) -> str:
     from ...casework.report.findings import report
 
     case = Case(toml_texts(text, name), name)
-    return report(case, name, text.encode(), samples=DRAWS, seed=0)[0]
+    return report(case, name, text.encode(), samples=DRAWS, seed=0)
