@@ -48,6 +48,7 @@ TOLERANCES = ("+-", "±", "+/-")
 ABOUT = ("title", "case", "examiner", "date", "correlations", "units", "axes", "headings")
 """Entries about the whole file."""
 _SHARE = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+))\s*%\s*")
+_TOLERANCE = re.compile("|".join(map(re.escape, TOLERANCES)))
 _SIZES = frozenset(("LA", "BA", "LB", "BB"))
 _MOVES = ("CX", "CY")
 
@@ -355,7 +356,7 @@ def kind_of(name: str, text: str) -> str:
     words = text.strip()
     if words.startswith(ESTIMATE):
         return ESTIMATE
-    if name in ("MU", "MUP") and "%" in words and is_share_text(words):
+    if name in ("MU", "MUP") and "%" in _TOLERANCE.split(words)[0]:
         return "share"
     if any(mark in words for mark in TOLERANCES):
         return "tolerance"
@@ -369,22 +370,9 @@ def case_of(values: object) -> Case | None:
     return case if isinstance(case, Case) else None
 
 
-def is_share_text(text: str) -> bool:
-    """Return True if a friction is a percentage of the critical one: "85 %", "80 .. 90 %", but not
-    ".8 +- 5 %", whose percentage is its tolerance."""
-    head = text
-    for mark in TOLERANCES:
-        head = head.partition(mark)[0]
-    return "%" in head
-
-
-def is_share(text: object) -> bool:
-    """Return True if MU is a single percentage of the critical friction, such as ``85 %``."""
-    return isinstance(text, str) and text.endswith("%") and not is_range(text)
-
-
 def share_of(text: object) -> float | None:
-    """Return the fraction a text such as ``85 %`` stands for, 0.85; None for anything else."""
+    """Return the fraction of the critical friction that an MU such as ``85 %`` stands for, 0.85;
+    None for anything else."""
     match = _SHARE.fullmatch(text) if isinstance(text, str) else None
     return float(match[1]) / 100 if match else None
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import UserError, quoted
 from ..names import SCENE
-from .case import FACING_COURSE, RANGES, Case, case_of, check_mapping, is_share, share_of
+from .case import FACING_COURSE, Case, case_of, check_mapping, share_of
 from .doubles import digits, double
 
 if TYPE_CHECKING:
@@ -184,8 +184,7 @@ def within_limits(values: Mapping[str, Any]) -> dict[str, Uncertain]:
     def to_uncertain(name: str, value: Any) -> Uncertain:
         if isinstance(value, Uncertain):
             return value
-        marks = (*RANGES, "skid")
-        if isinstance(value, str) and (is_share(value) or any(mark in value for mark in marks)):
+        if isinstance(value, str):
             return read(value, name, units=units)
         number = in_doubles(name, value)
         if np.ndim(number):

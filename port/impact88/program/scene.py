@@ -10,7 +10,7 @@ import math
 import re
 from collections.abc import Collection, Hashable, Iterator, Mapping
 
-from ..collision.case import FACING_COURSE, Case, check_mapping, check_value, is_share
+from ..collision.case import FACING_COURSE, Case, check_mapping, check_value, share_of
 from ..collision.doubles import double
 from ..collision.scenefile import case_in, template, toml_texts
 from ..errors import UserError, quoted
@@ -116,13 +116,15 @@ class Scene(Mapping[str, str]):
         self.omitted = tuple(absent)
         values |= {name: "1" if name in INERTIAS else "0" for name in absent}
         self.remarks = dict(nominal_case.remarks)
-        if is_share(values["MU"]):
+        if (share := share_of(values["MU"])) is not None:
             from ..mechanics.closedform.general import resolve_share  # needed for a share only
 
             texts = {
                 n: check_value(n, text, case.place(n)) for n, text in values.items() if n != "MU"
             }
-            values["MU"], self.remarks["MU"] = resolve_share({**texts, "MU": values["MU"]}, source)
+            values["MU"], self.remarks["MU"] = resolve_share(
+                {**texts, "MU": values["MU"]}, share, source
+            )
         self._values = {name: check_value(name, values[name], case.place(name)) for name in SCENE}
         self.case = case
 

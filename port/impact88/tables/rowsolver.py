@@ -242,10 +242,10 @@ def _resolve_shares(rows: Rows, columns: dict[str, list[Any]]) -> None:
     """Put the text of a number in place of each cell of MU that is a share, see `_type_shares`."""
     shares: dict[int, Amount] = {}
     for index, cell in enumerate(columns["MU"]):
-        if share_of(cell) is not None:
+        if (share := share_of(cell)) is not None:
             scene = {name: column[index] for name, column in columns.items() if name in SCENE}
             with suppress(UserError, ValueError, TypeError):  # the cell's complaint follows
-                columns["MU"][index] = text = resolve_share(scene, "")[0]
+                columns["MU"][index] = text = resolve_share(scene, share, "")[0]
                 shares[index] = Amount(cell, double(text))
     if shares:
         cells = list(rows.columns["MU"])

@@ -7,7 +7,7 @@ from itertools import islice, product
 from math import isfinite, prod
 from typing import NamedTuple
 
-from ..collision.case import Case, is_share
+from ..collision.case import Case, share_of
 from ..collision.doubles import digits, double, is_number
 from ..collision.units import nominal, units_in
 from ..errors import UserError, quoted
@@ -56,7 +56,7 @@ def read_ranges(texts: Mapping[str, str], case: Case) -> dict[str, Range]:
                 p if units_in(name, p) or i == 2 else f"{p} {unit}" for i, p in enumerate(parts)
             ]
         ends = [case.replaced({name: part}, "--sweep").values[name] for part in parts[:2]]
-        share = "%" if all(map(is_share, ends)) else ""
+        share = "" if None in map(share_of, ends) else "%"
         ends = [end.removesuffix(share).rstrip() for end in ends]
         if not all(map(is_number, ends)):
             raise UserError(f"--sweep {name}: {quoted(text)} is not LOW:HIGH:COUNT, such as 0:1:51")

@@ -10,18 +10,15 @@ import os
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
-from math import isfinite
 
 from ...collision.case import (
-    FACING_COURSE,
     OWN_AXES,
     OWN_NAMES,
-    RANGES,
     Case,
     check_value,
     in_base_units,
-    is_share,
     remark_lines,
+    share_of,
 )
 from ...collision.doubles import double
 from ...collision.scenefile import case_in
@@ -324,7 +321,7 @@ def settings(texts: Sequence[str], units: str | None = None) -> dict[str, str]:
     case = change_case(Case({}, "--set", units), changes, "--set").at_nominal()
     numbers = {name: case.values[name] for name in changes if name in case.given}
     for name, text in numbers.items():
-        if not (name == "MU" and is_share(text)):
+        if not (name == "MU" and share_of(text) is not None):
             check_value(name, text, "--set")
     return numbers
 
@@ -425,8 +422,10 @@ def known_case(args: Args, allowed: Collection[str], single: bool = False) -> Ca
 
 def read_known(case: Case, allowed: Collection[str]) -> dict[str, Uncertain]:
     """Return a case's values among the names ``allowed``."""
+    from ...collision.uncertain import read
+
     return {
-        name: _within_limits(name, text, case.place(name), case.units)
+        name: read(text, f"{case.place(name)}: {name}", units=case.units)
         for name, text in case.values.items()
         if name in allowed
     }
@@ -442,17 +441,6 @@ def note_remarks(case: Case | Scene, based: str = "") -> None:
         lines.insert(0, f"{based} is in {base_of(system_of(case.units))}")
     for line in lines:
         note(None, line)
-
-
-def _within_limits(name: str, text: str, source: str, units: str | None) -> Uncertain:
-    from ...collision.uncertain import fixed_value, read
-
-    if any(mark in text for mark in (*RANGES, "skid", FACING_COURSE)) or is_share(text):
-        return read(text, f"{source}: {name}", units=units)
-    value = double(check_value(name, text, source))
-    if not isfinite(value):
-        raise UserError(f"{name} = {text} is too large for a double", source)
-    return fixed_value(value)
 
 
 def scene_given(args: Args, based: str = "", may_omit: Collection[str] = ()) -> Scene | None:

@@ -9,7 +9,7 @@ from itertools import chain
 
 import numpy as np
 
-from ...collision.case import OWN_NAMES, Case, check_value, is_share
+from ...collision.case import OWN_NAMES, Case, check_value, share_of
 from ...collision.doubles import double_or_none
 from ...collision.fields import ZERO_DETERMINANT
 from ...collision.scenefile import case_in
@@ -222,7 +222,7 @@ def _constants_given(
     texts = {n: t for n, t in case.values.items() if n in case.given or n not in (*columns, "M")}
     texts = {n: t for n, t in texts.items() if n in changes or n not in columns}
     for name, text in texts.items():
-        if text != "inf" and not (name == "MU" and is_share(text)):
+        if text != "inf" and not (name == "MU" and share_of(text) is not None):
             check_value(name, text, case.source)
     return texts
 

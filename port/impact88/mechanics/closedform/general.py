@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...collision.case import share_of
 from ...collision.doubles import double
 from ...errors import UserError
 from ...names import DEFAULT_M, PIVOT, SCENE
@@ -87,12 +86,9 @@ def share_typed(columns: Mapping[str, Any], share: Any) -> Array:
         return np.asarray(np.where(critical["gt"] > 0, -mu, mu) + 0.0)
 
 
-def resolve_share(texts: Mapping[str, str], source: str) -> tuple[str, str]:
-    """Return MU's number as text for a scene whose MU is a share, and a remark that says so. Raises
-    UserError."""
-    share = share_of(texts["MU"])
-    if share is None:
-        raise UserError(f"MU = {texts['MU']!r} is not a share; expected one such as 85 %", source)
+def resolve_share(texts: Mapping[str, str], share: float, source: str) -> tuple[str, str]:
+    """Return MU's number as text for a scene whose MU is a ``share``, and a remark that says so.
+    Raises UserError."""
     numbers = {"M": double(DEFAULT_M)}
     numbers |= {name: double(texts[name]) for name in SCENE if name in texts and name != "MU"}
     mu = float(share_typed(numbers, share))
