@@ -1,11 +1,13 @@
-"""Mutants of the core: one token changed in one line, and the tests that should notice.
+"""Mutants: one rule changed in one line, and the tests that should notice.
 
     python tests/support/mutants.py make SEED [ROOM]   draws them anew into mutants.patches, of all
                                                        rooms or of one
     python tests/support/mutants.py run [WORD ...]     runs each (those whose file has a WORD)
 
-Each mutant is a patch: a file, the line as it is, the line as it is changed. A line that is no
-longer there is reported as gone. A run takes a copy of the tree, so the checkout is not touched,
+Each mutant is a patch: a file, the line as it is, the line as it is changed. Those of the core are
+drawn, one token each; those of the rooms around it were written by hand, before a look at the tests
+(a sign, a comparison, a term left out, a wrong unit). A line that is no longer there is reported as
+gone. A run takes a copy of the tree, so the checkout is not touched,
 and tells of each mutant whether a test failed (killed), all passed (SURVIVED), or none of them
 ended in time (killed, too: the mutant never ends). A survivor is a missing test, dead code, or a
 change that means the same.
@@ -32,6 +34,8 @@ STORED = Path(__file__).with_suffix(".patches")
 PACKAGE = "port/impact88"
 TIMEOUT = 600
 """Seconds that a room's tests may take."""
+DOORS = "tests/doors"
+"""Tests that every room's are followed by."""
 
 ROOMS: dict[str, tuple[str, int]] = {
     "apple/applesoft": ("tests/apple/applesoft", 18),
@@ -39,8 +43,15 @@ ROOMS: dict[str, tuple[str, int]] = {
     "program": ("tests/program", 18),
     "collision": ("tests/collision", 18),
     "mechanics/closedform": ("tests/mechanics", 20),
+    "mechanics": ("tests/mechanics", 0),
+    "casework/reconstruction": ("tests/casework/reconstruction", 0),
+    "casework/optimization": ("tests/casework/optimization tests/casework/uncertainty", 0),
+    "casework/uncertainty": ("tests/casework/uncertainty", 0),
+    "conformance": ("tests/conformance", 0),
+    "printouts": ("tests/printouts", 0),
+    "tables": ("tests/tables", 0),
 }
-"""Room -> its tests, and how many mutants are drawn."""
+"""Room -> its tests, and how many mutants are drawn; 0 where they are written by hand."""
 
 SWAPS = {
     "+": "-",
@@ -109,7 +120,11 @@ def mutants_of(path: str) -> Iterator[Mutant]:
 def make(seed: int, only: str) -> list[Mutant]:
     """Draw the mutants of every room, or of one beside those stored; not more than one a line."""
     rng = random.Random(seed)
-    drawn = [mutant for mutant in stored() if only and room_of(mutant.path) != only]
+    drawn = [
+        mutant
+        for mutant in stored()
+        if not ROOMS[room := room_of(mutant.path)][1] or (only and room != only)
+    ]
     for room, (_, count) in ROOMS.items():
         if only not in ("", room):
             continue
@@ -144,35 +159,25 @@ def outcome(mutant: Mutant, tree: Path) -> str:
     number = min(places, key=lambda place: abs(place - mutant.number))
     lines[number - 1] = mutant.new
     file.write_text("\n".join(lines), encoding="utf-8")
-    tests = ROOMS[room_of(mutant.path)][0]
     try:
-        done = subprocess.run(
-            [
-                sys.executable,
-                "-m",
-                "pytest",
-                "-n",
-                "0",
-                "-x",
-                "-q",
-                "-p",
-                "no:cacheprovider",
-                tests,
-            ],
-            cwd=tree,
-            env={**os.environ, "PYTHONPATH": str(tree / "port"), "PYTHONDONTWRITEBYTECODE": "1"},
-            capture_output=True,
-            timeout=TIMEOUT,
-            text=True,
-        )
+        for tests in (ROOMS[room_of(mutant.path)][0].split(), [DOORS]):
+            done = subprocess.run(
+                [sys.executable, "-m", "pytest", *"-n 0 -x -q -p no:cacheprovider".split(), *tests],
+                cwd=tree,
+                env={**os.environ, "PYTHONPATH": str(tree / "port")},
+                capture_output=True,
+                timeout=TIMEOUT,
+                text=True,
+            )
+            failed = [x for x in done.stdout.splitlines() if x.startswith(("FAILED", "ERROR"))]
+            if done.returncode:
+                by = failed[0].split(" - ")[0].split(maxsplit=1)[1] if failed else "a crash"
+                return f"killed by {by}"
     except subprocess.TimeoutExpired:
         return "killed (never ends)"
     finally:
         file.write_text(text, encoding="utf-8")
-    if done.returncode == 0:
-        return "SURVIVED"
-    failed = [line for line in done.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
-    return f"killed by {failed[0].split(' - ')[0].split(maxsplit=1)[1]}" if failed else "killed"
+    return "SURVIVED"
 
 
 def run(words: list[str]) -> None:
