@@ -72,7 +72,7 @@ PART_NAMES = [name for part in PARTS for name in part_names(part)]
 @pytest.mark.parametrize("name", [*CALLABLE, *MEMBER_NAMES, *PART_NAMES])
 def test_docstring_holds_numpydoc_s_rules(name: str) -> None:
     allowed = NOT_ASKED_FOR | (NOT_ASKED_OF_MEMBERS if "." in name else set())
-    if name.endswith(".Verdict"):
+    if name.endswith((".Verdict", ".Kind")):
         allowed |= {"PR01"}  # the parameters that Python's own enum takes
     errors = validate(f"impact88.{name}")["errors"]
     assert [f"{code}: {text}" for code, text in errors if code not in allowed] == []

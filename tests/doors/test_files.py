@@ -317,4 +317,4 @@ def test_json_holds_nothing_that_turns_a_terminal_round(tmp_path, capsys):
     main(["verify", "--json", str(path)])
     out = capsys.readouterr().out
     assert out.replace("\n", "").isprintable()
-    assert "note \u202e behind" in json.loads(out)["left_over"][0]["text"]
+    assert "note \u202e behind" in json.loads(out)["left_over"][0]["read"]
