@@ -38,7 +38,7 @@ from impact88.printouts.reporting.verification import (
 )
 from impact88.printouts.scan import sheets
 from impact88.printouts.scan.claims import claims, is_of_a_printout
-from impact88.printouts.scan.grid import _distinct
+from impact88.printouts.scan.grid import CELL_WIDTH, Grid, _distinct
 from impact88.printouts.scan.holding import (
     FOREIGN,
     KIND,
@@ -50,6 +50,7 @@ from impact88.printouts.scan.holding import (
     state,
 )
 from impact88.printouts.scan.layout import Piece, Place, Row, Sheet
+from impact88.printouts.scan.rowsfirst import foreign_row
 from impact88.printouts.scan.scenes import (
     MAX_CELL_COST,
     Candidate,
@@ -57,13 +58,13 @@ from impact88.printouts.scan.scenes import (
     confirm_inputs,
     scene_of,
 )
-from impact88.printouts.scan.sheets import RETYPED, RETYPED_RATIO
 from impact88.printouts.scan.typeface import READABLE
 from impact88.program.run import run
 from impact88.program.scene import sample
 
 pytest.importorskip("scipy", reason="the extra scan is not installed")
 Pillow = pytest.importorskip("PIL.Image", reason="the extra scan is not installed")
+ndimage = pytest.importorskip("scipy.ndimage", reason="the extra scan is not installed")
 
 PAGES = ROOT / "golden" / "scans"
 TRUTH = [json.loads(line) for line in (PAGES / "truth.jsonl").read_text().splitlines()]
@@ -501,6 +502,7 @@ def test_exchanged_rows_of_a_picture_are_named_in_one_sentence(first: str, secon
     assert not result.differing
     (finding,) = result.findings
     assert finding.endswith("stand in each other's place")
+    assert [*lines(result)][1].strip() == finding
 
 
 @pytest.mark.long
@@ -523,40 +525,61 @@ def test_a_row_cut_through_by_the_edge_of_the_page_is_not_read(part: float) -> N
 
 
 @pytest.mark.parametrize(
-    ("far", "next_to_it", "is_told"),
+    ("change", "is_told"),
     [
-        (RETYPED + 0.1, 1.0, True),
-        (RETYPED - 0.1, 1.0, False),
-        (10.0, 10.0 / RETYPED_RATIO + 0.1, False),  # the page is worn, or has two such rows
-        (10.0, 10.0 / RETYPED_RATIO - 0.1, True),
+        ("typeface", True),
+        ("typeface of two rows", False),
+        ("worn", False),
+        ("half a pixel lower", False),
+        ("misplaced", False),
     ],
 )
-def test_a_row_far_from_the_pages_characters_is_in_another_typeface(
-    far: float, next_to_it: float, is_told: bool
+def test_a_row_far_from_all_others_and_near_itself_is_in_another_typeface(
+    change: str, is_told: bool
 ) -> None:
-    """One that is less than others from any character: far from both is a typeface."""
-    distances = {6: far, 7: next_to_it, 8: 1.0}
-    rows = {
-        line: Row(line, 1, 0, "", [Piece(name, "", [])])
-        for line, name in zip(distances, ("UX", "VX", "E"), strict=True)
-    }
-    cells = [
-        dataclasses.replace(cell(name, distance=value, other_distance=30.0), place=Place(line, at))
-        for line, value in distances.items()
-        for at, name in enumerate(("", "UX", "UX"))
-    ]
-    leaf = sheets.Leaf(
-        SimpleNamespace(number=lambda line: line + 1),  # type: ignore[arg-type]
-        Read(Sheet(rows), {}),
-        CellJudgement(Verdict.IDENTICAL),
-        cells=cells,
+    """Not one that is worn or stands between the pixels, nor one not found at its place."""
+    noise = np.random.default_rng(1988)
+    shapes = ndimage.gaussian_filter(noise.normal(0, 1, (26, 16, CELL_WIDTH)), (0, 2, 2)) > 0.1
+    light, bold = (
+        np.pad(1.0 * glyphs, ((0, 0), (6, 6), (0, 0)))
+        for glyphs in (shapes, ndimage.binary_dilation(shapes, np.ones((1, 1, 5))))
     )
-    sheets._find_retyped_row(leaf)
-    assert (
-        leaf.retyped
-        == ["line 7, the row of UX, is in another typeface than the rest of the page"] * is_told
-    )
-    assert leaf.judged.verdict is (Verdict.IDENTICAL_AS_READ if is_told else Verdict.IDENTICAL)
+    pictures, rows = [], {}
+    for line in range(6):
+        is_changed = line in ((3, 4) if "two" in change else (3,))
+        text = noise.permutation(np.repeat(noise.permutation(26)[:12], 2))
+        glyphs = (bold if is_changed and "typeface" in change else light)[text]
+        picture = np.pad(np.hstack(list(glyphs)), 2) + noise.normal(0, 0.05, (32, 388))
+        if is_changed and change == "worn":
+            picture *= np.kron(noise.random((4, 97)) > 0.5, np.ones((8, 4)))
+        if is_changed and "half" in change:
+            picture = (picture + np.roll(picture, 1, axis=0)) / 2
+        if is_changed and change == "misplaced":
+            picture = np.roll(picture, 5, axis=0)
+        pictures.append(picture.astype(np.float32))
+        letters = "".join(chr(ord("A") + k) for k in text)
+        places = [Place(line, at) for at in range(24)]
+        rows[line] = Row(line, 1, 0, letters, [Piece("", letters, places)])
+    grid = Grid(pictures, np.arange(6.0), [], 16.0, 1.0, (200, 400), 0)
+    found = foreign_row(grid, [Read(Sheet(rows), {})])
+    assert (found == rows[3]) if is_told else (found is None)
+
+
+@pytest.mark.parametrize("verdict", [Verdict.IDENTICAL, Verdict.DIFFERS])
+@pytest.mark.parametrize("line", [3, 4])
+def test_a_row_in_another_typeface_alone_accuses_nobody(verdict: Verdict, line: int) -> None:
+    """Its characters may be like others of the page; it bars that all is identical."""
+    row = Row(3, 1, 0, "", [Piece("UX", "", [])])
+    differing = [dataclasses.replace(cell("UX", distance=9.0, other_distance=1.0))]
+    differing[0].place = Place(line, 0)
+    judged = CellJudgement(verdict, differing if verdict is Verdict.DIFFERS else [])
+    grid = SimpleNamespace(number=lambda line: line + 1)
+    leaf = sheets.Leaf(grid, Read(Sheet({6: row}), {}), judged)  # type: ignore[arg-type]
+    sheets._name_foreign_row(leaf, row)
+    assert leaf.hurt == ["line 4, the row of UX, is in another typeface than the rest of the page"]
+    alone = {Verdict.IDENTICAL: Verdict.IDENTICAL_AS_READ, Verdict.DIFFERS: Verdict.INCOMPLETE}
+    is_elsewhere = verdict is Verdict.DIFFERS and line == 4
+    assert judged.verdict is (verdict if is_elsewhere else alone[verdict])
 
 
 # --- what the program does not print -------------------------------------------------------------

@@ -136,10 +136,13 @@ def _verification(
     result.marks = [_mark_as_json(mark, page, paper, leaf.grid) for mark in leaf.marks]
     if leaf.judged.reason:
         result.remarks.append(f"page {page.number}: {leaf.judged.reason}")
-    result.remarks += [
-        f"page {page.number}: {sentence}" for sentence in (*leaf.repeated, *leaf.retyped, *leaf.cut)
-    ]
-    result.findings += [f"page {page.number}: {sentence}" for sentence in leaf.exchanged]
+    exchanged, hurt = (
+        [f"page {page.number}: {sentence}" for sentence in sentences]
+        for sentences in (leaf.exchanged, leaf.hurt)
+    )
+    result.findings += exchanged
+    result.remarks += hurt
+    result.rows = [*exchanged, *hurt]
     result.findings += [
         f"page {page.number}, {_where(cell.place, leaf.grid)}: "
         f"{cell.name or 'a label'} shows {character_name(cell.other)} where the program prints "

@@ -86,6 +86,9 @@ class Verification:
         Text that belongs to no field and no label.
     labels : list of Difference
         Labels, marks and words of the prompts that are not as the program prints them.
+    rows : list of str
+        Of a picture, the findings and remarks on whole rows: exchanged, printed twice, in another
+        typeface, cut through.
     cells, marks : list of dict
         Of a picture, the cells of the printed characters, and all ink in and near the printout that
         the program does not print.
@@ -133,6 +136,7 @@ class Verification:
     remarks: list[str] = field(default_factory=list)
     left_over: list[Difference] = field(default_factory=list)
     labels: list[Difference] = field(default_factory=list)
+    rows: list[str] = field(default_factory=list)
     cells: list[dict[str, Any]] = field(default_factory=list)
     marks: list[dict[str, Any]] = field(default_factory=list)
     exhibit: Callable[[], dict[str, Any]] | None = field(default=None, repr=False)
@@ -286,7 +290,8 @@ class Examined:
 
 
 def summary(result: Verification) -> list[str]:
-    """Return the sentences that support a verdict: counts, and the names of missing inputs."""
+    """Return the sentences that support a verdict: on whole rows, counts, and the names of missing
+    inputs."""
     verdict, fields, missing = result.verdict, result.fields, result.missing
     sentences = [*_contradicting(result), counts(fields)]
     if verdict is Verdict.IDENTICAL:
@@ -336,7 +341,7 @@ def summary(result: Verification) -> list[str]:
         )
         recomputed = "nothing could be recomputed" if missing else f"recomputed: {program_text}"
         sentences.append(f"ends with {page_text}, {recomputed}")
-    return sentences
+    return [*result.rows, *sentences]
 
 
 def _contradicting(result: Verification) -> Iterator[str]:
@@ -384,14 +389,15 @@ def sections(result: Verification) -> dict[str, list[str]]:
         for check in result.replies
         if check.same is False
     ]
+    remarks = [remark for remark in result.remarks if remark not in result.rows]
     entries_by_heading = {
         DOUBTFUL: doubtful,
         MARKS: list(_marks(result.marks)),
         EXPLAINED: _explanation_lines(result),
         "Errors this page could not reveal": result.unseen,
-        "Other findings": result.findings,
+        "Other findings": [entry for entry in result.findings if entry not in result.rows],
         "beside the verdict": result.warnings,
-        NOTES: [*notes, *result.remarks, *_left_over(result.left_over)],
+        NOTES: [*notes, *remarks, *_left_over(result.left_over)],
     }
     return {heading: entries for heading, entries in entries_by_heading.items() if entries}
 

@@ -122,6 +122,11 @@ class Grid(NamedTuple):
         height, width = self.size
         return bool(x.min() > -slack and x.max() < width + slack and 0 <= y.mean() < height)
 
+    def is_at_edge(self, line: int) -> bool:
+        """Return True for a line whose cells reach over the upper or lower edge of the picture."""
+        y = self.corners[line][..., 1]
+        return bool(y.min() < 0 or y.max() > self.size[0])
+
     def odds(self) -> list[Floats]:
         """Return the log odds that each cell of each line is inked, clipped to -6 to 6.
 

@@ -488,12 +488,15 @@ class CellJudgement:
         Cells that differ, and cells in doubt.
     reason : str
         A clause on a page that was not read as a whole, "" for others.
+    legible : bool
+        False for a page so many of whose cells are open that nothing is said of any.
     """
 
     verdict: Verdict
     differing: list[Cell] = field(default_factory=list)
     doubtful: list[Cell] = field(default_factory=list)
     reason: str = ""
+    legible: bool = True
 
 
 def judge_cells(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> CellJudgement:
@@ -501,17 +504,19 @@ def judge_cells(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> Ce
     differing = [cell for cell in cells if state(cell) == "differs"]
     doubtful = [cell for cell in cells if state(cell) == "doubtful"]
     spins = "WAF" in candidate.outcome.fields
+    is_legible = len(differing) + len(doubtful) <= MAX_DIFFERING + MAX_DOUBTFUL
     reason = ""
     if not sheet.whole:
         reason = "lines of the printout were not found"
-    elif len(differing) + len(doubtful) > MAX_DIFFERING + MAX_DOUBTFUL:
+    elif not is_legible:
         reason = "too few characters could be read with certainty"
     elif candidate.outcome.ending is not None or spins is not (13 in sheet.rows):
         reason = "the final spins were not found"
     elif differing and all(_is_retyped(cell, [*differing, *doubtful]) for cell in differing):
         reason = "a reply was typed differently than expected"
     if reason:
-        return CellJudgement(Verdict.INCOMPLETE, differing, doubtful, reason)
+        differing = differing if is_legible else []
+        return CellJudgement(Verdict.INCOMPLETE, differing, doubtful, reason, is_legible)
     verdict, only_slight = Verdict.IDENTICAL, all(map(_is_slight, doubtful))
     if differing:
         misread = candidate.cost - MAX_CELL_COST * len(differing)

@@ -1,25 +1,51 @@
-"""Rows before characters: which line of print stands on each line of the grid.
+"""Rows before characters: which line of print stands on each line of the grid, and in which
+typeface.
 
 The layout takes the program's order for granted. Here each line is named for itself, by its blanks
 and by the letters of its labels; what `find_rows` says of such a page's text, as of any other, is
 which rows stand in each other's place or are printed twice.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
 
 from ..reading.alignment import ANGLE_ROW, HEADING, LINES
 from ..reading.glyphs import Page
 from ..reading.pagerows import find_rows
 from .grid import Grid
+from .ink import Floats, Mask
 from .layout import Layout, LineFit, Place, Row, Sheet
 from .scenes import Read
-from .typeface import BLANK, Typeface, distances, read_numbers, sample_of, typeface_of
+from .typeface import (
+    BLANK,
+    NUMERIC,
+    READABLE,
+    Sample,
+    Typeface,
+    Vectors,
+    distances,
+    read_numbers,
+    sample_of,
+    typeface_of,
+)
 
 _WRONG_LETTER = 3.0  # log odds that a label's cell loses which is more like another letter
 _MIN_SHARE = 0.7  # smallest gain of a line of print, relative to that of its ink if all were its
+
+_SMOOTHING = 1.5
+"""Standard deviation of the smoothing of rows that are compared, pixels: rows of one typeface may
+begin at different fractions of a pixel."""
+FOREIGN = 0.17
+"""Smallest distance of a row in another typeface from the glyphs of the others, in roots of their
+energies."""
+FOREIGN_RATIO = 2.5  # smallest ratio of it to that of the row that is next
+_OWN_RATIO = 0.3  # largest ratio to it of the row's distance from its own glyphs
+_MAX_DRIFT = 1  # pixels by which its line may be misplaced beyond the shifts of its cells
+_MIN_CELLS = 10  # inked cells of a row that is compared
 
 
 class Order(NamedTuple):
@@ -157,3 +183,131 @@ def _text(grid: Grid, lines: Mapping[int, LineFit]) -> str:
     by_line = dict(zip(lines, texts, strict=True))
     # a blank at the end of each: lines of one length are not broken ones
     return " \n".join(by_line.get(line, "") for line in range(len(grid.pictures)))
+
+
+class _RowCells(NamedTuple):
+    """Inked cells of the rows of a grid's printouts.
+
+    Attributes
+    ----------
+    glyphs : ndarray, shape (cells, pixels)
+        The cells, smoothed, each shifted onto the mean of its character.
+    names : ndarray, shape (cells,)
+        Index of each cell's character; those of numbers are named as they were read.
+    row : ndarray, shape (cells,)
+        Index of each cell's row.
+    may_be : ndarray of bool, shape (cells, characters)
+        Characters with which each cell is compared.
+    shape : tuple of int
+        Height and width of a glyph, pixels.
+    """
+
+    glyphs: Vectors
+    names: NDArray[np.intp]
+    row: NDArray[np.intp]
+    may_be: Mask
+    shape: tuple[int, int]
+
+    def distance(self, row: int, other_rows: Mask) -> float:
+        """Return the median distance of a row's cells from the mean glyphs of some other rows, in
+        roots of the glyphs' energies; 0 for a row of few cells."""
+        at, others = self.row == row, other_rows[self.row]
+        if np.sum(at) < _MIN_CELLS:
+            return 0.0
+        members = self.names[others] == np.arange(self.may_be.shape[1])[:, None]
+        counts = members.sum(axis=1)
+        sums = members.astype(np.float32) @ self.glyphs[others]
+        means = sums / np.maximum(counts, 1)[:, None].astype(np.float32)
+        apart = _distances(self.glyphs[at], means)
+        is_compared = self.may_be[at] & (counts > 0)
+        least = np.where(is_compared, apart, np.inf).min(axis=1)
+        return float(np.median(least[is_compared.any(axis=1)])) if is_compared.any() else 0.0
+
+    def distance_within(self, row: int) -> float:
+        """Return the same from each other: of each cell from the mean of those in its row that
+        have its character; infinite where none has another's."""
+        glyphs, names = self.glyphs[self.row == row], self.names[self.row == row]
+        apart = []
+        for cell, name in enumerate(names):
+            is_like = (names == name) & (np.arange(len(names)) != cell)
+            if is_like.any():
+                mean = glyphs[is_like].mean(axis=0, keepdims=True)
+                apart.append(float(_distances(glyphs[[cell]], mean)[0, 0]))
+        return float(np.median(apart)) if apart else np.inf
+
+    def drift(self, row: int) -> int:
+        """Return by how many pixels a row's ink stands higher than the same characters in other
+        rows: where the line was not found at its place, none of its glyphs are whole."""
+        at, profiles = self.row == row, self.glyphs.reshape(-1, *self.shape).sum(axis=2)
+        drawn, expected = np.zeros(self.shape[0]), np.zeros(self.shape[0])
+        for name in np.unique(self.names[at & np.isin(self.names, self.names[~at])]):
+            is_name = self.names == name
+            drawn += profiles[is_name & at].sum(axis=0)
+            expected += np.sum(is_name & at) * profiles[is_name & ~at].mean(axis=0)
+        steps = range(-self.shape[0] // 2, self.shape[0] // 2)
+        return max(steps, key=lambda step: float(np.roll(drawn, step) @ expected))
+
+
+def _distances(glyphs: Vectors, means: Vectors) -> Floats:
+    """Return the distances of glyphs from means, in roots of the means' energies."""
+    norms = np.einsum("np,np->n", glyphs, glyphs)
+    apart, _ = distances(Sample(glyphs[:, None], norms[:, None], (0, 0)), means)
+    energies: Floats = np.maximum(np.einsum("mp,mp->m", means, means), 1.0).astype(float)
+    return apart / np.sqrt(energies)
+
+
+def _row_cells(grid: Grid, rows: Sequence[tuple[Read, Row]]) -> _RowCells:
+    """Return the inked cells of some rows."""
+    characters: list[str] = []
+    places: list[Place] = []
+    sizes: list[tuple[int, int]] = []
+    for read, row in rows:
+        names, label_places = _label_cells(row)
+        numbers = [
+            (READABLE[k], place)
+            for name, _, cells in row.pieces
+            if name in read.costs
+            for k, place in zip(read.costs[name].argmin(axis=1), cells, strict=True)
+            if READABLE[k] != BLANK
+        ]
+        sizes.append((len(names), len(numbers)))
+        characters += [*names, *(character for character, _ in numbers)]
+        places += [*label_places, *(place for _, place in numbers)]
+    typeface = typeface_of(sample_of(grid, places), characters)
+    pictures = typeface.members.reshape(-1, *typeface.shape)
+    glyphs = ndimage.gaussian_filter(pictures, (0, _SMOOTHING, _SMOOTHING))
+    is_numeric = np.array([character in NUMERIC for character in typeface.characters])
+    is_same = np.arange(len(is_numeric)) == typeface.names[:, None]
+    of_number = np.repeat([False, True] * len(rows), np.ravel(sizes))
+    return _RowCells(
+        glyphs.reshape(len(places), -1),
+        typeface.names,
+        np.repeat(np.arange(len(rows)), np.sum(sizes, axis=1)),
+        np.where(of_number[:, None], is_numeric, is_same),
+        typeface.shape,
+    )
+
+
+def foreign_row(grid: Grid, reads: Sequence[Read]) -> Row | None:
+    """Return the row of a grid's printouts that is in another typeface than the others, None if
+    there is none.
+
+    Its cells are far from the glyphs of all other rows, much farther than those of any other row
+    are, and near each other. Letters of labels are compared with the same letters, characters of
+    numbers with the nearest one, so that it does not matter as what they were read.
+    """
+    rows = [(read, row) for read in reads for row in read.sheet.rows.values()]
+    if len(rows) < 2:
+        return None
+    cells = _row_cells(grid, rows)
+    is_other = ~np.eye(len(rows), dtype=bool)
+    far = [cells.distance(row, is_other[row]) for row in range(len(rows))]
+    first = int(np.argmax(far))
+    if far[first] < FOREIGN or cells.distance_within(first) > _OWN_RATIO * far[first]:
+        return None
+    if abs(cells.drift(first)) > _MAX_DRIFT:
+        return None
+    # what is said of a row must not be due to the first one's part in the glyphs
+    rest = [cells.distance(row, is_other[row] & is_other[first]) for row in range(len(rows))]
+    second = max(apart for row, apart in enumerate(rest) if row != first)
+    return rows[first][1] if far[first] > FOREIGN_RATIO * second else None

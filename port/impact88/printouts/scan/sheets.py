@@ -28,7 +28,7 @@ from .ink import (
 )
 from .layout import AS_GOOD, Row, Sheet, layout_of
 from .residue import Explained, Kind, Mark, residue_of
-from .rowsfirst import Order, order_lines
+from .rowsfirst import Order, foreign_row, order_lines
 from .scenes import Candidate, Copy, Read, confirm_inputs, scene_of
 from .typeface import BLANK, read_numbers
 
@@ -47,11 +47,6 @@ another printout."""
 _IDENTICAL = (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
 _FORM = frozenset({0, 1, 10, 14})
 """Lines that only a page of the program's own form has: its prompts and rows of asterisks."""
-RETYPED = 6.0
-"""Median distance of a row's cells from their means, in usual distances, from which the row may be
-in another typeface: of 400 pages one, with a cut edge, has more; 12 of 20 rows drawn in another
-typeface have, the others' are like the page's or share their letters with another row."""
-RETYPED_RATIO = 2.5  # the same, relative to that of the row that is next
 
 
 @dataclass
@@ -72,8 +67,10 @@ class Leaf:
         Its cells, compared with the program's page for that scene.
     marks : list of Mark
         Marks in and near it that the program's page does not explain.
-    repeated, exchanged, retyped, cut : list of str
-        Sentences on rows printed twice, out of order, in another typeface, and cut through.
+    exchanged : list of str
+        Sentences on rows out of order.
+    hurt : list of str
+        Sentences on rows printed twice, in another typeface, and cut through.
     cut_lines : set of int
         Lines of the grid that its rows take which are cut through.
     """
@@ -84,10 +81,8 @@ class Leaf:
     found: Candidate | None = None
     cells: list[Cell] = field(default_factory=list)
     marks: list[Mark] = field(default_factory=list)
-    repeated: list[str] = field(default_factory=list)
     exchanged: list[str] = field(default_factory=list)
-    retyped: list[str] = field(default_factory=list)
-    cut: list[str] = field(default_factory=list)
+    hurt: list[str] = field(default_factory=list)
     cut_lines: set[int] = field(default_factory=set)
 
     @cached_property
@@ -264,7 +259,9 @@ def _ordered_leaves(
                 leaf for leaf in leaves if min(map(on_grid.grid.number, leaf.lines)) <= number
             ]
             leaf = (owners or leaves[:1])[-1]
-            (leaf.exchanged if is_exchange else leaf.repeated).append(sentence)
+            if not leaf.judged.legible:
+                continue  # its rows were named by other things than their letters
+            (leaf.exchanged if is_exchange else leaf.hurt).append(sentence)
             if leaf.judged.verdict in _IDENTICAL:
                 is_program = is_exchange and not _FORM.isdisjoint(leaf.read.sheet.rows)
                 leaf.judged.verdict = Verdict.DIFFERS if is_program else Verdict.IDENTICAL_AS_READ
@@ -275,7 +272,7 @@ def _add_marks(
     ink: Image, coloured: Image | None, leaves: Sequence[Leaf], copy: Copy | None
 ) -> None:
     """Add what the printouts of a page do not explain to ``marks`` of the nearest one."""
-    if not any(leaf.cells for leaf in leaves):
+    if not any(leaf.cells and leaf.judged.legible for leaf in leaves):
         return
     turns = leaves[0].grid.turns
     grids = {id(leaf.grid): leaf.grid for leaf in leaves}
@@ -337,11 +334,17 @@ def _leaves(
     unread = CellJudgement(Verdict.INCOMPLETE, reason=f"no scene was found; {_NEXT_STEP}")
     leaves = [Leaf(grid, Read(sheet, {}), unread) for sheet in sheets]
     for leaf in leaves:
-        _drop_cut_rows(leaf)
+        for row in [*leaf.read.sheet.rows.values()]:
+            if not grid.cut.isdisjoint(range(row.start, row.start + row.used)):
+                _drop_cut_row(leaf, row)
     legible = [leaf for leaf in leaves if leaf.read.sheet.gain > _LEGIBLE_GAIN]
     costs = read_numbers(grid, [leaf.read.sheet for leaf in legible])
     for leaf, number_costs in zip(legible, costs, strict=True):
         leaf.read.costs = number_costs
+    foreign = foreign_row(grid, [leaf.read for leaf in legible])
+    for leaf in legible:
+        if foreign and grid.is_at_edge(foreign.start):
+            _drop_cut_row(leaf, foreign)
         leaf.found = scene_of(leaf.read, seeds, copy)
     with_scene = [leaf for leaf in legible if leaf.found]
     _compare_leaves(grid, with_scene)
@@ -360,7 +363,9 @@ def _leaves(
             if excess := _division_cost(leaf):
                 candidate = candidate._replace(cost=candidate.cost - excess)
             leaf.judged = judge_cells(leaf.read.sheet, candidate, leaf.cells)
-            _find_retyped_row(leaf)
+    for leaf in legible:
+        if foreign and foreign in leaf.read.sheet.rows.values():
+            _name_foreign_row(leaf, foreign)
     # the printouts of a page share their mean characters: one misplaced spoils them for all
     if any(leaf.judged.verdict is Verdict.INCOMPLETE for leaf in leaves):
         for leaf in leaves:
@@ -370,48 +375,43 @@ def _leaves(
     return leaves
 
 
-def _drop_cut_rows(leaf: Leaf) -> None:
-    """Remove the rows that an edge of the page cuts through, and say so: half a character is like
-    others."""
+def _drop_cut_row(leaf: Leaf, row: Row) -> None:
+    """Remove a row that an edge of the page cuts through, if it is the printout's, and say so: half
+    a character is like others."""
     rows = leaf.read.sheet.rows
-    for line, row in [*rows.items()]:
-        if leaf.grid.cut.isdisjoint(range(row.start, row.start + row.used)):
-            continue
-        names = [piece.name for piece in row.pieces if piece.name]
-        leaf.read.absent.update(names)
-        leaf.cut_lines.update(range(row.start, row.start + row.used))
-        del rows[line]
-        if names:
-            leaf.cut.append(
-                f"{_row_name(leaf.grid, row, names)} is cut through by the edge of the page: "
-                "it was not read"
-            )
-
-
-def _find_retyped_row(leaf: Leaf) -> None:
-    """Say which row is in another typeface than the page: most of its cells are far from the means
-    of the predicted and of the nearest other character, and farther than those of any other row.
-
-    A page with such a row is identical only as far as it was read.
-    """
-    far: list[tuple[float, str]] = []
-    for row in leaf.read.sheet.rows.values():
-        lines = range(row.start, row.start + row.used)
-        names = [piece.name for piece in row.pieces if piece.name]
-        distances = [
-            min(cell.distance, cell.other_distance)
-            for cell in leaf.cells
-            if cell.place.line in lines and cell.predicted != BLANK and not cell.cut
-        ]
-        if names and distances:
-            far.append((float(np.median(distances)), _row_name(leaf.grid, row, names)))
-    if len(far) < 2:
+    names = [piece.name for piece in row.pieces if piece.name]
+    if row not in rows.values():
         return
-    (second, _), (first, name) = sorted(far)[-2:]
-    if first > max(RETYPED, RETYPED_RATIO * second):
-        leaf.retyped.append(f"{name} is in another typeface than the rest of the page")
-        if leaf.judged.verdict is Verdict.IDENTICAL:
-            leaf.judged.verdict = Verdict.IDENTICAL_AS_READ
+    leaf.read.sheet.rows = {line: other for line, other in rows.items() if other is not row}
+    leaf.read.absent.update(names)
+    leaf.cut_lines.update(range(row.start, row.start + row.used))
+    for name in names:
+        leaf.read.costs.pop(name, None)
+    if names:
+        leaf.hurt.append(
+            f"{_row_name(leaf.grid, row, names)} is cut through by the edge of the page: "
+            "it was not read"
+        )
+
+
+def _name_foreign_row(leaf: Leaf, row: Row) -> None:
+    """Say that a row is in another typeface than the page.
+
+    A page with such a row is identical only as far as it was read, and does not differ where it
+    does in that row alone: a character may be like another one of the page.
+    """
+    names = [piece.name for piece in row.pieces if piece.name]
+    name = _row_name(leaf.grid, row, names)
+    leaf.hurt.append(f"{name} is in another typeface than the rest of the page")
+    lines = range(row.start, row.start + row.used)
+    judged = leaf.judged
+    if judged.verdict is Verdict.IDENTICAL:
+        judged.verdict = Verdict.IDENTICAL_AS_READ
+    elif judged.verdict is Verdict.DIFFERS and all(
+        cell.place.line in lines for cell in judged.differing
+    ):
+        judged.verdict = Verdict.INCOMPLETE
+        judged.reason = "what differs is in another typeface, and may be another character there"
 
 
 def _row_name(grid: Grid, row: Row, names: Sequence[str]) -> str:
