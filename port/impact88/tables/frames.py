@@ -20,7 +20,7 @@ from ..mechanics.closedform.solve import solve
 from ..messages.arguments import explains_arguments
 from ..names import DEFAULT_M, SCENE
 from .cells import TableUnits, check_scene_columns, numbers
-from .remarks import Remark, remarks
+from .remarks import remarks
 from .rows import (
     BLOCK_ROWS,
     Column,
@@ -33,7 +33,6 @@ from .rows import (
 
 Frame = TypeVar("Frame")
 Array = NDArray[Any]
-Solver = Callable[[Sequence[str], Callable[[str], Any]], dict[str, Array]]
 
 
 @explains_arguments
@@ -92,51 +91,36 @@ def solve_frame(
     [44.43, nan]
     """
 
-    amiss: list[Remark] = []
-    lacking: list[str] = []
-
-    def solve_columns(names: Sequence[str], column: Callable[[str], Any]) -> dict[str, Array]:
-        """The results of a frame's columns, by heading."""
-        # pandas names columns by numbers, too
-        scene_headings = [name for name in scene_names(list(map(str, names))) if name in SCENE]
-        scene_columns = {name: column(heading(name)) for name in scene_headings}
-        arrays = {n: np.asanyarray(c) for n, c in scene_columns.items()}
-        texts: dict[str, Column]
-        texts = {n: list(np.ravel(a)) for n, a in arrays.items() if a.dtype.kind not in "fiu"}
-        table = TableUnits(scene_headings, units or getattr(scene, "units", None), Rows(0, texts))
-        if table.strict:
-            _check_units(scene_headings, scene_columns, scene or {}, table)
-        columns = {n: _numbers(n, values, table) for n, values in scene_columns.items()}
-        table.based = SCENE
-        for name, value in (scene or {}).items():
-            if name in SCENE:
-                columns.setdefault(name, _numbers(name, [value], table)[0])
-        all_points = "M" in columns and bool(np.all(np.asarray(columns["M"]) == 4))
-        check_scene_columns(columns, all_points, "scene=")
-        solution = solve(columns, outputs, threads=threads)
-        lacking.extend(sentences(getattr(solution, "absent", {})))
-        results = table.shown(solution)
-        amiss.extend(
-            remarks(columns, table.system, partial(_cell, scene_columns, scene), False).values()
-        )
-        return {heading(name): results[name] for name in table.headings(list(results))}
-
-    result: Any
-    if isinstance(frame, np.ndarray):
-        result = _extend_structured(frame, solve_columns)
-    elif isinstance(frame, Mapping) and not _is_dataset(frame):
-        result = {**frame, **solve_columns(list(frame), lambda name: frame[name])}
-    elif isinstance(frame, list | tuple):
-        result = _dicts(frame, solve_columns)
-    else:
-        result = _narwhals(frame, solve_columns)
-    for sentence in lacking:
-        warnings.warn(sentence, PlausibilityWarning, stacklevel=3)
-    for remark in amiss:
+    frame_names, cells_of = _columns_of(frame)
+    if isinstance(frame, list | tuple) and not frame:
+        return cast(Frame, [])
+    # pandas names columns by numbers, too
+    names = [name for name in scene_names(list(map(str, frame_names))) if name in SCENE]
+    scene_columns = {name: cells_of(heading(name)) for name in names}
+    arrays = {n: np.asanyarray(c) for n, c in scene_columns.items()}
+    texts: dict[str, Column]
+    texts = {n: list(np.ravel(a)) for n, a in arrays.items() if a.dtype.kind not in "fiu"}
+    table = TableUnits(names, units or getattr(scene, "units", None), Rows(0, texts))
+    if table.strict:
+        _check_units(names, scene_columns, scene or {}, table)
+    columns = {n: _numbers(n, values, table) for n, values in scene_columns.items()}
+    table.based = SCENE
+    for name, value in (scene or {}).items():
+        if name in SCENE:
+            columns.setdefault(name, _numbers(name, [value], table)[0])
+    all_points = "M" in columns and bool(np.all(np.asarray(columns["M"]) == 4))
+    check_scene_columns(columns, all_points, "scene=")
+    solution = solve(columns, outputs, threads=threads)
+    shown = table.shown(solution)
+    results = {heading(name): shown[name] for name in table.headings(list(shown))}
+    for sentence in sentences(getattr(solution, "absent", {})):
+        warnings.warn(sentence, PlausibilityWarning, stacklevel=3)  # in who called this
+    cell = partial(_cell, scene_columns, scene)
+    for remark in remarks(columns, table.system, cell, False).values():
         place = "1 row, at" if remark.rows == 1 else f"{remark.rows:,} rows, the first at"
         text = f"{place} position {remark.first}: {remark.text}"
-        warnings.warn(text, PlausibilityWarning, stacklevel=3)  # in who called, not in `arguments`
-    return cast(Frame, result)
+        warnings.warn(text, PlausibilityWarning, stacklevel=3)
+    return cast(Frame, _with_columns(frame, results))
 
 
 def _cell(given: Mapping[str, Any], scene: Mapping[str, Any] | None, name: str, at: int) -> str:
@@ -190,47 +174,43 @@ def _numbers(name: str, values: Any, units: TableUnits) -> Array:
     return numbers(Rows(array.size, {name: column}), units)[name].reshape(array.shape)
 
 
-def _extend_structured(frame: Array, solve_columns: Solver) -> Array:
-    names = _names_of(frame)
-    columns = {n: frame[n] for n in names}
-    all_columns = columns | solve_columns(names, lambda name: columns[name])
-    result = np.empty(frame.shape, [(name, column.dtype) for name, column in all_columns.items()])
-    for name, column in all_columns.items():
-        result[name] = column
-    return result
+def _columns_of(frame: Any) -> tuple[list[Any], Callable[[Any], Any]]:
+    """Return the names of a frame's columns, and a function that returns the cells of one. Raises
+    UserError for what is no frame."""
+    if isinstance(frame, np.ndarray):
+        if frame.dtype.names is None:
+            raise UserError(
+                f"an array of {frame.dtype} has no columns; expected a structured array, or "
+                "impact88.solve with an array for each name"
+            )
+        return list(frame.dtype.names), lambda name: frame[name]
+    if isinstance(frame, Mapping) and not _is_dataset(frame):
+        return list(frame), lambda name: frame[name]
+    if isinstance(frame, list | tuple):
+        if not all(isinstance(row, Mapping) for row in frame):
+            raise UserError("expected a list of dicts, one for each scene")
+        names = list(dict.fromkeys(name for row in frame for name in row))
+        return names, lambda name: [row.get(name) for row in frame]
+    table = _table(frame)[1]
+    return table.columns, partial(_cells, table)
 
 
-def _names_of(frame: Array) -> tuple[str, ...]:
-    names = frame.dtype.names
-    if names is None:
-        raise UserError(
-            f"an array of {frame.dtype} has no columns; expected a structured array, or "
-            "impact88.solve with an array for each name"
-        )
-    return names
-
-
-def _check_dicts(rows: Sequence[Any]) -> Sequence[Any]:
-    """Return rows that are dicts. Raises UserError for others."""
-    if not all(isinstance(row, Mapping) for row in rows):
-        raise UserError("expected a list of dicts, one for each scene")
-    return rows
-
-
-def _dicts(rows: Sequence[Any], solve_columns: Solver) -> list[dict[str, Any]]:
-    if not _check_dicts(rows):
-        return []
-    names = list(dict.fromkeys(name for row in rows for name in row))
-    named_columns = solve_columns(names, lambda name: [row.get(name) for row in rows])
-    results = {name: column.tolist() for name, column in named_columns.items()}
-    return [{**row, **{n: c[at] for n, c in results.items()}} for at, row in enumerate(rows)]
-
-
-def _narwhals(frame: Any, solve_columns: Solver) -> Any:
+def _with_columns(frame: Any, results: Mapping[str, Array]) -> Any:
+    """Return a frame of the same kind with further columns."""
+    if isinstance(frame, np.ndarray):
+        columns = {name: frame[name] for name in frame.dtype.names or ()} | {**results}
+        extended = np.empty(frame.shape, [(name, column.dtype) for name, column in columns.items()])
+        for name, column in columns.items():
+            extended[name] = column
+        return extended
+    if isinstance(frame, Mapping) and not _is_dataset(frame):
+        return {**frame, **results}
+    if isinstance(frame, list | tuple):
+        lists = {name: column.tolist() for name, column in results.items()}
+        return [{**row, **{n: c[at] for n, c in lists.items()}} for at, row in enumerate(frame)]
     nw, table = _table(frame)
     make = partial(nw.new_series, native_namespace=nw.get_native_namespace(table))
-    results = solve_columns(table.columns, partial(_cells, table)).items()
-    spread = ((name, np.broadcast_to(array, (len(table),)).copy()) for name, array in results)
+    spread = [(name, np.broadcast_to(x, (len(table),)).copy()) for name, x in results.items()]
     return table.with_columns(*(make(*column) for column in spread)).to_native()
 
 
@@ -267,26 +247,15 @@ def read_frame(frame: Any) -> Iterator[Reader]:
     polars, a pyarrow Table, a structured array, a list of dicts or a dict of columns. Numbers are
     taken as they are held, texts as they are written. Raises UserError for a frame of another
     kind."""
-    columns: dict[Any, Any]
-    if isinstance(frame, np.ndarray):
-        columns = {n: frame[n].reshape(-1) for n in _names_of(frame)}
-    elif isinstance(frame, Mapping) and not _is_dataset(frame):
-        columns = {n: _column(n, cells) for n, cells in frame.items()}
-    elif isinstance(frame, list | tuple):
-        rows = _check_dicts(frame)
-        keys = dict.fromkeys(name for row in rows for name in row)
-        columns = {n: _column(n, [row.get(n) for row in rows]) for n in keys}
-    else:
-        _, table = _table(frame)
-        columns = {name: _cells(table, name) for name in table.columns}
-    headings = list(map(str, columns))
-    names = scene_names(headings, "the frame", True)
-    sizes = {name: len(column) for name, column in zip(names, columns.values(), strict=True)}
+    headings, cells_of = _columns_of(frame.reshape(-1) if isinstance(frame, np.ndarray) else frame)
+    columns = [_column(name, cells_of(name)) for name in headings]
+    names = scene_names(list(map(str, headings)), "the frame", True)
+    sizes = {name: len(column) for name, column in zip(names, columns, strict=True)}
     count = max(sizes.values(), default=0)
     for name, size in sizes.items():
         if size not in (1, count):
             raise UserError(f"column {quoted(heading(name))} has {size} cells, others have {count}")
-    spread = [np.broadcast_to(column, (count,)) for column in columns.values()]
+    spread = [np.broadcast_to(column, (count,)) for column in columns]
     reader = Reader(names, _frame_blocks(names, spread, count), count)
     reader.remarks += heading_remarks(names, True)
     yield reader
