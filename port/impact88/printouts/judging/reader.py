@@ -1,8 +1,8 @@
 """What the reader of a page may have done: a machine misreads characters, a person does not.
 
 A page with signs of an optical reader (`Printout.machine_read`) may differ by its reader's errors.
-Here is decided which differences are attributed to the reader, and when a page that a machine read
-differs all the same.
+Here is decided which differences are attributed to the reader; `judgement.is_alteration` says when
+a page that a machine read differs all the same.
 """
 
 from collections import Counter
@@ -10,17 +10,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ..reading.differences import Kind
-from ..reading.printout import Printout
 from ..recovery.rereading import Rereading
 from .judgement import FieldCheck, Judged, Status, Verdict, judge
 
 TIE_COST = 1.0
 """Cost above the best up to which scenes explain the page as well; doubled or halved, the result of
 none of 95 differing readings changes."""
-MOST_ALTERED = 2
-"""Changes up to which an explanation counts as an alteration, on a machine-read page: it holds for
-28 of 28 readings of test pages with one altered digit; 10 of 17 genuine ones that differed have no
-such explanation."""
 MAX_GLYPH_ERRORS = 3
 """Numbers with a lost or added glyph that may be attributed to a reader; doubled, 1 of 95 more is
 attributed, and with one 1 of 10 fewer."""
@@ -93,14 +88,3 @@ def _digits_lost_or_added(check: FieldCheck) -> int:
         for doubt in wrong
         if not (doubt.read and doubt.printed)
     )
-
-
-def is_alteration(paper: Printout, changes: Sequence[int]) -> bool:
-    """Return True if differences that are not attributed to the reader are the paper's own.
-
-    They are on a page that no machine read, or whose form contradicts; or where the likeliest
-    explanation is a change or two. ``changes``: number of changes of each explanation.
-    """
-    if not paper.machine_read or paper.is_of_another_form:
-        return True
-    return any(count <= MOST_ALTERED for count in changes[:1])

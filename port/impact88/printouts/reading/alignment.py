@@ -77,7 +77,7 @@ class State(NamedTuple):
     Attributes
     ----------
     kind : str
-        ``"outside"``, ``"between"``, ``"letter"``, ``"loose"`` (a letter that retyped pages leave
+        ``"outside"``, ``"between"``, ``"letter"``, ``"loose"`` (a letter that typed copies leave
         out) or ``"number"``.
     name : str
         The letter of a label, or a number's field.
@@ -123,7 +123,7 @@ def _page() -> tuple[list[State], list[Token]]:
             if part.startswith("{"):
                 states.append(State("number", name, line))
             else:
-                # retyped pages leave out the first words of a label, as they do prompts
+                # typed copies leave out the first words of a label, as they do prompts
                 is_first = part.isalpha() and "".join(parts[at + 1 : at + 2]).isalpha()
                 is_loose = line < PROMPTS or (is_first and line != HEADING)
                 states += [State("loose" if is_loose else "letter", char, line) for char in part]
@@ -133,20 +133,11 @@ def _page() -> tuple[list[State], list[Token]]:
     return states, tokens
 
 
-def _labels() -> list[tuple[str, list[int]]]:
-    """Return `LABELS`."""
-    labels: dict[tuple[int, str], list[int]] = {}
-    for token in TOKENS:
-        if token.is_word:
-            labels.setdefault((token.line, token.name), []).extend(token.states)
-    return [(name, states) for (_, name), states in labels.items()]
-
-
 STATES, TOKENS = _page()
 """The states, the first of which is the text outside any printout; and the tokens of the page."""
-LABELS = _labels()
-"""For each label the field that it names (a prompt: its reply's slot) with the states of its
-letters."""
+WORDS = [token for token in TOKENS if token.is_word and token.line >= PROMPTS]
+"""The words of labels, with the field that each names, in the order of the page."""
+TOKEN_OF = {state: token for token in TOKENS for state in token.states}
 
 
 def letter_of(state: int) -> str:

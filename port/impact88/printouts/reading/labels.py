@@ -16,7 +16,18 @@ from collections.abc import Collection, Container, Iterable, Iterator, Mapping, 
 from functools import lru_cache
 
 from ...collision.fields import ANGLES, FIELDS
-from .alignment import BEHIND, FIRST_STARS, LABELLED_ANGLES, PROMPTS, STARS, STATES, TOKENS, Token
+from .alignment import (
+    BEHIND,
+    FIRST_STARS,
+    HEADING,
+    LABELLED_ANGLES,
+    PROMPTS,
+    STARS,
+    STATES,
+    TOKENS,
+    WORDS,
+    Token,
+)
 from .differences import Difference, Kind, difference_at
 from .editpath import cheapest_path
 from .glyphs import COSTS, Gap, Page, is_look_alike, label_cost, letters
@@ -28,11 +39,6 @@ _MIN_ADVANTAGE = 25
 """Cost by which another label must be cheaper to be the one read; U for V, the likeliest, costs
 29."""
 _NO_WORD = frozenset("0123456789=.(),:")
-
-
-Found = Sequence[tuple[str, str, Sequence[int]]]
-"""For each label the field that it names (a prompt: its reply), its letters, and the glyphs aligned
-with them."""
 
 
 def words_before(page: Page, slots: Mapping[str, tuple[int, int]]) -> dict[str, tuple[int, int]]:
@@ -53,28 +59,30 @@ def words_before(page: Page, slots: Mapping[str, tuple[int, int]]) -> dict[str, 
 
 
 def label_differences(
-    page: Page, found: Found, slots: Mapping[str, tuple[int, int]]
+    page: Page, states: Mapping[int, int], slots: Mapping[str, tuple[int, int]]
 ) -> list[Difference]:
-    """Return the labels of one printout that are not the program's, in the order of the page.
+    """Return the words of labels that are not the program's, in the order of the page.
 
     Parameters
     ----------
     page : Page
-    found : sequence of (str, str, list of int)
-        For each label its field, its letters, and the glyphs that were aligned with them.
+    states : mapping of int to int
+        State of each glyph of the printout.
     slots : mapping of str to (int, int)
         Range of glyphs of every number, by field.
     """
-    differences = []
-    for name, letters_printed, start, stop, read in _labels_read(page, found, slots):
-        if read == letters_printed:
+    differences: list[Difference] = []
+    for token, start, stop, read in _words_read(page, states, slots):
+        if read == token.text:
             continue
-        other_labels = {text for label, text, _ in found if _kind(label) == _kind(name)} - {
-            letters_printed
-        }
-        kind, is_open = _compare_label(_kind(name), letters_printed, read, other_labels)
-        difference = difference_at(page, kind, name, letters_printed, (start, stop), read)
-        differences.append(difference._replace(bears=is_open))
+        kind, is_open = _compare_word(token, read)
+        difference = difference_at(page, kind, token.name, token.text, (start, stop), read)
+        before = differences[-1] if differences else None
+        if before and before.kind is kind is Kind.MISSING and before.name == token.name:
+            text = before.printed + token.text  # a label of two words
+            differences[-1] = before._replace(printed=text)
+        else:
+            differences.append(difference._replace(bears=is_open))
     return differences
 
 
@@ -101,52 +109,55 @@ def weigh_labels(
     return weighed
 
 
-def _kind(name: str) -> str:
-    """Return the kind of a label: it may be mistaken for others of its kind only."""
-    return "prompt" if name not in FIELDS else "angle" if name in ANGLES else "number"
+def _words_read(
+    page: Page, states: Mapping[int, int], slots: Mapping[str, tuple[int, int]]
+) -> Iterator[tuple[Token, int, int, str]]:
+    """Yield the words of labels of numbers that were read, and those of which letters were read.
 
-
-def _labels_read(
-    page: Page, found: Found, slots: Mapping[str, tuple[int, int]]
-) -> Iterator[tuple[str, str, int, int, str]]:
-    """Yield the labels of numbers that were read, and those of which letters were read.
-
-    Each is the field, the letters that the program prints, start and stop in the text, and the
-    letters that were read.
+    Each is the token, start and stop in the text, and the letters that were read.
     """
 
     def read(at: Iterable[int]) -> str:
         return letters(page.glyphs[index] for index in at)
 
-    words = words_before(page, slots)
-    of_angles = [place for place, (name, _, _) in enumerate(found) if name in ANGLES]
-    heading, row = of_angles[: len(ANGLES)], of_angles[len(ANGLES) :]
-    heading_at = [index for place in heading for index in found[place][2]]
+    joined = words_before(page, slots)
+    glyphs_of = {
+        token: [index for index, state in states.items() if state in token.states]
+        for token in WORDS
+    }
+    heading_at = [at for token in WORDS if token.line == HEADING for at in glyphs_of[token]]
     if heading_at:
         yield from _heading(page, min(heading_at), max(heading_at))
-    is_named = bool(heading_at) or any(found[place][2] for place in row)
-    for place, (name, letters_printed, at) in enumerate(found):
-        if (place in heading and is_named) or (place in row and not at):
+    is_labelled = any(glyphs_of[token] for token in WORDS if token.line == LABELLED_ANGLES)
+    for token in WORDS:
+        at: Sequence[int] = glyphs_of[token]
+        if token.line == HEADING and (heading_at or is_labelled):
             continue
-        word = range(*words.get(name, (0, 0)))
-        if word and read(at[-len(word) :]) != read(word):
-            at = word
+        if token.line == LABELLED_ANGLES and not at:
+            continue
+        word = range(*joined.get(token.name, (0, 0)))
+        label = token.line, token.name
+        known = [index for other in _LABELS[label] for index in glyphs_of[other]]
+        if token is _LABELS[label][-1] and word and read(known[-len(word) :]) != read(word):
+            at = [index for index in word if index in at or index not in known]
         if at:
-            yield name, letters_printed, *page.span(at[0], at[-1] + 1), read(at)
-        elif name in slots:
-            begin = page.span(*slots[name])[0]
-            yield name, letters_printed, begin, begin, ""
+            yield token, *page.span(at[0], at[-1] + 1), read(at)
+        elif token.name in slots:
+            begin = page.span(*slots[token.name])[0]
+            yield token, begin, begin, ""
 
 
-def _heading(page: Page, first: int, last: int) -> Iterator[tuple[str, str, int, int, str]]:
+def _heading(page: Page, first: int, last: int) -> Iterator[tuple[Token, int, int, str]]:
     """Yield the five labels of the heading, by its words or, if these are not five, in pairs."""
     glyphs, end = page.glyphs, last + 1
     outside = _outside_brackets(page, last)
     starts = [at for at in outside if at == outside[0] or glyphs[at].gap or at - 1 not in outside]
     if len(starts) == len(ANGLES):
-        for name, start, stop in zip(ANGLES, starts, [*starts[1:], outside[-1] + 1], strict=True):
+        for token, start, stop in zip(
+            _HEADING, starts, [*starts[1:], outside[-1] + 1], strict=True
+        ):
             word = [at for at in outside if start <= at < stop]
-            yield name, name, *page.span(start, word[-1] + 1), letters(glyphs[at] for at in word)
+            yield token, *page.span(start, word[-1] + 1), letters(glyphs[at] for at in word)
         return
     while first and glyphs[first].gap is not Gap.LINE and glyphs[first - 1].char.isalpha():
         first -= 1
@@ -156,12 +167,12 @@ def _heading(page: Page, first: int, last: int) -> Iterator[tuple[str, str, int,
     if len(starts) != len(ANGLES):
         starts = [*range(first, end, 2)]
     exact = "".join(ANGLES) in letters(glyphs[first:end])
-    for number, name in enumerate(ANGLES):
+    for number, token in enumerate(_HEADING):
         if len(starts) == len(ANGLES):
             start, stop = [*starts, end][number : number + 2]
-            yield name, name, *page.span(start, stop), letters(glyphs[start:stop])
+            yield token, *page.span(start, stop), letters(glyphs[start:stop])
         else:
-            yield name, name, *page.span(first, end), name if exact else ""
+            yield token, *page.span(first, end), token.text if exact else ""
 
 
 def _outside_brackets(page: Page, last: int) -> list[int]:
@@ -173,11 +184,15 @@ def _outside_brackets(page: Page, last: int) -> list[int]:
     return [at for at in line if at - line.start not in inside] if inside else []
 
 
-def _compare_label(kind: str, printed: str, read: str, others: set[str]) -> tuple[Kind, bool]:
-    """Return how a label differs, and True if it leaves a doubt which number is meant.
+def _compare_word(token: Token, read: str) -> tuple[Kind, bool]:
+    """Return how a word of a label differs, and True if it leaves a doubt which number is meant.
 
-    There is a doubt where the letters that were read as printed fit another label, too.
+    There is a doubt where the letters that were read as printed fit another word, too.
     """
+    printed = token.text
+    others = {word.text for word in WORDS if (word.name in ANGLES) == (token.name in ANGLES)} - {
+        printed
+    }
     cost = _distance(printed, read)
     cost_of_other = min(_distance(text, read) for text in others)
     matches = {(at, char) for at, char in enumerate(read) if printed[at : at + 1] == char}
@@ -185,16 +200,12 @@ def _compare_label(kind: str, printed: str, read: str, others: set[str]) -> tupl
     doubt = len(read) != len(printed) or not matches or any(alike)
     if not any(map(str.isalnum, read)):
         return Kind.MISSING, doubt
-    if kind == "prompt":
-        contradicts = cost_of_other < cost - COSTS["unseen"]
-        return Kind.CONTRADICTS if contradicts else Kind.LOOK_ALIKE, False
     # itself, with gaps
     is_gapped = read not in others and has_gaps_only(printed, read)
     if len(read + printed) > len("EL") and not is_gapped:
-        is_word = read.isascii() and read.isalpha()
-        is_strange = is_word and (
-            cost >= _DIFFERENT * len(printed) or _has_other_word(printed, read)
-        )
+        is_word = read.isascii() and read.isalpha() and cost >= _DIFFERENT * len(printed)
+        is_part = len(_LABELS[token.line, token.name]) > 1
+        is_strange = is_word and not (is_part and 2 * len(matches) >= len(printed))
         if cost_of_other < cost - _MIN_ADVANTAGE or is_strange:
             return Kind.CONTRADICTS, doubt
     return Kind.LOOK_ALIKE, doubt
@@ -206,26 +217,12 @@ def has_gaps_only(printed: str, read: str) -> bool:
     return all(letter in remaining for letter in read)
 
 
-_WORDS = {"INITIALKE": 7, "KELOSS": 2}
-"""Labels of two words: the letters of the first."""
-
-
-def _has_other_word(printed: str, read: str) -> bool:
-    """Return True for a label of two words, one of which is read as a different word."""
-    if printed not in _WORDS:
-        return False
-    words = printed[: _WORDS[printed]], printed[_WORDS[printed] :]
-    splits = ((read[:at], read[at:]) for at in range(len(read) + 1))
-    parts = min(splits, key=lambda parts: sum(map(_distance, words, parts)))
-    for word, part in zip(words, parts, strict=True):
-        matches = sum(letter == char for letter, char in zip(word, part, strict=False))
-        if (
-            not has_gaps_only(word, part)
-            and 2 * matches < len(word)
-            and _distance(word, part) >= _DIFFERENT * len(word)
-        ):
-            return True
-    return False
+_LABELS: dict[tuple[int, str], list[Token]] = {}
+"""The words of each label, by its line and field."""
+for _word in WORDS:
+    _LABELS.setdefault((_word.line, _word.name), []).append(_word)
+_LAST_TEXTS = {word.name: word.text for word in WORDS}
+_HEADING = [word for word in WORDS if word.line == HEADING]
 
 
 @lru_cache(maxsize=4096)
@@ -276,7 +273,11 @@ def mark_differences(
         True for a page of an optical reader, which may take a mark for one that looks like it, lose
         asterisks, and put a mark on another line.
     """
-    without_label = {label.name for label in labels if label.kind is Kind.MISSING}
+    without_label = {
+        label.name
+        for label in labels
+        if label.kind is Kind.MISSING and label.printed.endswith(_LAST_TEXTS[label.name])
+    }
     reported = {at for label in labels if label.bears for at in range(label.start, label.stop)}
     places: dict[int, int] = {}
     for index in sorted(states):

@@ -150,7 +150,7 @@ def _split_row(row: re.Match[str]) -> str:
 def _exponent(match: re.Match[str]) -> str:
     """Return a power of ten as an exponent of one digit.
 
-    The program never prints one, so that the verdict shows that the number was retyped.
+    The program never prints one: the number is in another form (`differences.Kind.OTHER_FORM`).
     """
     power = (match.group(1) or match.group(2)).translate(_SMALL)
     return f"E{power if power.startswith('-') else '+' + power}".ljust(len(match.group()))

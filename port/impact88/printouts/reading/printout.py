@@ -19,12 +19,13 @@ from ...messages.arguments import explains_arguments
 from . import numerals
 from . import plaintext as pasted
 from .alignment import (
-    LABELS,
     LINES,
     PROMPTS,
     SPINS,
     STARS,
     STATES,
+    TOKEN_OF,
+    WORDS,
     Budget,
     align,
     letter_of,
@@ -400,15 +401,7 @@ class Printout:
     def check_labels(self) -> None:
         """Set ``labels`` and ``misread_letters``: labels and marks that are not the program's."""
         read = {name: self._slots[name] for name in self.fields if name in self._slots}
-        label_glyphs = [
-            (
-                name,
-                "".join(map(letter_of, own)),
-                [at for at, state in self._states.items() if state in own],
-            )
-            for name, own in LABELS
-        ]
-        self.labels = label_differences(self.page, label_glyphs, read)
+        self.labels = label_differences(self.page, self._states, read)
         self.misread_letters = self._count_misread()
         is_piece = len(self.fields) < _MIN_NUMBERS
         self.labels = weigh_labels(self.labels, self.machine_read, is_piece)
@@ -428,7 +421,8 @@ class Printout:
         """
         return [
             difference_at(
-                self.page, Kind.LOOK_ALIKE if self._letter(index) else Kind.ILLEGIBLE, "",
+                self.page, Kind.LOOK_ALIKE if self._letter(index) else Kind.ILLEGIBLE,
+                TOKEN_OF[self._states[index]].name if self._letter(index) else "",
                 self._letter(index), self.page.span(index, index + 1), self.page.glyphs[index].char,
             )
             for index, role in sorted(self.roles().items())
@@ -472,7 +466,7 @@ class Printout:
         """Return how many letters of labels were read as other letters or figures, and how many
         labels lack letters only; labels that contradict are left out."""
         wrong = {label.name for label in self.mislabelled}
-        excluded = {state for name, own in LABELS if name in wrong for state in own}
+        excluded = {state for word in WORDS if word.name in wrong for state in word.states}
         damaged = (label for label in self.labels if label.kind is Kind.LOOK_ALIKE)
         return sum(has_gaps_only(label.printed, label.read) for label in damaged) + sum(
             self.page.glyphs[index].char != letter and self.page.glyphs[index].char.isalnum()
@@ -489,7 +483,7 @@ class Printout:
         if not numbers.issuperset(ANGLES[:-1]):
             numbers -= set(ANGLES)
         read = {self._states[index] for index in self._exact}
-        labelled = {name for name, own in LABELS if not read.isdisjoint(own)} | {*ANGLES}
+        labelled = {word.name for word in WORDS if not read.isdisjoint(word.states)} | {*ANGLES}
         count = len(numbers & labelled)
         return count >= 1 and count + len(self._exact) >= 5
 

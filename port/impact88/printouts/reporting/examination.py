@@ -18,8 +18,8 @@ from ...collision.mappings import texts
 from ...errors import UserError, quoted
 from ...messages.arguments import explains_arguments
 from ..judging import beside
-from ..judging.judgement import Judged, Status, Verdict, judge
-from ..judging.reader import attribute_to_reader, is_alteration
+from ..judging.judgement import Judged, Status, Verdict, is_alteration, judge
+from ..judging.reader import attribute_to_reader
 from ..reading.plaintext import decode
 from ..reading.printout import LARGEST_FILE, Printout, read_printouts
 from ..recovery.recovered import recover, without_angles
@@ -212,7 +212,7 @@ def _verify_printout(paper: Printout, given: Mapping[str, str] | None) -> Verifi
         from ..explaining.explanations import explain
 
         result.explanations = explain(judgement, rereading)
-        if not is_alteration(paper, [len(cause.changes) for cause in result.explanations]):
+        if not is_alteration(judgement, [len(cause.changes) for cause in result.explanations]):
             result.verdict, result.explanations = Verdict.INCOMPLETE, []
     if result.verdict is Verdict.INCOMPLETE and paper.machine_read and result.differing:
         result.remarks.append(

@@ -13,7 +13,7 @@ from ...files import display_name
 from ...messages.progress import progress
 from ...names import SCENE
 from ..judging.copies import CopyPages, as_printed, converted_inputs
-from ..judging.judgement import FieldCheck, Status, Verdict
+from ..judging.judgement import FieldCheck, Status, Verdict, status_of
 from ..reading.differences import Difference, Kind
 from ..reading.printout import read_printouts
 from ..scan.cleaning import Paper, papers_of
@@ -165,25 +165,21 @@ def _where(place: Place | None, grid: Grid) -> str:
 
 
 def _check(leaf: Leaf, name: str, recomputed: str | None, cells: Sequence[Cell]) -> FieldCheck:
-    states = [state(cell) for cell in cells]
-    status = Status.READ
-    if leaf.judged.verdict is Verdict.INCOMPLETE and "differs" in states:
+    kinds = {"doubtful": Kind.PICTURE, "differs": Kind.CONTRADICTS}
+    differences = [
+        Difference(
+            kinds[state(cell)], name, cell.other, cell.predicted,
+            leaf.grid.number(cell.place.line), cell.place.cell + 1, 0, 0,
+        )
+        for cell in cells
+        if state(cell) in kinds
+    ]  # fmt: skip
+    status = status_of(differences, "".join(cell.predicted for cell in cells))
+    if leaf.judged.verdict is Verdict.INCOMPLETE and status is Status.CONTRADICTED:
         status = Status.NOT_COMPARED
     elif recomputed is None or not cells:
         status = Status.NOT_READ
-    elif "differs" in states:
-        status = Status.CONTRADICTED
-    elif "doubtful" in states:
-        status = Status.DOUBTFUL
-    doubts = [
-        Difference(
-            Kind.PICTURE, name, cell.other, cell.predicted, leaf.grid.number(cell.place.line),
-            cell.place.cell + 1, 0, 0,
-        )
-        for cell in cells
-        if state(cell) == "doubtful"
-    ]  # fmt: skip
-    check = FieldCheck(name, _cells_text(cells) or None, recomputed, status, doubts=doubts)
+    check = FieldCheck(name, _cells_text(cells) or None, recomputed, status, doubts=differences)
     if cells:
         check.line, check.column = leaf.grid.number(cells[0].place.line), cells[0].place.cell + 1
     return check
