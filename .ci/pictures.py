@@ -110,15 +110,14 @@ def write_table(record: dict[str, Any]) -> None:
     RUN_TIMES.write_text(before + table + after, encoding="utf-8")
 
 
-def write_measurements(record: dict[str, Any], sizes: dict[str, Any]) -> None:
-    """Write the page of measurements: every method, every result by itself, growth with the
-    scenes."""
+def write_measurements(record: dict[str, Any]) -> None:
+    """Write the page of measurements: every method on every population."""
     machine = record["machine"]
     lines = [
         "# Measurements",
         "",
         f"Made by `python .ci/pictures.py` on {datetime.now(UTC):%Y-%m-%d}: one run of `impact88 "
-        f"bench --quick --components` and one of `--sizes` on {machine['processor']}, "
+        f"bench --quick` on {machine['processor']}, "
         f"{machine['instructions']}, {machine['cores']} cores, Python {machine['python']}, numpy "
         f"{machine['numpy']}, load {machine['load']:.1f}. Times are of the processor; on a busy "
         "machine they are longer, and ratios hold.",
@@ -138,36 +137,6 @@ def write_measurements(record: dict[str, Any], sizes: dict[str, Any]) -> None:
             else "| | the reference"
         )
         lines.append(f"| {row['population']} | {row['name']} | {speed:,.0f} | {errors} |")
-    lines += [
-        "",
-        "## Each result by itself",
-        "",
-        "The ten results whose largest error is most times what rounding the numbers of the scene "
-        "does to it.",
-        "",
-        "| scenes | result | largest relative error | over rounding |",
-        "|---|---|---|---|",
-    ]
-    worst = sorted(record["components"], key=lambda row: row["over_rounding"] or 0, reverse=True)
-    lines += [
-        f"| {row['population']} | {row['result']} | {row['largest']:.1e} "
-        f"| {row['over_rounding']:.1f} |"
-        for row in worst[:10]
-    ]
-    lines += [
-        "",
-        "## Growth with the scenes",
-        "",
-        "Nanoseconds a scene of `solve` for the six velocities, of the same with `out=`, and of "
-        "moving as many numbers alone.",
-        "",
-        "| scenes | `solve` | with `out=` | memory alone |",
-        "|---|---|---|---|",
-    ]
-    for row in sizes["sizes"]:
-        times = (row["nanoseconds"], row["nanoseconds_out"], row["memory"])
-        numbers = " | ".join(f"{float(f'{time:.2g}'):,.0f}" for time in times)
-        lines.append(f"| {row['scenes']:,} | {numbers} |")
     MEASUREMENTS.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
@@ -185,13 +154,12 @@ def make_pictures(folder: Path) -> None:
 
 def measure(folder: Path) -> None:
     """Run the benchmark for its picture, the table of run times and the page of measurements."""
-    figure, record, sizes = PICTURES / "work-precision.svg", folder / "b.json", folder / "s.json"
-    asked = ("bench", "--quick", "--components", "--figure", str(figure))
+    figure, record = PICTURES / "work-precision.svg", folder / "b.json"
+    asked = ("bench", "--quick", "--figure", str(figure))
     run(*asked, "--json", "-o", str(record), folder=folder)
-    run("bench", "--quick", "--sizes", "--json", "-o", str(sizes), folder=folder)
     measured = json.loads(record.read_text(encoding="utf-8"))
     write_table(measured)
-    write_measurements(measured, json.loads(sizes.read_text(encoding="utf-8")))
+    write_measurements(measured)
 
 
 def main() -> None:

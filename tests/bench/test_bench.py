@@ -5,21 +5,18 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-import tracemalloc
 
 import numpy as np
 import pytest
 from fiftydigits import exact, relative_error
 
 from impact88.bench import figure, measure, plainc, tables
-from impact88.bench.measure import COMPONENTS
 from impact88.bench.methods import METHODS, relative_errors
 from impact88.casework.figures import canvas
 from impact88.interface.commands.cli import main
 from impact88.mechanics.accuracy.populations import (
     BENCHMARK,
     POPULATIONS,
-    repeat_scenes,
     scenes,
     texts,
 )
@@ -98,16 +95,6 @@ def test_figures(rows, tmp_path):
     canvas.save(drawn, str(tmp_path / "f.svg"))
 
 
-def test_components():
-    """Each result's error relative to itself, where spins are a small difference, too."""
-    found = measure.components(["casework"], 20, 3)
-    assert {row["population"] for row in found} == {"casework", "casework, EM = 0"}
-    assert len(found) == 2 * len(COMPONENTS)
-    assert all(0 < row["median"] <= row["largest"] < 1e-11 for row in found)
-    assert all(row["over_rounding"] < 4 for row in found)
-    assert "casework, EM = 0" in tables.components(found)
-
-
 def test_command(tmp_path, capsys):
     picture = tmp_path / "f.svg"
     asked = [
@@ -119,7 +106,6 @@ def test_command(tmp_path, capsys):
         "--repeats",
         "1",
         "--quick",
-        "--components",
     ]
     asked += ["--json", "--figure", str(picture)]
     assert main(asked) == 0
@@ -127,7 +113,6 @@ def test_command(tmp_path, capsys):
     assert found["seed"] == 1988
     assert {"processor", "cores", "numpy", "memory_roof"} <= set(found["machine"])
     assert found["results"][0]["scenes_per_second"] > 0
-    assert len(found["components"]) == 2 * len(COMPONENTS)
     assert picture.read_text().startswith("<?xml")
     assert main(["bench", "--scenes", "0"]) == 2
     assert main(["bench", "--populations", "easy"]) == 2
@@ -185,18 +170,6 @@ def test_plain_c_leaves_the_process_its_arithmetic():
 def test_plain_c_knows_no_pivot():
     rival = next(method for method in METHODS if method.plain)
     assert not measure.applies(rival, "pivots", scenes("pivots", 10, 3))
-
-
-def test_sizes():
-    grown = measure.sizes([1, 50_000], 1)
-    assert all(row["nanoseconds"] > 0 < row["memory"] for row in grown)
-    columns = repeat_scenes(scenes("casework", 100, 1), 50_000)
-    room = {name: np.empty(50_000) for name in FINAL_VELOCITIES}
-    tracemalloc.start()
-    solve(columns, out=room, threads=1)
-    assert tracemalloc.get_traced_memory()[1] < 2**20  # working arrays, not the scenes
-    tracemalloc.stop()
-    assert "50,000" in tables.listing(grown)
 
 
 def test_populations_of_the_table_can_be_typed():

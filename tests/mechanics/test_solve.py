@@ -600,13 +600,16 @@ def test_memory_is_bounded_by_the_results():
     count = 400_000
     g = {name: float(v[0]) for name, v in scenes("casework", 1, 1).items()}
     g["MU"] = np.linspace(0, 1, count).astype(np.float32)  # to be converted block by block
-    solve(g, ["VAX"])
+    room = solve(g, ["VAX"])
     tracemalloc.start()
     try:
+        solve(g, out=room, threads=1)
+        into_given = tracemalloc.get_traced_memory()[1]
         solve(g, ["VAX"], threads=1)
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
+    assert into_given < peak - count * 7  # no result of its own
     assert peak < count * 8 + 8e6  # the result, and working arrays that do not grow
 
 

@@ -1,5 +1,4 @@
-"""One run of the benchmark: every method on every population, errors and times together; and
-growth with the number of scenes.
+"""One run of the benchmark: every method on every population, errors and times together.
 
 All by processor time, which other programs do not lengthen; of several threads by the clock's. Rows
 are dicts of numbers and names.
@@ -16,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from ..mechanics import native
-from ..mechanics.accuracy.errorbound import APPLESOFT, DOUBLE, movements, scales, sensitivity
-from ..mechanics.accuracy.populations import BENCHMARK, POPULATIONS, repeat_scenes, scenes
+from ..mechanics.accuracy.errorbound import APPLESOFT, scales, sensitivity
+from ..mechanics.accuracy.populations import POPULATIONS, repeat_scenes, scenes
 from ..mechanics.closedform.general import TILE
 from ..mechanics.closedform.plan import Plan
 from ..mechanics.closedform.solve import solve
@@ -33,9 +32,6 @@ Row = dict[str, Any]
 ORDER = tuple(FINAL_VELOCITIES)
 ROOF_SCENES = 1_000_000
 """Scenes whose columns are too many for any cache."""
-MIN_SCENES_TIMED = 500  # calls with fewer scenes are timed several together
-COMPONENTS = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "PN", "PT", "PM", "LOSS", "DVA", "MUC")
-"""Results whose errors are listed one by one."""
 
 
 def machine() -> Row:
@@ -186,60 +182,6 @@ def measure(
                 row["memory"] = statistics.median(memory) / row["timed"]
         slow = {"population": name, "method": "mpmath", "name": "mpmath, 50 digits"}
         rows += [*mine, {**slow, "scenes": count, "timed": count, "seconds": reference_seconds}]
-    return rows
-
-
-def components(populations: Sequence[str], count: int, seed: int) -> list[Row]:
-    """The closed form's errors result by result, each relative to itself, on ``count`` scenes of
-    each population and on the same with EM = 0: the median, the largest, and the largest relative
-    to what rounding every number of the scene to a double does (``over_rounding``)."""
-    from ..mechanics.accuracy.reference import two_doubles
-
-    rows = []
-    for name in populations:
-        columns_of_scenes = scenes(name, count, seed)
-        for label, columns in (
-            (name, columns_of_scenes),
-            (f"{name}, EM = 0", {**columns_of_scenes, "EM": np.zeros(count)}),
-        ):
-            hi, lo = two_doubles(columns, COMPONENTS)
-            results = solve(columns, COMPONENTS)
-            shifts = movements(columns, COMPONENTS)
-            for place, result in enumerate(COMPONENTS):
-                true = hi[:, place]
-                error = np.abs((results[result] - true) - lo[:, place])
-                usable = np.isfinite(error) & (true != 0)
-                relative = error[usable] / np.abs(true[usable])
-                over = error[usable] / (DOUBLE * (shifts[result] + np.abs(true))[usable])
-                row: Row = {"population": label, "result": result}
-                row["median"] = float(np.median(relative)) if usable.any() else 0.0
-                row["largest"] = float(relative.max(initial=0.0))
-                rows.append({**row, "over_rounding": float(over.max(initial=0.0))})
-    return rows
-
-
-def sizes(counts: Sequence[int], repeats: int) -> list[Row]:
-    """The six velocities for growing numbers of scenes: nanoseconds a scene, the same into arrays
-    given again and again (``out``), and what memory alone takes."""
-    rows = []
-    for count in counts:
-        room = {name: np.zeros(count) for name in ORDER}
-        columns: Any = repeat_scenes(scenes(BENCHMARK[0], 4096, 1), count)
-        move = mover({name: columns[name] for name in SCENE if name != "M"}, room)
-        if count == 1:
-            columns = {name: float(values[0]) for name, values in columns.items()}
-            room = {name: np.zeros(()) for name in ORDER}
-        calls = max(1, MIN_SCENES_TIMED // count)
-        works = (
-            partial(solve, columns, ORDER, threads=1),
-            partial(solve, columns, out=room, threads=1),
-            move,
-        )
-        times = medians(works, repeats, calls)
-        row: Row = {"scenes": count, "seconds": times[0] / calls}
-        for key, durations in zip(("nanoseconds", "nanoseconds_out", "memory"), times, strict=True):
-            row[key] = 1e9 * durations / calls / count
-        rows.append(row)
     return rows
 
 

@@ -30,13 +30,6 @@ def _times(value: float) -> str:
 
 COLUMNS: dict[str, tuple[str, Callable[[Any], str]]] = {
     "name": ("", str),
-    "population": ("population", str),
-    "result": ("result", str),
-    "scenes": ("scenes", "{:,.0f}".format),
-    "seconds": ("seconds", "{:.6f}".format),
-    "nanoseconds": ("ns/scene", "{:,.1f}".format),
-    "nanoseconds_out": ("with out=", "{:,.1f}".format),
-    "memory": ("memory alone", "{:,.1f}".format),
     "per_second": ("scenes/s", _rate),
     "median": ("median", _error),
     "percentile_99": ("99 %", _error),
@@ -44,26 +37,8 @@ COLUMNS: dict[str, tuple[str, Callable[[Any], str]]] = {
     "over_condition": ("/(cond u)", _times),
     "over_sensitivity": ("/(sens u)", _times),
     "unanswered": ("none", lambda count: f"{count:,}" if count else ""),
-    "over_rounding": ("/rounding", _times),
 }
 """Key of a row -> heading and how its values are written."""
-_RESULTS = (
-    "name",
-    "per_second",
-    "median",
-    "percentile_99",
-    "largest",
-    "over_condition",
-    "over_sensitivity",
-    "unanswered",
-)
-
-
-def listing(rows: Sequence[Mapping[str, Any]], keys: Sequence[str] = ()) -> str:
-    """Rows of one kind as a table."""
-    keys = keys or list(rows[0])
-    lines = [[COLUMNS[key][1](row[key]) if key in row else "" for key in keys] for row in rows]
-    return "\n".join(table(lines, [COLUMNS[key][0] for key in keys]))
 
 
 def results(rows: Sequence[Row]) -> str:
@@ -75,7 +50,11 @@ def results(rows: Sequence[Row]) -> str:
         population = POPULATIONS[name]
         count = measured_rows[0]["scenes"]
         parts.append(f"{name} ({population.level}): {population.meaning}; {count:,} scenes")
-        parts.append(listing(measured_rows, _RESULTS) + "\n")
+        lines = [
+            [write(row[key]) if key in row else "" for key, (_, write) in COLUMNS.items()]
+            for row in measured_rows
+        ]
+        parts += [*table(lines, [heading for heading, _ in COLUMNS.values()]), ""]
     parts.append(
         "relative error of the final velocities; cond: COND, sens: sensitivity to the scene's\n"
         "numbers, u: unit roundoff (2^-32 for Applesoft, 2^-53 for double), each for the worst\n"
@@ -101,12 +80,6 @@ def summary(rows: Sequence[Row]) -> str:
     sizes = f"{rows[0]['scenes']:,} scenes of each population"
     caption = f"relative error of the final velocities; {sizes}; times: {names[0]}"
     return "\n".join([caption, *table(lines, heading)])
-
-
-def components(rows: Sequence[Row]) -> str:
-    """The closed form's errors, result by result."""
-    heading = "closed form, each result's error relative to itself; /rounding: the largest, by what"
-    return f"{heading}\nrounding the scene's numbers does to the result\n{listing(rows)}"
 
 
 _RATIOS = (

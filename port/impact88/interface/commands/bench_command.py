@@ -9,15 +9,12 @@ populations:
 examples:
   impact88 bench                             the tables, about two minutes
   impact88 bench --quick                     one screen, some 15 seconds
-  impact88 bench --components                and the errors of each result by itself
   impact88 bench --figure work-precision.pdf --json -o bench.json
-  impact88 bench --sizes                     to ten million scenes (takes 2 GB)
 
 exit status: 0 done; 2 bad input
 """
 
 import json
-from typing import Any
 
 from ...bench import figure, measure, tables
 from ...casework.figures.canvas import check_ending, save
@@ -40,11 +37,6 @@ ERROR_SCENES = 2000
 QUICK_ERROR_SCENES = 300
 REPEATS = 5
 QUICK_REPEATS = 3
-COMPONENT_SCENES = 300
-"""Scenes of which every result is compared with 50 digits, 5 ms each; with twice as many the worst
-of casework and heavy is worth 2.7 roundings and not 3.2: the seed's scenes, not the count."""
-SIZES = (1, 60, 1_000, 10_000, 100_000, 1_000_000, 10_000_000)
-
 
 ARGUMENTS = (
     options.names_option(
@@ -65,8 +57,6 @@ ARGUMENTS = (
         f"timing repeats; the median is reported ({REPEATS}; with --quick {QUICK_REPEATS})",
     ),
     options.flag("--quick", "one screen: fewer scenes, a twentieth of them timed"),
-    options.flag("--components", "the errors of each result by itself, too"),
-    options.flag("--sizes", "growth with the scenes, instead"),
     options.flag("--json", "print JSON instead of tables"),
     options.OUTPUT,
     options.writes("--figure", "FILE", "draw error against time: .svg .png .pdf"),
@@ -76,35 +66,21 @@ ARGUMENTS = (
 def main(args: options.Args) -> None:
     if args.figure:
         check_ending(args.figure)
-    machine = measure.machine()
-    args.repeats = args.repeats or (QUICK_REPEATS if args.quick else REPEATS)
-    args.scenes = args.scenes or (QUICK_ERROR_SCENES if args.quick else ERROR_SCENES)
-    if args.sizes:
-        sizes = measure.sizes(SIZES, args.repeats)
-        record, texts = {"machine": machine, "sizes": sizes}, [tables.listing(sizes)]
-    else:
-        record, texts = _measure(args, machine)
-    if args.json:
-        print(json.dumps(plain(record), indent=1))
-    else:
-        print("\n\n".join([tables.machine(machine), *texts]))
-
-
-def _measure(args: options.Args, machine: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
     library("mpmath", "bench", "the reference")
+    machine = measure.machine()
+    repeats = args.repeats or (QUICK_REPEATS if args.quick else REPEATS)
+    scenes = args.scenes or (QUICK_ERROR_SCENES if args.quick else ERROR_SCENES)
     finite = [name for name in POPULATIONS if name != "barriers"]
     populations = options.names_given(args.populations, finite, "--populations", "population")
     populations = populations or list(QUICK_POPULATIONS if args.quick else BENCHMARK)
-    with progress(measure.steps(populations, args.repeats), "bench") as meter:
+    with progress(measure.steps(populations, repeats), "bench") as meter:
         share = QUICK if args.quick else 1.0
-        sizes = (args.scenes, args.seed, args.repeats)
-        rows = measure.measure(populations, *sizes, meter.update, share)
+        rows = measure.measure(populations, scenes, args.seed, repeats, meter.update, share)
     if args.figure:
         save(figure.work_precision(rows, machine["memory_roof"]), args.figure)
-    record = {"machine": machine, "seed": args.seed, "results": measure.as_json(rows)}
-    texts = [tables.summary(rows) if args.quick else tables.results(rows)]
-    if args.components:
-        scene_count = min(args.scenes, COMPONENT_SCENES)
-        record["components"] = measure.components(populations, scene_count, args.seed)
-        texts.append(tables.components(record["components"]))
-    return record, [*texts, tables.ratios(rows)]
+    if args.json:
+        record = {"machine": machine, "seed": args.seed, "results": measure.as_json(rows)}
+        print(json.dumps(plain(record), indent=1))
+    else:
+        text = tables.summary(rows) if args.quick else tables.results(rows)
+        print("\n\n".join([tables.machine(machine), text, tables.ratios(rows)]))
