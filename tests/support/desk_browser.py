@@ -1,13 +1,7 @@
-"""Browsers on the desk, without a window: the system's Chromium driven through Selenium, and its
-Firefox through WebDriver BiDi, which it speaks itself."""
+"""A browser on the desk, without a window: the system's Chromium driven through Selenium."""
 
 from __future__ import annotations
 
-import base64
-import itertools
-import json
-import os
-import re
 import shutil
 import subprocess
 import tempfile
@@ -89,104 +83,6 @@ def browser() -> Iterator[Any]:
             yield Page(driver, Path(downloads))
         finally:
             driver.quit()
-
-
-FIREFOXES = ("firefox-esr", "firefox")
-AXE = (os.environ.get("IMPACT88_AXE", ""), "node_modules/axe-core/axe.min.js")
-"""Where npm's axe-core may lie."""
-
-
-def axe() -> str:
-    """The text of axe-core; empty where it is not installed."""
-    found = [path for path in map(Path, filter(None, AXE)) if path.is_file()]
-    return found[0].read_text(encoding="utf-8") if found else ""
-
-
-class Firefox:
-    """A page in Firefox; what its tests need."""
-
-    def __init__(self, address: str) -> None:
-        from websocket import create_connection
-
-        self._line = create_connection(f"{address}/session", suppress_origin=True, timeout=60)
-        self._numbers = itertools.count(1)
-        self._ask("session.new", capabilities={})
-        (context,) = self._ask("browsingContext.getTree")["contexts"]
-        self._context = context["context"]
-
-    def _ask(self, method: str, **parameters: Any) -> Any:
-        number = next(self._numbers)
-        self._line.send(json.dumps({"id": number, "method": method, "params": parameters}))
-        while True:
-            told = json.loads(self._line.recv())
-            if told.get("id") == number:
-                assert told["type"] == "success", told
-                return told["result"]
-
-    def open(self, address: str) -> None:
-        """Go to a page."""
-        self._ask("browsingContext.navigate", context=self._context, url=address, wait="complete")
-
-    def size(self, width: int, height: int) -> None:
-        """How much of a page is seen."""
-        view = {"width": width, "height": height}
-        self._ask("browsingContext.setViewport", context=self._context, viewport=view)
-
-    def value(self, expression: str) -> Any:
-        """The value of an expression, as JSON has it; a promise is waited for."""
-        found = self._ask(
-            "script.evaluate",
-            expression=f"Promise.resolve({expression}).then((it) => JSON.stringify(it ?? null))",
-            target={"context": self._context},
-            awaitPromise=True,
-        )
-        assert found["type"] == "success", found
-        return json.loads(found["result"]["value"])
-
-    def _data(self, method: str) -> bytes:
-        return base64.b64decode(self._ask(method, context=self._context)["data"])
-
-    def pdf(self) -> bytes:
-        """The page as it is printed."""
-        return self._data("browsingContext.print")
-
-    def picture(self) -> bytes:
-        """What is seen, as PNG."""
-        return self._data("browsingContext.captureScreenshot")
-
-
-def no_firefox() -> str:
-    """Why there is no Firefox to test with; empty where there is one."""
-    try:
-        import websocket  # noqa: F401
-    except ImportError:
-        return "websocket-client is not installed"
-    return "" if any(map(shutil.which, FIREFOXES)) else "there is no Firefox"
-
-
-@contextmanager
-def firefox() -> Iterator[Firefox]:
-    """A Firefox of its own."""
-    command = next(filter(None, map(shutil.which, FIREFOXES)))
-    with tempfile.TemporaryDirectory() as profile:
-        process = subprocess.Popen(
-            [command, "--headless", "--remote-debugging-port=0", "--profile", profile],
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            text=True,
-            env={**os.environ, "HOME": profile, "MOZ_DISABLE_CONTENT_SANDBOX": "1"},
-        )
-        assert process.stderr is not None
-        try:
-            for line in process.stderr:
-                if found := re.search(r"BiDi listening on (ws://\S+)", line):
-                    break
-            else:
-                raise AssertionError("Firefox did not start")
-            yield Firefox(found[1])
-        finally:
-            process.terminate()
-            process.communicate()
 
 
 class Page:

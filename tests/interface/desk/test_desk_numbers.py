@@ -1,4 +1,4 @@
-"""All numbers and units that the desk shows, in Chromium and Firefox, against the commands' own.
+"""All numbers and units that the desk shows, in a browser, against the commands' own.
 
 By default a scene, or two with IMPACT88_LONG=1; with IMPACT88_SWEEP=1 twenty scenes in four systems
 of units.
@@ -29,7 +29,6 @@ from impact88.program.scene import sample
 
 SWEEP = bool(os.environ.get("IMPACT88_SWEEP"))
 pytestmark = pytest.mark.browser
-MISSING = {"chromium": desk_browser.missing(), "firefox": desk_browser.no_firefox()}
 Numbers = dict[str, tuple[float, str]]
 REASON = "document.getElementById('reconstruction-waiting').textContent"
 """Why there is no solution."""
@@ -55,14 +54,12 @@ def address() -> Iterator[str]:
         yield served
 
 
-@pytest.fixture(scope="module", params=["chromium", "firefox"] if SWEEP else ["chromium"])
-def page(request: pytest.FixtureRequest, address: str) -> Iterator[Any]:
-    if MISSING[request.param]:
-        pytest.skip(MISSING[request.param])
-    start = desk_browser.browser if request.param == "chromium" else desk_browser.firefox
-    with start() as started:
+@pytest.fixture(scope="module")
+def page(address: str) -> Iterator[Any]:
+    if missing := desk_browser.missing():
+        pytest.skip(missing)
+    with desk_browser.browser() as started:
         started.open(address)
-        started.name = request.param
         yield started
 
 
@@ -197,29 +194,3 @@ def test_what_the_page_shows_is_what_the_commands_print(
             until(lambda: len(page.value(REASON)) > 20, "the reason", 30)
             continue
         agree(page, "#reconstruction-answer .solution", solution(capsys.readouterr().out), 9)
-
-
-@pytest.mark.long
-def test_nothing_bars_a_reader_who_cannot_see(address: str) -> None:
-    """axe-core finds nothing on the three views, filled in."""
-    if MISSING["chromium"] or not (axe := desk_browser.axe()):
-        pytest.skip(MISSING["chromium"] or "axe-core is not installed (IMPACT88_AXE)")
-    with desk_browser.browser() as page:
-        page.open(address)
-        page.choose("paper-published", "run1-as-printed.txt")
-        until(lambda: page.count(".verdict.identical"), "the verdict")
-        page.choose("collision-sample", "1")
-        until(lambda: page.count("#collision-first td"), "the answer", 40)
-        page.put("collision-MU", "0.4 .. 0.6")
-        until(lambda: page.count("#collision-bounds-table td"), "the bounds", 40)
-        page.choose("reconstruction-sample", "3")
-        until(lambda: page.count(".solution"), "the solution", 40)
-        page.run(axe)
-        for view in ("paper", "collision", "reconstruction"):
-            page.run(f"location.hash = '#{view}'")
-            until(lambda view=view: page.at(view).is_displayed(), view)
-            found = page.driver.execute_async_script(
-                "axe.run(document).then((it) => arguments[0](it.violations.map((one) =>"
-                " [one.id, one.nodes.map((node) => node.html)])))"
-            )
-            assert found == [], view
