@@ -18,7 +18,6 @@ import digitstyles
 import numpy as np
 import pytest
 import scanpages
-import scanrates
 from captures import ROOT
 from longer import long_but
 from worked_cases import RUN_1
@@ -1026,21 +1025,6 @@ def test_a_page_read_otherwise_in_more_places_than_differ_accuses_nobody(
 def test_another_letter_is_near_to_that_letters_mean() -> None:
     assert state(cell("", distance=100.0, other_distance=KIND - 1)) == "differs"
     assert state(cell("", distance=100.0, other_distance=KIND + 1)) == "doubtful"
-
-
-@pytest.mark.parametrize(
-    ("verdicts", "printouts", "counted"),
-    [
-        (["IDENTICAL", "IDENTICAL"], 2, "IDENTICAL"),
-        (["IDENTICAL"], 2, "INCOMPLETE"),
-        (["IDENTICAL", "DIFFERS"], 2, "DIFFERS"),
-        (["IDENTICAL_AS_READ", "IDENTICAL"], 2, "IDENTICAL_AS_READ"),
-        ([], 1, "INCOMPLETE"),
-    ],
-)
-def test_the_worst_printout_of_a_page_counts(verdicts, printouts, counted) -> None:
-    row = {"verdicts": verdicts, "printouts": printouts}
-    assert scanrates.verdict_of(row) == counted
 
 
 @pytest.mark.long
