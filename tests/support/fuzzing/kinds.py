@@ -510,37 +510,6 @@ def extremes_case(rng: Random) -> Case:
     return Case("extremes", arguments, files=files)
 
 
-@cache
-def _typed_tables() -> dict[str, bytes]:
-    """A table in each of others' formats."""
-    import contextlib
-    import os
-    import tempfile
-
-    from impact88.interface.commands.cli import main
-
-    made = {}
-    with tempfile.TemporaryDirectory() as folder:
-        rows = [",".join(SCENE), *[",".join(sample(n)[name] for name in SCENE) for n in (1, 2, 3)]]
-        table = os.path.join(folder, "t.csv")
-        with open(table, "w", encoding="utf-8") as file:
-            file.write("\n".join(rows))
-        for ending in ("parquet", "xlsx", "csv.gz"):
-            there = os.path.join(folder, f"t.{ending}")
-            with contextlib.redirect_stderr(io.StringIO()):
-                if main(["solve", table, "-o", there, "--outputs", "VAX"]) == 0:
-                    made[ending] = open(there, "rb").read()  # noqa: SIM115
-    return made
-
-
-def typed_case(rng: Random) -> Case:
-    """A table in another library's format, spoilt; what reads it is not ours, and may crash."""
-    ending = rng.choice(sorted(_typed_tables()))
-    data = spoilt(rng, _typed_tables()[ending], rng.choice((0, 1, 3)))
-    to = rng.choice(("csv", "jsonl", "npz", "parquet", "xlsx"))
-    return Case("typed", ["solve", f"t.{ending}", "-o", f"o.{to}"], files={f"t.{ending}": data})
-
-
 def junk_case(rng: Random) -> Case:
     """Bytes without sense to every reader."""
     size = rng.choice((0, 1, 3, 50, 2000))
@@ -596,7 +565,6 @@ KINDS: dict[str, tuple[Callable[[Random], Case], int]] = {
     "bounds": (bounds_case, 1),
     "junk": (junk_case, 9),
     "replay": (replay_case, 1),
-    "typed": (typed_case, 0),
 }
 """Kind -> what makes a case of it, and how many of a hundred are of it."""
 
