@@ -44,6 +44,35 @@ term. Friction's along n, with levers for what the arms give of D::
 
 A pivot's, along x and y, are next to its velocities.
 
+Symbols here, and what the listing calls them (its line, or the chapter's equation):
+
+============== ====================================== ===========================================
+here           is                                     in the listing
+============== ====================================== ===========================================
+s, c           sine and cosine of GA                  SIN (GA), COS (GA)
+ma, mb, ia, ib 1/MA, 1/MB, 1/IA, 1/IB                 MA MB IA IB of line 310
+D1 D2 D3 D4    arms along x and y                     the same (330)
+an, bn         arms along n                           A(4,5), A(4,6) (460, Equation 15)
+at, bt         arms along t                           -A(3,5), -A(3,6) (440, Equation 16, pivot)
+sn, st         sigma: an + bn, at + bt
+kn, kt         kappa: an/IA - bn/IB, at/IA - bt/IB
+sn_, kn_ ...   the same of absolute values
+R              1/MA + 1/MB
+both           1/IA + 1/IB
+Ired, J        IA·IB/(IA + IB), 1/(IA + IB)
+z              1 - 2 em                               A(6,6) (490, Equation 18)
+mean, turn     mean spin, Ired (WA - WB)
+dx, dy         relative velocity of the centers       UX - VX, UY - VY
+cn, ct         the same along n and t
+gn, gt         relative velocity of the contact point A(4,M + 1) is -E·gn (540); gt > 0 (400)
+mu             MU after the sign rule                 MU (400, Equation 16)
+Pn, Pt, Px, Py impulse on A                           MA·(VAX - UX) ... (Equations 13, 14)
+H, moment      H/em is the moment's part PM/(1 - em)  line 560, Equation 18
+spin_a, spin_b final spins                            A(5,M + 1), A(6,M + 1) (550, 560)
+VAX ... VBY    final velocities                       A(1,M + 1) to A(4,M + 1) (570)
+KI, KF, LOSS   energies                               320, 580 and 590
+============== ====================================== ===========================================
+
 Axes: n = (cos GA, sin GA), t = (-sin GA, cos GA), A on the +n side; P acts on A, -P on B. Every
 quantity is an `Expression`: what nobody asks for is noted and never computed.
 """
