@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import jsonschema
@@ -63,6 +64,13 @@ def printed(*arguments: str, status: int = 0, text: str = "") -> str:
     done = command(*arguments, input=text)
     assert done.returncode == status, done.stderr
     return done.stdout
+
+
+def test_every_form_has_a_number() -> None:
+    forms = {path.stem for path in Path(schemas.__file__).parent.glob("*.txt")}
+    for name in forms ^ schemas.NUMBERS.keys():
+        step = "messages/schemas/{}.txt" if name in schemas.NUMBERS else "a row for {} in NUMBERS"
+        pytest.fail(f"next step: {step.format(name)}")
 
 
 @pytest.mark.parametrize("name", schemas.NUMBERS)

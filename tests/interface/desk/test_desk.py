@@ -37,7 +37,7 @@ from impact88.errors import UserError
 from impact88.interface.commands import options, reconstruct_command
 from impact88.interface.commands.cli import main
 from impact88.messages import schemas
-from impact88.names import SCENE, VELOCITIES
+from impact88.names import CHAPTER, RESULTS, SCENE, VELOCITIES
 from impact88.program.emulated import load_machine, run_machine
 from impact88.program.run import run
 from impact88.program.scene import Scene, sample
@@ -1101,3 +1101,12 @@ def test_a_reconstruction_begins_with_the_evidence_and_velocity_changes(client: 
     broken = {**values, "UX": "-29", "VAX": "-13", "E": "1.3"}
     broken = client.post("reconstruct", {"values": broken, "units": ""}).get_json()
     assert broken["tables"].index("Impossible: ") < broken["tables"].index("What follows")
+
+
+def test_every_input_has_a_field_and_every_field_is_a_quantity() -> None:
+    groups = {**app.GROUPS, **app.KNOWN_GROUPS, **app.MORE_GROUPS}
+    fields = " ".join(groups.values()).split()
+    unknown = [name for name in fields if name not in {**SCENE, **RESULTS, **CHAPTER}]
+    assert not unknown, f"next step: a row for {unknown} in names.py"
+    missing = {*SCENE} - {*" ".join(app.GROUPS.values()).split()}
+    assert not missing, f"next step: {missing} in a part of GROUPS of interface/desk/app.py"
