@@ -200,11 +200,11 @@ def _compare_word(token: Token, read: str) -> tuple[Kind, bool]:
     doubt = len(read) != len(printed) or not matches or any(alike)
     if not any(map(str.isalnum, read)):
         return Kind.MISSING, doubt
-    # itself, with gaps
-    is_gapped = read not in others and has_gaps_only(printed, read)
+    is_part = len(_LABELS[token.line, token.name]) > 1
+    # itself, with gaps: of two words, the other tells the label
+    is_gapped = (is_part or read not in others) and has_gaps_only(printed, read)
     if len(read + printed) > len("EL") and not is_gapped:
         is_word = read.isascii() and read.isalpha() and cost >= _DIFFERENT * len(printed)
-        is_part = len(_LABELS[token.line, token.name]) > 1
         is_strange = is_word and not (is_part and 2 * len(matches) >= len(printed))
         if cost_of_other < cost - _MIN_ADVANTAGE or is_strange:
             return Kind.CONTRADICTS, doubt
