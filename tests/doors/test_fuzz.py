@@ -1,7 +1,7 @@
 """Hostile input to every command: what was ever found, and some seconds of new cases.
 
 IMPACT88_FUZZ_SECONDS says how long it takes: 36000 goes on for a night. A case that goes wrong is
-shown as JSON, to be kept in tests/corpus/.
+shown as JSON: with a name it is a line of tests/support/fuzzing/corpus.jsonl.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ import time
 from collections import Counter
 
 import pytest
-from captures import ROOT
 from fuzzing.case import Case, read_corpus
 from fuzzing.judge import faults
 from fuzzing.kinds import KINDS, make
@@ -40,7 +39,7 @@ LONG = (
 them: run where the seconds are more than the default's."""
 CORPUS = {
     name: case
-    for name, case in read_corpus(ROOT / "tests" / "corpus").items()
+    for name, case in read_corpus().items()
     if SECONDS > 2 or not name.startswith(LONG)
 }
 

@@ -1,4 +1,4 @@
-"""A case: what the command line is given, small enough to be kept as a file."""
+"""A case: what the command line is given, small enough to be kept as a line of a file."""
 
 from __future__ import annotations
 
@@ -50,8 +50,7 @@ class Case:
                 "stdin": _packed(self.stdin),
                 "files": {name: _packed(data) for name, data in self.files.items()},
                 "seed": self.seed,
-            },
-            indent=1,
+            }
         )
 
     @classmethod
@@ -80,8 +79,7 @@ def _unpacked(text: str) -> bytes:
     return body.encode() if form == "text" else gzip.decompress(base64.b64decode(body))
 
 
-def read_corpus(folder: Path) -> dict[str, Case]:
-    """The cases kept in a folder, by name."""
-    return {
-        path.stem: Case.from_json(path.read_text("utf-8")) for path in sorted(folder.glob("*.json"))
-    }
+def read_corpus() -> dict[str, Case]:
+    """The cases that are kept, by name: one a line."""
+    lines = Path(__file__).with_name("corpus.jsonl").read_text("utf-8").splitlines()
+    return {json.loads(line)["name"]: Case.from_json(line) for line in lines}
