@@ -119,13 +119,6 @@ def pyarrow_table() -> Any:
     return impact88.solve_frame(pytest.importorskip("pyarrow").table(COLUMNS))
 
 
-def dask_frame() -> Any:
-    dask = pytest.importorskip("dask.dataframe")
-    frame = dask.from_pandas(pytest.importorskip("pandas").DataFrame(COLUMNS), npartitions=3)
-    solved = frame.map_partitions(impact88.solve_frame, threads=1)
-    return solved.compute(scheduler="synchronous")
-
-
 def fresh_arrays() -> Any:
     out = {name: np.empty(COUNT, column.dtype) for name, column in EXPECTED.items()}
     impact88.solve(COLUMNS, out=out)
@@ -174,7 +167,6 @@ IN_PYTHON: dict[str, Callable[[], Any]] = {
     "pandas columns": pandas_series,
     "polars": polars_frame,
     "pyarrow": pyarrow_table,
-    "dask": dask_frame,
     "out=": fresh_arrays,
     "out= in shared memory": shared_memory,
 }

@@ -38,9 +38,7 @@ LONG = (
 """Beginnings of the names of cases that take seconds, and have quicker ones of their kind beside
 them: run where the seconds are more than the default's."""
 CORPUS = {
-    name: case
-    for name, case in read_corpus().items()
-    if SECONDS > 2 or not name.startswith(LONG)
+    name: case for name, case in read_corpus().items() if SECONDS > 2 or not name.startswith(LONG)
 }
 
 

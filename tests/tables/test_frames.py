@@ -130,12 +130,6 @@ def test_what_cannot_be_solved_is_said_in_one_line(frame: Any, says: str) -> Non
     assert "\n" not in str(error.value)
 
 
-def test_lazy_columns_are_refused_in_one_line() -> None:
-    array = pytest.importorskip("dask.array")
-    with pytest.raises(UserError, match="column MU: is not computed yet"):
-        impact88.solve({**COLUMNS, "MU": array.from_array(COLUMNS["MU"])})
-
-
 def test_a_replay_is_a_frame_too() -> None:
     pandas = pytest.importorskip("pandas")
     replayed = impact88.replay({**impact88.sample(1), "IA": ["3728", "0"]})

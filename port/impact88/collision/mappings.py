@@ -82,11 +82,6 @@ def in_doubles(name: str, values: Any) -> Array:
         if values.dtype.kind not in "fiub":
             raise UserError(f"holds {values.dtype} values; expected numbers", f"column {name}")
         return np.ma.filled(values.astype(np.float64), np.nan)
-    if hasattr(values, "__dask_graph__") and values.__dask_graph__() is not None:
-        raise UserError(
-            "is not computed yet; expected .compute(), or impact88.solve within map_blocks",
-            f"column {name}",
-        )
     try:
         array = np.asarray(values)
     except ValueError as error:  # rows of several lengths
