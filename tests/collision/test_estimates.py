@@ -125,10 +125,17 @@ class TestMarks:
         known += ['VAX = "-12.33"', 'VBX = "-6.8"', "LA = 16.5", "BA = 6.4"]
         text = "\n".join(line for line in known if line[:3] != "IA ") + '\nIA = "estimate +- 15%"\n'
         (tmp_path / "r.toml").write_text(text)
-        assert main(["reconstruct", str(tmp_path / "r.toml"), "--for", "UX,VX", "--json"]) == 0
+        assert main(["reconstruct", str(tmp_path / "r.toml"), "--outputs", "UX,VX", "--json"]) == 0
         shown = capsys.readouterr()
         assert "impact88: IA = 3745 +- 15% is estimated" in shown.err
-        again = ["reconstruct", str(tmp_path / "r.toml"), "--set", "IA=estimate", "--for", "UX,VX"]
+        again = [
+            "reconstruct",
+            str(tmp_path / "r.toml"),
+            "--set",
+            "IA=estimate",
+            "--outputs",
+            "UX,VX",
+        ]
         assert main(again) == 0
         assert "impact88: IA = 3745 is estimated" in capsys.readouterr().err
 

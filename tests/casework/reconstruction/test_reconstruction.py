@@ -601,7 +601,7 @@ class TestCommand:
             for part in ("--set", f"{n}={v}")
         ]
         status, out, _ = self.run(
-            capsys, "reconstruct", "--full", section_7, *exact, "--for", "MUP"
+            capsys, "reconstruct", "--full", section_7, *exact, "--outputs", "MUP"
         )
         assert status == 0
         assert "moved, tolerances" in out

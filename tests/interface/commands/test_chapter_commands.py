@@ -104,7 +104,8 @@ def test_reconstruct_for_some_unknowns_only(after: str, capsys: pytest.CaptureFi
     assert "9 quantities are unknown" in err
     assert "UX VY MUP could be found alone" in err
     assert err.count("\n") == 1
-    (solution,) = as_json(capsys, "reconstruct", after, *sets(known), "--for", "ux,vy")["solutions"]
+    wanted = ("--outputs", "ux,vy")
+    (solution,) = as_json(capsys, "reconstruct", after, *sets(known), *wanted)["solutions"]
     assert solution["values"]["UX"] == pytest.approx(-40.2083333333333333)
     assert solution["values"]["VY"] == pytest.approx(58.2413793103448276)
     assert "E" not in solution["values"]
@@ -145,8 +146,8 @@ def test_reconstruct_says_which_law_exact_values_miss(
         (["AFTER", "--set", "MA="], "missing MA (mass of A)"),
         (["AFTER", "--set", "MA=-1"], "MA is not positive"),
         (["AFTER", "--set", "M=5"], "M must be 6"),
-        (["AFTER", "--for", "VAX"], "VAX is both known and wanted"),
-        (["AFTER", "--for", "XA"], "'XA' is not a result"),
+        (["AFTER", "--outputs", "VAX"], "VAX is both known and wanted"),
+        (["AFTER", "--outputs", "XA"], "'XA' is not a result"),
         (["AFTER", "--contact-time", "0"], "contact time 0.0 is not positive"),
         (["AFTER", "--contact-time", "x"], "--contact-time"),
     ],

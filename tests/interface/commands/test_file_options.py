@@ -104,13 +104,6 @@ def test_a_folder_to_write_into_holds_no_file_that_is_read(
     assert rom.read_bytes() == b"rom"
 
 
-def test_reconstruct_s_old_word_for_writing_is_refused_with_the_new(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["reconstruct", "a.toml", "--scene", str(tmp_path / "a.toml")]) == 2
-    assert "expected --write-scene FILE" in capsys.readouterr().err
-
-
 def test_patterns_are_expanded_where_no_shell_did(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

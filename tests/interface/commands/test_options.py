@@ -31,12 +31,7 @@ def arguments(command: str) -> list[argparse.Action]:
 
 def declared(command: str) -> dict[str, argparse.Action]:
     """The options of a command, by spelling."""
-    return {
-        name: action
-        for action in arguments(command)
-        for name in action.option_strings
-        if action.help != argparse.SUPPRESS
-    }
+    return {name: action for action in arguments(command) for name in action.option_strings}
 
 
 ALL = {command: declared(command) for command in COMMANDS}

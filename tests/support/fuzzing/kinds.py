@@ -175,7 +175,11 @@ def argument(rng: Random, command: str) -> list[str]:
             ["--repeats", rng.choice(SIZES)],
             ["--seed", "-1"],
         ],
-        "reconstruct": [["--for", f"{name},UX"], ["--contact-time", number(rng)], ["--template"]],
+        "reconstruct": [
+            ["--outputs", f"{name},UX"],
+            ["--contact-time", number(rng)],
+            ["--template"],
+        ],
         "barrier": [["--contact-time", number(rng)], ["--template"]],
         "colinear": [["--contact-time", number(rng)], ["--template"]],
         "delta-v": [["--like", "rear"], ["--as-printed"]],
@@ -459,7 +463,12 @@ EXTREMES = [
 _UNITS = (" mph", " lb", " kg", "ft", " m/s", " deg", " %", "%", " ft-lb", " in")
 _SYSTEMS = [["--units", name] for name in ("us", "si", "metric", "chapter")]
 _HOW = {
-    "reconstruct": [["--contact-time"], ["--for", "UX"], ["--scene", "o.toml"], *_SYSTEMS],
+    "reconstruct": [
+        ["--contact-time"],
+        ["--outputs", "UX"],
+        ["--write-scene", "o.toml"],
+        *_SYSTEMS,
+    ],
     "barrier": [["--contact-time"], *_SYSTEMS],
     "colinear": [["--contact-time"], *_SYSTEMS],
     "delta-v": [["--as-printed"], ["--like", "rear"]],

@@ -57,7 +57,6 @@ exit status: 0 solved, or in part: NOT FOUND names the rest; 1 no velocity befor
 2 bad input, or a result of --outputs or --write-scene that is not determined
 """
 
-import argparse
 import sys
 from collections.abc import Sequence
 from math import isclose
@@ -82,13 +81,11 @@ from . import options
 
 ARGUMENTS = (
     options.names_option("--outputs", "solve for these only; others may stay unknown"),
-    options.value("--for", None, argparse.SUPPRESS, dest="outputs", action="append"),
     *options.draws(
         20_000, meaning="random draws of values known within limits; 0: neither draws nor bounds"
     ),
     options.flag("--full", "print every result with its intervals, not the answer alone"),
     options.writes("--write-scene", "FILE", "write the impact found as a scene file"),
-    options.value("--scene", None, argparse.SUPPRESS, dest="old"),
     *options.SOLUTION,
     options.sample_option("start from the scene of a published run"),
 )
@@ -99,8 +96,6 @@ _BEFORE = ("SA", "SB", "UX", "UY", "VX", "VY")
 
 
 def main(args: options.Args) -> int:
-    if args.old:
-        raise UserError("--scene is not an option here; expected --write-scene FILE")
     output_names = options.names_given(args.outputs, QUANTITIES, "--outputs") or None
     case = options.known_case(args, KNOWABLE)
     values, units = options.read_known(case, KNOWABLE), case.system
