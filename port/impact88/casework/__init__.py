@@ -4,8 +4,8 @@
 and sensitivities, `optimization` their extremes; `chapter` holds the chapter's other problems and
 its data; `figures` draws; `report` writes the page for the case file.
 
-Needs: `collision`, `mechanics`, `program` (published scenes), `printouts` (a report quotes a
-verdict).
+Needs: `collision`, `mechanics`, `program` (scenes, the listing in double precision), `printouts`
+(a report quotes a verdict).
 In: a collision as `collision.case` resolved it. Out: results with their limits, SVG, HTML.
 Used by: forensic engineers, through `reconstruct`, `bounds`, `chapter`, `figure` and `report`.
 """

@@ -1,7 +1,7 @@
 """Tables of scenes: CSV, JSON Lines, .npz, Parquet, Excel, data frames, sweeps.
 
-Needs: `apple` (which texts are numbers), `collision` (names, units, remarks), `mechanics` (what a
-column may hold, the results), `program` (the results of 1988).
+Needs: `apple` (which texts are numbers), `collision` (cases, units, needs, remarks), `mechanics`
+(what a column may hold, the results), `program` (the results of 1988).
 In: files, frames, ranges of a sweep; a block of rows at a time. Out: columns, and the same kind of
 file or frame with the results.
 Used by: who has a million scenes (`impact88 solve`, `solve_frame`); `conformance`, which reads

@@ -1,1 +1,2 @@
-"""Checks: this installation against the ROM's captures, other programs against this one."""
+"""Other programs against this one: the oracle, test vectors, tables of results, causes of
+differences."""
