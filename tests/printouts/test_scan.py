@@ -384,6 +384,24 @@ def test_a_damaged_row_of_angles_is_cut_where_it_reads_best(row: str) -> None:
     assert one(altered).verdict not in SETTLED
 
 
+def test_a_row_of_angles_that_no_reading_explains_is_missing() -> None:
+    """It was read uncertainly: what hangs on it accuses nobody."""
+    result = one(NOISE.replace(ROW, " -19.8 -33.7 0 60-30"))
+    assert result.verdict is Verdict.INCOMPLETE
+    assert result.missing == ["PA", "PB", "TA", "TB", "GA"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "left"), [("YA= 15.91)", "YA= 15.91) 99.99", "99.99"), ("KKKKK", "6KKKK", "6")]
+)
+def test_figures_beside_what_ends_a_line_are_left_over(old: str, new: str, left: str) -> None:
+    """Behind the bracket that ends its number, and in place of an asterisk."""
+    assert old in NOISE
+    result = one(NOISE.replace(old, new, 1))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert [piece.read for piece in result.left_over] == [left]
+
+
 # --- inputs that were lost or misread ------------------------------------------------------------
 
 
