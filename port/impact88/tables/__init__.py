@@ -1,4 +1,4 @@
-"""Tables of scenes: CSV, JSON Lines, .npz, Parquet, Excel, data frames, sweeps.
+"""Tables of scenes: files in the formats of `formats`, data frames, sweeps.
 
 Needs: `apple` (which texts are numbers), `collision` (cases, units, needs, remarks), `mechanics`
 (what a column may hold, the results), `program` (the results of 1988).

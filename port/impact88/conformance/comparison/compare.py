@@ -327,8 +327,8 @@ def compare(
     table : str, path or frame
         The table's file, or a DataFrame of pandas or polars, a pyarrow Table, a structured array, a
         list of dicts or a dict of columns.
-    form : {"csv", "jsonl", "npz", "parquet", "xlsx"}, optional
-        The file's format, where its name does not say.
+    form : str, optional
+        The file's format, where its name does not say: as ``--from`` of `impact88 solve`.
     values : mapping of str to str, optional
         Values, for all rows, of columns that the table lacks.
     rtol : float, optional

@@ -296,7 +296,7 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
     theirs : str
         The table; ``-`` is standard input.
     form : str
-        Its format: csv, jsonl, npz, parquet or xlsx.
+        Its format, as ``--from`` of `impact88 solve` names it.
     encoding : str, optional
         Encoding of a CSV or JSON Lines file that is not UTF-8.
 

@@ -1,9 +1,9 @@
-"""THEIRS is a table of another program's results, in any form that solve reads (CSV, JSON Lines, a
-JSON array, .npz, Parquet, Excel): a row per scene, with columns named as the scene's (impact88
-scene lists them; M may be missing) and any of the results: VAX VAY VBX VBY WAF WBF, contact
-velocities XA YA XB YB before and XAF YAF XBF YBF after, VC VS KI KF LOSS DVA DVB PN PT PM MUP MUC.
-Names may be in small letters and have units (VAX [mph]); JSON may hold inputs and outputs in
-objects of their own. A note on standard error says how the table was read. Each result agrees
+"""THEIRS is a table of another program's results, in any format that impact88 help solve lists: a
+row per scene, with columns named as the scene's (impact88 scene lists them; M may be missing) and
+any of the results: VAX VAY VBX VBY WAF WBF, contact velocities XA YA XB YB before and XAF YAF XBF
+YBF after, VC VS KI KF LOSS DVA DVB PN PT PM MUP MUC. Names may be in small letters and have units
+(VAX [mph]); JSON may hold inputs and outputs in objects of their own. A note on standard error
+says how the table was read. Each result agrees
 
   to the double       within the rounding errors of the best programs in double precision
   to digits claimed   to all digits it is written with
