@@ -139,7 +139,10 @@ def test_reconstruct_says_which_law_exact_values_miss(
         ([], "nothing is known"),
         (["nowhere.toml"], "nowhere.toml: cannot be read"),
         (["AFTER", "--set", "MU=-10"], "MU = -10 (pivot)"),
-        (["AFTER", "--set", "E=abc"], "--set: E: 'abc' is not an amount; expected a number, a number with its unit"),
+        (
+            ["AFTER", "--set", "E=abc"],
+            "--set: E: 'abc' is not an amount; expected a number, a number with its unit",
+        ),
         (["AFTER", "--set", "e5"], "--set e5: expected NAME=VALUE"),
         (["AFTER", "--set", "FOO=1"], "'FOO' is not a name used here"),
         (["AFTER", "--set", "E=.1", "--set", "E=.2"], "E is given twice"),
