@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from passes import passes
 
 from impact88.mechanics.closedform.plan import Plan
-from impact88.mechanics.native.formulas import ExpressionTable
+from impact88.mechanics.native.expressiontable import ExpressionTable
 from impact88.mechanics.native.schedule import Schedule
 
 LENGTH = 7

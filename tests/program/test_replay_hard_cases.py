@@ -20,8 +20,8 @@ from impact88.apple.applesoft import real
 from impact88.apple.applesoft.errorcodes import ApplesoftError
 from impact88.apple.applesoft.real import Number
 from impact88.program.vectorized import polynomials, textcolumns
+from impact88.program.vectorized.blockerrors import BlockErrors
 from impact88.program.vectorized.reals import Reals, compare, from_floats
-from impact88.program.vectorized.unit import Unit
 
 BYTES = (0x00, 0x01, 0x7F, 0x80, 0xFE, 0xFF)
 EXPONENTS = (
@@ -93,8 +93,10 @@ def outcome(operation: Callable[..., Number], *operands: Number) -> float | str:
 KIND = {0: "", 53: "ILLEGAL QUANTITY", 69: "OVERFLOW", 133: "DIVISION BY ZERO"}
 
 
-def outcomes(result: Reals, unit: Unit) -> list[float | str]:
-    pairs = zip(unit.code().tolist(), np.broadcast_to(result.v, unit.count).tolist(), strict=True)
+def outcomes(result: Reals, errors: BlockErrors) -> list[float | str]:
+    pairs = zip(
+        errors.code().tolist(), np.broadcast_to(result.v, errors.count).tolist(), strict=True
+    )
     return [KIND[code] or value for code, value in pairs]
 
 
@@ -133,14 +135,14 @@ def test_binary(name: str, near: bool, extended: bool) -> None:
     right = neighbours(left, 2) if near else numbers(3000, 3, extended)
     if not extended:
         right = [(e, m & ~0xFF, s) for e, m, s in right]
-    unit = Unit(len(left))
+    errors = BlockErrors(len(left))
     stored = not extended
     result = array(
-        from_floats(as_floats(left), unit, stored), from_floats(as_floats(right), unit, stored)
+        from_floats(as_floats(left), errors, stored), from_floats(as_floats(right), errors, stored)
     )
     pairs = list(zip(left, right, strict=True))
     expected = [outcome(scalar, *pair) for pair in pairs]
-    wrong = differing(pairs, expected, outcomes(result, unit))
+    wrong = differing(pairs, expected, outcomes(result, errors))
     assert not wrong, (len(wrong), wrong[:5])
 
 
@@ -148,10 +150,10 @@ def test_binary(name: str, near: bool, extended: bool) -> None:
 def test_unary(name: str) -> None:
     scalar, array = UNARY[name]
     operands = numbers(3000, 4, True)
-    unit = Unit(len(operands))
-    result = array(from_floats(as_floats(operands), unit))
+    errors = BlockErrors(len(operands))
+    result = array(from_floats(as_floats(operands), errors))
     expected = [outcome(scalar, x) for x in operands]
-    wrong = differing([(x,) for x in operands], expected, outcomes(result, unit))
+    wrong = differing([(x,) for x in operands], expected, outcomes(result, errors))
     assert not wrong, (len(wrong), wrong[:5])
 
 
@@ -159,8 +161,10 @@ def test_unary(name: str) -> None:
 def test_compare(near: bool) -> None:
     stored = [(e, m & ~0xFF, s) for e, m, s in numbers(3000, 5, False)]
     right = neighbours(stored, 6) if near else numbers(3000, 7, True)
-    unit = Unit(len(stored))
-    order = compare(from_floats(as_floats(stored), unit, True), from_floats(as_floats(right), unit))
+    errors = BlockErrors(len(stored))
+    order = compare(
+        from_floats(as_floats(stored), errors, True), from_floats(as_floats(right), errors)
+    )
     assert order.tolist() == [real.compare(*pair) for pair in zip(stored, right, strict=True)]
 
 
@@ -171,8 +175,8 @@ def test_compare_rounds_without_a_carry() -> None:
         for last, s, s2 in itertools.product((0, 1, 0xFE, 0xFF), (0, 1), (0, 1))
     ]
     pairs += [((130, 0x80AABC0000, s), (130, 0x80AABBFF80, s)) for s in (0, 1)]
-    unit = Unit(len(pairs))
-    left, right = (from_floats(as_floats(list(side)), unit) for side in zip(*pairs, strict=True))
+    errors = BlockErrors(len(pairs))
+    left, right = (from_floats(as_floats(list(side)), errors) for side in zip(*pairs, strict=True))
     expected = [real.compare(*pair) for pair in pairs]
     assert compare(left, right).tolist() == expected
     assert 0 in expected
@@ -182,11 +186,13 @@ def test_shared_operands_meet_the_same_defect() -> None:
     """An operand that all scenes share, and a right one with a double zero byte."""
     left = numbers(20, 8, False)
     right = [(130, 0x8100000500 | i << 8, i % 2) for i in range(20)]
-    unit = Unit(20)
+    errors = BlockErrors(20)
     for lefts, rights in ((left[:1], right), (left, right[:1])):
-        result = from_floats(as_floats(lefts), unit, True) * from_floats(as_floats(rights), unit)
+        result = from_floats(as_floats(lefts), errors, True) * from_floats(
+            as_floats(rights), errors
+        )
         expected = [outcome(real.multiply, x, y) for x in lefts for y in rights]
-        assert outcomes(result, unit) == expected
+        assert outcomes(result, errors) == expected
 
 
 @pytest.mark.usefixtures("both_machines")
@@ -197,8 +203,8 @@ def test_written_numbers() -> None:
         for e, m in ((0x9E, 0xEE6B27FD00), (0x9B, 0xBEBC1FFD00), (0x9E, 0xEE6B280000))
         for off in range(-0x300, 0x300, 0x20)
     ]
-    unit = Unit(len(operands))
-    written = textcolumns.write(from_floats(as_floats(operands), unit)).tolist()
+    errors = BlockErrors(len(operands))
+    written = textcolumns.write(from_floats(as_floats(operands), errors)).tolist()
     assert written == [scalar_text.write(x) for x in operands]
 
 
@@ -234,7 +240,7 @@ def test_read_numbers() -> None:
             text = text[:at] + " " + text[at:]
         texts.append(text)
     texts += ["1E100", "1E-100", "1E999", "1E-999", "9" * 39, "9" * 38, "0" * 45 + "1", "1E039"]
-    unit = Unit(len(texts))
-    x = textcolumns.read(texts, unit, str)
+    errors = BlockErrors(len(texts))
+    x = textcolumns.read(texts, errors, str)
     expected = [outcome(lambda t: scalar_text.read(t.upper())[0], t) for t in texts]  # type: ignore[arg-type]
-    assert not differing([(t,) for t in texts], expected, outcomes(x, unit))  # type: ignore[misc]
+    assert not differing([(t,) for t in texts], expected, outcomes(x, errors))  # type: ignore[misc]

@@ -20,11 +20,11 @@ import impact88
 from impact88.errors import UserError
 from impact88.names import SCENE
 from impact88.program.vectorized import Replay, blocks, field_names, statements
+from impact88.program.vectorized.blockerrors import BlockErrors
 from impact88.program.vectorized.blocks import replay_scenes
 from impact88.program.vectorized.realcolumns import read_columns
 from impact88.program.vectorized.reals import from_floats
 from impact88.program.vectorized.statements import SOLVED as DONE
-from impact88.program.vectorized.unit import Unit
 
 pytestmark = pytest.mark.usefixtures("both_machines")
 
@@ -122,13 +122,13 @@ def check_matrix(runs: list[dict[str, Any]]) -> None:
     for i, run in enumerate(runs):
         scenes = read_columns(columns_of([run["scene"]]))
         M = int(run["scene"]["M"])
-        unit = Unit(1)
-        unit.first[...] = scenes.first
-        values = {name: from_floats(v, unit, True) for name, v in scenes.values.items()}
+        errors = BlockErrors(1)
+        errors.first[...] = scenes.first
+        values = {name: from_floats(v, errors, True) for name, v in scenes.values.items()}
         pivot = bool(values["MU"].v[0] == -10)
         with np.errstate(all="ignore"):
-            results = statements.run(unit, values, statements.Kind(M, pivot), matrix=True)
-        if not unit.has_passed(DONE)[0]:
+            results = statements.run(errors, values, statements.Kind(M, pivot), matrix=True)
+        if not errors.has_passed(DONE)[0]:
             continue
         for row in range(1, 7):
             for column in range(1, 8):

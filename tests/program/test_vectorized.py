@@ -14,8 +14,8 @@ import pytest
 from impact88.apple.applesoft.decimaltext import scan
 from impact88.mechanics import native
 from impact88.program.vectorized import compiled, polynomials, textcolumns
+from impact88.program.vectorized.blockerrors import BlockErrors
 from impact88.program.vectorized.reals import Reals, compare, constant, from_floats
-from impact88.program.vectorized.unit import Unit
 
 pytestmark = pytest.mark.captures
 
@@ -37,7 +37,7 @@ UNARY: dict[str, Callable[[Reals], Reals]] = {
 }
 
 
-def values(stored: list[str], extensions: list[str], unit: Unit) -> Reals:
+def values(stored: list[str], extensions: list[str], errors: BlockErrors) -> Reals:
     """Operands from stored bytes and extension bytes, in hexadecimal, independently of the engine's
     own reader of stored reals."""
     v = []
@@ -45,10 +45,10 @@ def values(stored: list[str], extensions: list[str], unit: Unit) -> Reals:
         e, mantissa = int(text[:2], 16), int(text[2:], 16)
         size = ((mantissa | 0x80000000) << 8 | int(extension or "0", 16)) * 2.0 ** (e - 168)
         v.append(0.0 if e == 0 else -size if mantissa >> 31 else size)
-    return from_floats(np.array(v), unit, not any(int(x or "0", 16) for x in extensions))
+    return from_floats(np.array(v), errors, not any(int(x or "0", 16) for x in extensions))
 
 
-def shown(result: Reals, unit: Unit) -> list[str]:
+def shown(result: Reals, errors: BlockErrors) -> list[str]:
     """Results as the files write them, the sign byte cut to its top bit; "zero" for any zero."""
     packed = result.pack()  # rounds, and so may overflow
     mantissas = (result.bits & (1 << 52) - 1 | 1 << 52) >> 13
@@ -60,7 +60,7 @@ def shown(result: Reals, unit: Unit) -> list[str]:
         if v == 0
         else f"{stored:010x}:{e:02x}{m >> 8:08x}{0x80 if v < 0 else 0:02x}:{m & 0xFF:02x}"
         for code, v, stored, e, m in zip(
-            unit.code().tolist(),
+            errors.code().tolist(),
             result.v.tolist(),
             packed.tolist(),
             exponents.tolist(),
@@ -94,7 +94,7 @@ def by_machine(operation: Callable[..., Reals], operands: list[Reals]) -> tuple[
     )
     columns = {name: operand.v for name, operand in zip(names, operands, strict=True)}
     results, odd = compiled.run_program(program, columns, operands[0].v.size)
-    return from_floats(results["result"], Unit(odd.size)), odd.tolist()
+    return from_floats(results["result"], BlockErrors(odd.size)), odd.tolist()
 
 
 FILES = [
@@ -112,10 +112,10 @@ def test_vectors(path: Path, both_machines: None) -> None:
         some = [i for i, two in enumerate(second) if two == "8200000000" and extensions[i] == "00"]
         first, results = [first[i] for i in some], [results[i] for i in some]
         extensions = ["00"] * len(some)
-    unit = Unit(len(first))
+    errors = BlockErrors(len(first))
     none = ["00"] * len(first)
     if name == "cmp":
-        left, right = values(first, none, unit), values(second, extensions, unit)
+        left, right = values(first, none, errors), values(second, extensions, errors)
         order = compare(left, right)
         assert [f"{int(x) & 0xFF:02x}" for x in order] == results
         if native.library is not None:
@@ -125,18 +125,18 @@ def test_vectors(path: Path, both_machines: None) -> None:
             assert all(odd or got == expected for got, expected, odd in wrong)
         return
     if name == "fout":
-        written = textcolumns.write(values(first, extensions, unit)).tolist()
-        codes = unit.code().tolist()
+        written = textcolumns.write(values(first, extensions, errors)).tolist()
+        codes = errors.code().tolist()
         assert [f"E{e}" if e else text for e, text in zip(codes, written, strict=True)] == results
         return
     if name == "fin":
         # the engine takes whole texts only; where a number ends inside one is the scanner's affair
         numbers = [text[: scan(text)[-1]].strip() or "0" for text in first]
-        result, odd = textcolumns.read(numbers, unit, str), [False] * len(first)
+        result, odd = textcolumns.read(numbers, errors, str), [False] * len(first)
     else:
-        operands = [values(first, none if name in BINARY else extensions, unit)]
+        operands = [values(first, none if name in BINARY else extensions, errors)]
         if name in BINARY:
-            operands.append(values(second, extensions, unit))
+            operands.append(values(second, extensions, errors))
         operation = BINARY.get(name) or UNARY.get(name, polynomials.square)
         if native.library is None:
             result, odd = operation(*operands), [False] * len(first)
@@ -145,7 +145,7 @@ def test_vectors(path: Path, both_machines: None) -> None:
     wrong = [
         (a, b, x, e, g)
         for a, b, x, e, g, left in zip(
-            first, second, extensions, results, shown(result, unit), odd, strict=False
+            first, second, extensions, results, shown(result, errors), odd, strict=False
         )
         if expected(e) != g and not left
     ]

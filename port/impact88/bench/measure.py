@@ -20,7 +20,7 @@ from ..mechanics.accuracy.populations import POPULATIONS, repeat_scenes, scenes
 from ..mechanics.closedform.general import TILE
 from ..mechanics.closedform.plan import Plan
 from ..mechanics.closedform.solve import solve
-from ..mechanics.native.formulas import ExpressionTable
+from ..mechanics.native.expressiontable import ExpressionTable
 from ..mechanics.native.processors import processors
 from ..mechanics.native.schedule import Schedule
 from ..names import FINAL_VELOCITIES, PIVOT, SCENE

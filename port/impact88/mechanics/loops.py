@@ -21,7 +21,7 @@ from ..names import FINAL_VELOCITIES
 from . import native
 from .closedform.impact import impact
 from .closedform.impactprograms import ALL, COLUMNS, QUANTITIES
-from .native.formulas import Expression, ExpressionTable
+from .native.expressiontable import Expression, ExpressionTable
 from .native.schedule import in_order
 
 KINDS = {

@@ -84,7 +84,7 @@ from typing import NamedTuple
 
 from ...names import PIVOT
 from ...status import Status
-from ..native.formulas import Expression, ExpressionTable
+from ..native.expressiontable import Expression, ExpressionTable
 from .energy import kinetic_energy
 from .statusbits import Evidence, findings
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from ...collision import degrees, sinetable
 from ...names import PIVOT, RESULTS, SCENE
-from ..native.formulas import Expression, ExpressionTable
+from ..native.expressiontable import Expression, ExpressionTable
 from ..native.schedule import Schedule
 from .impact import impact
 

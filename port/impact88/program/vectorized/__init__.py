@@ -1,6 +1,6 @@
 """The listing's Applesoft arithmetic over numpy arrays, bit for bit.
 
-unit         the state of a block of scenes: the first error of each
+blockerrors  the errors of a block of scenes: the first of each
 reals        the 40-bit real over arrays: round, add, multiply, divide, INT, compare
 polynomials  LOG EXP ^2 SIN COS
 textcolumns  decimal texts to reals and back

@@ -9,13 +9,14 @@ import numpy as np
 from ...mechanics import native
 from ...mechanics.native.processors import run_in_threads, workers
 from . import compiled, statements
+from .blockerrors import NEVER, BlockErrors, Bools, Ints, stamp
 from .realcolumns import Scenes
 from .reals import Floats, compare, from_floats, select
 from .result import OTHER_M, Replay
-from .unit import NEVER, Bools, Ints, Unit, stamp
 
 Computed = tuple[Mapping[str, Floats], Ints, Any]
-"""Results by name, records of errors (`Unit.first`), and the scenes still to be computed (True)."""
+"""Results by name, records of errors (`BlockErrors.first`), and the scenes still to be computed
+(True)."""
 BLOCK_SIZE = 16384
 """Scenes computed at a time. Smaller blocks pay more overhead for numpy's calls and for passing the
 GIL between threads; larger ones fall out of the cache. With the compiled kernel half the size takes
@@ -33,15 +34,15 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int = BLOCK
 
     ``threads``: at most so many; None for as many as there are idle processors, if each has enough
     to do. ``block``: scenes per block, at most."""
-    unit = Unit(scenes.size)
-    unit.first[...] = scenes.first
+    errors = BlockErrors(scenes.size)
+    errors.first[...] = scenes.first
     M = scenes.values["M"]
     six = np.broadcast_to(M == 6, scenes.size)
     valid_m = np.broadcast_to((M == 4) | (M == 6), scenes.size)
     pivot = compare(from_floats(scenes.values["MU"], None, True), statements.MINUS_10) == 0
     pivot = np.broadcast_to(pivot, scenes.size)
-    unit.at(350)
-    unit.record_error(~valid_m, OTHER_M)
+    errors.at(350)
+    errors.record_error(~valid_m, OTHER_M)
     values = {name: np.zeros(scenes.size) for name in statements.ASSIGNED}
     threads = workers(scenes.size, threads, MIN_SCENES_PER_THREAD)
     block = max(1, min(block, -(-scenes.size // threads)))
@@ -54,7 +55,7 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int = BLOCK
         def compute_jobs(start: int, stop: int) -> None:
             for rows, kind in jobs[start:stop]:
                 columns = {name: v[rows] if v.size > 1 else v for name, v in scenes.values.items()}
-                results, unit.first[rows], pending[rows] = work(columns, unit.first[rows], kind)
+                results, errors.first[rows], pending[rows] = work(columns, errors.first[rows], kind)
                 for name, column in results.items():
                     values[name][rows] = column
 
@@ -64,7 +65,7 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int = BLOCK
     if native.library is not None:
         compute(partial(_compute_compiled, scenes.size >= MIN_SCENES_TO_SPECIALIZE))
     compute(_compute_by_arrays)
-    return Replay(scenes, six, unit, values)
+    return Replay(scenes, six, errors, values)
 
 
 def _blocks(
@@ -99,16 +100,16 @@ def _compute_compiled(
 @np.errstate(all="ignore")
 def _compute_by_arrays(columns: dict[str, Floats], first: Ints, kind: statements.Kind) -> Computed:
     """Compute one block with numpy arrays; no scene stays pending."""
-    unit = Unit(first.size)
-    unit.first[...] = first
-    scene = {name: from_floats(v, unit, True) for name, v in columns.items()}
-    results = statements.run(unit, scene, kind)
+    errors = BlockErrors(first.size)
+    errors.first[...] = first
+    scene = {name: from_floats(v, errors, True) for name, v in columns.items()}
+    results = statements.run(errors, scene, kind)
     # a scene that ends before line 400 keeps the sign of MU; before line 590, KF without spins
     for name, place, before in (
         ("MUP", stamp(400), scene["MU"]),
         ("KF", stamp(590), results.pop("KF580")),
     ):
-        early = ~unit.has_passed(place)
+        early = ~errors.has_passed(place)
         if early.any():
             results[name] = select(early, before, results[name])
-    return {name: x.v for name, x in results.items()}, unit.first, False
+    return {name: x.v for name, x in results.items()}, errors.first, False

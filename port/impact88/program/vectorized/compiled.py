@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from ...mechanics.native.formulas import Expression, ExpressionTable
+from ...mechanics.native.expressiontable import Expression, ExpressionTable
 from ...names import SCENE
 from . import statements
+from .blockerrors import BlockErrors, Bools
 from .realmachine import Program, addresses
 from .reals import ZERO, Floats, Reals
-from .unit import Bools, Unit
 
 NAMES = tuple(name for name in SCENE if name != "M")
 ODD = "ODD"
@@ -36,9 +36,11 @@ class SymbolicReals(Reals):
 
     __slots__ = ("expression",)
 
-    def __init__(self, expression: Expression, unit: Unit | None, stored: bool = False) -> None:
+    def __init__(
+        self, expression: Expression, errors: BlockErrors | None, stored: bool = False
+    ) -> None:
         self.expression = expression
-        self.unit = unit
+        self.errors = errors
         self.stored = stored
         self.zero = False
 
@@ -51,7 +53,7 @@ class SymbolicReals(Reals):
         """Return the symbolic result of an operation on this and ``others``."""
         table = self.expression.table
         operands = (expression_of(table, x) for x in (self, *others))
-        return SymbolicReals(table.combine(operation, *operands), self.unit, stored)
+        return SymbolicReals(table.combine(operation, *operands), self.errors, stored)
 
     def rounded(self) -> Reals:
         return self if self.stored else self.apply("real_rounded", stored=True)
@@ -70,12 +72,12 @@ class SymbolicReals(Reals):
         expression = table.combine(
             f"real_{operation}", expression_of(table, left), expression_of(table, right)
         )
-        return expression if operation == "less" else SymbolicReals(expression, self.unit)
+        return expression if operation == "less" else SymbolicReals(expression, self.errors)
 
     def choose(self, condition: Any, yes: Reals, no: Reals) -> SymbolicReals:
         table = self.expression.table
         expression = table.choose(condition, expression_of(table, yes), expression_of(table, no))
-        return SymbolicReals(expression, yes.unit or no.unit, yes.stored and no.stored)
+        return SymbolicReals(expression, yes.errors or no.errors, yes.stored and no.stored)
 
     def is_below(self, limit: Reals) -> Expression:
         return self.expression < expression_of(self.expression.table, limit)
@@ -105,8 +107,8 @@ def expression_of(table: ExpressionTable, x: Reals) -> Expression:
     return x.expression if isinstance(x, SymbolicReals) else table.constant(float(x.v[0]))
 
 
-class _SymbolicUnit(Unit):
-    """A `Unit` for tracing: errors are not recorded, but combined into the expression
+class _SymbolicErrors(BlockErrors):
+    """`BlockErrors` for tracing: errors are not recorded, but combined into the expression
     ``marked``."""
 
     def __init__(self, table: ExpressionTable) -> None:
@@ -132,8 +134,8 @@ class _SymbolicUnit(Unit):
 def program(kind: statements.Kind, varying: frozenset[str]) -> Program:
     """Return the program for a kind of scenes: results and `ODD`, given the ``varying`` columns."""
 
-    def make(unit: Unit, scene: Mapping[str, SymbolicReals]) -> Mapping[str, Reals]:
-        results = statements.run(unit, scene, kind)
+    def make(errors: BlockErrors, scene: Mapping[str, SymbolicReals]) -> Mapping[str, Reals]:
+        results = statements.run(errors, scene, kind)
         return {name: results[name] for name in statements.ASSIGNED if name in results}
 
     return trace(make, NAMES, varying)
@@ -143,7 +145,7 @@ def program(kind: statements.Kind, varying: frozenset[str]) -> Program:
 def field_program(names: tuple[str, ...], varying: frozenset[str]) -> Program:
     """Return the program for the printed values of fields ``names``, and `ODD`."""
 
-    def make(unit: Unit, given: Mapping[str, SymbolicReals]) -> Mapping[str, Reals]:
+    def make(errors: BlockErrors, given: Mapping[str, SymbolicReals]) -> Mapping[str, Reals]:
         return {
             name: statements.printed_value(name, *(given[x] for x in sources(name)))
             for name in names
@@ -158,20 +160,20 @@ def sources(field: str) -> tuple[str, ...]:
 
 
 def trace(
-    make: Callable[[Unit, Mapping[str, SymbolicReals]], Mapping[str, Reals]],
+    make: Callable[[BlockErrors, Mapping[str, SymbolicReals]], Mapping[str, Reals]],
     names: Sequence[str],
     varying: frozenset[str],
 ) -> Program:
     """Return ``make`` as a program: run once on symbolic columns ``names``, of which ``varying``
     have a value for each scene and the others one for all."""
     table = ExpressionTable()
-    unit = _SymbolicUnit(table)
+    errors = _SymbolicErrors(table)
     symbols = {}
     for name in names:
         column = table.column(name, name in varying)
-        symbols[name] = SymbolicReals(table.combine("real_ordinary", column), unit, True)
-    results = {name: expression_of(table, x) for name, x in make(unit, symbols).items()}
-    results[ODD] = table.combine("odd", unit.marked, varies=True)
+        symbols[name] = SymbolicReals(table.combine("real_ordinary", column), errors, True)
+    results = {name: expression_of(table, x) for name, x in make(errors, symbols).items()}
+    results[ODD] = table.combine("odd", errors.marked, varies=True)
     return Program(results, ["COPY"] * len(results))
 
 

@@ -8,9 +8,9 @@ import numpy as np
 from ...collision.case import check_mapping
 from ...errors import UserError
 from ...names import DEFAULT_M, SCENE, VELOCITIES
+from .blockerrors import NEVER, BlockErrors, Ints, key
 from .reals import Floats, Packed, from_packed
 from .textcolumns import read
-from .unit import NEVER, Ints, Unit, key
 
 _MAX_TEXTS_TOGETHER = 32768
 """Up to this many texts all columns are read in one call; more are read column by column, to stay
@@ -26,7 +26,7 @@ class Scenes(NamedTuple):
     """The scenes to replay.
 
     ``values``: by name, of length 1 if all scenes share one; ``size``: the number of scenes;
-    ``first``: errors recorded while reading, see `Unit.first`."""
+    ``first``: errors recorded while reading, see `BlockErrors.first`."""
 
     values: dict[str, Floats]
     size: int
@@ -71,18 +71,18 @@ def _read_texts(texts: dict[str, Sequence[str]], values: dict[str, Floats], firs
         cells = [text for column in texts.values() for text in column]
     sizes = [len(column) for column in texts.values()]
     starts = np.concatenate([[0], np.cumsum(sizes)])
-    unit = Unit(len(cells))
-    unit.place = np.repeat([key(*PLACES[name]) for name in texts], sizes)
+    errors = BlockErrors(len(cells))
+    errors.place = np.repeat([key(*PLACES[name]) for name in texts], sizes)
 
     def place_of(index: int) -> str:
         column = int(np.searchsorted(starts, index, side="right")) - 1
         row = f", row {index - starts[column] + 1}" if sizes[column] > 1 else ""
         return list(texts)[column] + row
 
-    x = read(cells, unit, place_of).rounded()
+    x = read(cells, errors, place_of).rounded()
     for name, start, size in zip(texts, starts, sizes, strict=False):
         values[name] = x.v[start : start + size]
-        np.minimum(first, unit.first[start : start + size], out=first)
+        np.minimum(first, errors.first[start : start + size], out=first)
 
 
 def _sort_out(

@@ -25,7 +25,7 @@ import numpy.typing as npt
 
 from ...apple.applesoft.errorcodes import CODES
 from ...apple.applesoft.real import Number, integer
-from .unit import Bools, Unit
+from .blockerrors import BlockErrors, Bools
 
 Floats = npt.NDArray[np.float64]
 Packed = npt.NDArray[np.uint64]
@@ -98,7 +98,7 @@ class Reals:
     ----------
     v : ndarray of float64
         The values. The last axis runs over the scenes, or has length 1 if all scenes share it.
-    unit : Unit or None
+    errors : BlockErrors or None
         The block of scenes they belong to, which records their errors; None for constants.
     stored : bool, default False
         True if the extensions are known to be zero.
@@ -112,14 +112,14 @@ class Reals:
     zero.
     """
 
-    __slots__ = ("bits", "stored", "unit", "v", "zero")
+    __slots__ = ("bits", "errors", "stored", "v", "zero")
 
     def __init__(
-        self, v: Floats, unit: Unit | None, stored: bool = False, zero: bool = False
+        self, v: Floats, errors: BlockErrors | None, stored: bool = False, zero: bool = False
     ) -> None:
         self.v = v
         self.bits = v.view(np.int64)
-        self.unit = unit
+        self.errors = errors
         self.stored = stored
         self.zero = zero
 
@@ -129,13 +129,13 @@ class Reals:
         if self.stored:
             return self
         v = (self.bits + _HALF_UNIT & _32_BITS).view(np.float64)
-        return Reals(v, self.unit, True, self.zero)._check_exponents()
+        return Reals(v, self.errors, True, self.zero)._check_exponents()
 
     def __neg__(self) -> Reals:
-        return Reals(np.negative(self.v), self.unit, self.stored, self.zero)
+        return Reals(np.negative(self.v), self.errors, self.stored, self.zero)
 
     def __abs__(self) -> Reals:
-        return Reals(np.abs(self.v), self.unit, self.stored, self.zero)
+        return Reals(np.abs(self.v), self.errors, self.stored, self.zero)
 
     __add__, __radd__ = _operator("add"), _operator("add", reflected=True)
     __sub__, __rsub__ = _operator("subtract"), _operator("subtract", reflected=True)
@@ -151,7 +151,7 @@ class Reals:
     def choose(self, condition: Any, yes: Reals, no: Reals) -> Reals:
         """Return `select` of two reals, one of which is this."""
         v, zero = np.where(condition, yes.v, no.v), yes.zero and no.zero
-        return Reals(v, yes.unit or no.unit, yes.stored and no.stored, zero)
+        return Reals(v, yes.errors or no.errors, yes.stored and no.stored, zero)
 
     def is_below(self, limit: Reals) -> Any:
         """Return where the values are below ``limit``, as numbers (the ROM's comparison: ``<``)."""
@@ -169,26 +169,26 @@ class Reals:
         """Return INT: the largest whole number not above the value, extension included."""
         large = np.abs(self.v) >= INT_LIMIT
         v = np.where(large, self.v, np.floor(self.v))
-        return Reals(v, self.unit, self.stored or not large.any(), self.zero)
+        return Reals(v, self.errors, self.stored or not large.any(), self.zero)
 
     # the parts into which LOG and EXP split a number, and from which they compose it
 
     def fraction(self) -> Reals:
         """Return the mantissa as a number from 1/2 to 1."""
         v = ((self.bits & _FRACTION) | _BELOW_ONE).view(np.float64)
-        return Reals(v, self.unit, self.stored)
+        return Reals(v, self.errors, self.stored)
 
     def exponent(self) -> Reals:
         """Return the exponent e of value = fraction * 2^e, see `fraction`."""
         v = ((self.bits >> 52) - (BIAS + 128)).astype(np.float64)
-        return Reals(v, self.unit, True)
+        return Reals(v, self.errors, True)
 
     def with_extension(self, more: int) -> Reals:
         """Return the value with ``more`` added to its extension, carry included; zero stays
         zero."""
         v = (self.bits + np.int64(more << 13)).view(np.float64)
         v[self.v == 0] = 0.0
-        return Reals(v, self.unit)
+        return Reals(v, self.errors)
 
     def check_powers(self) -> Bools | None:
         """Check the values as EXP's powers of two and set those out of range to 0 in place.
@@ -204,12 +204,12 @@ class Reals:
 
     def whole_part(self) -> Reals:
         """Return the largest whole number not above the value, extension cut off."""
-        return Reals(np.floor((self.bits & _32_BITS).view(np.float64)), self.unit, True)
+        return Reals(np.floor((self.bits & _32_BITS).view(np.float64)), self.errors, True)
 
     def scale_by_power(self, powers: Reals) -> Reals:
         """Return the value times 2^powers, whole numbers, by adding to the exponent."""
         v = (self.bits + (powers.v.astype(np.int64) << 52)).view(np.float64)
-        return Reals(v, self.unit)
+        return Reals(v, self.errors)
 
     def pack(self) -> Packed:
         """Return the five bytes of a variable as one number: 0x8468000000 for 14.5."""
@@ -230,29 +230,29 @@ class Reals:
         return self
 
     def record_error(self, failed: Any, code: int) -> bool:
-        """Record an error where ``failed``, see `Unit.record_error`; constants have no record."""
-        return (self.unit or Unit(1)).record_error(failed, code)
+        """Record an error where ``failed``, see `BlockErrors`; constants have no record."""
+        return (self.errors or BlockErrors(1)).record_error(failed, code)
 
-    def _of(self, unit: Unit | None) -> Reals:
-        """Return the values, constants as values of the block ``unit``, so that errors they cause
+    def _of(self, errors: BlockErrors | None) -> Reals:
+        """Return the values, constants as values of a block, so that errors they cause
         later are recorded there."""
-        return self if self.unit or not unit else Reals(self.v, unit, self.stored, self.zero)
+        return self if self.errors or not errors else Reals(self.v, errors, self.stored, self.zero)
 
 
-def from_floats(v: Floats, unit: Unit | None, stored: bool = False) -> Reals:
+def from_floats(v: Floats, errors: BlockErrors | None, stored: bool = False) -> Reals:
     """Return reals of float64 values with at most 40 significant bits."""
-    reals = Reals(v, unit, stored)._check_exponents()
+    reals = Reals(v, errors, stored)._check_exponents()
     reals.zero = not v.any()
     return reals
 
 
-def from_packed(packed: Packed, unit: Unit | None) -> Reals:
+def from_packed(packed: Packed, errors: BlockErrors | None) -> Reals:
     """Return reals of five stored bytes each, as one number (see `Reals.pack`)."""
     e = packed >> np.uint64(32)
     sign = packed >> np.uint64(31) & _ONE
     fraction = (packed & np.uint64(0x7FFFFFFF)) << np.uint64(21)
     bits = sign << np.uint64(63) | (e + np.uint64(BIAS)) << np.uint64(52) | fraction
-    return from_floats(np.where(e == 0, np.uint64(0), bits).view(np.float64), unit, True)
+    return from_floats(np.where(e == 0, np.uint64(0), bits).view(np.float64), errors, True)
 
 
 def from_number(number: Number) -> Reals:
@@ -273,9 +273,9 @@ def constant(n: int) -> Reals:
 ZERO = constant(0)
 
 
-def zero(unit: Unit | None) -> Reals:
+def zero(errors: BlockErrors | None) -> Reals:
     """Return zero as a value of a block, so that errors it causes are recorded there."""
-    return Reals(ZERO.v, unit, True, zero=True)
+    return Reals(ZERO.v, errors, True, zero=True)
 
 
 def select(condition: Any, yes: Reals, no: Reals) -> Reals:
@@ -293,10 +293,10 @@ def _add(left: Reals, right: Reals, subtract: bool) -> Reals:
     """
     left = left.rounded()
     if right.zero:
-        return left._of(right.unit)
+        return left._of(right.errors)
     if left.zero:
-        return (-right if subtract else right)._of(left.unit)
-    unit = left.unit or right.unit
+        return (-right if subtract else right)._of(left.errors)
+    errors = left.errors or right.errors
     exponents = np.maximum(left.bits & _EXPONENT, right.bits & _EXPONENT)
     to_units = (_TO_UNITS - exponents).view(np.float64)
     v, addend = np.trunc(left.v * to_units), np.trunc(right.v * to_units)
@@ -313,7 +313,7 @@ def _add(left: Reals, right: Reals, subtract: bool) -> Reals:
     # normalising takes less than 256 units, the upper 32 bits all clear, for zero
     bits &= _BELOW_256 - (bits & _EXPONENT) >> 63
     v *= (exponents - _FROM_UNITS).view(np.float64)
-    return Reals(v, unit)._check_exponents()
+    return Reals(v, errors)._check_exponents()
 
 
 def _multiply(left: Reals, right: Reals) -> Reals:
@@ -324,9 +324,9 @@ def _multiply(left: Reals, right: Reals) -> Reals:
     too far. Bytes are numbered from the extension, 0, to the top, 4, which is never zero.
     """
     left = left.rounded()
-    unit = left.unit or right.unit
+    errors = left.errors or right.errors
     if left.zero or right.zero:
-        return zero(unit)
+        return zero(errors)
     m1 = ((left.bits & _FRACTION | _TOP) >> 21).view(np.uint64)
     m2 = ((right.bits & _FRACTION | _TOP) >> 13).view(np.uint64)
     product = (m2 & _LAST_BYTE) * m1  # is shifted left and right by 8
@@ -344,7 +344,7 @@ def _multiply(left: Reals, right: Reals) -> Reals:
     # appends a zero, as it is here
     v = product.astype(np.float64) * 2.0**-38
     v *= (left.bits & ~_FRACTION).view(np.float64) * (right.bits & ~_FRACTION).view(np.float64)
-    result = Reals(v, unit)
+    result = Reals(v, errors)
     if np.abs(v).max(initial=0.0) >= OVERFLOW_LIMIT / 2:  # the ROM decides before it normalises
         exponents = ((left.bits & _EXPONENT) >> 52) + ((right.bits & _EXPONENT) >> 52)
         overflows = (exponents >= 384 + 2 * BIAS) & (v != 0)
@@ -360,15 +360,15 @@ def _divide(left: Reals, right: Reals) -> Reals:
     The processor's quotient is truncated there; where its own rounding had carried into that bit,
     the exactly computed remainder is negative and one unit is subtracted.
     """
-    unit = left.unit or right.unit
+    errors = left.errors or right.errors
     right = right.rounded()
     by_zero = right.v == 0
     if by_zero.any():
-        (unit or Unit(1)).record_error(by_zero, DIVISION_BY_ZERO)
+        (errors or BlockErrors(1)).record_error(by_zero, DIVISION_BY_ZERO)
         right = select(by_zero, constant(1), right)
     left = left.rounded()
     if left.zero:
-        return zero(unit)
+        return zero(errors)
     signs = left.bits ^ right.bits
     a, b = np.abs(left.v), np.abs(right.v)
     v = a / b
@@ -382,7 +382,7 @@ def _divide(left: Reals, right: Reals) -> Reals:
     bits &= kept_bits
     bits |= signs & _SIGN
 
-    result = Reals(v, unit)
+    result = Reals(v, errors)
     difference = ((left.bits & _EXPONENT) - (right.bits & _EXPONENT)) >> 52
     overflows = (difference >= 127) & (left.v != 0)  # the ROM decides before it normalises
     if overflows.any():

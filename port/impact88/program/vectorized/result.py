@@ -8,11 +8,11 @@ from ...apple.applesoft.errorcodes import CODES, ApplesoftError
 from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS
 from ...mechanics import native
 from . import compiled, statements
+from .blockerrors import BlockErrors, Bools, Ints
 from .realcolumns import Scenes
 from .reals import Floats, Packed, Reals, from_floats
 from .statements import ZERO_DETERMINANT
 from .textcolumns import TEXT, Strings, write
-from .unit import Bools, Ints, Unit
 
 OTHER_M = 2  # the code of a scene whose M is neither 4 nor 6, which is not replayed
 MAX_WRITTEN_TOGETHER = 8192
@@ -34,7 +34,7 @@ class Replay:
         The scenes that were replayed.
     six : ndarray of bool
         True where M is 6.
-    unit : Unit
+    errors : BlockErrors
         The records of the scenes' errors.
     values : dict of str to ndarray
         The stored reals by name.
@@ -56,13 +56,15 @@ class Replay:
     ['44.43', '57.47']
     """
 
-    def __init__(self, scenes: Scenes, six: Bools, unit: Unit, values: dict[str, Floats]) -> None:
+    def __init__(
+        self, scenes: Scenes, six: Bools, errors: BlockErrors, values: dict[str, Floats]
+    ) -> None:
         self.count = scenes.size
-        self.code: Ints = unit.code()
-        self.line: Ints = unit.line()
+        self.code: Ints = errors.code()
+        self.line: Ints = errors.line()
         self._scenes = scenes
         self._six = six
-        self._unit = unit
+        self._unit = errors
         self._values = values
         self._fields: dict[str, Strings] = {}
 
@@ -248,8 +250,8 @@ class Replay:
 @np.errstate(all="ignore")
 def _printed_values(name: str, columns: list[Floats]) -> Floats:
     """Return the values that PRINT receives for a field, computed with arrays."""
-    unit = Unit(columns[0].size)
-    return statements.printed_value(name, *(from_floats(v.copy(), unit, True) for v in columns)).v
+    errors = BlockErrors(columns[0].size)
+    return statements.printed_value(name, *(from_floats(v.copy(), errors, True) for v in columns)).v
 
 
 def field_names() -> tuple[str, ...]:

@@ -20,10 +20,10 @@ from typing import Any, NamedTuple
 
 from ...apple.applesoft import decimaltext as scalar
 from ...collision.fields import ANGLES, FIELDS
+from .blockerrors import BlockErrors, stamp
 from .polynomials import cos, sin, square
 from .realcolumns import PLACES
 from .reals import ZERO, Reals, constant, from_number, select
-from .unit import Unit, stamp
 
 C_1E3 = from_number(scalar.read("1E3")[0])
 C_1E4 = from_number(scalar.read("1E4")[0])
@@ -32,7 +32,7 @@ AG = (from_number(scalar.read("3.14159265")[0]) / 180).rounded()
 """Radians per degree, as line 300 computes them."""
 MINUS_10 = constant(-10)
 
-ZERO_DETERMINANT = 1  # `Unit.code` of the END at line 1160, which is not an error
+ZERO_DETERMINANT = 1  # `BlockErrors.code` of the END at line 1160, which is not an error
 SOLVED = stamp(570, 900)  # the place after line 570's GOSUB 1000
 NEAR_OVERFLOW = 2.0**120  # smaller numbers do not overflow in sums or when line 620 ff. floor them
 
@@ -83,11 +83,11 @@ FLOORED: dict[str, Reals] = {
 
 
 def run(
-    unit: Unit, scene: Mapping[str, Reals], kind: Kind, matrix: bool = False
+    errors: BlockErrors, scene: Mapping[str, Reals], kind: Kind, matrix: bool = False
 ) -> dict[str, Reals]:
     """Run lines 280 to 760 on a block and return its results by name.
 
-    ``scene``: stored reals by the listing's names, without M; ``unit`` records the errors, after
+    ``scene``: stored reals by the listing's names, without M; ``errors`` records the errors, after
     which a scene's values have no meaning; ``matrix``: also return the elements of A as the program
     leaves them, named "A(1,1)"."""
     # not split: the listing's lines in order, as in `program.listing`
@@ -96,7 +96,7 @@ def run(
     UX, UY, WA, VX, VY, WB = (scene[name] for name in ("UX", "UY", "WA", "VX", "VY", "WB"))
     M, pivot = kind
     last = M + 1
-    at = unit.at
+    at = errors.at
 
     at(300)
     PA, PB, TA, TB, GA = (radians(scene[name]) for name in ANGLES)
@@ -158,7 +158,7 @@ def run(
 
     at(500)
     A[1, last], A[2, last] = (MA * UX + MB * VX).rounded(), (MA * UY + MB * VY).rounded()
-    A[3, last] = ZERO if pivot else _line_530(unit, MUP, A[3, 2], A[3, 3], UY, VX)
+    A[3, last] = ZERO if pivot else _line_530(errors, MUP, A[3, 2], A[3, 3], UY, VX)
     at(540)
     A[4, last] = (-E * ((YA - VY - d2wb) * SIN + (XA - VX + d1wb) * COS)).rounded()
     at(550)
@@ -168,7 +168,7 @@ def run(
     A[6, last] = (EM * (turning + WA - WB)).rounded()
     A[5, last] = angular  # only now: for M = 4 it overwrites A(5,5) = IA
 
-    eliminate(unit, A, M, matrix)  # 570
+    eliminate(errors, A, M, matrix)  # 570
     V = [A[row, last] for row in range(1, 7)]  # for M = 4 lines 700 and 710 use rows 5 and 6, too
 
     at(580)
@@ -187,7 +187,7 @@ def run(
 
     results |= {"KI": KI, "KF": KF, "XA": XA, "YA": YA, "XB": XB, "YB": YB, "MUP": MUP}
     for name in ("XA", "YA", "XB", "YB"):
-        _check(unit, name, results[name])
+        _check(errors, name, results[name])
     at(*_place("LOSS"))
     results["LOSS"] = printed_value("LOSS", KI, KF).rounded()
 
@@ -202,13 +202,13 @@ def run(
     final["YBF"] = (V[3] + D2 * V[5]).rounded()
     final |= dict(zip(("VAX", "VAY", "VBX", "VBY", "WAF", "WBF"), V[:M], strict=False))
     for name, value in final.items():
-        _check(unit, name, value)
+        _check(errors, name, value)
     if matrix:
         results |= {f"A({row},{column})": value for (row, column), value in A.items()}
     return results | final
 
 
-def eliminate(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool) -> None:
+def eliminate(errors: BlockErrors, A: dict[tuple[int, int], Reals], M: int, matrix: bool) -> None:
     """Run lines 1000-1170: compute column M + 1 of ``A`` in place; with ``matrix`` all of A.
 
     All its oddities are kept, see `accuracy.elimination.eliminate`. Column J is skipped: A(J,J) /
@@ -218,7 +218,7 @@ def eliminate(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool)
     RX: dict[int, Any] = {}  # row -> the scenes in which RX is that row
     for J in range(1, M + 1):
         # 1080-1110
-        RX = unit.drop_empty(RX) if J < M else {}
+        RX = errors.drop_empty(RX) if J < M else {}
         largest = C_1E_9
         for row in range(J, M + 1) if J < M else ():
             if not A[row, J].zero:
@@ -236,34 +236,36 @@ def eliminate(unit: Unit, A: dict[tuple[int, int], Reals], M: int, matrix: bool)
                 if not (mine.zero and theirs.zero):
                     A[J, column] = select(scenes, theirs, mine)
                     A[row, column] = select(scenes, mine, theirs)
-        unit.at(1160, order=stamp(570, 100 * J))
+        errors.at(1160, order=stamp(570, 100 * J))
         AP = A[J, J]
         is_singular = abs(AP).is_below(C_1E_9)
-        if unit.record_error(is_singular, ZERO_DETERMINANT):
+        if errors.record_error(is_singular, ZERO_DETERMINANT):
             AP = select(is_singular, constant(1), AP)
         cells = [A[row, column] for row in range(1, M + 1) for column in range(J, M + 2)]
         whole_matrix = matrix or any(x.exceeds(NEAR_OVERFLOW) for x in cells)
         first = J if whole_matrix else J + 1
         columns = [column for column in range(first, M + 2) if not A[J, column].zero]
-        unit.at(1150, order=stamp(570, 100 * J + 1))
+        errors.at(1150, order=stamp(570, 100 * J + 1))
         for column in columns:
             A[J, column] = (A[J, column] / AP).rounded()
-        unit.at(1040, order=stamp(570, 100 * J + 2))
+        errors.at(1040, order=stamp(570, 100 * J + 2))
         for row in [row for row in range(1, M + 1) if row != J and not A[row, J].zero]:
             AR = A[row, J]
             for column in columns:
                 A[row, column] = (A[row, column] - A[J, column] * AR).rounded()
 
 
-def _line_530(unit: Unit, MU: Reals, A32: Reals, A33: Reals, UY: Reals, VX: Reals) -> Reals:
+def _line_530(
+    errors: BlockErrors, MU: Reals, A32: Reals, A33: Reals, UY: Reals, VX: Reals
+) -> Reals:
     """Return A(3,M+1) of lines 510-530: 0, as for a pivot, if MU is -10 or less, which it also is
     after line 400 reversed a MU of 10."""
     like_pivot = ~(MU > MINUS_10)
     has_any = bool(like_pivot.any())
-    unit.skip(like_pivot if has_any else None)
-    unit.at(530)
+    errors.skip(like_pivot if has_any else None)
+    errors.at(530)
     value = (A32 * UY + A33 * VX).rounded()
-    unit.skip(None)
+    errors.skip(None)
     return select(like_pivot, ZERO, value) if has_any else value
 
 
@@ -289,8 +291,8 @@ def _place(name: str) -> tuple[int, int]:
     return divmod(PRINTED[name], 1000)
 
 
-def _check(unit: Unit, name: str, x: Reals) -> None:
+def _check(errors: BlockErrors, name: str, x: Reals) -> None:
     """Record an OVERFLOW of printing a velocity; its digits are computed on first use."""
     if x.exceeds(NEAR_OVERFLOW / 1e4):
-        unit.at(*_place(name))
+        errors.at(*_place(name))
         printed_value(name, x)

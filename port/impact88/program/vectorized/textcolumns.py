@@ -12,8 +12,8 @@ import numpy.typing as npt
 from ...apple.applesoft import decimaltext as scalar
 from ...errors import UserError
 from ...mechanics import native
+from .blockerrors import BlockErrors, Ints
 from .reals import OVERFLOW, ZERO, Reals, compare, constant, from_number, select
-from .unit import Ints, Unit
 
 Strings = npt.NDArray[np.str_]
 
@@ -40,7 +40,7 @@ def times_ten(x: Reals) -> Reals:
     if overflows.any():
         x.record_error(overflows, OVERFLOW)
         x = select(overflows, ZERO, x)
-    return Reals(x.v * 10, x.unit)._check_exponents()
+    return Reals(x.v * 10, x.errors)._check_exponents()
 
 
 def over_ten(x: Reals) -> Reals:
@@ -48,8 +48,8 @@ def over_ten(x: Reals) -> Reals:
     return abs(x) / _TEN
 
 
-def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals:
-    """Return the numbers of ``texts``, one for each scene of ``unit``, extension included.
+def read(texts: Sequence[str], errors: BlockErrors, where: Callable[[int], str]) -> Reals:
+    """Return the numbers of ``texts``, one for each scene of the block, extension included.
 
     Records OVERFLOW. Raises UserError for a text that is not a number; ``where`` returns the name
     of its place, given its index."""
@@ -60,15 +60,19 @@ def read(texts: Sequence[str], unit: Unit, where: Callable[[int], str]) -> Reals
     v, unread = np.zeros(len(texts)), np.ones(len(texts), np.bool_)
     if native.library is not None and data.count(b"\n") == len(texts):
         native.library.read_numbers(data, len(texts), v.ctypes.data, unread.ctypes.data)
-    x, rows = Reals(v, unit), np.flatnonzero(unread)
+    x, rows = Reals(v, errors), np.flatnonzero(unread)
     if rows.size:
         numbered_texts = [(texts[row], row) for row in rows.tolist()]
-        _apply(x, rows, lambda part: _read_with_arrays(numbered_texts, part.unit or Unit(1), where))
+        _apply(
+            x,
+            rows,
+            lambda part: _read_with_arrays(numbered_texts, part.errors or BlockErrors(1), where),
+        )
     return x
 
 
 def _read_with_arrays(
-    texts: Sequence[tuple[str, int]], unit: Unit, where: Callable[[int], str]
+    texts: Sequence[tuple[str, int]], errors: BlockErrors, where: Callable[[int], str]
 ) -> Reals:
     """Return `read` of texts with their indices, without the compiled kernel."""
     numerals = []
@@ -82,13 +86,13 @@ def _read_with_arrays(
         count = (exponent - len(decimals) + 128 & 0xFF) - 128  # the ROM keeps it in one signed byte
         numerals.append((integer + decimals, count, exponent == 100, sign == "-"))
     digits, counts, overflow, negative = zip(*numerals, strict=True)
-    x = Reals(np.array([int(text[:_EXACT_DIGITS] or 0) for text in digits], float), unit, True)
+    x = Reals(np.array([int(text[:_EXACT_DIGITS] or 0) for text in digits], float), errors, True)
     for place in range(_EXACT_DIGITS, max(map(len, digits))):
         rows = np.array([row for row, text in enumerate(digits) if len(text) > place])
         digit = Reals(np.array([float(digits[i][place]) for i in rows]), None, True)
         _apply(x, rows, times_ten)
         _apply(x, rows, digit.__radd__)
-    unit.record_error(np.array(overflow), OVERFLOW)
+    errors.record_error(np.array(overflow), OVERFLOW)
     for step, steps in ((times_ten, np.array(counts)), (over_ten, -np.array(counts))):
         for steps_done in range(max(steps)):
             _apply(x, np.flatnonzero(steps > steps_done), step)
@@ -98,12 +102,12 @@ def _read_with_arrays(
 
 def _apply(x: Reals, rows: Ints, operation: Callable[[Reals], Reals]) -> None:
     """Apply an operation to the given rows of ``x`` in place, recording its errors there."""
-    assert x.unit is not None
-    part = x.unit.part(rows)
+    assert x.errors is not None
+    part = x.errors.part(rows)
     result = operation(Reals(x.v[rows], part))
     x.v[rows] = result.v
     x.stored = False
-    x.unit.join(part, rows)
+    x.errors.join(part, rows)
 
 
 def write(x: Reals, texts: Strings | None = None) -> Strings:
@@ -113,7 +117,7 @@ def write(x: Reals, texts: Strings | None = None) -> Strings:
     fails to round."""
     v = np.ascontiguousarray(x.v)
     texts = np.empty(v.shape, TEXT) if texts is None else texts
-    unit = x.unit or Unit(v.size)
+    errors = x.errors or BlockErrors(v.size)
     unwritten = np.ones(v.shape, np.bool_)
     if native.library is not None:
         native.library.write_numbers(
@@ -122,9 +126,9 @@ def write(x: Reals, texts: Strings | None = None) -> Strings:
     rows = np.flatnonzero(unwritten)
     for at in range(0, rows.size, WRITE_BLOCK):
         block = rows[at : at + WRITE_BLOCK]
-        part = unit.part(block)
+        part = errors.part(block)
         texts.reshape(-1)[block] = _write_with_arrays(Reals(v.reshape(-1)[block], part))
-        unit.join(part, block)
+        errors.join(part, block)
     return texts
 
 
@@ -135,17 +139,17 @@ def _write_with_arrays(x: Reals) -> Strings:
     x.record_error(overflows, OVERFLOW)
     v[overflows] = 0.0
     nonzero, small = v != 0, (v != 0) & (v < 1)
-    unit = Unit(v.size)
-    v = np.where(small, (_BILLION * Reals(v, unit)).v, v)
+    errors = BlockErrors(v.size)
+    v = np.where(small, (_BILLION * Reals(v, errors)).v, v)
     d = np.where(small, -9, 0)
-    while (too_large := (order := compare(_NINE_DIGITS, Reals(v, unit))) > 0).any():
-        v = np.where(too_large, over_ten(Reals(v, unit)).v, v)
+    while (too_large := (order := compare(_NINE_DIGITS, Reals(v, errors))) > 0).any():
+        v = np.where(too_large, over_ten(Reals(v, errors)).v, v)
         d += too_large
     rounds = nonzero & (order != 0)
-    while (too_small := rounds & (compare(_EIGHT_DIGITS, Reals(v, unit)) <= 0)).any():
-        v = np.where(too_small, times_ten(Reals(v, unit)).v, v)
+    while (too_small := rounds & (compare(_EIGHT_DIGITS, Reals(v, errors)) <= 0)).any():
+        v = np.where(too_small, times_ten(Reals(v, errors)).v, v)
         d -= too_small
-    v = np.where(rounds, (_HALF + Reals(v, unit)).v, v)
+    v = np.where(rounds, (_HALF + Reals(v, errors)).v, v)
     signs = np.where(x.v < 0, "-", "").tolist()
     texts = [
         scalar.lay_out(sign, str(int(nine)), power) if nine else "0"

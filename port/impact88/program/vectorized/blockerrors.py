@@ -1,4 +1,4 @@
-"""The state of a block of scenes while it is computed: each scene's first error, and its place.
+"""The errors of a block of scenes while it is computed: each scene's first one, and its place.
 
 In the ROM an error ends the program. Over arrays the other scenes continue, so errors are recorded,
 and each scene keeps the first one in program order. The records contain that order, because
@@ -35,7 +35,7 @@ def key(line: int, position: int = 0, order: int | None = None) -> int:
     return ((stamp(line, position) if order is None else order) << _ORDER) + (line << _LINE)
 
 
-class Unit:
+class BlockErrors:
     """The errors of one block of ``count`` scenes, which lie along the last axis of every array.
 
     ``first`` holds the record of each scene's first error, `NEVER` without one."""
@@ -57,14 +57,14 @@ class Unit:
         """Set the present place, see `key`."""
         self.place = key(line, position, order)
 
-    def part(self, rows: Ints) -> Unit:
-        """Return a unit for the scenes ``rows``, at the same place."""
-        part = Unit(rows.size)
+    def part(self, rows: Ints) -> BlockErrors:
+        """Return the record of the scenes ``rows``, at the same place."""
+        part = BlockErrors(rows.size)
         place = self.place
         part.place = place[rows] if isinstance(place, np.ndarray) else place
         return part
 
-    def join(self, part: Unit, rows: Ints) -> None:
+    def join(self, part: BlockErrors, rows: Ints) -> None:
         """Merge the errors of a `part` into the scenes ``rows``."""
         self.first[rows] = np.minimum(self.first[rows], part.first)
 
