@@ -1,5 +1,6 @@
-"""Decimal text to double precision: the one place where a bare number becomes a float; an amount
-with a unit is computed exactly by `units` and then comes here.
+"""Decimal text to double precision: the rule by which a bare number becomes a float. An amount with
+a unit is computed exactly by `units` first; a column of Arrow's is cast where the rule allows
+(`tables.rows.ArrowTexts`).
 
 A text is a number if Applesoft's INPUT reads it as one (`applesoft.decimaltext.scan`): blanks are
 allowed anywhere; a lone sign, a lone point and a bare E count as zero; E may be in either case. The

@@ -4,7 +4,7 @@ The formulas of all four kinds of scene (`KINDS`) are one graph of operations. O
 same results need make a loop over a strip of scenes; a result, or a set of them, is a set of loops.
 What a loop leaves for another, or for a result, is kept in a row as long as a strip. In a checkout,
 ``python -m impact88.mechanics.loops`` writes the file and ``pip install -e .`` compiles it;
-test_native checks that file and formulas agree.
+tests/mechanics/test_loops.py checks that file and formulas agree.
 """
 
 from __future__ import annotations

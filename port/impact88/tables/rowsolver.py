@@ -16,7 +16,7 @@ from ..collision.doubles import double, is_number
 from ..collision.fields import ZERO_DETERMINANT
 from ..collision.needs import sentences
 from ..errors import UserError, quoted
-from ..mechanics.closedform.columns import INERTIAS, UNUSED_BY_POINTS, examine, refusals
+from ..mechanics.closedform.columns import BODY_CONSTANTS, UNUSED_BY_POINTS, examine, refusals
 from ..mechanics.closedform.general import resolve_share, share_typed
 from ..mechanics.closedform.solve import solve
 from ..names import DEFAULT_M, SCENE
@@ -255,7 +255,7 @@ def _resolve_shares(rows: Rows, columns: dict[str, list[Any]]) -> None:
 def _fill_unused(columns: dict[str, list[Any]], points: Sequence[int]) -> None:
     """Fill what the rows of point masses need not have: the program reads it all the same."""
     for name in UNUSED_BY_POINTS if points else ():
-        default = "1" if name in INERTIAS else "0"
+        default = "1" if name in BODY_CONSTANTS else "0"
         for index in points:
             if columns[name][index] in (None, "", "NAN"):
                 columns[name][index] = default

@@ -19,7 +19,7 @@ from ...names import DEFAULT_M, PIVOT, SCENE
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
 
-INERTIAS = ("MA", "MB", "IA", "IB")
+BODY_CONSTANTS = ("MA", "MB", "IA", "IB")
 BODIES = (("MA", "IA", ("UX", "UY"), "WA"), ("MB", "IB", ("VX", "VY"), "WB"))
 """Mass, inertia, velocities and spin of A and of B."""
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
@@ -123,7 +123,7 @@ def examine(values: Mapping[str, Floats]) -> Block:
         if name == "M" and not ordinary:
             ordinary = only_points
             kind = "4" if only_points else "6" if alike else "mixed"
-        elif name in INERTIAS and not ordinary:
+        elif name in BODY_CONSTANTS and not ordinary:
             ordinary = alike and largest == np.inf
             kind = "inf" if ordinary else "scalar" if alike else "array with infinities"
         elif name == "MU" and not ordinary:
@@ -153,7 +153,7 @@ def _extremes(column: Floats) -> Limits:
 ORDINARY: dict[str, Limits] = {
     **dict.fromkeys(SCENE, (-_LARGEST, _LARGEST)),
     **dict.fromkeys(ANGLES, (-LARGE_ANGLE, LARGE_ANGLE)),
-    **dict.fromkeys(INERTIAS, (_SMALLEST, _LARGEST)),
+    **dict.fromkeys(BODY_CONSTANTS, (_SMALLEST, _LARGEST)),
     "M": (6.0, 6.0),
     "MU": (float(np.nextafter(PIVOT, 0.0)), _LARGEST),
 }
@@ -165,7 +165,7 @@ def alike_kind(name: str, value: float) -> str:
     if name == "M":
         return str(int(value))
     # formulas keep every inertia, even of 1
-    return "scalar" if name in INERTIAS else {0.0: "0", 1.0: "1"}.get(value, "scalar")
+    return "scalar" if name in BODY_CONSTANTS else {0.0: "0", 1.0: "1"}.get(value, "scalar")
 
 
 def _at_rest_where_infinite(kinds: Mapping[str, str]) -> bool:
@@ -198,7 +198,7 @@ def refusals(columns: Mapping[str, Floats]) -> Iterator[Refusal]:
         if name == "M":
             continue
         is_examined = ~point if name in UNUSED_BY_POINTS else True
-        if name in INERTIAS:
+        if name in BODY_CONSTANTS:
             yield Refusal(name, "is not above 0", ~(column > 0) & is_examined)
         else:
             yield Refusal(name, "is not finite", ~np.isfinite(column) & is_examined)

@@ -189,7 +189,8 @@ class ExpressionTable:
         return self.combine("sine", pair), self.combine("cosine", pair)
 
     def against(self, value: Expression, slip: Expression) -> Expression:
-        """``value`` with its sign changed where ``slip`` > 0 (the rule of listing line 400)."""
+        """Record the rule of listing line 400: whoever computes changes the sign of ``value`` where
+        ``slip`` > 0."""
         if value.is_zero or slip.is_zero:
             return value
         return self.combine("against", value, slip)

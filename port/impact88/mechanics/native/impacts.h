@@ -83,7 +83,7 @@ EXPORT const char *results(void) { return NAMES_OF_RESULTS; }
 #define UNUSED_BY_POINTS \
     (1u << AT_DA | 1u << AT_DB | 1u << AT_PA | 1u << AT_PB | 1u << AT_TA | 1u << AT_TB \
      | 1u << AT_IA | 1u << AT_IB | 1u << AT_EM)
-#define INERTIAS (1u << AT_MA | 1u << AT_MB | 1u << AT_IA | 1u << AT_IB)
+#define BODY_CONSTANTS (1u << AT_MA | 1u << AT_MB | 1u << AT_IA | 1u << AT_IB)
 #define ANGLES (1u << AT_GA | 1u << AT_PA | 1u << AT_PB | 1u << AT_TA | 1u << AT_TB)
 #define LARGE_ANGLE 720.0 /* as in closedform/columns.py */
 #define PIVOT_MU -10
@@ -147,7 +147,7 @@ static int64_t have_odd_constants(const impacts *c, int64_t points)
         if (c->step[k] || (points && UNUSED_BY_POINTS >> k & 1)) continue;
         double x = *c->column[k];
         if (is_ordinary(c, k, x) || (ANGLES >> k & 1 && fabs(x) <= DBL_MAX)) continue;
-        if (!(INERTIAS >> k & 1) || x != INFINITY) return 1;
+        if (!(BODY_CONSTANTS >> k & 1) || x != INFINITY) return 1;
         infinite |= 1u << k;
     }
     if (!infinite) return 0;
@@ -210,7 +210,7 @@ static void look_at_each(const impacts *c, tile *t)
     }
     for (int k = 0; k < AT_M; k++) {
         const int64_t *spared = UNUSED_BY_POINTS >> k & 1 ? t->points : none;
-        int64_t inertia = INERTIAS >> k & 1;
+        int64_t inertia = BODY_CONSTANTS >> k & 1;
         double x = *c->column[k], *y = t->near[k];
         if (inertia) infinite |= c->step[k] ? count_equal(y, t->count, INFINITY) : x == INFINITY;
         if (c->step[k]) mark_unusable(y, t->count, inertia, spared, t->bad);
