@@ -182,7 +182,7 @@ def test_faithful_path_imports_no_third_party(name: str) -> None:
         seen.add(module)
         waiting |= {other for other in rooms()[module] if (module, other) != SHARE} - seen
         text = FILES[module].read_text(encoding="utf-8")
-        assert not {"numpy", "matplotlib", "mpmath", "scipy", "tqdm"} & {
+        assert not {"numpy", "matplotlib", "mpmath", "scipy"} & {
             (node.names[0].name if isinstance(node, ast.Import) else node.module or "").split(".")[
                 0
             ]

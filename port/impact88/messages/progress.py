@@ -1,12 +1,10 @@
-"""Progress of long operations on a terminal: tqdm's bar if installed (extra ``progress``), else one
-line that is overwritten."""
+"""Progress of long operations on a terminal: one line that is overwritten."""
 
 import math
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from typing import Any
+from contextlib import contextmanager
 
 from ..errors import note
 
@@ -45,18 +43,10 @@ class _Lines:
 
 
 @contextmanager
-def progress(total: int | None, what: str, unit: str = "", lines: bool = False) -> Iterator[Any]:
+def progress(total: int | None, what: str, lines: bool = False) -> Iterator[_Lines]:
     """Context of a progress meter for ``total`` units (None: unknown); call its ``update(n)`` after
     ``n`` more. If stderr is not a terminal it is silent, or writes plain ``lines``."""
-    terminal = sys.stderr.isatty()
-    meter: Any = _Lines(total, what, terminal, lines)
-    if terminal:
-        with suppress(ImportError):
-            from tqdm import tqdm  # type: ignore[import-untyped]
-
-            meter = tqdm(
-                total=total, desc=what, unit=unit, unit_scale=True, leave=False, dynamic_ncols=True
-            )
+    meter = _Lines(total, what, sys.stderr.isatty(), lines)
     try:
         yield meter
     finally:

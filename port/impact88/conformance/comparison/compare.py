@@ -535,7 +535,7 @@ def read_blocks(
     """Yield a table's rows, some at a time, with the units of its columns; shows the progress."""
     measured: TableUnits | None = None
     before = 0
-    with progress(reader.total, "compare", "B") as meter:
+    with progress(reader.total, "compare") as meter:
         for rows in reader:
             measured = measured or TableUnits(reader.names, units, rows, results, where)
             yield rows, measured

@@ -126,7 +126,7 @@ def _reconstruct(
     known: dict[str, Uncertain], wanted: list[str] | None, args: options.Args, case: Case
 ) -> list[Measured]:
     try:
-        with progress(None, "reconstruct", "impacts") as meter:
+        with progress(None, "reconstruct") as meter:
             solutions = reconstruct(known, meter.update)
     except UserError as error:
         raise UserError(str(error), options.source_of(args)) from None
@@ -137,7 +137,7 @@ def _reconstruct(
         _write_scene(solutions, args, case)
     measurements: list[Measured] = []
     for solution in solutions:
-        with progress(None, "reconstruct", "impacts") as meter:
+        with progress(None, "reconstruct") as meter:
             options_of_all = (args.samples, args.seed, wanted, args.contact_time)
             like = measurements[0] if measurements else None
             measurements.append(Measured(solution, *options_of_all, meter.update, like))

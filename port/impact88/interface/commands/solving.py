@@ -89,7 +89,7 @@ def solve_table(args: options.Args) -> int:
         writer = open_writer(args.output, result_format, table.reader, headings, scene_too)
         write = stack.enter_context(writer)
         complain = stack.enter_context(_complaints(args.errors))
-        meter = stack.enter_context(progress(table.reader.total, "solve", "B"))
+        meter = stack.enter_context(progress(table.reader.total, "solve"))
         read = table.blocks
         if table.is_long and not may_wait(args.output):
             write = stack.enter_context(write_behind(write))

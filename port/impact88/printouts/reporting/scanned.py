@@ -39,7 +39,7 @@ def verify_pages(
     results: list[Verification] = []
     without, causes = list[int](), ""
     seeds = scenes_in(seed)
-    with progress(None, "pages read", "page") as meter:
+    with progress(None, "pages read") as meter:
         for page in pages_of(data, path):
             page_results: list[Verification] = []
             unread = 0
