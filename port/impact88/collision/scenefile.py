@@ -270,12 +270,12 @@ def _in_place_of(name: str, texts: Mapping[str, str], either: bool = False) -> t
     return tuple(contact_names) if present else ()
 
 
-def known_template(names: Sequence[str], case: Case | None = None, units: str | None = None) -> str:
+def known_template(names: Sequence[str], case: Case | None = None) -> str:
     """Return a file with entries for ``names`` to fill in, filled with the values of ``case``."""
-    from .units import system_of
+    from .units import RULES
 
-    system = case.system if case else system_of(units)
-    texts = case.texts if case else {"M": DEFAULT_M, "units": units or ""}
+    system = case.system if case else RULES
+    texts = case.texts if case else {"M": DEFAULT_M}
     lines = ["# Fill in what is known; what stays empty is solved for. Any consistent units."]
     if texts.get("title"):
         lines.append(f"title = {_toml_string(texts['title'])}")

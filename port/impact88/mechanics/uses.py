@@ -29,7 +29,6 @@ MIN_CHANGE = 1e-9
 """Relative change of a result that is none: rounding."""
 TRIALS = 3  # ordinary impacts at which an input is changed; one could hide it by chance
 _CONTACT_POINT = ("CAX", "CAY", "CBX", "CBY")
-_CONTACT_VELOCITIES = ("XA", "YA", "XB", "YB", "XAF", "YAF", "XBF", "YBF")
 
 
 def inputs_of(result: str, point: bool) -> frozenset[str]:

@@ -23,7 +23,6 @@ Complexes = NDArray[np.complex128]
 
 MAX_EQUATIONS = 8  # 256 paths
 ZERO_TOL = 1e-11  # relative coefficients and singular values below are rounding
-CONSISTENCY_TOL = 1e-9  # scaled residual of linear conditions that agree
 MAX_STEPS = 400  # per path, rejected ones included
 MIN_STEP = 1e-8  # a path that needs shorter steps ends at a singular point
 NEAR_END = 1e-3  # path parameter left where paths to infinity begin to be recognized

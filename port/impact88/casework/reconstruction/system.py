@@ -202,20 +202,13 @@ class System:
             return (size - value) / self.speed
         return (state[name] - targets[name]) / self.scale(name)
 
-    def linearize(
-        self,
-        x: Array,
-        rows: Callable[[State, Mapping[str, Array] | None], Any],
-        data: Mapping[str, Array] | None = None,
-        targets: Mapping[str, Array] | None = None,
-    ) -> tuple[Floats, Floats]:
-        """Return ``rows(state, targets)`` (rows, impacts) and its derivatives over the scaled
-        variables (rows, variables, impacts), by complex steps. ``data`` as for `state`, ``targets``
-        as for `residuals`, a column an impact."""
+    def linearize(self, x: Array, rows: Callable[[State], Any]) -> tuple[Floats, Floats]:
+        """Return ``rows(state)`` (rows, impacts) and its derivatives over the scaled variables
+        (rows, variables, impacts), by complex steps."""
         size, count = len(self.variables), x.shape[1]
         self.progress(count)
         offset_points = x[:, None] + 1j * COMPLEX_STEP * np.eye(size)[:, :, None]
-        values = rows(self.state(offset_points, data), targets)
+        values = rows(self.state(offset_points))
         values = np.broadcast_to(values, (len(values), size, count))
         return np.real(values[:, 0]), np.imag(values) / COMPLEX_STEP
 
@@ -229,7 +222,7 @@ class System:
         the scaled variables."""
         adjusted = {*self.variables} - {*QUANTITIES}
 
-        def rows(state: State, _: Any) -> Array:
+        def rows(state: State) -> Array:
             values = (state.values[n] if n in adjusted else state[n] for n in names)
             # with the impulse, for the shape where there are none
             return np.stack(np.broadcast_arrays(state.values["PN"], *values))[1:]

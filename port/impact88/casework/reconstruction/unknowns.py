@@ -384,7 +384,7 @@ def _solve_block(known: Mapping[str, Any], wanted: Sequence[str], point: bool) -
     names = [n for n in (*VELOCITIES, *FINAL_STATE, *IMPULSES) if n not in ignored]
     coefficients = [n for n in COEFFICIENTS if n not in known and n not in ignored]
 
-    def scaled_quantities(state: State, _: Any = None) -> Array:
+    def scaled_quantities(state: State) -> Array:
         rows = [_with_known_after(state)[name] / system.scale(name) for name in names]
         for name in coefficients:
             unit = {"MUP": system.mass, "EM": 1 / system.gyration}.get(name, 1.0) * system.speed
@@ -434,7 +434,7 @@ def _fit(system: System, count: int, offset_data: Mapping[str, Array]) -> _Fit:
     Gauss-Newton step from 0 solves them. ``offset_data``: each known velocity with a complex step
     of one unit, (known velocities, n)."""
 
-    def residuals(state: State, _: Any = None) -> Array:
+    def residuals(state: State) -> Array:
         law_state, momentum = copy(state), system.residuals(state, state.values)[len(system.laws) :]
         laws = system.residuals(_with_known_after(law_state), state.values)[: len(system.laws)]
         return np.concatenate([laws, momentum])

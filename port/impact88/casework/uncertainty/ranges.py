@@ -65,14 +65,13 @@ def read_inputs(
     texts: Mapping[str, str] | Case,
     changes: Mapping[str, str] | None = None,
     problem: str = "forward",
-    source: str = "scene",
 ) -> Inputs:
     """Return the inputs of ``problem`` (forward or reconstruction).
 
     Parameters
     ----------
     texts
-        A case, or texts as a file has them, of which messages say ``source``.
+        A case, or texts as a file has them.
     changes
         What is changed of it: ``+- D`` is around the value there.
 
@@ -81,7 +80,7 @@ def read_inputs(
     UserError
         For unknown or missing names and for texts that are no value or range.
     """
-    case = texts if isinstance(texts, Case) else Case(texts, source)
+    case = texts if isinstance(texts, Case) else Case(texts, "scene")
     source, changes = case.source, changes or {}
     forward = problem == "forward"
     scene = coordinate_names(SCENE, case.values)

@@ -29,7 +29,6 @@ from .formview import entries, spoken_direction, units_shown, without_rounding
 
 DRAWS = 20_000
 """Random draws for the bounds' quantiles: half a second at most with every value a range."""
-_NOMINAL_DIGITS = 9  # of a range's nominal value: as many as Applesoft prints
 _DIGITS = 12  # of an exact result: as many as are certain in double precision
 _ANSWER_DIGITS = 4  # of the answer: more than the inputs of any collision are known to
 _ROUNDING = 1e-14

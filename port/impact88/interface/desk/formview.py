@@ -21,8 +21,6 @@ LARGEST = 1_000_000
 """Bytes of a file that is filled in; the template of all that may be known has 3,500."""
 OUTLINES = tuple(name for pair in SIZES.values() for name in pair)
 """Lengths and widths, which a form keeps for its drawing and its file."""
-_WHOSE_BASE = {"us": "chapter", "metric": "si"}
-"""The system whose bare numbers are the base units of another."""
 
 
 class Form(NamedTuple):
