@@ -229,7 +229,14 @@ CASES = {
         ("The barrier is along y where GA = 0; A drives against n, and faces it where TA = 0.",),
         {
             **dict.fromkeys(("MA", "IA", "DA", "PA"), ""),
-            **{"TA": "0", "GA": "0", "E": "", "MU": "", "EM": "1", "UX": "", "UY": "0", "WA": "0"},
+            "TA": "0",
+            "GA": "0",
+            "E": "",
+            "MU": "",
+            "EM": "1",
+            "UX": "",
+            "UY": "0",
+            "WA": "0",
         },
     ),
     "planar": CaseTemplate(

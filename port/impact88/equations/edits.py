@@ -66,7 +66,7 @@ class Edit(NamedTuple):
 
     @property
     def changes_output(self) -> bool:
-        """Whether results are shown differently, not just computed."""
+        """True if results are shown differently, not just computed."""
         return any(key.startswith(SHOWN) for key in self.sides)
 
     @property
@@ -88,7 +88,7 @@ class Edit(NamedTuple):
 
     @property
     def sentence(self) -> str:
-        """What the program does, in words of mechanics."""
+        """Say in words of mechanics what the program does."""
         if self.exchange:
             return _exchange_words(*self.exchange, spellings()[self.title])
         if self.description:
@@ -106,7 +106,7 @@ class Edit(NamedTuple):
 
     @property
     def formula(self) -> str:
-        """What is written in each statement, and what should be; "" for an edit of no spelling."""
+        """The statements as written, and as they should be; "" for an edit of no spelling."""
         if not self.title:
             return ""
         return "; ".join(

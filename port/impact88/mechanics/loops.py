@@ -44,7 +44,7 @@ SPARE = 1.4
 """Loops are joined only as long as no result takes more than this many times the operations that it
 needs when it is asked for alone."""
 SPARE_OF_COMMON = 1.15
-"""The same for the six velocities together, and for LOSS."""
+"""`SPARE` for the six velocities together, and for LOSS."""
 COST_OF_A_LOOP = 30
 """Cost of starting a loop, in operations; one of reading or keeping a row is 1."""
 SHARES = {"FRICTION": 4, "PIVOT": 2, "POINT": 1, "POINT_PIVOT": 1}

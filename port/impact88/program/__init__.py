@@ -4,5 +4,5 @@ Needs: `apple` (arithmetic, console, emulator), `collision` (cases, scene files,
 page), `mechanics` (the compiled library, for many scenes at once; an MU that is a share). Core.
 In: a scene as texts, or keys at the prompts. Out: the printed page, bit for bit, and its numbers.
 Used by: who reproduces a printout (`impact88 run`, `replay`); `printouts` and `conformance`, which
-hold papers and other programs against it.
+hold papers and other programs against it; `tables`, `casework` and `bench`, which run its scenes.
 """

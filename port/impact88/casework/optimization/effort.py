@@ -1,4 +1,4 @@
-"""How much work a search for draws and bounds may take."""
+"""Limits of the work that a search for draws and bounds may take."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Effort(NamedTuple):
-    """What a search may take; the defaults are what answers are found with."""
+    """Limits of a search; the defaults are those that answers are found with."""
 
     particles: int = 1000
     """Points that a sampler moves at a time, at most."""
@@ -22,7 +22,7 @@ class Effort(NamedTuple):
     starts: int = 1
     """Searches per extreme from each group of points."""
     rounds: int = 3
-    """Of searches from where those for other extremes ended, at most."""
+    """Rounds of searches from where those for other extremes ended, at most."""
 
 
 THOROUGH = Effort()

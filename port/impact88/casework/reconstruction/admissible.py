@@ -45,7 +45,7 @@ ENDS = {
     NORMAL: "no contact plane would allow the impact",
     FRICTION: "friction would reverse the sliding",
 }
-"""Where an interval ends at a condition: it ends where ..."""
+"""Condition -> where an interval that ends at it ends: "where ..."."""
 
 
 class Admissible:

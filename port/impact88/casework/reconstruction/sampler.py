@@ -57,7 +57,7 @@ class Proposal:
 
 
 class Density(Protocol):
-    """What is sampled from."""
+    """The density that is sampled."""
 
     def logarithms(self, points: Floats, branches: Branches) -> tuple[Floats, Floats]:
         """Return the log density at points (coordinates, n), limits aside, and the sum of squares

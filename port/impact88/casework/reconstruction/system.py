@@ -1,4 +1,4 @@
-"""What is known of impacts as equations, in scaled variables (rows) of n impacts (columns).
+"""Known values of impacts as equations, in scaled variables (rows) of n impacts (columns).
 
 Equations 13, 14 and 17 hold by the way an impact is written (`State`). Equations 15, 16 and 18 and
 the exact values are conditions, values with a tolerance are observations. All residuals are divided

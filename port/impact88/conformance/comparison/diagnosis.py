@@ -331,7 +331,7 @@ class Diagnosis:
         """Make a hypothesis a cause."""
         score = self._score(hypothesis) if score is None else score
         program = hypothesis.program
-        equivalents, apart = _tell_apart(hypothesis, self._sample)
+        equivalents, apart = _tell_apart(hypothesis)
         self.hypotheses.append(hypothesis)
         self._evidence.append(
             Cause(
@@ -634,7 +634,7 @@ def _independent_results(judge: Judge) -> list[str]:
 _SCENES_TRIED = 60  # to tell two programs apart
 
 
-def _tell_apart(hypothesis: Hypothesis, case: Case) -> tuple[list[str], dict[str, str]]:
+def _tell_apart(hypothesis: Hypothesis) -> tuple[list[str], dict[str, str]]:
     """Return the programs that give the same in this table, those first that do not everywhere; and
     a scene in which the first gives something else."""
     if not hypothesis.equivalents:

@@ -51,14 +51,14 @@ class Program(NamedTuple):
 
     @property
     def sentence(self) -> str:
-        """What the program does, in words of mechanics. A rewritten statement that a later edit
+        """Say in words of mechanics what the program does. A rewritten statement that a later edit
         rewrites again is left out."""
         says = "; and ".join(edit.sentence for edit in self._visible())
         return f"{says} {self.where.text}" if self.where else says
 
     @property
     def formula(self) -> str:
-        """What is written in its statements, and what should be."""
+        """The statements as they are written, and as they should be."""
         return "; ".join(edit.formula for edit in self._visible() if edit.formula)
 
     def _visible(self) -> list[Edit]:
@@ -157,7 +157,7 @@ class Judge(NamedTuple):
 
     @property
     def has_velocities(self) -> bool:
-        """Whether all final velocities are judged."""
+        """True if all final velocities are judged."""
         return self.theirs.keys() >= set(FINAL_VELOCITIES)
 
 
@@ -186,12 +186,12 @@ class Trial(NamedTuple):
 
     @property
     def is_supported(self) -> bool:
-        """Whether the program fits nearly all rows that agree."""
+        """True if the program fits nearly all rows that agree."""
         return bool((self.rows & ~self.wrong).sum() >= MIN_FIT * (~self.wrong).sum())
 
     @property
     def is_complete(self) -> bool:
-        """Whether the program fits nearly all rows, those that disagree and those that agree."""
+        """True if the program fits nearly all rows, those that disagree and those that agree."""
         return self.is_supported and self.explained_count >= MIN_FIT * self.wrong.sum() > 0
 
 

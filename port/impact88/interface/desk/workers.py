@@ -45,7 +45,7 @@ class _NotTakenError(Exception):
 
 
 class _Question:
-    """What a page waits for, until it is answered or ``ended``."""
+    """A question of a page, until it is answered or ``ended``."""
 
     ended = False
 
@@ -61,8 +61,8 @@ class _Worker:
         theirs.close()  # so that the end of the process is the end of the pipe
 
     def answer(self, function: str, arguments: dict[str, Any], seconds: float) -> Any:
-        """What the function returns or raises. Raises _NotTakenError; BrokenError where the process
-        ends, and UserError where it does not answer within the seconds: it is no more then."""
+        """Return or raise what the function does. Raises _NotTakenError; BrokenError where the
+        process ends, and UserError where it does not answer within the seconds: it is no more."""
         try:
             self._connection.send((function, arguments))
             if not self._connection.poll(STARTED_WITHIN):
@@ -213,7 +213,7 @@ class Bench:
 
 
 def _work(connection: Connection, module: str) -> None:
-    """What a process does: it takes a question, says so, and answers, until the pipe ends."""
+    """Take questions, say so of each, and answer it, until the pipe ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # control-C is the desk's, which then closes it
     functions = import_module(module)
     functions.warm()
@@ -227,7 +227,7 @@ def _work(connection: Connection, module: str) -> None:
 
 
 def _outcome(functions: ModuleType, function: str, arguments: dict[str, Any]) -> tuple[Any, Any]:
-    """What the function returns, or the error to raise where the question was asked."""
+    """Return the function's result, or the error to raise where the question was asked."""
     try:
         return getattr(functions, function)(**arguments), None
     except UserError as error:

@@ -1,4 +1,4 @@
-"""What the reader of a page may have done: a machine misreads characters, a person does not.
+"""Errors that the reader of a page may have made: a machine misreads characters, a person does not.
 
 A page with signs of an optical reader (`Printout.machine_read`) may differ by its reader's errors.
 Here is decided which differences are attributed to the reader; `judgement.is_alteration` says when

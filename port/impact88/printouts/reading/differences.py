@@ -66,7 +66,7 @@ class Difference(NamedTuple):
 
     @property
     def question(self) -> str:
-        """What to look for on the paper, and where."""
+        """Say what to look for on the paper, and where."""
         printed = f"{'an' if self.printed[:1] == '8' else 'a'} {self.printed}"
         question = f"is {printed} missing here"
         if self.read:

@@ -1,4 +1,4 @@
-"""What the program prints beside its numbers, as differences: labels, marks, the words of prompts.
+"""Text that the program prints beside its numbers, as differences: labels, marks, prompts' words.
 
 A number stands where it stands by its place on the page; its label says so a second time, and the
 two must agree. A label that reads as another of the program's, or as a word that is not this one,

@@ -20,9 +20,8 @@ from .search import MISMATCH, UNREAD, Column, Evidence, Expected, Search, column
 from .slips import TWO_DIGITS, slips_of
 from .typedtext import stored_and_printed
 
-_STAND_INS = (
-    *("1.7", "230", "-41000", "-.4", "0", ".5", "-1", "1", "-.75", ".25", "12.5", "-33", "61"),
-    *("90", "-118", "164", "3.1", "-7.7", "2900"),
+_STAND_INS = tuple(
+    "1.7 230 -41000 -.4 0 .5 -1 1 -.75 .25 12.5 -33 61 90 -118 164 3.1 -7.7 2900".split()
 )
 """Values put in place of inputs that nothing determines, of the sizes of coefficients, arms, angles
 in all quarters, velocities and masses: a field that prints the same with each of them does not

@@ -46,7 +46,7 @@ class Kind(StrEnum):
     """Pen, stamp, ring: a mark larger than a character."""
     COLOURED = "coloured ink"
     PAPER = "straight line, hole or edge of the sheet"
-    """Of the paper, not of the page: it is not listed."""
+    """It belongs to the paper, not to the page, and is not listed."""
 
 
 _TEXT = frozenset({Kind.CHARACTER, Kind.TYPE})
