@@ -306,7 +306,7 @@ def test_every_registered_format_is_complete(form):
         assert ENDINGS[ending] == form, f"{ending} is {ENDINGS[ending]}'s ending, too"
 
 
-CALLS = {"read": "path, form, encoding, results", "write": "path, form, delimiter, headings"}
+CALLS = {"read": "path, encoding, results", "write": "path, delimiter, headings"}
 
 
 FORMULAS = [

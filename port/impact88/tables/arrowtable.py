@@ -100,7 +100,7 @@ def _scene_column(pa: Any, rows: Rows, name: str, array: Any, where: str) -> Col
 
 
 @contextmanager
-def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[Reader]:
+def read(path: str, encoding: str | None, results: bool) -> Iterator[Reader]:
     """Open a Parquet file. Raises UserError if it is not one."""
     pa = library("pyarrow", "arrow", "this format")
     from pyarrow import parquet
@@ -152,7 +152,7 @@ def _encodable(text: str) -> str:
 
 
 @contextmanager
-def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
+def write(path: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
     """Write a Parquet file, whose schema is the first block's."""
     pa = library("pyarrow", "arrow", "this format")
     from pyarrow import parquet

@@ -131,7 +131,7 @@ def _records(lines: Lines, texts: Iterator[str], delimiter: str) -> Iterator[lis
 
 
 @contextmanager
-def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[Reader]:
+def read(path: str, encoding: str | None, results: bool) -> Iterator[Reader]:
     """Open a CSV table. Raises UserError if it cannot be read as one."""
     with open_text(path, encoding) as lines:
         head = b""
@@ -329,7 +329,7 @@ def has_live_text(column: Column) -> bool:
 
 
 @contextmanager
-def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
+def write(path: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
     """Write a CSV table. Blocks of pyarrow's texts and of arrays go out through pyarrow."""
     ends = f'[{re.escape(delimiter)}"\r\n]'
 

@@ -202,7 +202,7 @@ def _text(cell: Any) -> str:
 
 
 @contextmanager
-def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[Reader]:
+def read(path: str, encoding: str | None, results: bool) -> Iterator[Reader]:
     """Open a workbook. Raises UserError if it is not one, or unpacks to more than it may."""
     budget = Budget(path)
     with _open_workbook(path, budget) as book:
@@ -263,7 +263,7 @@ def _value(value: Any) -> Any:
 
 
 @contextmanager
-def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
+def write(path: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
     """Write a workbook."""
     openpyxl = library("openpyxl", "excel", "an .xlsx")
     book = openpyxl.Workbook(write_only=True)

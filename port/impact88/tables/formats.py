@@ -13,9 +13,9 @@ class Format(NamedTuple):
     """A format of tables.
 
     ``name`` is what ``--from`` and ``--to`` take; ``endings`` are those of file names. ``module``
-    is a module of this package with two context managers: ``read(path, form, encoding, results)``
-    yields a `rows.Reader`, and ``write(path, form, delimiter, headings)`` yields a function that
-    takes the columns of each block in turn; ``form`` is ``name``. ``summary`` stands in the help,
+    is a module of this package with two context managers: ``read(path, encoding, results)`` yields
+    a `rows.Reader`, and ``write(path, delimiter, headings)`` yields a function that takes the
+    columns of each block in turn. ``summary`` stands in the help,
     ``noun`` in messages about one such table.
 
     ``is_text``: read from standard input and written to standard output, in any encoding.

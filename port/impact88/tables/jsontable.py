@@ -235,7 +235,7 @@ def _text(cell: Any) -> Any:
 
 
 @contextmanager
-def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[Reader]:
+def read(path: str, encoding: str | None, results: bool) -> Iterator[Reader]:
     """Open a JSON Lines table. Raises UserError if it cannot be read."""
     with open_text(path, encoding) as lines:
         values = (_elements if lines.begins_with("[") else _values)(lines)
@@ -275,7 +275,7 @@ def _cells(name: str, column: Column) -> list[str]:
 
 
 @contextmanager
-def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
+def write(path: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
     """Write a JSON Lines table, of blocks that need not all have the same columns; under a name
     that ends in .json an array of the same objects."""
     is_array = path.lower().removesuffix(".gz").endswith(".json")

@@ -98,7 +98,7 @@ LARGEST_TEXTS = 256_000_000
 
 
 @contextmanager
-def read(path: str, form: str, encoding: str | None, results: bool) -> Iterator[Reader]:
+def read(path: str, encoding: str | None, results: bool) -> Iterator[Reader]:
     """Open an .npz table. Raises UserError if it is not one, or holds Python objects."""
     with _members(path) as members:
         names = scene_names(list(members), None, results)
@@ -151,7 +151,7 @@ def _array(name: str, column: Column) -> NDArray[Any]:
 
 
 @contextmanager
-def write(path: str, form: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
+def write(path: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
     """Write an .npz table as numpy.savez does, but of arrays with any name."""
     parts: list[list[NDArray[Any]]] = []
     yield lambda columns: parts.append([_array(*column) for column in columns])

@@ -36,19 +36,19 @@ def format_of(path: str, given: str | None) -> str:
 
 @contextmanager
 def open_reader(
-    path: str, form: str, encoding: str | None = None, results: bool = False
+    path: str, format_name: str, encoding: str | None = None, results: bool = False
 ) -> Iterator[Reader]:
     """Open a table for reading (``-``: standard input). Raises UserError if it is not one.
 
     ``encoding``: of a text that is not UTF-8. ``results``: read columns of results, too, whatever
     the case of their headings.
     """
-    row = FORMATS[form]
+    row = FORMATS[format_name]
     if encoding is not None and not row.is_text:
-        raise UserError(f"--encoding is for text; {form} has its own")
+        raise UserError(f"--encoding is for text; {format_name} has its own")
     if path == "-" and not row.is_text:
-        raise UserError(f"{form} cannot be read from standard input; expected a file")
-    with row.load().read(path, form, encoding, results) as reader:
+        raise UserError(f"{format_name} cannot be read from standard input; expected a file")
+    with row.load().read(path, encoding, results) as reader:
         _read_units_row(reader, results)
         reader.remarks += heading_remarks(reader.names, results)
         yield reader
@@ -82,7 +82,7 @@ def _read_units_row(reader: Reader, results: bool) -> None:
 
 @contextmanager
 def open_writer(
-    path: str, form: str, source: Reader, results: Sequence[str], scene_too: bool
+    path: str, format_name: str, source: Reader, results: Sequence[str], scene_too: bool
 ) -> Iterator[Callable[[Rows, Mapping[str, NDArray[Any]]], None]]:
     """Open a table for writing, and yield a function that writes a block and its results.
 
@@ -90,14 +90,14 @@ def open_writer(
     ``scene_too``; a column named like a result gives way to it. The file appears under its name
     when all is written.
     """
-    row = FORMATS[form]
+    row = FORMATS[format_name]
     if path == "-" and not row.is_text and (not row.pipes_out or sys.stdout.isatty()):
         place = "a terminal" if row.pipes_out else "standard output"
-        raise UserError(f"{form} is not for {place}; expected -o FILE{row.endings[0]}")
+        raise UserError(f"{format_name} is not for {place}; expected -o FILE{row.endings[0]}")
     names_omitted = {*results, *(() if scene_too else SCENE)}
     source_names = [name for name in source.names if name not in names_omitted]
     headings = [heading(name) for name in (*source_names, *results)]
-    with row.load().write(path, form, source.delimiter, headings) as put:
+    with row.load().write(path, source.delimiter, headings) as put:
 
         def write(rows: Rows, solved: Mapping[str, NDArray[Any]]) -> None:
             late = [name for name in rows.late if name not in names_omitted]

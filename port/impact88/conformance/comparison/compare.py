@@ -29,8 +29,8 @@ from ...tables.rows import BadCell, Reader, Rows
 from ...tables.table import format_of, open_reader
 from . import agreement
 from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, Case, TrialNoise
-from .diagnosis import Cause, Diagnosis, Unexplained
-from .tablehypotheses import AGREES, UNKNOWN, Hypothesis
+from .diagnosis import Diagnosis, TableCause, Unexplained
+from .tablehypotheses import AGREES, UNKNOWN, TableHypothesis
 from .vectors import FAILURE, FROZEN_ID
 
 MAX_ROWS_KEPT = 20_000
@@ -190,9 +190,9 @@ class Comparison:
         Rows that were not compared, by reason.
     elimination : Elimination
         Rows that agree only as closely as elimination can.
-    evidence : list of Cause
+    evidence : list of TableCause
         The rows that support each cause, its score, and what else would give the same.
-    programs : list of Hypothesis
+    programs : list of TableHypothesis
         Of the causes that are programs, those that give the results of scenes.
     skipped : list of str
         What was not looked for.
@@ -225,8 +225,8 @@ class Comparison:
     differences: list[Row] = field(default_factory=list)
     not_compared: dict[str, Skipped] = field(default_factory=dict)
     elimination: Elimination = field(default_factory=Elimination)
-    evidence: list[Cause] = field(default_factory=list)
-    programs: list[Hypothesis] = field(default_factory=list)
+    evidence: list[TableCause] = field(default_factory=list)
+    programs: list[TableHypothesis] = field(default_factory=list)
     skipped: list[str] = field(default_factory=list)
     equations: dict[str, tuple[int, int]] = field(default_factory=dict)
     unexplained: dict[str, Unexplained] = field(default_factory=dict)

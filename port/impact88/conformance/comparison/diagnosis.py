@@ -31,7 +31,7 @@ from .tablehypotheses import (
     COST_DIGITS,
     COST_NAMED,
     UNKNOWN,
-    Hypothesis,
+    TableHypothesis,
     describe_unexplained,
     evidence_bits,
     judge_of,
@@ -74,7 +74,7 @@ _MIN_PAIR_DIFFERENCE = 1e-5
 """Relative difference below which no pair of mistakes is looked for, only coarser arithmetic."""
 
 
-class Cause(NamedTuple):
+class TableCause(NamedTuple):
     """A cause of differences.
 
     Parameters
@@ -141,13 +141,13 @@ class Diagnosis:
 
     @np.errstate(all="ignore")
     def __init__(self, case: Case) -> None:
-        self.hypotheses: list[Hypothesis] = []
+        self.hypotheses: list[TableHypothesis] = []
         self.skipped: list[str] = []
         self.equations: dict[str, tuple[int, int]] = {}
         self.unexplained: dict[str, Unexplained] = {}
-        self._evidence: list[Cause] = []
+        self._evidence: list[TableCause] = []
         self._ends = time.process_time() + MAX_SECONDS
-        self._known_rows: dict[int, tuple[Hypothesis, Bools]] = {}
+        self._known_rows: dict[int, tuple[TableHypothesis, Bools]] = {}
         wrong = needs_cause(case)
         places = _sample_rows(case, wrong)
         self._sample = case.select_rows(places)
@@ -218,7 +218,7 @@ class Diagnosis:
         )
 
     @property
-    def evidence(self) -> list[Cause]:
+    def evidence(self) -> list[TableCause]:
         """The causes that explain a row, and what they explain."""
         return [cause for cause in self._evidence if cause.explains]
 
@@ -275,7 +275,7 @@ class Diagnosis:
             for hypothesis in self._programs():
                 scored.append((self._score(hypothesis), hypothesis))
         explained = np.zeros(wrong.size, bool)
-        chosen: list[tuple[Hypothesis, float]] = []
+        chosen: list[tuple[TableHypothesis, float]] = []
         for _ in range(_MAX_CAUSES):
             scores = [(self._score(x, explained), x) for _, x in scored]
             highest = max((score for score, _ in scores), default=0.0)
@@ -297,13 +297,13 @@ class Diagnosis:
             if hypothesis.where or (self._fits(hypothesis) & wrong).sum() >= left:
                 self._add(hypothesis, score)
 
-    def _fits(self, hypothesis: Hypothesis) -> Bools:
+    def _fits(self, hypothesis: TableHypothesis) -> Bools:
         """Return the rows of the sample that a hypothesis predicts."""
         if id(hypothesis) not in self._known_rows:
             self._known_rows[id(hypothesis)] = hypothesis, hypothesis.fits(self._sample)
         return self._known_rows[id(hypothesis)][1]
 
-    def _score(self, hypothesis: Hypothesis, explained: Bools | None = None) -> float:
+    def _score(self, hypothesis: TableHypothesis, explained: Bools | None = None) -> float:
         """Return the bits that a hypothesis gets right in the sample, less what it costs.
 
         ``explained``: rows that another cause explains already.
@@ -318,7 +318,7 @@ class Diagnosis:
             return float(self._bits[gained].sum() - _CONTRADICTED * contradicted.sum() - cost)
         return float(hypothesis.bits * (gained.sum() - contradicted.sum()) - cost)
 
-    def _cost(self, hypothesis: Hypothesis) -> float:
+    def _cost(self, hypothesis: TableHypothesis) -> float:
         """Return the bits that it takes to state a hypothesis, and which of the rows that disagree
         it explains, where it holds: a condition that says so is worth them."""
         rows = self._wrong & (self._bits > 0)
@@ -327,14 +327,14 @@ class Diagnosis:
         count = int((rows & self._fits(hypothesis)).sum())
         return hypothesis.cost + math.log2(math.comb(int(rows.sum()), count))
 
-    def _add(self, hypothesis: Hypothesis, score: float | None = None) -> None:
+    def _add(self, hypothesis: TableHypothesis, score: float | None = None) -> None:
         """Make a hypothesis a cause."""
         score = self._score(hypothesis) if score is None else score
         program = hypothesis.program
         equivalents, apart = _tell_apart(hypothesis)
         self.hypotheses.append(hypothesis)
         self._evidence.append(
-            Cause(
+            TableCause(
                 says=hypothesis.says,
                 formula=program.formula if program else "",
                 where=hypothesis.where.text if hypothesis.where else "",
@@ -349,7 +349,7 @@ class Diagnosis:
             )
         )
 
-    def _programs(self) -> Iterator[Hypothesis]:
+    def _programs(self) -> Iterator[TableHypothesis]:
         """Yield the programs that explain rows of the sample, with the conditions under which they
         do."""
         case = self._sample
@@ -402,14 +402,14 @@ class Diagnosis:
             if other.wrong.any():
                 yield from self._explain(other, False)
 
-    def _extend(self, program: Program, judge: Judge) -> Iterator[Hypothesis]:
+    def _extend(self, program: Program, judge: Judge) -> Iterator[TableHypothesis]:
         """Yield a program with an edit more, by which it gives the other results, too."""
         trial = try_program(program, judge)
         if not trial.is_complete:
             for better in find_single_edits(judge, judge.wrong & ~trial.rows, program)[:2]:
                 yield self._hypothesis(better.program, judge)
 
-    def _explain(self, judge: Judge, is_large: bool) -> Iterator[Hypothesis]:
+    def _explain(self, judge: Judge, is_large: bool) -> Iterator[TableHypothesis]:
         """Yield programs that explain rows of a judge: with one edit, a constant, two edits, or an
         edit on top of the best; and where they hold."""
         singles, hypotheses = self._try_one_change(judge, judge.wrong, ~judge.wrong, Program())
@@ -439,7 +439,7 @@ class Diagnosis:
         left: Bools,
         known: Bools,
         base: Program,
-    ) -> tuple[list[Trial], list[Hypothesis]]:
+    ) -> tuple[list[Trial], list[TableHypothesis]]:
         """Return the programs with one change more than ``base`` that explain rows ``left``, and
         with the conditions under which they hold: edits, and constants where these leave rows.
 
@@ -457,10 +457,10 @@ class Diagnosis:
 
     def _explain_rest(
         self,
-        best: Hypothesis,
-        hypotheses: Sequence[Hypothesis],
+        best: TableHypothesis,
+        hypotheses: Sequence[TableHypothesis],
         judge: Judge,
-    ) -> Iterator[Hypothesis]:
+    ) -> Iterator[TableHypothesis]:
         """Yield what explains the rows that the best of the hypotheses leaves: another mistake
         beside it, or on top of it."""
         fits = try_program(best.program or Program(), judge).rows
@@ -480,7 +480,7 @@ class Diagnosis:
             ):
                 return
 
-    def _bases(self, best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> list[Program]:
+    def _bases(self, best: TableHypothesis, hypotheses: Sequence[TableHypothesis]) -> list[Program]:
         """Return the programs on top of which a second mistake is looked for: the best, one like it
         in the spelling that other models are written in, and the correct one."""
         bases = [Program(best.program.edits if best.program else ())]
@@ -502,7 +502,7 @@ class Diagnosis:
 
     def _are_explained(
         self,
-        hypotheses: Sequence[Hypothesis],
+        hypotheses: Sequence[TableHypothesis],
         judge: Judge,
     ) -> bool:
         """Return whether those of the hypotheses that are worth their cost explain nearly all rows
@@ -514,7 +514,7 @@ class Diagnosis:
                 left &= ~try_program(hypothesis.program or Program(), judge).rows
         return bool(left.sum() <= (1 - MIN_FIT) * shown.sum())
 
-    def _best(self, hypotheses: Sequence[Hypothesis]) -> Hypothesis | None:
+    def _best(self, hypotheses: Sequence[TableHypothesis]) -> TableHypothesis | None:
         """Return the hypothesis with the highest score, None where none is worth its cost."""
         scored = [(self._score(x), x) for x in hypotheses]
         score, best = max(scored, key=lambda pair: pair[0], default=(0.0, None))
@@ -525,7 +525,7 @@ class Diagnosis:
         trials: Sequence[Trial],
         known: Bools,
         judge: Judge,
-    ) -> Iterator[Hypothesis]:
+    ) -> Iterator[TableHypothesis]:
         """Yield programs as hypotheses, and with the conditions that keep out the rows that
         contradict them, and those that they leave without a cause.
 
@@ -557,7 +557,7 @@ class Diagnosis:
 
     def _hypothesis(
         self, program: Program, judge: Judge, equivalents: Sequence[Program] = ()
-    ) -> Hypothesis:
+    ) -> TableHypothesis:
         """Return a program as a hypothesis about the judge's results."""
         names = tuple(judge.theirs)
         left_out = [name for name in self._names if name not in names]
@@ -565,7 +565,7 @@ class Diagnosis:
         if left_out:
             says += f"; {', '.join(left_out)} {UNKNOWN}"
         cost = sum(map(_cost_of, program.edits)) + _COST_LEFT_OUT * len(left_out)
-        return Hypothesis(
+        return TableHypothesis(
             says,
             lambda case: match_program(program, case, names),
             cost + (PREDICATE_COST if program.where else 0.0),
@@ -634,7 +634,7 @@ def _independent_results(judge: Judge) -> list[str]:
 _SCENES_TRIED = 60  # to tell two programs apart
 
 
-def _tell_apart(hypothesis: Hypothesis) -> tuple[list[str], dict[str, str]]:
+def _tell_apart(hypothesis: TableHypothesis) -> tuple[list[str], dict[str, str]]:
     """Return the programs that give the same in this table, those first that do not everywhere; and
     a scene in which the first gives something else."""
     if not hypothesis.equivalents:

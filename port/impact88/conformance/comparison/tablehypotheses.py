@@ -52,7 +52,7 @@ _WIDTHS = {SINGLE: (24, 27.0, 33.5), APPLESOFT: (32, 34.0, 40.0)}
 bound: a typical error is some bits smaller than the bound."""
 
 
-class Hypothesis(NamedTuple):
+class TableHypothesis(NamedTuple):
     """A hypothesis: what it says, which rows of a case it predicts, what it costs to state, and the
     bits that a row earns, None for those by which the row is off.
 
@@ -78,7 +78,7 @@ class Hypothesis(NamedTuple):
         return (self.program or Program()).results(scene)
 
 
-def plain_hypotheses(case: Case, wrong: Bools) -> Iterator[Hypothesis]:
+def plain_hypotheses(case: Case, wrong: Bools) -> Iterator[TableHypothesis]:
     """Yield the hypotheses about a case that are no program; ``wrong``: the rows that need a
     cause."""
     for says, match in (
@@ -86,13 +86,13 @@ def plain_hypotheses(case: Case, wrong: Bools) -> Iterator[Hypothesis]:
         (FLOORED, lambda case: _match_cut(case, np.floor)),
         (TRUNCATED, lambda case: _match_cut(case, np.trunc)),
     ):
-        yield Hypothesis(says, match, COST_DIGITS, 1.0)
+        yield TableHypothesis(says, match, COST_DIGITS, 1.0)
     if wrong.sum() >= _MIN_REORDERED_ROWS and case.wrong.mean() > MIN_AFFECTED:
         cost = COST_NAMED + math.log2(wrong.size) * wrong.sum()
-        yield Hypothesis(OTHER_ROWS, lambda other: _match_other_rows(other, case), cost)
+        yield TableHypothesis(OTHER_ROWS, lambda other: _match_other_rows(other, case), cost)
     for says in _WIDTHS:
         if _is_coarse(case, wrong, says):
-            yield Hypothesis(says, partial(_match_width, says=says), COST_WIDTH, 1.0)
+            yield TableHypothesis(says, partial(_match_width, says=says), COST_WIDTH, 1.0)
 
 
 def own_digits(case: Case) -> NDArray[np.object_]:

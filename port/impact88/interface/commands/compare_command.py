@@ -50,7 +50,7 @@ from . import options
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from ...conformance.comparison.conformance import Conformance
-    from ...conformance.comparison.diagnosis import Cause
+    from ...conformance.comparison.diagnosis import TableCause
 
 MAX_BAD_ROWS_LISTED = 20  # one screenful
 MAX_VECTORS_LISTED = 5  # for each reason why some do not pass
@@ -185,7 +185,7 @@ def _notes(comparison: Comparison) -> Iterator[str]:
             yield f"{tally.missing} cells of {name} are empty where there is a result"
 
 
-def _evidence_lines(cause: Cause) -> Iterator[str]:
+def _evidence_lines(cause: TableCause) -> Iterator[str]:
     """Yield what supports a cause."""
     yield f"\n{cause.says}"
     if cause.formula:

@@ -142,10 +142,10 @@ def _scene_given(args: options.Args) -> Iterator[_Table]:
 
 
 @contextmanager
-def _table_given(args: options.Args, form: str) -> Iterator[_Table]:
+def _table_given(args: options.Args, format_name: str) -> Iterator[_Table]:
     """Yield the table that CASES names, filled from ``--scene`` and ``--set``."""
     where = display_name(args.cases)
-    with open_reader(args.cases, form, args.encoding) as reader:
+    with open_reader(args.cases, format_name, args.encoding) as reader:
         first, blocks = _first_block(reader)
         extra_case = _scene_beside(args) if args.scene else None
         system = (extra_case.units if extra_case else None) or args.units
