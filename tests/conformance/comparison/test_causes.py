@@ -1,6 +1,6 @@
 """Causes that no list of mistakes names: constants, powers and limits of one input, other rows.
 
-The programs are those of `heldout`, with a bug put in as text.
+The programs are those of `wrongprograms`, with a bug put in as text.
 """
 
 from __future__ import annotations
@@ -9,13 +9,12 @@ import os
 import re
 from collections.abc import Sequence
 
-import bugs
-import heldout
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from longer import long_but
+from wrongprograms import answers
 
 from impact88.conformance.comparison.compare import Comparison, compare
 from impact88.conformance.comparison.constants import KNOWN, fit_constants
@@ -53,7 +52,7 @@ KINDS = {
               r"inverse masses \(R\): multiplied by 1.07"),
     "m*k": ("impulse", [(BODIES, GYRATION)], r"m\*k for m\*k\*\*2"),
     "about the contact": ("two", [(BODIES, ABOUT_CONTACT)], "about the contact point"),
-    "whole degrees": ("on A", [(ANGLES, f"{ANGLES}; pb = radians(int(g['PB']))")], "PB cut to"),
+    "whole degrees": ("on_a", [(ANGLES, f"{ANGLES}; pb = radians(int(g['PB']))")], "PB cut to"),
     "a mean": ("impulse", [("ired = ia*ib/itot", "ired = (ia + ib)/2")], r"\(ia \+ ib\)/2"),
     "an arm": ("impulse", [("R + (an + bn)**2/itot", "R + (an + bn)/itot")], r"\(an \+ bn\)/"),
     "e_m": ("impulse", [('g["E"], g["MU"], g["EM"]', 'g["E"], g["MU"], min(g["EM"], 0)')],
@@ -65,23 +64,24 @@ FITTED = ("1.467", "an angle's zero", "a statement", "one component in mph", "57
 FEW = ("a hair",)  # so small a difference is no pair of mistakes: none is looked for
 UNSOUGHT = () if SWEEP else ("VBX",)
 """Left out of a table, so that no pair is looked for equation by equation, which takes long."""
-assert set(heldout.PROGRAMS) <= set(bugs.PROGRAMS)
 
 
-def compared(rows: list[dict[str, str]], answers: list[dict]) -> Comparison:
-    names = [name for name in answers[0] if name not in ("PM", *UNSOUGHT)]
-    table = [
-        {**scene, **{name: row[name] for name in names}}
-        for scene, row in zip(rows, answers, strict=True)
-    ]
-    return compare(table)
+def compared(
+    rows: list[dict[str, str]], found: dict[str, list[str]], unsought: Sequence[str] = UNSOUGHT
+) -> Comparison:
+    return compare(
+        [
+            {**scene, **{name: found[name][row] for name in found if name not in unsought}}
+            for row, scene in enumerate(rows)
+        ]
+    )
 
 
 @pytest.mark.parametrize("kind", KINDS if SWEEP else FEW)
 @pytest.mark.long
 def test_a_kind_of_mistake_is_named(kind: str) -> None:
     program, changes, says = KINDS[kind]
-    done = compared(ROWS, bugs.answers(ROWS, program, *changes))
+    done = compared(ROWS, answers(ROWS, program, changes))
     cause, count = done.causes.most_common(1)[0]
     assert re.search(says, cause), done.causes
     assert "; and " not in cause
@@ -93,9 +93,9 @@ def test_a_constant_is_fitted(kind: str) -> None:
     """Alone, in rows of casework: what the search does where no edit of its own explains them."""
     program, changes, says = KINDS[kind]
     rows = [scene for kind, _, scene in scenes(60, seed=8) if kind == CASEWORK]
-    answers = bugs.answers(rows, program, *changes)
+    found = answers(rows, program, changes)
     scene = {name: np.array([float(row[name]) for row in rows]) for name in SCENE}
-    theirs = {name: np.array([row[name] for row in answers], float) for name in FINAL_VELOCITIES}
+    theirs = {name: np.array(found[name], float) for name in FINAL_VELOCITIES}
     limit = {name: 1e-9 * (1 + np.abs(column)) for name, column in theirs.items()}
     judge = Judge(scene, theirs, limit, np.zeros(len(rows), bool))
     judge = judge._replace(wrong=~judge.matches(Program().results(scene)))
@@ -110,13 +110,9 @@ def test_what_no_row_tells_apart_is_said_in_both_words(results: str) -> None:
     """The normal's direction matters to the rule of MU's sign alone, but for what is along it."""
     rows = [scene for kind, _, scene in scenes(60, seed=4) if kind == CASEWORK]
     turned = ("c, s = cos(ga), sin(ga)", "c, s = -cos(ga), -sin(ga)")
-    answers = bugs.answers(rows, "impulse", turned)
     names = [*FINAL_VELOCITIES, *(["PN"] if results != "velocities" else [])]
-    table = [
-        {**scene, **{name: row[name] for name in names if name not in UNSOUGHT}}
-        for scene, row in zip(rows, answers, strict=True)
-    ]
-    cause = compare(table).evidence[0]
+    found = answers(rows, "impulse", [turned])
+    cause = compared(rows, {name: found[name] for name in names}).evidence[0]
     said = [cause.says, *cause.equivalents]
     assert any("Γ half a turn on" in text for text in said)
     inverted = any("MU's sign rule is inverted" in text for text in said)
@@ -126,8 +122,9 @@ def test_what_no_row_tells_apart_is_said_in_both_words(results: str) -> None:
 @pytest.mark.long
 def test_results_in_another_order_are_told() -> None:
     rows = [scene for kind, _, scene in scenes(60, seed=4) if kind == CASEWORK]
-    answers = sorted(bugs.answers(rows, "impulse"), key=lambda row: row["VAX"])
-    done = compared(rows, answers)
+    found = answers(rows, "impulse")
+    order = np.argsort(np.array(found["VAX"], float))
+    done = compared(rows, {name: [column[k] for k in order] for name, column in found.items()})
     assert done.causes[OTHER_ROWS] >= 0.9 * done.differing
 
 
