@@ -22,8 +22,9 @@ from math import inf
 from typing import Any
 
 from ..errors import UserError
+from ..names import INERTIA, MASS
 from .doubles import digits, double
-from .units import INERTIA, MASS, SYMBOLS, SYSTEMS, System, nominal, size_of
+from .units import SYMBOLS, SYSTEMS, System, nominal, size_of
 
 WORD = "estimate"
 """The word in a file for an unknown inertia."""

@@ -7,16 +7,16 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..names import RESULTS, SCENE, quantity
+from ..names import ANGLE, INERTIA, LENGTH, MASS, NUMBER, RESULTS, SCENE, SPIN, VELOCITY, quantity
 
 ORDINARY: dict[str, tuple[float, float]] = {
-    "degree": (-180.0, 180.0),
-    "length": (1.0, 9.0),
-    "mass": (50.0, 200.0),
-    "mass·length²": (800.0, 4000.0),
-    "length/time": (-60.0, 60.0),
-    "rad/time": (-3.0, 3.0),
-    "1": (0.1, 0.9),
+    ANGLE: (-180.0, 180.0),
+    LENGTH: (1.0, 9.0),
+    MASS: (50.0, 200.0),
+    INERTIA: (800.0, 4000.0),
+    VELOCITY: (-60.0, 60.0),
+    SPIN: (-3.0, 3.0),
+    NUMBER: (0.1, 0.9),
 }
 """Ordinary numbers, by the rule of their unit."""
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from ..names import quantity
+from ..names import MASS, VELOCITY, quantity
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -29,12 +29,12 @@ ONE_SPIN = "the moment at the contact leaves both vehicles with one spin; no mom
 VELOCITY_NAMES = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
 """Components, speed and course of each vehicle's velocity before the impact."""
 MEASURES = {
-    "mass": (
+    MASS: (
         MIN_MASS,
         MAX_MASS,
         "no vehicle has that mass (200 kg to 60 t); is its unit as meant?",
     ),
-    "length/time": (
+    VELOCITY: (
         -MAX_SPEED,
         MAX_SPEED,
         "no vehicle is as fast (500 km/h); is its unit as meant?",

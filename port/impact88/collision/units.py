@@ -27,7 +27,24 @@ from math import inf, isfinite
 from typing import Any, NamedTuple, NoReturn
 
 from ..errors import UserError, quoted
-from ..names import NO_AMOUNTS, PIVOT, quantity
+from ..names import (
+    ANGLE,
+    ENERGY,
+    FORCE,
+    IMPULSE,
+    INERTIA,
+    LENGTH,
+    MASS,
+    NO_AMOUNTS,
+    NUMBER,
+    PERCENT,
+    PIVOT,
+    SPIN,
+    TIME,
+    TURNING,
+    VELOCITY,
+    quantity,
+)
 from .doubles import BARE, digits, double, is_number
 
 _FOOT = Fraction("0.3048")
@@ -35,20 +52,6 @@ _POUND = Fraction("0.45359237")
 _GRAVITY = Fraction("9.80665")
 _SLUG = _POUND * _GRAVITY / _FOOT
 _DEGREE = Fraction("0.017453292519943295769236907684886127134")
-
-LENGTH = "length"
-VELOCITY = "length/time"
-MASS = "mass"
-SPIN = "rad/time"
-INERTIA = "mass·length²"
-ENERGY = "mass·length²/time²"
-FORCE = "mass·length/time²"
-IMPULSE = "mass·length/time"
-TURNING = "mass·length²/time"
-TIME = "time"
-ANGLE = "degree"
-NUMBER = "1"
-PERCENT = "percent"
 
 Dimension = tuple[int, ...]
 """Exponents of length, mass, time and angle."""

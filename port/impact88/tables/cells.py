@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from ..collision import doubles
 from ..collision.doubles import is_number
 from ..collision.units import (
-    NUMBER,
     SYSTEMS,
     Convention,
     System,
@@ -28,11 +27,11 @@ from ..collision.units import (
 )
 from ..errors import UserError, quoted
 from ..mechanics.closedform.columns import OPTIONAL_OF_POINTS, UNUSED_BY_POINTS
-from ..names import RESULTS, SCENE, quantity
+from ..names import ENERGY, INERTIA, LENGTH, MASS, NUMBER, RESULTS, SCENE, VELOCITY, quantity
 from .remarks import Remark
 from .rows import ArrowTexts, Column, Heading, Rows, heading
 
-_MEASURING = ("length", "length/time", "mass", "mass·length²", "mass·length²/time²")
+_MEASURING = (LENGTH, VELOCITY, MASS, INERTIA, ENERGY)
 """Quantities whose bare column leaves its unit open beside columns with units."""
 _NUMBERS = re.compile(r"(?<![a-zA-Z^])(?:[0-9][0-9,]*\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _WRITTEN = re.compile(r"[+-]?[0-9]*(?:\.([0-9]*))?(?:[eE]([+-]?[0-9]+))?")
@@ -144,7 +143,7 @@ class TableUnits:
 def _measures(system: str) -> str:
     """The units of a system that tell it from others."""
     usual = SYSTEMS[system].usual
-    return ", ".join(usual[rule] for rule in ("length", "length/time", "mass"))
+    return ", ".join(usual[rule] for rule in (LENGTH, VELOCITY, MASS))
 
 
 def last_digit(text: str) -> float:

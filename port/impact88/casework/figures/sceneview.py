@@ -8,6 +8,7 @@ from typing import Any
 from ...collision.geometry import clock
 from ...collision.units import RULES, System
 from ...messages.arguments import explains_arguments
+from ...names import IMPULSE, LENGTH, SPIN, VELOCITY
 from . import drawing as d
 from .canvas import Svg, svg
 from .drawing import ROW, Box, Drawing, Label, Path, Text, View, fitting, place, short
@@ -15,7 +16,7 @@ from .scenegeometry import Plan, Vehicle, plan
 
 COLOURS = {"A": d.BLUE, "B": d.VERMILION}
 TINTS = {"A": "#d6e8f3", "B": "#fbe6d8"}
-IMPULSE = "#a03c78"
+IMPULSE_COLOUR = "#a03c78"
 """A darker reddish purple than Okabe and Ito's: thin lines need it on white."""
 PLANE = (2.4, 0.8, 0.4, 0.8)
 """Dashes of the contact plane."""
@@ -27,10 +28,6 @@ ARROWS: dict[str, tuple[str, tuple[float, tuple[float, ...]], float]] = {
 """Velocities of a vehicle: symbol, width and dashes of the arrow, and its head."""
 FIELD = 70.0  # largest height of the drawing proper, in mm
 _MARGIN = 6.0  # room for labels beside it, in mm
-_SPEED = "length/time"
-_LENGTH = "length"
-_SPIN = "rad/time"
-_IMPULSE = "mass·length/time"
 
 
 def scene_drawing(
@@ -193,10 +190,10 @@ class _Field:
                 if vehicle.name == "A"
                 else (-self.force, "−P", "opposite impulse", 0.45, 2.2)
             )
-            drawing.add(*d.arrow(at(0), at(force), IMPULSE, width, head=head, role=role))
+            drawing.add(*d.arrow(at(0), at(force), IMPULSE_COLOUR, width, head=head, role=role))
             text = f"{symbol}, {clock(vehicle.pdof(self.shapes.impulse or 0j))}"
             bold = vehicle.name == "A"
-            drawing.add(Label(at(force), force, text, 7.5, IMPULSE, bold, f"{role} label"))
+            drawing.add(Label(at(force), force, text, 7.5, IMPULSE_COLOUR, bold, f"{role} label"))
         drawing.add(Path(d.circle(at(0), 0.75), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
         drawing.add(Path(d.circle(at(0), 0.2), None, fill=d.BLACK))
         drawing.add(Label(at(0), -self.shapes.tangent, "C", role="contact label"))
@@ -328,12 +325,12 @@ def _key(drawing: Drawing, field: _Field, y: float, units: System, left_edge: fl
     middle = [(plane, f"contact plane, Γ = {short(shapes.numbers['GA'])}°")]
     if field.speed:
         per_speed = field.at.scale * field.per_speed
-        middle.append(scale("speed", field.speed, per_speed, _SPEED))
-    middle.append(scale("length", field.size, field.at.scale, _LENGTH))
+        middle.append(scale("speed", field.speed, per_speed, VELOCITY))
+    middle.append(scale("length", field.size, field.at.scale, LENGTH))
     if shapes.impulse is not None:
         left.append((velocity("change"), "velocity change ΔV"))
-        force = d.arrow(0, sample, IMPULSE, 0.9, head=2.8)
-        size = with_unit(abs(shapes.impulse), _IMPULSE, units)
+        force = d.arrow(0, sample, IMPULSE_COLOUR, 0.9, head=2.8)
+        size = with_unit(abs(shapes.impulse), IMPULSE, units)
         room = _SECOND - 1.2 - (2.0 + sample + 1.5)
         texts = [f"impulse P on A, {size}", f"impulse P, {size}"]
         left.append((force, texts[d.text_width(texts[0], d.TEXT) > room]))
@@ -390,7 +387,7 @@ def table_and_notes(drawing: Drawing, shapes: Plan, y: float, units: System) -> 
 
 def _cells(vehicle: Vehicle, shapes: Plan, units: System, widest: float) -> list[str]:
     def speed(value: float) -> str:
-        return fitting(units.display_value(_SPEED, value), widest)
+        return fitting(units.display_value(VELOCITY, value), widest)
 
     cells = [speed(vehicle.before.speed), "–", "–", "–"]
     turn = -1.0 if units.is_turned("WA") else 1.0
@@ -411,9 +408,9 @@ def _sizes_words(shapes: Plan, units: System) -> str:
         origin = shapes.sizes_from[vehicle.name]
         size = " by ".join(
             short(amount) if origin == "measured" else f"{amount:.1f}".removesuffix(".0")
-            for amount in (units.display_value(_LENGTH, x) for x in (vehicle.length, vehicle.width))
+            for amount in (units.display_value(LENGTH, x) for x in (vehicle.length, vehicle.width))
         )
-        size = f"{size} {'' if units.is_bare else units.label(_LENGTH)}".rstrip()
+        size = f"{size} {'' if units.is_bare else units.label(LENGTH)}".rstrip()
         words = {
             "measured": f"as measured, {size}",
             "I/m": "from I/m, L/W = 2.6",
@@ -432,9 +429,9 @@ def _notes(shapes: Plan, units: System) -> list[str]:
     first = [_sizes_words(shapes, units)] if shapes.numbers["M"] != 4 else []
     barrier = len(shapes.bodies) < 2
     if not barrier:
-        first.append(f"Relative speed of the centers {with_unit(shapes.closing, _SPEED, units)}.")
+        first.append(f"Relative speed of the centers {with_unit(shapes.closing, VELOCITY, units)}.")
     if not units.is_bare:
-        first.append(f"Speeds in {units.label(_SPEED)}, spins in {units.label(_SPIN)}.")
+        first.append(f"Speeds in {units.label(VELOCITY)}, spins in {units.label(SPIN)}.")
     notes = [" ".join(filter(None, first))]
     if shapes.numbers["M"] == 4:
         apart = ", moved apart along n" if shapes.apart else ""
@@ -447,11 +444,13 @@ def _notes(shapes: Plan, units: System) -> list[str]:
 def description(shapes: Plan, units: System) -> str:
     parts = []
     for vehicle in shapes.vehicles:
-        speed = with_unit(vehicle.before.speed, _SPEED, units)
+        speed = with_unit(vehicle.before.speed, VELOCITY, units)
         text = f"Vehicle {vehicle.name}: speed {speed} before"
         if vehicle.after and vehicle.change is not None:
-            text += f", {with_unit(vehicle.after.speed, _SPEED, units)} after, change of velocity "
-            text += with_unit(abs(vehicle.change), _SPEED, units)
+            text += (
+                f", {with_unit(vehicle.after.speed, VELOCITY, units)} after, change of velocity "
+            )
+            text += with_unit(abs(vehicle.change), VELOCITY, units)
             if shapes.impulse and not vehicle.wall:
                 text += f", force from {clock(vehicle.pdof(shapes.impulse))}"
         parts.append(text + ".")

@@ -10,7 +10,7 @@ from . import drawing as d
 from . import sceneview as view
 from .drawing import Box, Drawing, Label, Path, Text, View, place
 from .scenegeometry import Plan, Vehicle, plan
-from .sceneview import COLOURS, IMPULSE, PLANE, TINTS, draw_axes, name_label
+from .sceneview import COLOURS, IMPULSE_COLOUR, PLANE, TINTS, draw_axes, name_label
 
 # in mm
 _PANEL_GAP = 4.0  # between panels
@@ -177,15 +177,15 @@ def _body(drawing: Drawing, shapes: Plan, vehicle: Vehicle, at: View, size: floa
     sense, minus = (1, "") if vehicle.name == "A" else (-1, "−")
     for along, symbol in ((shapes.normal, "n"), (shapes.tangent, "t")):
         end = contact + 0.3 * size * sense * along
-        drawing.add(*d.arrow(contact, end, IMPULSE, 0.8, head=2.6, role="impulse"))
+        drawing.add(*d.arrow(contact, end, IMPULSE_COLOUR, 0.8, head=2.6, role="impulse"))
         text, role = f"{minus}P_{symbol}", "impulse label"
-        drawing.add(Label(end, sense * along, text, 8, IMPULSE, True, role))
+        drawing.add(Label(end, sense * along, text, 8, IMPULSE_COLOUR, True, role))
     if not point:
         outward = -sense * shapes.normal
         turn = contact, _MOMENT, sense, d.degrees(outward) + 180
-        drawing.add(*d.turning_arrow(*turn, IMPULSE, 0.6, span=200, role="moment"))
+        drawing.add(*d.turning_arrow(*turn, IMPULSE_COLOUR, 0.6, span=200, role="moment"))
         edge = contact + _MOMENT * outward
-        drawing.add(Label(edge, outward, f"{minus}M", 8, IMPULSE, True, "moment label"))
+        drawing.add(Label(edge, outward, f"{minus}M", 8, IMPULSE_COLOUR, True, "moment label"))
     drawing.add(Path(d.circle(center, 0.7), colour, 0.3, fill=d.WHITE, role="center"))
     if not point:
         drawing.add(Path(d.circle(contact, 0.5), d.BLACK, 0.3, fill=d.WHITE, role="contact"))

@@ -9,7 +9,7 @@ from typing import Any, Self
 
 from ...collision.geometry import clock, within_doubles
 from ...collision.needs import needs_in_words
-from ...collision.units import RULES, VELOCITY, System, display_values
+from ...collision.units import RULES, System, display_values
 from ...errors import UserError
 from ...mechanics.outcome import forces, moment_ratio, outcome
 from ...mechanics.posed import (
@@ -22,7 +22,7 @@ from ...mechanics.posed import (
 )
 from ...mechanics.state import CHANGES, COURSES, FORCES
 from ...messages.plaintable import decimals_for, format_fixed, number, paragraph, plain, table
-from ...names import CHAPTER, FINAL_STATE, PIVOT, RESULTS, SCENE, VELOCITIES, quantity
+from ...names import CHAPTER, FINAL_STATE, PIVOT, RESULTS, SCENE, VELOCITIES, VELOCITY, quantity
 from ...status import IMPOSSIBLE, sentences
 from .unknowns import BADLY_CONDITIONED, Solution, solve_for
 

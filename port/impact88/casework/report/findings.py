@@ -16,7 +16,7 @@ from ...errors import UserError
 from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
 from ...mechanics.state import COURSES, KNOWABLE
 from ...messages.plaintable import format_fixed, number
-from ...names import DEFAULT_M, SCENE, check_names, quantity
+from ...names import DEFAULT_M, LENGTH, MASS, SCENE, SPIN, VELOCITY, check_names, quantity
 from ...status import sentences
 from ..figures.canvas import svg
 from ..figures.sceneview import scene_drawing
@@ -352,7 +352,7 @@ def _units_text(units: System) -> str:
     """Return the units in words."""
     if units.is_bare:
         return "any consistent set"
-    rules = ("length", "mass", "length/time", "rad/time")
+    rules = (LENGTH, MASS, VELOCITY, SPIN)
     return ", ".join([*(units.label(rule) for rule in rules), "angles in degrees"])
 
 

@@ -24,7 +24,7 @@ from ...casework.chapter import deltav
 from ...collision.units import System, display_values
 from ...errors import BEYOND_DOUBLES, UserError
 from ...messages.plaintable import number, quantities, table
-from ...names import FINAL_VELOCITIES, SCENE, quantity
+from ...names import FINAL_VELOCITIES, SCENE, VELOCITY, quantity
 from . import options
 
 AFTER = FINAL_VELOCITIES[:4]
@@ -83,7 +83,7 @@ def _answer(known: dict[str, float], like: str | None, factor: float, units: Sys
         _check_finite(estimate.values())
         estimates.append(display_values(estimate, units))
     speeds = display_values({n: known[n] for n in GIVEN}, units)
-    label = units.label("length/time")
+    label = units.label(VELOCITY)
     rows = [[number(estimate[n]) for n in ("LOSS", "DVA", "DVB")] for estimate in estimates]
     heading = ["loss [percent]", f"DVA [{label}]", f"DVB [{label}]"]
     lines = [

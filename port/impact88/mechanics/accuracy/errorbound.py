@@ -19,7 +19,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...names import FINAL_VELOCITIES, PIVOT, RESULTS
+from ...names import (
+    ENERGY,
+    FINAL_VELOCITIES,
+    IMPULSE,
+    PERCENT,
+    PIVOT,
+    RESULTS,
+    SPIN,
+    TURNING,
+    VELOCITY,
+)
 from ..closedform.solve import solve
 from .runningerror import UNIT, listing_errors
 
@@ -100,12 +110,12 @@ def scales(scene: Mapping[str, Any], solved: Mapping[str, Any]) -> dict[str, Flo
         energy = np.fmax(np.abs(solved["KI"]), np.abs(solved["KF"]))
         normal = solve({**scene, "MU": PIVOT}, ["PN"])["PN"]
         by_unit = {
-            "length/time": speed,
-            "rad/time": spin,
-            "mass·length/time": 2 * mass * speed,
-            "mass·length²/time": 2 * np.fmax(inertia * spin, mass * speed * arm),
-            "mass·length²/time²": 2 * energy,
-            "percent": 200 * energy / np.abs(solved["KI"]),  # of the energy before
+            VELOCITY: speed,
+            SPIN: spin,
+            IMPULSE: 2 * mass * speed,
+            TURNING: 2 * np.fmax(inertia * spin, mass * speed * arm),
+            ENERGY: 2 * energy,
+            PERCENT: 200 * energy / np.abs(solved["KI"]),  # of the energy before
             "bits": speed,  # never asked for
         }
         size = {"WA": spin, "WB": spin}

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...collision.needs import ordinary, sentences
 from ...errors import UserError
-from ...names import DEFAULT_M, PIVOT, SCENE, quantity
+from ...names import ANGLE, DEFAULT_M, LENGTH, PIVOT, SCENE, SPIN, VELOCITY, quantity
 from ...status import IMPOSSIBLE, Status
 from .columns import BODIES, UNUSED_BY_POINTS
 from .general import solve_arrays
@@ -160,11 +160,11 @@ def _trials(name: str, rng: np.random.Generator) -> list[float]:
     coefficient, and velocities that outweigh any other, so that no sign hides behind them."""
     rule = quantity(name).unit
     values = ordinary(name, rng, TRIALS)
-    if rule == "degree":
+    if rule == ANGLE:
         values = np.asarray(rng.permutation(TRIALS) + rng.uniform(), np.float64) * (360.0 / TRIALS)
-    if rule in ("length/time", "rad/time", "length"):
+    if rule in (VELOCITY, SPIN, LENGTH):
         outweighing = np.abs(values[-4:]) * OUTWEIGHING
-        values[-4:] = np.abs(outweighing) if rule == "length" else outweighing
+        values[-4:] = np.abs(outweighing) if rule == LENGTH else outweighing
     special = SPECIAL.get(name, ())
     values[len(values) - len(special) :] = special
     return [float(value) for value in values]
