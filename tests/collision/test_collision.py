@@ -10,6 +10,7 @@ from math import pi
 
 import pytest
 
+from impact88.collision.case import Case
 from impact88.collision.case import in_base_units as in_base
 from impact88.errors import UserError
 
@@ -350,3 +351,16 @@ class TestDigits:
         assert read("UX", "1E", "us") == pytest.approx(22 / 15)
         assert read("MA", "3,340", "us") == pytest.approx(float(3340 * POUND / SLUG), rel=1e-15)
         assert read("MA", "3,340", "metric") is None
+
+
+@pytest.mark.parametrize("vehicle", "AB")
+def test_a_vehicle_that_faces_its_course(vehicle: str) -> None:
+    """In the listing's axes A, seen from behind its contact point, faces TA + 180."""
+    x, y, course, heading = ("UX", "UY", "HA", "TA") if vehicle == "A" else ("VX", "VY", "HB", "TB")
+    facing = 180 if vehicle == "A" else 0
+    for known in ({x: "-3", y: "3"}, {course: "135"}):
+        values = Case({**known, heading: "course"}).values
+        assert (float(values[heading]) + facing - 135) % 360 == 0
+    still = {course: "135", f"S{vehicle}": "0"}
+    for unknown in ({}, {x: "0", y: "0"}, still):
+        assert Case({**unknown, heading: "course"}).values[heading] == "course"

@@ -23,9 +23,11 @@ import numpy as np
 import pytest
 from longer import long_but
 
+from impact88.errors import UserError
 from impact88.interface.commands.cli import main
 from impact88.names import SCENE
 from impact88.program.scene import sample
+from impact88.tables.budget import MAX_DECODED, Budget
 from impact88.tables.lines import Lines
 
 TIMES = 8
@@ -196,3 +198,11 @@ def test_a_reader_that_begins_again_for_every_line_is_noticed(
     monkeypatch.setattr(Lines, "__next__", next_line_again)
     small, large = (work(make(count))[0] for count in (size, TIMES * size))
     assert large >= MOST * small
+
+
+def test_what_a_table_decodes_to_is_added_up() -> None:
+    budget = Budget("-")
+    for part in (MAX_DECODED // 2, MAX_DECODED - MAX_DECODED // 2):
+        budget.take(part)
+    with pytest.raises(UserError, match=f"unpack to {MAX_DECODED + 1:,}"):
+        budget.take(1)

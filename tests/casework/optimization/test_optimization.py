@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from impact88.casework.optimization.boxsearch import pool_of, spread
+from impact88.casework.optimization.boxsearch import find_extremes, pool_of, spread
 from impact88.casework.optimization.effort import THOROUGH
 from impact88.casework.optimization.extremes import Piece
 
@@ -96,3 +96,14 @@ def test_points_given_stay_where_they_are_while_others_are_spread():
         assert np.array_equal(points, given)
         assert pool.functions.sum() == 1
         assert (widened.u != tail.u).any()
+
+
+def test_a_search_that_converged_is_done():
+    weights = np.array([1.0, -2.0, 0.5])
+    piece = Piece(lambda u: (u @ weights)[:, None], 1)
+    points = np.random.default_rng(SEED).random((50, 3))
+    pool, inside = pool_of(piece, points, np.empty((0, 50)))
+    assert inside.all()
+    found = find_extremes(piece, pool, [np.arange(50)], 2)
+    assert found.done.all()
+    assert found.values.ravel() == pytest.approx([-2.0, 1.5], abs=1e-9)

@@ -569,3 +569,12 @@ def test_ranks_count_what_is_smaller_and_half_of_what_is_equal(levels: int) -> N
     equal = (values == values[:, None]).sum(axis=1) - 1
     expected = smaller + equal / 2
     np.testing.assert_array_equal(_ranks(values), expected - expected.mean())
+
+
+def test_energy_is_judged_where_what_is_not_given_has_no_part_in_it() -> None:
+    """Of point masses: without friction e above 1 gains energy, with an unknown one it may not."""
+    values = {"M": 4.0, "MA": 100.0, "MB": 90.0, "GA": -30.0, "UX": -40.0, "UY": 0.0}
+    values |= {"VX": 20.0, "VY": 25.0, "E": read("1.2 .. 1.5", "E")}
+    known = bounds(values | {"MU": 0.0}, outputs=["VC"], samples=100)
+    assert known.warnings["ENERGY_GAINED"] == 1
+    assert bounds(values, outputs=["VC"], samples=100).warnings == {}

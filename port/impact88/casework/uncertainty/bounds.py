@@ -296,7 +296,8 @@ class _Box:
             raise UserError("; ".join(sentences(needs)))
         self.known |= dict.fromkeys(lacking, 0.0)
         if lacking:  # nothing is judged by what stands in
-            self.judged = int(status.Status.ENERGY_GAINED | status.Status.NOT_FINITE)
+            self.judged = int(status.Status.NOT_FINITE)
+            self.judged |= 0 if "KF" in absent else int(status.Status.ENERGY_GAINED)
         return tuple(name for name in usual if name not in absent)
 
     def columns(self, point: Array) -> dict[str, Array]:

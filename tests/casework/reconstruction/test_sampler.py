@@ -1,0 +1,35 @@
+"""Draws of the sampler against a density that is known in closed form."""
+
+import numpy as np
+import pytest
+
+from impact88.casework.reconstruction.sampler import Proposal, sample
+
+MEANS = np.array([[0.0, 0.0], [1.0, -2.0]])
+DEVIATIONS = np.array([1.0, 2.0])
+
+
+class TwoNormals:
+    """A quarter of it is on branch 0, about (0, 0), the rest on branch 1, about (1, -2)."""
+
+    def logarithms(self, points, branches):
+        square = np.square((points - MEANS[branches].T) / DEVIATIONS[:, None]).sum(axis=0)
+        return np.where(branches, np.log(3), 0.0) - square / 2, np.zeros(len(branches))
+
+    def proposals(self):
+        return [Proposal(np.array([0.5, -1.0]), branch, 3 * np.eye(2), 0.5) for branch in (0, 1)]
+
+    def neighbours(self, branches, rng):
+        return np.where(rng.random(len(branches)) < 0.1, 1 - branches, branches)
+
+
+def test_draws_are_of_the_density_on_every_branch():
+    parts = [sample(TwoNormals(), 8000, np.random.default_rng(seed)) for seed in range(4)]
+    points = np.concatenate([part.points for part in parts], axis=1)
+    branches = np.concatenate([part.branches for part in parts])
+    assert branches.mean() == pytest.approx(0.75, abs=0.015)
+    scaled = (points - MEANS[branches].T) / DEVIATIONS[:, None]
+    for branch in (0, 1):
+        own = scaled[:, branches == branch]
+        assert np.abs(own.mean(axis=1)).max() < 0.05
+        assert own.std(axis=1) == pytest.approx([1.0, 1.0], abs=0.025)
