@@ -162,17 +162,25 @@ class TestJson:
         path = put(tmp_path / "a.jsonl", "".join(json.dumps(row) + "\n" for row in ROWS))
         assert solved(path, capsys) == array
 
-    def test_pieces_end_anywhere(self, tmp_path, monkeypatch):
+    def test_elements_are_told_by_their_lines(self, tmp_path):
         text = '[{"E": 12.25, "note": "a]\\"b"},\n\n {"E": 1e2}, 17, -3.5]'
-        for piece in range(1, 40):
-            monkeypatch.setattr(jsontable, "_PIECE", piece)
-            path = put(tmp_path / "a.json", text)
-            with open_reader(str(path), "jsonl") as reader:
-                (rows,) = reader
-            assert rows.columns["E"][:2] == ["12.25", "1e2"]
-            assert rows.columns["note"][0] == 'a]"b'
-            assert rows.lines == [1, 3, 3, 3]
-            assert [place for place, *_ in rows.bad] == [2, 3]
+        with open_reader(str(put(tmp_path / "a.json", text)), "jsonl") as reader:
+            (rows,) = reader
+        assert rows.columns["E"][:2] == ["12.25", "1e2"]
+        assert rows.columns["note"][0] == 'a]"b'
+        assert rows.lines == [1, 3, 3, 3]
+        assert [place for place, *_ in rows.bad] == [2, 3]
+
+    @pytest.mark.parametrize("beyond", [0, 1])
+    def test_a_long_array_is_asked_for_line_by_line(self, tmp_path, monkeypatch, beyond):
+        text = json.dumps(ROWS)
+        monkeypatch.setattr(jsontable, "LONGEST_ARRAY", len(text) - beyond)
+        path = put(tmp_path / "a.json", text)
+        if not beyond:
+            agreeing(path)
+            return
+        with pytest.raises(UserError, match="expected JSON Lines, an object a line"):
+            impact88.compare(path)
 
     @pytest.mark.parametrize(
         ("text", "told"),
@@ -187,7 +195,8 @@ class TestJson:
             ("[" + '{"a":' * 200 + "1" + "}" * 200 + "]", "no column"),
             ("[" * 9000, "line 1"),
             ("[" + "1" * 1_100_000, "longer than"),
-            ('["' + "a" * 1_100_000, "longer than"),
+            ('["' + "a" * 1_100_000, "line 1 is not JSON: Unterminated string"),
+            ('["' + "a" * 1_100_000 + '"]', "longer than"),
             ("[" + " \n" * 100_000, "line 100001 ends within"),
             ("[]", "no column"),
         ],

@@ -64,10 +64,8 @@ def _depth(value: Any) -> int:
     return 1 + max(map(_depth, value.values() if isinstance(value, dict) else value), default=0)
 
 
-_SPACE = " \t\r\n\ufeff"
-_AFTER = [",", "]", *_SPACE]
-_PIECE = 1 << 16
-"""Characters of an array that are read at once; objects have hundreds."""
+_SPACE = re.compile("[ \t\r\n\ufeff]*")
+LONGEST_ARRAY = 256_000_000  # characters: as many bytes as any other file may decode to
 
 
 def _values(lines: Lines) -> Iterator[tuple[int, Any, str]]:
@@ -77,87 +75,55 @@ def _values(lines: Lines) -> Iterator[tuple[int, Any, str]]:
             yield (lines.number, *_read(text))
 
 
-class _ArrayText:
-    """The text of a JSON array, read in pieces. ``at``: the place in the text held, ``line``: its
-    line in the file."""
-
-    def __init__(self, lines: Lines) -> None:
-        self._lines = lines
-        self.text, self.at, self.line = "", 0, 1
-
-    def refuse(self, says: str) -> NoReturn:
-        raise UserError(f"line {self.line} {says}", self._lines.where)
-
-    def _fill(self) -> bool:
-        """Read a further piece; return False at the end of the file."""
-        piece = self._lines.read(max(_PIECE, len(self.text) - self.at))
-        self.text, self.at = self.text[self.at :] + piece, 0
-        return bool(piece)
-
-    def next_mark(self) -> str:
-        """Go to the next character that is no space, and return it; nothing at the end."""
-        while True:
-            text, at = self.text, self.at
-            starts_blank = at < len(text) and text[at] in _SPACE
-            remainder = text[at:].lstrip(_SPACE) if starts_blank else text[at:]
-            self.at = len(text) - len(remainder)
-            self.line += text.count("\n", at, self.at)
-            if remainder or not self._fill():
-                return remainder[:1]
-
-    def take_delimiter(self, delimiters: str) -> str:
-        """Go behind one of some characters, and return it."""
-        mark = self.next_mark()
-        if not mark:
-            self.refuse("ends within an array; expected ']'")
-        if mark not in delimiters:
-            choices = " or ".join(map(quoted, delimiters))
-            self.refuse(f"has {quoted(mark)} where {choices} is expected")
-        self.at += 1
-        return mark
-
-    def value(self) -> tuple[Any, str]:
-        """Return the value at the present place, and its text; the place stays."""
-        while True:
-            reason = ""
-            try:
-                value, end = _decoder.raw_decode(self.text, self.at)
-                # a number may go on in the next piece
-                if self.text[end : end + 1] in _AFTER:
-                    break
-            except ValueError as error:
-                reason = f"is not JSON: {error}"
-            except RecursionError:
-                self.refuse(f"is nested deeper than {DEEPEST} levels")
-            if len(self.text) - self.at >= LONGEST_LINE:
-                self.refuse(f"begins a value longer than {LONGEST_LINE:,} characters")
-            if not self._fill():
-                if reason:
-                    self.refuse(reason)
-                break
-        return value, self.text[self.at : end]
-
-
 def _elements(lines: Lines) -> Iterator[tuple[int, Any, str]]:
-    """Yield the elements of an array, each with the line in which it begins. Raises UserError for
-    what is no array."""
-    array = _ArrayText(lines)
-    array.take_delimiter("[")
-    delimiter = "]" if array.next_mark() == "]" else ","
-    if delimiter == "]":
-        array.take_delimiter("]")
-    while delimiter == ",":
-        if not array.next_mark():
-            array.refuse("ends within an array; expected ']'")
-        value, text = array.value()
-        deep = text.count("[") + text.count("{") > DEEPEST and _depth(value) > DEEPEST
-        lines.taken += len(text)
-        yield array.line, value, f"is nested deeper than {DEEPEST} levels" if deep else ""
-        array.line += text.count("\n")
-        array.at += len(text)
-        delimiter = array.take_delimiter(",]")
-    if array.next_mark():
-        array.refuse("has text after the array's end; expected one array, or an object a line")
+    """Yield the elements of an array, which is held whole, each with the line in which it begins.
+    Raises UserError for what is no array."""
+    text = lines.read(LONGEST_ARRAY + 1)
+    if len(text) > LONGEST_ARRAY:
+        raise UserError(
+            f"holds an array of more than {LONGEST_ARRAY:,} characters; expected JSON Lines, an "
+            "object a line",
+            lines.where,
+        )
+    line, at = 1, 0
+
+    def refuse(says: str) -> NoReturn:
+        raise UserError(f"line {line} {says}", lines.where)
+
+    def next_mark(start: int) -> str:
+        """Go to the first character from ``start`` on that is no space, and return it."""
+        nonlocal line, at
+        end = _SPACE.match(text, start).end()  # type: ignore[union-attr]
+        line += text.count("\n", at, end)
+        at = end
+        return text[at : at + 1]
+
+    mark, expected = next_mark(0), "["
+    while mark != "]" or expected == "[":
+        if not mark:
+            refuse("ends within an array; expected ']'")
+        if mark not in expected:
+            refuse(f"has {quoted(mark)} where {' or '.join(map(quoted, expected))} is expected")
+        following = next_mark(at + 1)
+        if following == "]" and mark == "[":
+            break
+        if not following:
+            refuse("ends within an array; expected ']'")
+        try:
+            value, end = _decoder.raw_decode(text, at)
+        except ValueError as error:
+            refuse(f"is not JSON: {error}")
+        except RecursionError:
+            refuse(f"is nested deeper than {DEEPEST} levels")
+        if end - at >= LONGEST_LINE:
+            refuse(f"begins a value longer than {LONGEST_LINE:,} characters")
+        opened = text.count("[", at, end) + text.count("{", at, end)
+        deep = opened > DEEPEST and _depth(value) > DEEPEST
+        lines.taken += end - at
+        yield line, value, f"is nested deeper than {DEEPEST} levels" if deep else ""
+        mark, expected = next_mark(end), ",]"
+    if next_mark(at + 1):
+        refuse("has text after the array's end; expected one array, or an object a line")
 
 
 def _flatten(row: dict[str, Any], results: bool) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 the next block read and the last one written while a block is solved.
 
 A reader yields `tables.rows.Rows`; a writer takes them back with their results. Memory does not
-grow with the file (what is written of .npz and .xlsx is held).
+grow with the file (what is written of .npz and .xlsx is held, and a JSON array that is read).
 """
 
 import os

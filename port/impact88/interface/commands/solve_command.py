@@ -5,8 +5,9 @@ understood, 1,234.5 too; an ambiguous comma (1,234) is rejected with a request t
 after a name (UX [mph], MA (lb)) or in a cell ("-25 mph") is converted, and results come in the same
 system with headings that say so (DVA [mph]); --units is for columns without any. All the table's
 columns are passed through, and the results follow. Rows are read and written in blocks: memory does
-not grow with the file (except when writing .npz or .xlsx). A scene file (.toml) is a table of one
-row, or with --sweep one row for each combination of the ranges LOW:HIGH:COUNT.
+not grow with the file (except when reading a JSON array or writing .npz or .xlsx). A scene file
+(.toml) is a table of one row, or with --sweep one row for each combination of the ranges
+LOW:HIGH:COUNT.
 
 Formats, by the ending of the file's name or by --from and --to:
 {formats}
