@@ -8,7 +8,7 @@ contact planes.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from .columns import BODIES, UNUSED_BY_POINTS
 from .general import solve_arrays
 
 Array = NDArray[Any]
+Solve = Callable[[Mapping[str, Any], Sequence[str]], Mapping[str, Array]]
 
 TRIALS = 24  # values of each input that is not given; directions are 15 degrees apart
 SPECIAL = {"E": (0.0, 1.0), "MU": (0.0, PIVOT), "EM": (0.0, 1.0)}
@@ -121,25 +122,12 @@ def solve_without(
         same = _same(elsewhere[0], elsewhere[1:], elsewhere[0])
         stands |= {name: stands[name] & (np.all(same[name]) | along) for name in zero}
     results = {name: np.where(stands[name], first[name], np.nan) for name in names}
-    absent: dict[str, tuple[str, ...]] = {}
     names_changed = [name for name in names if not np.any(stands[name])]
+    absent = dict.fromkeys(names_changed, tuple(lacking))
     if names_changed:
-        one_by_one = {
-            name: [
-                solve({**completed[1], name: other[name]}, names_changed)
-                for other in completed[2:5]
-            ]
-            for name in lacking
-        }
-        for result in names_changed:
-            base = {result: other_trials[0][result]}
-            needs = tuple(
-                name
-                for name, changes in one_by_one.items()
-                if not np.all(_same(base, changes, other_trials[0])[result])
-            )
-            absent[result] = needs or tuple(lacking)
-            del results[result]
+        for name, needs in _inputs_used(lacking, completed, other_trials[0], absent, solve).items():
+            absent[name] = needs or absent[name]
+            del results[name]
     if "STATUS" in wanted and "KF" in absent:  # an impact that is not known is not judged
         absent["STATUS"] = absent["KF"]
     absent = {name: needs for name, needs in absent.items() if name in wanted}
@@ -153,6 +141,29 @@ def solve_without(
             mask = np.asarray(np.uint16(_JUDGED))
         results["STATUS"] = np.bitwise_and.reduce(statuses) & mask
     return Results({n: _number(results[n]) for n in wanted if n in results}, absent)
+
+
+def _inputs_used(
+    lacking: Sequence[str],
+    completed: Sequence[Mapping[str, Any]],
+    second: Mapping[str, Array],
+    names: Collection[str],
+    solve: Solve,
+) -> dict[str, tuple[str, ...]]:
+    """Return, for each of the results ``names``, the inputs of which a change alone changes it.
+    ``second``: the results of the second of the ``completed`` scenes."""
+    one_by_one = {
+        name: [solve({**completed[1], name: other[name]}, tuple(names)) for other in completed[2:5]]
+        for name in lacking
+    }
+    return {
+        result: tuple(
+            name
+            for name, changes in one_by_one.items()
+            if not np.all(_same({result: second[result]}, changes, second)[result])
+        )
+        for result in names
+    }
 
 
 def _trials(name: str, rng: np.random.Generator) -> list[float]:
