@@ -51,8 +51,8 @@ if TYPE_CHECKING:
     from .casework.chapter.deltav import delta_v as delta_v
     from .casework.figures.canvas import Svg as Svg
     from .casework.figures.sceneview import scene_svg as scene_svg
-    from .casework.reconstruction.reconstructedtable import Reconstructions as Reconstructions
-    from .casework.reconstruction.reconstructedtable import reconstruct as reconstruct
+    from .casework.reconstruction.reconstructions import Reconstructions as Reconstructions
+    from .casework.reconstruction.reconstructions import reconstruct as reconstruct
     from .casework.reconstruction.solution import Reconstruction as Reconstruction
     from .casework.reconstruction.unknowns import Solution as Solution
     from .casework.reconstruction.unknowns import solve_for as solve_for
@@ -107,7 +107,7 @@ _LAZY = {
         "tables.frames": "solve_frame",
         "casework.uncertainty.bounds": "bounds",
         "casework.uncertainty.boundstable": "Bounds",
-        "casework.reconstruction.reconstructedtable": "Reconstructions reconstruct",
+        "casework.reconstruction.reconstructions": "Reconstructions reconstruct",
         "collision.uncertain": "Uncertain",
     }.items()
     for name in names_there.split()

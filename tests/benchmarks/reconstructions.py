@@ -23,8 +23,8 @@ from impactsampler import BEFORE, KINDS, problem, quantiles
 
 from impact88.casework.reconstruction import reconstructed
 from impact88.casework.reconstruction.adjustment import reconstruct
+from impact88.casework.reconstruction.answer import Answer
 from impact88.casework.reconstruction.posterior import Posterior
-from impact88.casework.reconstruction.reconstructedtable import Measured
 from impact88.collision.uncertain import read
 
 SEEDS = range(101, 109)
@@ -59,9 +59,9 @@ def found(given):
     known = {n: read(v.text(), n) for n, v in given.known.items()} | {"M": read("6", "M")}
     started = time.process_time()
     first, *more = reconstruct(known)
-    best = Measured(first, DRAWS)
+    best = Answer(first, DRAWS)
     for other in more:
-        Measured(other, DRAWS, like=best)
+        Answer(other, DRAWS, like=best)
     return best, time.process_time() - started
 
 

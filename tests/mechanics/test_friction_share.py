@@ -11,7 +11,7 @@ import pytest
 
 import impact88
 from impact88 import solve
-from impact88.casework.reconstruction.reconstructedtable import Measured
+from impact88.casework.reconstruction.answer import Answer
 from impact88.casework.uncertainty.bounds import bounds
 from impact88.casework.uncertainty.ranges import read_inputs
 from impact88.errors import UserError
@@ -157,7 +157,7 @@ class TestInAReconstruction:
         values = {**sample(1), **self.RANGES, "MU": "85 %"}
         forward = bounds(values, ["VAX", "WAF", "DVA"], samples=4000)
         (inverse,) = impact88.reconstruct(values)
-        drawn = Measured(inverse, 4000, 0, ["VAX", "WAF", "DVA"])
+        drawn = Answer(inverse, 4000, 0, ["VAX", "WAF", "DVA"])
         for name, bound in forward.bounds.items():
             width = bound.upper - bound.lower
             assert drawn.ranges[name].lower == pytest.approx(bound.lower, abs=1e-3 * width)

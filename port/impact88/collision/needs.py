@@ -56,7 +56,7 @@ def needs_in_words(needs: Mapping[str, Collection[str]]) -> list[tuple[list[str]
 
 def _sentence(results: Sequence[str], inputs: Sequence[str]) -> str:
     verb = "needs" if len(results) == 1 else "need"
-    return f"{_join_words(results)} {verb} {_describe_inputs(inputs)}"
+    return f"{join_words(results)} {verb} {_describe_inputs(inputs)}"
 
 
 def sentences(needs: Mapping[str, Collection[str]]) -> list[str]:
@@ -64,7 +64,7 @@ def sentences(needs: Mapping[str, Collection[str]]) -> list[str]:
     return [sentence for _, sentence in needs_in_words(needs)]
 
 
-def _join_words(names: Sequence[str]) -> str:
+def join_words(names: Sequence[str]) -> str:
     *first, last = names
     return f"{', '.join(first)} and {last}" if first else last
 
@@ -77,4 +77,4 @@ def _describe_inputs(inputs: Sequence[str]) -> str:
         )
     if len(inputs) == 1:
         return f"{inputs[0]} ({quantity(inputs[0]).meaning})"
-    return _join_words(inputs)
+    return join_words(inputs)

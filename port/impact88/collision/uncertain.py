@@ -350,6 +350,18 @@ def skid(text: str, name: str, units: str | None) -> Uncertain:
     return Uncertain("normal", nominal, low, high, deviation)
 
 
+def shared_road(texts: Mapping[str, str]) -> list[str]:
+    """Return a remark where two skids have a range of friction each: they are taken as
+    independent."""
+    skids = [_SKID.fullmatch(" ".join(texts.get(name, "").split())) for name in ("SAF", "SBF")]
+    if not all(match and read(match[2], "MU").varies for match in skids):
+        return []
+    return [
+        "the friction of the two skids (SAF, SBF) is taken as independent; on one road both err "
+        "together: for its ends give both skids the lowest friction, then both the highest"
+    ]
+
+
 def _of_kind(
     kind: str, numbers: Sequence[float], center: float | None, share: bool, text: str, name: str
 ) -> Uncertain:

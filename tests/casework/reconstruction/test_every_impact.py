@@ -8,8 +8,10 @@ import pytest
 from longer import long_but
 
 from impact88.casework.reconstruction.adjustment import reconstruct
+from impact88.casework.reconstruction.answer import Answer
+from impact88.casework.reconstruction.answerremarks import remarks_on
+from impact88.casework.reconstruction.answertable import text_of
 from impact88.casework.reconstruction.reconstructed import draws, ranges
-from impact88.casework.reconstruction.reconstructedtable import Measured
 from impact88.collision.geometry import GEOMETRY
 from impact88.collision.uncertain import read
 from impact88.mechanics.closedform.solve import solve
@@ -230,7 +232,7 @@ def test_a_car_that_may_have_stood_still_has_a_least_speed_of_0():
 def test_a_vehicle_that_stands_by_its_speed_stands_by_its_components():
     known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "SA": read("8 .. 9", "SA"), "HA": 0.0}
     known |= {"SB": 0.0, "E": 0.2}
-    shown = Measured(reconstruct(known)[0], 1000)
+    shown = Answer(reconstruct(known)[0], 1000)
     assert not shown.solution.folded
     # (1 + e) m_b / (m_a + m_b) of the closing speed
     factor = 1.2 * 80 / 180
@@ -246,10 +248,10 @@ def test_no_interval_stands_about_an_impact_that_is_none():
     known |= {"E": read("0 .. .3", "E"), "SAF": read(f"{12 * k} +- {1.5 * k}", "SAF")}
     known |= {"SBF": read(f"{17 * k} +- {1.5 * k}", "SBF")}
     known |= {n: read(f"0 +- {k}", n) for n in ("VX", "VY")}
-    shown = Measured(reconstruct(known)[0], 4000)
+    shown = Answer(reconstruct(known)[0], 4000)
     assert shown.solution.impossible
     assert shown.draws.values["VC"].min() > 0
-    answer = shown.as_text().partition("velocity ")[0]
+    answer = text_of(shown).partition("velocity ")[0]
     assert "between" not in answer
     assert "impacts that physics allows lie within all limits" in " ".join(answer.split())
 
@@ -259,7 +261,7 @@ def test_the_first_order_is_not_shown_where_it_contradicts_the_draws():
     known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "GA": 170.0, "MUP": 0.1, "UY": 0.0}
     known |= {"E": read("0 .. .3", "E"), "SA": read("55 .. 65", "SA"), "HA": 0.0}
     known |= {"VY": read("-3 .. 3", "VY"), "DVB": read("28 .. 40", "DVB")}
-    shown = Measured(reconstruct(known)[0], 4000)
+    shown = Answer(reconstruct(known)[0], 4000)
     assert shown.first_order["SB"] is None
     assert shown.deviations["SB"] == pytest.approx(shown.draws.values["SB"].std(ddof=1))
     for name in shown.names:
@@ -292,21 +294,21 @@ def test_where_two_branches_meet_no_first_order_deviation_is_shown():
     speed it is up to the leg of a right-angled triangle."""
     known = {n: v for n, v in SCENE.items() if n not in ("MU", "UY")}
     known |= {"GA": 0.0, "MUP": 0.3, "SA": read("29.04 +- .5", "SA")}
-    alone = Measured(reconstruct(known)[0], 0)
+    alone = Answer(reconstruct(known)[0], 0)
     assert alone.first_order["UY"] is None
     assert math.isnan(alone.deviations["UY"])
-    (line,) = (line for line in alone.warnings() if "two branches" in line)
+    (line,) = (line for line in remarks_on(alone) if "two branches" in line)
     assert "UY about 0" in line
-    drawn = Measured(reconstruct(known)[0], 200)
+    drawn = Answer(reconstruct(known)[0], 200)
     leg = math.sqrt(29.54**2 - 29.04**2)
     assert drawn.ranges["UY"].upper == pytest.approx(leg, rel=1e-3)
     assert drawn.ranges["UY"].lower == pytest.approx(-leg, rel=1e-3)
-    assert any("draws and bounds have both" in line for line in drawn.warnings())
+    assert any("draws and bounds have both" in line for line in remarks_on(drawn))
     # well beside the fold there are two impacts, each with its own deviation
     known["SA"] = read("32 +- .01", "SA")
     for impact in reconstruct(known):
         assert impact.folded == ()
-        beside = Measured(impact, 0)
+        beside = Answer(impact, 0)
         leg = math.sqrt(32**2 - 29.04**2)
         half = 0.01 / math.sqrt(3) * 32 / leg
         assert beside.first_order["UY"] == pytest.approx(half, rel=1e-6)

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from impact88.casework.reconstruction.adjustment import reconstruct
+from impact88.casework.reconstruction.answer import Answer
+from impact88.casework.reconstruction.answerremarks import remarks_on
+from impact88.casework.reconstruction.answertable import first_lines
 from impact88.casework.reconstruction.nearest import is_admissible
-from impact88.casework.reconstruction.reconstructedtable import Measured
 from impact88.collision.uncertain import Uncertain
 from impact88.collision.units import RULES
 from impact88.status import Status
@@ -42,10 +44,10 @@ def test_a_fit_ends_where_restitution_would_be_negative():
     assert best.squares == pytest.approx(squares_stuck_together(*measured.values(), 1.0))
     assert free.impossible == Status.E_OUT_OF_RANGE
     assert free.squares < best.squares
-    shown = Measured(best, 1000)
+    shown = Answer(best, 1000)
     assert shown.draws is not None
-    assert "fit best where E would leave 0 ... 1" in " ".join(shown.warnings())
-    beside = Measured(free, 1000, like=shown)
+    assert "fit best where E would leave 0 ... 1" in " ".join(remarks_on(shown))
+    beside = Answer(free, 1000, like=shown)
     assert (beside.draws, beside.ranges) == (None, {})
 
 
@@ -62,8 +64,8 @@ def test_where_no_impact_agrees_that_is_said_with_what_would_have_to_move():
     assert free.impossible == Status.E_OUT_OF_RANGE
     assert free.nearest is not None
     assert free.nearest.squares == pytest.approx(squares_stuck_together(20, -5, 9, 7, 0.1))
-    shown = Measured(free, 1000)
-    text = dict(shown.headline(RULES))["NO IMPACT"]
+    shown = Answer(free, 1000)
+    text = dict(first_lines(shown, RULES))["NO IMPACT"]
     ratio = (free.values["VBX"] - free.values["VAX"]) / (free.values["UX"] - free.values["VX"])
     assert f"E is {ratio:.3g}, not from 0 to 1" in text
     both = free.nearest.values["VBX"]
@@ -74,7 +76,7 @@ def test_where_no_impact_agrees_that_is_said_with_what_would_have_to_move():
 def test_vehicles_that_separate_are_no_impact():
     (free,) = reconstruct(along_a_line(0.1, UX=-5.0, VX=20.0, VAX=-4.0, VBX=19.0))
     assert free.impossible & Status.SEPARATING
-    text = dict(Measured(free, 0).headline(RULES))["NO IMPACT"]
+    text = dict(first_lines(Answer(free, 0), RULES))["NO IMPACT"]
     assert "the vehicles separate at 25" in text
 
 

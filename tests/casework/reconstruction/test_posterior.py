@@ -9,8 +9,9 @@ import pytest
 from impactsampler import Known, Problem, exact, problem, quantiles
 
 from impact88.casework.reconstruction.adjustment import reconstruct
+from impact88.casework.reconstruction.answer import Answer
+from impact88.casework.reconstruction.answerjson import json_of
 from impact88.casework.reconstruction.reconstructed import draws, ranges
-from impact88.casework.reconstruction.reconstructedtable import Measured
 from impact88.collision.uncertain import read
 from impact88.mechanics.closedform.solve import solve
 from impact88.mechanics.state import State
@@ -208,7 +209,7 @@ def test_what_is_rounding_beside_its_own_deviation_is_0():
     for speed, shown in ((1.8e-11, 0.0), (-1.8e-11, 0.0), (1.8e-8, 1.8e-8)):
         values = {**found.values, "VX": speed, "SB": abs(speed)}
         near = replace(found, values=values, adjusted=(row._replace(adjusted=speed),))
-        record = Measured(near, 0).as_json()
+        record = json_of(Answer(near, 0))
         assert record["values"]["VX"] == shown
         assert record["values"]["SB"] == shown
         assert record["adjusted"][0]["adjusted"] == shown

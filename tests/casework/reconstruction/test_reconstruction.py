@@ -16,9 +16,9 @@ import pytest
 from impact88.casework.chapter.staged import collisions
 from impact88.casework.reconstruction import adjustment
 from impact88.casework.reconstruction.adjustment import reconstruct
+from impact88.casework.reconstruction.answer import Answer
 from impact88.casework.reconstruction.leastsquares import polish
 from impact88.casework.reconstruction.reconstructed import draws, ranges
-from impact88.casework.reconstruction.reconstructedtable import Measured
 from impact88.casework.reconstruction.system import System
 from impact88.casework.reconstruction.unknowns import solve_for
 from impact88.collision.uncertain import Uncertain, fixed_value, read
@@ -540,7 +540,7 @@ class TestCommand:
         assert found["uncertainty"]["UX"]["lower"] < -40.21 < found["uncertainty"]["UX"]["upper"]
         status, out, _ = self.run(capsys, "reconstruct", "--full", section_7, "--samples", "2000")
         assert status == 0
-        assert "! not determined by what is known: WA WB WAF WBF E EM" in out
+        assert "NOT FOUND       spins, E, EM: give WAF, WBF and WA" in out
         assert "VBX 70 %" in out
         assert all(len(line) <= 104 for line in out.splitlines())
 
@@ -627,7 +627,7 @@ def test_a_value_known_more_than_needed_leaves_nothing_uncertain():
     known = VEHICLES | {name: forward[name] for name in FINAL} | {"UY": 0.0}
     known |= {"E": TABLE_3["E"], "EM": TABLE_3["EM"], "MUP": forward["MUP"]}
     (solution,) = reconstruct(known | {"VAX": read(f"{forward['VAX'] + 1!r} +- 2", "VAX")})
-    assert Measured(solution, 100).names == []
+    assert Answer(solution, 100).names == []
     assert solution.values["UX"] == pytest.approx(TABLE_3["UX"], abs=1e-9)
 
 
@@ -765,7 +765,7 @@ class TestWhatAnEngineerKnows:
         known = {"M": "4", "MA": "1000", "MB": "2200", "HA": "0", "SB": "0", "E": "0", "HAF": "0"}
         known |= {"SAF": "skid 2.5 .. 3 m at 0.40 +- .05", "units": "si"}
         (solution,) = reconstruct(known)
-        drawn = Measured(solution, 4000, 0, ["SA"])
+        drawn = Answer(solution, 4000, 0, ["SA"])
         speed = np.sqrt(2 * 9.80665 * np.outer((2.5, 3), (0.35, 0.45)))
         assert drawn.ranges["SA"].lower == pytest.approx(3.2 * speed.min(), rel=1e-4)
         assert drawn.ranges["SA"].upper == pytest.approx(3.2 * speed.max(), rel=1e-4)

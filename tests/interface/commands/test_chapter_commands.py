@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -99,13 +100,11 @@ def test_reconstruct_for_some_unknowns_only(after: str, capsys: pytest.CaptureFi
     vehicles = [f"{n}=" for n in ("E", "EM", "MU", "WAF", "WBF")]
     known = " ".join([*vehicles, *(f"{n}={v}" for n, v in SECTION_7.items())])
     status, out, err = run(capsys, "reconstruct", "--full", after, *sets(known))
-    assert status == 2
-    assert out == ""
-    assert "9 quantities are unknown" in err
-    assert "UX VY MUP could be found alone" in err
-    assert err.count("\n") == 1
-    wanted = ("--outputs", "ux,vy")
-    (solution,) = as_json(capsys, "reconstruct", after, *sets(known), *wanted)["solutions"]
+    assert (status, err) == (0, "")
+    assert re.search("^NOT FOUND +spins, E, EM: give WAF, WBF and WA$", out, re.M)
+    (solution,) = as_json(capsys, "reconstruct", after, *sets(known), "--outputs", "ux,vy")[
+        "solutions"
+    ]
     assert solution["values"]["UX"] == pytest.approx(-40.2083333333333333)
     assert solution["values"]["VY"] == pytest.approx(58.2413793103448276)
     assert "E" not in solution["values"]
@@ -138,7 +137,7 @@ def test_reconstruct_says_which_law_exact_values_miss(
     [
         ([], "nothing is known"),
         (["nowhere.toml"], "nowhere.toml: cannot be read"),
-        (["AFTER", "--set", "MU=-10"], "MU = -10 (pivot)"),
+        (["AFTER", "--set", "MU=-10", "--outputs", "UX"], "MU = -10 (pivot)"),
         (
             ["AFTER", "--set", "E=abc"],
             "--set: E: 'abc' is not an amount; expected a number, a number with its unit",
@@ -149,7 +148,6 @@ def test_reconstruct_says_which_law_exact_values_miss(
         (["AFTER", "--set", "MA="], "missing MA (mass of A)"),
         (["AFTER", "--set", "MA=-1"], "MA is not positive"),
         (["AFTER", "--set", "M=5"], "M must be 6"),
-        (["AFTER", "--outputs", "VAX"], "VAX is both known and wanted"),
         (["AFTER", "--outputs", "XA"], "'XA' is not a result"),
         (["AFTER", "--contact-time", "0"], "contact time 0.0 is not positive"),
         (["AFTER", "--contact-time", "x"], "--contact-time"),

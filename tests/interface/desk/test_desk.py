@@ -37,7 +37,7 @@ from impact88.errors import UserError
 from impact88.interface.commands import options, reconstruct_command
 from impact88.interface.commands.cli import main
 from impact88.messages import schemas
-from impact88.names import CHAPTER, RESULTS, SCENE, VELOCITIES
+from impact88.names import SCENE, VELOCITIES
 from impact88.program.emulated import load_machine, run_machine
 from impact88.program.run import run
 from impact88.program.scene import Scene, sample
@@ -496,10 +496,8 @@ def test_rounding_is_nowhere_shown_as_a_number() -> None:
     answer = reconstruction.answer({**known, "VAX": f"{known['VAX']} +- 1", "UY": "0"}, draws=0)
     (solution,) = answer["solutions"]
     assert {solution["scene"][name] for name in ("UY", "WA", "WB")} == {"0"}
-    assert (
-        "sum of squared adjustments, in standard deviations, 0 where about 1"
-        in solution["evidence"]
-    )
+    (evidence,) = [text for label, text, _ in solution["lines"] if label == "EVIDENCE"]
+    assert "sum of squared adjustments, in standard deviations, 0 where about 1" in evidence
     assert [row["moved"] for row in solution["adjusted"]] == ["0.00"]
     assert not re.search(r"\de-1\d", solution["printed"])
 
@@ -557,7 +555,7 @@ def test_a_reconstruction_answers_in_its_units(tmp_path: Path, own: Own) -> None
     assert rows["UX"]["unit"] == "mph"
     deviation = re.search(r"^VX +(\S+) ", printed[printed.index("first order") :], re.M)
     assert deviation
-    assert rows["VX"]["columns"]["±"] == deviation[1]
+    assert rows["VX"]["columns"]["sd"] == deviation[1]
 
 
 @pytest.mark.parametrize("units", ["us", "metric", "si", "chapter"])
@@ -604,7 +602,7 @@ def test_why_there_is_no_solution_is_told() -> None:
     known = reconstruction.known_of_sample(3)["values"]
     told = reconstruction.answer({name: text for name, text in known.items() if name != "E"})
     assert told["solutions"] == []
-    assert "give at least 1 more" in told["waiting"]
+    assert "is determined by what is known; give WA" in told["waiting"]
 
 
 # --- the paper ----------------------------------------------------------------------------------
@@ -1088,19 +1086,20 @@ def test_a_reconstruction_begins_with_the_evidence_and_velocity_changes(client: 
     answer = client.post("reconstruct", {"values": values, "units": ""}).get_json()
     best = answer["solutions"][0]
     assert [row["name"] for row in best["first"]][:4] == ["DVA", "DVB", "PDOFA", "PDOFB"]
-    assert best["evidence"] == answer["object"]["solutions"][0]["evidence"]["text"]
+    verdict = answer["object"]["solutions"][0]["evidence"]["text"]
+    assert ["EVIDENCE", verdict, False] in best["lines"]
     table = answer["tables"]
-    assert 0 < table.index("The measurements agree") < table.index("What follows")
+    assert 0 < table.index("the measurements agree") < table.index("What follows")
     values |= {"VAX": "-13 +- 0.01", "UX": "-10 +- 0.01"}
     worse = client.post("reconstruct", {"values": values, "units": ""}).get_json()
-    assert worse["solutions"][0]["contradictory"]
-    assert "evidence problem box" in worse["tables"]
-    verdict = worse["solutions"][0]["evidence"]
+    verdict = worse["object"]["solutions"][0]["evidence"]["text"]
+    assert ["EVIDENCE", verdict, True] in worse["solutions"][0]["lines"]
+    assert '<dt class="problem">EVIDENCE' in worse["tables"]
     assert not any(verdict in line for line in worse["solutions"][0]["warnings"])
     assert any("are widened" in line for line in worse["solutions"][0]["warnings"])
     broken = {**values, "UX": "-29", "VAX": "-13", "E": "1.3"}
     broken = client.post("reconstruct", {"values": broken, "units": ""}).get_json()
-    assert broken["tables"].index("Impossible: ") < broken["tables"].index("What follows")
+    assert broken["tables"].index("IMPOSSIBLE") < broken["tables"].index("What follows")
 
 
 def test_every_input_has_a_field_and_every_field_is_a_quantity() -> None:

@@ -1,6 +1,8 @@
 """Equations 13 to 18 solved for any unknowns: which impacts agree with what is known.
 
-`unknowns` solves exact values, `adjustment` values with tolerances (entry: `reconstruct`).
+`adjustment` finds the impacts (entry: `reconstruct`); `answer` has everything that follows from
+each (entry: `answers`). Exact values are measurements of no tolerance. `unknowns` solves the
+equations over arrays.
 `reconstructed` has the uncertainty of a reconstruction: draws and bounds (entries: `draws`,
 `ranges`).
 
@@ -8,5 +10,6 @@
 - `admissible`: which impacts count; `coordinates`: those that meet all exact values; `posterior`:
   the distribution that the known values define over both; `sampler`: draws from it.
 - `evidence`, `laws`: whether the measured values can all be true, and which laws they break.
-- `solutiontable`, `reconstructedtable`: results as tables and as JSON.
+- `answertable`: the first lines of an answer, for the command, the report and the desk, and tables;
+  `answerremarks`, `answerjson`; `derived`: what follows from an impact's values.
 """

@@ -22,16 +22,16 @@ from ...mechanics.closedform.general import share_typed
 from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import outcome
 from ...mechanics.posed import is_wrong_way, pose, turned, turned_sentence
-from ...mechanics.state import COURSES, CRUSH, KNOWABLE, OTHERS, SPEEDS
+from ...mechanics.state import COURSES, CRUSH, KNOWABLE, SPEEDS
 from ...names import PIVOT, SCENE, VELOCITIES, check_names
 from ...status import Status
 from .impactsearch import MAX_SQUARES_RATIO, Search
-from .laws import missed_laws
 from .nearest import counts
 from .solution import Reconstruction, Searched, invariants, typed_friction
 from .system import SPINS
-from .unknowns import UnsolvableError, check_physical, solve_for
+from .unknowns import UnsolvableError, check_physical
 
+_FRICTION = Status.FRICTION_ABOVE_CRITICAL | Status.FRICTION_WRONG_DIRECTION
 Floats = NDArray[np.float64]
 Progress = Callable[[int], object]
 
@@ -39,21 +39,6 @@ Progress = Callable[[int], object]
 # twice as many find the same in 60 problems.
 MAX_SECANT_STEPS = 40
 FRICTION_TOL = 1e-12  # change of P_t/P_n at convergence
-
-
-def needs_adjustment(known: Mapping[str, Uncertain], wanted: Sequence[str] | None = None) -> bool:
-    """Return True for a problem that `unknowns.solve_for` cannot solve: one with tolerances, with
-    quantities it does not take, or with exact values that contradict one another."""
-    if any(item.varies or name in OTHERS for name, item in known.items()):
-        return True
-    try:
-        solutions = solve_for({name: item.nominal for name, item in known.items()}, wanted)
-    except UnsolvableError:
-        # values that leave something undetermined may be contradictory, too
-        return bool(missed_laws({name: item.nominal for name, item in known.items()}))
-    except UserError:
-        return False  # `solve_for` reports it when it is called
-    return any(bool(solution.contradictory) for solution in solutions)
 
 
 @within_doubles
@@ -72,8 +57,9 @@ def reconstruct(
     Raise UserError for names and numbers that cannot be used and for exact values that
     contradict one another beside others with a tolerance, UnsolvableError where nothing unknown
     is determined."""
-    values, _ = resolve_friction(_check_known(known))
+    values, friction = resolve_friction(_check_known(known))
     values, remarks = pose(values, fixed_value)
+    remarks = [friction, *remarks] if friction else remarks
     point = values["M"].nominal == 4
     failure: UserError | None = None
     try:
@@ -165,6 +151,7 @@ def _sort_solutions(
         squares = float(f"{max(solution.squares, 1e-9):.6e}")
         broken = solution.impossible
         no_impact = bool(broken & (Status.SEPARATING | Status.PULLING))
+        friction = int(outcome(solution.values)["STATUS"]) & _FRICTION
         ranks = invariants(solution.values)
         return (
             not is_counted[id(solution)],
@@ -172,6 +159,7 @@ def _sort_solutions(
             no_impact,
             squares,
             broken.bit_count(),
+            bool(friction),
             *ranks,
         )
 
@@ -293,15 +281,9 @@ def resolve_friction(known: Mapping[str, Uncertain]) -> tuple[dict[str, Uncertai
 def _solve_friction(other_values: Mapping[str, Uncertain], fraction: float) -> float:
     """Return the P_t/P_n that is the given fraction of MUC in the impact that follows from it and
     the other values, by the secant method."""
-    exact = not needs_adjustment(other_values, None)
-    numbers = {name: item.nominal for name, item in other_values.items()}
 
     def excess(mu: float) -> float:
-        scene: dict[str, Any]
-        if exact:
-            scene = {**numbers, **solve_for({**numbers, "MUP": mu})[0].values}
-        else:
-            scene = reconstruct({**other_values, "MUP": fixed_value(mu)})[0].scene()
+        scene = reconstruct({**other_values, "MUP": fixed_value(mu)})[0].scene()
         scene = {name: value for name, value in scene.items() if name in SCENE}
         return mu - fraction * float(solve({**scene, "MU": 0.0}, ("MUC",))["MUC"])
 

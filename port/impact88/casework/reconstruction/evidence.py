@@ -41,6 +41,10 @@ class AtOdds:
         Name of the quantity.
     measured, adjusted : float
         Measured and adjusted value.
+    expected : float
+        The value that the others give it.
+    move : float
+        How far it would have to move there, in its own standard deviations.
     residual : float
         Adjustment in standard deviations of that adjustment.
     without : float
@@ -51,6 +55,8 @@ class AtOdds:
     name: str
     measured: float
     adjusted: float
+    expected: float
+    move: float
     residual: float
     without: float
 
@@ -70,12 +76,13 @@ class Evidence:
     probability : float
         Probability of a sum of squares that large or larger, nan if unchecked.
     at_odds : sequence of AtOdds
-        The values most at odds with the others, the worst first.
+        The values that are together most at odds with the others, first what would have to move
+        least in its own standard deviations.
     inside : bool, optional
         True if some impact lies within all limits at once, None if that was not searched for.
     exact : bool
-        True if the values are exact, and the standard deviations those of the misfit.
-    laws : tuple of MissedLawLaw
+        True if all values are exact; standard deviations are then those of the misfit.
+    laws : tuple of MissedLaw
         The laws that exact values do not satisfy.
     """
 
@@ -119,6 +126,8 @@ class Evidence:
         str
             The verdict, without a full stop.
         """
+        if self.verdict == UNCHECKED and self.exact:
+            return "not checked: all values are taken as exact, so none tests another"
         if self.verdict == UNCHECKED:
             return "not checked: no more is known than needed, so no measurement tests another"
         if self.exact:
@@ -138,7 +147,7 @@ class Evidence:
         )
 
     def name_values_at_odds(self, units: System = RULES) -> str:
-        """Return the values most at odds, each as measured and as adjusted.
+        """Return the values most at odds, each as measured and as the others give it.
 
         Parameters
         ----------
@@ -156,15 +165,17 @@ class Evidence:
             unit = "°" if unit == "deg" else f" {unit}" if unit else ""
             # the first part of the meaning; the rest is for the tables
             meaning = re.split("[:;,]| as printed", quantity(item.name).meaning)[0]
-            measured, adjusted = (
+            measured, expected = (
                 _format_amount(units.display_unwrapped(item.name, float(x))) + unit
-                for x in (item.measured, item.adjusted)
+                for x in (item.measured, item.expected)
             )
             word = "given" if self.exact else "measured"
-            parts.append(f"{meaning} {item.name} ({measured} {word}, {adjusted} adjusted)")
-        text = "most at odds: " + "; ".join(parts)
-        if len(self.at_odds) > 1:
-            text += ", equally"
+            distance = "" if self.exact else f", {_format_amount(abs(item.move), 2)} sd away"
+            parts.append(
+                f"{meaning} {item.name} ({measured} {word}, {expected} by the others{distance})"
+            )
+        text = "together" if len(parts) > 1 else "most"
+        text += " at odds: " + "; ".join(parts)
         if not self.exact and self.at_odds and all(item.without >= STRAIN for item in self.at_odds):
             any_one = "any one of them" if len(self.at_odds) > 1 else "it"
             text += f"; without {any_one} the others agree"
@@ -188,6 +199,8 @@ class Evidence:
                 "name": item.name,
                 "measured": units.display_unwrapped(item.name, float(item.measured)),
                 "adjusted": units.display_unwrapped(item.name, float(item.adjusted)),
+                "by_the_others": units.display_unwrapped(item.name, float(item.expected)),
+                "move": item.move,
                 "standardized_residual": item.residual,
                 "probability_without": item.without,
             }
@@ -229,7 +242,7 @@ def weigh(
     ``inside``: True if some impact lies within all limits, None if that was not searched for.
     ``exact``: the values are exact and contradict one another; ``laws``: the laws they violate."""
     if redundancy < 1:
-        return Evidence(UNCHECKED, squares, redundancy, math.nan, (), inside)
+        return Evidence(UNCHECKED, squares, redundancy, math.nan, (), inside, not values)
     probability = chi_square_tail(squares, redundancy)
     items = []
     for name, (measured, adjusted, adjustment, redundancy_number) in values.items():
@@ -237,9 +250,12 @@ def weigh(
             residual = adjustment / math.sqrt(redundancy_number)
             other_squares = max(squares - residual * residual, 0.0)
             without = chi_square_tail(other_squares, redundancy - 1) if redundancy > 1 else 1.0
-            items.append(AtOdds(name, measured, adjusted, residual, without))
-    items.sort(key=lambda item: -abs(item.residual))
-    worst = [x for x in items if x.residual**2 >= NAMED_RATIO * items[0].residual ** 2][:MAX_NAMED]
+            expected = measured + (adjusted - measured) / redundancy_number
+            move = adjustment / redundancy_number
+            items.append(AtOdds(name, measured, adjusted, expected, move, residual, without))
+    largest = max((item.residual**2 for item in items), default=0.0)
+    together = [item for item in items if item.residual**2 >= NAMED_RATIO * largest]
+    worst = sorted(together, key=lambda item: abs(item.move))[:MAX_NAMED]
     verdict = AGREE if probability >= STRAIN else STRAINED
     if exact or probability < CONTRADICTION or inside is False:
         verdict = CONTRADICT

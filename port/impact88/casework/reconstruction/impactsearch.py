@@ -14,13 +14,12 @@ from numpy.typing import NDArray
 
 from ...collision.geometry import GEOMETRY
 from ...collision.uncertain import Uncertain
-from ...names import FINAL_STATE, IMPULSES, VELOCITIES
 from .laws import describe_laws, missed_laws
 from .leastsquares import PENALTIES, descend, polish, pseudo_inverse
 from .nearest import with_nearest
 from .quadrics import MAX_EQUATIONS, Paths, follow_paths, quadratic_equations
 from .solution import RESIDUAL_TOL, Reconstruction, describe, invariants
-from .system import PARAMETERS, SPINS, System
+from .system import PARAMETERS, System
 from .unknowns import UnsolvableError
 
 Floats = NDArray[np.float64]
@@ -57,10 +56,12 @@ class Search:
         self.linear = exact_system.linear and not inputs_vary  # one valley, without bends
         exact, self.counts = self._exact_impacts(exact_system)
         self.assumed = not exact.shape[1] and not any(item.varies for item in known.values())
-        if self.assumed:
-            known = {**known, **_equal_tolerances(known, exact_system)}
-        self.system = System(known, adjusted=True, progress=progress)
-        self.exact = self._starts_at(exact_system, exact)
+        self.system = (
+            exact_system.with_equal_tolerances()
+            if self.assumed
+            else System(known, adjusted=True, progress=progress)
+        )
+        self.exact = self.system.starts_at(exact_system, exact, self.rng)
         self.minima = _Minima(self.system, self.assumed)
 
     @property
@@ -83,10 +84,10 @@ class Search:
                 self.paths = paths
                 return impacts, counts
         if self.linear:
-            start = _random_starts(system, self.rng, 1)
+            start = system.random_starts(self.rng, 1)
             return _distinct_solutions(system, start, impacts, counts)
         if len(system.conditions) > len(system.variables):
-            few = _random_starts(system, self.rng, FEW_STARTS)
+            few = system.random_starts(self.rng, FEW_STARTS)
             impacts, counts = _distinct_solutions(system, few, impacts, counts)
             if not impacts.shape[1]:
                 return impacts, counts
@@ -98,7 +99,7 @@ class Search:
         """Return exact impacts that random starts lead to. The search ends when each was found more
         than once: by Good and Turing's rule another is then improbable."""
         for _ in range(MAX_BATCHES):
-            starts = _random_starts(system, self.rng, EXACT_STARTS)
+            starts = system.random_starts(self.rng, EXACT_STARTS)
             impacts, counts = _distinct_solutions(system, starts, impacts, counts)
             self.starts += EXACT_STARTS
             is_open = impacts.shape[1] and not _is_isolated(system, impacts[:, :1])
@@ -134,15 +135,15 @@ class Search:
         solutions = minima.solutions()
         if self.assumed:
             return solutions
-        return with_nearest(solutions, _random_starts(self.system, self.rng, FIT_STARTS))
+        return with_nearest(solutions, self.rng, FIT_STARTS)
 
     def _fits(self) -> Floats:
         """Return the ends of iterations from random starts, half of them without the first penalty,
         which makes one valley of several, and from impacts of fewer measurements."""
         system = self.system
         if self.linear:
-            return descend(system, _random_starts(system, self.rng, 1))
-        starts = _random_starts(system, self.rng, 2 * FIT_STARTS)
+            return descend(system, system.random_starts(self.rng, 1))
+        starts = system.random_starts(self.rng, 2 * FIT_STARTS)
         first, others = np.split(starts, 2, axis=1)
         first = descend(system, first, PENALTIES[:1])
         roots = starts[:, :0] if self.assumed else self._impacts_of_fewer_measurements()
@@ -166,16 +167,10 @@ class Search:
             if equations is not None and equations.size <= MAX_EQUATIONS:
                 paths = follow_paths(equations, self.rng)
                 roots = np.concatenate([paths.real, paths.near], axis=1)
-                impacts = np.concatenate([impacts, self._starts_at(system, roots)], axis=1)
+                impacts = np.concatenate(
+                    [impacts, self.system.starts_at(system, roots, self.rng)], axis=1
+                )
         return impacts
-
-    def _starts_at(self, exact_system: System, x: Floats) -> Floats:
-        """Return starts with the velocities and impulses of exact impacts ``x``."""
-        starts, state = _random_starts(self.system, self.rng, x.shape[1]), exact_system.state(x)
-        for row, name in enumerate(self.system.variables):
-            if name in VELOCITIES or name in IMPULSES:
-                starts[row] = state[name] / self.system.scales[row]
-        return starts
 
 
 class _Minima:
@@ -269,26 +264,6 @@ def _order_of_open(solution: Reconstruction) -> tuple[float, ...]:
     of two continua by what is the same seen from elsewhere."""
     squares = float(f"{max(solution.squares, 1e-9):.6e}")
     return squares, solution.impossible != 0, *invariants(solution.values)
-
-
-def _equal_tolerances(known: Mapping[str, Uncertain], exact_system: System) -> dict[str, Uncertain]:
-    """Return the known velocities with a standard deviation of one unit; a spin's unit is one of
-    velocity over the radius of gyration."""
-    measured = {}
-    for name in (n for n in (*VELOCITIES, *FINAL_STATE) if n in known):
-        deviation = 1 / exact_system.gyration if name in SPINS else 1.0
-        measured[name] = Uncertain("normal", known[name].nominal, -np.inf, np.inf, deviation)
-    return measured
-
-
-def _random_starts(system: System, rng: np.random.Generator, count: int) -> Floats:
-    """Return ``count`` random starts: scaled variables, a column each, known ones at their nominal
-    values."""
-    starts = rng.standard_normal((count, len(system.variables))).T
-    for i, name in enumerate(system.variables):
-        if name in system.nominal:
-            starts[i] = system.nominal[name] / system.scales[i]
-    return starts
 
 
 def _distinct_solutions(

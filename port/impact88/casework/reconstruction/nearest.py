@@ -5,7 +5,6 @@ A condition of the set is one more condition of the equations: what lies beyond 
 residual, what lies within is none. At the ends of iterations the borders that are crossed are held,
 and Newton's method ends on them."""
 
-from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
@@ -14,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...collision.geometry import within_doubles
-from ...collision.uncertain import Uncertain
 from ...collision.units import System as Units
 from ...mechanics.state import State
 from ...messages.plaintable import number
+from ...status import sentences
 from .admissible import (
     APPROACH,
     ENERGY,
@@ -44,6 +43,7 @@ MAX_ENDS = 12  # polished
 
 
 MAX_MOVES = 3  # known values named that would have to move
+MIN_MOVE = 1e-3  # of an exact velocity, relative to the largest, that is named
 
 
 class Border(NamedTuple):
@@ -95,56 +95,72 @@ def is_admissible(solution: Reconstruction) -> bool:
 
 
 def counts(solution: Reconstruction) -> bool:
-    """Return True if an impact found is possible and admissible, as far as it is determined."""
-    return not solution.impossible and (bool(solution.undetermined) or is_admissible(solution))
+    """Return True if an impact found is possible and, unless it follows from exact values,
+    admissible, as far as it is determined. Friction that exact values need is remarked upon."""
+    is_judged = solution.system.observations and not solution.undetermined
+    return not solution.impossible and (not is_judged or is_admissible(solution))
 
 
-def with_nearest(solutions: list[Reconstruction], starts: Floats) -> list[Reconstruction]:
+def with_nearest(
+    solutions: list[Reconstruction], rng: np.random.Generator, count: int
+) -> list[Reconstruction]:
     """Return the solutions and the nearest admissible impact, where none of them is admissible:
-    first, if it agrees with what is known, and else beside each."""
-    system = solutions[0].system
-    is_open = any(solution.undetermined for solution in solutions)
-    if is_open or not system.observations or any(map(is_admissible, solutions)):
+    first, if it agrees with what is known, and else beside each. Exact values cannot move: the
+    nearest impact is sought with the same tolerance on all known velocities. ``count``: of random
+    starts."""
+    exact = solutions[0].system
+    is_acceptable = is_admissible if exact.observations else counts
+    if any(solution.undetermined or is_acceptable(solution) for solution in solutions):
         return solutions
-    starts = np.concatenate([starts, *(solution.x for solution in solutions)], axis=1)
-    found = find_nearest(system, starts)
+    system = exact if exact.observations else exact.with_equal_tolerances()
+    roots = [system.starts_at(exact, solution.x, rng) for solution in solutions]
+    found = find_nearest(system, np.concatenate([system.random_starts(rng, count), *roots], axis=1))
     if found is None:
         return solutions
-    nearest = replace(describe(found.system, found.x, False), limited=found.borders)
+    nearest = replace(describe(found.system, found.x, system is not exact), limited=found.borders)
     if nearest.undetermined or nearest.impossible:
         return solutions
-    if nearest.is_within_limits or not nearest.evidence.contradictory:
+    agrees = nearest.is_within_limits or not nearest.evidence.contradictory
+    if system is exact and agrees:
         return [nearest, *solutions]
     return [replace(solution, nearest=nearest) for solution in solutions]
 
 
 @within_doubles
-def refusal(solution: Reconstruction, nearest: Reconstruction, units: Units) -> str:
+def refusal(solution: Reconstruction, units: Units) -> str:
     """Return why no admissible impact agrees with what is known: the conditions that an impact
     found misses, by how much, and which known values would have to move how far for the nearest
     admissible one."""
     state, admissible = solution.system.state(solution.x), Admissible(solution.system)
     misses = [
         _amount(border, state, units)
-        for border in borders(solution.system)
+        for border in ([] if solution.undetermined else borders(solution.system))
         if _number(border.within(state, admissible)) < -CONDITION_TOL
     ]
-    known, moves = nearest.system.known, []
-    for item in sorted(nearest.adjusted, key=_moved_deviations(known), reverse=True)[:MAX_MOVES]:
-        deviations = _moved_deviations(known)(item)
-        if deviations < 1:
-            break
-        old, new = (units.display_unwrapped(item.name, x) for x in (item.measured, item.adjusted))
-        unit = units.unit(item.name)
-        place = f"{item.name} at {number(new, 4)} {unit}".rstrip()
-        moves.append(f"{place}, not {number(old, 4)} ({deviations:.1f} sd)")
-    text = f"no admissible impact agrees with what is known: {'; '.join(misses)}"
+    misses = misses or sentences(solution.impossible)
+    text = f"no impact that physics allows agrees with what is known: {'; '.join(misses)}"
+    moves = [] if solution.nearest is None else _moves(solution.nearest, units)
     return f"{text}. The nearest one has {'; '.join(moves)}" if moves else text
 
 
-def _moved_deviations(known: Mapping[str, Uncertain]) -> Callable[[Adjusted], float]:
-    """Return a function of an adjusted value: how far it moved, in its standard deviations."""
-    return lambda item: abs(item.adjusted - item.measured) / known[item.name].standard_deviation
+def _moves(nearest: Reconstruction, units: Units) -> list[str]:
+    """Return the known values that the nearest admissible impact has elsewhere, and where: those
+    beyond one standard deviation, or the farthest of exact ones."""
+    known = nearest.system.known
+
+    def deviations(item: Adjusted) -> float:
+        return abs(item.adjusted - item.measured) / known[item.name].standard_deviation
+
+    least = MIN_MOVE * float(nearest.system.speed) if nearest.assumed else 1.0
+    moves = []
+    for item in sorted(nearest.adjusted, key=deviations, reverse=True)[:MAX_MOVES]:
+        if deviations(item) < least:
+            break
+        old, new = (units.display_unwrapped(item.name, x) for x in (item.measured, item.adjusted))
+        place = f"{item.name} at {number(new, 4)} {units.unit(item.name)}".rstrip()
+        moved = "" if nearest.assumed else f" ({deviations(item):.1f} sd)"
+        moves.append(f"{place}, not {number(old, 4)}{moved}")
+    return moves
 
 
 def _amount(border: Border, state: State, units: Units) -> str:

@@ -3,7 +3,7 @@ first-order uncertainty."""
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...collision.geometry import GEOMETRY, within_doubles
+from ...collision.needs import join_words
+from ...errors import UserError
 from ...mechanics.outcome import outcome
 from ...mechanics.posed import absent_results, with_headings
 from ...mechanics.state import COURSES, DIRECTIONS, FORCES, QUANTITIES, SPEEDS, State
@@ -20,7 +22,7 @@ from .evidence import Evidence, weigh
 from .laws import missed_laws
 from .leastsquares import polish, pseudo_inverse
 from .system import SPINS, System
-from .unknowns import UnsolvableError, mu_to_type
+from .unknowns import UnsolvableError, coefficient_to_blame, mu_to_type
 
 Floats = NDArray[np.float64]
 
@@ -33,6 +35,7 @@ FOLD_OFFSET = 1e-2  # scaled distance at which a fold is distinguished from a co
 FOLD_MISFIT = 1e-9  # a sum of squares that is larger by less is as good
 FOLD_TOL = 1e-4  # relative singular value below which two branches nearly meet
 FOLD_GRADIENT_TOL = 1e-3  # relative part of a gradient along the fold that counts as zero
+SOUGHT = (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS)  # what an impact is solved for
 # Unknowns that can be determined best by other evidence
 PREFERRED_MEASUREMENTS = ("WAF", "WBF", "WA", "WB", "E", "MUP", "EM")
 
@@ -263,9 +266,11 @@ class Reconstruction:
         """Further values that would determine everything undetermined, empty if none would."""
         _, null = pseudo_inverse(self.system.jacobian(self.x))
         rows, names = np.zeros((0, null.shape[1])), []
-        wanted = [*dict.fromkeys((*PREFERRED_MEASUREMENTS, *self.undetermined))]
+        known = self.system.known
+        courses = [c for c, speed in COURSES.items() if speed in known and c not in known]
+        wanted = [*dict.fromkeys((*courses, *PREFERRED_MEASUREMENTS, *self.undetermined))]
         for name, gradient in zip(wanted, self.system.gradients(self.x, wanted), strict=True):
-            if name in self.undetermined and np.isfinite(gradient).all():
+            if name in (*courses, *self.undetermined) and np.isfinite(gradient).all():
                 row = gradient @ null / np.abs(gradient).max(initial=1e-300)
                 candidate_rows = np.vstack([rows, row])
                 if np.linalg.matrix_rank(candidate_rows, tol=NULL_TOL) > len(rows):
@@ -289,6 +294,38 @@ class Reconstruction:
     def _responses(self) -> Floats:
         # assumed tolerances are scaled by the misfit
         return np.asarray(self._unit_responses[0] * (self.evidence.widening if self.assumed else 1))
+
+    @cached_property
+    def amplification(self) -> dict[str, float]:
+        """Error of each unknown velocity and coefficient when each known velocity errs by one unit.
+
+        The errors are independent. A spin's unit is one of velocity over the radius of gyration; a
+        coefficient's error is multiplied by the closing speed. Empty unless all values are exact.
+        """
+        exact = self.system
+        names = [n for n in SOUGHT if n in self.values and n not in exact.known]
+        system = exact.with_equal_tolerances()
+        if exact.observations or not (names and system.observations):
+            return {}
+        x = system.starts_at(exact, self.x, np.random.default_rng(0))
+        measured = replace(self, system=system, x=x)
+        responses = system.gradients(x, names) @ measured._unit_responses[0]
+        closing = float(np.hypot(*np.real(exact.state(self.x).relative_before[:2])).ravel()[0])
+        units = {n: float(exact.gyration) if n in SPINS else 1.0 for n in names}
+        units |= dict.fromkeys(COEFFICIENTS, closing)
+        sizes = np.sqrt(np.square(responses).sum(axis=1))
+        return {n: float(size * units[n]) for n, size in zip(names, sizes, strict=True)}
+
+    @cached_property
+    def explanation(self) -> str:
+        """Reason why an exact coefficient leaves something undetermined, "" where none does."""
+        if not self.undetermined or (self.system.observations and not self.assumed):
+            return ""
+        numbers = {name: item.nominal for name, item in self.system.known.items()}
+        try:
+            return coefficient_to_blame(numbers, self.undetermined)
+        except UserError:  # values that it does not take
+            return ""
 
     @cached_property
     def evidence(self) -> Evidence:
@@ -465,6 +502,41 @@ def _misfit(system: System, x: Floats) -> float:
 
 def describe(system: System, x: Floats, assumed: bool) -> Reconstruction:
     """Return the solution at ``x``: every quantity that is determined there, and the adjustments.
+    Raise UnsolvableError, with what to give, where exact values determine nothing."""
+    state, rows, count = system.state(x), system.jacobian(x), system.condition_count
+    values, undetermined = _determined_values(system, x, pseudo_inverse(rows)[1])
+    _, feasible = pseudo_inverse(rows[:count])
+    _, left_open = pseudo_inverse(rows[count:] @ feasible)
+    adjusted = []
+    for name in system.observations:
+        item, value = system.known[name], float(np.ravel(system.observed_value(state, name))[0])
+        adjusted.append(Adjusted(name, item.nominal, item.tolerance, value))
+    adjustments = system.residuals(state)[count:, 0]
+    solution = Reconstruction(
+        system=system,
+        x=x,
+        values=with_headings(values),
+        undetermined=tuple(undetermined),
+        adjusted=tuple(adjusted),
+        redundancy=len(adjusted) - (feasible.shape[1] - left_open.shape[1]),
+        squares=float(adjustments @ adjustments),
+        assumed=assumed,
+    )
+    is_found = any(name in values for name in SOUGHT if name not in system.known)
+    if undetermined and not is_found and not system.observations:
+        reason = f": {solution.explanation}" if solution.explanation else ""
+        needed = join_words(solution.helpful) if solution.helpful else "more of it"
+        raise UnsolvableError(
+            f"nothing of {' '.join(undetermined)} is determined by what is known{reason}; "
+            f"give {needed}"
+        )
+    return solution
+
+
+def _determined_values(
+    system: System, x: Floats, null: Floats
+) -> tuple[dict[str, float], list[str]]:
+    """Return every quantity that is determined, and the velocities and coefficients that are not.
 
     A quantity is undetermined where its gradient has a component in the null space of the
     Jacobian, unless the impact is isolated (`_is_fold`). Two kinds need more than their gradient:
@@ -473,15 +545,12 @@ def describe(system: System, x: Floats, assumed: bool) -> Reconstruction:
       component of the velocity is undetermined, the vehicle could also drive the other way, 180°
       off.
     - The direction of the impulse is undetermined where P_n is."""
-    state, rows = system.state(x), system.jacobian(x)
-    adjustments = system.residuals(state)[system.condition_count :, 0]
-    _, null = pseudo_inverse(rows)
+    state, absent = system.state(x), absent_results(system.known)
 
     def to_float(array: Any) -> float:
         return float(np.ravel(array)[0])
 
     values = {n: to_float(state.values[n]) for n in ("M", *GEOMETRY) if n in system.known}
-    absent = absent_results(system.known)
     undetermined: list[str] = []
     is_fold = bool(null.shape[1]) and _is_fold(system, x, null)
     for name, gradient in zip(QUANTITIES, system.gradients(x, QUANTITIES), strict=True):
@@ -506,31 +575,6 @@ def describe(system: System, x: Floats, assumed: bool) -> Reconstruction:
             # the direction opposite to the axis is 180, whatever rounding makes of it
             is_opposite = name in (*COURSES, *FORCES) and amount < -180 + DIRECTION_TOL
             values[name] = amount + 360 if is_opposite else amount
-        elif name in (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS):
+        elif name in SOUGHT:
             undetermined.append(name)
-    names = (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS)
-    unknown = [n for n in names if n not in system.known and n not in absent]
-    if unknown and not any(name in values for name in unknown) and not system.observations:
-        raise UnsolvableError(
-            f"nothing of {' '.join(unknown)} is determined by what is known; expected more of it"
-        )
-    items = [
-        (n, system.known[n], to_float(system.observed_value(state, n))) for n in system.observations
-    ]
-    adjusted = tuple(
-        Adjusted(n, item.nominal, item.tolerance, adjusted_value)
-        for n, item, adjusted_value in items
-    )
-    _, feasible = pseudo_inverse(rows[: system.condition_count])
-    _, left_open = pseudo_inverse(rows[system.condition_count :] @ feasible)
-    redundancy = len(items) - (feasible.shape[1] - left_open.shape[1])
-    return Reconstruction(
-        system=system,
-        x=x,
-        values=with_headings(values),
-        undetermined=tuple(undetermined),
-        adjusted=adjusted,
-        redundancy=redundancy,
-        squares=float(adjustments @ adjustments),
-        assumed=assumed,
-    )
+    return values, undetermined

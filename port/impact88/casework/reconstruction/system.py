@@ -64,15 +64,30 @@ class System:
         self.nominal: dict[str, Any] = {name: item.nominal for name, item in known.items()}
         geometry = Geometry(self.nominal)
         self.point = bool(np.all(geometry.point))
+        self._set_sizes(geometry)
+        fixed: tuple[str, ...] = ("WA", "WB", "PM") if self.point else ()
+        for mass_name, names in (("MA", VELOCITIES[:3]), ("MB", VELOCITIES[3:])):
+            if barrier and np.all(np.isinf(self.nominal[mass_name])):
+                fixed += names
+        uncertain = {n for n, item in known.items() if adjusted and item.varies}
+        self._set_variables(fixed, uncertain)
+        self._set_conditions(fixed, uncertain)
+        self.observations = tuple(n for n in known if n in uncertain and n not in fixed)
+        has_fixed_geometry = uncertain.isdisjoint(GEOMETRY)
+        self.geometry = geometry if has_fixed_geometry else None
+        self.linear = (
+            not adjusted
+            and "MUC" not in self.constants
+            and not any(n in _NONLINEAR and _COURSE_OF.get(n) not in known for n in known)
+        )
+
+    def _set_sizes(self, geometry: Geometry) -> None:
+        """Set the sizes of ordinary quantities, by unit."""
         # numpy's numbers: beyond the range of doubles they are infinite, where Python's raise
         self.mass: Any = np.float64(1) / geometry.inverse_mass
         self.gyration: Any = np.float64(1.0)
         if not self.point:
             self.gyration = np.sqrt(geometry.inverse_mass / geometry.inverse_spin_inertia)
-        fixed: tuple[str, ...] = ("WA", "WB", "PM") if self.point else ()
-        for mass_name, names in (("MA", VELOCITIES[:3]), ("MB", VELOCITIES[3:])):
-            if barrier and np.all(np.isinf(self.nominal[mass_name])):
-                fixed += names
         self.speed: Any = self._typical_speed()
         speed, mass, length = self.speed, self.mass, self.gyration
         self.sizes: dict[str, Any] = {
@@ -86,12 +101,14 @@ class System:
             "mass·length²/time": mass * speed * length,
             "mass·length²/time²": mass * speed**2,
         }
-        uncertain = {n for n, item in known.items() if adjusted and item.varies}
+
+    def _set_variables(self, fixed: tuple[str, ...], uncertain: set[str]) -> None:
+        """Set the variables, and the values that are not."""
+        known, after = self.known, dict(zip(VELOCITIES, FINAL_STATE, strict=True))
         parameters = [n for n in known if n in PARAMETERS and n in uncertain]
         unknown = [n for n in VELOCITIES if n not in fixed and (n not in known or n in uncertain)]
         self.from_after: tuple[str, ...] = ()
-        after = dict(zip(VELOCITIES, FINAL_STATE, strict=True))
-        if not adjusted:
+        if not self.adjusted:
             self.from_after = tuple(n for n in unknown if after[n] in known)
             unknown = [n for n in unknown if n not in self.from_after]
         impulses = [n for n in IMPULSES if n not in fixed]
@@ -100,6 +117,10 @@ class System:
         self.constants = {**dict.fromkeys(fixed, 0.0), **self.nominal}
         if (friction := known.get("MUP")) is not None and friction.critical:
             self.constants["MUC"] = friction.critical  # a fraction of each impact's own
+
+    def _set_conditions(self, fixed: tuple[str, ...], uncertain: set[str]) -> None:
+        """Set the laws and exact values that hold."""
+        known, after = self.known, dict(zip(VELOCITIES, FINAL_STATE, strict=True))
         self.laws = [n for n in COEFFICIENTS if n in known and not (self.point and n == "EM")]
         implied = {after[n] for n in (*fixed, *self.from_after) if n in after}
         self.exact = [
@@ -110,13 +131,6 @@ class System:
         ]
         self.conditions = (*self.laws, *self.exact)
         self.limits: tuple[Callable[[State], Any], ...] = ()
-        self.observations = tuple(n for n in known if n in uncertain and n not in fixed)
-        self.geometry = None if set(parameters) & set(GEOMETRY) else geometry
-        self.linear = (
-            not adjusted
-            and "MUC" not in self.constants
-            and not any(n in _NONLINEAR and _COURSE_OF.get(n) not in known for n in known)
-        )
 
     def limited_by(self, limits: Sequence[Callable[[State], Any]]) -> "System":
         """Return the same equations with further conditions: residuals of impacts, real or
@@ -124,6 +138,35 @@ class System:
         limited = copy(self)
         limited.limits = tuple(limits)
         return limited
+
+    def with_equal_tolerances(self) -> "System":
+        """Return the equations of exact values with a standard deviation of one unit on each known
+        velocity and speed; a spin's unit is one of velocity over the radius of gyration."""
+        units = {"length/time": 1.0, "rad/time": float(1 / self.gyration)}
+        known = dict(self.known)
+        for name, item in self.known.items():
+            if quantity(name).unit in units:
+                deviation = units[quantity(name).unit]
+                known[name] = Uncertain("normal", item.nominal, -np.inf, np.inf, deviation)
+        return System(known, adjusted=True, progress=self.progress)
+
+    def random_starts(self, rng: np.random.Generator, count: int) -> Floats:
+        """Return ``count`` random starts: scaled variables, a column each, known ones at their
+        nominal values."""
+        starts = rng.standard_normal((count, len(self.variables))).T
+        for i, name in enumerate(self.variables):
+            if name in self.nominal:
+                starts[i] = self.nominal[name] / self.scales[i]
+        return starts
+
+    def starts_at(self, other: "System", x: Array, rng: np.random.Generator) -> Floats:
+        """Return starts with the velocities and impulses of the impacts ``x`` of other equations of
+        the same problem."""
+        starts, state = self.random_starts(rng, x.shape[1]), other.state(x)
+        for row, name in enumerate(self.variables):
+            if name in VELOCITIES or name in IMPULSES:
+                starts[row] = state[name] / self.scales[row]
+        return starts
 
     @property
     def condition_count(self) -> int:

@@ -347,6 +347,12 @@ class _Problem:
         return "; and ".join(reasons) or None
 
 
+def coefficient_to_blame(known: Mapping[str, Any], wanted: Sequence[str]) -> str:
+    """Return the reason if a coefficient's special value leaves ``wanted`` undetermined, else "".
+    Raise UserError for values that `solve_for` does not take."""
+    return _Problem(known, wanted)._coefficient_to_blame() or ""
+
+
 class _Fit(NamedTuple):
     """The least-squares solutions of n scenes: scaled variables ``x`` (variables, n), their
     ``errors`` (variables, known velocities, n) when each known velocity errs by one unit, the

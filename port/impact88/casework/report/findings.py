@@ -20,7 +20,7 @@ from ...names import DEFAULT_M, LENGTH, MASS, SCENE, SPIN, VELOCITY, check_names
 from ...status import sentences
 from ..figures.canvas import svg
 from ..figures.sceneview import scene_drawing
-from ..reconstruction.solutiontable import without_noise
+from ..reconstruction.derived import without_noise
 from .frame import render
 
 if TYPE_CHECKING:
@@ -126,14 +126,16 @@ class Findings(NamedTuple):
         Remarks, in sentences.
     scene : mapping of str to float
         The scene that is drawn.
-    evidence : str
-        Verdict on the evidence.
+    lines : sequence of (str, str, bool)
+        The first lines of a reconstruction: label, text, and True where they are adverse.
     contradictory : bool
         True if the given values contradict one another.
     adjusted : sequence of Adjusted
         Each measured value beside its adjusted one.
-    impossible : str
-        The law of physics that the impact breaks; empty if none.
+    impossible : bool
+        True if the impact breaks a law of physics.
+    adverse : bool
+        True if no impact agrees, or no velocity before it was found.
     """
 
     inverse: bool
@@ -142,10 +144,11 @@ class Findings(NamedTuple):
     spreads: Mapping[str, Spread]
     remarks: Sequence[str]
     scene: Mapping[str, float]
-    evidence: str = ""
+    lines: Sequence[tuple[str, str, bool]] = ()
     contradictory: bool = False
     adjusted: Sequence[Adjusted] = ()
-    impossible: str = ""
+    impossible: bool = False
+    adverse: bool = False
 
 
 def report(
@@ -160,8 +163,8 @@ def report(
     paper: str = "",
     examiner: str = "",
     date: str = "",
-) -> str:
-    """Return the report page on a collision.
+) -> tuple[str, bool]:
+    """Return the report page on a collision, and True where no impact agrees with what is known.
 
     ``source`` is the name of the case's file and ``data`` its bytes. A complete scene with nothing
     known after the impact is computed forward, any other reconstructed. Raises UserError.
@@ -181,16 +184,15 @@ def report(
     tables = [_answer(findings, units), *_details(findings, case, units)]
     paper = paper or ("letter" if units.name in ("us", "chapter", "") else "a4")
     summary, answer = _summary(findings, case, units), _sentences(findings, units)
-    remarks = [*remark_lines(case.remarks), *findings.remarks]
     look = (DRAWN, "", units, case.outlines)
-    verdicts = [text for text in (findings.impossible, findings.evidence) if text]
-    room = _room(paper, [*summary, *answer], verdicts, remarks)
+    remarks, texts = findings.remarks, [text for _, text, _ in findings.lines]
+    room = _room(paper, [*summary, *texts, *answer], remarks)
     undrawn = ""
     try:
         drawing = scene_drawing(findings.scene, findings.values, *look, tallest=room)
     except UserError as error:  # what is not determined cannot be drawn
         undrawn = str(error)
-    return render(
+    page = render(
         "collision.html",
         title=title or case.title or "Planar impact of two vehicles",
         case=number or case.case or "",
@@ -217,6 +219,7 @@ def report(
         room=FIRST_PAGE[paper],
         remarks=remarks,
     )
+    return page, findings.adverse
 
 
 def _unjudged(case: Case) -> list[str]:
@@ -239,7 +242,7 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
     from ...mechanics.closedform.general import share_typed
     from ...mechanics.closedform.solve import solve
     from ...mechanics.posed import absent_results
-    from ..reconstruction.solutiontable import with_derived_values
+    from ..reconstruction.derived import with_derived_values
     from ..uncertainty.ranges import read_inputs
 
     inputs = read_inputs(case)
@@ -251,7 +254,7 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
     values = with_derived_values({**{n: float(v) for n, v in nominal.items()}, **results}, None)
     spreads: dict[str, Spread] = {}
     status = int(results.get("STATUS", 0))
-    remarks = sentences(status, {**nominal, **results})
+    remarks = [*remark_lines(case.remarks), *sentences(status, {**nominal, **results})]
     needs = {**absent_results(nominal), **getattr(solved, "absent", {})}
     shown = {*FORWARD, *_CONSEQUENCES} - {*values}
     remarks += needs_in_words({name: x for name, x in needs.items() if name in shown})
@@ -287,64 +290,54 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
 
 
 def _inverse(case: Case, source: str, samples: int, seed: int, units: System) -> Findings:
-    from ...collision.uncertain import read
-    from ..reconstruction.adjustment import reconstruct
-    from ..reconstruction.reconstructedtable import Measured
+    from ...collision.uncertain import read, shared_road
+    from ..reconstruction.answer import QUANTILES, answers
+    from ..reconstruction.answerremarks import remarks_on
+    from ..reconstruction.answertable import first_lines, is_adverse
 
     texts = {n: text for n, text in case.values.items() if text.strip() and n in KNOWABLE}
     texts.setdefault("M", DEFAULT_M)
     known = {n: read(t, f"{source}: {n}", units=units.name or None) for n, t in texts.items()}
+    said = [*remark_lines(case.remarks), *shared_road(texts)]
     try:
-        solutions = reconstruct(known)
+        answer, *others = answers(known, samples, seed, remarks=said)
     except UserError as error:
         raise UserError(str(error), source) from None
     sought = [n for n in INVERSE if n not in known or (n in ESTIMATED and known[n].varies)]
-    spread = Measured(solutions[0], samples, seed, sought)
-    values = without_noise(spread.values)
+    values = without_noise(answer.values)
     spreads = {}
-    for name in spread.names:
+    for name in [n for n in answer.names if n in sought]:
         low = high = lower = upper = math.nan
-        if spread.draws:
-            low, high = spread.draws.spread(name, (0.05, 0.95)).quantiles.values()
-            lower, upper = spread.ranges[name].lower, spread.ranges[name].upper
+        if answer.draws:
+            low, _, high = answer.draws.spread(name, QUANTILES).quantiles.values()
+            lower, upper = answer.ranges[name].lower, answer.ranges[name].upper
         drivers = [
             f"{known} {100 * share:.0f} %"
-            for known, share in spread.drivers[name][:DRIVERS]
+            for known, share in answer.drivers[name][:DRIVERS]
             if share >= 0.005
         ]
-        deviation = float(spread.deviations[name])
+        deviation = float(answer.deviations[name])
         spreads[name] = Spread(deviation, low, high, lower, upper, drivers)
-    remarks = spread.warnings(units)
-    if len(solutions) > 1:
-        remarks.append(
-            f"{len(solutions)} impacts agree with what is known; this is the first of them"
-        )
+    remarks = remarks_on(answer, units)
+    if others:
+        count = len(others) + 1
+        remarks.append(f"{count} impacts agree with what is known; this is the first of them")
     scene = {n: values[n] for n in SCENE if n in values}
     scene.setdefault("M", float(DEFAULT_M))
     if scene["M"] == 4 or "EM" not in scene:
         scene["EM"] = 0.0  # which nothing drawn depends on
-    evidence = spread.evidence
-    if evidence.contradictory:  # what the verdict says is not said twice
-        verdict_text = evidence.text(units)
-        remarks = [line for line in remarks if not line.startswith(verdict_text)]
-        if not solutions[0].assumed:
-            widening_text = (
-                f"standard deviations are widened {number(evidence.widening, 3)} times, by as much "
-                "as the values contradict one another"
-            )
-            remarks.insert(0, widening_text)
-    values_and_spreads = values, sought, spreads, remarks, scene
-    verdict_text = evidence.text(units)
-    broken = spread.impossible
-    if broken:  # what the first line says is not said twice
-        remarks[:] = [line for line in remarks if line not in broken]
     return Findings(
         True,
-        *values_and_spreads,
-        verdict_text,
-        evidence.contradictory,
-        solutions[0].adjusted,
-        broken,
+        values,
+        sought,
+        spreads,
+        remarks,
+        scene,
+        lines=[(*line, is_adverse(answer, line[0])) for line in first_lines(answer, units)],
+        contradictory=answer.evidence.contradictory,
+        adjusted=answer.solution.adjusted,
+        impossible=bool(answer.impossible),
+        adverse=answer.is_adverse,
     )
 
 
@@ -366,16 +359,14 @@ _CHARACTERS = {"letter": (104, 118), "a4": (100, 114)}
 """Characters in a line of a paragraph and of a remark."""
 
 
-def _room(
-    paper: str, sentences: Sequence[str], verdicts: Sequence[str], remarks: Sequence[str]
-) -> float:
+def _room(paper: str, sentences: Sequence[str], remarks: Sequence[str]) -> float:
     """Return about the height in mm that the texts of the first page leave for what is drawn."""
     wide, small = _CHARACTERS[paper]
 
     def lines(texts: Sequence[str], most: int) -> int:
         return sum(-(-len(text) // most) for text in texts)
 
-    height = _LINE * lines(sentences, wide) + 1.05 * _LINE * lines(verdicts, int(0.82 * wide))
+    height = _LINE * lines(sentences, wide)
     height += _SMALL * lines(remarks, small) + (8.0 if remarks else 0.0) + 30.0
     remaining = (FIRST_PAGE[paper] - height) * DRAWN / _BETWEEN[paper]
     return min(max(remaining - _NOTE, 42.0), 110.0)
@@ -399,10 +390,9 @@ def _deviation(name: str, value: float, units: System) -> str:
 
 
 def _sentences(found: Findings, units: System) -> list[str]:
-    """Return the answer, in a sentence for each vehicle."""
-
+    """Return the answer of a scene, in a sentence for each vehicle; a reconstruction has lines."""
     lines = []
-    for vehicle in "AB":
+    for vehicle in "" if found.inverse else "AB":
         words = []
         for word, name in (("speed before", "S{}"), ("after", "S{}F"), ("ΔV", "DV{}")):
             name = name.format(vehicle)
@@ -433,13 +423,13 @@ def _spoken(found: Findings, name: str, units: System) -> str:
     if _is_aside(found, name):  # as of a speed that fits best at standstill
         ends = [_amount(name, x, units, like) for x in (spread.low, spread.high)]
         text = f"{ends[0]} to {ends[1]}"
-    elif math.isfinite(like):
-        text += f" ± {_deviation(name, like, units)}"
-    return f"{text} {_unit(name, units)}".strip()
+    deviation = _deviation(name, like, units) if math.isfinite(like) else ""
+    aside = f" (sd {deviation})" if deviation and not _is_aside(found, name) else ""
+    return f"{text} {_unit(name, units)}".strip() + aside
 
 
 def _is_aside(found: Findings, name: str) -> bool:
-    """Return True if the best fit lies outside 90 % of the draws, so that ± would mislead."""
+    """Return True if the best fit lies outside 90 % of the draws: its deviation would mislead."""
     spread, value = found.spreads.get(name, Spread()), found.values[name]
     has_quantiles = math.isfinite(spread.low) and math.isfinite(spread.high)
     return has_quantiles and not spread.low <= value <= spread.high
@@ -470,7 +460,7 @@ def _figures(found: Findings, units: System) -> list[tuple[str, str, str]]:
             figures.append((quantity(name).meaning, _spoken(found, name, units), limits))
             continue
         parts = []
-        if math.isfinite(spread.deviation):  # not ±, which has limits behind it in the inputs
+        if math.isfinite(spread.deviation):
             parts.append(f"sd {_deviation(name, spread.deviation, units)}")
         bounds = [_amount(name, x, units, spread.deviation) for x in (spread.lower, spread.upper)]
         if has_limits and all(bounds):
@@ -485,22 +475,17 @@ def _figures(found: Findings, units: System) -> list[tuple[str, str, str]]:
 
 
 def _summary(found: Findings, case: Case, units: System) -> list[str]:
-    """Return the two paragraphs of the first page: what was asked, what was found and how sure."""
-    given_names = [n for n, text in case.given.items() if text.strip() and n not in ABOUT]
-    uncertain = [a.name for a in found.adjusted]
-    if found.inverse:
-        question = (
-            "Asked: how two vehicles moved before and after they struck one another, as far as it "
-            f"follows from {len(given_names)} known values"
-        )
-        question += f", {len(uncertain)} of them known within limits" if uncertain else ""
-    else:
-        question = (
+    """Return the paragraphs of the first page: what was asked and found, where no lines say it, and
+    how sure it is."""
+    paragraphs, answer = [], ""
+    if not found.inverse:
+        given_names = [n for n, text in case.given.items() if text.strip() and n not in ABOUT]
+        paragraphs.append(
             "Asked: how two vehicles moved after they struck one another, and what their "
-            f"velocities changed by, from {len(given_names)} given values"
+            f"velocities changed by, from {len(given_names)} given values."
         )
-    parts = [f"{quantity(n).meaning} {_spoken(found, n, units)}" for n in _chosen(found)]
-    answer = "Found: " + "; ".join(parts) if parts else "Found: none of the results asked for"
+        parts = [f"{quantity(n).meaning} {_spoken(found, n, units)}" for n in _chosen(found)]
+        answer = f"Found: {'; '.join(parts) if parts else 'none of the results asked for'}. "
     if found.impossible and not found.contradictory:
         sure = (
             "This impact breaks physics, so these numbers settle nothing until what is known is "
@@ -513,13 +498,12 @@ def _summary(found: Findings, case: Case, units: System) -> list[str]:
         )
     elif any(math.isfinite(spread.deviation) for spread in found.spreads.values()):
         sure = (
-            "What follows each ± is one standard deviation, and what is called 90 % holds so many "
-            "of the draws; both follow from the limits given with the inputs and cover no other "
-            "error"
+            "What is called sd is one standard deviation, 90 % holds so many of the draws; both "
+            "follow from the limits given with the inputs and cover no other error"
         )
     else:
         sure = "No limits were given with the inputs, so how sure this is was not computed"
-    return [question + ".", f"{answer}. {sure}."]
+    return [*paragraphs, f"{answer}{sure}."]
 
 
 def _validation_text() -> str:

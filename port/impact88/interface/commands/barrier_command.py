@@ -19,14 +19,12 @@ examples:
       --set MU='85.18 %' --set UX=-39.95 --set UY=0 --set WA=0     IIHS test CF11002
   impact88 chapter barrier rebound.toml --set UX= --set UY= --set WA= --json
 
-exit status: 0 solved; 2 bad input, or unknowns that are not determined
+exit status: 0 solved, or in part; 1 NO IMPACT that physics allows agrees; 2 bad input
 """
 
 from ...casework.chapter.barrier import BARRIER, BARRIER_AFTER
-from ...casework.reconstruction.adjustment import resolve_friction
-from ...casework.reconstruction.solutiontable import Exact
+from ...casework.reconstruction.answer import answers
 from ...collision.uncertain import fixed_value
-from ...errors import note
 from . import options
 
 KNOWABLE = (
@@ -52,14 +50,9 @@ KNOWABLE = (
 ARGUMENTS = (*options.SOLUTION, options.sample_option("vehicle A of a published run"))
 
 
-def main(args: options.Args) -> None:
+def main(args: options.Args) -> int:
     values, units = options.known_within_limits(args, KNOWABLE, single=True)
     barrier = BARRIER if "UX" in values else BARRIER | BARRIER_AFTER
-    inputs, friction = resolve_friction(
-        values | {n: fixed_value(value) for n, value in barrier.items()}
-    )
-    if friction:
-        note(None, friction)
-    numbers = {name: item.nominal for name, item in inputs.items()} | BARRIER_AFTER
-    solutions = Exact.all_of(numbers, None, args.contact_time, options.source_of(args))
-    options.show_impacts(args, solutions, units)
+    known = values | {n: fixed_value(value) for n, value in barrier.items()}
+    found = options.answers_of(args, lambda: answers(known, 0, contact_time=args.contact_time))
+    return options.show_answers(args, found, units)

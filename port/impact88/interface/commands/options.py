@@ -31,7 +31,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from ...casework.reconstruction.solutiontable import Impact
+    from ...casework.reconstruction.answer import Answer
     from ...casework.uncertainty.boundstable import Bounds
     from ...collision.uncertain import Uncertain
     from ...collision.units import System
@@ -262,14 +262,25 @@ def show(
         print("\n".join(lines()))
 
 
-def show_impacts(args: Args, found: Sequence[Impact], units: System, full: bool = True) -> None:
-    """Print solutions as text, the answers alone unless ``full``, or as JSON."""
-    from ...casework.reconstruction.solutiontable import join_texts
+def answers_of(args: Args, solve: Callable[[], list[Answer]]) -> list[Answer]:
+    """Return the answers that ``solve`` returns; its errors name the file."""
+    try:
+        return solve()
+    except UserError as error:
+        raise UserError(str(error), source_of(args)) from None
+
+
+def show_answers(args: Args, found: Sequence[Answer], units: System, full: bool = True) -> int:
+    """Print answers as text, the first lines and remarks alone unless ``full``, or as JSON. Return
+    the exit status: 1 where no impact agrees, or no velocity before it was found."""
+    from ...casework.reconstruction.answerjson import json_of
+    from ...casework.reconstruction.answertable import join_texts
 
     def record() -> dict[str, Any]:
-        return {"solutions": [impact.as_json(units) for impact in found]}
+        return {"solutions": [json_of(answer, units) for answer in found]}
 
     show(args, "reconstruct", record, lambda: [join_texts(found, units, full)])
+    return int(found[0].is_adverse)
 
 
 def print_json(form: str, found: Mapping[str, Any], indent: int | None = None) -> None:

@@ -16,9 +16,8 @@ Each is a number, exact, or known within limits: "41 +- 2", "0.7 .. 0.9", "norma
 bounds --help). Equations 13 to 18 always hold. With more known than needed the values with limits
 are adjusted (adjustment of observations with conditions, weighted by their tolerances). --full
 shows each as measured, as adjusted, and how many tolerances it moved, with three estimates of
-uncertainty: first order, random draws, bounds that are attained. If all values are exact and the
-equations do not determine a result, the command stops and says why; --outputs asks for some names
-only.
+uncertainty: first order, random draws, bounds that are attained. NOT FOUND names what the known
+values leave open, and what to give; --outputs asks for some names only.
 
 MU is the magnitude entered on line 280; friction opposes the sliding (line 400). Where the
 velocities before impact are unknown, both signs are tried and every self-consistent solution is
@@ -53,25 +52,18 @@ examples:
   impact88 reconstruct after.toml --write-scene found.toml
   impact88 reconstruct after.toml --contact-time .15 --json
 
-exit status: 0 solved, or in part: NOT FOUND names the rest; 1 no velocity before the impact found;
-2 bad input, or a result of --outputs or --write-scene that is not determined
+exit status: 0 solved, or in part: NOT FOUND names the rest; 1 NO IMPACT that physics allows agrees,
+or no velocity before the impact was found; 2 bad input, or a result of --outputs or --write-scene
+that is not determined
 """
 
 import sys
-from collections.abc import Sequence
 from math import isclose
 
-from ...casework.reconstruction.adjustment import (
-    needs_adjustment,
-    reconstruct,
-    resolve_friction,
-)
-from ...casework.reconstruction.reconstructedtable import Measured
-from ...casework.reconstruction.solution import Reconstruction
-from ...casework.reconstruction.solutiontable import Exact, Impact
+from ...casework.reconstruction.answer import Answer, answers
 from ...collision.case import OWN_AXES, OWN_NAMES, SOURCE, Case, remark_lines
 from ...collision.scenefile import template
-from ...collision.uncertain import Uncertain
+from ...collision.uncertain import shared_road
 from ...errors import UserError, note
 from ...files import replacing
 from ...mechanics.state import KNOWABLE, QUANTITIES
@@ -91,67 +83,32 @@ ARGUMENTS = (
 )
 
 
-_BEFORE = ("SA", "SB", "UX", "UY", "VX", "VY")
-"""Velocities before the impact: a reconstruction without any has no answer."""
-
-
 def main(args: options.Args) -> int:
     output_names = options.names_given(args.outputs, QUANTITIES, "--outputs") or None
     case = options.known_case(args, KNOWABLE)
-    values, units = options.read_known(case, KNOWABLE), case.system
-    values, friction = resolve_friction(values)
-    if friction:
-        note(None, friction)
-    solutions: Sequence[Impact]
-    if args.write_scene or needs_adjustment(values, output_names):
-        solutions = _reconstruct(values, output_names, args, case)
-    else:
-        numbers = {name: item.nominal for name, item in values.items()}
-        solutions = Exact.all_of(numbers, output_names, args.contact_time, options.source_of(args))
-    for impact in solutions:
-        impact.remarks = [
-            *remark_lines(case.remarks),
-            *([friction] if friction else []),
-            *impact.remarks,
-        ]
-    full = bool(args.full or output_names or args.contact_time)
-    options.show_impacts(args, solutions, units, full)
-    if not (full or args.json) and sys.stderr.isatty():
-        note("reconstruct", "--full prints impulses, energies, intervals and what they depend on")
-    has_answer = any(name in impact.values for impact in solutions for name in _BEFORE)
-    return 0 if has_answer or output_names else 1
-
-
-def _reconstruct(
-    known: dict[str, Uncertain], wanted: list[str] | None, args: options.Args, case: Case
-) -> list[Measured]:
-    try:
-        with progress(None, "reconstruct") as meter:
-            solutions = reconstruct(known, meter.update)
-    except UserError as error:
-        raise UserError(str(error), options.source_of(args)) from None
-    for name in wanted or ():
-        if any(name not in solution.values for solution in solutions):
-            raise UserError(f"{name} is not determined by what is known", options.source_of(args))
+    known = options.read_known(case, KNOWABLE)
+    settings = (args.samples, args.seed, output_names, args.contact_time)
+    remarks = [*remark_lines(case.remarks), *shared_road(case.values)]
+    with progress(None, "reconstruct") as meter:
+        found = options.answers_of(args, lambda: answers(known, *settings, meter.update, remarks))
     if args.write_scene:
-        _write_scene(solutions, args, case)
-    measurements: list[Measured] = []
-    for solution in solutions:
-        with progress(None, "reconstruct") as meter:
-            options_of_all = (args.samples, args.seed, wanted, args.contact_time)
-            like = measurements[0] if measurements else None
-            measurements.append(Measured(solution, *options_of_all, meter.update, like))
-    return measurements
+        _write_scene(found, args, case)
+    full = bool(args.full or output_names or args.contact_time)
+    status = options.show_answers(args, found, case.system, full)
+    if not (full or args.json) and sys.stderr.isatty():
+        note("reconstruct", "--full prints velocities, impulses, energies and their intervals")
+    return status
 
 
-def _write_scene(solutions: list[Reconstruction], args: options.Args, case: Case) -> None:
+def _write_scene(found: list[Answer], args: options.Args, case: Case) -> None:
     """Write the impact found as a scene: what was known as it was typed, unless it was adjusted."""
-    if len(solutions) > 1:
-        raise UserError(f"{len(solutions)} impacts agree with what is known; expected one")
-    values = solutions[0].scene()
+    if len(found) > 1:
+        raise UserError(f"{len(found)} impacts agree with what is known; expected one")
+    solution = found[0].solution
+    values = solution.scene()
     adjustable = {
         item.name
-        for item in solutions[0].adjusted
+        for item in solution.adjusted
         if not isclose(item.adjusted, item.measured, rel_tol=1e-9)
     }
     fixed_names = {n for n in case.given if n in (*SCENE, *OWN_NAMES) and n not in adjustable}

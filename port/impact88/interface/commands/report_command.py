@@ -20,7 +20,8 @@ examples:
   impact88 report after.toml -o case.html
   impact88 report crash.toml -o case.html --set MU=.5    a value changed
 
-exit status: 0 written; 2 bad input
+exit status: 0 written; 1 written, but NO IMPACT that physics allows agrees, or no velocity before
+the impact was found; 2 bad input
 """
 
 from ...collision.case import Case
@@ -50,7 +51,7 @@ ARGUMENTS = (
 _ON_PAGE = ("samples", "seed", "title", "paper", "examiner", "date")
 
 
-def main(args: options.Args) -> None:
+def main(args: options.Args) -> int:
     from ...casework.report.findings import report
     from ...casework.report.frame import check_page_name
 
@@ -71,6 +72,7 @@ def main(args: options.Args) -> None:
     options.note_remarks(case)
     keywords = {n: getattr(args, n) for n in _ON_PAGE}
     keywords["number"] = args.case
-    page = report(case, source, data, **keywords)
+    page, adverse = report(case, source, data, **keywords)
     with replacing(args.output) as out:
         out.write(page)
+    return int(adverse)

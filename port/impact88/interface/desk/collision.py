@@ -176,7 +176,7 @@ def _without(scene: Scene, results: Collection[str]) -> tuple[dict[str, float], 
 def _answer(scene: Scene, exact: Mapping[str, float], system: System) -> list[dict[str, Any]]:
     """Rows of ``words``, a ``unit``, and ``values``: name, text, and a direction as it is ``said``,
     one or one for each vehicle."""
-    from ...casework.reconstruction.solutiontable import with_derived_values
+    from ...casework.reconstruction.derived import with_derived_values
 
     columns = _known_numbers(scene)
     values = without_rounding(with_derived_values({**columns, **exact}, None), _ROUNDING)
@@ -268,4 +268,4 @@ def case_report(text: str, name: str) -> str:
     from ...casework.report.findings import report
 
     case = Case(toml_texts(text, name), name)
-    return report(case, name, text.encode(), samples=DRAWS, seed=0)
+    return report(case, name, text.encode(), samples=DRAWS, seed=0)[0]

@@ -8,7 +8,7 @@ from typing import Any
 from ...collision import uncertain
 from ...collision.case import Case, remark_lines
 from ...collision.scenefile import known_template
-from ...collision.uncertain import Uncertain
+from ...collision.uncertain import Uncertain, shared_road
 from ...collision.units import RULES
 from ...errors import UserError
 from ...mechanics.state import KNOWABLE
@@ -22,7 +22,7 @@ DRAWS = 20_000  # random draws for the quantiles, as for a collision's bounds
 _DIGITS = 6  # digits shown of a value, as the command prints
 _DIGITS_TO_GO_ON = 12  # digits of a value that enters another computation
 _COLUMNS = {
-    "±": (3, "spread"),
+    "sd": (3, "spread"),
     "5 %": (6, "0.05"),
     "95 %": (6, "0.95"),
     "lower": (6, "lower"),
@@ -45,12 +45,12 @@ def warm() -> None:
 def answer(values: dict[str, str], units: str = "", draws: int = DRAWS) -> dict[str, Any]:
     """Return the solutions for the known values: ``problems`` by name; ``waiting``, why there is
     none; ``units`` as `units_shown`; ``object``, what `impact88 reconstruct --json` prints;
-    ``solutions``, each with the command's text (``printed``), the verdict on the ``evidence``, what
-    of physics it breaks (``impossible``), ``rows`` and ``columns`` of a table, ``adjusted`` values,
+    ``solutions``, each with the command's text (``printed``), its first ``lines`` (labels, texts
+    and True where they are adverse), ``rows`` and ``columns`` of a table, ``adjusted`` values,
     ``warnings`` and the ``scene`` (texts by name, or None)."""
-    from ...casework.reconstruction import adjustment
-    from ...casework.reconstruction.reconstructedtable import Measured
-    from ...casework.reconstruction.solutiontable import Exact, Impact
+    from ...casework.reconstruction.answer import answers
+    from ...casework.reconstruction.answerjson import json_of
+    from ...casework.reconstruction.answertable import first_lines, is_adverse, text_of
 
     case, problems = entries(values, units)
     system = case.system if case else RULES
@@ -66,21 +66,14 @@ def answer(values: dict[str, str], units: str = "", draws: int = DRAWS) -> dict[
     try:
         if problems or case is None:
             raise UserError(f"To be corrected: {' '.join(problems)}.")
-        known, friction = adjustment.resolve_friction(known)
-        if friction:
-            reply["remarks"].append(friction)
-        impacts: Sequence[Impact]
-        if adjustment.needs_adjustment(known):
-            first, *more = adjustment.reconstruct(known)
-            best = Measured(first, draws)
-            impacts = [best, *(Measured(solution, draws, like=best) for solution in more)]
-        else:
-            impacts = Exact.all_of({name: item.nominal for name, item in known.items()})
-        for impact in impacts:  # as the command prints them
-            impact.remarks = [*reply["remarks"], *impact.remarks]
+        found = answers(known, draws, remarks=[*reply["remarks"], *shared_road(case.values)])
         solutions = [
-            (impact.as_json(system), impact.as_text(system), impact.impossible)
-            for impact in impacts
+            (
+                json_of(answer, system),
+                text_of(answer, system),
+                [(*line, is_adverse(answer, line[0])) for line in first_lines(answer, system)],
+            )
+            for answer in found
         ]
     except UserError as error:
         return {**reply, "waiting": str(error)}
@@ -103,7 +96,7 @@ def _solution(
     known: Mapping[str, Uncertain],
     values: Mapping[str, Any],
     printed: str,
-    impossible: str,
+    lines: Sequence[tuple[str, str, bool]],
 ) -> dict[str, Any]:
     system = case.system
 
@@ -129,7 +122,7 @@ def _solution(
         row["solved"] = name in values.get("solved_for", _SOUGHT) and not row["known"]
         row["columns"] = {head: digits(x, _COLUMNS[head][0]) for head, x in numbers.items()}
         rows.append(row)
-    shown_digits = {"measured": _DIGITS, "tolerance": _COLUMNS["±"][0], "adjusted": _DIGITS}
+    shown_digits = {"measured": _DIGITS, "tolerance": _COLUMNS["sd"][0], "adjusted": _DIGITS}
     adjusted = [
         {
             **what(row["name"]),
@@ -140,20 +133,14 @@ def _solution(
         if values["redundancy"]
     ]
     asked = [row for name in _ASKED for row in rows if row["name"] == name]
-    evidence = values.get("evidence") or {}
-    # what stands above them is not said twice
-    verdict = f"{evidence.get('text', '')}; "
-    warnings = [line.removeprefix(verdict) for line in values["warnings"] if line not in impossible]
     return {
         "printed": printed,
         "rows": rows,
-        "evidence": evidence.get("text", ""),
-        "contradictory": evidence.get("verdict") == "contradict",
+        "lines": lines,
         "first": asked + [row for row in rows if row["solved"] and row["name"] not in _ASKED],
         "columns": [head for head in _COLUMNS if any(row["columns"][head] for row in rows)],
         "adjusted": adjusted,
-        "impossible": impossible,
-        "warnings": warnings,
+        "warnings": values["warnings"],
         "scene": _scene(case, known, {**found, **rounded}),
     }
 

@@ -22,7 +22,7 @@ NUMBERS = {
     "selfcheck": 1,
     "witness": 1,
     "bounds": 2,
-    "reconstruct": 2,
+    "reconstruct": 3,
     "colinear": 1,
     "delta-v": 1,
     "example": 1,

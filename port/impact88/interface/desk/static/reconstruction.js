@@ -43,7 +43,7 @@ function showAtFields(solutions) {
   for (const input of inputs()) {
     const place = page(`${input.id}-answer`);
     const texts = solutions.map(({ rows }) => rows.find((row) => row.name === input.name && !row.known))
-      .filter(Boolean).map((row) => (row.columns["±"] ? `${row.text} ± ${row.columns["±"]}` : row.text));
+      .filter(Boolean).map((row) => (row.columns.sd ? `${row.text}, sd ${row.columns.sd}` : row.text));
     place.hidden = !texts.length || tickOf(input)?.checked !== false;
     place.textContent = texts.length ? `solved: ${[...new Set(texts)].join(" or ")}` : "";
   }
