@@ -1,0 +1,123 @@
+"""Answers: exact values as measurements of no tolerance, NO IMPACT on both sides of its threshold,
+first lines that are the same at every door. Numbers are worked by hand."""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+
+import pytest
+
+from impact88.casework.reconstruction.answer import answers
+from impact88.casework.reconstruction.answertable import first_lines
+from impact88.collision.uncertain import shared_road
+from impact88.errors import UserError
+from impact88.interface.commands.cli import main
+
+ALONG = {"M": "4", "MA": "100", "MB": "80", "HA": "0", "SB": "0", "SA": "10", "HAF": "0"}
+SECTION_7 = {
+    **{"MA": "96", "MB": "145", "IA": "1970", "IB": "3770", "DA": "4.5", "DB": "4", "GA": "0"},
+    **{"PA": "0", "PB": "-40", "TA": "0", "TB": "90", "UY": "0", "VX": "0"},
+    **{"VAX": "-10 +- 2", "VAY": "20 +- 2", "VBX": "-20 +- .01", "VBY": "45 +- 2"},
+}
+
+
+def struck(speed_after):
+    """Return a car that strikes a standing one: by momentum A keeps 10 - .8 of B's speed after."""
+    after = {"SAF": repr(10 - 0.8 * speed_after), "SBF": repr(speed_after), "HBF": "0"}
+    return {**ALONG, **after}
+
+
+def written(folder, known):
+    path = folder / "known.toml"
+    path.write_text("".join(f'{name} = "{text}"\n' for name, text in known.items()))
+    return str(path)
+
+
+class TestNoImpact:
+    @pytest.mark.parametrize(("speed", "is_one"), [(11.1, True), (11.2, False)])
+    def test_of_exact_values_what_gains_energy_is_none(self, speed, is_one, tmp_path, capsys):
+        """The struck car leaves with 100/9 if nothing is lost."""
+        path = written(tmp_path, struck(speed))
+        assert main(["reconstruct", path]) == (not is_one)
+        label, *words = capsys.readouterr().out.partition("ASKED")[0].split()[1:] or [""]
+        assert (label == "IMPACT") != is_one
+        gained = 50 * (10 - 0.8 * speed) ** 2 + 40 * speed**2 - 50 * 100
+        assert (f"energy of {gained:.3g} is gained" in f"{label} {' '.join(words)}") != is_one
+        (answer,) = answers(struck(speed), 0)
+        assert (answer.solution.nearest is None) == is_one
+        if not is_one:
+            nearest = answer.solution.nearest.values
+            assert nearest["LOSS"] == pytest.approx(0, abs=1e-3)
+            assert f"SAF at {nearest['SAF']:.4g}, not 1.04" in answer.refusal()
+
+    def test_a_coefficient_given_outside_its_range_is_the_users(self, tmp_path, capsys):
+        known = {n: text for n, text in ALONG.items() if n not in ("SAF", "HAF")}
+        path = written(tmp_path, known)
+        assert main(["reconstruct", path, "--set", "E=1.5"]) == 1  # energy is gained, too
+        assert main(["reconstruct", path, "--set", "E=.5"]) == 0
+        assert main(["reconstruct", path, "--set", "E=-.5"]) == 0
+        assert "IMPOSSIBLE" in capsys.readouterr().out.rpartition("AFTER")[0]
+
+    @pytest.mark.parametrize(("speed", "status"), [("9 +- .2", 0), ("13 +- .2", 1)])
+    def test_a_report_leads_with_it_and_has_its_status(self, speed, status, tmp_path, capsys):
+        pytest.importorskip("jinja2")
+        page = tmp_path / "x.html"
+        known = {**struck(9.0), "SAF": "2.8 +- .2", "SBF": speed}
+        path = written(tmp_path, known)
+        assert main(["reconstruct", path, "--samples", "100", "--json"]) == status
+        told = json.loads(capsys.readouterr().out)["solutions"][0]["no_impact"]
+        assert (told is None) == (status == 0)
+        assert main(["report", path, "-o", str(page), "--samples", "100"]) == status
+        first = re.search("<dt.*?>(.*?)</dt>", page.read_text("utf-8"))[1]
+        assert first == ("NO IMPACT" if status else "ASKED")
+
+
+def test_the_first_lines_are_the_same_at_every_door(tmp_path, capsys):
+    pytest.importorskip("jinja2")
+    pytest.importorskip("flask")
+    from impact88.interface.desk import reconstruction
+
+    known = {**SECTION_7, "VBX": "-20 +- 2"}
+    (answer,) = answers(known, 0)
+    lines = first_lines(answer)
+    path, page = written(tmp_path, known), tmp_path / "x.html"
+    assert main(["reconstruct", path, "--samples", "0"]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert main(["report", path, "-o", str(page), "--samples", "0"]) == 0
+    reported = re.findall("<dd.*?>(.*?)</dd>", page.read_text("utf-8"))
+    desk = reconstruction.answer(known, draws=0)["solutions"][0]["lines"]
+    assert [text for _, text in lines] == [html.unescape(text) for text in reported]
+    assert [text for _, text in lines] == [text for _, text, _ in desk]
+    assert all(text in printed for _, text in lines)
+
+
+def test_a_sure_value_is_named_last_among_those_at_odds():
+    """Momentum along x: UX = VAX + 145/96 VBX. Any of the three may be wrong; VBX is sure."""
+    (answer, *_) = answers({**SECTION_7, "UX": "normal -60 1"}, 0)
+    at_odds = answer.evidence.at_odds
+    assert [item.name for item in at_odds] == ["VAX", "UX", "VBX"]
+    expected = {"UX": -10 - 145 / 96 * 20, "VAX": -60 + 145 / 96 * 20, "VBX": -50 * 96 / 145}
+    for item in at_odds:
+        assert item.expected == pytest.approx(expected[item.name], abs=0.01)
+    deviations = {"VAX": 2 / 3**0.5, "UX": 1.0, "VBX": 0.01 / 3**0.5}
+    moves = [abs(item.expected - item.measured) / deviations[item.name] for item in at_odds]
+    assert moves == pytest.approx([abs(item.move) for item in at_odds])
+    assert moves == sorted(moves)
+
+
+def test_a_refusal_names_what_would_make_it_answerable():
+    known = {"M": "4", "MA": "3000", "MB": "3500", "SAF": "20", "SBF": "25", "SB": "0"}
+    with pytest.raises(UserError, match="give HAF and HBF"):
+        answers(known, 0)
+    (answer,) = answers({**known, "HAF": "0", "HBF": "0", "HA": "0"}, 0)
+    assert answer.values["SA"] == pytest.approx(20 + 25 * 3500 / 3000)
+
+
+@pytest.mark.parametrize(
+    ("other", "count"),
+    [("skid 40 ft at .7 +- .1", 1), ("skid 40 ft at .7", 0), ("40 +- 5", 0), ("", 0)],
+)
+def test_two_skids_with_ranges_of_friction_are_said_to_be_independent(other, count):
+    assert len(shared_road({"SAF": "skid 30 ft at .6 .. .8", "SBF": other})) == count
