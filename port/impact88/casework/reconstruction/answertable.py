@@ -115,10 +115,13 @@ def _verdicts(answer: Answer, units: System) -> Iterator[tuple[str, str]]:
 def _question(answer: Answer) -> str:
     """Return what was asked: what is sought, and from what."""
     given = [n for n in answer.given if n != "M"]
-    speeds = {speed for speed, course in _COURSE_OF.items() if {speed, course} <= {*given}}
-    implied = {component for speed in speeds for component in SPEEDS[speed]}
-    candidates = {*answer.values, *answer.undetermined} - {*answer.known, *answer.absent, *implied}
+    candidates = {*answer.values, *answer.undetermined} - {*answer.known, *answer.absent}
     sought = [n for n in SOUGHT if n in candidates]
+    for speed, course in reversed(_COURSE_OF.items()):  # one known, the other sought
+        if speed in given or course in given:
+            missing = [n for n in (speed, course) if n not in given]
+            rest = [n for n in sought if n not in SPEEDS[speed]]
+            sought = [*missing, *rest] if len(rest) < len(sought) else rest
     measured = [] if answer.solution.assumed else [n for n in given if _varies(answer, n)]
     exact = len(given) - len(measured)
     parts = [f"{join_words(measured)} within limits"] if measured else []
