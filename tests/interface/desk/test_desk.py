@@ -37,7 +37,7 @@ from impact88.errors import UserError
 from impact88.interface.commands import options, reconstruct_command
 from impact88.interface.commands.cli import main
 from impact88.messages import schemas
-from impact88.names import SCENE, VELOCITIES
+from impact88.names import CHAPTER, RESULTS, SCENE, VELOCITIES
 from impact88.program.emulated import load_machine, run_machine
 from impact88.program.run import run
 from impact88.program.scene import Scene, sample
