@@ -56,7 +56,7 @@ an, bn         arms along n                           A(4,5), A(4,6) (460, Equat
 at, bt         arms along t                           -A(3,5), -A(3,6) (440, Equation 16, pivot)
 sn, st         sigma: an + bn, at + bt
 kn, kt         kappa: an/IA - bn/IB, at/IA - bt/IB
-sn_, kn_ ...   the same of absolute values
+sn_, kn_ ...   the same of absolute values: "_" is a size
 R              1/MA + 1/MB
 both           1/IA + 1/IB
 Ired, J        IA·IB/(IA + IB), 1/(IA + IB)
@@ -234,51 +234,80 @@ class Found(NamedTuple):
     absolute_sum: Expression
 
 
-def _friction(g: Given) -> Found:
-    """The impact with friction: everything along the direction (1, mu) of the impulse."""
-    # not split: a formula a line, each used by those that follow
-    table, E, EM, z, mu, mean, turn = g.table, g.E, g.EM, g.z, g.mu, g.mean, g.turn
-    absolute, to_fixed_axes, cross_with_spins = table.absolute, g.to_fixed_axes, g.cross_with_spins
-    (MA, MB), (ma, mb, ia, ib), (R, both, Ired, J) = g.masses, g.inverses, g.reduced
-    (UX, UY, VX, VY), (WA, WB) = g.velocities, g.spins
-    (s, c), (an, at, bn, bt) = g.axes, g.arms
-    (sn, st, kn, kt), (sn_, st_, kn_, kt_) = g.sums, g.sizes
-    (dx, dy), (cn, ct), (gn, _, _) = g.of_centers, g.approach, g.of_contact
+class Sliding:
+    """The impulse of friction, along the direction (1, mu), and what it is made of.
+
+    ``inverse``: 1 over the determinant; ``a``, ``b``, ``sigma_J``, ``twist``, ``X``: arms, J sigma,
+    Ired kappa and Ired X along the impulse; ``rebound``, ``w``: e gn, and with cn; ``push``: what w
+    takes of the spins through sigma, ``em_twist`` through kappa; ``levers``: what the arms give of
+    the determinant; ``of_turn``: what the spins' difference gives of Pn times the determinant;
+    ``along_x``, ``along_y``: the direction along x and y.
+    """
+
+    def __init__(self, g: Given) -> None:
+        z, mu, (an, at, bn, bt), (sn, _, kn, _) = g.z, g.mu, g.arms, g.sums
+        (_, _, ia, ib), (R, _, Ired, J) = g.inverses, g.reduced
+        (cn, _), (gn, _, _) = g.approach, g.of_contact
+        self.rebound = g.E * gn
+        self.w = w = self.rebound + cn
+        self.a, self.b = a, b = an + mu * at, bn + mu * bt
+        self.sigma_J, self.twist = J * (a + b), Ired * (a * ia - b * ib)
+        self.X = g.cross_with_spins(a, b)
+        self.push, self.em_twist = z * self.sigma_J, g.EM * self.twist
+        self.levers = self.push * sn - self.em_twist * kn
+        self.determinant = z * R + self.levers
+        self.inverse = 1.0 / self.determinant
+        self.of_turn = (g.EM * kn) * g.turn
+        self.Pn = (self.of_turn - z * (w + sn * g.mean)) / self.determinant
+        self.Pt = mu * self.Pn
+        self.along_x, self.along_y = g.to_fixed_axes(g.one, mu)
+        self.Px, self.Py = self.along_x * self.Pn, self.along_y * self.Pn
+
+
+def _sliding_spins(g: Given, p: Sliding) -> tuple[Expression, Expression, Expression]:
+    """Return H/em and both spins after an impact with friction."""
+    (_, _, ia, ib), (R, _, _, _), (WA, WB) = g.inverses, g.reduced, g.spins
+    (an, _, bn, _), (sn, _, _, _) = g.arms, g.sums
     own_a, own_b, other_a, other_b = g.weights
+    moment = g.unless_point((p.twist * p.w - g.turn * R - sn * p.X) * p.inverse)
+    cross = g.EM * (p.a * (ia * WB) - p.b * (ib * WA))
+    # what w multiplies is in the determinant, too: sums that cancel have errors in common
+    kept_a, kept_b = own_a * WA + other_b * WB, own_b * WB + other_a * WA
+    spin_a = (R * kept_a - p.w * (p.push - ia * p.em_twist) + bn * cross) * p.inverse
+    spin_b = (R * kept_b - p.w * (p.push + ib * p.em_twist) - an * cross) * p.inverse
+    return moment, spin_a, spin_b
+
+
+def _slip(g: Given, p: Sliding) -> Expression:
+    """Return the slip that friction leaves, by Cramer's rule, too: of ct and of what the impulse
+    changes of it little may be left."""
+    mu, mean, w = g.mu, g.mean, p.w
+    (an, at, bn, bt), (sn, st, kn, kt) = g.arms, g.sums
+    (_, ct), (R, both, _, _) = g.approach, g.reduced
     # a x b, which is Ired kappa x sigma without the difference of products whose digits are lost in
     # kappa already, times (Ia + Ib)
     crossing = both * (an * bt - at * bn)
-    rebound = E * gn
-    w = rebound + cn
-    a, b = an + mu * at, bn + mu * bt
-    em_kappa, J_sigma, X = EM * kn, J * (a + b), cross_with_spins(a, b)
-    twist = Ired * (a * ia - b * ib)
-    push, em_twist = z * J_sigma, EM * twist
-    levers = push * sn - em_twist * kn
-    determinant = z * R + levers
-    inverse, turned = 1.0 / determinant, em_kappa * turn
-    Pn = (turned - z * (w + sn * mean)) / determinant
-    Pt = mu * Pn
-    along_x, along_y = to_fixed_axes(g.one, mu)
-    Px, Py = along_x * Pn, along_y * Pn
-    moment = g.unless_point((twist * w - turn * R - sn * X) * inverse)
-    cross = EM * (a * (ia * WB) - b * (ib * WA))
-    # what w multiplies is in the determinant, too: sums that cancel have errors in common
-    kept_a, kept_b = own_a * WA + other_b * WB, own_b * WB + other_a * WA
-    spin_a = (R * kept_a - w * (push - ia * em_twist) + bn * cross) * inverse
-    spin_b = (R * kept_b - w * (push + ib * em_twist) - an * cross) * inverse
-    # by Cramer's rule, too: of ct and of what the impulse changes of it little may be left
-    kept = z * (R * ((ct + st * mean) - mu * (w + sn * mean)) + J_sigma * (ct * sn - st * w))
-    traded = twist * (kt * w - kn * ct) + (turn * R) * (mu * kn - kt) + crossing * X
-    slip = (kept + EM * traded) / determinant
-    # Where the impulse takes away most of a light body's velocity along x or y, that is found
-    # from the other's and the relative one after, of which no term is taken away again.
-    taken_x, taken_y = c * along_x, s * along_y  # 1 together
-    parting = (R * (turned - z * (rebound + sn * mean)) + levers * cn) * inverse
-    parting = g.unless_point(parting, -rebound)
-    relative_x = dx * taken_y + along_x * (parting - s * dy)
-    relative_y = dy * taken_x + along_y * (parting - c * dx)
-    of_masses, much_of_a, much_of_b = z * inverse, MOST * MA, MOST * MB
+    kept = g.z * (R * ((ct + st * mean) - mu * (w + sn * mean)) + p.sigma_J * (ct * sn - st * w))
+    traded = p.twist * (kt * w - kn * ct) + (g.turn * R) * (mu * kn - kt) + crossing * p.X
+    return (kept + g.EM * traded) / p.determinant
+
+
+def _sliding_velocities(g: Given, p: Sliding) -> list[Expression]:
+    """Return VAX, VAY, VBX and VBY after an impact with friction.
+
+    Where the impulse takes away most of a light body's velocity along x or y, that is found from
+    the other's and the relative one after, of which no term is taken away again.
+    """
+    table, z, (s, c) = g.table, g.z, g.axes
+    (MA, MB), (ma, mb, _, _), (R, _, _, _) = g.masses, g.inverses, g.reduced
+    (UX, UY, VX, VY), (dx, dy), (cn, _) = g.velocities, g.of_centers, g.approach
+    sn, _, _, _ = g.sums
+    taken_x, taken_y = c * p.along_x, s * p.along_y  # 1 together
+    parting = (R * (p.of_turn - z * (p.rebound + sn * g.mean)) + p.levers * cn) * p.inverse
+    parting = g.unless_point(parting, -p.rebound)
+    relative_x = dx * taken_y + p.along_x * (parting - s * dy)
+    relative_y = dy * taken_x + p.along_y * (parting - c * dx)
+    of_masses, much_of_a, much_of_b = z * p.inverse, MOST * MA, MOST * MB
     product = taken_x * taken_y
     if not product.is_zero:  # but not both taken away and added, by much friction
         of_masses = table.choose(product > -0.5, of_masses, g.zero)
@@ -289,20 +318,43 @@ def _friction(g: Given) -> Found:
     ) -> Expression:
         return velocity if taken.is_zero else table.choose(taken > much, instead, velocity)
 
-    VAX, VAY, VBX, VBY = UX + ma * Px, UY + ma * Py, VX - mb * Px, VY - mb * Py
-    velocities = [
+    VAX, VAY = UX + ma * p.Px, UY + ma * p.Py
+    VBX, VBY = VX - mb * p.Px, VY - mb * p.Py
+    return [
         of_light(taken_x, much_of_a, VBX + relative_x, VAX),
         of_light(taken_y, much_of_a, VBY + relative_y, VAY),
         of_light(taken_x, much_of_b, VAX - relative_x, VBX),
         of_light(taken_y, much_of_b, VAY - relative_y, VBY),
     ]
-    size = absolute(mu)
+
+
+def _friction(g: Given) -> Found:
+    """Return the impact with friction."""
+    p = Sliding(g)
+    moment, spin_a, spin_b = _sliding_spins(g, p)
+    slip = _slip(g, p)
+    VAX, VAY, VBX, VBY = _sliding_velocities(g, p)
+    (sn_, st_, kn_, kt_), (R, _, Ired, J), size = g.sizes, g.reduced, abs(g.mu)
     straight = R * (1.0 + size) + J * (sn_ * (sn_ + size * st_))
-    twisting = absolute(EM) * (Ired * (kn_ * (kn_ + size * kt_)))
-    condition = absolute(z) * straight + twisting
-    impulse = [determinant, Pn, Pt, Px, Py]
-    spins_after = [moment, spin_a, spin_b]
-    return Found._make([*impulse, *spins_after, *velocities, slip, mu, mu, condition])
+    twisting = abs(g.EM) * (Ired * (kn_ * (kn_ + size * kt_)))
+    return Found(
+        determinant=p.determinant,
+        PN=p.Pn,
+        PT=p.Pt,
+        Px=p.Px,
+        Py=p.Py,
+        moment=moment,
+        spin_a=spin_a,
+        spin_b=spin_b,
+        VAX=VAX,
+        VAY=VAY,
+        VBX=VBX,
+        VBY=VBY,
+        slip=slip,
+        MUP=g.mu,
+        sliding=g.mu,
+        absolute_sum=abs(g.z) * straight + twisting,
+    )
 
 
 class Pivot:
@@ -310,113 +362,143 @@ class Pivot:
 
     Everything is divided by R, along x and y: GA only enters by the restitution, and what is
     rounded in turning to n and t would be lost where the sliding is all but undone.
+
+    ``numerators``: of MUC, R Pt and R Pn times the determinant; ``ax`` to ``by``, ``sx``, ``kx``
+    ...: arms, sigma and kappa along x and y; ``tx``, ``ty``: Ired kappa; ``rx``, ``ry``: the
+    rebound; ``wx``, ``wy``: w as a vector; ``Xx``, ``Xy``: Ired X; ``s_across``: sigma x w;
+    ``of_turn_x``, ``of_turn_y``: what the spins give of the impulse; ``turn_R``: R turn;
+    ``lever``, ``lever_J``: a x b times (Ia + Ib) and times J/R; ``zJ``, ``masses``: z J, z R.
     """
 
     def __init__(self, g: Given) -> None:
         E, EM, z, mean, turn, (s, c) = g.E, g.EM, g.z, g.mean, g.turn, g.axes
-        cross_with_spins, to_contact_axes = g.cross_with_spins, g.to_contact_axes
         (_, _, ia, ib), (R, both, Ired, J), (WA, WB) = g.inverses, g.reduced, g.spins
         (D3, D4, D1, D2), (dx, dy) = g.fixed_arms, g.of_centers
-        ax, ay, bx, by = D3, -D4, D1, -D2
-        sx, sy = ax + bx, ay + by
-        kx, ky = ax * ia - bx * ib, ay * ia - by * ib
-        tx, ty = Ired * kx, Ired * ky
+        self.ax, self.ay, self.bx, self.by = ax, ay, bx, by = D3, -D4, D1, -D2
+        self.sx, self.sy = sx, sy = ax + bx, ay + by
+        self.kx, self.ky = kx, ky = ax * ia - bx * ib, ay * ia - by * ib
+        self.tx, self.ty = tx, ty = Ired * kx, Ired * ky
         rebound = E * (c * (dx + ax * WA + bx * WB) + s * (dy + ay * WA + by * WB))
-        rx, ry = c * rebound, s * rebound
-        wx, wy = dx + rx, dy + ry
-        Xx, Xy = cross_with_spins(ax, bx), cross_with_spins(ay, by)
+        self.rx, self.ry = rx, ry = c * rebound, s * rebound
+        self.wx, self.wy = wx, wy = dx + rx, dy + ry
+        self.Xx, self.Xy = Xx, Xy = g.cross_with_spins(ax, bx), g.cross_with_spins(ay, by)
         # a x b = Ired kappa x sigma, without the difference of products whose digits are lost in
-        # kappa already; times (Ia + Ib) and times J/R
-        cross, R_inverse = ax * by - ay * bx, 1.0 / R
-        lever, lever_J = both * cross, (J * R_inverse) * cross
+        # kappa already
+        cross = ax * by - ay * bx
+        self.R_inverse = 1.0 / R
+        self.lever = lever = both * cross
+        self.lever_J = (J * self.R_inverse) * cross
         # sigma x (w, ct) and (w, ct) x kappa, which the mean spin drops out of
-        s_across, k_across = sx * wy - sy * wx, ky * wx - kx * wy
+        self.s_across = sx * wy - sy * wx
+        k_across = ky * wx - kx * wy
         # the determinant divided by R: what the masses give of it and what the arms do, sums of
         # squares without cancellation however slight R is
-        zJ, masses = z * J, z * R
-        levers = zJ * (sx * sx + sy * sy) - EM * (tx * kx + ty * ky + lever * lever_J)
-        pivot_determinant = masses + levers
+        self.zJ, self.masses = zJ, masses = z * J, z * R
+        levers = zJ * (sx * sx + sy * sy) - EM * (tx * kx + ty * ky + lever * self.lever_J)
+        self.determinant = masses + levers
         # R P times the determinant, along x and y: at first without the approach of the mass
         # centers, which is -z R times it; of bodies without arms only the rebound is left
-        turn_R, along = turn * R, zJ * s_across
-        of_turn_x, of_turn_y = turn_R * kx + lever * Xy, turn_R * ky - lever * Xx
-        x = EM * (of_turn_x + ty * k_across) - masses * (rx + sx * mean)
-        y = EM * (of_turn_y - tx * k_across) - masses * (ry + sy * mean)
+        self.turn_R, along = turn * R, zJ * self.s_across
+        self.of_turn_x = self.turn_R * kx + lever * Xy
+        self.of_turn_y = self.turn_R * ky - lever * Xx
+        x = EM * (self.of_turn_x + ty * k_across) - masses * (rx + sx * mean)
+        y = EM * (self.of_turn_y - tx * k_across) - masses * (ry + sy * mean)
         x, y = x + sy * along, y - sx * along
         RPx, RPy = x - masses * dx, y - masses * dy
-        critical_denominator, critical_numerator = to_contact_axes(RPx, RPy)
-        divisor = R * pivot_determinant
-        pivot_x, pivot_y = RPx / divisor, RPy / divisor
-        pivot_n, pivot_t = to_contact_axes(pivot_x, pivot_y)
+        critical_denominator, critical_numerator = g.to_contact_axes(RPx, RPy)
         self.numerators = critical_numerator, critical_denominator
-        self.determinant = pivot_determinant
-        self.impulse = pivot_n, pivot_t, pivot_x, pivot_y
-        self.arms, self.twists = (ax, ay, bx, by), (tx, ty, kx, ky)
-        self.sums, self.rebound, self.lost = (sx, sy), (rx, ry), (wx, wy)
-        self.crosses, self.of_turn = (Xx, Xy, s_across), (of_turn_x, of_turn_y, turn_R)
-        self.levers = lever, lever_J, R_inverse, zJ, masses
+        divisor = R * self.determinant
+        self.Px, self.Py = RPx / divisor, RPy / divisor
+        self.Pn, self.Pt = g.to_contact_axes(self.Px, self.Py)
 
 
-def _no_slip(g: Given, p: Pivot) -> Found:
-    """The pivot: no sliding at separation."""
-    table, EM, z, mean = g.table, g.EM, g.z, g.mean
-    absolute = table.absolute
-    (ma, mb, ia, ib), (R, both, Ired, J) = g.inverses, g.reduced
-    (UX, UY, VX, VY), (WA, WB), (dx, dy) = g.velocities, g.spins, g.of_centers
-    (an_, at_, bn_, bt_), (_, _, kn_, kt_) = g.arm_sizes, g.sizes
+def _pivot_spins(g: Given, p: Pivot) -> tuple[Expression, Expression, Expression]:
+    """Return H/em and both spins after a pivot."""
+    (_, _, ia, ib), (R, _, _, J), (WA, WB) = g.inverses, g.reduced, g.spins
     own_a, own_b, other_a, other_b = g.weights
-    (ax, ay, bx, by), (tx, ty, kx, ky) = p.arms, p.twists
-    (sx, sy), (rx, ry), (wx, wy) = p.sums, p.rebound, p.lost
-    (Xx, Xy, s_across), (of_turn_x, of_turn_y, turn_R) = p.crosses, p.of_turn
-    lever, lever_J, R_inverse, zJ, masses = p.levers
-    pivot_determinant = p.determinant
-    moment = tx * wx + ty * wy - turn_R - (sx * Xx + sy * Xy + lever_J * s_across)
+    ax, ay, bx, by, wx, wy = p.ax, p.ay, p.bx, p.by, p.wx, p.wy
+    moment = p.tx * wx + p.ty * wy - p.turn_R
+    moment = moment - (p.sx * p.Xx + p.sy * p.Xy + p.lever_J * p.s_across)
     a_b, aa, bb = ax * bx + ay * by, ax * ax + ay * ay, bx * bx + by * by
-    crossing = lever * (J * R_inverse)
+    crossing = p.lever * (J * p.R_inverse)
     turned_a = a_b * (ia * WB) - bb * (ib * WA) - crossing * (bx * wy - by * wx)
     turned_b = a_b * (ib * WA) - aa * (ia * WB) + crossing * (ax * wy - ay * wx)
     state_a = R * WA - ia * (ax * wx + ay * wy)
     state_b = R * WB - ib * (bx * wx + by * wy)
-    spin_a = own_a * state_a + other_b * state_b + EM * turned_a
-    spin_b = own_b * state_b + other_a * state_a + EM * turned_b
-    # What the impact takes away and what it leaves of the mass centers' approach along x and y,
-    # times the determinant: of a small rest nothing that was taken away is a term. Of a light
-    # body that keeps little of its velocity the change has rounding errors of the size of what
-    # it lost; the common velocity and a share of the final relative one have not, but spoil a
-    # small change by long arms. Sizes, for both are negative where EM > 1/2.
-    zJx = zJ * sx
-    xx, yy = zJx * sx - EM * (tx * kx), (zJ * sy) * sy - EM * (ty * ky)
-    xy, crossed = zJx * sy - EM * (tx * ky), EM * (lever * lever_J)
-    share_a, share_b = ma * R_inverse, mb * R_inverse
-    velocities = []
-    for u, v, d, turned, mean_part, crosswise, rebounding, taken, left in (
-        (UX, VX, dx, of_turn_x, sx * mean, xy * wy, rx, masses + yy, xx - crossed),
-        (UY, VY, dy, of_turn_y, sy * mean, xy * wx, ry, masses + xx, yy - crossed),
-    ):
-        little = absolute(left) < absolute(taken)
-        common = share_b * u + share_a * v
-        rest = EM * turned - masses * mean_part + crosswise - taken * rebounding
-        change = (rest + table.choose(little, left, -taken) * d) / pivot_determinant
-        velocities.append(table.choose(little, common, u) + share_a * change)
-        velocities.append(table.choose(little, common, v) - share_b * change)
+    spin_a = own_a * state_a + other_b * state_b + g.EM * turned_a
+    spin_b = own_b * state_b + other_a * state_a + g.EM * turned_b
+    moment = g.unless_point(moment / p.determinant)
+    return moment, spin_a / p.determinant, spin_b / p.determinant
+
+
+def _pivot_velocities(g: Given, p: Pivot) -> list[Expression]:
+    """Return VAX, VBX, VAY and VBY after a pivot.
+
+    What the impact takes away and what it leaves of the mass centers' approach along x and y, times
+    the determinant: of a small rest nothing that was taken away is a term. Of a light body that
+    keeps little of its velocity the change has rounding errors of the size of what it lost; the
+    common velocity and a share of the final relative one have not, but spoil a small change by long
+    arms. Sizes, for both are negative where EM > 1/2.
+    """
+    table, EM, mean, (ma, mb, _, _) = g.table, g.EM, g.mean, g.inverses
+    (UX, UY, VX, VY), (dx, dy), masses = g.velocities, g.of_centers, p.masses
+    zJx = p.zJ * p.sx
+    xx, yy = zJx * p.sx - EM * (p.tx * p.kx), (p.zJ * p.sy) * p.sy - EM * (p.ty * p.ky)
+    xy, crossed = zJx * p.sy - EM * (p.tx * p.ky), EM * (p.lever * p.lever_J)
+    share_a, share_b = ma * p.R_inverse, mb * p.R_inverse
+
+    def along_axis(
+        a_before: Expression,
+        b_before: Expression,
+        approach: Expression,
+        rest: Expression,
+        taken: Expression,
+        left: Expression,
+    ) -> tuple[Expression, Expression]:
+        """Return the velocities of A and B along x or y; ``rest``: the change times the
+        determinant, without ``approach``."""
+        is_little = abs(left) < abs(taken)
+        common = share_b * a_before + share_a * b_before
+        change = (rest + table.choose(is_little, left, -taken) * approach) / p.determinant
+        return (
+            table.choose(is_little, common, a_before) + share_a * change,
+            table.choose(is_little, common, b_before) - share_b * change,
+        )
+
+    taken_x, taken_y = masses + yy, masses + xx
+    rest_x = EM * p.of_turn_x - masses * (p.sx * mean) + xy * p.wy - taken_x * p.rx
+    rest_y = EM * p.of_turn_y - masses * (p.sy * mean) + xy * p.wx - taken_y * p.ry
+    return [
+        *along_axis(UX, VX, dx, rest_x, taken_x, xx - crossed),
+        *along_axis(UY, VY, dy, rest_y, taken_y, yy - crossed),
+    ]
+
+
+def _no_slip(g: Given, p: Pivot) -> Found:
+    """Return the pivot: no sliding at separation."""
+    moment, spin_a, spin_b = _pivot_spins(g, p)
+    VAX, VBX, VAY, VBY = _pivot_velocities(g, p)
+    (an_, at_, bn_, bt_), (_, _, kn_, kt_), (R, both, Ired, J) = g.arm_sizes, g.sizes, g.reduced
     twisting = Ired * (kn_ * kn_ + kt_ * kt_)
-    twisting = twisting + absolute(lever_J) * (both * (an_ * bt_ + at_ * bn_))
-    straight = R + J * (sx * sx + sy * sy)
-    condition = absolute(z) * straight + absolute(EM) * twisting
-    return Found._make(
-        [
-            pivot_determinant,
-            *p.impulse,
-            g.unless_point(moment / pivot_determinant),
-            spin_a / pivot_determinant,
-            spin_b / pivot_determinant,
-            *velocities[::2],
-            *velocities[1::2],
-            g.zero,
-            table.constant(PIVOT),
-            g.zero,
-            condition,
-        ]
+    twisting = twisting + abs(p.lever_J) * (both * (an_ * bt_ + at_ * bn_))
+    straight = R + J * (p.sx * p.sx + p.sy * p.sy)
+    return Found(
+        determinant=p.determinant,
+        PN=p.Pn,
+        PT=p.Pt,
+        Px=p.Px,
+        Py=p.Py,
+        moment=moment,
+        spin_a=spin_a,
+        spin_b=spin_b,
+        VAX=VAX,
+        VAY=VAY,
+        VBX=VBX,
+        VBY=VBY,
+        slip=g.zero,
+        MUP=g.table.constant(PIVOT),
+        sliding=g.zero,
+        absolute_sum=abs(g.z) * straight + abs(g.EM) * twisting,
     )
 
 
