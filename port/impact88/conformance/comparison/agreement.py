@@ -122,15 +122,15 @@ class Case(NamedTuple):
         """Return the grade of each result and its relative difference, both (results, rows)."""
         with np.errstate(all="ignore"):
             off = np.abs(self.values - self.ours)
-            written = self.units * HALF
+            half_units = self.units * HALF
             # a size of 0 is no measure: take the other program's number
             measure = np.where(self.sizes > 0, self.sizes, np.abs(self.values))
             relative = np.minimum(np.where(off > 0, off / measure, 0.0), np.finfo(float).max)
             # an infinite number is an answer, and no finite one's
             absent = np.isnan(self.values) | ~np.isfinite(self.ours)
-            differ = off > written + self.loose
+            differ = off > half_units + self.loose
             lost = relative > self.no_digit
-            within = (absent, differ, lost, off <= self.tight, off <= written + self.tight)
+            within = (absent, differ, lost, off <= self.tight, off <= half_units + self.tight)
             grades = np.select(within, (ABSENT, DIFFER, LOST, DOUBLE, DIGITS), ELIMINATION)
             return grades, relative
 
@@ -154,16 +154,16 @@ def make_case(
     the table. Where rounding decides which way the
     contact slides, our results are those of the sliding that agrees better.
     """
-    case, undecided = _compare_scenes(scene, theirs, rtol)
-    if undecided.size:
-        part = {name: column[undecided] for name, column in scene.items()}
-        results = {name: (a[undecided], b[undecided]) for name, (a, b) in theirs.items()}
+    case, open_rows = _compare_scenes(scene, theirs, rtol)
+    if open_rows.size:
+        part = {name: column[open_rows] for name, column in scene.items()}
+        results = {name: (a[open_rows], b[open_rows]) for name, (a, b) in theirs.items()}
         reversed_case, _ = _compare_scenes({**part, "MU": -part["MU"]}, results, rtol)
         # the nearer of the two, as rounding may leave neither within the bounds
-        ours, other = (x.grade()[1].max(0) for x in (case.select_rows(undecided), reversed_case))
+        ours, other = (x.grade()[1].max(0) for x in (case.select_rows(open_rows), reversed_case))
         better = other < ours
         for column, replacement in zip(case[4:], reversed_case[4:], strict=True):
-            column[..., undecided[better]] = replacement[..., better]
+            column[..., open_rows[better]] = replacement[..., better]
     case.columns[ROW][:] = np.arange(first, first + case.condition.size)
     return case
 
@@ -173,8 +173,8 @@ def _compare_scenes(
     scene: Columns, theirs: Mapping[str, tuple[Floats, Floats]], rtol: float | None
 ) -> tuple[Case, NDArray[np.intp]]:
     """Return the case, and the rows in which rounding decides which way the contact slides."""
-    solved = {name: column.astype(float) for name, column in solve(scene).items()}
-    scales = errorbound.scales(scene, solved)
+    solution = {name: column.astype(float) for name, column in solve(scene).items()}
+    scales = errorbound.scales(scene, solution)
     columns = np.stack([scene[name] for name in SCENE])
     neighbours = (np.roll(columns, shift, -1) for shift in NEIGHBOUR_SHIFTS.values())
     values, units = (np.stack(column) for column in zip(*theirs.values(), strict=True))
@@ -184,9 +184,9 @@ def _compare_scenes(
     # a program that has no result keeps none
     own = np.stack([scene[name] for name in INITIAL_VELOCITIES])
     last = np.where(np.isnan(last), own, last)
-    ours = np.stack([solved[name] for name in theirs])
+    ours = np.stack([solution[name] for name in theirs])
     sizes = np.stack([scales[name] for name in theirs])
-    best_bounds, undecided = tolerance.best_error_bounds(scene, solved, scales)
+    best_bounds, open_rows = tolerance.best_error_bounds(scene, solution, scales)
     tight = np.stack([best_bounds[name] for name in theirs])
     if rtol is not None:
         tight = rtol * sizes + 2 * np.spacing(np.abs(ours))
@@ -196,13 +196,13 @@ def _compare_scenes(
     beyond = (off > tight).any(0)
     is_far = (off > tolerance.ORDINARY_BOUND * sizes) & (sizes > 0)
     # a number that is far off in an ordinary scene needs no bound
-    is_plain = tolerance.is_ordinary(scene, solved["COND"]) & (~(off > tight) | is_far).all(0)
+    is_plain = tolerance.is_ordinary(scene, solution["COND"]) & (~(off > tight) | is_far).all(0)
     per_unit[beyond & is_plain] *= _PLAIN_FACTOR
     if rtol is None and (rows := np.flatnonzero(beyond & ~is_plain)).size:
         # these bounds take long: only for rows that are beyond the tight ones
         part_scene, part_solved, part_scales, part_bounds = (
             {name: column[rows] for name, column in table.items()}
-            for table in (scene, solved, scales, best_bounds)
+            for table in (scene, solution, scales, best_bounds)
         )
         bounds = tolerance.largest_error_bounds(
             part_scene, part_solved, part_scales, part_bounds, theirs
@@ -217,14 +217,14 @@ def _compare_scenes(
         units=units,
         ours=ours,
         sizes=sizes,
-        condition=solved["COND"],
+        condition=solution["COND"],
         tight=tight,
         loose=loose,
         per_unit=per_unit / errorbound.DOUBLE,
         # with the user's own tolerance all numbers are compared
         no_digit=np.full(len(values[0]), NO_DIGIT if rtol is None else np.inf),
     )
-    return case, np.flatnonzero(undecided)
+    return case, np.flatnonzero(open_rows)
 
 
 # of a program whose equations lose digits to trial impulses
@@ -281,9 +281,9 @@ def _is_trial_noise(case: Case) -> Bools:
     bounds = tolerance.trial_bounds(scene, {**solve(scene), **ours})
     # their size and the order of operations are the program's own
     limits = _TRIAL_MARGIN * np.stack([bounds[name] for name in case.names])
-    written = case.units * HALF
+    half_units = case.units * HALF
     off = np.abs(case.values - case.ours)
-    return np.asarray(((off <= written + case.loose) | (off <= written + limits)).all(0))
+    return np.asarray(((off <= half_units + case.loose) | (off <= half_units + limits)).all(0))
 
 
 def read_theirs(rows: Rows, name: str, units: TableUnits) -> tuple[Floats, Floats]:

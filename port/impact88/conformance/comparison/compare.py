@@ -129,8 +129,8 @@ class Tally:
         self.digits += digits
         self.elimination += elimination
         self.differ += differ
-        judged = (grades > ABSENT) & (grades < LOST)
-        self.largest = float(relative.max(initial=self.largest, where=judged))
+        is_judged = (grades > ABSENT) & (grades < LOST)
+        self.largest = float(relative.max(initial=self.largest, where=is_judged))
 
 
 @dataclass
@@ -245,9 +245,9 @@ class Comparison:
     def silent(self) -> list[str]:
         """Messages about columns, rows and cells that were not compared."""
         messages = [f"column {name} not recognised" for name in self.unknown]
-        for reason, skipped in self.not_compared.items():
+        for reason, skipped_rows in self.not_compared.items():
             if reason not in HARMLESS:
-                messages.append(f"{skipped.rows} rows not compared: {reason}")
+                messages.append(f"{skipped_rows.rows} rows not compared: {reason}")
         for name, tally in self.tallies.items():
             if tally.missing:
                 messages.append(
@@ -260,13 +260,13 @@ class Comparison:
         """The counts and the commonest cause, in one line."""
         rows = f"{self.rows} row{'s' if self.rows != 1 else ''}"
         line = f"{rows}: {self.agreeing} agree, {self.differing} disagree"
-        refused = sum(
+        refused_rows = sum(
             self.not_compared[name].rows for name in HARMLESS if name in self.not_compared
         )
-        if refused:
-            line += f", {refused} refused"
-        if skipped := sum(group.rows for group in self.not_compared.values()) - refused:
-            line += f", {skipped} not compared"
+        if refused_rows:
+            line += f", {refused_rows} refused"
+        if skipped_rows := sum(group.rows for group in self.not_compared.values()) - refused_rows:
+            line += f", {skipped_rows} not compared"
         for cause, count in self.causes.most_common(1):
             is_cause = not cause.startswith(AGREES)
             line += f"; likely cause of {count}: {cause}" if is_cause else f"; {count}: {cause}"
@@ -301,7 +301,9 @@ class Comparison:
             "worst": [row._asdict() for row in self.worst],
             "differences": differences,
             "elimination": vars(self.elimination),
-            "not_compared": {name: vars(skipped) for name, skipped in self.not_compared.items()},
+            "not_compared": {
+                name: vars(skipped_rows) for name, skipped_rows in self.not_compared.items()
+            },
             "unknown_columns": self.unknown,
             "bad_rows": list(map(str, self.bad)),
             "table": self.place,
@@ -373,7 +375,7 @@ def compare(
     with open_table(table, form, encoding) as (reader, where):
         comparison.place, comparison.remarks = reader.place, reader.remarks
         wanted, unknown = result_columns(reader)
-        comparison.unknown = {name: _meant(name) for name in unknown}
+        comparison.unknown = {name: _result_meant(name) for name in unknown}
         if not wanted:
             hints = [f"{name} for {meant}" for name, meant in comparison.unknown.items() if meant]
             hint = f" ({', '.join(hints)}?)" if hints else ""
@@ -384,9 +386,9 @@ def compare(
             advice = f"where ids stand for the scenes of a kit, add --kit {FROZEN_ID}; {advice}"
         check_scene_columns({*reader.names, *values}, advice=advice, where=where)
         comparison.tallies = {name: Tally() for name in wanted}
-        for rows, measured in read_blocks(reader, wanted, where, units):
-            scene = _scene_of(rows, values, measured)
-            block = compare_block(rows, scene, wanted, measured, rtol)
+        for rows, table_units in read_blocks(reader, wanted, where, units):
+            scene = _scene_of(rows, values, table_units)
+            block = compare_block(rows, scene, wanted, table_units, rtol)
             agreeing = block.agreeing[: max(0, MAX_AGREEING_KEPT - comparison.agreeing)]
             _count(block, comparison)
             if rtol is None:
@@ -488,7 +490,7 @@ def open_table(table: Any, form: str | None, encoding: str | None) -> Iterator[t
         yield reader, ""
 
 
-def _meant(name: str) -> str:
+def _result_meant(name: str) -> str:
     """Return the result or scene column that a name probably stands for, "" if none: the same in
     upper case, before the first character that is no letter, or nearly the same."""
     columns = (*RESULTS, *SCENE)
@@ -518,8 +520,8 @@ class Block(NamedTuple):
     @property
     def agreeing(self) -> NDArray[np.intp]:
         """The rows that could be compared, and agree."""
-        judged = ((self.grades > ABSENT) & (self.grades < LOST)).any(0)
-        return np.flatnonzero(judged & ~np.isin(self.grades, (DIFFER, LOST)).any(0))
+        is_judged = ((self.grades > ABSENT) & (self.grades < LOST)).any(0)
+        return np.flatnonzero(is_judged & ~np.isin(self.grades, (DIFFER, LOST)).any(0))
 
 
 def result_columns(reader: Reader) -> tuple[list[str], list[str]]:
@@ -533,12 +535,12 @@ def read_blocks(
     reader: Reader, results: Sequence[str], where: str, units: str | None = None
 ) -> Iterator[tuple[Rows, TableUnits]]:
     """Yield a table's rows, some at a time, with the units of its columns; shows the progress."""
-    measured: TableUnits | None = None
+    table_units: TableUnits | None = None
     before = 0
     with progress(reader.total, "compare") as meter:
         for rows in reader:
-            measured = measured or TableUnits(reader.names, units, rows, results, where)
-            yield rows, measured
+            table_units = table_units or TableUnits(reader.names, units, rows, results, where)
+            yield rows, table_units
             meter.update(rows.place - before)
             before = rows.place
 
@@ -579,10 +581,10 @@ def _count(block: Block, comparison: Comparison) -> None:
     comparison.bad += rows.complaints()
     comparison.agreeing += block.agreeing.size
     comparison.differing += block.differing.size
-    solved = (grades > ABSENT).any(0) & np.isfinite(case.ours)
+    is_solved = (grades > ABSENT).any(0) & np.isfinite(case.ours)
     for place, tally in enumerate(comparison.tallies.values()):
         tally.add(grades[place], block.relative[place])
-        tally.missing += int((solved[place] & (grades[place] == ABSENT)).sum())
+        tally.missing += int((is_solved[place] & (grades[place] == ABSENT)).sum())
     _count_not_compared(block, comparison)
     _count_elimination(block, comparison.elimination)
     comparison.differences += _rows_of(block)
@@ -597,12 +599,18 @@ def _count_not_compared(block: Block, comparison: Comparison) -> None:
     skipped_rows[np.concatenate([block.differing, block.agreeing])] = False
     if not skipped_rows.any():
         return
-    solvable, answered = np.isfinite(case.ours).any(0), np.isfinite(case.values).any(0)
+    solvable, has_answer = np.isfinite(case.ours).any(0), np.isfinite(case.values).any(0)
     kinds = rows.columns.get("class", [""] * rows.count)
-    refused = solvable & ~answered & np.array([str(kind) == FAILURE for kind in kinds], bool)
+    refused_rows = solvable & ~has_answer & np.array([str(kind) == FAILURE for kind in kinds], bool)
     positive = np.all([block.scene[name] > 0 for name in POSITIVE], 0)
     lost = (grades == LOST).any(0)
-    conditions = (unreadable, ~solvable & ~answered, ~solvable & ~positive, ~solvable, refused)
+    conditions = (
+        unreadable,
+        ~solvable & ~has_answer,
+        ~solvable & ~positive,
+        ~solvable,
+        refused_rows,
+    )
     reasons = np.select((*conditions, lost), REASONS[:-1], REASONS[-1])
     labels = rows.columns.get("label")
     for reason in REASONS:
@@ -633,7 +641,7 @@ def _rows_of(block: Block) -> Iterator[Row]:
     rows, case, places = block.rows, block.case, block.differing
     worst = np.where(block.grades == DIFFER, block.relative, -1.0).argmax(0)[places]
     ids = rows.one_per_row("id") if "id" in rows.columns else None
-    written = [rows.one_per_row(name) for name in case.names]
+    columns_written = [rows.one_per_row(name) for name in case.names]
     ours, relative = case.ours[worst, places].tolist(), block.relative[worst, places].tolist()
     for place, (index, result) in enumerate(zip(places.tolist(), worst.tolist(), strict=True)):
         yield Row(
@@ -641,7 +649,7 @@ def _rows_of(block: Block) -> Iterator[Row]:
             line=rows.lines[index] if rows.lines else 0,
             id=str(ids[index]) if ids is not None else "",
             result=case.names[result],
-            theirs=str(written[result][index]),
+            theirs=str(columns_written[result][index]),
             ours=ours[place],
             relative=relative[place],
             cause=UNKNOWN,
@@ -664,7 +672,7 @@ def write_junit(path: str, name: str, comparison: Comparison, strict: bool) -> N
         suite.test(f"row {bad.row}", "error", str(bad))
     for message in comparison.silent:
         suite.test(message, "failure" if strict else "skipped", message)
-    for reason, skipped in comparison.not_compared.items():
+    for reason, skipped_rows in comparison.not_compared.items():
         if reason in HARMLESS:
-            suite.test(f"{skipped.rows} rows: {reason}", "skipped", reason)
+            suite.test(f"{skipped_rows.rows} rows: {reason}", "skipped", reason)
     suite.write(path)

@@ -152,10 +152,10 @@ class Conformance:
         """Summary in one line: the vectors, how many pass, and the hashes of table and kit."""
         state = "conforms" if self.conforms else "does not conform"
         count = f"{self.passed} of {len(self.verdicts)}"
-        which = f"impact88 vectors/{NUMBERS['vectors']} seed {self.kit.seed}"
+        vectors = f"impact88 vectors/{NUMBERS['vectors']} seed {self.kit.seed}"
         is_frozen = self.kit.seed == FROZEN_SEED and len(self.verdicts) == FROZEN_COUNT
-        which = f"impact88 vectors {FROZEN_ID}" if is_frozen else which
-        return f"{which}: {state}, {count} (table {self.sha256[:12]}, kit {self.kit.sha256[:12]})"
+        vectors = f"impact88 vectors {FROZEN_ID}" if is_frozen else vectors
+        return f"{vectors}: {state}, {count} (table {self.sha256[:12]}, kit {self.kit.sha256[:12]})"
 
     def counts(self, attribute: str) -> dict[str, dict[str, int]]:
         """Return the numbers that pass and fail by an attribute of the vectors: kind or label."""
@@ -168,7 +168,7 @@ class Conformance:
 
     def as_json(self) -> dict[str, Any]:
         """Return the object that `impact88 compare --kit DIR --json` prints."""
-        whole: dict[str, Any] = {
+        full_kit: dict[str, Any] = {
             "summary": self.badge,
             "conforms": self.conforms,
             "kit": {
@@ -205,7 +205,7 @@ class Conformance:
             "unknown_columns": self.unknown,
             "remarks": self.remarks,
         }
-        return {name: plain(value) for name, value in whole.items()}
+        return {name: plain(value) for name, value in full_kit.items()}
 
 
 def read_kit(place: str) -> Kit:
@@ -219,10 +219,10 @@ def read_kit(place: str) -> Kit:
         those of its seed.
     """
     if place == FROZEN_ID and not os.path.exists(place):
-        expected = list(_vectors(FROZEN_COUNT, FROZEN_SEED))
+        vectors_expected = list(_vectors(FROZEN_COUNT, FROZEN_SEED))
         data = "".join(csv_lines(frozen())).encode()
-        return Kit(place, FROZEN_SEED, hashlib.sha256(data).hexdigest(), expected)
-    about = _parsed(place, _kit_file(place, ABOUT))
+        return Kit(place, FROZEN_SEED, hashlib.sha256(data).hexdigest(), vectors_expected)
+    about = _parse_about(place, _kit_file(place, ABOUT))
     mine = f"vectors/{NUMBERS['vectors']}"
     if about.get("kit") != mine:
         says = f"is of {one_line(str(about.get('kit')), 40)}, and this version judges {mine}"
@@ -235,17 +235,17 @@ def read_kit(place: str) -> Kit:
     hashes = about.get("sha256")
     if not isinstance(hashes, dict) or hashes.get(SCENES) != digest:
         raise UserError(f"is not the file that {ABOUT} has the hash of", _in(place, SCENES))
-    expected = list(_vectors(count, seed))
+    vectors_expected = list(_vectors(count, seed))
     lines = data.decode("utf-8", "replace").splitlines()[1:]
     if len(lines) != count:
         raise UserError(f"has {len(lines)} vectors, not {count}", _in(place, SCENES))
-    for number, (line, vector) in enumerate(zip(lines, expected, strict=True), 2):
+    for number, (line, vector) in enumerate(zip(lines, vectors_expected, strict=True), 2):
         head = [vector.id, vector.kind, vector.expect]
         cells = line.split(",")
         if cells[:3] != head or cells[4 : 4 + len(SCENE)] != list(vector.scene.values()):
             where = f"{_in(place, SCENES)}, line {number}"
             raise UserError(f"is not the vector {vector.id} of seed {seed}", where)
-    return Kit(place, seed, digest, expected)
+    return Kit(place, seed, digest, vectors_expected)
 
 
 def _in(place: str, name: str) -> str:
@@ -269,7 +269,7 @@ def _kit_file(place: str, name: str) -> bytes:
         raise UserError(f"cannot be unpacked: {error}", place) from None
 
 
-def _parsed(place: str, data: bytes) -> dict[str, Any]:
+def _parse_about(place: str, data: bytes) -> dict[str, Any]:
     try:
         about = json.loads(data)
     except (ValueError, RecursionError):
@@ -305,7 +305,7 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
     UserError
         Where kit or table cannot be read, or the table lacks ids or a final velocity.
     """
-    whole = read_kit(kit)
+    full_kit = read_kit(kit)
     where = display_name(theirs)
     with _on_disk(theirs) as path, open_table(path, form, encoding) as (reader, _):
         results, unknown = result_columns(reader)
@@ -316,7 +316,7 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
                 f"no column {' '.join(missing)}; expected all of {' '.join(FINAL_VELOCITIES)}",
                 where,
             )
-        done = Conformance(whole, where, _digest(path), results, unknown=list(map(str, unknown)))
+        done = Conformance(full_kit, where, _digest(path), results, unknown=list(map(str, unknown)))
         done.place, done.remarks = reader.place, reader.remarks
         judge = _Judge(done)
         for rows, units in read_blocks(reader, results, where):

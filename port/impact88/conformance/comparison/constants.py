@@ -197,13 +197,13 @@ def fit_constants(judge: Judge, unexplained: Bools, base: Program) -> list[Progr
         targets = list(_targets(title, spelling, results, title == titles[0]))
         neutral = np.array([target.neutral for target in targets])
         # each row by itself tells the constant; what most rows tell is taken
-        each = np.repeat(neutral[:, None], judge.wrong.size, 1)
+        estimates = np.repeat(neutral[:, None], judge.wrong.size, 1)
         for _ in range(_MAX_ITERATIONS):
-            each = _gauss_newton_step(run, targets, each, judge)
-        constants = np.nanmedian(each[:, judge.wrong], 1)
+            estimates = _gauss_newton_step(run, targets, estimates, judge)
+        constants = np.nanmedian(estimates[:, judge.wrong], 1)
         # a program takes longer to run: only where the fit is near in enough rows (NaN is near)
-        whole = np.repeat(constants[:, None], judge.wrong.size, 1)
-        misfits = _misfits(run, targets, whole, judge)
+        every_row = np.repeat(constants[:, None], judge.wrong.size, 1)
+        misfits = _misfits(run, targets, every_row, judge)
         near = (~(np.abs(misfits) > _MAX_MISFIT)).all(1) & judge.wrong
         fits = near.sum(1) >= MIN_FIT * judge.wrong.sum()
         for target, constant, fit in zip(targets, constants.tolist(), fits, strict=True):
@@ -225,8 +225,8 @@ def _gauss_newton_step(run: Run, targets: list[_Target], constants: Floats, judg
     usable = np.isfinite(slopes) & np.isfinite(misfits)
     slopes, misfits = np.where(usable, slopes, 0.0), np.where(usable, misfits, 0.0)
     change = (slopes * misfits).sum(1) / (slopes * slopes).sum(1)
-    improved = constants - change
-    return np.where(np.isfinite(improved) & (change != 0), improved, constants)
+    next_constants = constants - change
+    return np.where(np.isfinite(next_constants) & (change != 0), next_constants, constants)
 
 
 def _misfits(run: Run, targets: list[_Target], constants: Floats, judge: Judge) -> Floats:

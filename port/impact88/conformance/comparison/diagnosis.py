@@ -174,15 +174,15 @@ class Diagnosis:
         is_open = wrong & (causes == "")
         for place, hypothesis in enumerate(self.hypotheses):
             fits = hypothesis.fits(case)
-            explained = is_open & fits
-            causes[explained] = self._evidence[place].says
-            is_open &= ~explained
-            self._count(place, case, explained, fits)
+            explained_rows = is_open & fits
+            causes[explained_rows] = self._evidence[place].says
+            is_open &= ~explained_rows
+            self._count(place, case, explained_rows, fits)
         violations = violated_equations(case)
         for number, broken in violations.items():
-            checked, violated = self.equations.get(number, (0, 0))
+            checked_rows, violated_rows = self.equations.get(number, (0, 0))
             count = int((broken & wrong).sum())
-            self.equations[number] = checked + int(wrong.sum()), violated + count
+            self.equations[number] = checked_rows + int(wrong.sum()), violated_rows + count
         if is_open.any() or self.unexplained:
             self._count_unexplained(case, is_open, violations)
         differences = relative_differences(case).max(0, initial=0.0)
@@ -244,13 +244,15 @@ class Diagnosis:
             open_rows = rows & is_open
             if not rows.any():
                 continue
-            known = self.unexplained.get(name, Unexplained(0, 0, {}))
-            violated = dict(known.violated)
+            known_rows = self.unexplained.get(name, Unexplained(0, 0, {}))
+            violated_rows = dict(known_rows.violated)
             for number, broken in violations.items():
                 if count := int((broken & open_rows).sum()):
-                    violated[number] = violated.get(number, 0) + count
+                    violated_rows[number] = violated_rows.get(number, 0) + count
             self.unexplained[name] = Unexplained(
-                known.rows + int(rows.sum()), known.unexplained + int(open_rows.sum()), violated
+                known_rows.rows + int(rows.sum()),
+                known_rows.unexplained + int(open_rows.sum()),
+                violated_rows,
             )
 
     # --- the search ---
@@ -261,23 +263,23 @@ class Diagnosis:
         self._bits = evidence_bits(case)
         self._agreeing = ~wrong & np.isfinite(case.ours).any(0)
         # what the digits alone explain is no mistake
-        scored = [(self._score(x), x) for x in plain_hypotheses(case, wrong)]
-        best = max(scored, key=lambda pair: pair[0], default=None)
+        score_pairs = [(self._score(x), x) for x in plain_hypotheses(case, wrong)]
+        best = max(score_pairs, key=lambda pair: pair[0], default=None)
         if best and best[0] >= _MIN_SCORE and best[1].cost == COST_DIGITS:
             rows = best[1].fits(case)
             if (rows & wrong).sum() >= MIN_FIT * wrong.sum():
-                for _, hypothesis in sorted(scored, key=lambda pair: -pair[0]):
+                for _, hypothesis in sorted(score_pairs, key=lambda pair: -pair[0]):
                     if hypothesis.cost == COST_DIGITS:
                         self._add(hypothesis)
                 return
         with progress(None, "look for the cause") as self._meter:
             self._meter.update(0)
             for hypothesis in self._programs():
-                scored.append((self._score(hypothesis), hypothesis))
-        explained = np.zeros(wrong.size, bool)
+                score_pairs.append((self._score(hypothesis), hypothesis))
+        explained_rows = np.zeros(wrong.size, bool)
         chosen: list[tuple[TableHypothesis, float]] = []
         for _ in range(_MAX_CAUSES):
-            scores = [(self._score(x, explained), x) for _, x in scored]
+            scores = [(self._score(x, explained_rows), x) for _, x in score_pairs]
             highest = max((score for score, _ in scores), default=0.0)
             if highest < _MIN_SCORE:
                 break
@@ -285,16 +287,16 @@ class Diagnosis:
             # the one that takes least to state
             near = [(self._cost(x), -score, x) for score, x in scores if score >= _NEARLY * highest]
             _, score, hypothesis = min(near, key=lambda each: each[:2])
-            gained = self._fits(hypothesis) & wrong & ~explained
-            if chosen and gained.sum() < _MIN_ROWS_LEFT:
+            rows_gained = self._fits(hypothesis) & wrong & ~explained_rows
+            if chosen and rows_gained.sum() < _MIN_ROWS_LEFT:
                 break
             chosen.append((hypothesis, -score))
-            explained |= gained
+            explained_rows |= rows_gained
         # a program that more rows contradict than confirm is not the other one, though it has a
         # part of it
-        left = (wrong & ~explained & (self._bits > 0)).sum()
+        rows_left = (wrong & ~explained_rows & (self._bits > 0)).sum()
         for hypothesis, score in chosen:
-            if hypothesis.where or (self._fits(hypothesis) & wrong).sum() >= left:
+            if hypothesis.where or (self._fits(hypothesis) & wrong).sum() >= rows_left:
                 self._add(hypothesis, score)
 
     def _fits(self, hypothesis: TableHypothesis) -> Bools:
@@ -309,14 +311,14 @@ class Diagnosis:
         ``explained``: rows that another cause explains already.
         """
         fits = self._fits(hypothesis)
-        gained = fits & self._wrong
+        rows_gained = fits & self._wrong
         contradicted = ~fits & self._agreeing
         if explained is not None:
-            gained &= ~explained
+            rows_gained &= ~explained
         cost = self._cost(hypothesis)
         if hypothesis.bits is None:
-            return float(self._bits[gained].sum() - _CONTRADICTED * contradicted.sum() - cost)
-        return float(hypothesis.bits * (gained.sum() - contradicted.sum()) - cost)
+            return float(self._bits[rows_gained].sum() - _CONTRADICTED * contradicted.sum() - cost)
+        return float(hypothesis.bits * (rows_gained.sum() - contradicted.sum()) - cost)
 
     def _cost(self, hypothesis: TableHypothesis) -> float:
         """Return the bits that it takes to state a hypothesis, and which of the rows that disagree
@@ -394,9 +396,9 @@ class Diagnosis:
         yield from whole_ones
         best = self._best(partial_ones)
         if best and best.program and not best.where and not self._are_explained(whole_ones, small):
-            extended = list(self._extend(best.program, small))
-            yield from extended
-            whole_ones += extended
+            extended_programs = list(self._extend(best.program, small))
+            yield from extended_programs
+            whole_ones += extended_programs
         for group in groups[1:] if not self._are_explained(whole_ones, small) else ():
             other = small.narrow_to(group)
             if other.wrong.any():
@@ -464,18 +466,19 @@ class Diagnosis:
         """Yield what explains the rows that the best of the hypotheses leaves: another mistake
         beside it, or on top of it."""
         fits = try_program(best.program or Program(), judge).rows
-        known, left = ~judge.wrong | fits, judge.wrong & ~fits & self._shows(judge)
-        if left.sum() < _MIN_ROWS_LEFT:
+        known_rows, rows_left = ~judge.wrong | fits, judge.wrong & ~fits & self._shows(judge)
+        if rows_left.sum() < _MIN_ROWS_LEFT:
             return
         for base in self._bases(best, hypotheses):
             if not self._has_time():
                 self.skipped.append("further mistakes in the rows without a cause")
                 return
-            trials, more = self._try_one_change(judge, left, known, base)
+            trials, more = self._try_one_change(judge, rows_left, known_rows, base)
             yield from more
-            least = MIN_FIT * left.sum(), _NEARLY * known.sum()
+            least = MIN_FIT * rows_left.sum(), _NEARLY * known_rows.sum()
             if any(
-                (trial.rows & left).sum() >= least[0] and (trial.rows & known).sum() >= least[1]
+                (trial.rows & rows_left).sum() >= least[0]
+                and (trial.rows & known_rows).sum() >= least[1]
                 for trial in trials
             ):
                 return
@@ -508,16 +511,16 @@ class Diagnosis:
         """Return whether those of the hypotheses that are worth their cost explain nearly all rows
         that disagree."""
         shown = judge.wrong & self._shows(judge)
-        left = shown.copy()
+        rows_left = shown.copy()
         for hypothesis in hypotheses:
             if self._score(hypothesis) >= _MIN_SCORE:
-                left &= ~try_program(hypothesis.program or Program(), judge).rows
-        return bool(left.sum() <= (1 - MIN_FIT) * shown.sum())
+                rows_left &= ~try_program(hypothesis.program or Program(), judge).rows
+        return bool(rows_left.sum() <= (1 - MIN_FIT) * shown.sum())
 
     def _best(self, hypotheses: Sequence[TableHypothesis]) -> TableHypothesis | None:
         """Return the hypothesis with the highest score, None where none is worth its cost."""
-        scored = [(self._score(x), x) for x in hypotheses]
-        score, best = max(scored, key=lambda pair: pair[0], default=(0.0, None))
+        score_pairs = [(self._score(x), x) for x in hypotheses]
+        score, best = max(score_pairs, key=lambda pair: pair[0], default=(0.0, None))
         return best if score >= _MIN_SCORE else None
 
     def _with_conditions(

@@ -160,21 +160,21 @@ def oracle(
     numbers = {name: doubles.doubles(column) for name, column in texts.items()}
     solution = solve(numbers)
     solved = {name: column.tolist() for name, column in solution.items()}
-    replayed = replay(texts)
+    replay_result = replay(texts)
     applesoft = {
         name: (
-            replayed.present(name).tolist(),
-            replayed.printed(name).tolist() if name != "KF" else [None] * len(scenes),
-            replayed.reals(name).tolist(),
+            replay_result.present(name).tolist(),
+            replay_result.printed(name).tolist() if name != "KF" else [None] * len(scenes),
+            replay_result.reals(name).tolist(),
         )
         for name in RESULTS
-        if name in replayed.names
+        if name in replay_result.names
     }
     double, listing = errorbound.oracle_bounds(scenes, numbers, solution)
     absent = ([False] * len(scenes),) * 3
     out = []
     for index, scene in enumerate(scenes):
-        ported = run(scene)
+        listing_run = run(scene)
         digits = thirty_digits(scene) if reference else {}
         results: dict[str, dict[str, Any]] = {}
         for name in [name for name in RESULTS if name not in _NOT_ANSWERED]:
@@ -189,8 +189,8 @@ def oracle(
                 "reference": digits.get(name),
             }
         entry = {
-            "printout": ported.printout,
-            "ending": "ZERO DETERMINANT" if ported.zero_determinant else ported.error,
+            "printout": listing_run.printout,
+            "ending": "ZERO DETERMINANT" if listing_run.zero_determinant else listing_run.error,
             "results": results,
             "condition": solved["COND"][index],
             "error_bound": {"double": double[index], "applesoft": listing[index]},

@@ -121,15 +121,15 @@ def find_predicate(
     counts = [place.size for place in places]
     if min(counts) < _MIN_ROWS or math.log2(math.comb(sum(counts), counts[0])) < COST + _MIN_BITS:
         return None
-    fitted = [place[0::2] for place in places]
-    held = [place[1::2] for place in places]
+    fitted_rows = [place[0::2] for place in places]
+    held_out = [place[1::2] for place in places]
     best: tuple[float, int, Predicate] | None = None
     for rank, (name, column) in enumerate(quantities.items()):
-        for predicate in _candidates(name, column, *fitted):
+        for predicate in _candidates(name, column, *fitted_rows):
             fits = predicate.rows(quantities)
             wrong = [
                 [(there.size, (~fits[there]).sum()), (elsewhere.size, fits[elsewhere].sum())]
-                for there, elsewhere in (fitted, held)
+                for there, elsewhere in (fitted_rows, held_out)
             ]
             if any(count > _MAX_MISFITTED * size for size, count in wrong[0]):
                 continue

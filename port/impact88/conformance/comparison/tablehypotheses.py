@@ -140,13 +140,13 @@ def judge_of(case: Case, wrong: Bools) -> Judge:
     """Return the judge of a case: how far from the other program's results a program's may be."""
     relative = relative_differences(case)
     differences = relative.max(0, initial=0.0)
-    sizes, written = case.sizes, case.units * HALF
+    sizes, half_units = case.sizes, case.units * HALF
     loose = np.where(sizes > 0, case.loose / sizes, 0.0)
     within = np.fmin(np.fmax(4 * loose, _SAME_RTOL), _MAX_FRACTION_LEFT * differences)
     # another program rounds its own numbers, which may be larger than anything in the scene
     theirs = np.where(wrong & np.isfinite(case.values), np.abs(case.values), 0.0)
     measure = np.fmax(sizes, theirs)
-    limits = np.where(wrong, within, np.fmax(loose, _SAME_RTOL)) * measure + written
+    limits = np.where(wrong, within, np.fmax(loose, _SAME_RTOL)) * measure + half_units
     named = [
         {n: row for n, row in zip(case.names, rows, strict=True) if n != "MUC"}
         for rows in (case.values, limits)
@@ -186,21 +186,21 @@ def _match_printout(case: Case) -> Bools:
     floored.
     """
     floored = _match_cut(case, np.floor)
-    places, others = np.split(np.flatnonzero(case.wrong), [MAX_REPLAYED])
+    places, other_rows = np.split(np.flatnonzero(case.wrong), [MAX_REPLAYED])
     if not all(name in FIELDS for name in case.names):
         return np.zeros(floored.size, bool)
     columns = zip(SCENE, case.scene[:, places].tolist(), strict=False)
     try:
-        replayed = replay({name: [f"{x:.15G}" for x in column] for name, column in columns})
+        replay_result = replay({name: [f"{x:.15G}" for x in column] for name, column in columns})
     except UserError:
         return np.zeros(floored.size, bool)
     rows = floored.copy()
     rows[places] = True
     for name, column in zip(case.names, case.values[:, places], strict=True):
-        printed = replayed.printed(name).tolist()
-        values = np.array([float(text) if text else np.nan for text in printed])
+        printed_texts = replay_result.printed(name).tolist()
+        values = np.array([float(text) if text else np.nan for text in printed_texts])
         rows[places] &= np.isnan(column) | (values == column)
-    rows[others] &= bool(rows[places].mean() >= MIN_FIT) if places.size else False
+    rows[other_rows] &= bool(rows[places].mean() >= MIN_FIT) if places.size else False
     return rows
 
 

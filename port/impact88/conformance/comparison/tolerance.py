@@ -74,8 +74,8 @@ def best_error_bounds(
     for name, bound in bounds.items():
         bounds[name] = np.where(np.isnan(bound), relative * sizes[name], bound)
     sliding, error = errors["gt"]
-    undecided = np.abs(sliding) <= error * errorbound.DOUBLE
-    return bounds, undecided & (scene["MU"] != PIVOT) & (scene["MU"] != 0)
+    is_open = np.abs(sliding) <= error * errorbound.DOUBLE
+    return bounds, is_open & (scene["MU"] != PIVOT) & (scene["MU"] != 0)
 
 
 def largest_error_bounds(
@@ -89,8 +89,8 @@ def largest_error_bounds(
     bounds = {name: bound / 2 for name, bound in best.items()}
     for spelling in spellings().values():
         if spelling.title not in (IMPULSES, TRIAL_IMPULSES):
-            own = _result_bounds(scene, running_errors(spelling, scene))
-            bounds = {name: np.fmax(bound, own[name]) for name, bound in bounds.items()}
+            own_bounds = _result_bounds(scene, running_errors(spelling, scene))
+            bounds = {name: np.fmax(bound, own_bounds[name]) for name, bound in bounds.items()}
     if "MUC" in wanted:
         bounds["MUC"] = np.fmax(bounds["MUC"], _critical_friction_bounds(scene))
     for pair in _VECTORS:
@@ -101,9 +101,9 @@ def largest_error_bounds(
     bounds |= {name: np.fmax(bounds[name], bound) for name, bound in by_momentum.items()}
     # the other results follow from velocities with these errors
     known = {name: (ours[name], bounds[name] / errorbound.DOUBLE) for name in FINAL_VELOCITIES}
-    own = _result_bounds(scene, running_errors(spelling_of(IMPULSES), scene, known))
-    bounds = {name: np.fmax(bound, own[name]) for name, bound in bounds.items()}
-    if missing := [name for name in wanted if np.isnan(own[name]).all()]:
+    own_bounds = _result_bounds(scene, running_errors(spelling_of(IMPULSES), scene, known))
+    bounds = {name: np.fmax(bound, own_bounds[name]) for name, bound in bounds.items()}
+    if missing := [name for name in wanted if np.isnan(own_bounds[name]).all()]:
         relative = [bounds[name] / sizes[name] for name in FINAL_VELOCITIES]
         largest = np.max(np.where(np.isfinite(relative), relative, 0.0), 0)
         bounds |= {name: np.fmax(bounds[name], largest * sizes[name]) for name in missing}

@@ -152,8 +152,8 @@ class Judge(NamedTuple):
     def sample(self, unexplained: Bools, count: int = _MAX_UNEXPLAINED) -> "Judge":
         """Return the judge of at most ``count`` unexplained rows and a few others."""
         rows = pick_evenly(np.flatnonzero(unexplained), count)
-        others = pick_evenly(np.flatnonzero(~unexplained), count + _MIN_OTHERS - rows.size)
-        return self.select_rows(np.concatenate([rows, others]))
+        other_rows = pick_evenly(np.flatnonzero(~unexplained), count + _MIN_OTHERS - rows.size)
+        return self.select_rows(np.concatenate([rows, other_rows]))
 
     @property
     def has_velocities(self) -> bool:
@@ -203,10 +203,10 @@ def try_program(program: Program, judge: Judge) -> Trial:
     if not program.edits or any(edit.title for edit in program.edits):
         return Trial(program, judge.matches(program.results(judge.scene)), judge.wrong)
     rows = judge.matches(program.results(judge.scene, IMPULSE_MATRIX))
-    others = np.flatnonzero(~rows)
-    if others.size:
-        part = judge.select_rows(others)
-        rows[others] = part.matches(program.results(part.scene))
+    other_rows = np.flatnonzero(~rows)
+    if other_rows.size:
+        part = judge.select_rows(other_rows)
+        rows[other_rows] = part.matches(program.results(part.scene))
     return Trial(program, rows, judge.wrong)
 
 
@@ -236,8 +236,8 @@ def _try_edits(judge: Judge, base: Program) -> Iterator[Trial]:
     base_titles = [edit.title for edit in base.edits if edit.title]
     for title in base_titles[:1] or spellings():
         spelling = Program((*base.edits, Edit(title, {}))).spelling
-        changed = {key for edit in base.edits for key in edit.sides}
-        edits = [x for x in variants() if x.title == title and changed.isdisjoint(x.sides)]
+        changed_keys = {key for edit in base.edits for key in edit.sides}
+        edits = [x for x in variants() if x.title == title and changed_keys.isdisjoint(x.sides)]
         if base_titles or title == LISTING:
             edits += [edit for edit in readings() if edit not in base.edits]
         edits += node_edits(spelling) if base_titles else spelling_edits(title)
@@ -259,9 +259,9 @@ def find_pairs(judge: Judge, singles: Sequence[Trial]) -> Iterator[list[Program]
     """
     yield list(_pairs_of_readings(judge.sample(judge.wrong, _MAX_ROWS_FOR_PAIRS // 2)))
     if judge.has_velocities:
-        few = judge.select_results(FINAL_VELOCITIES).sample(judge.wrong, _MAX_ROWS_FOR_PAIRS)
-        is_given = np.all([np.isfinite(column) for column in few.theirs.values()], axis=0)
-        yield from _pairs_by_equations(few.select_rows(np.flatnonzero(is_given)), judge)
+        some_rows = judge.select_results(FINAL_VELOCITIES).sample(judge.wrong, _MAX_ROWS_FOR_PAIRS)
+        is_given = np.all([np.isfinite(column) for column in some_rows.theirs.values()], axis=0)
+        yield from _pairs_by_equations(some_rows.select_rows(np.flatnonzero(is_given)), judge)
     min_rows = _MIN_FRACTION * judge.wrong.sum()
     firsts = [t for t in singles if t.is_supported and t.explained_count >= min_rows]
     for first in firsts[:_MAX_FIRST_EDITS]:

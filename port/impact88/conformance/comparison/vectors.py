@@ -66,7 +66,7 @@ def vectors(
                 "id": f"{seed}-{index:06d}",
                 "class": kind,
                 "label": label,
-                "expect": _expected(kind, None not in finals),
+                "expect": _expected_answer(kind, None not in finals),
                 "flags": answer["status"],
                 "comment": f"{label}; the 1988 program {ends}",
                 "scene": scene,
@@ -78,10 +78,10 @@ def expectation(kind: str, scene: Mapping[str, str]) -> str:
     """Return what is expected of a program for a scene of a class: an answer, a refusal or either;
     for failures it depends on whether the scene has final velocities."""
     finals = solve(doubles_of(scene), FINAL_VELOCITIES)
-    return _expected(kind, all(np.isfinite(finals[name]) for name in FINAL_VELOCITIES))
+    return _expected_answer(kind, all(np.isfinite(finals[name]) for name in FINAL_VELOCITIES))
 
 
-def _expected(kind: str, has_solution: bool) -> str:
+def _expected_answer(kind: str, has_solution: bool) -> str:
     if kind != FAILURE:
         return ANSWER
     return EITHER if has_solution else REFUSE

@@ -76,9 +76,9 @@ def _arithmetic(golden: Any) -> Counted:
 
 def _port(golden: Any) -> Counted:
     for row in captured.rows(golden, captured.SCENES):
-        ported = run(row["scene"], dos=False)
-        same = ported.printout == row["printout"]
-        variables = captured.memory_contents(ported.reals, ported.A)
+        listing_run = run(row["scene"], dos=False)
+        same = listing_run.printout == row["printout"]
+        variables = captured.memory_contents(listing_run.reals, listing_run.A)
         yield row["id"], same and variables == captured.memory_contents(row["reals"], row["A"])
 
 
@@ -86,39 +86,39 @@ def _replay(golden: Any) -> Counted:
     from ...program.vectorized import replay
 
     rows = captured.rows(golden, captured.SCENES)
-    replayed = replay({name: [row["scene"][name] for row in rows] for name in SCENE})
-    printed = {name: replayed.printed(name).tolist() for name in FIELDS}
+    replay_result = replay({name: [row["scene"][name] for row in rows] for name in SCENE})
+    printed_text = {name: replay_result.printed(name).tolist() for name in FIELDS}
     for index, row in enumerate(rows):
-        fields = {name: column[index] for name, column in printed.items() if column[index]}
+        fields = {name: column[index] for name, column in printed_text.items() if column[index]}
         yield row["id"], fields == outcome_fields(row["printout"])
 
 
 def _programs(golden: Any) -> Counted:
     for kind, name, texts in captured.programs(golden):
         keys, blanks = texts.get("in", ""), kind == captured.PROGRAMS
-        _, displayed = captured.session(texts["bas"], keys, blanks=blanks)
-        yield name, displayed == texts.get("out", "")
+        _, screen_text = captured.session(texts["bas"], keys, blanks=blanks)
+        yield name, screen_text == texts.get("out", "")
 
 
-def _published(golden: Any) -> Counted:
+def _check_published(golden: Any) -> Counted:
     for number, name in GOLDEN_RUNS.items():
-        expected = golden.joinpath("printouts", f"{name}.txt").read_bytes().decode()
-        yield name, run(sample(number)).printout == expected
+        expected_text = golden.joinpath("printouts", f"{name}.txt").read_bytes().decode()
+        yield name, run(sample(number)).printout == expected_text
 
 
 def _published_elsewhere(golden: Any) -> Counted:
     """Compare the numbers of a magazine's table, printed by an Apple II, with its program's output
     in the emulator."""
     printouts = golden.joinpath("printouts")
-    program, printed = (
+    program, printed_text = (
         printouts.joinpath(f"compute1980.{ending}").read_bytes().decode()
         for ending in ("bas", "txt")
     )
-    _, displayed = captured.session(program)
-    rows = zip_longest(printed.split(), displayed.split(), fillvalue="")
-    for place, (expected, number) in enumerate(rows, 1):
+    _, screen_text = captured.session(program)
+    rows = zip_longest(printed_text.split(), screen_text.split(), fillvalue="")
+    for place, (expected_text, number) in enumerate(rows, 1):
         # the magazine adds zeros before the point and at the end
-        same = expected and number and Decimal(expected) == Decimal(number)
+        same = expected_text and number and Decimal(expected_text) == Decimal(number)
         yield f"number {place} of Table 5", bool(same)
 
 
@@ -145,7 +145,7 @@ CHECKS: dict[str, tuple[str, Callable[[Any], Counted]]] = {
     "port": ("runs of the listing: printout, variables, array", _port),
     "replay": ("the same runs over arrays: every printed field", _replay),
     "emulator": ("Applesoft programs: every character displayed", _programs),
-    "published": ("runs published in 1988: every character", _published),
+    "published": ("runs published in 1988: every character", _check_published),
     "published 1980": ("numbers of COMPUTE!'s Table 5: every digit", _published_elsewhere),
     "closed form": ("scenes in double precision: momentum conserved", _closed_form),
 }

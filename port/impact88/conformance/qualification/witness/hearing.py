@@ -62,12 +62,12 @@ def cases(count: int | None, seed: int = 0) -> list[Case]:
     rng = Random(seed)
     scenes, programs, *calls = (rng.sample(group, len(group)) for group in _case_groups())
     rng.shuffle(calls)
-    drawn: list[Case] = []
+    cases_drawn: list[Case] = []
     for turn in range(count):
         arithmetic = calls[turn // 3 % len(calls)]
         group = (scenes, programs, arithmetic)[turn % 3] or arithmetic
-        drawn += [group.pop()] if group else []
-    return drawn
+        cases_drawn += [group.pop()] if group else []
+    return cases_drawn
 
 
 @cache
@@ -148,12 +148,12 @@ Sides = dict[str, tuple[Mapping[str, str], Mapping[str, str]]]
 def _compare(kind: str, name: str, sides: Sides, capture: Any) -> Outcome:
     """Return the outcome of a case; an array of another size is one difference."""
     differences = []
-    for who, (rom, source) in sides.items():
+    for side, (rom, source) in sides.items():
         items = [x for x in dict.fromkeys([*rom, *source]) if rom.get(x) != source.get(x)]
         if "DIM A" in items:
             items = [item for item in items if not item.startswith("A(")]
         differences += [
-            Difference(who, item, rom.get(item, "absent"), source.get(item, "absent"))
+            Difference(side, item, rom.get(item, "absent"), source.get(item, "absent"))
             for item in items
         ]
     return Outcome(kind, name, tuple(sides), differences, capture)
@@ -197,8 +197,8 @@ def hear_scene(
         sides[CAPTURE] = mine, _contents(capture)
     sides[PORT] = mine, _contents(run(scene, dos=False)._asdict())
     sides[EMULATOR] = mine, _contents(emulated.run(scene, dos=False)._asdict())
-    replayed = replay({column: [scene[column]] for column in SCENE})
-    fields = {name: text for name in FIELDS if (text := replayed.printed(name).tolist()[0])}
+    replay_result = replay({column: [scene[column]] for column in SCENE})
+    fields = {name: text for name in FIELDS if (text := replay_result.printed(name).tolist()[0])}
     sides[REPLAY] = outcome_fields(rom["printout"]), fields
     if published:
         pieces: list[str] = []
@@ -238,8 +238,8 @@ def _hear_program(session: Session, case: Case) -> Outcome:
     try:
         rom["displayed"] = session.run_program(program, keys, blanks=blanks)
         rom["screen"] = apple.screen_text()
-        machine, displayed = captured.session(program, keys, blanks=blanks)
-        sources[EMULATOR] = {"displayed": displayed}
+        machine, screen_text = captured.session(program, keys, blanks=blanks)
+        sources[EMULATOR] = {"displayed": screen_text}
         if case.kind == OWN:
             sources[EMULATOR]["screen"] = machine.screen_text()
     except Lost as lost:
@@ -253,7 +253,7 @@ def _hear_program(session: Session, case: Case) -> Outcome:
     if case.kind == OWN or "scr" in data:
         capture["scr"] = rom["screen"]
     sides: Sides = {
-        who: ({item: rom[item] for item in items}, items) for who, items in sources.items()
+        side: ({item: rom[item] for item in items}, items) for side, items in sources.items()
     }
     return _compare(case.kind, case.name, sides, capture)
 
@@ -262,7 +262,7 @@ def record(image: Image, outcomes: list[Outcome], seconds: float) -> dict[str, A
     """Return the object that `impact88 witness --json` prints."""
     comparisons, failing = Counter[str](), Counter[str]()
     for case in outcomes:
-        comparisons.update(f"{case.kind}, {who}" for who in case.compared)
+        comparisons.update(f"{case.kind}, {side}" for side in case.compared)
         failing.update({f"{case.kind}, {difference.who}" for difference in case.differences})
     wrong = [case for case in outcomes if case.differences]
     return {
