@@ -39,9 +39,12 @@ from impact88.printouts.scan import sheets
 from impact88.printouts.scan.claims import claims, is_of_a_printout
 from impact88.printouts.scan.grid import CELL_WIDTH, Grid, _distinct
 from impact88.printouts.scan.holding import (
+    DIFFERS,
     FOREIGN,
-    KIND,
-    MAX_MISREAD_COST,
+    HOLDS,
+    MAX_BLOTS,
+    MAX_DIFFERING,
+    MAX_MISREAD,
     MAX_SPECKS,
     Cell,
     CellJudgement,
@@ -981,15 +984,16 @@ def test_a_page_whose_results_are_underlined_is_read() -> None:
 def cell(name: str, *, distance: float, other_distance: float, digit: str = "") -> Cell:
     """A cell that is clearly not what is predicted, and as far as given from that and another."""
     predicted, other = ("3", "8") if name else ("V", "U")
-    return Cell(Place(0, 0), name, predicted, 2.0, other, distance, other_distance, 5, 5, digit)
+    margin = min(distance, FOREIGN) - other_distance
+    return Cell(Place(0, 0), name, predicted, margin, other, distance, other_distance, 5, 5, digit)
 
 
 @pytest.mark.parametrize(
     ("other_distance", "digit", "expected"),
     [
-        (FOREIGN - 1, "", "differs"),
-        (FOREIGN + 1, "", "doubtful"),  # like nothing: a blot
-        (FOREIGN + 1, "8", "differs"),  # another hand's digit
+        (FOREIGN - DIFFERS - 1, "", "differs"),
+        (FOREIGN - DIFFERS + 1, "", "doubtful"),  # like nothing: a blot
+        (2.0, "8", "differs"),  # another hand's digit
     ],
 )
 def test_a_digit_of_another_hand_differs_and_a_blot_does_not(
@@ -998,15 +1002,82 @@ def test_a_digit_of_another_hand_differs_and_a_blot_does_not(
     assert state(cell("TB", distance=100, other_distance=other_distance, digit=digit)) == expected
 
 
-@pytest.mark.parametrize("away", [-1, 1])
-def test_a_digit_like_nothing_on_the_page_settles_nothing(monkeypatch, away: float) -> None:
+@pytest.mark.parametrize(
+    ("distance", "expected"),
+    [
+        (FOREIGN - 1, Verdict.IDENTICAL),
+        (FOREIGN + 1, Verdict.INCOMPLETE),
+    ],
+)
+def test_a_digit_like_nothing_on_the_page_settles_nothing(
+    monkeypatch, distance: float, expected: Verdict
+) -> None:
     """A digit drawn by another hand over another one may still be least unlike what is printed."""
-    odd = cell("YBF", distance=FOREIGN + away, other_distance=80.0)
-    odd.margin = -0.41
+    odd = cell("YBF", distance=distance, other_distance=80.0)
     monkeypatch.setattr(Sheet, "whole", True)
     candidate = Candidate({}, SimpleNamespace(fields={}, ending=None), 0.0)  # type: ignore[arg-type]
-    expected = Verdict.INCOMPLETE if away > 0 else Verdict.IDENTICAL
     assert judge_cells(Sheet(rows={}), candidate, [odd]).verdict is expected
+
+
+@pytest.mark.parametrize(
+    ("margin", "expected"),
+    [
+        (HOLDS - 0.1, Verdict.IDENTICAL),
+        (HOLDS + 0.1, Verdict.INCOMPLETE),
+        (DIFFERS - 0.1, Verdict.INCOMPLETE),
+        (DIFFERS + 0.1, Verdict.DIFFERS),
+    ],
+)
+def test_of_a_digit_the_likelier_character_decides(
+    monkeypatch, margin: float, expected: Verdict
+) -> None:
+    monkeypatch.setattr(Sheet, "whole", True)
+    candidate = Candidate({}, SimpleNamespace(fields={}, ending=None), 0.0)  # type: ignore[arg-type]
+    digit = cell("TB", distance=6.0, other_distance=6.0 - margin)
+    assert judge_cells(Sheet(rows={}), candidate, [digit]).verdict is expected
+
+
+@pytest.mark.parametrize(
+    ("differing", "blots", "expected"),
+    [
+        (1, MAX_BLOTS, Verdict.DIFFERS),
+        (MAX_DIFFERING, MAX_BLOTS, Verdict.DIFFERS),
+        (1, MAX_BLOTS + 1, Verdict.INCOMPLETE),
+        (MAX_DIFFERING + 1, 0, Verdict.INCOMPLETE),
+        (0, 1, Verdict.INCOMPLETE),
+    ],
+)
+def test_few_cells_may_differ_and_hardly_any_be_left_unexplained(
+    monkeypatch, differing: int, blots: int, expected: Verdict
+) -> None:
+    monkeypatch.setattr(Sheet, "whole", True)
+    candidate = Candidate({}, SimpleNamespace(fields={}, ending=None), 0.0)  # type: ignore[arg-type]
+    cells = [cell("TB", distance=9.0, other_distance=1.0) for _ in range(differing)]
+    cells += [cell("TA", distance=90.0, other_distance=80.0) for _ in range(blots)]
+    assert judge_cells(Sheet(rows={}), candidate, cells).verdict is expected
+
+
+@pytest.mark.parametrize(
+    ("predicted", "margin", "is_lost", "expected"),
+    [
+        (".", DIFFERS + 3, True, Verdict.IDENTICAL_AS_READ),
+        (".", DIFFERS + 3, False, Verdict.INCOMPLETE),
+        ("-", DIFFERS - 1, True, Verdict.IDENTICAL_AS_READ),
+        ("-", DIFFERS + 3, True, Verdict.INCOMPLETE),
+    ],
+)
+def test_a_mark_that_is_gone_settles_a_page_only_where_ink_comes_and_goes(
+    monkeypatch, predicted: str, margin: float, is_lost: bool, expected: Verdict
+) -> None:
+    monkeypatch.setattr(Sheet, "whole", True)
+    candidate = Candidate({}, SimpleNamespace(fields={}, ending=None), 0.0)  # type: ignore[arg-type]
+    mark = dataclasses.replace(
+        cell("TB", distance=margin, other_distance=0.0),
+        predicted=predicted,
+        other=" ",
+        lost=is_lost,
+    )
+    assert judge_cells(Sheet(rows={}), candidate, [mark]).verdict is expected
 
 
 @pytest.mark.parametrize("beyond", [-1.0, 1.0])
@@ -1015,16 +1086,17 @@ def test_a_page_read_otherwise_in_more_places_than_differ_accuses_nobody(
 ) -> None:
     """What the first reading contradicts of the scene, less what the cells that differ explain."""
     monkeypatch.setattr(Sheet, "whole", True)
-    cost = MAX_CELL_COST + MAX_MISREAD_COST + beyond
+    cost = MAX_CELL_COST * (1 + MAX_MISREAD) + beyond
     candidate = Candidate({}, SimpleNamespace(fields={}, ending=None), cost)  # type: ignore[arg-type]
-    differs = cell("TB", distance=100.0, other_distance=FOREIGN - 1)
+    differs = cell("TB", distance=100.0, other_distance=1.0)
     expected = Verdict.INCOMPLETE if beyond > 0 else Verdict.DIFFERS
     assert judge_cells(Sheet(rows={}), candidate, [differs]).verdict is expected
 
 
-def test_another_letter_is_near_to_that_letters_mean() -> None:
-    assert state(cell("", distance=100.0, other_distance=KIND - 1)) == "differs"
-    assert state(cell("", distance=100.0, other_distance=KIND + 1)) == "doubtful"
+@pytest.mark.parametrize(("count", "expected"), [(3, "differs"), (2, "doubtful")])
+def test_another_letter_is_one_that_the_page_has_elsewhere(count: int, expected: str) -> None:
+    letter = cell("", distance=100.0, other_distance=1.0)
+    assert state(dataclasses.replace(letter, other_count=count)) == expected
 
 
 @pytest.mark.long

@@ -146,7 +146,7 @@ def _verification(
     result.findings += [
         f"page {page.number}, {_where(cell.place, leaf.grid)}: "
         f"{cell.name or 'a label'} shows {character_name(cell.other)} where the program prints "
-        f"{character_name(cell.predicted)} (margin {cell.margin:+.2f}, "
+        f"{character_name(cell.predicted)} (margin {cell.margin:+.1f}, "
         f"{cell.count} and {cell.other_count} cells of each on the page)"
         for cell in leaf.judged.differing
     ]

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from PIL import Image as Pillow
 
-from .holding import DIFFERS, HOLDS, Cell, state
+from .holding import DIFFERS, FOREIGN, HOLDS, Cell, state
 from .ink import Floats, Image
 from .sheets import Leaf
 from .typeface import BLANK, sample_of, typeface_of
@@ -38,7 +38,7 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
     dict
         ``page``, ``width`` and ``height`` of the picture; ``cells`` and ``marks``, each with its
         corners on it; ``strips``, the cells in doubt, and the number of ``more``; ``bars``, the
-        histogram of the margins in 60 steps from -1.5 to 1.5.
+        histogram of the margins in 60 steps from -``reach`` to ``reach``.
     """
     upright = np.rot90(grey, leaf.grid.turns)
     height, width = upright.shape
@@ -47,7 +47,9 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
     kinds = [(cell, state(cell), leaf.grid.around(*cell.place)) for cell in leaf.cells]
     questioned = [box for box in kinds if box[1] != "holds"]
     margins = [cell.margin for cell in leaf.cells if cell.name and cell.predicted != BLANK]
-    counts, _ = np.histogram(np.clip(margins, -1.5, 1.499), bins=60, range=(-1.5, 1.5))
+    reach = 1.5 * FOREIGN
+    clipped = np.clip(margins, -reach, 0.999 * reach)
+    counts, _ = np.histogram(clipped, bins=60, range=(-reach, reach))
     return {
         "page": _uri(upright, size),
         "width": size[0],
@@ -77,6 +79,7 @@ def exhibit(grey: Image, leaves: Sequence[Leaf], leaf: Leaf) -> dict[str, Any]:
         "bars": (counts / max(counts.max(initial=1), 1)).tolist(),
         "margins": len(margins),
         "limits": (HOLDS, DIFFERS),
+        "reach": reach,
     }
 
 
@@ -123,7 +126,7 @@ def _strips(
                 "place": f"{cell.name or 'label'}, line {leaf.grid.number(line)}, cell {at + 1}",
                 "paper": _uri(crop) if crop.size else "",
                 "glyphs": [glyph(cell.predicted, cell.count), glyph(cell.other, cell.other_count)],
-                "margin": f"{cell.margin:+.2f}",
+                "margin": f"{cell.margin:+.1f}",
                 "state": kind,
             }
         )

@@ -16,7 +16,7 @@ from scipy import ndimage
 
 from .claims import Claim
 from .grid import CELL_WIDTH, Grid
-from .holding import DIFFERS, FIT, INKED, Added, Cell
+from .holding import FIT, INKED, Added, Cell
 from .ink import Floats, Image, Mask, Spot, hole_columns, resize
 from .layout import Place
 from .typeface import BLANK, Typeface, distances, sample_of, typeface_of
@@ -27,6 +27,7 @@ _SPILL = 3  # pixels by which a glyph may reach over the edge of its cell
 _SPECK = 0.12  # fraction of a cell's area below which ink is speckle, unless in a cell of a line
 _NEAR = 10  # pixels between parts of one mark
 _MIN_TYPED = 3  # characters of a line of type
+_MIN_LEAD = 0.3  # of a certain character over the next, relative to their distance
 _MIN_ALIKE = 0.5  # fraction of a typed line's cells that are like a character of the page
 _LONG = 0.4  # fraction of the sheet's side from which a thin mark is a straight line
 _TYPED_CELLS = (Added.CHARACTER, Added.BESIDE)
@@ -237,11 +238,11 @@ def _type_at(part: Explained, typeface: Typeface, line: int, cells: Sequence[int
     norms = sample.norms.min(axis=1)
     gain = norms - least
     is_alike = (gain > INKED * energy[nearest]) & (gain > FIT * norms)
-    # as certain as of a cell that differs: no other character is nearly as near
+    # certain where no other character is nearly as near
     to_means[rows, nearest] = np.inf
     second = to_means.argmin(axis=1)
     step = np.maximum(typeface.between()[nearest, second], 1e-6)
-    is_certain = is_alike & (to_means[rows, second] - least > DIFFERS * step)
+    is_certain = is_alike & (to_means[rows, second] - least > _MIN_LEAD * step)
     is_certain &= typeface.counts[nearest] > 1
     text = sure = ""
     names = [typeface.characters[at] for at in nearest.tolist()]
