@@ -2,7 +2,7 @@
 
 import os
 
-__version__ = "0.3.0.dev0"
+__version__ = "0.3.0"
 
 COMMIT_FILE = "commit.txt"
 """The file next to this module with the commit of a distribution built from a checkout."""
