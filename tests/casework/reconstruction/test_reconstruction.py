@@ -563,7 +563,8 @@ class TestCommand:
             "--write-scene",
             scene,
         )
-        assert status == 0
+        assert status == 1
+        assert out.startswith("NO IMPACT")
         assert f"scene written to {scene}" in err
         assert "adjustment of observations with conditions" in " ".join(out.split())
         assert "1 value more than needed" in out

@@ -319,7 +319,7 @@ def test_a_car_that_fits_best_standing_has_no_speed_of_rounding(tmp_path: Path) 
     first, text = first_page(page), plain(page)
     assert not re.search(r"\de-\d\d", text.partition("Method")[0])
     assert re.search(r"\d to \d\.\d+ mph initial speed of B 90 % of the draws; [\d.]+ fits", first)
-    assert re.search(r"B: speed before [\d.]+ to [\d.]+ mph", first)
+    assert re.search(r"POSSIBLE impacts that physics allows.* SB [\d.]+ to [\d.]+ mph", first)
     assert "IMPOSSIBLE" in first
     assert "settle nothing" in first
     page = written(tmp_path, {**REAR_END, "VX": "0", "VY": "0"})

@@ -61,19 +61,15 @@ def first_lines(answer: Answer, units: System = RULES) -> list[tuple[str, str]]:
         for vehicle in vehicles:
             lines.append(("AFTER IMPACT", _motion(answer, vehicle, "F", values, units)))
     for vehicle in vehicles:
-        text = _size(answer, vehicle, f"DV{vehicle}", values, units)
         origin = values.get(f"PDOF{vehicle}", math.nan)
-        if not math.isnan(origin) and f"DV{vehicle}" in values:
-            text += f", force from {clock(origin)} ({number(round(origin), 3)} deg)"
-        lines.append(("DELTA-V", text))
+        force = ""
+        if not math.isnan(origin):
+            force = f", force from {clock(origin)} ({number(round(origin), 3)} deg)"
+        lines.append(("DELTA-V", _size(answer, vehicle, f"DV{vehicle}", values, units, force)))
     if any(f"{kind}{v}" in answer.ranges for kind in ("S", "DV") for v in vehicles):
-        lines.append(
-            (
-                "INTERVALS",
-                "90 %: middle of the draws; worst cases: lowest and highest within all limits given"
-                f" (normal values: {SIGMAS:g} sd)",
-            )
-        )
+        cut = any(item.kind == "normal" for item in answer.known.values())
+        text = "90 %: middle of the draws; worst cases: lowest and highest within all limits given"
+        lines.append(("INTERVALS", text + f" (normal values: {SIGMAS:g} sd)" * cut))
     for vehicle in vehicles:
         drivers = answer.drivers.get(f"S{vehicle}", ())[:DRIVERS]
         causes = [f"{n} {100 * part:.0f} %" for n, part in drivers if part >= _MIN_FRACTION]
