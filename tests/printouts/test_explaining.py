@@ -5,6 +5,7 @@ from __future__ import annotations
 from decimal import Decimal
 from typing import Any
 
+import numpy as np
 import pytest
 
 import printouts
@@ -17,6 +18,7 @@ from impact88.printouts.reading.printout import FIELDS, read_printouts
 from impact88.printouts.recovery import replays
 from impact88.printouts.recovery.recovered import recover
 from impact88.printouts.recovery.rereading import Rereading
+from impact88.printouts.recovery.search import Expected
 from impact88.printouts.recovery.slips import BITS, Change, slip
 from impact88.printouts.recovery.typedtext import opposite
 from impact88.printouts.reporting.examination import Verdict, verify
@@ -288,3 +290,10 @@ def test_an_input_typed_with_more_digits_than_are_printed_is_named(typed: str) -
     assert "MU= -10 " in page
     cause = first(page)
     assert (cause.kind, cause.field, cause.remaining) == (MORE_DIGITS, "MUP", 0)
+
+
+@pytest.mark.parametrize(("text", "number"), [("5.123", 5.123), ("-5.123", -5.123), (".5", 0.5)])
+def test_a_printed_result_is_any_number_that_is_floored_to_it(text: str, number: float) -> None:
+    expected = Expected("VAX", {text: 0.2}, 3.0)
+    values = number + np.array([-0.0005, 0.0, 0.0005, 0.00099, 0.0015])
+    assert expected.mismatch(values).tolist() == [3.0, 0.2, 0.2, 0.2, 3.0]

@@ -218,3 +218,10 @@ def test_a_change_is_said_in_a_sentence() -> None:
         "the sign is wrong",
         "the condition MU >= -10 stands for MU == -10",
     ]
+
+
+def test_a_result_that_a_table_lacks_contradicts_no_program() -> None:
+    theirs = {"VAX": np.array([np.nan, 2.0, 2.0]), "VAY": np.array([1.0, np.nan, 1.0])}
+    judge = Judge({}, theirs, dict.fromkeys(theirs, np.full(3, 1e-9)), np.zeros(3, bool))
+    found = judge.matches({"VAX": np.array([5.0, 2.0, 5.0]), "VAY": np.array([1.0, 5.0, 1.0])})
+    assert found.tolist() == [True, True, False]
