@@ -10,6 +10,10 @@ the price of `FOREIGN`, and is left unexplained. The margin of a cell is the log
 likelihood of the nearest other character over that of the predicted one,
 
     min(distance from the predicted, FOREIGN) - distance from the other.
+
+`judging.judgement` judges texts, whose characters were named by a reader before; here a cell has a
+likelihood under every character, and none is named but by the page that is tested. Both give a
+`Verdict`, and numbers are told by the same `FieldCheck`.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -254,6 +258,9 @@ class _Distances(NamedTuple):
     def nearest_in_blank(self, cell: int) -> tuple[int, float, float]:
         """Return the character that explains most of the ink in a blank cell.
 
+        Its fraction counts, not its likelihood: without ink, a small mark is hardly less likely
+        than blank paper.
+
         Returns
         -------
         other : int
@@ -262,11 +269,6 @@ class _Distances(NamedTuple):
             Energy that it explains, relative to its own.
         fit : float
             Energy that it explains, as a fraction of the cell's.
-
-        Notes
-        -----
-        Small marks are near each other and near blank paper, so that margins by separation, as
-        `nearest_other` has them, would always favour them.
         """
         other = int(np.argmin(self.to_all[cell, :-1]))
         gain = float(self.to_own[cell] - self.to_all[cell, other])

@@ -259,7 +259,7 @@ def _ordered_leaves(
                 leaf for leaf in leaves if min(map(on_grid.grid.number, leaf.lines)) <= number
             ]
             leaf = (owners or leaves[:1])[-1]
-            if not leaf.judged.legible:
+            if is_exchange and not leaf.judged.legible:
                 continue  # its rows were named by other things than their letters
             (leaf.exchanged if is_exchange else leaf.hurt).append(sentence)
             if leaf.judged.verdict in _IDENTICAL:
