@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from impactsampler import Known, Problem, exact, problem, quantiles
+from impactsampler import Known, Problem, exact, impact, possible, problem, quantiles
 
 from impact88.casework.reconstruction.adjustment import reconstruct
 from impact88.casework.reconstruction.answer import Answer
@@ -134,8 +134,8 @@ def test_impacts_beside_a_pole_do_not_end_the_draws():
 @pytest.mark.long
 def test_draws_pass_the_pole_of_em():
     """Spins known after the impact and EM not: its denominator may have either sign, and over
-    impulses the density has a pole between. Without coefficients as coordinates, medians are off by
-    .15 to .3 standard deviations, in every one of four seeds."""
+    impulses the density has a pole between. Over these alone, medians are off by .15 to .3
+    standard deviations, in every one of four seeds."""
     given = problem("spins", 101)
     (first, *_) = reconstruct({n: read(v.text(), n) for n, v in given.known.items()} | {"M": 6.0})
     names = ("UX", "VX", "DVA", "LOSS")
@@ -147,6 +147,28 @@ def test_draws_pass_the_pole_of_em():
         deviation = np.average(np.square(own[name] - mean), weights=weights) ** 0.5
         (median,) = quantiles(own[name], weights, (0.5,))
         assert abs(np.median(drawn.values[name]) - median) < 0.09 * deviation
+
+
+@pytest.mark.long
+def test_draws_reach_low_closing_speeds():
+    """Velocities before are known broadly and nothing else: impacts drawn from that and kept where
+    possible are the judge. Over velocities and impulses alone draws are short of low closing
+    speeds, whose impulses are as small."""
+    known = {n: exact(v) for n, v in {"DA": 5.0, "DB": 4.0, "MA": 100.0, "MB": 90.0}.items()}
+    known |= {n: exact(v) for n, v in {"IA": 2300.0, "IB": 2000.0, "TA": 0.0, "PA": 170.0}.items()}
+    known |= {n: exact(v) for n, v in {"TB": 90.0, "PB": -95.0, "GA": 185.0}.items()}
+    known |= {"WA": exact(0.0), "WB": exact(0.0), "UX": Known("normal", 0.0, 40.0)}
+    known |= {"UY": Known("normal", 0.0, 4.0), "VX": Known("normal", 10.0, 8.0)}
+    known |= {"VY": Known("normal", 25.0, 8.0)}
+    rng, count = np.random.default_rng(2), 200_000
+    scene = {n: v.drawn(rng, count) if v.kind == "normal" else v.first for n, v in known.items()}
+    scene |= {"E": rng.uniform(0, 1, count), "EM": rng.uniform(-1, 0, count)}
+    own = impact(scene, rng.uniform(-10, 10, count))
+    judge = own["VC"][possible(own, ())]
+    (first, *_) = reconstruct({n: read(v.text(), n) for n, v in known.items()} | {"M": 6.0})
+    drawn = draws(first, ["VC"], 4000).values["VC"]
+    for fraction in (0.05, 0.1, 0.25, 0.5, 0.75, 0.95):
+        assert (drawn < np.quantile(judge, fraction)).mean() == pytest.approx(fraction, abs=0.06)
 
 
 def known_value(value):

@@ -70,24 +70,17 @@ class Admissible:
 
     def row(self, state: State, name: str) -> Any:
         """Return one condition of impacts: it holds from 0 to 1."""
-        if name == APPROACH:
-            return _positive(-state.relative_before[0], self.speed)
-        if name == PUSH:
-            return _positive(state.values["PN"], self.mass * self.speed)
-        if name == ENERGY:
-            return _positive(state.energy_lost, self.mass * self.speed**2)
         if name == NORMAL:
             return np.where(broken_laws(state) == 0, 0.5, -1.0)
-        if name in RANGES:
-            low, high = RANGES[name]
-            return (state[name] - low) / (high - low)
-        low, high = friction_limits(state)
-        return (state["MUP"] - low) / (high - low)
+        above_low, below_high = self.ends(state, name)
+        if name in LAWS:
+            return above_low / (1 + np.where(np.real(above_low) < 0, -above_low, above_low))
+        return above_low / (above_low + below_high)
 
     def ends(self, state: State, name: str) -> tuple[Any, Any]:
         """Return how far impacts lie within the lower and the upper end of a condition, beyond
-        where negative: the same as `row`, without its quotients, as velocities and impulses in
-        typical ones. A law has no upper end."""
+        where negative, as velocities and impulses in typical ones: without quotients, so that they
+        are smooth where a denominator vanishes. A law has no upper end."""
         if name in LAWS:
             values = {
                 APPROACH: -state.relative_before[0] / self.speed,
@@ -113,11 +106,6 @@ class Admissible:
                 f"{MORE:g} more on either side, and within {LARGEST_FRICTION:g}"
             )
         return f"{', '.join(parts[:-1])} and {parts[-1]}" if parts[1:] else parts[0]
-
-
-def _positive(value: Any, size: Any) -> Any:
-    """Return a number from 0 to 1 where a value is positive, smooth at 0."""
-    return value / (size + np.where(np.real(value) < 0, -value, value))
 
 
 def friction_limits(state: State, strict: bool = False) -> tuple[Any, Any]:

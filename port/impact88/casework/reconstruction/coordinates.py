@@ -5,10 +5,11 @@ An impact is its velocities before and its impulse, the unknowns. For given vehi
 linear in these; what they leave open has an orthonormal basis, and the coordinates are the
 components along it, so that every point is one impact. Vehicles that vary are coordinates, too.
 
-EM, where it is not exact, is a coordinate of its own, in place of a direction of impulses: over
-velocities and impulses it is a quotient whose denominator may have either sign, and its density has
-a pole between the two. E and P_t/P_n have none but at a closing speed of 0: as coordinates they
-bend the density so far that draws miss its tails.
+Coefficients that are not exact are quotients of these, and the density has a pole where a
+denominator vanishes: E's and P_t/P_n's at a closing speed of 0, EM's between its two signs. Other
+coordinates of the same impacts have the coefficients themselves, in place of directions of
+impulses; there the poles are gone, but velocities known after the impact bend the density. Draws
+move over both.
 
 One exact value may be quadratic: a speed, a change of velocity or an energy. It is solved for the
 last component. Any further value that is not linear is left to the density (`narrow`).
@@ -27,7 +28,7 @@ from ...collision.geometry import GEOMETRY, Geometry
 from ...mechanics.posed import absent_results
 from ...mechanics.state import COURSES, CRUSH, DIRECTIONS, ENERGIES, SPEEDS, State
 from ...names import COEFFICIENTS, IMPULSES, PIVOT, VELOCITIES
-from .admissible import RANGES
+from .admissible import LARGEST_FRICTION, RANGES
 from .solution import Reconstruction
 from .system import COMPLEX_STEP, System
 from .unknowns import TIE
@@ -68,12 +69,12 @@ class Coordinates:
     ``unknown``: names of the unknowns; ``exact_laws``: coefficients known exactly, ``linear``:
     other linear exact values, ``quadratic``: the quadratic one or None, ``narrow``: exact values
     that are left to the density; ``inputs``: vehicles and energies of one vehicle that vary.
-    ``coefficients``: those that are the first coordinates, and ``directions`` (rows) of unknowns
-    they stand for; none unless ``with_coefficients``. ``usable``: False where the conditions have
-    no solution. ``free``: number of components, with the coefficients; ``size``: of coordinates.
-    ``centers`` and ``branches``: all impacts found."""
+    ``coefficients``: those that are the first coordinates, of those asked for, and ``directions``
+    (rows) of unknowns they stand for; none where impulses do not decide them. ``usable``: False
+    where the conditions have no solution. ``free``: number of components, with the coefficients;
+    ``size``: of coordinates. ``centers`` and ``branches``: all impacts found."""
 
-    def __init__(self, solution: Reconstruction, with_coefficients: bool = True) -> None:
+    def __init__(self, solution: Reconstruction, coefficients: Sequence[str] = ()) -> None:
         self.system = system = solution.system
         self.known = known = system.known
         self.unknown = [n for n in system.variables if n in (*VELOCITIES, *IMPULSES)]
@@ -112,14 +113,16 @@ class Coordinates:
         if is_share and not known["MUP"].varies:
             self.narrow.append("MUP")
         self.linear = [n for n in exact if n not in curved]
+        # one that is left to the density is a condition, not a direction to move along
+        self.open_laws = [n for n in self.laws if n not in (*self.exact_laws, *self.narrow)]
         self.implied: list[str] = []
         self.coefficients: list[str] = []
         self.directions = np.empty((0, len(self.unknown)))
         self.pinned = np.empty((0, len(self.unknown)))
         self.pins = np.empty(0)
-        self._find_basis(solution, with_coefficients)
+        self._find_basis(solution, [n for n in coefficients if n in self.open_laws])
 
-    def _find_basis(self, solution: Reconstruction, with_coefficients: bool) -> None:
+    def _find_basis(self, solution: Reconstruction, coefficients: list[str]) -> None:
         """Find the basis, and the coordinates of all impacts found."""
         impacts: Sequence[tuple[System, Floats]] = solution.beside or ((self.system, solution.x),)
         unknowns, inputs, signs = [], [], []
@@ -136,8 +139,8 @@ class Coordinates:
         rank = int((s > RANK_TOL * s.max(initial=0.0)).sum())
         self.usable = rank == len(rows)
         self.basis = unique_basis(vt[rank:])
-        if with_coefficients:
-            self._take_coefficients_out(unknowns[0], inputs[0])
+        if coefficients:
+            self._take_coefficients_out(coefficients, unknowns[0], inputs[0])
         if self.quadratic is not None and len(self.basis):
             self._turn_last_component_along_slope(unknowns[0], inputs[0])
         self.free = len(self.basis) - (self.quadratic is not None) + len(self.coefficients)
@@ -146,24 +149,16 @@ class Coordinates:
         self.centers: list[Floats] = []
         self.branches: list[int] = []
         for y, own_inputs, sign in zip(unknowns, inputs, signs, strict=True):
-            z = self.basis @ y
-            z = np.concatenate([self._coefficients_of(y, own_inputs), z])
-            self.centers.append(np.concatenate([z[: self.free], own_inputs]))
-            self.branches.append(sign)
-            if self.quadratic is not None and self.usable:
-                roots = sign | np.array([0, OTHER_ROOT])
-                points = np.tile(self.centers[-1][:, None], 2)
-                last = np.real(self._last_component(*self._split(points), roots)[0])
-                nearest = np.nan_to_num(np.abs(last - z[-1]), nan=np.inf).argmin()
-                self.branches[-1] = int(roots[nearest])
+            points, branches = self._points(y[:, None], own_inputs[:, None], np.array([sign]))
+            self.centers.append(points[:, 0])
+            self.branches.append(int(branches[0]))
 
-    def _take_coefficients_out(self, y: Floats, inputs: Floats) -> None:
-        """Make the directions in which impulses change the laws most ``directions``, and the basis
-        that of the others."""
-        if "EM" not in self.laws or "EM" in self.exact_laws:
-            return
-        self.coefficients = ["EM"]
-        count, values = len(self.coefficients), self._coefficients_of(y, inputs)
+    def _take_coefficients_out(self, names: list[str], y: Floats, inputs: Floats) -> None:
+        """Make the directions in which impulses change these laws most ``directions``, and the
+        basis that of the others."""
+        self.coefficients, count = names, len(names)
+        values = self._coefficients_of(y[:, None], inputs[:, None])[:, 0]
+        values = np.array([_within_range(*item) for item in zip(names, values, strict=True)])
         above, below = self._quotients(inputs[:, None])
         rows = (above - values[:, None, None] * below)[:, :-1, 0]
         is_impulse = np.array([n in IMPULSES for n in self.unknown])
@@ -175,14 +170,34 @@ class Coordinates:
         self.coefficients = []
 
     def _coefficients_of(self, y: Floats, inputs: Floats) -> Floats:
-        """Return the coefficients of an impact, the nearest within their ranges where they are not
-        known."""
-        state, values = self._state(y[:, None], inputs[:, None]), []
+        """Return the coefficients (rows) of impacts."""
+        state, rows = self._state(y, inputs), []
         for name in self.coefficients:
-            above, below = map(_number, state.quotient(name))
-            value = above / (below or 1e-300)
-            values.append(value if name in self.known else float(np.clip(value, *RANGES[name])))
-        return np.array(values)
+            above, below = state.quotient(name)
+            rows.append(above / np.where(below == 0, 1e-300, below))
+        return np.array(rows).reshape(len(rows), y.shape[1])
+
+    def _points(self, y: Floats, inputs: Floats, signs: Branches) -> tuple[Floats, Branches]:
+        """Return the points and branches of impacts with these scaled unknowns."""
+        z = np.concatenate([self._coefficients_of(y, inputs), self.basis @ y])
+        points = np.concatenate([z[: self.free], inputs])
+        if self.quadratic is None or not self.usable:
+            return points, signs
+        roots = np.array([0, OTHER_ROOT])
+        last = np.array(
+            [np.real(self._last_component(z[: self.free], inputs, signs | r)[0]) for r in roots]
+        )
+        nearest = np.nan_to_num(np.abs(last - z[-1]), nan=np.inf).argmin(axis=0)
+        return points, signs | roots[nearest]
+
+    def points_of(self, state: State, branches: Branches) -> tuple[Floats, Branches]:
+        """Return the points and branches of impacts with friction's sign as on ``branches``."""
+        y, inputs = (
+            np.array([np.broadcast_to(state.values[n], len(branches)) for n in names])
+            for names in (self.unknown, self.inputs)
+        )
+        inputs = inputs.reshape(len(self.inputs), len(branches))
+        return self._points(y / self.scales[:, None], inputs, branches & OTHER_SIGN)
 
     def _quotients(self, inputs: Array) -> tuple[Array, Array]:
         """Return numerators and denominators of the coefficients as linear functions of the scaled
@@ -289,11 +304,15 @@ class Coordinates:
             return self._along_basis(z, inputs, branches)
         values, rest = z[:count], z[count:]
         start, volume = self._along_basis(np.vstack([0 * values, rest]), inputs, branches)
+        # for given vehicles and friction one unknowns' step along each direction serves all points
+        one = slice(None) if self.varied or self.has_sign_branches else slice(1)
         aheads = [
-            self._along_basis(np.vstack([0 * values + unit[:, None], rest]), inputs, branches)[0]
+            self._along_basis(
+                np.vstack([0 * values + unit[:, None], rest])[:, one], inputs[:, one], branches[one]
+            )[0]
             for unit in np.eye(count)
         ]
-        steps = np.array([ahead - start for ahead in aheads])
+        steps = np.array([ahead - start[:, one] for ahead in aheads])
         # the laws are linear in the unknowns
         above, below = self._quotients(inputs if self.varied else inputs[:, :1])
         at_start = [np.einsum("ckn,kn->cn", p[:, :-1], start) + p[:, -1] for p in (above, below)]
@@ -462,6 +481,11 @@ class Coordinates:
 def known_friction(system: System) -> float:
     """Return the nominal P_t/P_n of a reading, 1 where friction is not known."""
     return float(system.nominal.get("MUP", 1.0))
+
+
+def _within_range(name: str, value: float) -> float:
+    ends = RANGES.get(name, (-LARGEST_FRICTION, LARGEST_FRICTION))
+    return float(np.clip(value, *ends))
 
 
 def _number(value: Any) -> float:

@@ -23,7 +23,7 @@ from ...collision.uncertain import Uncertain
 from ...mechanics.state import BARRIER_SPEEDS, CRUSH, DIRECTIONS, SPEEDS, State
 from ...names import COEFFICIENTS, VELOCITIES
 from .admissible import FRICTION, LAWS, Admissible, friction_limits
-from .coordinates import OTHER_ROOT, OTHER_SIGN, Branches, Coordinates
+from .coordinates import OTHER_ROOT, Branches, Coordinates
 from .sampler import Proposal, Sample, sample
 from .solution import NULL_TOL, SIGMAS, Reconstruction
 from .system import COMPLEX_STEP
@@ -31,6 +31,7 @@ from .system import COMPLEX_STEP
 Floats = NDArray[np.float64]
 Array = NDArray[Any]
 Flags = NDArray[np.bool_]
+Turned = tuple[Floats, Branches, Floats]
 Progress = Callable[[int], object]
 
 CHUNK = 1 << 13  # impacts at a time, bounds the memory
@@ -41,7 +42,6 @@ PROPOSAL_WIDTH = 3.0  # relative to first-order standard deviations
 # Width of the broad proposals, which find other branches, in largest known speeds
 BROAD_WIDTH = 1.5
 BROAD_FRACTION = 0.4  # of all proposals
-JUMP_PROBABILITY = 0.1  # of a move to another branch
 
 # Limits
 # Largest velocity before the impact, in largest known speeds. Draws that reach it are said.
@@ -73,20 +73,22 @@ class Posterior:
         self.progress = progress
         self.system, self.known = solution.system, solution.system.known
         self.nominal = solution.values
-        self.coordinates = here = Coordinates(solution, with_coefficients=False)
+        self.coordinates = here = Coordinates(solution)
         self.admissible = Admissible(self.system)
         varying = [n for n in self.known if self.known[n].varies and n not in CRUSH]
         names = [n for n in varying if n in (*here.inputs, *self.system.observations)]
         names += [n for n in here.crush if n in here.inputs or n == here.crush[0]]
         names += [n for n in here.narrow if n not in names]
         self.items = {n: self._with_limits(n) for n in names}
+        self.other: Coordinates | None = None
         self.is_usable, self.whole = here.usable and here.size > 0, True
         if self.is_usable and not self._is_determined():
             self.whole = False
             self._pin_what_is_open(solution)
             self.is_usable = here.size > 0
         elif self.is_usable:
-            self.coordinates = Coordinates(solution)
+            other = Coordinates(solution, here.open_laws)
+            self.other = other if other.coefficients else None
 
     def _with_limits(self, name: str) -> Uncertain:
         """Return a known value with both limits, unbounded ones at `SIGMAS` standard deviations."""
@@ -270,17 +272,16 @@ class Posterior:
         is_finite = np.isfinite(density) & np.isfinite(excess)
         return np.where(is_finite, density, -np.inf), np.where(is_finite, excess, np.inf)
 
-    def neighbours(self, branches: Branches, rng: np.random.Generator) -> Branches:
-        """Return branches to try (`sampler.Density`)."""
-        here = self.coordinates
-        for bit, exists in (
-            (OTHER_SIGN, here.has_sign_branches),
-            (OTHER_ROOT, here.quadratic is not None),
-        ):
-            if exists:
-                jumps = rng.random(len(branches)) < JUMP_PROBABILITY
-                branches = np.where(jumps, branches ^ bit, branches)
-        return branches
+    def turned(self, points: Floats, branches: Branches, back: bool = False) -> Turned:
+        """Return points over the other coordinates, or ``back`` from these (`sampler.Density`)."""
+        here, there = self.coordinates, self.other
+        assert there is not None
+        if back:
+            here, there = there, here
+        state, volume, _ = here.impacts(points, branches)
+        turned, own_branches = there.points_of(state, branches)
+        _, own_volume, _ = there.impacts(turned, own_branches)
+        return turned, own_branches, np.broadcast_to(volume - own_volume, len(branches))
 
     def proposals(self) -> list[Proposal]:
         """Return Student's t about every impact found, and broad ones (`sampler.Density`)."""
@@ -290,8 +291,6 @@ class Posterior:
         deviations = np.array([self.known[n].standard_deviation for n in here.inputs])
         broad_root = np.diag(np.concatenate([np.full(here.free, BROAD_WIDTH), deviations]))
         at_rest = np.concatenate([np.zeros(here.free), here.centers[0][here.free :]])
-        count = len(here.coefficients)
-        at_rest[:count] = here.centers[0][:count]
         broad_modes = [*modes, *((at_rest, branch) for branch in {branch for _, branch in modes})]
         if here.quadratic is not None:
             broad_modes += [(center, branch ^ OTHER_ROOT) for center, branch in broad_modes]

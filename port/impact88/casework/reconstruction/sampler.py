@@ -1,8 +1,9 @@
 """Draws from a density with limits, over several branches: sequential Monte Carlo.
 
 From wide proposals about every impact found, through ever harder limits, to the density itself (Del
-Moral, Doucet and Jasra, *Sequential Monte Carlo Samplers*, 2006). Particles move by differential
-evolution Markov chains (ter Braak, 2006) in two halves.
+Moral, Doucet and Jasra, *Sequential Monte Carlo Samplers*, 2006). Particles move by proposals
+independent of where they are, fitted to all particles, over two kinds of coordinates in turns: what
+is a pole or a thin tip over the one is smooth over the other.
 
 How much the draws tell is counted by families, the descendants of one proposal: the variance of a
 mean is that of the sums over families (Chan and Lai, *Annals of Statistics* 41, 2013). Where moves
@@ -10,7 +11,7 @@ forget the ancestor, that is the number of draws; where one branch or a far corn
 ancestors, it is about their number."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -22,7 +23,10 @@ Floats = NDArray[np.float64]
 Branches = NDArray[np.int64]
 
 PROPOSAL_FACTOR = 12  # proposals per particle, so that thin parts of the distribution are found
-MOVES_PER_STAGE = 4  # moves of every particle after each hardening of the limits
+# After each hardening of the limits particles move until so many moves of each were accepted, on
+# average. With fewer, what resampling lost does not come back: low closing speeds are missed
+ACCEPTED_MOVES = 4.0
+MAX_MOVES = 24
 MOVES_ALIKE = 4  # moves before proposals are fitted anew
 ENOUGH = 1000  # effective draws of every coordinate; with fewer, moves go on
 MAX_BURN_INS = 6
@@ -30,9 +34,6 @@ THINNING = 2  # moves between one set of draws and the next
 MAX_STAGES = 80  # hardenings of the limits; if these do not suffice, no impact lies within limits
 MIN_EFFECTIVE = 0.5  # fraction of particles that stay effective from stage to stage
 MAX_HARDNESS = 40.0  # logarithm of the hardness where limits count as hard
-# Probability of a step by the full difference of two particles, which leads to another branch
-JUMP_PROBABILITY = 0.1
-_GRID = 1e-7  # grid of coordinates, relative to the spread of the proposals
 _CHUNK = 1 << 13  # points at a time, bounds the memory
 DEGREES_OF_FREEDOM = 4.0  # of the proposals, Student's t
 # Independent proposals: Student's t about clusters of the particles, and a broad one about all
@@ -42,6 +43,7 @@ WIDENING = 1.3  # of a cluster's covariance
 SHARE_OF_ALL = 0.02  # of the covariance of all, added to a cluster's
 BROAD = 0.1  # fraction of the broad proposals
 BROADER = 3.0  # widening of their covariance
+FIRST = 0.05  # weight of the first proposals, which reach every branch
 FLOOR = 1e-6  # least variance, relative to that of each coordinate
 
 
@@ -66,8 +68,15 @@ class Density(Protocol):
     def proposals(self) -> Sequence[Proposal]:
         """Return the distribution to begin with."""
 
-    def neighbours(self, branches: Branches, rng: np.random.Generator) -> Branches:
-        """Return branches to try from each branch."""
+    @property
+    def other(self) -> object:
+        """Other coordinates of the same points, None where there are none."""
+
+    def turned(
+        self, points: Floats, branches: Branches, back: bool = False
+    ) -> tuple[Floats, Branches, Floats]:
+        """Return points over the other coordinates, or ``back`` from these, their branches and the
+        log volume of these coordinates that a unit of the first is."""
 
 
 @dataclass(frozen=True)
@@ -132,14 +141,12 @@ def sample(density: Density, count: int, rng: np.random.Generator) -> Sample | N
 
 
 class _Sampler:
-    """``mixture``: what independent moves propose; ``partners``: points along whose differences
-    others move. Both are taken from all particles and then stay for some moves."""
+    """``mixtures``: what moves propose in turns."""
 
     def __init__(self, density: Density, rng: np.random.Generator) -> None:
         self.density, self.rng = density, rng
         self.first = _Mixture(density.proposals())
-        self.mixture, self.partners = self.first, np.empty((0, 0))
-        self.grid = _GRID * np.linalg.norm(self.first.parts[0].root, axis=1)[:, None]
+        self.mixtures: list[_Mixture | _Turned] = [self.first]
         self.families = 0
 
     def run(self, count: int) -> Sample | None:
@@ -156,12 +163,13 @@ class _Sampler:
             weights = particles.log_density(next_hardness) - particles.log_density(hardness)
             particles = particles.chosen(_resample(np.exp(_shifted(weights)), number, self.rng))
             hardness = next_hardness
-            self._move(particles, hardness, MOVES_PER_STAGE)
+            self._move_on(particles, hardness)
             if hardness == np.inf:
                 break
         else:
             return None
         for _ in range(MAX_BURN_INS):
+            self._adapt(particles)
             self._move(particles, np.inf, granted().burn_in_moves)
             drawn = self._collect(particles, count)
             if min(map(drawn.effective_size, drawn.points)) >= min(ENOUGH, 0.25 * count):
@@ -174,7 +182,7 @@ class _Sampler:
         self._adapt(particles)
         for first in range(0, count, number):
             if first:
-                self._move(particles, np.inf, THINNING, adapts=False)
+                self._move(particles, np.inf, THINNING)
             order = self.rng.permutation(number)[: count - first]
             parts.append(particles.chosen(order))
         return Sample(
@@ -204,7 +212,6 @@ class _Sampler:
     def _propose(self, count: int) -> _Particles:
         """Return the first particles."""
         points, branches = self.first.draw(count, self.rng)
-        points = self._on_grid(points)
         self.families = count
         return _Particles(points, branches, self._logarithms(points, branches), np.arange(count))
 
@@ -218,63 +225,44 @@ class _Sampler:
             self.first.log_density(points, branches),
         )
 
-    def _on_grid(self, points: Floats) -> Floats:
-        """Return points rounded to a fine grid. Differential evolution multiplies rounding errors:
-        without a grid, draws would depend on the system of units."""
-        center = self.first.parts[0].center[:, None]
-        return np.asarray(center + np.round((points - center) / self.grid) * self.grid)
-
     def _adapt(self, particles: _Particles) -> None:
         """Let the next moves propose what these particles resemble."""
-        if parts := _fit(particles.points, particles.branches, self.rng):
-            self.mixture = _Mixture(parts)
-        self.partners = particles.points.copy()
+        points, branches = particles.points, particles.branches
+        first = [replace(p, fraction=FIRST * p.fraction) for p in self.first.parts]
+        self.mixtures = [_Mixture([*_fit(points, branches, self.rng), *first])]
+        if self.density.other is not None:
+            points, branches, _ = self.density.turned(points, branches)
+            if parts := _fit(points, branches, self.rng):
+                self.mixtures.append(_Turned(_Mixture(parts), self.density))
 
-    def _move(
-        self, particles: _Particles, hardness: float, moves: int, adapts: bool = True
-    ) -> None:
-        """Move all particles, by independent proposals and along differences of others in turns,
-        accepted by the Metropolis rule."""
+    def _move_on(self, particles: _Particles, hardness: float) -> None:
+        """Move all particles until they have forgotten where they were."""
+        accepted = 0.0
+        for _ in range(0, MAX_MOVES, MOVES_ALIKE):
+            self._adapt(particles)
+            accepted += self._move(particles, hardness, MOVES_ALIKE)
+            if accepted >= ACCEPTED_MOVES:
+                break
+
+    def _move(self, particles: _Particles, hardness: float, moves: int) -> float:
+        """Move all particles so often; return how many moves of each were accepted, on average."""
+        number, accepted = len(particles.branches), 0.0
         for move in range(moves):
-            if adapts and move % MOVES_ALIKE == 0:
-                self._adapt(particles)
-            if move % 2:
-                self._move_along_differences(particles, hardness)
-            else:
-                self._move_independently(particles, hardness)
-
-    def _move_independently(self, particles: _Particles, hardness: float) -> None:
-        number = len(particles.branches)
-        points, branches = self.mixture.draw(number, self.rng)
-        points = self._on_grid(points)
-        families = self.families + np.arange(number)
-        self.families += number
-        trial = _Particles(points, branches, self._logarithms(points, branches), families)
-        here, there = (
-            self.mixture.log_density(part.points, part.branches) for part in (particles, trial)
-        )
-        self._accept(particles, trial, hardness, here - there)
-
-    def _move_along_differences(self, particles: _Particles, hardness: float) -> None:
-        """Move by a step of differential evolution."""
-        rng, (size, number) = self.rng, particles.points.shape
-        first, second = rng.integers(self.partners.shape[1], size=(2, number))
-        length = 2.38 / np.sqrt(2 * size) * np.exp(0.5 * rng.standard_normal(number))
-        length = np.where(rng.random(number) < JUMP_PROBABILITY, 1.0, length)
-        spread = self.partners.std(axis=1, keepdims=True)
-        step = length * (self.partners[:, first] - self.partners[:, second])
-        step = step + 1e-3 * spread * rng.standard_normal((size, number))
-        points = self._on_grid(particles.points + step)
-        branches = self.density.neighbours(particles.branches, rng)
-        logs = self._logarithms(points, branches)
-        trial = _Particles(points, branches, logs, particles.families)
-        self._accept(particles, trial, hardness, np.zeros(number))
+            mixture = self.mixtures[move % len(self.mixtures)]
+            here = mixture.log_density(particles.points, particles.branches)
+            points, branches, there = mixture.propose(number, self.rng)
+            families = self.families + np.arange(number)
+            self.families += number
+            trial = _Particles(points, branches, self._logarithms(points, branches), families)
+            accepted += self._accept(particles, trial, hardness, here - there)
+        return accepted
 
     def _accept(
         self, particles: _Particles, trial: _Particles, hardness: float, proposed: Floats
-    ) -> None:
-        """Replace particles by their trials, where the Metropolis rule accepts them. ``proposed``:
-        how much likelier the move back is proposed, as a logarithm."""
+    ) -> float:
+        """Replace particles by their trials, where the Metropolis rule accepts them; return the
+        fraction of these. ``proposed``: how much likelier the move back is proposed, as a
+        logarithm."""
         gain = trial.log_density(hardness) - particles.log_density(hardness) + proposed
         rows = -self.rng.standard_exponential(len(gain)) < gain
         particles.points[:, rows] = trial.points[:, rows]
@@ -282,6 +270,7 @@ class _Sampler:
         particles.families[rows] = trial.families[rows]
         for log, trial_log in zip(particles.logs, trial.logs, strict=True):
             log[rows] = trial_log[rows]
+        return float(rows.mean())
 
 
 class _Mixture:
@@ -310,6 +299,11 @@ class _Mixture:
         branches = np.array([part.branch for part in self.parts])[chosen]
         return points[:, order], branches[order]
 
+    def propose(self, count: int, rng: np.random.Generator) -> tuple[Floats, Branches, Floats]:
+        """Return random points, their branches and their log density."""
+        points, branches = self.draw(count, rng)
+        return points, branches, self.log_density(points, branches)
+
     def log_density(self, points: Floats, branches: Branches) -> Floats:
         size = len(points)
         logs = np.full((len(self.parts), points.shape[1]), -np.inf)
@@ -321,6 +315,24 @@ class _Mixture:
             log = -(DEGREES_OF_FREEDOM + size) / 2 * np.log1p(square / DEGREES_OF_FREEDOM)
             row[own] = log + np.linalg.slogdet(inverse)[1] + np.log(fraction)
         return np.asarray(np.logaddexp.reduce(logs, axis=0))
+
+
+@dataclass(frozen=True)
+class _Turned:
+    """A mixture over the other coordinates."""
+
+    mixture: _Mixture
+    density: Density
+
+    def propose(self, count: int, rng: np.random.Generator) -> tuple[Floats, Branches, Floats]:
+        """Return random points, their branches and their log density over the coordinates."""
+        points, branches, there = self.mixture.propose(count, rng)
+        points, branches, volume = self.density.turned(points, branches, back=True)
+        return points, branches, there - volume
+
+    def log_density(self, points: Floats, branches: Branches) -> Floats:
+        turned, branches, volume = self.density.turned(points, branches)
+        return self.mixture.log_density(turned, branches) + volume
 
 
 def _fit(points: Floats, branches: Branches, rng: np.random.Generator) -> list[Proposal]:
