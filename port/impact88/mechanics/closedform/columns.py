@@ -110,28 +110,13 @@ def examine(values: Mapping[str, Floats]) -> Block:
         if only_points and name in UNUSED_BY_POINTS:
             fixed[name], kinds[name] = column[:1], "unused"
             continue
-        (least, largest), (low, high) = extremes[name], ORDINARY[name]
-        if name in ANGLES and not (low <= least and largest <= high):
-            if name in UNUSED_BY_POINTS:
-                column = np.where(values["M"] == 4, 0.0, column)
-            with np.errstate(invalid="ignore"):
-                column = np.where(np.abs(column) <= LARGE_ANGLE, column, np.fmod(column, 360.0))
-            least, largest = float(column.min()), float(column.max())
-        alike = len(column) == 1 or least == largest
-        ordinary = low <= least and largest <= high  # NaN is neither
-        kind = alike_kind(name, least) if alike and ordinary else "scalar" if alike else "array"
-        if name == "M" and not ordinary:
-            ordinary = only_points
-            kind = "4" if only_points else "6" if alike else "mixed"
-        elif name in BODY_CONSTANTS and not ordinary:
-            ordinary = alike and largest == np.inf
-            kind = "inf" if ordinary else "scalar" if alike else "array with infinities"
-        elif name == "MU" and not ordinary:
-            ordinary = least >= -_LARGEST and largest <= _LARGEST
-            if bool((column == PIVOT).any()):
-                kind = "pivot" if alike else "mixed"
-        kinds[name] = kind
-        usable = usable and ordinary
+        limits = extremes[name]
+        if name in ANGLES and not _is_ordinary(name, limits):
+            column = _within_a_turn(column, values["M"] if name in UNUSED_BY_POINTS else None)
+            limits = float(column.min()), float(column.max())
+        alike = len(column) == 1 or limits[0] == limits[1]
+        kinds[name], is_usable = _classify(name, column, limits, alike)
+        usable = usable and is_usable
         (fixed if alike else varying)[name] = column[:1] if alike else column
     kinds_in_order = tuple(kinds[name] for name in SCENE)
     if usable and _at_rest_where_infinite(kinds):
@@ -141,6 +126,41 @@ def examine(values: Mapping[str, Floats]) -> Block:
     for refusal in refusals(together):
         is_refused |= refusal.where
     return Block(fixed, varying, kinds_in_order, is_refused if is_refused.any() else None)
+
+
+def _is_ordinary(name: str, limits: Limits) -> bool:
+    """Return True if a column's least and largest number, no NaN, need no closer look."""
+    low, high = ORDINARY[name]
+    return low <= limits[0] and limits[1] <= high
+
+
+def _within_a_turn(column: Floats, m: Floats | None) -> Floats:
+    """Return angles of which the large ones are reduced; 0 where ``m`` says that bodies are
+    points."""
+    if m is not None:
+        column = np.where(m == 4, 0.0, column)
+    with np.errstate(invalid="ignore"):
+        return np.where(np.abs(column) <= LARGE_ANGLE, column, np.fmod(column, 360.0))
+
+
+def _classify(name: str, column: Floats, limits: Limits, alike: bool) -> tuple[str, bool]:
+    """Return the kind of a column, and True if each of its numbers is usable for certain."""
+    kind = "scalar" if alike else "array"
+    if _is_ordinary(name, limits):
+        return (alike_kind(name, limits[0]) if alike else kind), True
+    if name == "M":
+        if limits == (4.0, 4.0):
+            return "4", True
+        return ("6" if alike else "mixed"), False
+    if name in BODY_CONSTANTS:
+        if alike and limits[1] == np.inf:
+            return "inf", True
+        return (kind if alike else "array with infinities"), False
+    if name == "MU":
+        if bool((column == PIVOT).any()):
+            kind = "pivot" if alike else "mixed"
+        return kind, limits[0] >= -_LARGEST and limits[1] <= _LARGEST
+    return kind, False
 
 
 def _extremes(column: Floats) -> Limits:

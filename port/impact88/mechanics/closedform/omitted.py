@@ -100,12 +100,7 @@ def solve_without(
     if "GA" in trials:
         trials["GA"] = [360.0 / TRIALS * trial for trial in range(TRIALS)]
     along = _along_a_line(columns_known, lacking)
-    completed = [
-        _complete_scene(
-            columns_known, {name: values[trial] for name, values in trials.items()}, along
-        )
-        for trial in range(TRIALS)
-    ]
+    completed = _complete_all(columns_known, trials, along)
     names = [name for name in wanted if name != "STATUS"]
     if len(names) < len(wanted) and "KF" not in names:
         names.append("KF")
@@ -114,10 +109,7 @@ def solve_without(
     zero = [n for n in names if all(not np.any(x[n]) for x in (first, *other_trials))]
     if zero:  # one that is not below 0, such as EESA where energy is gained, hides its inputs
         scenes = _ordinary_scenes(columns_known, shares is not None, rng)
-        ordinary_trials = [
-            _complete_scene(scenes, {n: x[trial] for n, x in trials.items()}, np.zeros(()))
-            for trial in range(TRIALS)
-        ]
+        ordinary_trials = _complete_all(scenes, trials, np.zeros(()))
         elsewhere = [solve_arrays(scene, tuple(names), threads) for scene in ordinary_trials]
         same = _same(elsewhere[0], elsewhere[1:], elsewhere[0])
         stands |= {name: stands[name] & (np.all(same[name]) | along) for name in zero}
@@ -136,9 +128,9 @@ def solve_without(
         raise UserError(f"missing: {' '.join(lacking)}; {needs_in_words}")
     if "STATUS" in wanted and "STATUS" not in absent:
         statuses = [np.asarray(solve(scene, ["STATUS"])["STATUS"]) for scene in completed]
-        mask = np.where(along, np.uint16(0xFFFF), np.uint16(_JUDGED))
-        if {*lacking} - {"GA", "MU"}:
-            mask = np.asarray(np.uint16(_JUDGED))
+        # along a line all bits are known, where no more is lacking
+        is_known = along & (not {*lacking} - {"GA", "MU"})
+        mask = np.where(is_known, np.uint16(0xFFFF), np.uint16(_JUDGED))
         results["STATUS"] = np.bitwise_and.reduce(statuses) & mask
     return Results({n: _number(results[n]) for n in wanted if n in results}, absent)
 
@@ -248,6 +240,16 @@ def _line(given: Mapping[str, Array]) -> Array:
     still = (x == 0) & (y == 0)
     x, y = np.where(still, given["UX"], x), np.where(still, given["UY"], y)
     return np.asarray(np.degrees(np.arctan2(-y + 0.0, -x + 0.0)))
+
+
+def _complete_all(
+    given: Mapping[str, Array], trials: Mapping[str, Sequence[float]], along: Array
+) -> list[dict[str, Any]]:
+    """Return scenes completed with each of the trial values, see `_complete_scene`."""
+    return [
+        _complete_scene(given, {name: values[trial] for name, values in trials.items()}, along)
+        for trial in range(TRIALS)
+    ]
 
 
 def _complete_scene(
