@@ -1,4 +1,4 @@
-"""Explain why another program's results differ: hypotheses in one list, with one score.
+"""Explain why another program's results differ: hypotheses compared by one score.
 
 A hypothesis predicts every row, those that agree included. It earns the bits by which the rows that
 disagree are off and that it gets right, loses those of the rows that agree and that it contradicts,
@@ -29,9 +29,9 @@ from .predicates import COST as PREDICATE_COST
 from .predicates import find_predicate, scene_quantities
 from .tablehypotheses import (
     COST_DIGITS,
-    COST_NAMED,
     UNKNOWN,
     TableHypothesis,
+    cost_named,
     describe_unexplained,
     evidence_bits,
     judge_of,
@@ -589,7 +589,7 @@ def _cost_of(edit: Edit) -> float:
     """Return the bits that it takes to state an edit."""
     if edit.rank == FITTED:
         return _COST_CONSTANT
-    return COST_NAMED if edit.rank <= RARE_CONVENTION else _COST_EDIT + (edit.rank - 3)
+    return cost_named() if edit.rank <= RARE_CONVENTION else _COST_EDIT + (edit.rank - 3)
 
 
 def _sample_rows(case: Case, wrong: Bools) -> NDArray[np.intp]:

@@ -6,13 +6,14 @@ the order of the rows, coarser arithmetic.
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import partial
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...collision.fields import FIELDS
+from ...equations.edits import readings, variants
 from ...errors import UserError
 from ...mechanics.accuracy import errorbound
 from ...names import SCENE
@@ -38,7 +39,6 @@ _MAX_TIES = 4  # rows with equal results that are tried
 # bits
 COST_DIGITS = 3.0
 COST_WIDTH = 4.0
-COST_NAMED = 10.0  # choosing one of some 1,200 known alternatives
 _MAX_BITS = 40.0  # earned by a row
 _MAX_LOOSE = 1e-6  # relative error bound of a row that shows anything
 _SAME_RTOL = 1e-9
@@ -78,6 +78,12 @@ class TableHypothesis(NamedTuple):
         return (self.program or Program()).results(scene)
 
 
+@cache
+def cost_named() -> float:
+    """Return the bits, whole ones, that it takes to choose one of the known alternatives."""
+    return float(round(math.log2(len(variants()) + len(readings()))))
+
+
 def plain_hypotheses(case: Case, wrong: Bools) -> Iterator[TableHypothesis]:
     """Yield the hypotheses about a case that are no program; ``wrong``: the rows that need a
     cause."""
@@ -88,7 +94,7 @@ def plain_hypotheses(case: Case, wrong: Bools) -> Iterator[TableHypothesis]:
     ):
         yield TableHypothesis(says, match, COST_DIGITS, 1.0)
     if wrong.sum() >= _MIN_REORDERED_ROWS and case.wrong.mean() > MIN_AFFECTED:
-        cost = COST_NAMED + math.log2(wrong.size) * wrong.sum()
+        cost = cost_named() + math.log2(wrong.size) * wrong.sum()
         yield TableHypothesis(OTHER_ROWS, lambda other: _match_other_rows(other, case), cost)
     for says in _WIDTHS:
         if _is_coarse(case, wrong, says):
