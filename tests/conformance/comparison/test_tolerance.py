@@ -53,7 +53,9 @@ def converted(scene: Mapping[str, np.ndarray], system: str) -> dict[str, np.ndar
     return {name: column * by.get(name, 1.0) for name, column in scene.items()}
 
 
-def judged(scene: dict[str, np.ndarray], theirs: Mapping[str, np.ndarray]) -> agreement.Case:
+def judged(
+    scene: dict[str, np.ndarray], theirs: Mapping[str, np.ndarray]
+) -> agreement.ComparedRows:
     exact = {name: (column, np.zeros(column.size)) for name, column in theirs.items()}
     return agreement.make_case(scene, exact)
 

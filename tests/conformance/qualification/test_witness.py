@@ -18,7 +18,7 @@ from tinyrom import CODE, START, rom
 from impact88.apple.captured import result
 from impact88.conformance.qualification.witness.apple import APPLE_II_PLUS, Apple, Lost, read_image
 from impact88.conformance.qualification.witness.hearing import (
-    Case,
+    WitnessCase,
     cases,
     hear,
     hear_sample,
@@ -144,28 +144,28 @@ def test_one_bit_of_a_variable_or_of_the_array_differs() -> None:
 
 def test_a_capture_is_compared_too(session: Session) -> None:
     row = {"scene": dict(sample(1)), **RUN1._asdict()}
-    assert hear(session, Case("scenes", "x", row)).differences == []
+    assert hear(session, WitnessCase("scenes", "x", row)).differences == []
     row["reals"] = {**RUN1.reals, "XA": "00" * 5}
-    assert differing(hear(session, Case("scenes", "x", row))) == {"capture: XA"}
+    assert differing(hear(session, WitnessCase("scenes", "x", row))) == {"capture: XA"}
 
 
 def test_programs_and_calculations_are_compared() -> None:
     machine = Session(rom("HELLO\n", {}, None))
     program = {"bas": '10 PRINT "HELLO"', "in": "", "out": "HELLO\n"}
-    assert hear(machine, Case("fuzz", "x", program)).differences == []
+    assert hear(machine, WitnessCase("fuzz", "x", program)).differences == []
     program["out"] = "HELLO!\n"
-    assert differing(hear(machine, Case("fuzz", "x", program))) == {"capture: displayed"}
+    assert differing(hear(machine, WitnessCase("fuzz", "x", program))) == {"capture: displayed"}
     for row in (
         ["neg", "8490000001", "", "20", "8410000001:849000000100:20"],
         ["div", "8490000000", "0000000000", "00", "E133"],
         ["cmp", "8400000000", "8500000000", "00", "01"],
         ["fout", "822df85474", "", "00", "2.718282"],
     ):
-        heard = hear(machine, Case("arithmetic", row[0], row))
+        heard = hear(machine, WitnessCase("arithmetic", row[0], row))
         assert differing(heard) <= {f"this arithmetic: {' '.join(filter(None, row[:4]))}"}
         assert result(heard.capture[4]) == result(row[4])
     row = ["neg", "8490000001", "", "20", "8410000000:849000000000:20"]
-    assert len(hear(machine, Case("arithmetic", "neg", row)).differences) == 1
+    assert len(hear(machine, WitnessCase("arithmetic", "neg", row)).differences) == 1
 
 
 def test_a_folder_of_programs(tmp_path, played: bytes) -> None:

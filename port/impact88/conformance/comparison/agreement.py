@@ -74,7 +74,7 @@ INITIAL_VELOCITIES = ("UX", "UY", "VX", "VY", "WA", "WB")
 NO_DIGIT = 0.1  # relative difference from which a result shares no digit with ours
 
 
-class Case(NamedTuple):
+class ComparedRows(NamedTuple):
     """Rows of a table with our results for them: arrays (results, rows), or (rows,).
 
     ``names``: of the results; ``scene``: each row's columns, those of the rows before and after,
@@ -99,9 +99,9 @@ class Case(NamedTuple):
     per_unit: Floats
     no_digit: Floats
 
-    def select_rows(self, rows: NDArray[np.intp]) -> "Case":
+    def select_rows(self, rows: NDArray[np.intp]) -> "ComparedRows":
         """Return the case of some of the rows."""
-        return Case(self.names, *(column[..., rows] for column in self[1:]))
+        return ComparedRows(self.names, *(column[..., rows] for column in self[1:]))
 
     @property
     def columns(self) -> dict[str, Floats]:
@@ -135,10 +135,10 @@ class Case(NamedTuple):
             return grades, relative
 
 
-def concatenate_cases(cases: Sequence[Case]) -> Case:
+def concatenate_cases(cases: Sequence[ComparedRows]) -> ComparedRows:
     """Return one case of several blocks of a table."""
     columns = zip(*(case[1:] for case in cases), strict=True)
-    return Case(cases[0].names, *(np.concatenate(column, -1) for column in columns))
+    return ComparedRows(cases[0].names, *(np.concatenate(column, -1) for column in columns))
 
 
 def make_case(
@@ -146,7 +146,7 @@ def make_case(
     theirs: Mapping[str, tuple[Floats, Floats]],
     rtol: float | None = None,
     first: int = 1,
-) -> Case:
+) -> ComparedRows:
     """Compare scenes (columns of n) with another program's results.
 
     ``theirs``: name -> values and the units of their last digits; ``rtol``: the user's own relative
@@ -171,7 +171,7 @@ def make_case(
 @np.errstate(all="ignore")
 def _compare_scenes(
     scene: Columns, theirs: Mapping[str, tuple[Floats, Floats]], rtol: float | None
-) -> tuple[Case, NDArray[np.intp]]:
+) -> tuple[ComparedRows, NDArray[np.intp]]:
     """Return the case, and the rows in which rounding decides which way the contact slides."""
     solution = {name: column.astype(float) for name, column in solve(scene).items()}
     scales = errorbound.scales(scene, solution)
@@ -210,7 +210,7 @@ def _compare_scenes(
         loose[:, rows] = [bounds[name] for name in theirs]
         relative = [bounds[name] / part_scales[name] for name in FINAL_VELOCITIES]
         per_unit[rows] = np.max(np.where(np.isfinite(relative), relative, 0.0), axis=0)
-    case = Case(
+    case = ComparedRows(
         names=tuple(theirs),
         scene=np.concatenate([columns, *neighbours, last, last[:1]]),
         values=values,
@@ -256,7 +256,11 @@ class TrialNoise:
         return 0 if self.has_others or count < _MIN_NOISY_ROWS else count
 
     def add(
-        self, case: Case, places: NDArray[np.intp], grades: NDArray[np.intp], relative: Floats
+        self,
+        case: ComparedRows,
+        places: NDArray[np.intp],
+        grades: NDArray[np.intp],
+        relative: Floats,
     ) -> None:
         """Add rows of a case that disagree."""
         largest = np.where(grades == DIFFER, relative, 0.0).max(0)[places]
@@ -273,7 +277,7 @@ class TrialNoise:
 
 
 @np.errstate(all="ignore")
-def _is_trial_noise(case: Case) -> Bools:
+def _is_trial_noise(case: ComparedRows) -> Bools:
     """Return the rows that are off by no more than a correct program may lose that finds its
     equations by trial impulses."""
     scene = {name: case.columns[name] for name in SCENE}
@@ -353,7 +357,7 @@ def _read_plain(texts: Sequence[object]) -> tuple[Floats, Floats] | None:
 
 
 @np.errstate(all="ignore")
-def violated_equations(case: Case) -> dict[str, Bools]:
+def violated_equations(case: ComparedRows) -> dict[str, Bools]:
     """Return the rows that violate each of Equations 13 to 18, by the equation's number.
 
     Empty when the table lacks a final velocity (the spins of point masses are those before the

@@ -28,7 +28,7 @@ from ...tables.formats import FORMATS
 from ...tables.rows import BadCell, Reader, Rows
 from ...tables.table import format_of, open_reader
 from . import agreement
-from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, Case, TrialNoise
+from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, ComparedRows, TrialNoise
 from .diagnosis import Diagnosis, TableCause, Unexplained
 from .tablehypotheses import AGREES, UNKNOWN, TableHypothesis
 from .vectors import FAILURE, FROZEN_ID
@@ -435,11 +435,11 @@ class _Search:
 
     def __init__(self, comparison: Comparison) -> None:
         self._comparison = comparison
-        self._kept: list[Case] = []
+        self._kept: list[ComparedRows] = []
         self._diagnosis: Diagnosis | None = None
         self._causes: list[str] = []
 
-    def add(self, case: Case) -> None:
+    def add(self, case: ComparedRows) -> None:
         """Keep a block's rows, or judge them if the causes are known."""
         if self._diagnosis is not None:
             self._assign(self._diagnosis, case)
@@ -469,7 +469,7 @@ class _Search:
         self._kept = []
         return self._diagnosis
 
-    def _assign(self, diagnosis: Diagnosis, case: Case) -> None:
+    def _assign(self, diagnosis: Diagnosis, case: ComparedRows) -> None:
         self._causes += filter(None, diagnosis.assign(case))
 
 
@@ -508,7 +508,7 @@ class Block(NamedTuple):
 
     rows: Rows
     scene: Mapping[str, NDArray[np.float64]]
-    case: Case
+    case: ComparedRows
     grades: NDArray[np.intp]
     relative: NDArray[np.float64]
 

@@ -23,7 +23,7 @@ from ...equations.evaluation import Run
 from ...equations.spelling import IMPULSES, LISTING, spellings
 from ...messages.progress import progress
 from ...names import FINAL_VELOCITIES, PIVOT, SCENE
-from .agreement import Bools, Case, violated_equations
+from .agreement import Bools, ComparedRows, violated_equations
 from .constants import fit_constants, limit_instead
 from .predicates import COST as PREDICATE_COST
 from .predicates import find_predicate, scene_quantities
@@ -140,7 +140,7 @@ class Diagnosis:
     """
 
     @np.errstate(all="ignore")
-    def __init__(self, case: Case) -> None:
+    def __init__(self, case: ComparedRows) -> None:
         self.hypotheses: list[TableHypothesis] = []
         self.skipped: list[str] = []
         self.equations: dict[str, tuple[int, int]] = {}
@@ -158,7 +158,7 @@ class Diagnosis:
     # --- rows ---
 
     @np.errstate(all="ignore")
-    def assign(self, case: Case) -> list[str]:
+    def assign(self, case: ComparedRows) -> list[str]:
         """Return the cause of each row of a case that disagrees, "" for the others; and count them
         for the evidence."""
         causes: list[str] = []
@@ -168,7 +168,7 @@ class Diagnosis:
             causes += self._assign_chunk(case.select_rows(places))
         return causes
 
-    def _assign_chunk(self, case: Case) -> list[str]:
+    def _assign_chunk(self, case: ComparedRows) -> list[str]:
         wrong = case.wrong
         causes = np.where(wrong, own_digits(case), "").astype(object)
         is_open = wrong & (causes == "")
@@ -194,7 +194,7 @@ class Diagnosis:
             )
         return list(causes)
 
-    def _count(self, place: int, case: Case, explained: Bools, fits: Bools) -> None:
+    def _count(self, place: int, case: ComparedRows, explained: Bools, fits: Bools) -> None:
         """Count a chunk's rows for a cause: those that it explains, and those that it predicts."""
         cause, hypothesis = self._evidence[place], self.hypotheses[place]
         disagreeing = needs_cause(case)
@@ -223,7 +223,7 @@ class Diagnosis:
         return [cause for cause in self._evidence if cause.explains]
 
     def _count_unexplained(
-        self, case: Case, is_open: Bools, violations: Mapping[str, Bools]
+        self, case: ComparedRows, is_open: Bools, violations: Mapping[str, Bools]
     ) -> None:
         """Count the rows without a cause by kind of scene; a row counts for the first kind that it
         fits."""
@@ -592,7 +592,7 @@ def _cost_of(edit: Edit) -> float:
     return cost_named() if edit.rank <= RARE_CONVENTION else _COST_EDIT + (edit.rank - 3)
 
 
-def _sample_rows(case: Case, wrong: Bools) -> NDArray[np.intp]:
+def _sample_rows(case: ComparedRows, wrong: Bools) -> NDArray[np.intp]:
     """Return at most `MAX_SEARCHED` rows that disagree, and as many that agree, in the table's
     order: evenly by kind of scene."""
     g = case.columns

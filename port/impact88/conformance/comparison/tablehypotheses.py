@@ -18,7 +18,7 @@ from ...errors import UserError
 from ...mechanics.accuracy import errorbound
 from ...names import SCENE
 from ...program.vectorized import replay
-from .agreement import HALF, MAX_SLIGHT_DIFFERENCE, Bools, Case, Floats
+from .agreement import HALF, MAX_SLIGHT_DIFFERENCE, Bools, ComparedRows, Floats
 from .predicates import Predicate
 from .trials import MIN_FIT, Judge, Program, try_program
 
@@ -61,7 +61,7 @@ class TableHypothesis(NamedTuple):
     """
 
     says: str
-    fits: Callable[[Case], Bools]
+    fits: Callable[[ComparedRows], Bools]
     cost: float
     bits: float | None = None
     program: Program | None = None
@@ -84,7 +84,7 @@ def cost_named() -> float:
     return float(round(math.log2(len(variants()) + len(readings()))))
 
 
-def plain_hypotheses(case: Case, wrong: Bools) -> Iterator[TableHypothesis]:
+def plain_hypotheses(case: ComparedRows, wrong: Bools) -> Iterator[TableHypothesis]:
     """Yield the hypotheses about a case that are no program; ``wrong``: the rows that need a
     cause."""
     for says, match in (
@@ -101,7 +101,7 @@ def plain_hypotheses(case: Case, wrong: Bools) -> Iterator[TableHypothesis]:
             yield TableHypothesis(says, partial(_match_width, says=says), COST_WIDTH, 1.0)
 
 
-def own_digits(case: Case) -> NDArray[np.object_]:
+def own_digits(case: ComparedRows) -> NDArray[np.object_]:
     """Return what is said of rows whose results are their own to fewer digits, and of those that
     are infinite: neither is another row's, nor a mistake's. "" of all others."""
     says = np.full(case.condition.size, "", object)
@@ -114,12 +114,12 @@ def own_digits(case: Case) -> NDArray[np.object_]:
     return says
 
 
-def needs_cause(case: Case) -> Bools:
+def needs_cause(case: ComparedRows) -> Bools:
     """Return the rows that disagree by more than their last digits."""
     return np.asarray(case.wrong & (own_digits(case) == ""))
 
 
-def relative_differences(case: Case) -> Floats:
+def relative_differences(case: ComparedRows) -> Floats:
     """Return the relative differences beyond the digits written, (results, rows)."""
     with np.errstate(all="ignore"):
         off, sizes = np.abs(case.values - case.ours), case.sizes
@@ -128,7 +128,7 @@ def relative_differences(case: Case) -> Floats:
         return np.where(np.isfinite(off), relative, 0.0)
 
 
-def evidence_bits(case: Case) -> Floats:
+def evidence_bits(case: ComparedRows) -> Floats:
     """Return the bits that a row earns: those by which it is off and that its digits show."""
     relative = relative_differences(case)
     worst = relative.argmax(0), np.arange(relative.shape[1])
@@ -142,7 +142,7 @@ def evidence_bits(case: Case) -> Floats:
     return np.where(loose[worst] > _MAX_LOOSE, 0.0, bits)
 
 
-def judge_of(case: Case, wrong: Bools) -> Judge:
+def judge_of(case: ComparedRows, wrong: Bools) -> Judge:
     """Return the judge of a case: how far from the other program's results a program's may be."""
     relative = relative_differences(case)
     differences = relative.max(0, initial=0.0)
@@ -160,7 +160,7 @@ def judge_of(case: Case, wrong: Bools) -> Judge:
     return Judge(case.columns, named[0], named[1], wrong)
 
 
-def match_program(program: Program, case: Case, names: Sequence[str]) -> Bools:
+def match_program(program: Program, case: ComparedRows, names: Sequence[str]) -> Bools:
     """Return the rows of a case that a program predicts, in the results that it gives."""
     wrong = needs_cause(case)
     whole = judge_of(case, wrong)
@@ -172,7 +172,7 @@ def match_program(program: Program, case: Case, names: Sequence[str]) -> Bools:
     return rows
 
 
-def _match_cut(case: Case, cut: Callable[[Floats], Floats]) -> Bools:
+def _match_cut(case: ComparedRows, cut: Callable[[Floats], Floats]) -> Bools:
     """Return the rows whose results are ours cut at the last digit written.
 
     ``cut``: `numpy.floor` or `numpy.trunc`. Rounding may move a number across the step: 1e-9.
@@ -185,7 +185,7 @@ def _match_cut(case: Case, cut: Callable[[Floats], Floats]) -> Bools:
     return np.asarray((fits | np.isnan(case.values)).all(0))
 
 
-def _match_printout(case: Case) -> Bools:
+def _match_printout(case: ComparedRows) -> Bools:
     """Return the rows whose results are the 1988 program's own digits.
 
     At most `MAX_REPLAYED` rows that disagree are replayed; where these fit, the others need only be
@@ -210,7 +210,7 @@ def _match_printout(case: Case) -> Bools:
     return rows
 
 
-def _match_other_rows(case: Case, table: Case) -> Bools:
+def _match_other_rows(case: ComparedRows, table: ComparedRows) -> Bools:
     """Return the rows whose results are those of another row of a table."""
     usable = np.isfinite(table.ours).any(1)
     matching_rows = np.zeros(case.condition.size, bool)
@@ -229,7 +229,7 @@ def _match_other_rows(case: Case, table: Case) -> Bools:
     return matching_rows
 
 
-def _is_coarse(case: Case, wrong: Bools, says: str) -> bool:
+def _is_coarse(case: ComparedRows, wrong: Bools, says: str) -> bool:
     """Return whether coarser arithmetic affects the whole table: most of the rows in which it would
     be visible, by as many bits as it should."""
     width, low, high = _WIDTHS[says]
@@ -248,7 +248,7 @@ def _is_coarse(case: Case, wrong: Bools, says: str) -> bool:
     )
 
 
-def _match_width(case: Case, says: str) -> Bools:
+def _match_width(case: ComparedRows, says: str) -> Bools:
     """Return the rows that are off by no more than coarser arithmetic may be."""
     differences = relative_differences(case).max(0, initial=0.0)
     return np.asarray(differences / case.per_unit <= 2.0 ** -_WIDTHS[says][0])

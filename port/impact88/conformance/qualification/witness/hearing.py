@@ -45,7 +45,7 @@ HERE = "this arithmetic"
 MAX_CASES_LISTED = 100  # cases with differences that a record holds in full
 
 
-class Case(NamedTuple):
+class WitnessCase(NamedTuple):
     """A capture, or a program of the user's own: its kind, its name, and its data (a row of scenes,
     a program's texts by ending, or the five columns of an arithmetic file)."""
 
@@ -54,7 +54,7 @@ class Case(NamedTuple):
     data: Any
 
 
-def cases(count: int | None, seed: int = 0) -> list[Case]:
+def cases(count: int | None, seed: int = 0) -> list[WitnessCase]:
     """Draw captures evenly from scenes, programs and the routines of the arithmetic, none twice;
     return all of them if ``count`` is None."""
     if count is None:
@@ -62,7 +62,7 @@ def cases(count: int | None, seed: int = 0) -> list[Case]:
     rng = Random(seed)
     scenes, programs, *calls = (rng.sample(group, len(group)) for group in _case_groups())
     rng.shuffle(calls)
-    cases_drawn: list[Case] = []
+    cases_drawn: list[WitnessCase] = []
     for turn in range(count):
         arithmetic = calls[turn // 3 % len(calls)]
         group = (scenes, programs, arithmetic)[turn % 3] or arithmetic
@@ -71,20 +71,23 @@ def cases(count: int | None, seed: int = 0) -> list[Case]:
 
 
 @cache
-def _case_groups() -> list[list[Case]]:
+def _case_groups() -> list[list[WitnessCase]]:
     """Return the captured scenes, the programs, and the calls of each routine."""
     golden = captured.golden()
     return [
-        [Case(SCENES, row["id"], row) for row in captured.rows(golden, SCENES)],
-        [Case(*program) for program in captured.programs(golden)],
+        [WitnessCase(SCENES, row["id"], row) for row in captured.rows(golden, SCENES)],
+        [WitnessCase(*program) for program in captured.programs(golden)],
         *(
-            [Case(ARITHMETIC, f"{operation}-{place:04d}", row) for place, row in enumerate(rows)]
+            [
+                WitnessCase(ARITHMETIC, f"{operation}-{place:04d}", row)
+                for place, row in enumerate(rows)
+            ]
             for operation, rows in captured.calls(golden).items()
         ),
     ]
 
 
-def own_programs(folder: str) -> list[Case]:
+def own_programs(folder: str) -> list[WitnessCase]:
     """Read every ``.bas`` file in a folder, with the replies in the ``.in`` file of the same name.
 
     Raises UserError if there is none, one cannot be read, or a line is too long to be typed.
@@ -103,7 +106,7 @@ def own_programs(folder: str) -> list[Case]:
                 reason = f"{len(line)} characters; {LONGEST_TYPED} can be typed on a line"
                 raise UserError(f"row {row} has {reason}", str(path))
         keys = _text(replies) if replies.exists() else ""
-        programs.append(Case(OWN, path.stem, {"bas": program, "in": keys}))
+        programs.append(WitnessCase(OWN, path.stem, {"bas": program, "in": keys}))
     return programs
 
 
@@ -159,7 +162,7 @@ def _compare(kind: str, name: str, sides: Sides, capture: Any) -> Outcome:
     return Outcome(kind, name, tuple(sides), differences, capture)
 
 
-def hear(session: Session, case: Case) -> Outcome:
+def hear(session: Session, case: WitnessCase) -> Outcome:
     """Run a packaged capture, or a program of the user's own, on the ROM, and compare."""
     if case.kind == SCENES:
         return hear_scene(session, case.name, Scene(case.data["scene"]), case.data)
@@ -225,7 +228,7 @@ def _contents(run: Mapping[str, Any]) -> dict[str, str]:
     return {"printout": run["printout"], **captured.memory_contents(run["reals"], run["A"])}
 
 
-def _hear_program(session: Session, case: Case) -> Outcome:
+def _hear_program(session: Session, case: WitnessCase) -> Outcome:
     """Run a program on the ROM, and compare its output and final screen with the emulator and with
     its capture, if it has one. A program that does not end is a difference."""
     data, apple, blanks = case.data, session.apple, case.kind != FUZZ
