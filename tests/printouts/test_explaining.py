@@ -18,12 +18,13 @@ from impact88.printouts.reading.printout import FIELDS, read_printouts
 from impact88.printouts.recovery import replays
 from impact88.printouts.recovery.recovered import recover
 from impact88.printouts.recovery.rereading import Rereading
-from impact88.printouts.recovery.search import Expected
+from impact88.printouts.recovery.search import Expected, in_doubles
 from impact88.printouts.recovery.slips import BITS, Change, slip
 from impact88.printouts.recovery.typedtext import opposite
 from impact88.printouts.reporting.examination import Verdict, verify
 from impact88.program.run import run
 from impact88.program.scene import Scene, sample
+from impact88.program.vectorized import replay
 from printouts import SAMPLE
 
 
@@ -297,3 +298,14 @@ def test_a_printed_result_is_any_number_that_is_floored_to_it(text: str, number:
     expected = Expected("VAX", {text: 0.2}, 3.0)
     values = number + np.array([-0.0005, 0.0, 0.0005, 0.00099, 0.0015])
     assert expected.mismatch(values).tolist() == [3.0, 0.2, 0.2, 0.2, 3.0]
+
+
+def test_point_masses_lose_the_energy_that_the_listing_counts() -> None:
+    """It counts the initial spins' and none after."""
+    scene = {**sample(1), "M": "4", "DA": "0", "DB": "0", "WA": "1", "WB": "-2"}
+    texts = {name: [text] for name, text in scene.items()}
+    numbers = {name: np.array([float(column[0])]) for name, column in texts.items()}
+    printed = replay(texts)
+    found = in_doubles(numbers, ["KI", "LOSS"])
+    assert found["KI"] == pytest.approx(float(printed.printed("KI")[0]), rel=1e-8)
+    assert 0 <= found["LOSS"][0] - float(printed.printed("LOSS")[0]) < 0.01

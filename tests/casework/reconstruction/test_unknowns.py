@@ -15,7 +15,9 @@ from reference_cases import Case, cases_of
 
 from impact88 import sample, solve, solve_for
 from impact88.casework.reconstruction.derived import without_noise
+from impact88.casework.reconstruction.system import System
 from impact88.casework.reconstruction.unknowns import UnsolvableError
+from impact88.collision.uncertain import fixed_value
 from impact88.errors import UserError
 from impact88.mechanics.accuracy.populations import scenes
 from impact88.mechanics.outcome import initial_impact, outcome
@@ -526,3 +528,12 @@ def test_rounding_prints_as_nothing_and_a_heading_is_above_minus_180() -> None:
     clean = without_noise({**values, "E": 1e-12, "MB": 90.0})
     assert (clean["UY"], clean["VS"], clean["HA"]) == (0.0, 0.0, 180.0)
     assert clean["E"] == 1e-12  # a coefficient may be small
+
+
+def test_equal_tolerances_are_velocities_at_the_radius_of_gyration() -> None:
+    known = {name: fixed_value(float(text)) for name, text in sample(1).items() if name != "MU"}
+    system = System(known, adjusted=False)
+    equal = system.with_equal_tolerances().known
+    assert equal["UX"].deviation == 1
+    assert equal["WA"].deviation * system.gyration == pytest.approx(1)
+    assert not equal["MA"].varies
