@@ -130,7 +130,7 @@ def solution(text: str) -> Numbers:
     one = json.loads(text)["solutions"][0]
     units = one["units"]
     found = {n: (v, units.get(n, "")) for n, v in one["values"].items() if v is not None}
-    parts = {"±": "first_order", "lower": "lower", "upper": "upper"}
+    parts = {"sd": "first_order", "lower": "lower", "upper": "upper"}
     for name, spread in one.get("uncertainty", {}).items():
         rows = {head: spread[key] for head, key in parts.items()}
         rows |= {"5 %": spread["quantiles"]["0.05"], "95 %": spread["quantiles"]["0.95"]}
