@@ -300,18 +300,18 @@ def _check(name: str, reading: Reading | None, text: str | None) -> FieldCheck:
     return check
 
 
-def status_of(differences: Sequence[Difference], text: str) -> Status:
-    """Return the status of a number from its differences from the text that the program prints."""
+def status_of(differences: Sequence[Difference], text: str | None = None) -> Status:
+    """Return the status of a number from its differences from the text that the program prints;
+    None for a picture's, each cell of which is decided by itself."""
     if not differences:
         return Status.READ
     kinds = {one.kind for one in differences}
     contradicts = Kind.CONTRADICTS in kinds
     if Kind.CUT in kinds and not contradicts:
         return Status.NOT_READ
-    foreign = any(
-        not char.isdigit() and char not in "-.+" for one in differences for char in one.read
-    )
-    if (foreign or not contradicts) and _hardly_read(differences, text):
+    read = "".join(one.read for one in differences)
+    foreign = any(not char.isdigit() and char not in "-.+" for char in read)
+    if text is not None and (foreign or not contradicts) and _hardly_read(differences, text):
         return Status.NOT_READ
     return Status.CONTRADICTED if contradicts else Status.DOUBTFUL
 
@@ -321,7 +321,7 @@ def _hardly_read(differences: Sequence[Difference], text: str) -> bool:
     if any(one.kind is Kind.OTHER_FORM for one in differences):
         return False
     exact = len(text) - sum(len(one.printed) for one in differences if one.kind is not Kind.BLANK)
-    alike = sum(one.kind in (Kind.LOOK_ALIKE, Kind.BLANK, Kind.PICTURE) for one in differences)
+    alike = sum(one.kind in (Kind.LOOK_ALIKE, Kind.BLANK) for one in differences)
     if not exact and not alike:
         return True
     return len(text) > 2 and 2 * exact + alike < len(text)

@@ -174,7 +174,7 @@ def _check(leaf: Leaf, name: str, recomputed: str | None, cells: Sequence[Cell])
         for cell in cells
         if state(cell) in kinds
     ]  # fmt: skip
-    status = status_of(differences, "".join(cell.predicted for cell in cells))
+    status = status_of(differences)
     if leaf.judged.verdict is Verdict.INCOMPLETE and status is Status.CONTRADICTED:
         status = Status.NOT_COMPARED
     elif recomputed is None or not cells:
