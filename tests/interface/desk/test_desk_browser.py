@@ -365,7 +365,7 @@ def test_what_is_unticked_is_solved_for_with_its_uncertainty(page: Page) -> None
     tick = page.at("reconstruction-E-known")
     assert tick.is_selected()
     tick.click()
-    until(lambda: "is determined by what is known; give WA" in page.text("reconstruction-waiting"), "the reason")
+    until(lambda: "is known; give WA" in page.text("reconstruction-waiting"), "the reason")
     page.put("reconstruction-UY", "0")
     assert page.at("reconstruction-UY-known").is_selected()
     until(lambda: page.text("reconstruction-E-answer") == "solved: 0.25", "the coefficient")
