@@ -133,8 +133,11 @@ def _page() -> tuple[list[State], list[Token]]:
     return states, tokens
 
 
-STATES, TOKENS = _page()
-"""The states, the first of which is the text outside any printout; and the tokens of the page."""
+_PAGE = _page()
+STATES = _PAGE[0]
+"""The states, the first of which is the text outside any printout."""
+TOKENS = _PAGE[1]
+"""The tokens of the page."""
 WORDS = [token for token in TOKENS if token.is_word and token.line >= PROMPTS]
 """The words of labels, with the field that each names, in the order of the page."""
 TOKEN_OF = {state: token for token in TOKENS for state in token.states}
