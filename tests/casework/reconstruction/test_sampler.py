@@ -19,8 +19,13 @@ class TwoNormals:
     def proposals(self):
         return [Proposal(np.array([0.5, -1.0]), branch, 3 * np.eye(2), 0.5) for branch in (0, 1)]
 
-    def neighbours(self, branches, rng):
-        return np.where(rng.random(len(branches)) < 0.1, 1 - branches, branches)
+    other = "the hyperbolic sine of the first"
+
+    def turned(self, points, branches, back=False):
+        x, y = points
+        z = np.arcsinh(x) if back else np.sinh(x)
+        volume = np.log(np.cosh(z if back else x))
+        return np.array([z, y]), branches, -volume if back else volume
 
 
 def test_draws_are_of_the_density_on_every_branch():
