@@ -1093,6 +1093,14 @@ def test_a_page_read_otherwise_in_more_places_than_differ_accuses_nobody(
     assert judge_cells(Sheet(rows={}), candidate, [differs]).verdict is expected
 
 
+@pytest.mark.parametrize(("other_distance", "expected"), [(180.0, "doubtful"), (220.0, "holds")])
+def test_a_letter_unlike_all_is_in_doubt_where_another_is_nearer(
+    other_distance: float, expected: str
+) -> None:
+    """A line that is taken for another has such letters; one under a stroke has them, too."""
+    assert state(cell("", distance=200.0, other_distance=other_distance)) == expected
+
+
 @pytest.mark.parametrize(("count", "expected"), [(3, "differs"), (2, "doubtful")])
 def test_another_letter_is_one_that_the_page_has_elsewhere(count: int, expected: str) -> None:
     letter = cell("", distance=100.0, other_distance=1.0)

@@ -536,7 +536,9 @@ def state(cell: Cell) -> str:
         if cell.added is Added.CHARACTER:
             return "differs"
         return "doubtful" if cell.name and cell.margin > INKED else "holds"
-    if cell.margin < HOLDS and (cell.distance < FOREIGN or not cell.name):
+    # a letter beyond all characters is in doubt only where another is nearer still
+    is_near = cell.distance < (FOREIGN if cell.name else max(FOREIGN, cell.other_distance))
+    if cell.margin < HOLDS and is_near:
         return "holds"
     # another letter of a label, and a digit in another typeface, only where the page has both or
     # the predicted one elsewhere; a mark of little ink may come and go
