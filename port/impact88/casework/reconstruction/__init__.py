@@ -7,6 +7,8 @@ equations over arrays.
 `ranges`).
 
 - `system`: the equations in scaled variables; `quadrics`: all their exact solutions.
+- `impactsearch`: the impacts that agree best, by `leastsquares`; `solution`: one of them in full;
+  `nearest`: the nearest impact that physics allows, where none of them is.
 - `admissible`: which impacts count; `coordinates`: those that meet all exact values; `posterior`:
   the distribution that the known values define over both; `sampler`: draws from it.
 - `evidence`, `laws`: whether the measured values can all be true, and which laws they break.
