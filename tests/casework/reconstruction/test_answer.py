@@ -52,6 +52,13 @@ class TestNoImpact:
             assert nearest["LOSS"] == pytest.approx(0, abs=1e-3)
             assert f"SAF at {nearest['SAF']:.4g}, not 1.04" in answer.refusal()
 
+    def test_a_speed_that_would_have_to_be_none_is_zero(self):
+        """Each drives along an axis before, so that B's speed after only adds energy."""
+        known = {"M": "4", "MA": "100", "MB": "100", "HA": "0", "HB": "90"}
+        after = {"SAF": "40", "HAF": "200", "SBF": "10", "HBF": "45"}
+        (answer,) = answers({**known, **after}, 0)
+        assert "SBF at 0, not 10" in answer.refusal()
+
     def test_a_coefficient_given_outside_its_range_is_the_users(self, tmp_path, capsys):
         known = {n: text for n, text in ALONG.items() if n not in ("SAF", "HAF")}
         path = written(tmp_path, known)

@@ -44,6 +44,7 @@ MAX_ENDS = 12  # polished
 
 MAX_MOVES = 3  # known values named that would have to move
 MIN_MOVE = 1e-3  # of an exact velocity, relative to the largest, that is named
+ROUNDING = 1e-9  # of a value as it was known: what is left of it by less is zero
 
 
 class Border(NamedTuple):
@@ -156,7 +157,8 @@ def _moves(nearest: Reconstruction, units: Units) -> list[str]:
     for item in sorted(nearest.adjusted, key=deviations, reverse=True)[:MAX_MOVES]:
         if deviations(item) < least:
             break
-        old, new = (units.display_unwrapped(item.name, x) for x in (item.measured, item.adjusted))
+        adjusted = item.adjusted if abs(item.adjusted) > ROUNDING * abs(item.measured) else 0.0
+        old, new = (units.display_unwrapped(item.name, x) for x in (item.measured, adjusted))
         place = f"{item.name} at {number(new, 4)} {units.unit(item.name)}".rstrip()
         moved = "" if nearest.assumed else f" ({deviations(item):.1f} sd)"
         moves.append(f"{place}, not {number(old, 4)}{moved}")
