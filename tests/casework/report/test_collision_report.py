@@ -336,3 +336,40 @@ def test_the_drawing_of_the_first_page_says_nothing_twice(forward: Path) -> None
     assert "velocity before" in drawn
     assert "speed before" not in drawn
     assert "Remark" not in drawn
+
+
+POINTS = {"M": "4", "MA": "3000 lb", "MB": "4000 lb", "TA": "course", "TB": "course"}
+
+
+def page_of(tmp_path: Path, entries: dict[str, str]) -> tuple[int, str]:
+    """The exit status of the report on some values, and the words of its page."""
+    source, page = tmp_path / "case.toml", tmp_path / "case.html"
+    lines = [f'{name} = "{text}"' for name, text in entries.items()]
+    source.write_text("\n".join(['units = "us"', *lines]), encoding="utf-8")
+    status = main(["report", str(source), "-o", str(page), "--samples", "300"])
+    return status, plain(page.read_text("utf-8"))
+
+
+def test_a_scene_that_gains_energy_is_refused_first(tmp_path: Path) -> None:
+    """The gain of energy is (e² - 1) m v² / 2 = .44 · (1714.3 lb / 32.174) · (44 ft/s)² / 2 =
+    22,694 ft-lb, 1714.3 lb the reduced mass of 3000 and 4000 lb, and 44 ft/s 30 mph."""
+    scene = {**POINTS, "UX": "-30 mph", "UY": "0", "VX": "0", "VY": "0", "GA": "0", "MU": "0"}
+    status, text = page_of(tmp_path, {**scene, "E": "1.2"})
+    assert status == 1
+    told = "agrees with what is known: energy of 2.27e+04 ft-lb is gained. E = 1.2 was given; 1 is"
+    assert told in text
+    assert text.index("NO IMPACT") < text.index("Found:")
+    status, text = page_of(tmp_path, {**scene, "E": "0.8"})
+    assert status == 0
+    assert "NO IMPACT" not in text
+
+
+def test_impacts_that_physics_forbids_are_not_counted_with_those_that_agree(
+    tmp_path: Path,
+) -> None:
+    """At most a change of 30 mph · 4/7 · (1 + 1) = 34.29 mph is possible for A: 36 breaks physics,
+    forwards and backwards."""
+    known = {**POINTS, "SA": "30 mph", "HA": "0", "SB": "0 mph", "DVA": "36 +- 1 mph"}
+    text = page_of(tmp_path, known)[1]
+    assert "2 impacts that physics forbids fit what is known besides" in text
+    assert "impacts agree with what is known" not in text

@@ -14,6 +14,7 @@ from ...collision.uncertain import Uncertain
 from ...collision.units import RULES, System
 from ...errors import UserError
 from ...mechanics.state import COURSES, SPEEDS
+from ...messages.plaintable import number
 from ...names import FINAL_STATE, VELOCITIES
 from ...status import IMPOSSIBLE, Status, sentences
 from . import adjustment
@@ -234,7 +235,12 @@ class Answer:
 
     def refusal(self, units: System = RULES) -> str | None:
         """Return why no impact that physics allows agrees with what is known, None if one does."""
-        return refusal(self.solution, units) if self.is_refused else None
+        if not self.is_refused:
+            return None
+        text, given = refusal(self.solution, units), self.known.get("E")
+        if given is not None and not given.varies and given.nominal > 1:
+            text += f". E = {number(given.nominal, 4)} was given; 1 is the most"
+        return text
 
     @property
     def not_searched(self) -> list[str]:

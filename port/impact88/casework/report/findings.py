@@ -17,13 +17,14 @@ from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
 from ...mechanics.state import COURSES, KNOWABLE
 from ...messages.plaintable import format_fixed, number
 from ...names import DEFAULT_M, LENGTH, MASS, SCENE, SPIN, VELOCITY, check_names, quantity
-from ...status import sentences
+from ...status import IMPOSSIBLE, sentences
 from ..figures.canvas import svg
 from ..figures.sceneview import scene_drawing
 from ..reconstruction.derived import without_noise
 from .frame import render
 
 if TYPE_CHECKING:
+    from ..reconstruction.answer import Answer
     from ..reconstruction.solution import Adjusted
 
 DRIVERS = 3
@@ -127,7 +128,8 @@ class Findings(NamedTuple):
     scene : mapping of str to float
         The scene that is drawn.
     lines : sequence of (str, str, bool)
-        The first lines of a reconstruction: label, text, and True where they are adverse.
+        The first lines of a reconstruction, or on an impact that physics forbids: label, text, and
+        True where they are adverse.
     contradictory : bool
         True if the given values contradict one another.
     adjusted : sequence of Adjusted
@@ -286,23 +288,43 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
         ]
     numbers = {name: float(nominal[name]) for name in SCENE if name in nominal}
     scene = {name: x for name, x in numbers.items() if not math.isnan(x)}  # `state.COURSE`
-    return Findings(False, values, FORWARD, spreads, remarks, scene)
+    found = Findings(False, values, FORWARD, spreads, remarks, scene)
+    if not status & IMPOSSIBLE:
+        return found
+    answer = _answers(case, source, samples, seed, units)[0]
+    lines = [line for line in _lines(answer, units) if line[0] in ("NO IMPACT", "IMPOSSIBLE")]
+    is_impossible = bool(answer.impossible)
+    return found._replace(lines=lines, impossible=is_impossible, adverse=answer.is_adverse)
 
 
-def _inverse(case: Case, source: str, samples: int, seed: int, units: System) -> Findings:
+def _answers(case: Case, source: str, samples: int, seed: int, units: System) -> list[Answer]:
+    """Return every impact that agrees with the case, as ``reconstruct`` finds them."""
     from ...collision.uncertain import read, shared_road
-    from ..reconstruction.answer import QUANTILES, answers
-    from ..reconstruction.answerremarks import remarks_on
-    from ..reconstruction.answertable import first_lines, is_adverse
+    from ..reconstruction.answer import answers
 
     texts = {n: text for n, text in case.values.items() if text.strip() and n in KNOWABLE}
     texts.setdefault("M", DEFAULT_M)
     known = {n: read(t, f"{source}: {n}", units=units.name or None) for n, t in texts.items()}
     said = [*remark_lines(case.remarks), *shared_road(texts)]
     try:
-        answer, *others = answers(known, samples, seed, remarks=said)
+        return answers(known, samples, seed, remarks=said)
     except UserError as error:
         raise UserError(str(error), source) from None
+
+
+def _lines(answer: Answer, units: System) -> list[tuple[str, str, bool]]:
+    """Return the first lines of an answer, and for each whether it is adverse."""
+    from ..reconstruction.answertable import first_lines, is_adverse
+
+    return [(*line, is_adverse(answer, line[0])) for line in first_lines(answer, units)]
+
+
+def _inverse(case: Case, source: str, samples: int, seed: int, units: System) -> Findings:
+    from ..reconstruction.answer import QUANTILES
+    from ..reconstruction.answerremarks import remarks_on
+
+    answer, *others = _answers(case, source, samples, seed, units)
+    known = answer.given
     sought = [n for n in INVERSE if n not in known or (n in ESTIMATED and known[n].varies)]
     values = without_noise(answer.values)
     spreads = {}
@@ -319,9 +341,22 @@ def _inverse(case: Case, source: str, samples: int, seed: int, units: System) ->
         deviation = float(answer.deviations[name])
         spreads[name] = Spread(deviation, low, high, lower, upper, drivers)
     remarks = remarks_on(answer, units)
-    if others:
-        count = len(others) + 1
-        remarks.append(f"{count} impacts agree with what is known; this is the first of them")
+    forbidden = sum(bool(one.impossible) for one in (answer, *others))
+    possible = 1 + len(others) - forbidden
+    if possible > 1:
+        remarks.append(f"{possible} impacts agree with what is known; this is the first of them")
+    if possible and forbidden:
+        which = (
+            "impact that physics forbids fits"
+            if forbidden == 1
+            else ("impacts that physics forbids fit")
+        )
+        remarks.append(f"{forbidden} {which} what is known besides")
+    elif forbidden > 1:
+        remarks.append(
+            f"{forbidden} impacts fit what is known, and physics forbids each of them; this is the "
+            "first of them"
+        )
     scene = {n: values[n] for n in SCENE if n in values}
     scene.setdefault("M", float(DEFAULT_M))
     if scene["M"] == 4 or "EM" not in scene:
@@ -333,7 +368,7 @@ def _inverse(case: Case, source: str, samples: int, seed: int, units: System) ->
         spreads,
         remarks,
         scene,
-        lines=[(*line, is_adverse(answer, line[0])) for line in first_lines(answer, units)],
+        lines=_lines(answer, units),
         contradictory=answer.evidence.contradictory,
         adjusted=answer.solution.adjusted,
         impossible=bool(answer.impossible),
