@@ -11,7 +11,7 @@ from ..collision.needs import needs_in_words
 from ..collision.uncertain import Uncertain
 from ..names import FINAL_STATE, PIVOT, VELOCITIES
 from ..status import Status
-from .state import COURSES, CRUSH, FORCES, KNOWABLE, QUANTITIES, SPEEDS
+from .state import COURSES, CRUSH, FORCES, KNOWABLE, QUANTITIES, SPEEDS, is_creeping
 from .uses import inputs_of
 
 PARALLEL_TOLERANCE = 1e-9  # degrees between directions along one line
@@ -108,14 +108,16 @@ def absent_results(known: Mapping[str, Any]) -> dict[str, frozenset[str]]:
 
 def with_headings(values: Mapping[str, float]) -> dict[str, float]:
     """Return values with the numbers of TA and TB that are `state.COURSE`, as far as the courses
-    are among the values: the one before the impact, or after it of a vehicle that was at rest."""
+    are among the values: the one before the impact, or after it of a vehicle that stood
+    (`state.is_creeping`)."""
     result = dict(values)
     for vehicle in "AB":
         theta = f"T{vehicle}"
         if theta in values and np.isnan(values[theta]):
             course = values.get(f"H{vehicle}", np.nan)
-            if np.isnan(course) and values.get(f"S{vehicle}") == 0:
-                course = values.get(f"H{vehicle}F", np.nan)
+            before, after = (values.get(f"S{vehicle}{suffix}", np.nan) for suffix in ("", "F"))
+            if is_creeping(before, after) or (np.isnan(course) and before == 0):
+                course = values.get(f"H{vehicle}F", course)
             if not np.isnan(course):
                 front = course + 180 if vehicle == "A" else course
                 result[theta] = float(np.remainder(front + 180, 360) - 180)

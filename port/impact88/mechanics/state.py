@@ -63,6 +63,13 @@ KNOWABLE = (*names.SCENE, "MUP", *names.FINAL_VELOCITIES, *OTHERS)
 
 REST_TOLERANCE = 1e-9
 """A speed below this fraction of the largest is rounding, and printed as 0."""
+CREEPING = 0.1
+"""A speed before below this fraction of the same vehicle's after it says nothing of its front."""
+
+
+def is_creeping(before: Any, after: Any) -> Any:
+    """Return True where a vehicle's speed before, beside that after, says nothing of its front."""
+    return before < CREEPING * after
 
 
 class State:
@@ -235,10 +242,15 @@ class State:
         return np.where(travels, self._course(vehicle), front) if travels.any() else front
 
     def _course(self, vehicle: str) -> Any:
-        """Return the way a vehicle travels before the impact, after it if it was at rest; NaN if it
-        does not move."""
+        """Return the way a vehicle travels before the impact, after it if it stood or as good as
+        stood: an adjustment of a speed of 0 turns no vehicle round. NaN if it does not move."""
         early, late = (self._course_of(f"S{vehicle}{suffix}") for suffix in ("", "F"))
-        return np.where(np.isnan(np.real(early)), late, early)
+        speeds = (self._speed(vehicle, suffix) for suffix in ("", "F"))
+        return np.where(np.isnan(np.real(early)) | is_creeping(*speeds), late, early)
+
+    def _speed(self, vehicle: str, suffix: str) -> Any:
+        x, y = (np.real(v) for v in self._components(f"S{vehicle}{suffix}"))
+        return np.hypot(x, y)
 
     def _unit_vector(self, direction: str) -> tuple[Any, Any]:
         """Return the unit vector of a given course or PDOF."""

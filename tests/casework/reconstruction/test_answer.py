@@ -11,6 +11,7 @@ import pytest
 
 from impact88.casework.reconstruction.answer import answers
 from impact88.casework.reconstruction.answertable import first_lines
+from impact88.collision.geometry import clock
 from impact88.collision.uncertain import shared_road
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
@@ -79,6 +80,17 @@ class TestNoImpact:
         assert main(["report", path, "-o", str(page), "--samples", "100"]) == status
         first = re.search("<dt.*?>(.*?)</dt>", page.read_text("utf-8"))[1]
         assert first == ("NO IMPACT" if status else "ASKED")
+
+
+@pytest.mark.parametrize(("before", "hour"), [("0 +- 1", 6), ("0", 6), ("3 +- .5", 12)])
+def test_a_car_that_stands_as_good_as_is_turned_by_no_adjustment(before, hour):
+    """B is struck from behind; only one that drives against A at some speed is struck in front."""
+    known = {"M": "4", "MA": "3000", "MB": "4000", "SA": "40 +- 1", "HA": "0", "SB": before}
+    after = {"SAF": "12 +- 1", "HAF": "0", "SBF": "20 +- 1", "HBF": "0", "TB": "course"}
+    if hour == 12:  # momentum: 3000 x 42.7 less 4000 x 3 is 3000 x 12 and 4000 x 20
+        after["SA"] = "42.7 +- 1"
+    (answer, *_) = answers({**known, **after}, 0)
+    assert clock(answer.values["PDOFB"]) == f"{hour} o'clock"
 
 
 def test_the_first_lines_are_the_same_at_every_door(tmp_path, capsys):
