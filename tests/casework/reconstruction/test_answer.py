@@ -60,6 +60,15 @@ class TestNoImpact:
         (answer,) = answers({**known, **after}, 0)
         assert "SBF at 0, not 10" in answer.refusal()
 
+    def test_every_exact_value_that_moves_is_named(self):
+        """Equal cars that exchange momentum across: 35 each before and after gains nothing."""
+        known = {"M": "4", "MA": "100", "MB": "100", "SA": "30", "HA": "0", "SB": "30", "HB": "90"}
+        after = {"VAX": "-10", "VAY": "40", "VBX": "40", "VBY": "-10"}
+        (answer,) = answers({**known, **after}, 0)
+        moves = [f"{n} at 35, not 30" for n in ("SA", "SB")]
+        moves += [f"{n} at 35, not 40" for n in ("VAY", "VBX")]
+        assert all(x in answer.refusal() for x in [*moves, "VAX at 0, not", "VBY at 0, not"])
+
     def test_a_coefficient_given_outside_its_range_is_the_users(self, tmp_path, capsys):
         known = {n: text for n, text in ALONG.items() if n not in ("SAF", "HAF")}
         path = written(tmp_path, known)

@@ -42,7 +42,7 @@ DUPLICATE_TOL = 1e-5  # of end points closer than this one is polished
 MAX_ENDS = 12  # polished
 
 
-MAX_MOVES = 3  # known values named that would have to move
+MAX_MOVES = 3  # measurements named that would have to move; of exact values all are
 MIN_MOVE = 1e-3  # of an exact velocity, relative to the largest, that is named
 ROUNDING = 1e-9  # of a value as it was known: what is left of it by less is zero
 
@@ -146,7 +146,7 @@ def refusal(solution: Reconstruction, units: Units) -> str:
 
 def _moves(nearest: Reconstruction, units: Units) -> list[str]:
     """Return the known values that the nearest admissible impact has elsewhere, and where: those
-    beyond one standard deviation, or the farthest of exact ones."""
+    beyond one standard deviation, the farthest ones, or all exact ones that move."""
     known = nearest.system.known
 
     def deviations(item: Adjusted) -> float:
@@ -154,8 +154,8 @@ def _moves(nearest: Reconstruction, units: Units) -> list[str]:
 
     least = MIN_MOVE * float(nearest.system.speed) if nearest.assumed else 1.0
     moves = []
-    for item in sorted(nearest.adjusted, key=deviations, reverse=True)[:MAX_MOVES]:
-        if deviations(item) < least:
+    for item in sorted(nearest.adjusted, key=deviations, reverse=True):
+        if deviations(item) < least or (len(moves) == MAX_MOVES and not nearest.assumed):
             break
         adjusted = item.adjusted if abs(item.adjusted) > ROUNDING * abs(item.measured) else 0.0
         old, new = (units.display_unwrapped(item.name, x) for x in (item.measured, adjusted))
