@@ -153,7 +153,7 @@ def _moves(nearest: Reconstruction, units: Units) -> list[str]:
         return abs(item.adjusted - item.measured) / known[item.name].standard_deviation
 
     least = MIN_MOVE * float(nearest.system.speed) if nearest.assumed else 1.0
-    moves = []
+    moves: list[str] = []
     for item in sorted(nearest.adjusted, key=deviations, reverse=True):
         if deviations(item) < least or (len(moves) == MAX_MOVES and not nearest.assumed):
             break
