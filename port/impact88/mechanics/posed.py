@@ -11,7 +11,7 @@ from ..collision.needs import needs_in_words
 from ..collision.uncertain import Uncertain
 from ..names import FINAL_STATE, PIVOT, VELOCITIES
 from ..status import Status
-from .state import COURSES, CRUSH, FORCES, KNOWABLE, QUANTITIES, SPEEDS, is_creeping
+from .state import COURSE_AFTER, COURSES, CRUSH, FORCES, KNOWABLE, QUANTITIES, SPEEDS
 from .uses import inputs_of
 
 PARALLEL_TOLERANCE = 1e-9  # degrees between directions along one line
@@ -61,7 +61,19 @@ def pose(
             del values[friction]
             values["MUP"] = fixed(0.0)
             remarks.append(f"{friction} is not used: nothing slides along the contact plane")
+    for vehicle in "AB":
+        if _may_have_stood(values, vehicle):
+            values[f"T{vehicle}"] = fixed(COURSE_AFTER)
     return values, remarks + _leave_out_unusable(values, point)
+
+
+def _may_have_stood(values: Mapping[str, Any], vehicle: str) -> bool:
+    """Return True for a vehicle that faces its course, of which no course before is known and whose
+    speed before may be 0: an adjustment of that 0 must not turn it round."""
+    theta, speed = (values.get(f"{kind}{vehicle}") for kind in "TS")
+    if not isinstance(speed, Uncertain) or theta is None or f"H{vehicle}" in values:
+        return False
+    return bool(np.isnan(_single_number(theta))) and speed.low <= 0
 
 
 def _leave_out_unusable(values: dict[str, Any], point: bool) -> list[str]:
@@ -108,15 +120,15 @@ def absent_results(known: Mapping[str, Any]) -> dict[str, frozenset[str]]:
 
 def with_headings(values: Mapping[str, float]) -> dict[str, float]:
     """Return values with the numbers of TA and TB that are `state.COURSE`, as far as the courses
-    are among the values: the one before the impact, or after it of a vehicle that stood
-    (`state.is_creeping`)."""
+    are among the values: the one before the impact, or after it of a vehicle that was at rest or is
+    `state.COURSE_AFTER`."""
     result = dict(values)
     for vehicle in "AB":
         theta = f"T{vehicle}"
-        if theta in values and np.isnan(values[theta]):
+        if theta in values and not np.isfinite(values[theta]):
             course = values.get(f"H{vehicle}", np.nan)
-            before, after = (values.get(f"S{vehicle}{suffix}", np.nan) for suffix in ("", "F"))
-            if is_creeping(before, after) or (np.isnan(course) and before == 0):
+            at_rest = np.isnan(course) and values.get(f"S{vehicle}") == 0
+            if at_rest or np.isinf(values[theta]):
                 course = values.get(f"H{vehicle}F", course)
             if not np.isnan(course):
                 front = course + 180 if vehicle == "A" else course

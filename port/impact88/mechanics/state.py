@@ -28,6 +28,8 @@ DIRECTIONS = (*COURSES, *FORCES)
 COURSE = math.nan
 """TA or TB of a vehicle that faces the way it travels: as its velocity before the impact does, or,
 of a vehicle at rest, that after it."""
+COURSE_AFTER = math.inf
+"""The same of a vehicle that may have stood: as its velocity after the impact does."""
 BARRIER_SPEEDS = {"EBSA": "ELA", "EBSB": "ELB"}
 """Equivalent barrier speeds, each with the energy it stands for."""
 CRUSH = ("ELA", "ELB", *BARRIER_SPEEDS)
@@ -63,13 +65,6 @@ KNOWABLE = (*names.SCENE, "MUP", *names.FINAL_VELOCITIES, *OTHERS)
 
 REST_TOLERANCE = 1e-9
 """A speed below this fraction of the largest is rounding, and printed as 0."""
-CREEPING = 0.1
-"""A speed before below this fraction of the same vehicle's after it says nothing of its front."""
-
-
-def is_creeping(before: Any, after: Any) -> Any:
-    """Return True where a vehicle's speed before, beside that after, says nothing of its front."""
-    return before < CREEPING * after
 
 
 class State:
@@ -238,19 +233,17 @@ class State:
         if theta is None:
             return np.nan
         front = facing(vehicle, theta)
-        travels = np.isnan(np.real(front))  # `COURSE`
-        return np.where(travels, self._course(vehicle), front) if travels.any() else front
+        travels = ~np.isfinite(np.real(front))  # `COURSE`, `COURSE_AFTER`
+        if not travels.any():
+            return front
+        return np.where(travels, self._course(vehicle, np.isinf(np.real(front))), front)
 
-    def _course(self, vehicle: str) -> Any:
-        """Return the way a vehicle travels before the impact, after it if it stood or as good as
-        stood: an adjustment of a speed of 0 turns no vehicle round. NaN if it does not move."""
+    def _course(self, vehicle: str, stood: Any) -> Any:
+        """Return the way a vehicle travels before the impact, after it if it ``stood`` or was at
+        rest; NaN if it does not move."""
         early, late = (self._course_of(f"S{vehicle}{suffix}") for suffix in ("", "F"))
-        speeds = (self._speed(vehicle, suffix) for suffix in ("", "F"))
-        return np.where(np.isnan(np.real(early)) | is_creeping(*speeds), late, early)
-
-    def _speed(self, vehicle: str, suffix: str) -> Any:
-        x, y = (np.real(v) for v in self._components(f"S{vehicle}{suffix}"))
-        return np.hypot(x, y)
+        stood = (stood & ~np.isnan(np.real(late))) | np.isnan(np.real(early))
+        return np.where(stood, late, early)
 
     def _unit_vector(self, direction: str) -> tuple[Any, Any]:
         """Return the unit vector of a given course or PDOF."""

@@ -92,7 +92,7 @@ class TestNoImpact:
 
 
 @pytest.mark.parametrize(("before", "hour"), [("0 +- 1", 6), ("0", 6), ("3 +- .5", 12)])
-def test_a_car_that_stands_as_good_as_is_turned_by_no_adjustment(before, hour):
+def test_a_car_that_may_have_stood_is_turned_by_no_adjustment(before, hour):
     """B is struck from behind; only one that drives against A at some speed is struck in front."""
     known = {"M": "4", "MA": "3000", "MB": "4000", "SA": "40 +- 1", "HA": "0", "SB": before}
     after = {"SAF": "12 +- 1", "HAF": "0", "SBF": "20 +- 1", "HBF": "0", "TB": "course"}
@@ -100,6 +100,16 @@ def test_a_car_that_stands_as_good_as_is_turned_by_no_adjustment(before, hour):
         after["SA"] = "42.7 +- 1"
     (answer, *_) = answers({**known, **after}, 0)
     assert clock(answer.values["PDOFB"]) == f"{hour} o'clock"
+
+
+@pytest.mark.parametrize(("speed", "spread"), [(1.5, 0.5), (0.4, 0.5), (6.0, 0.5)])
+def test_a_course_known_within_limits_says_which_way_a_slow_car_faces(speed, spread):
+    """B creeps along y and is struck from its left, 9 o'clock, however slow it is."""
+    known = {"M": "4", "MA": "3000", "MB": "4000", "SA": "40 +- 1", "HA": "0"}
+    known |= {"SB": f"{speed} +- {spread}", "HB": "90 +- 5", "TB": "course"}
+    after = {"SAF": "17.1 +- 1", "HAF": "0 +- 2", "SBF": "17.3 +- 1", "HBF": "6 +- 20"}
+    (answer, *_) = answers({**known, **after}, 0)
+    assert clock(answer.values["PDOFB"]) == "9 o'clock"
 
 
 def test_the_first_lines_are_the_same_at_every_door(tmp_path, capsys):
