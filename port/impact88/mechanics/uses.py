@@ -91,5 +91,4 @@ def _consequences(values: Mapping[str, Floats]) -> dict[str, Any]:
 def _differs(first: Any, second: Any) -> Any:
     first, second = (np.asarray(value, np.float64) for value in (first, second))
     with np.errstate(invalid="ignore"):
-        apart = np.abs(first - second) > MIN_CHANGE * np.maximum(abs(first), abs(second))
-    return apart | (np.isnan(first) != np.isnan(second))
+        return np.abs(first - second) > MIN_CHANGE * np.maximum(abs(first), abs(second))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from impact88.casework.optimization.ascent import climb
 from impact88.casework.optimization.boxsearch import find_extremes, pool_of, spread
 from impact88.casework.optimization.effort import THOROUGH
 from impact88.casework.optimization.extremes import Piece
@@ -40,6 +41,36 @@ def test_along_a_narrow_curved_ridge():
         lambda u: -(500 * (u[:, 1] - u[:, 0] ** 2) ** 2) - (u[:, 0] - 0.8) ** 2, 2
     )
     assert extremes.bound[1, 0] == pytest.approx(0, abs=5e-5)  # 1e-7 of its range
+
+
+class Disc:
+    """The plane x + .6 y over the unit disc, the outside of which is higher."""
+
+    uphill = np.array([1.0, 0.6])
+    evaluations = 0
+
+    def evaluate(self, u, guess):
+        self.evaluations += 1
+        squares = np.square(u).sum(axis=1)
+        return guess, (u @ self.uphill)[:, None], squares[:, None], np.ones(len(u), bool)
+
+    def slopes(self, u, x):
+        slope = np.broadcast_to(self.uphill, u.shape)
+        return slope[:, None], 2 * u[:, None], np.zeros((len(u), 0, 2))
+
+
+def test_a_climb_ends_on_a_curved_border():
+    """The highest point is at distance 1 along (1, .6). Steps see the border as straight, and leave
+    the disc, until the curvature is learnt; without it searches creep and do not converge."""
+    disc, count = Disc(), 12
+    starts = 0.5 * np.random.default_rng(SEED).random((count, 2))
+    nowhere, index = np.empty((0, count)), np.zeros(count, int)
+    _, _, heights, converged = climb(
+        disc, starts, nowhere, index, np.ones(count), np.full(count, 1e-10)
+    )
+    assert converged.all()
+    assert heights == pytest.approx(np.full((count, 1), np.hypot(1, 0.6)), abs=1e-8)
+    assert disc.evaluations <= 15
 
 
 def test_jump_across_the_box():

@@ -2,6 +2,7 @@
 and what would have to move where none agrees, against sums done by hand."""
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -71,6 +72,20 @@ def test_where_no_impact_agrees_that_is_said_with_what_would_have_to_move():
     both = free.nearest.values["VBX"]
     assert f"VBX at {both:.4g}, not 7 ({(both - 7) / 0.1:.1f} sd)" in text
     assert (shown.draws, shown.ranges) == (None, {})
+
+
+def test_of_several_nearest_impacts_the_nearest_is_told():
+    """Speeds, whose directions are open: of each choice of signs another impact is nearest. The
+    nearest of all has the vehicles stick together."""
+    speeds = {"SA": 11.0, "SB": 3.0, "SAF": 3.0, "SBF": 0.0}
+    known = along_a_line(1.0, **speeds)
+    (free, *_) = reconstruct(known)
+    assert free.nearest is not None
+    signed = product(*({speed, -speed} for speed in speeds.values()))
+    assert free.nearest.squares == pytest.approx(
+        min(squares_stuck_together(*values, 1.0) for values in signed)
+    )
+    assert free.nearest.values["E"] == pytest.approx(0, abs=1e-8)
 
 
 def test_vehicles_that_separate_are_no_impact():

@@ -222,6 +222,33 @@ def test_an_exact_change_of_velocity_is_met_by_every_draw_and_one_root_is_an_imp
     assert bounds["VX"].upper == pytest.approx(36 - gained, rel=1e-6)
 
 
+def test_an_equivalent_barrier_speed_is_flat_in_itself():
+    """Points that stick together, B at rest, and B's crush alone: EBSB is proportional to UX, and
+    of the energy m_b EBSB dEBSB that a step of it is, p(UX) is the inverse: ln UX is flat."""
+    known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "GA": 180.0, **dict.fromkeys(("UY", "VY"), 0.0)}
+    known |= {"VX": 0.0, "MUP": 0.0, "E": 0.0, "EBSA": 0.0, "EBSB": read("5 .. 25", "EBSB")}
+    (first, *_) = reconstruct(known)
+    drawn = draws(first, ["UX"], 4000).values["UX"]
+    ratio = math.sqrt(80 * (1 / 100 + 1 / 80))
+    fractions = np.log(drawn / (5 * ratio)) / math.log(5)
+    assert np.quantile(fractions, (0.1, 0.5, 0.9)) == pytest.approx([0.1, 0.5, 0.9], abs=0.03)
+
+
+def test_friction_known_in_size_acts_in_every_draw_as_line_400_says():
+    """B may slide either way, so that friction has either sign."""
+    known = {"M": 6.0, "MA": 100.0, "MB": 80.0, "IA": 2000.0, "IB": 1500.0, "GA": 180.0}
+    known |= {"DA": 5.0, "DB": 5.0, "PA": 10.0, "PB": 170.0, "TA": 0.0, "TB": 90.0, "E": 0.1}
+    known |= {"WA": 0.0, "WB": 0.0, "UY": 0.0, "VX": 0.0, "EM": -0.5}
+    limited = {"VY": "normal 0 5", "UX": "normal 40 3", "MU": ".1 .. .4"}
+    (first,) = reconstruct(known | {n: read(text, n) for n, text in limited.items()})
+    drawn = draws(first, ["UX", "VY", "VAX", "VAY", "MUP"], 400).values
+    scenes = known | {"UX": drawn["UX"], "VY": drawn["VY"], "MU": np.abs(drawn["MUP"])}
+    own = solve(scenes, ["VAX", "VAY", "MUP"])
+    assert 0.2 < (drawn["MUP"] > 0).mean() < 0.8
+    for name, values in own.items():
+        assert drawn[name] == pytest.approx(np.asarray(values), abs=1e-9)
+
+
 def test_what_is_rounding_beside_its_own_deviation_is_0():
     """Standstill fits best, found to 1e-11 of a speed that is known within 2."""
     known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "GA": 180.0, "UY": 0.0, "VY": 0.0, "MUP": 0.0}

@@ -15,7 +15,9 @@ from impact88.conformance.comparison.predicates import (
     find_predicate,
     scene_quantities,
 )
+from impact88.conformance.comparison.trials import Program
 from impact88.conformance.comparison.vectors import scenes
+from impact88.equations.edits import readings
 from impact88.names import SCENE
 
 ROWS = [scene for kind, _, scene in scenes(600, seed=17) if kind != "failure"]
@@ -37,6 +39,20 @@ def test_a_threshold_is_found_in_the_gap_that_the_rows_leave(
     found = find_predicate(QUANTITIES, inside, ~inside)
     assert found is not None
     assert (found.rows(QUANTITIES) == inside).mean() > 0.97
+
+
+def test_a_mistake_with_a_condition_is_made_where_it_holds_alone() -> None:
+    mistake = next(edit for edit in readings() if "Γ left out" in edit.sentence)
+    where = Predicate("WA", ABOVE, 0.0)
+    mixed, wrong, right = (
+        program.results(NUMBERS)["VAX"]
+        for program in (Program((mistake,), where), Program((mistake,)), Program())
+    )
+    holds = where.rows(QUANTITIES)
+    assert np.array_equal(mixed[holds], wrong[holds], equal_nan=True)
+    assert np.array_equal(mixed[~holds], right[~holds], equal_nan=True)
+    assert (wrong[holds] != right[holds]).any()
+    assert (wrong[~holds] != right[~holds]).any()
 
 
 def test_values_that_mean_something_of_their_own_are_said_so() -> None:
