@@ -104,6 +104,11 @@ def test_what_people_paste(tmp_path: Path) -> None:
     assert done.stderr == ""
 
 
+def test_angles_may_stand_one_below_the_other() -> None:
+    text, _ = FORMS["angles.txt"]
+    assert verify(read_printouts(text)[0]).verdict is Verdict.IDENTICAL
+
+
 def test_files_that_are_no_text_get_one_line_each(tmp_path: Path) -> None:
     done = impact88("verify", *written(tmp_path, NO_TEXT))
     assert done.returncode == 2

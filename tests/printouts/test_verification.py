@@ -155,6 +155,10 @@ def test_a_missing_input_is_named_and_the_rest_still_checked() -> None:
     wrong = verified(SAMPLE.replace("IA= 3728", "").replace("14.51", "14.52"))
     assert wrong.verdict is Verdict.DIFFERS
     assert differing(wrong) == ["XB"]
+    read = SAMPLE.replace("IA= 3728", "").replace("14.51", "14.52").replace("*****", "KKKKK")
+    undecided = verified(read.replace("INITIAL", "1NITIAL"))
+    assert undecided.verdict is Verdict.INCOMPLETE  # a reader lost one and may have misread another
+    assert differing(undecided) == ["XB"]
 
 
 def test_digits_that_fit_an_illegible_character() -> None:

@@ -36,7 +36,12 @@ from impact88.conformance.comparison.compare import (
     Comparison,
     compare,
 )
-from impact88.conformance.comparison.tablehypotheses import INFINITE, SINGLE, UNKNOWN
+from impact88.conformance.comparison.tablehypotheses import (
+    INFINITE,
+    SINGLE,
+    UNKNOWN,
+    TableHypothesis,
+)
 from impact88.conformance.comparison.vectors import CASEWORK, FAILURE, casework, scenes
 from impact88.errors import UserError
 from impact88.mechanics.accuracy import errorbound
@@ -236,6 +241,21 @@ def test_two_mistakes_in_one_table_are_both_named(tmp_path, monkeypatch) -> None
         f"{other} in the rows after row {half}",
     }
     assert done.causes[f"{other} in the rows after row {half}"] == len(ROWS) - half
+
+
+@pytest.mark.parametrize("is_contradicted", [False, True])
+def test_rows_that_agree_speak_against_a_program(tmp_path, monkeypatch, is_contradicted) -> None:
+    """It explains every row that disagrees: half of all. The other half it predicts, or not."""
+
+    def fits(case):
+        return case.wrong | (not is_contradicted)
+
+    found = TableHypothesis("a mistake", fits, cost=10.0)
+    monkeypatch.setattr(diagnosis.Diagnosis, "_programs", lambda _: iter([found]))
+    odd = np.arange(len(ROWS)) % 2
+    done = compared(tmp_path, exactly({name: OURS[name] + odd for name in FINAL_VELOCITIES}))
+    says = UNKNOWN if is_contradicted else "a mistake"
+    assert all(cause.startswith(says) for cause in done.causes), done.causes
 
 
 @pytest.mark.long
