@@ -423,27 +423,19 @@ def _with_headings(values: dict[str, str]) -> dict[str, str]:
     known exactly; where it is not, as of a vehicle at rest, the word stays."""
     if FACING_COURSE not in values.values():
         return values
-    from .plausibility import VELOCITY_NAMES
+    from .plausibility import courses_of
 
     result = dict(values)
-    for vehicle, (x, y, speed, course) in VELOCITY_NAMES.items():
+    numbers = {name: double(text) for name, text in values.items() if is_number(text)}
+    courses = courses_of(numbers)
+    for vehicle in "AB":
         if values.get(f"T{vehicle}", "").strip() != FACING_COURSE:
             continue
         result[f"T{vehicle}"] = FACING_COURSE
-        parts = [values.get(name, "") for name in (x, y)]
-        direction = None
-        if all(map(is_number, parts)) and any(map(double, parts)):
-            direction = math.degrees(math.atan2(double(parts[1]), double(parts[0])))
-        elif is_number(text := values.get(course, "")) and not _is_zero(values.get(speed, "")):
-            direction = double(text)
-        if direction is not None:
-            theta = direction + 180 if vehicle == "A" else direction
+        if vehicle in courses:
+            theta = courses[vehicle] + 180 if vehicle == "A" else courses[vehicle]
             result[f"T{vehicle}"] = digits(math.remainder(theta, 360))
     return result
-
-
-def _is_zero(text: str) -> bool:
-    return is_number(text) and not double(text)
 
 
 def _with_contact_point(values: dict[str, str], source: str) -> dict[str, str]:

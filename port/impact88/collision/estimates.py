@@ -88,20 +88,17 @@ def _bias(least: int, most: int) -> str:
     return f"; {least} to {most} % high on seven tested vehicles, sport utilities most"
 
 
-def rule_of(
-    vehicle: str, mass: float, outlines: Mapping[str, float], system: System
-) -> float | None:
-    """Return the estimated yaw inertia of a vehicle of this mass, in base units; None if its size
-    is unknown and its weight is not that of a passenger car."""
-    if not 0 < mass < inf:
-        return None
+def usual_inertia(
+    vehicle: str, mass: Any, outlines: Mapping[str, float], system: System
+) -> tuple[Any, Any]:
+    """Return the estimated yaw inertia of a vehicle of this mass, in base units, and whether the
+    rule holds for it; elementwise. Without the vehicle's size it is that of a passenger car."""
     length, width = (outlines.get(size) for size in SIZES[vehicle])
     if length and width:
-        return mass * (length**2 + width**2) / 12
-    if system.is_bare:
-        return None
-    weight, inertia = weight_line(mass, system)
-    return float(inertia) if CARS[0] <= weight <= CARS[1] else None
+        return mass * (length**2 + width**2) / 12, mass > 0
+    weight = mass * float(system.scale(MASS) / SYMBOLS["lb"][1])
+    scale = float(SYSTEMS["us"].scale(INERTIA) / system.scale(INERTIA))
+    return (_SLOPE * weight - _OFFSET) * scale, (CARS[0] <= weight) & (weight <= CARS[1])
 
 
 def _is_car(mass: float, system: System) -> bool:
@@ -110,14 +107,6 @@ def _is_car(mass: float, system: System) -> bool:
         return True
     weight = mass * float(system.scale(MASS) / SYMBOLS["lb"][1])
     return CARS[0] <= round(weight, 6) <= CARS[1]
-
-
-def weight_line(mass: Any, system: System) -> tuple[Any, Any]:
-    """Return the weight in lb and the inertia 1.03 W - 1206, in base units; ``mass`` may be an
-    array. Valid for weights within `CARS`."""
-    weight = mass * float(system.scale(MASS) / SYMBOLS["lb"][1])
-    scale = float(SYSTEMS["us"].scale(INERTIA) / system.scale(INERTIA))
-    return weight, (_SLOPE * weight - _OFFSET) * scale
 
 
 def _number(text: str, name: str, purpose: str, source: str) -> float:
