@@ -69,11 +69,14 @@ def pose(
 
 def _may_have_stood(values: Mapping[str, Any], vehicle: str) -> bool:
     """Return True for a vehicle that faces its course, of which no course before is known and whose
-    speed before may be 0: an adjustment of that 0 must not turn it round."""
+    speed before is or may be 0: an adjustment of that 0 must not turn it round."""
     theta, speed = (values.get(f"{kind}{vehicle}") for kind in "TS")
-    if not isinstance(speed, Uncertain) or theta is None or f"H{vehicle}" in values:
+    if theta is None or f"H{vehicle}" in values or not np.isnan(_single_number(theta)):
         return False
-    return bool(np.isnan(_single_number(theta))) and speed.low <= 0
+    parts = [values.get(name) for name in SPEEDS[f"S{vehicle}"]]
+    if all(part is not None and _is_exact(part) for part in parts):
+        return all(_single_number(part) == 0 for part in parts)
+    return isinstance(speed, Uncertain) and speed.low <= 0
 
 
 def _leave_out_unusable(values: dict[str, Any], point: bool) -> list[str]:

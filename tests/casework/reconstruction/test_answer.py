@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import html
 import json
+import math
 import re
 
 import pytest
@@ -53,21 +54,76 @@ class TestNoImpact:
             assert nearest["LOSS"] == pytest.approx(0, abs=1e-3)
             assert f"SAF at {nearest['SAF']:.4g}, not 1.04" in answer.refusal()
 
-    def test_a_speed_that_would_have_to_be_none_is_zero(self):
-        """Each drives along an axis before, so that B's speed after only adds energy."""
-        known = {"M": "4", "MA": "100", "MB": "100", "HA": "0", "HB": "90"}
-        after = {"SAF": "40", "HAF": "200", "SBF": "10", "HBF": "45"}
-        (answer,) = answers({**known, **after}, 0)
-        assert "SBF at 0, not 10" in answer.refusal()
-
     def test_every_exact_value_that_moves_is_named(self):
-        """Equal cars that exchange momentum across: 35 each before and after gains nothing."""
+        """Equal cars that exchange momentum across: the nearest impact gains nothing, and courses
+        turn as velocities do."""
         known = {"M": "4", "MA": "100", "MB": "100", "SA": "30", "HA": "0", "SB": "30", "HB": "90"}
         after = {"VAX": "-10", "VAY": "40", "VBX": "40", "VBY": "-10"}
         (answer,) = answers({**known, **after}, 0)
-        moves = [f"{n} at 35, not 30" for n in ("SA", "SB")]
-        moves += [f"{n} at 35, not 40" for n in ("VAY", "VBX")]
-        assert all(x in answer.refusal() for x in [*moves, "VAX at 0, not", "VBY at 0, not"])
+        nearest, told = answer.solution.nearest.values, answer.refusal()
+        assert nearest["LOSS"] == pytest.approx(0, abs=1e-3)
+        for name in ("SA", "SB", "HA", "HB", "VAX", "VAY", "VBX", "VBY"):
+            given = {**known, **after}[name]
+            assert f"{name} at {nearest[name]:.4g}, not {given}" in told
+
+    @pytest.mark.parametrize("side", ["40", "-140", "220"])
+    def test_the_nearest_impact_is_the_same_from_either_side_of_the_plane(self, side):
+        """An angle of the contact plane and the opposite one are the same plane."""
+        known = {"M": "4", "MA": "100", "MB": "100", "HA": "0", "HB": "90", "GA": "40"}
+        known |= {"SAF": "40", "HAF": "50", "SBF": "30", "HBF": "35"}
+        (answer,), (other,) = answers(known, 0), answers({**known, "GA": side}, 0)
+        assert answer.refusal() is not None
+        assert other.refusal() == answer.refusal()
+
+    def test_locked_vehicles_that_leave_on_two_courses_contradict_one_another(
+        self, tmp_path, capsys
+    ):
+        """Equal cars whose common speed is 30 along 45 degrees, the middle of both courses."""
+        known = {"M": "4", "MA": "100", "MB": "100", "HA": "0", "HB": "90", "E": "0"}
+        after = {"MU": "locked", "SAF": "30", "HAF": "40", "SBF": "30", "HBF": "50"}
+        assert main(["reconstruct", written(tmp_path, {**known, **after})]) == 1
+        told = " ".join(capsys.readouterr().out.split())
+        assert "these exact values contradict one another" in told
+        assert "HAF (40 given, 50 by the others)" in told
+        (answer,) = answers({**known, **after}, 0)
+        assert answer.values["SA"] == pytest.approx(2 * 30 / math.sqrt(2), rel=1e-6)
+
+    @pytest.mark.parametrize(("digits", "verdict"), [(5, "agree poorly"), (2, "contradict")])
+    def test_exact_values_that_were_rounded_agree(self, digits, verdict):
+        """The speed before of a car that strikes a standing one, by momentum."""
+        known = {"M": "4", "MA": "3000", "MB": "4000", "HA": "0", "SB": "0", "TB": "course"}
+        after = {"SAF": "12", "SBF": "20", "HAF": "0", "HBF": "0"}
+        speed = 12 + 20 * 4000 / 3000
+        (answer,) = answers({**known, **after, "SA": f"{speed:.{digits}g}"}, 0)
+        assert answer.evidence.verdict == verdict
+        assert answer.is_adverse == (verdict == "contradict")
+        assert answer.values["DVBF"] > 0  # struck from behind
+
+    def test_what_is_not_used_is_not_counted(self):
+        known = {"M": "4", "MA": "3000", "MB": "4000", "HA": "0", "HB": "90"}
+        known |= {"SAF": "30", "HAF": "40", "SBF": "30", "HBF": "50"}
+        for extra, count in (({}, 8), ({"MU": "0.7"}, 8), ({"TA": "0"}, 9)):
+            lines = dict(first_lines(answers({**known, **extra}, 0)[0]))
+            assert lines["ASKED"] == f"SA and SB, from {count} exact values"
+
+    def test_exact_values_that_test_one_another_agree(self):
+        """All velocities are given: momentum tests them, and holds."""
+        known = {"M": "4", "MA": "100", "MB": "50", "UX": "30", "UY": "0", "VX": "0", "VY": "20"}
+        after = {"VAX": "20", "VAY": "5", "VBX": "20", "VBY": "10"}
+        (answer,) = answers({**known, **after}, 0)
+        assert "agree: momentum along x and momentum along y hold" in answer.evidence.text()
+        free = {n: text for n, text in {**known, **after}.items() if n not in ("UX", "VY")}
+        assert "not checked" in answers(free, 0)[0].evidence.text()
+
+    def test_a_best_fit_beyond_given_limits_contradicts(self, tmp_path, capsys):
+        """A standing car is struck: nothing lost, DVA is 2 MB SA / (MA + MB) = 34.29 at most."""
+        known = {"M": "4", "MA": "3000", "MB": "4000", "SA": "30", "HA": "0", "SB": "0"}
+        for speed, status in (("36 +- 1", 1), ("36 +- 2", 0)):
+            path = written(tmp_path, {**known, "DVA": speed})
+            assert main(["reconstruct", path, "--samples", "200"]) == status
+            told = " ".join(capsys.readouterr().out.split())
+            assert ("no impact lies within all limits" in told.lower()) == bool(status)
+            assert ("DVA 34.29, not from 35 to 37" in told) == bool(status)
 
     def test_a_coefficient_given_outside_its_range_is_the_users(self, tmp_path, capsys):
         known = {n: text for n, text in ALONG.items() if n not in ("SAF", "HAF")}

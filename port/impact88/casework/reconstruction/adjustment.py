@@ -73,7 +73,9 @@ def reconstruct(
         ends = {end: getattr(plane, end) + shift for end in ("nominal", "low", "high")}
         with suppress(UserError):
             others = _impacts({**values, "GA": replace(plane, **ends)}, progress)
-            if not others[0].impossible:
+            turned_status = int(outcome(others[0].values)["STATUS"])
+            wrong = is_wrong_way(turned_status, point), turned_status & Status.SEPARATING
+            if not wrong[0] or (not wrong[1] and status & Status.SEPARATING):
                 solutions = others
                 if "GA" in known:
                     remarks.append(turned_sentence(plane.nominal))

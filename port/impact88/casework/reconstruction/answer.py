@@ -101,6 +101,8 @@ class Answer:
             self._take_draws_of(like)
         elif samples and self.names:
             self._draw(samples, seed, progress)
+        elif samples and not solution.assumed:
+            self.is_empty = bool(solution.beyond_limits)  # nothing else can move
         if self.is_empty:
             self.not_drawn = solution.is_within_limits
             if not self.not_drawn:
@@ -165,11 +167,12 @@ class Answer:
     def _draw(self, samples: int, seed: int, progress: Progress) -> None:
         """Draw, and search for bounds; ``refused``: draws that do not suffice. Of values that
         contradict one another only whether any impact lies within their limits."""
+        if self.solution.assumed:
+            return
         if self.evidence.contradictory:
-            if not self.solution.assumed:
-                name = self.names[0]
-                bound = ranges(self.solution, [name], seed, None, progress)[name]
-                self.is_empty = math.isnan(bound.lower)
+            name = self.names[0]
+            bound = ranges(self.solution, [name], seed, None, progress)[name]
+            self.is_empty = math.isnan(bound.lower)
             return
         drawn = draws(self.solution, self.names, samples, seed, progress)
         self.is_empty = drawn is None
@@ -203,19 +206,26 @@ class Answer:
             return False
         if solution.nearest is not None:
             return True
-        # coefficients given outside their ranges are the user's
+        is_settled = self.is_empty or not self.has_tolerances
+        return bool(self._broken) and not solution.search.possible and is_settled
+
+    @property
+    def _broken(self) -> Status:
+        """Rules of physics that the impact breaks. Coefficients given outside their ranges are the
+        user's."""
         given = {"E": Status.E_OUT_OF_RANGE, "EM": Status.EM_OUT_OF_RANGE}
         allowed = [bit for name, bit in given.items() if name in self.known]
-        broken = solution.impossible & ~reduce(or_, allowed, Status(0))
-        is_settled = self.is_empty or not self.has_tolerances
-        return bool(broken) and not solution.search.possible and is_settled
+        return self.solution.impossible & ~reduce(or_, allowed, Status(0))
 
     @property
     def is_adverse(self) -> bool:
-        """True if no impact agrees, or no velocity before the impact was found."""
+        """True if no impact agrees, values contradict one another, or no velocity before the impact
+        was found."""
         least = NOISE * float(self.solution.system.speed)  # 0 across a line is no answer
         is_moving = any(abs(self.values.get(name, 0.0)) > least for name in _BEFORE)
-        return self.is_refused or bool({*self.undetermined} & {*VELOCITIES} and not is_moving)
+        is_missing = bool({*self.undetermined} & {*VELOCITIES}) and not is_moving
+        is_impossible = bool(self._broken) and not self.draws
+        return self.is_refused or self.evidence.contradictory or is_impossible or is_missing
 
     @property
     def impossible(self) -> str:

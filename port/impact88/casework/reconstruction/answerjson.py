@@ -40,7 +40,7 @@ def json_of(answer: Answer, units: System = RULES) -> dict[str, Any]:
             "adjusted": _adjusted_json(answer, units),
             "redundancy": solution.redundancy,
             "sum_of_squares": solution.squares,
-            "evidence": answer.evidence.as_json(units),
+            "evidence": answer.evidence.as_json(units, answer.given),
             "search": {**solution.search._asdict(), "text": solution.search.text()},
             "limited_by": list(solution.limited),
             "no_impact": answer.refusal(units),

@@ -9,7 +9,7 @@ from ...collision.geometry import within_doubles
 from ...collision.needs import needs_in_words
 from ...collision.units import RULES, System
 from ...mechanics.outcome import broken_laws
-from ...mechanics.state import COURSES, FORCES
+from ...mechanics.state import COURSES, FORCES, SPEEDS
 from ...messages.plaintable import number
 from ...names import FINAL_STATE, VELOCITIES
 from ...status import IMPOSSIBLE, sentences
@@ -71,13 +71,14 @@ def _limits(answer: Answer) -> Iterator[str]:
 def _misfit(answer: Answer, units: System) -> Iterator[str]:
     """Yield remarks on values that contradict one another."""
     solution = answer.solution
-    if solution.assumed:
+    if solution.assumed and answer.evidence.contradictory:
         unit = f" {units.label('length')}" if not units.is_bare else ""
         yield (
             "the known values contradict one another and none has a tolerance: all known "
             "velocities were given the same one (spins that divided by the radius of gyration, "
             f"{number(units.display_value('length', solution.system.gyration), 4)}{unit}); "
-            "deviations are those of the misfit"
+            "deviations are those of the misfit, and the numbers are a compromise that settles "
+            "nothing until the contradiction is resolved"
         )
     elif answer.evidence.contradictory:
         yield (
@@ -110,9 +111,11 @@ def _ill_posed(answer: Answer, units: System) -> Iterator[str]:
     """Yield a remark for each velocity that the known values hardly determine, with its deviation
     and the value that causes it, and for exact values whose errors are amplified."""
     system, is_poor = answer.solution.system, False
+    speeds = (answer.values.get(name, 0.0) for name in SPEEDS)
+    relative_speed = max(1.0, *(speed / system.speed for speed in speeds))
     for name in answer.names:
         deviation = answer.deviations[name]
-        fraction = deviation / system.scale(name)
+        fraction = deviation / (relative_speed * system.scale(name))
         if name not in (*VELOCITIES, *FINAL_STATE) or not fraction > ILL_POSED:
             continue
         if alternatives := _separate_values(answer, name, deviation):

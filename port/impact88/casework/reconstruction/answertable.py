@@ -4,7 +4,7 @@ left open. Behind them, in full, the tables: velocities, coefficients, impulse, 
 measured and adjusted values, spreads and correlations."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from textwrap import wrap
 
 from ...collision.geometry import clock, within_doubles
@@ -12,16 +12,17 @@ from ...collision.needs import join_words
 from ...collision.units import RULES, System, display_values
 from ...mechanics.state import CHANGES, COURSES, SPEEDS
 from ...messages.plaintable import decimals_for, format_fixed, number, paragraph, table
-from ...names import FINAL_STATE, PIVOT, VELOCITIES, VELOCITY, quantity
+from ...names import COEFFICIENTS, FINAL_STATE, PIVOT, VELOCITIES, VELOCITY, quantity
 from .answer import QUANTILES, Answer, bounds_without_noise
 from .answerremarks import remarks_on
 from .derived import NOISE, absent_quantities, without_noise
-from .evidence import AGREE
-from .solution import SIGMAS, SOUGHT
+from .evidence import AGREE, as_given
+from .solution import SIGMAS, SOUGHT, Adjusted
 
 _ROAD = {"ft/s": ("mph", 3600 / 5280), "m/s": ("km/h", 3.6)}  # units of speeds on the road
 _COURSE_OF = {speed: course for course, speed in COURSES.items()}
 _SPINS = ("WA", "WB", "WAF", "WBF")
+_ALSO = (*COEFFICIENTS, *_SPINS)  # sought, and in no line on motion
 DRIVERS = 3  # values named as the causes of a result's uncertainty
 _MIN_FRACTION = 0.05  # of a result's variance, for a value to be named
 MAX_CORRELATION_COLUMNS = 7  # as many as 96 characters hold
@@ -57,9 +58,13 @@ def first_lines(answer: Answer, units: System = RULES) -> list[tuple[str, str]]:
     lines = [*_verdicts(answer, units)]
     for vehicle in vehicles:
         lines.append(("BEFORE IMPACT", _motion(answer, vehicle, "", values, units)))
-    if not any(n in answer.known for n in (*FINAL_STATE, "SAF", "SBF")):
-        for vehicle in vehicles:
+    sought = _sought(answer)
+    for vehicle in vehicles:
+        if {f"V{vehicle}X", f"V{vehicle}Y", f"S{vehicle}F", f"H{vehicle}F"} & {*sought}:
             lines.append(("AFTER IMPACT", _motion(answer, vehicle, "F", values, units)))
+    found = [_found(answer, n, values, units) for n in sought if n in _ALSO and n in values]
+    if found:
+        lines.append(("FOUND", "; ".join(found)))
     for vehicle in vehicles:
         origin = values.get(f"PDOF{vehicle}", math.nan)
         force = ""
@@ -72,7 +77,11 @@ def first_lines(answer: Answer, units: System = RULES) -> list[tuple[str, str]]:
         lines.append(("INTERVALS", text + f" (normal values: {SIGMAS:g} sd)" * cut))
     for vehicle in vehicles:
         drivers = answer.drivers.get(f"S{vehicle}", ())[:DRIVERS]
-        causes = [f"{n} {100 * part:.0f} %" for n, part in drivers if part >= _MIN_FRACTION]
+        causes = [
+            f"{as_given(n, answer.given)} {100 * part:.0f} %"
+            for n, part in drivers
+            if part >= _MIN_FRACTION
+        ]
         if causes:
             lines.append(("DEPENDS ON", f"{vehicle}'s speed: {', '.join(causes)}"))
     if missing := _missing(answer):
@@ -96,9 +105,12 @@ def _verdicts(answer: Answer, units: System) -> Iterator[tuple[str, str]]:
     if is_broken and not answer.evidence.contradictory:
         yield "IMPOSSIBLE", answer.impossible
     yield "ASKED", _question(answer)
-    verdict = answer.evidence.text(units)
+    verdict = answer.evidence.text(units, answer.given)
     if answer.impossible and answer.evidence.verdict == AGREE:
         verdict = f"in an impact that physics forbids, {verdict}"
+    beyond = [_beyond(item, answer, units) for item in answer.solution.beyond_limits]
+    if beyond and not answer.solution.assumed:
+        verdict += f". The best fit lies beyond limits: {join_words(beyond)}"
     yield "EVIDENCE", verdict
     if is_broken and answer.evidence.contradictory:
         yield "IMPOSSIBLE", answer.impossible
@@ -108,8 +120,17 @@ def _verdicts(answer: Answer, units: System) -> Iterator[tuple[str, str]]:
         yield "POSSIBLE", "no impact that physics allows lies within all limits"
 
 
-def _question(answer: Answer) -> str:
-    """Return what was asked: what is sought, and from what."""
+def _beyond(item: Adjusted, answer: Answer, units: System) -> str:
+    """Return an adjusted value that lies beyond its limits, with them."""
+    known = answer.solution.system.known[item.name]
+    low, high = sorted(units.display_unwrapped(item.name, x) for x in known.limits(SIGMAS))
+    value = number(units.display_unwrapped(item.name, item.adjusted), 4)
+    unit = units.unit(item.name)
+    return f"{item.name} {value}, not from {number(low, 4)} to {number(high, 4)} {unit}".rstrip()
+
+
+def _sought(answer: Answer) -> list[str]:
+    """Return what is sought: what an impact is solved for and is not given."""
     given = [n for n in answer.given if n != "M"]
     candidates = {*answer.values, *answer.undetermined} - {*answer.known, *answer.absent}
     sought = [n for n in SOUGHT if n in candidates]
@@ -118,11 +139,30 @@ def _question(answer: Answer) -> str:
             missing = [n for n in (speed, course) if n not in given]
             rest = [n for n in sought if n not in SPEEDS[speed]]
             sought = [*missing, *rest] if len(rest) < len(sought) else rest
+    return sought
+
+
+def _question(answer: Answer) -> str:
+    """Return what was asked: what is sought, and from what."""
+    given = [n for n in answer.given if n != "M" and _is_used(answer, n)]
+    sought = _sought(answer)
     measured = [] if answer.solution.assumed else [n for n in given if _varies(answer, n)]
     exact = len(given) - len(measured)
     parts = [f"{join_words(measured)} within limits"] if measured else []
     parts += [f"{exact} exact value{'s' if exact > 1 else ''}"] if exact else []
-    return f"{join_words(sought) if sought else 'nothing'}, from {' and '.join(parts)}"
+    if not sought:
+        return f"whether they agree: {' and '.join(parts)}"
+    return f"{join_words(sought)}, from {' and '.join(parts)}"
+
+
+def _is_used(answer: Answer, name: str) -> bool:
+    """Return True if a given value has a part in the answer: under its name, as the components of
+    a standing vehicle's speed, or as signed friction."""
+    parts = SPEEDS.get(COURSES.get(name, name), ())
+    friction = answer.known.get("MUP") if name == "MU" else None
+    is_friction = friction is not None and (friction.nominal != 0 or friction.varies)
+    stands = bool(parts) and {*parts} <= {*answer.known}
+    return name in answer.known or stands or is_friction
 
 
 def _varies(answer: Answer, name: str) -> bool:
@@ -161,18 +201,42 @@ def _size(
         road, factor = _ROAD.get(unit, ("", 0.0))
         speed = units.display_value(VELOCITY, values[name]) * factor
         text += f" {unit}" + (f" ({number(speed, 3)} {road})" if road else "")
-    text += direction
-    if name not in answer.drivers or answer.impossible:  # no interval is about that
-        return text
-    if name in answer.ranges:
-        assert answer.draws is not None
-        low, high = answer.draws.spread(name, (QUANTILES[0], QUANTILES[-1])).quantiles.values()
-        ends = [shown(x) for x in (low, high, *bounds_without_noise(answer.ranges[name]))]
-        text += f", 90 % {ends[0]} to {ends[1]}"
-        text += f", worst cases {ends[2]} to {ends[3]}" if all(ends) else ""
-    elif deviation := shown(answer.deviations[name]):
-        text += f", sd {deviation}"
-    return text
+    ends = [shown(x) for x in _interval(answer, name)]
+    if ends:
+        text += direction + f", 90 % {ends[0]} to {ends[1]}"
+        return text + (f", worst cases {ends[2]} to {ends[3]}" if all(ends) else "")
+    return text + direction + _deviation(answer, name, shown)
+
+
+def _interval(answer: Answer, name: str) -> tuple[float, ...]:
+    """Return the middle 90 % of the draws of a result and its bounds; nothing where there are
+    none, or the impact is impossible: no interval is about that."""
+    if name not in answer.ranges or answer.impossible:
+        return ()
+    assert answer.draws is not None
+    quantiles = answer.draws.spread(name, (QUANTILES[0], QUANTILES[-1])).quantiles
+    return (*quantiles.values(), *bounds_without_noise(answer.ranges[name]))
+
+
+def _deviation(answer: Answer, name: str, shown: Callable[[float], str]) -> str:
+    """Return a result's standard deviation in words, "" where there is none."""
+    if name not in answer.drivers or answer.impossible:
+        return ""
+    deviation = shown(answer.deviations[name])
+    return f", sd {deviation}" if deviation else ""
+
+
+def _found(answer: Answer, name: str, values: Mapping[str, float], units: System) -> str:
+    """Return a spin or coefficient that was sought, with its unit and interval."""
+
+    def shown(deviation: float) -> str:
+        return number(abs(units.factor(name)) * deviation, 3)
+
+    unit, value = units.unit(name), units.display_unwrapped(name, values[name])
+    text = f"{name} {number(value, 3)} {unit}".rstrip()
+    if ends := sorted(units.display_unwrapped(name, x) for x in _interval(answer, name)[:2]):
+        return f"{text}, 90 % {number(ends[0], 3)} to {number(ends[1], 3)}"
+    return text + _deviation(answer, name, shown)
 
 
 def _missing(answer: Answer) -> str:

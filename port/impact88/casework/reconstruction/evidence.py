@@ -8,11 +8,13 @@ square of its standardized residual (Baarda, *A Testing Procedure for Use in Geo
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ...collision.needs import join_words
 from ...collision.units import RULES, System
+from ...mechanics.state import CHANGES, CRUSH, ENERGIES, SPEEDS
 from ...messages.plaintable import number
 from ...names import quantity
 from .laws import MissedLaw, describe_laws
@@ -23,8 +25,12 @@ CONTRADICTION = 1e-3
 STRAIN = 0.05  # probability below which they agree poorly
 NAMED_RATIO = 0.9  # squared residual, relative to the largest, from which a value is named with it
 MAX_NAMED = 3  # values at odds that are named
+# Exact values that miss one another by less, as a fraction of the largest speed, are rounded ones:
+# numbers of three digits
+ROUNDED = 1e-3
 NOISE = 1e-9  # sums of squares below are rounding
 MIN_PROBABILITY = 1e-12  # smaller ones are printed as "below" this
+NEVER_NEGATIVE = (*SPEEDS, *CHANGES, *ENERGIES, *CRUSH)
 AGREE = "agree"
 STRAINED = "agree poorly"
 CONTRADICT = "contradict"
@@ -68,7 +74,8 @@ class Evidence:
     Parameters
     ----------
     verdict : str
-        `AGREE`, `STRAINED`, `CONTRADICT`, or `UNCHECKED` if no more is known than needed.
+        `AGREE`, `STRAINED`, `CONTRADICT`, or `UNCHECKED` if no more is known than needed. Exact
+        values agree where more is known than needed and everything holds.
     squares : float
         Sum of squared adjustments in standard deviations.
     redundancy : int
@@ -84,6 +91,9 @@ class Evidence:
         True if all values are exact; standard deviations are then those of the misfit.
     laws : tuple of MissedLaw
         The laws that exact values do not satisfy.
+    tested : tuple of str
+        The laws by which exact values that agree test one another, "" for what several laws
+        together test.
     """
 
     verdict: str
@@ -94,6 +104,7 @@ class Evidence:
     inside: bool | None = None
     exact: bool = False
     laws: tuple[MissedLaw, ...] = ()
+    tested: tuple[str, ...] = ()
 
     @property
     def contradictory(self) -> bool:
@@ -104,35 +115,47 @@ class Evidence:
     def widening(self) -> float:
         """Factor on the standard deviations of values that contradict one another, else 1.
 
-        It is the square root of the sum of squares over the redundancy.
+        It is the square root of the sum of squares over the redundancy, also of exact values that
+        miss one another by rounding.
         """
-        return math.sqrt(self.squares / self.redundancy) if self.contradictory else 1.0
+        is_scaled = self.contradictory or (self.exact and self.redundancy > 0)
+        return math.sqrt(self.squares / self.redundancy) if is_scaled else 1.0
 
     @property
     def sum_text(self) -> str:
         """The sum of squares as printed, 0 if it is rounding only."""
         return _format_amount(self.squares if self.squares > NOISE else 0.0, 3)
 
-    def text(self, units: System = RULES) -> str:
+    def text(self, units: System = RULES, given: Collection[str] = ()) -> str:
         """Return the verdict in a sentence or two.
 
         Parameters
         ----------
         units : System
             Units of the numbers in it.
+        given : collection of str, optional
+            Names of what was given: a vehicle known to stand is then named by its speed.
 
         Returns
         -------
         str
             The verdict, without a full stop.
         """
-        if self.verdict == UNCHECKED and self.exact:
-            return "not checked: all values are taken as exact, so none tests another"
         if self.verdict == UNCHECKED:
-            return "not checked: no more is known than needed, so no measurement tests another"
+            what = "exact value" if self.exact else "measurement"
+            return f"not checked: no more is known than needed, so no {what} tests another"
+        if self.exact and self.verdict == AGREE:
+            named = [name for name in self.tested if name]
+            hold = "hold" if len(named) > 1 else "holds"
+            which = (
+                f"{join_words(named)} {hold}" if named else f"{len(self.tested)} more than needed"
+            )
+            return f"these exact values agree: {which}"
         if self.exact:
             laws = f": {describe_laws(self.laws, units)}" if self.laws else ""
-            at_odds = self.name_values_at_odds(units)
+            if not self.contradictory:
+                return f"these exact values agree but for rounding{laws}"
+            at_odds = self.name_values_at_odds(units, given)
             return f"these exact values contradict one another{laws}; {at_odds}"
         sums = (
             f"sum of squared adjustments, in standard deviations, {self.sum_text} where about "
@@ -142,17 +165,18 @@ class Evidence:
             return f"the measurements {self.verdict}: {sums}"
         if self.probability >= CONTRADICTION:
             sums = f"no impact lies within all limits at once; {sums}"
-        return (
-            f"these measurements contradict one another; {self.name_values_at_odds(units)}: {sums}"
-        )
+        at_odds = self.name_values_at_odds(units, given)
+        return f"these measurements contradict one another; {at_odds}. {sums[0].upper()}{sums[1:]}"
 
-    def name_values_at_odds(self, units: System = RULES) -> str:
+    def name_values_at_odds(self, units: System = RULES, given: Collection[str] = ()) -> str:
         """Return the values most at odds, each as measured and as the others give it.
 
         Parameters
         ----------
         units : System
             Units of the numbers.
+        given : collection of str, optional
+            Names of what was given.
 
         Returns
         -------
@@ -161,10 +185,10 @@ class Evidence:
         """
         parts = []
         for item in self.at_odds:
-            unit = units.unit(item.name)
+            name, unit = as_given(item.name, given), units.unit(item.name)
             unit = "°" if unit == "deg" else f" {unit}" if unit else ""
             # the first part of the meaning; the rest is for the tables
-            meaning = re.split("[:;,]| as printed", quantity(item.name).meaning)[0]
+            meaning = re.split("[:;,]| as printed", quantity(name).meaning)[0]
             measured, expected = (
                 _format_amount(units.display_unwrapped(item.name, float(x))) + unit
                 for x in (item.measured, item.expected)
@@ -172,7 +196,7 @@ class Evidence:
             word = "given" if self.exact else "measured"
             distance = "" if self.exact else f", {_format_amount(abs(item.move), 2)} sd away"
             parts.append(
-                f"{meaning} {item.name} ({measured} {word}, {expected} by the others{distance})"
+                f"{meaning} {name} ({measured} {word}, {expected} by the others{distance})"
             )
         text = "together" if len(parts) > 1 else "most"
         text += " at odds: " + "; ".join(parts)
@@ -181,13 +205,15 @@ class Evidence:
             text += f"; without {any_one} the others agree"
         return text
 
-    def as_json(self, units: System = RULES) -> dict[str, Any]:
+    def as_json(self, units: System = RULES, given: Collection[str] = ()) -> dict[str, Any]:
         """Return the object that ``impact88 reconstruct --json`` prints for the evidence.
 
         Parameters
         ----------
         units : System
             Units of the numbers.
+        given : collection of str, optional
+            Names of what was given.
 
         Returns
         -------
@@ -208,12 +234,19 @@ class Evidence:
         ]
         return {
             "verdict": self.verdict,
-            "text": self.text(units),
+            "text": self.text(units, given),
             "probability": self.probability,
             "within_all_limits": self.inside,
             "most_at_odds": rows,
             "laws_missed": [law.text(units) for law in self.laws],
         }
+
+
+def as_given(name: str, given: Collection[str]) -> str:
+    """Return the name under which a value was given: the speed of a vehicle known to stand, whose
+    components the equations have."""
+    speeds = (speed for speed, parts in SPEEDS.items() if name in parts and speed in given)
+    return name if name in given else next(speeds, name)
 
 
 def _format_amount(value: float, digits: int = 4) -> str:
@@ -234,15 +267,21 @@ def weigh(
     inside: bool | None = None,
     exact: bool = False,
     laws: tuple[MissedLaw, ...] = (),
+    tested: tuple[str, ...] = (),
+    speed: float = 0.0,
 ) -> Evidence:
     """Return the verdict on adjusted values.
 
     ``values``: by name the measured and the adjusted value, the adjustment in standard deviations,
     and the redundancy number (the part of an error of the value that its adjustment shows, 0 to 1).
     ``inside``: True if some impact lies within all limits, None if that was not searched for.
-    ``exact``: the values are exact and contradict one another; ``laws``: the laws they violate."""
+    ``exact``: the values are exact and contradict one another; ``laws``: the laws they violate;
+    ``tested``: those that exact values satisfy; ``speed``: the largest known velocity, of which
+    exact values may miss `ROUNDED`."""
     if redundancy < 1:
-        return Evidence(UNCHECKED, squares, redundancy, math.nan, (), inside, not values)
+        verdict = AGREE if tested and not values else UNCHECKED
+        exact = not values
+        return Evidence(verdict, squares, redundancy, math.nan, (), inside, exact, (), tested)
     probability = chi_square_tail(squares, redundancy)
     items = []
     for name, (measured, adjusted, adjustment, redundancy_number) in values.items():
@@ -253,11 +292,15 @@ def weigh(
             expected = measured + (adjusted - measured) / redundancy_number
             move = adjustment / redundancy_number
             items.append(AtOdds(name, measured, adjusted, expected, move, residual, without))
+    # a negative speed is no value that the others could give
+    items = [i for i in items if i.expected >= 0 or i.name not in NEVER_NEGATIVE] or items
     largest = max((item.residual**2 for item in items), default=0.0)
     together = [item for item in items if item.residual**2 >= NAMED_RATIO * largest]
     worst = sorted(together, key=lambda item: abs(item.move))[:MAX_NAMED]
     verdict = AGREE if probability >= STRAIN else STRAINED
-    if exact or probability < CONTRADICTION or inside is False:
+    if exact:
+        verdict = CONTRADICT if math.sqrt(squares) > ROUNDED * speed else STRAINED
+    elif probability < CONTRADICTION or inside is False:
         verdict = CONTRADICT
     probability = math.nan if exact else probability
     return Evidence(verdict, squares, redundancy, probability, tuple(worst), inside, exact, laws)

@@ -132,10 +132,7 @@ class Search:
                 "the search for the impact nearest to the known values did not converge; expected "
                 "wider tolerances, or fewer values"
             )
-        solutions = minima.solutions()
-        if self.assumed:
-            return solutions
-        return with_nearest(solutions, self.rng, FIT_STARTS)
+        return with_nearest(minima.solutions(), self.rng, FIT_STARTS)
 
     def _fits(self) -> Floats:
         """Return the ends of iterations from random starts, half of them without the first penalty,

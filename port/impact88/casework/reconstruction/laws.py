@@ -24,6 +24,7 @@ from ...names import FINAL_STATE, PIVOT, VELOCITIES, quantity
 Floats = NDArray[np.float64]
 
 ROUNDING = 1e-9  # a law missed by less, relative to its largest term, holds
+NAMED = 1e-3  # a law is named from this fraction of the one missed most
 NAMES = {
     "n": "momentum along n",
     "t": "momentum along t",
@@ -33,10 +34,12 @@ NAMES = {
     "E": "restitution",
     "MUP": "friction",
     "EM": "the moment coefficient's law",
+    "changes": "momentum (MA DVA = MB DVB)",
 }
 # Known values that follow from velocities alone
 QUANTITIES = (*SPEEDS, *CHANGES, *CONTACT, *ENERGIES)
 _SPINS = ("WA", "WB", "WAF", "WBF")
+_MOTION = (*VELOCITIES, *FINAL_STATE)
 # For each law a quantity of the same unit
 _MEASURED_AS = {
     "n": "PN",
@@ -77,7 +80,7 @@ class MissedLaw:
     @property
     def _failure(self) -> str:
         """The law and that it fails; the amount follows."""
-        verb = "balance" if self.law in ("n", "t", "x", "y", "angular") else "hold"
+        verb = "hold" if self.law in ("E", "MUP", "EM") else "balance"
         return f"{self.name} does not {verb}: the error is"
 
     def text(self, units: System = RULES) -> str:
@@ -116,78 +119,177 @@ def missed_laws(known: Mapping[str, float]) -> tuple[MissedLaw, ...]:
     set that cannot hold together; empty where no law can be named.
 
     ``known``: vehicles, geometry and exact values, friction as MUP."""
-    if not {"MA", "MB"} <= {*known}:
+    laws = _KnownLaws.of(known)
+    if laws is None:
         return ()
-    values, mass_model = _with_components(known), np.float64(known.get("M", 6.0))
-    dimensions = {n: np.float64(values[n]) for n in GEOMETRY if n in values}
-    geometry = Geometry(dimensions | {"M": mass_model})
-    values = {"IA": 1.0, "IB": 1.0, **values}
-    if geometry.point:
-        values |= dict.fromkeys(_SPINS, 0.0)
-    names = (*VELOCITIES, *FINAL_STATE)
-    rows = _rows(values, geometry)
-    if geometry.point:
-        rows = {law: row for law, row in rows.items() if law not in ("angular", "EM")}
-    if "GA" not in values:  # n and t stand for x and y
-        rows = {{"n": "x", "t": "y"}.get(law, law): row for law, row in rows.items()}
-    laws = [law for law, row in rows.items() if np.isfinite(row).all()]
-    missed = _missed_quantities(known, values, geometry)
-    if not laws:
+    missed = [*_missed_quantities(known, laws.values, laws), *laws.missed_alone()]
+    if not missed:
+        missed = [*_missed_together(laws)]
+    if not missed:
+        missed = [*_missed_quantities(known, laws.with_determined_velocities(), laws)]
+    largest = max((law.fraction for law in missed), default=0.0)
+    return tuple(law for law in missed if law.fraction >= NAMED * largest)
+
+
+@within_doubles
+def tested_laws(known: Mapping[str, float]) -> tuple[str, ...]:
+    """Return names of the laws and quantities by which exact values test one another: those
+    without unknowns, of which not all terms are 0; one nameless one for each that several laws
+    together test."""
+    laws = _KnownLaws.of(known)
+    if laws is None:
+        return ()
+    is_open, is_trivial = laws.is_open, laws.largest_terms <= ROUNDING * laws.sizes
+    alone = [NAMES[laws.names[i]] for i in np.flatnonzero(~is_open & ~is_trivial)]
+    quantities = [name for name, *_ in _tested_quantities(known, laws.values, laws)]
+    rows = laws.coefficients[is_open] / laws.sizes[is_open, None]
+    rows = rows[np.isfinite(rows).all(axis=1)]
+    rank = int(np.linalg.matrix_rank(rows, tol=1e-10)) if rows.size else 0
+    return (*alone, *quantities, *[""] * (len(rows) - rank))
+
+
+@dataclass(frozen=True)
+class _KnownLaws:
+    """The linear laws over the twelve velocities (``matrix``: a row each), with the known ones."""
+
+    names: list[str]
+    values: dict[str, float]
+    geometry: Any
+    matrix: Floats
+    velocities: Floats
+    is_unknown: NDArray[np.bool_]
+    units: Floats
+    speed: float
+
+    @classmethod
+    def of(cls, known: Mapping[str, float]) -> "_KnownLaws | None":
+        """Return the laws, None without masses."""
+        if not {"MA", "MB"} <= {*known}:
+            return None
+        values, mass_model = _with_components(known), np.float64(known.get("M", 6.0))
+        dimensions = {n: np.float64(values[n]) for n in GEOMETRY if n in values}
+        geometry = Geometry(dimensions | {"M": mass_model})
+        values = {"IA": 1.0, "IB": 1.0, **values}
+        if geometry.point:
+            values |= dict.fromkeys(_SPINS, 0.0)
+        rows = _rows(values, geometry)
+        if geometry.point:
+            rows = {law: row for law, row in rows.items() if law not in ("angular", "EM")}
+        if "GA" not in values:  # n and t stand for x and y
+            rows = {{"n": "x", "t": "y"}.get(law, law): row for law, row in rows.items()}
+        laws = [law for law, row in rows.items() if np.isfinite(row).all()]
+        velocities = np.array([values.get(n, 0.0) for n in _MOTION], float)
+        # spins are compared as velocities at the radius of gyration
+        gyration = math.sqrt(float(geometry.inverse_mass / geometry.inverse_spin_inertia))
+        units = np.array([1 / gyration if n in _SPINS else 1.0 for n in _MOTION])
+        return cls(
+            laws,
+            values,
+            geometry,
+            np.array([rows[law] for law in laws]).reshape(len(laws), len(_MOTION)),
+            velocities,
+            np.array([n not in values for n in _MOTION]),
+            units,
+            float(np.abs(velocities / units).max(initial=0.0)),
+        )
+
+    @property
+    def sizes(self) -> Floats:
+        """What an ordinary velocity contributes to each law."""
+        return np.asarray(np.abs(self.matrix * self.units).max(axis=1, initial=0.0) * self.speed)
+
+    @property
+    def residuals(self) -> Floats:
+        """What the known velocities leave of each law."""
+        return np.asarray(self.matrix @ self.velocities)
+
+    @property
+    def largest_terms(self) -> Floats:
+        """The largest term of each law among known velocities."""
+        return np.asarray(np.abs(self.matrix * self.velocities).max(axis=1, initial=0.0))
+
+    @property
+    def coefficients(self) -> Floats:
+        """The coefficients of unknown velocities."""
+        return np.asarray(self.matrix[:, self.is_unknown] * self.units[self.is_unknown])
+
+    @property
+    def is_open(self) -> "NDArray[np.bool_]":
+        """True for laws that contain unknown velocities."""
+        least = 1e-12 * self.sizes / (self.speed or 1.0)
+        return np.asarray(np.abs(self.coefficients).max(axis=1, initial=0.0) > least)
+
+    def missed_alone(self) -> list[MissedLaw]:
+        """Return the violated laws without unknowns."""
+        missed, residuals = [], np.abs(self.residuals)
+        is_missed = ~self.is_open & (self.sizes > 0) & (residuals > ROUNDING * self.sizes)
+        for i in np.flatnonzero(is_missed):
+            law, residual = self.names[i], float(residuals[i])
+            fraction = residual / float(self.largest_terms[i])
+            numbers = _coefficient(law, self.values, self.geometry, self.velocities)
+            missed.append(MissedLaw(law, _MEASURED_AS[law], residual, fraction, *numbers))
         return missed
-    matrix = np.array([rows[law] for law in laws])
-    velocities = np.array([values.get(n, 0.0) for n in names], float)
-    is_unknown = np.array([n not in values for n in names])
-    # spins are compared as velocities at the radius of gyration
-    gyration = math.sqrt(float(geometry.inverse_mass / geometry.inverse_spin_inertia))
-    units = np.array([1 / gyration if n in _SPINS else 1.0 for n in names])
-    speed = float(np.abs(velocities / units).max(initial=0.0))
-    law_sizes = np.abs(matrix * units).max(axis=1) * speed
-    residuals, coefficients = matrix @ velocities, matrix[:, is_unknown] * units[is_unknown]
-    alone = [*missed]
-    for i, law in enumerate(laws):
-        residual = float(abs(residuals[i]))
-        if law_sizes[i] and residual > ROUNDING * law_sizes[i]:
-            largest = float(np.abs(matrix[i] * velocities).max(initial=0.0))
-            if np.abs(coefficients[i]).max(initial=0.0) <= 1e-12 * law_sizes[i] / speed:
-                given, present = _coefficient(law, values, geometry, velocities)
-                alone.append(
-                    MissedLaw(law, _MEASURED_AS[law], residual, residual / largest, given, present)
-                )
-    return tuple(alone) or _missed_together(laws, residuals, coefficients, law_sizes, speed)
+
+    def with_determined_velocities(self) -> dict[str, float]:
+        """Return the values with those velocities that the laws determine."""
+        if not self.is_unknown.any() or not self.speed:
+            return self.values
+        sizes = np.where(self.sizes > 0, self.sizes, 1.0)
+        matrix = self.coefficients * self.speed / sizes[:, None]
+        inverse = np.linalg.pinv(matrix, rcond=1e-10)
+        found = -inverse @ (self.residuals / sizes) * self.speed * self.units[self.is_unknown]
+        is_determined = np.abs(inverse @ matrix - np.eye(matrix.shape[1])).max(axis=1) < 1e-9
+        names = [n for n, is_unknown in zip(_MOTION, self.is_unknown, strict=True) if is_unknown]
+        rows = zip(names, found, is_determined, strict=True)
+        return self.values | {name: float(x) for name, x, known in rows if known}
+
+
+def _tested_quantities(
+    known: Mapping[str, float], values: Mapping[str, float], laws: _KnownLaws
+) -> list[tuple[str, float, float, float]]:
+    """Return the known quantities whose velocities are all among ``values``, as they are given and
+    as the velocities give them, and the largest term."""
+    state = State.of_known({name: np.float64(x) for name, x in values.items()})
+    state.here = laws.geometry
+    tested = []
+    for name in QUANTITIES:
+        if name not in known or {*SPEEDS.get(name, ())} & {*laws.values} - {*known}:
+            continue  # the components were computed from it
+        present = float(np.real(state[name]))
+        if math.isfinite(present):
+            # the loss is a difference of two energies
+            largest = float(np.real(state.initial_energy)) if name == "EL" else abs(present)
+            largest = max(largest, abs(known[name]), 1.0 if name == "LOSS" else 0.0)
+            tested.append((name, known[name], present, largest))
+    return tested
 
 
 def _missed_quantities(
-    known: Mapping[str, float], values: Mapping[str, float], geometry: Any
-) -> tuple[MissedLaw, ...]:
-    """Return the known values that contradict the velocities they follow from, where these are all
-    known."""
-    state = State.of_known({name: np.float64(x) for name, x in values.items()})
-    state.here = geometry
-    contradictions = []
-    for name in QUANTITIES:
-        if name not in known or {*SPEEDS.get(name, ())} & {*values} - {*known}:
-            continue  # the components were computed from it
-        given, present = known[name], float(np.real(state[name]))
-        # the loss is a difference of two energies
-        largest = float(np.real(state.initial_energy)) if name == "EL" else abs(present)
-        largest = max(largest, abs(given), 1.0 if name == "LOSS" else 0.0)
+    known: Mapping[str, float], values: Mapping[str, float], laws: _KnownLaws
+) -> list[MissedLaw]:
+    """Return the known quantities that contradict the velocities ``values``, and changes of
+    velocity that contradict momentum."""
+    missed = []
+    for name, given, present, largest in _tested_quantities(known, values, laws):
         deviation = abs(present - given)
-        if math.isfinite(deviation) and deviation > ROUNDING * largest:
-            contradictions.append(
-                MissedLaw(name, name, deviation, deviation / largest, given, present)
-            )
-    return tuple(contradictions)
+        if deviation > ROUNDING * largest:
+            missed.append(MissedLaw(name, name, deviation, deviation / largest, given, present))
+    if {"DVA", "DVB"} <= {*known}:
+        impulses = [known["M" + vehicle] * known["DV" + vehicle] for vehicle in "AB"]
+        deviation, largest = abs(impulses[0] - impulses[1]), max(impulses)
+        if math.isfinite(largest) and deviation > ROUNDING * largest:
+            missed.append(MissedLaw("changes", "PN", deviation, deviation / largest))
+    return missed
 
 
-def _missed_together(
-    laws: list[str], residuals: Floats, coefficients: Floats, sizes: Floats, speed: float
-) -> tuple[MissedLaw, ...]:
+def _missed_together(known: _KnownLaws) -> tuple[MissedLaw, ...]:
     """Return the smallest set of laws that cannot hold together, each with its residual where the
     others of the set hold."""
-    if not speed or not coefficients.shape[1]:
+    if not known.speed or not known.is_unknown.any():
         return ()
-    units = np.where(sizes > 0, sizes, 1.0)
-    matrix, right = coefficients * speed / units[:, None], residuals / units
+    laws = known.names
+    units = np.where(known.sizes > 0, known.sizes, 1.0)
+    matrix, right = known.coefficients * known.speed / units[:, None], known.residuals / units
 
     def residual_given(law: int, rest: list[int]) -> float:
         x = -np.linalg.pinv(matrix[rest], rcond=1e-10) @ right[rest]

@@ -98,7 +98,8 @@ def is_admissible(solution: Reconstruction) -> bool:
 def counts(solution: Reconstruction) -> bool:
     """Return True if an impact found is possible and, unless it follows from exact values,
     admissible, as far as it is determined. Friction that exact values need is remarked upon."""
-    is_judged = solution.system.observations and not solution.undetermined
+    is_measured = solution.system.observations and not solution.assumed
+    is_judged = is_measured and not solution.undetermined
     return not solution.impossible and (not is_judged or is_admissible(solution))
 
 
@@ -109,8 +110,8 @@ def with_nearest(
     first, if it agrees with what is known, and else beside each. Exact values cannot move: the
     nearest impact is sought with the same tolerance on all known velocities. ``count``: of random
     starts."""
-    exact = solutions[0].system
-    is_acceptable = is_admissible if exact.observations else counts
+    exact, assumed = solutions[0].system, solutions[0].assumed
+    is_acceptable = is_admissible if exact.observations and not assumed else counts
     if any(solution.undetermined or is_acceptable(solution) for solution in solutions):
         return solutions
     system = exact if exact.observations else exact.with_equal_tolerances()
@@ -118,11 +119,12 @@ def with_nearest(
     found = find_nearest(system, np.concatenate([system.random_starts(rng, count), *roots], axis=1))
     if found is None:
         return solutions
-    nearest = replace(describe(found.system, found.x, system is not exact), limited=found.borders)
+    assumed |= system is not exact
+    nearest = replace(describe(found.system, found.x, assumed), limited=found.borders)
     if nearest.undetermined or nearest.impossible:
         return solutions
     agrees = nearest.is_within_limits or not nearest.evidence.contradictory
-    if system is exact and agrees:
+    if agrees and not assumed:
         return [nearest, *solutions]
     return [replace(solution, nearest=nearest) for solution in solutions]
 
@@ -181,7 +183,8 @@ def _amount(border: Border, state: State, units: Units) -> str:
     value = number(_number(state[border.name]), 3)
     if border.name in RANGES:
         low, high = RANGES[border.name]
-        return f"{border.name} is {value}, not from {low:g} to {high:g}"
+        reason = " (1, no moment at the contact, counts where it is given)" * (border.name == "EM")
+        return f"{border.name} is {value}, not from {low:g} to {high:g}{reason}"
     ends = [number(_number(end), 3) for end in friction_limits(state)]
     return f"P_t/P_n is {value}, not from {ends[0]} to {ends[1]}"
 

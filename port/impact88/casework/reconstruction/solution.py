@@ -19,7 +19,7 @@ from ...mechanics.state import COURSES, DIRECTIONS, FORCES, QUANTITIES, SPEEDS, 
 from ...names import COEFFICIENTS, FINAL_STATE, VELOCITIES
 from ...status import IMPOSSIBLE, Status
 from .evidence import Evidence, weigh
-from .laws import missed_laws
+from .laws import missed_laws, tested_laws
 from .leastsquares import polish, pseudo_inverse
 from .system import SPINS, System
 from .unknowns import UnsolvableError, coefficient_to_blame, mu_to_type
@@ -204,9 +204,18 @@ class Reconstruction:
     @property
     def is_within_limits(self) -> bool:
         """True if the adjusted values lie within all limits, normal ones within `SIGMAS`."""
-        known = self.system.known
-        limits = [(item.adjusted, *known[item.name].limits(SIGMAS)) for item in self.adjusted]
-        return all(low <= value <= high for value, low, high in limits)
+        return not self.beyond_limits
+
+    @property
+    def beyond_limits(self) -> tuple[Adjusted, ...]:
+        """The adjusted values that lie beyond their limits, normal ones beyond `SIGMAS`."""
+        beyond = []
+        for item in self.adjusted:
+            low, high = self.system.known[item.name].limits(SIGMAS)
+            room = RESIDUAL_TOL * item.tolerance
+            if not low - room <= item.adjusted <= high + room:
+                beyond.append(item)
+        return tuple(beyond)
 
     @cached_property
     def backwards(self) -> tuple[str, ...]:
@@ -360,8 +369,13 @@ class Reconstruction:
             )
             for item in self.adjusted
         }
-        laws = missed_laws(self.system.nominal) if self.assumed else ()
-        return weigh(self.squares, self.redundancy, values, inside, self.assumed, laws)
+        nominal = self.system.nominal
+        laws = missed_laws(nominal) if self.assumed else ()
+        tested = () if values else tested_laws(nominal)
+        speed = float(self.system.speed)
+        return weigh(
+            self.squares, self.redundancy, values, inside, self.assumed, laws, tested, speed
+        )
 
     @within_doubles
     def responses(self, names: Sequence[str]) -> Floats:

@@ -141,12 +141,22 @@ class System:
 
     def with_equal_tolerances(self) -> "System":
         """Return the equations of exact values with a standard deviation of one unit on each known
-        velocity and speed; a spin's unit is one of velocity over the radius of gyration."""
-        units = {"length/time": 1.0, "rad/time": float(1 / self.gyration)}
+        velocity. What one unit adds at the typical speed is that of a spin, over the radius of
+        gyration, and of an energy; across a course it turns that of its vehicle."""
+        turning = np.degrees(1.0)
+        deviations = {
+            "length/time": 1.0,
+            "rad/time": float(1 / self.gyration),
+            quantity("EL").unit: float(self.sizes[quantity("EL").unit] / self.speed),
+            quantity("LOSS").unit: float(self.sizes[quantity("LOSS").unit] / self.speed),
+        }
         known = dict(self.known)
         for name, item in self.known.items():
-            if quantity(name).unit in units:
-                deviation = units[quantity(name).unit]
+            deviation = deviations.get(quantity(name).unit)
+            if name in DIRECTIONS:
+                speed = self.nominal.get(COURSES.get(name, ""), self.speed)
+                deviation = float(turning / speed) if speed else None
+            if deviation is not None:
                 known[name] = Uncertain("normal", item.nominal, -np.inf, np.inf, deviation)
         return System(known, adjusted=True, progress=self.progress)
 

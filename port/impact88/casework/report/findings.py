@@ -536,6 +536,8 @@ def _summary(found: Findings, case: Case, units: System) -> list[str]:
             "What is called sd is one standard deviation, 90 % holds so many of the draws; both "
             "follow from the limits given with the inputs and cover no other error"
         )
+    elif found.adjusted:
+        sure = "The limits given leave these numbers no spread that could be computed"
     else:
         sure = "No limits were given with the inputs, so how sure this is was not computed"
     return [*paragraphs, f"{answer}{sure}."]

@@ -19,7 +19,8 @@ examples:
       --set MU='85.18 %' --set UX=-39.95 --set UY=0 --set WA=0     IIHS test CF11002
   impact88 chapter barrier rebound.toml --set UX= --set UY= --set WA= --json
 
-exit status: 0 solved, or in part; 1 NO IMPACT that physics allows agrees; 2 bad input
+exit status: 0 solved, or in part; 1 NO IMPACT that physics allows agrees,
+or known values contradict one another; 2 bad input
 """
 
 from ...casework.chapter.barrier import BARRIER, BARRIER_AFTER

@@ -53,8 +53,8 @@ examples:
   impact88 reconstruct after.toml --contact-time .15 --json
 
 exit status: 0 solved, or in part: NOT FOUND names the rest; 1 NO IMPACT that physics allows agrees,
-or no velocity before the impact was found; 2 bad input, or a result of --outputs or --write-scene
-that is not determined
+known values contradict one another, or no velocity before the impact was found; 2 bad input, or a
+result of --outputs or --write-scene that is not determined
 """
 
 import sys

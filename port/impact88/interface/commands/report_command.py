@@ -20,8 +20,8 @@ examples:
   impact88 report after.toml -o case.html
   impact88 report crash.toml -o case.html --set MU=.5    a value changed
 
-exit status: 0 written; 1 written, but NO IMPACT that physics allows agrees, or no velocity before
-the impact was found; 2 bad input
+exit status: 0 written; 1 written, but NO IMPACT that physics allows agrees, known values contradict
+one another, or no velocity before the impact was found; 2 bad input
 """
 
 from ...collision.case import Case
