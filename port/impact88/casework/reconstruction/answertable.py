@@ -109,7 +109,7 @@ def _verdicts(answer: Answer, units: System) -> Iterator[tuple[str, str]]:
     if answer.impossible and answer.evidence.verdict == AGREE:
         verdict = f"in an impact that physics forbids, {verdict}"
     beyond = [_beyond(item, answer, units) for item in answer.solution.beyond_limits]
-    if beyond and not answer.solution.assumed:
+    if beyond and not (answer.solution.assumed or answer.evidence.contradictory):
         verdict += f". The best fit lies beyond limits: {join_words(beyond)}"
     yield "EVIDENCE", verdict
     if is_broken and answer.evidence.contradictory:
