@@ -131,7 +131,7 @@ def digits_that_say_nothing(rows: Table) -> Table:
 
 
 def a_number_off(rows: Table) -> Table:
-    return [{**rows[0], "WBF": repr(float(rows[0]["WBF"]) * (1 + 1e-11))}, *rows[1:]]
+    return [{**rows[0], "WBF": repr(float(rows[0]["WBF"]) * (1 + 1e-9))}, *rows[1:]]
 
 
 WRONG: dict[Callable[[Table], Table], str] = {

@@ -2,16 +2,16 @@
 
 *To the double*: within the rounding errors of the best programs. *To the digits claimed*: the
 exact value rounded to the digits it is written with. *As elimination does*: within the rounding
-errors of a correct program in any of the spellings (`tolerance`), result by result. Where rounding
-decides which way the contact slides, either way counts as correct. Where rounding may leave no
-correct digit, or too few are written, a number that shares none with ours is not compared.
+errors of a correct program in any of the spellings (`tolerance`); or of one by trial impulses, as
+long as nine digits are left, or it loses no more than a few times what elimination may. A result
+is graded by itself: no other result or row has a part in it. Where rounding decides which way the
+contact slides, either way counts as correct. Where rounding may leave less than two correct digits,
+or too few are written, a number that shares none with ours is not compared.
 """
 
 import re
-from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,6 +72,15 @@ _PLAIN_FACTOR = 30.0  # of the best bound, in ordinary scenes: what elimination 
 INITIAL_VELOCITIES = ("UX", "UY", "VX", "VY", "WA", "WB")
 """In the order of the final ones."""
 NO_DIGIT = 0.1  # relative difference from which a result shares no digit with ours
+_NEARLY_NO_DIGIT = 0.01  # the same of a difference beyond the digits written
+MAX_SLIGHT_DIFFERENCE = 1e-10
+"""Relative difference up to which a result agrees but for its last digits: half of what 32 bits of
+mantissa leave, a twentieth of the effect of 3.14159265 for pi."""
+_MAX_TRIAL_FACTOR = (
+    4.0  # of what elimination loses: what trial impulses may lose beyond nine digits
+)
+_MAX_EQUATION_SLACK = 1e-6  # relative to their results: what is off by more violates an equation
+_MIN_EQUATION_SLACK = 1e-9  # the same of a row off by more than rounding: of programs of their own
 
 
 class ComparedRows(NamedTuple):
@@ -81,8 +90,8 @@ class ComparedRows(NamedTuple):
     the other program's velocities of the row before, and the row's number (`COLUMNS`);
     ``values``: the other program's results; ``units``: of the last digit written (0 for binary
     numbers); ``ours``: our results; ``sizes``: errors are relative to them; ``condition``: COND.
-    ``tight``, ``loose``: error bounds in double precision of the best programs, and of a correct
-    one in any spelling (equal to the former where that was enough); ``per_unit``: the largest
+    ``tight``, ``loose``: error bounds in double precision of the best programs, and of any correct
+    one (equal to the former where that was enough); ``per_unit``: the largest
     relative ``loose`` of a row's velocities per unit roundoff; ``no_digit``: relative difference
     from which a number shares no digit with ours.
     """
@@ -129,7 +138,10 @@ class ComparedRows(NamedTuple):
             # an infinite number is an answer, and no finite one's
             absent = np.isnan(self.values) | ~np.isfinite(self.ours)
             differ = off > half_units + self.loose
-            lost = relative > self.no_digit
+            beyond = (off - half_units) / measure
+            lost = (relative > self.no_digit) | (
+                beyond > _NEARLY_NO_DIGIT / NO_DIGIT * self.no_digit
+            )
             within = (absent, differ, lost, off <= self.tight, off <= half_units + self.tight)
             grades = np.select(within, (ABSENT, DIFFER, LOST, DOUBLE, DIGITS), ELIMINATION)
             return grades, relative
@@ -207,7 +219,14 @@ def _compare_scenes(
         bounds = tolerance.largest_error_bounds(
             part_scene, part_solved, part_scales, part_bounds, theirs
         )
-        loose[:, rows] = [bounds[name] for name in theirs]
+        trials = tolerance.trial_bounds(part_scene, part_solved)
+        for place, name in enumerate(theirs):
+            most = np.fmax(
+                tolerance.ORDINARY_BOUND * part_scales[name], _MAX_TRIAL_FACTOR * bounds[name]
+            )
+            allowed = np.fmax(np.fmin(trials[name], most), bounds[name])
+            is_allowed = off[place, rows] <= allowed
+            loose[place, rows] = np.where(is_allowed, allowed, bounds[name])
         relative = [bounds[name] / part_scales[name] for name in FINAL_VELOCITIES]
         per_unit[rows] = np.max(np.where(np.isfinite(relative), relative, 0.0), axis=0)
     case = ComparedRows(
@@ -225,69 +244,6 @@ def _compare_scenes(
         no_digit=np.full(len(values[0]), NO_DIGIT if rtol is None else np.inf),
     )
     return case, np.flatnonzero(open_rows)
-
-
-# of a program whose equations lose digits to trial impulses
-_MIN_NOISY_ROWS = 3
-_TRIAL_MARGIN = 8.0
-_MAX_NOISE = 1e-8  # relative difference of a row in an ordinary scene
-MAX_SLIGHT_DIFFERENCE = 1e-10
-"""Relative difference up to which a row agrees but for its last digits, which is given no cause:
-half of what 32 bits of mantissa leave, a twentieth of the effect of 3.14159265 for pi."""
-
-
-@dataclass
-class TrialNoise:
-    """Rows that disagree by no more than a correct program loses that finds its equations by trial
-    impulses: a program's, if it has several and none that agrees as closely is off by more.
-
-    ``rows``: for each row that disagrees, whether it is one, and its largest relative difference
-    and condition; ``cells``: results of such rows that disagree.
-    """
-
-    rows: list[tuple[bool, float, float]] = field(default_factory=list)
-    cells: Counter[str] = field(default_factory=Counter)
-    has_others: bool = False
-
-    @property
-    def count(self) -> int:
-        """Number of such rows, 0 where the program is none that loses so much."""
-        count = sum(noise for noise, *_ in self.rows)
-        return 0 if self.has_others or count < _MIN_NOISY_ROWS else count
-
-    def add(
-        self,
-        case: ComparedRows,
-        places: NDArray[np.intp],
-        grades: NDArray[np.intp],
-        relative: Floats,
-    ) -> None:
-        """Add rows of a case that disagree."""
-        largest = np.where(grades == DIFFER, relative, 0.0).max(0)[places]
-        noise = np.zeros(places.size, bool)
-        usual = tolerance.is_ordinary(case.columns, case.condition)[places]
-        near = np.flatnonzero((largest <= _MAX_NOISE) | ~usual)
-        if near.size and not self.has_others:
-            noise[near] = _is_trial_noise(case.select_rows(places[near]))
-            self.has_others = bool((~noise & (largest <= MAX_SLIGHT_DIFFERENCE)).any())
-        rows = zip(noise.tolist(), largest.tolist(), case.condition[places].tolist(), strict=True)
-        self.rows += rows
-        differing = (grades[:, places[noise]] == DIFFER).sum(1).tolist()
-        self.cells.update(dict(zip(case.names, differing, strict=True)))
-
-
-@np.errstate(all="ignore")
-def _is_trial_noise(case: ComparedRows) -> Bools:
-    """Return the rows that are off by no more than a correct program may lose that finds its
-    equations by trial impulses."""
-    scene = {name: case.columns[name] for name in SCENE}
-    ours = dict(zip(case.names, case.ours, strict=True))
-    bounds = tolerance.trial_bounds(scene, {**solve(scene), **ours})
-    # their size and the order of operations are the program's own
-    limits = _TRIAL_MARGIN * np.stack([bounds[name] for name in case.names])
-    half_units = case.units * HALF
-    off = np.abs(case.values - case.ours)
-    return np.asarray(((off <= half_units + case.loose) | (off <= half_units + limits)).all(0))
 
 
 def read_theirs(rows: Rows, name: str, units: TableUnits) -> tuple[Floats, Floats]:
@@ -363,25 +319,31 @@ def violated_equations(case: ComparedRows) -> dict[str, Bools]:
     Empty when the table lacks a final velocity (the spins of point masses are those before the
     impact, given or not). The equations are evaluated on the other program's results, in a spelling
     in which none presupposes another. One is violated when its sides differ by more than the digits
-    written and rounding allow; a missing number violates nothing.
+    written and rounding allow: that of ours in a row whose velocities agree, else that of theirs,
+    for large bounds of ours say nothing about other numbers. A missing number violates nothing.
     """
     spelling, scene = spelling_of(A_IMPULSE), case.columns
     point = scene["M"] == 4
-    slack = case.units * 0.5 + case.loose
-    theirs = dict(zip(case.names, zip(case.values, slack, strict=True), strict=True))
+    columns = zip(case.values, case.units * 0.5, case.loose, strict=True)
+    theirs: dict[str, Any] = dict(zip(case.names, columns, strict=True))
+    is_velocity = [name in spelling.unknown for name in case.names]
+    differ = (case.grade()[0][is_velocity] == DIFFER).any(0)
     for name in ("WAF", "WBF"):
         initial = scene[name[:2]]
         if name in theirs or point.all():
-            value, tol = theirs.get(name, (initial, 0.0))
-            theirs[name] = np.where(point, initial, value), np.where(point, 0.0, tol)
+            exact = np.stack([initial, np.zeros_like(initial), np.zeros_like(initial)])
+            theirs[name] = np.where(point, exact, theirs.get(name, exact))
     if set(spelling.unknown) - theirs.keys():
         return {}
-    values, tolerances = np.stack([theirs[name] for name in spelling.unknown], 2)[..., None, :]
+    columns = np.stack([theirs[name] for name in spelling.unknown], 2)
+    values, digits, rounding = columns[..., None, :]
     matrices, rights = Run(spelling, scene).linear_systems({})
     matrix, right = matrices[0], rights[0]
     terms = matrix * values
     size = np.abs(terms).sum(2) + np.abs(right)
-    limit = (np.abs(matrix) * tolerances).sum(2) + _EQUATION_RTOL * size
+    slack = (np.abs(matrix) * rounding).sum(2) + _EQUATION_RTOL * size
+    own_slack = np.clip(slack, _MIN_EQUATION_SLACK * size, _MAX_EQUATION_SLACK * size)
+    limit = np.where(differ[:, None], own_slack, slack) + (np.abs(matrix) * digits).sum(2)
     violated = np.abs(terms.sum(2) - right) > limit
     subjects = [spelling.statements[index].subject for index in spelling.equations]
     rows = {re.findall("[0-9]+", text)[0]: violated[:, row] for row, text in enumerate(subjects)}

@@ -28,7 +28,7 @@ from ...tables.formats import FORMATS
 from ...tables.rows import BadCell, Reader, Rows
 from ...tables.table import format_of, open_reader
 from . import agreement
-from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, ComparedRows, TrialNoise
+from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, ComparedRows
 from .diagnosis import Diagnosis, TableCause, Unexplained
 from .tablehypotheses import AGREES, UNKNOWN, TableHypothesis
 from .vectors import FAILURE, FROZEN_ID
@@ -46,8 +46,8 @@ CARRIED = ("id", "class", "label", "expect", "flags", "comment")
 NO_RESULT = "no result on either side: theirs refuses, and so does the mathematics"
 NOTHING_HERE = "theirs gives numbers where the equations have no solution"
 NO_SCENE = (
-    "theirs gives numbers where the scene is none: a mass or a moment of inertia is not positive, "
-    "which a program must refuse"
+    "theirs gives numbers although a mass or a moment of inertia is not positive; "
+    "a program leaves the cells empty"
 )
 NOTHING_THERE = "theirs gives nothing where there is a result"
 REFUSED = "theirs refuses a vector of the class failure, as it may"
@@ -234,7 +234,6 @@ class Comparison:
     unknown: dict[str, str] = field(default_factory=dict)
     place: dict[str, Any] = field(default_factory=dict)
     remarks: list[str] = field(default_factory=list)
-    _trials: TrialNoise = field(default_factory=TrialNoise, init=False, repr=False)
 
     @property
     def worst(self) -> list[Row]:
@@ -391,43 +390,15 @@ def compare(
             block = compare_block(rows, scene, wanted, table_units, rtol)
             agreeing = block.agreeing[: max(0, MAX_AGREEING_KEPT - comparison.agreeing)]
             _count(block, comparison)
-            if rtol is None:
-                comparison._trials.add(block.case, block.differing, block.grades, block.relative)
             if search is not None:
                 kept = np.sort(np.concatenate([block.differing, agreeing]))
                 search.add(block.case.select_rows(kept))
     if not any(tally.compared for tally in comparison.tallies.values()):
         raise UserError("no result could be compared", where)
-    noise = comparison._trials
-    if search is not None and comparison.differing > noise.count:
+    if search is not None and comparison.differing:
         search.finish()
-    if noise.count:
-        _forgive(comparison)
-    if search is not None:
         comparison.causes.update(row.cause for row in comparison.differences)
     return comparison
-
-
-def _forgive(comparison: Comparison) -> None:
-    """Count the rows that lose no more than trial impulses do among those that agree."""
-    elimination, noise = comparison.elimination, comparison._trials
-    rows = zip(comparison.differences, noise.rows, strict=True)
-    for row, (is_noise, largest, condition) in rows:
-        if is_noise:
-            comparison.differing -= 1
-            comparison.agreeing += 1
-            elimination.rows += 1
-            if largest > elimination.worst_relative:
-                elimination.worst_row, elimination.worst_relative = row.row, float(largest)
-                elimination.worst_condition = float(condition)
-    comparison.differences = [
-        row
-        for row, (is_noise, *_) in zip(comparison.differences, noise.rows, strict=True)
-        if not is_noise
-    ]
-    for name, count in noise.cells.items():
-        comparison.tallies[name].differ -= count
-        comparison.tallies[name].elimination += count
 
 
 class _Search:

@@ -28,7 +28,6 @@ from ...messages.schemas import NUMBERS
 from ...names import FINAL_VELOCITIES, SCENE
 from ...tables.cells import TableUnits, numbers
 from ...tables.rows import Rows
-from . import agreement
 from .agreement import DIFFER, LOST, Floats
 from .compare import Block, compare_block, open_table, read_blocks, result_columns
 from .junit import Suite
@@ -359,8 +358,6 @@ class _Judge:
         self._verdicts: dict[int, Verdict] = {}
         self._rows: dict[int, list[int]] = {}  # of the table, that have a vector's id
         self._empty: set[int] = set()  # vectors without an answer
-        self._noise = agreement.TrialNoise()
-        self._noisy: list[int] = []  # the place of each of its rows
 
     def add(self, rows: Rows, units: TableUnits) -> None:
         """Judge a block's rows; those without a vector are strays."""
@@ -369,8 +366,6 @@ class _Judge:
         typed = numbers(rows, units)
         scene = {name: column[places] for name, column in self._scene.items()}
         block = compare_block(rows, scene, self._done.results, units)
-        self._noise.add(block.case, block.differing, block.grades, block.relative)
-        self._noisy += places[block.differing].tolist()
         for index, place in enumerate(places.tolist()):
             row = rows.first + index
             if place < 0:
@@ -393,11 +388,6 @@ class _Judge:
 
     def finish(self) -> None:
         """Add the verdict on every vector to the result."""
-        if self._noise.count:
-            for place, (is_noise, *_) in zip(self._noisy, self._noise.rows, strict=True):
-                verdict = self._verdicts.get(place)
-                if is_noise and verdict is not None and verdict.reason == "differs":
-                    self._verdicts[place] = verdict._replace(reason="", detail="")
         for place, rows in self._rows.items():
             if len(rows) > 1:
                 says = f"rows {', '.join(map(str, rows[:5]))}"

@@ -118,7 +118,7 @@ class Unexplained(NamedTuple):
     Parameters
     ----------
     rows, unexplained : int
-        Their number, and those that disagree without a cause.
+        Those that disagree, and those of them without a cause.
     violated : dict of str to int
         Of the latter, the rows that violate each equation.
     """
@@ -135,7 +135,7 @@ class Diagnosis:
     causes of rows, which need not be the same.
 
     ``equations``: number -> rows in which it was checked, and in which it is violated;
-    ``unexplained``: rows without a cause by kind of scene, {} where there are none; ``skipped``:
+    ``unexplained``: rows that disagree, and those without a cause, by kind of scene; ``skipped``:
     what was not looked for.
     """
 
@@ -144,7 +144,7 @@ class Diagnosis:
         self.hypotheses: list[TableHypothesis] = []
         self.skipped: list[str] = []
         self.equations: dict[str, tuple[int, int]] = {}
-        self.unexplained: dict[str, Unexplained] = {}
+        self._kinds: dict[str, Unexplained] = {}
         self._evidence: list[TableCause] = []
         self._ends = time.process_time() + MAX_SECONDS
         self._known_rows: dict[int, tuple[TableHypothesis, Bools]] = {}
@@ -183,8 +183,7 @@ class Diagnosis:
             checked_rows, violated_rows = self.equations.get(number, (0, 0))
             count = int((broken & wrong).sum())
             self.equations[number] = checked_rows + int(wrong.sum()), violated_rows + count
-        if is_open.any() or self.unexplained:
-            self._count_unexplained(case, is_open, violations)
+        self._count_unexplained(case, is_open, violations)
         differences = relative_differences(case).max(0, initial=0.0)
         for row in np.flatnonzero(is_open).tolist():
             causes[row] = describe_unexplained(
@@ -197,7 +196,7 @@ class Diagnosis:
     def _count(self, place: int, case: ComparedRows, explained: Bools, fits: Bools) -> None:
         """Count a chunk's rows for a cause: those that it explains, and those that it predicts."""
         cause, hypothesis = self._evidence[place], self.hypotheses[place]
-        disagreeing = needs_cause(case)
+        disagreeing = case.wrong
         agreeing = ~disagreeing & np.isfinite(case.ours).any(0)
         parts = dict(cause.parts)
         program = hypothesis.program
@@ -222,10 +221,16 @@ class Diagnosis:
         """The causes that explain a row, and what they explain."""
         return [cause for cause in self._evidence if cause.explains]
 
+    @property
+    def unexplained(self) -> dict[str, Unexplained]:
+        """The rows that disagree by kind of scene; {} where all have a cause."""
+        has_any = any(kind.unexplained for kind in self._kinds.values())
+        return self._kinds if has_any else {}
+
     def _count_unexplained(
         self, case: ComparedRows, is_open: Bools, violations: Mapping[str, Bools]
     ) -> None:
-        """Count the rows without a cause by kind of scene; a row counts for the first kind that it
+        """Count the rows that disagree by kind of scene; a row counts for the first kind that it
         fits."""
         g = case.columns
         bodies = np.fmin(g["MA"], g["MB"]) <= 0
@@ -238,18 +243,18 @@ class Diagnosis:
             "no moment (EM = 1)": g["EM"] == 1,
             "all other scenes": np.ones(is_open.size, bool),
         }
-        remaining = np.ones(is_open.size, bool)
+        remaining = case.wrong
         for name, rows in kinds.items():
             rows, remaining = rows & remaining, remaining & ~rows
             open_rows = rows & is_open
             if not rows.any():
                 continue
-            known_rows = self.unexplained.get(name, Unexplained(0, 0, {}))
+            known_rows = self._kinds.get(name, Unexplained(0, 0, {}))
             violated_rows = dict(known_rows.violated)
             for number, broken in violations.items():
                 if count := int((broken & open_rows).sum()):
                     violated_rows[number] = violated_rows.get(number, 0) + count
-            self.unexplained[name] = Unexplained(
+            self._kinds[name] = Unexplained(
                 known_rows.rows + int(rows.sum()),
                 known_rows.unexplained + int(open_rows.sum()),
                 violated_rows,

@@ -5,7 +5,7 @@ A program counts as correct if its results lie within the rounding errors of any
 spellings of the mechanics: a running error bound of their statements, and of eliminating their
 equations with the row's own factors (`equations.roundoff`); along any axes, and with B's velocity
 computed from A's change, or A's from B's. That by trial impulses, which loses far more, has a bound
-of its own: it counts only where a whole table looks like it. No bound takes a norm over quantities
+of its own. No bound takes a norm over quantities
 of different kinds, so none depends on the units of length and mass any more than elimination does.
 The errors of our own results are added.
 """

@@ -1,19 +1,21 @@
 """THEIRS is a table of another program's results, in any format that impact88 help solve lists: a
-row per scene, with columns named as the scene's (impact88 scene lists them; M may be missing) and
-any of the results: VAX VAY VBX VBY WAF WBF, contact velocities XA YA XB YB before and XAF YAF XBF
-YBF after, VC VS KI KF LOSS DVA DVB PN PT PM MUP MUC. Names may be in small letters and have units
-(VAX [mph]); JSON may hold inputs and outputs in objects of their own. A note on standard error
-says how the table was read. Each result agrees
+row per scene, with columns named as the scene's (impact88 scene lists them; M may be missing), in
+any order, and any of the results: VAX VAY VBX VBY WAF WBF, contact velocities XA YA XB YB before
+and XAF YAF XBF YBF after, VC VS KI KF LOSS ELN ELT ELM DVA DVB EESA EESB PN PT PM MUP MUC. Names
+may be in small letters and have units (VAX [mph]); JSON may hold inputs and outputs in objects of
+their own. A note on standard error says how the table was read. Each result agrees
 
   to the double       within the rounding errors of the best programs in double precision
   to digits claimed   to all digits it is written with
-  as elimination      as closely as plain elimination in double precision can in that scene
+  as elimination      as closely as a correct but less careful program in double precision can in
+                      that scene: by elimination, or by trial impulses beside large velocities
 
 or it does not. For rows that disagree, compare tries some 50,000 small errors, in eleven ways of
 writing the equations, conventions, other laws of friction and restitution, and constants, singly
 and in pairs. It says in a sentence which of them predicts the numbers, those that agree as well,
-and under which condition on the scene ("where the closing speed is below 10"). It looks at 400 rows
-that disagree and at as many that agree, for about 15 seconds, and says what it did not look for.
+and under which condition on the scene ("where the closing speed is below 10"). It finds causes in
+400 rows that disagree and as many that agree, in about 15 seconds, then counts in all rows; and it
+says what it did not look for.
 What could not be compared is listed on standard error; rows that theirs refuses where there is
 no result, or that are vectors of the class failure, are counted as refused.
 
@@ -220,7 +222,7 @@ def _lines(comparison: Comparison) -> Iterator[str]:
     loose = comparison.elimination
     if loose.rows:
         lost = max(0, round(math.log10(max(loose.worst_relative, DOUBLE) / DOUBLE)))
-        yield f"\n{loose.rows} rows agree only as closely as plain elimination in double can there;"
+        yield f"\n{loose.rows} rows agree only as a correct but less careful program's may there;"
         yield (
             f"the worst, row {loose.worst_row}, has lost {lost} of 16 digits (the best of programs "
             f"has condition {loose.worst_condition:.2g} there)"
@@ -234,7 +236,7 @@ def _lines(comparison: Comparison) -> Iterator[str]:
         for what in comparison.skipped:
             yield f"\nnot looked for: {what}"
         if comparison.unexplained:
-            yield "\nrows without a cause, by kind of scene:"
+            yield "\nrows without a cause, of those that disagree, by kind of scene:"
             for name, kind in comparison.unexplained.items():
                 laws = ", ".join(kind.violated)
                 says = f"; Equations {laws} violated" if laws else ""

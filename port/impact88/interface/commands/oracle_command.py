@@ -58,8 +58,8 @@ ARGUMENTS = (
     options.writes(
         "--kit",
         "DIR",
-        "write vectors, conventions, a README and programs that answer them, in five languages "
-        "and a spreadsheet, into a folder or one archive (KIT.zip); the frozen set, unless "
+        "write vectors, conventions, a README and programs that answer them, in C, in Python and "
+        "as a spreadsheet, into a folder or one archive (KIT.zip); the frozen set, unless "
         "--vectors or --seed say otherwise",
     ),
     options.flag(
