@@ -563,6 +563,11 @@ def test_an_error_is_detected_below_the_routines_that_lead_to_it():
     assert stack_at_error("PRINT CHR$(-1)") == stack_at_error("PRINT CHR$(256)") - 2
     assert stack_at_error("PRINT CHR$(32768)") == stack_at_error("PRINT CHR$(256)") - 2
     assert stack_at_error("PRINT CHR$(32767)") == stack_at_error("PRINT CHR$(256)")
+    # STR$ calls CHKNUM, DEF calls FNC, which calls SYNCHR as DEF itself does
+    assert stack_at_error('PRINT STR$("A")') == stack_at_error("PRINT LOG(0)") - 2
+    assert stack_at_error("DEF A") == stack_at_error("DEF FN A(X)=X") - 2
+    # READ and LET both call PTRGET
+    assert stack_at_error("READ 1") == stack_at_error("LET 1=2")
     # statements are called by one JSR
     assert stack_at_error("CONT") == stack_at_error("GOTO 999") == 0xF8 - 2
 

@@ -37,9 +37,6 @@ Floats = NDArray[np.float64]
 Array = NDArray[Any]
 Branches = NDArray[np.int64]
 
-# Least ratio of how the laws depend on the directions of impulses that coefficients stand for; with
-# less, they are no coordinates
-LEAST_DEPENDENCE = 1e-6
 RANK_TOL = 1e-10  # singular values below, relative to the largest, count as zero
 
 OTHER_SIGN = 1  # bit of a branch: friction with the sign opposite to the first impact's
@@ -163,7 +160,7 @@ class Coordinates:
         rows = (above - values[:, None, None] * below)[:, :-1, 0]
         is_impulse = np.array([n in IMPULSES for n in self.unknown])
         _, sizes, vt = np.linalg.svd((rows * is_impulse) @ self.basis.T)
-        if count <= len(sizes) and sizes[-1] > LEAST_DEPENDENCE * np.abs(rows).max():
+        if count <= len(sizes) and sizes[-1] > RANK_TOL * np.abs(rows).max():
             self.directions = vt[:count] @ self.basis
             self.basis = unique_basis(vt[count:]) @ self.basis
             return

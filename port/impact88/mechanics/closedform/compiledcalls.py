@@ -53,7 +53,7 @@ class Call:
         self.column_of_number = self.numbers.ctypes.data + 8 * np.arange(len(COLUMNS))
         self.block[-2:] = _LIMITS.ctypes.data, CIRCLE
 
-    def run(self, results: Any, count: int, threads: int | None = 1) -> None:
+    def run(self, results: Any, count: int, threads: int | None) -> None:
         """Compute ``count`` scenes and write to ``results``, addresses in the order wanted."""
         self.results[self.places] = results
         solve = native.library.solve_impacts
@@ -143,4 +143,4 @@ def solve_columns(
     call = Call(wanted)
     call.columns[:] = [column.ctypes.data for column in columns]
     call.steps[:] = [len(column) > 1 for column in columns]
-    call.run(results, count)
+    call.run(results, count, 1)

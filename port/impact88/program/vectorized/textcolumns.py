@@ -142,14 +142,13 @@ def _write_with_arrays(x: Reals) -> Strings:
     errors = BlockErrors(v.size)
     v = np.where(small, (_BILLION * Reals(v, errors)).v, v)
     d = np.where(small, -9, 0)
-    while (too_large := (order := compare(_NINE_DIGITS, Reals(v, errors))) > 0).any():
+    while (too_large := compare(_NINE_DIGITS, Reals(v, errors)) > 0).any():
         v = np.where(too_large, over_ten(Reals(v, errors)).v, v)
         d += too_large
-    rounds = nonzero & (order != 0)
-    while (too_small := rounds & (compare(_EIGHT_DIGITS, Reals(v, errors)) <= 0)).any():
+    while (too_small := nonzero & (compare(_EIGHT_DIGITS, Reals(v, errors)) <= 0)).any():
         v = np.where(too_small, times_ten(Reals(v, errors)).v, v)
         d -= too_small
-    v = np.where(rounds, (_HALF + Reals(v, errors)).v, v)
+    v = np.where(nonzero, (_HALF + Reals(v, errors)).v, v)
     signs = np.where(x.v < 0, "-", "").tolist()
     texts = [
         scalar.lay_out(sign, str(int(nine)), power) if nine else "0"
