@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .ascent import CONSTRAINT_TOL, SearchProblem, climb, excess, replace_nonfinite
-from .effort import granted
+from .effort import CHUNK, granted
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -19,7 +19,6 @@ Numbers = NDArray[np.intp]
 
 MIN_GAIN = 1e-10  # of a function's range: a search stops below
 IMPROVEMENT_TOL = 1e-4  # of a function's range: a smaller improvement does not count
-CHUNK = 1 << 13  # points evaluated at a time, bounds the memory
 
 
 class Found(NamedTuple):

@@ -5,6 +5,8 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import NamedTuple
 
+CHUNK = 1 << 13  # points evaluated at a time, bounds the memory
+
 
 class Effort(NamedTuple):
     """Limits of a search; the defaults are those that answers are found with."""

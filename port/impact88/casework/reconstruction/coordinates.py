@@ -29,6 +29,7 @@ from ...mechanics.posed import absent_results
 from ...mechanics.state import COURSES, CRUSH, DIRECTIONS, ENERGIES, SPEEDS, State
 from ...names import COEFFICIENTS, IMPULSES, PIVOT, VELOCITIES
 from .admissible import LARGEST_FRICTION, RANGES
+from .leastsquares import RANK_TOL
 from .solution import Reconstruction
 from .system import COMPLEX_STEP, System
 from .unknowns import TIE
@@ -37,7 +38,6 @@ Floats = NDArray[np.float64]
 Array = NDArray[Any]
 Branches = NDArray[np.int64]
 
-RANK_TOL = 1e-10  # singular values below, relative to the largest, count as zero
 
 OTHER_SIGN = 1  # bit of a branch: friction with the sign opposite to the first impact's
 OTHER_ROOT = 2  # bit of a branch: the lower root of the quadratic equation

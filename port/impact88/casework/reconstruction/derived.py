@@ -11,8 +11,7 @@ from ...names import CHAPTER, RESULTS, SCENE, VELOCITY, quantity
 # A value smaller than this fraction of the largest of its unit is rounding, and printed as 0. Twice
 # as much prints the same for 100 solutions.
 NOISE = 1e-9
-ROUNDING = 1e-13  # fraction below which a value is rounding, and 0, in JSON
-_COEFFICIENT_NOISE = 1e-13  # a coefficient below is rounding
+ROUNDING = 1e-13  # a coefficient, or a fraction of a value in JSON, below is rounding, and 0
 _ORDER = (*SCENE, *RESULTS, *CHAPTER)
 # Quantities that a rigid barrier does not have
 _NOT_OF_BARRIERS = (*(name for name in _ORDER if "B" in name), "VX", "VY")
@@ -58,7 +57,7 @@ def without_noise(
         if math.isfinite(value):
             unit = quantity(name).unit
             largest[unit] = max(abs(value), largest.get(unit, 0.0))
-    largest["1"] = _COEFFICIENT_NOISE / noise  # pure numbers have no common size
+    largest["1"] = ROUNDING / noise  # pure numbers have no common size
     radii = [
         math.sqrt(values[inertia] / values[mass])
         for inertia, mass in (("IA", "MA"), ("IB", "MB"))

@@ -16,7 +16,7 @@ from ...collision.geometry import GEOMETRY
 from ...collision.uncertain import Uncertain
 from .laws import describe_laws, missed_laws
 from .leastsquares import PENALTIES, descend, polish, pseudo_inverse
-from .nearest import with_nearest
+from .nearest import CANDIDATE_TOL, DUPLICATE_TOL, with_nearest
 from .quadrics import MAX_EQUATIONS, Paths, follow_paths, quadratic_equations
 from .solution import RESIDUAL_TOL, Reconstruction, describe, invariants
 from .system import PARAMETERS, System
@@ -32,8 +32,6 @@ FIT_STARTS = 60  # through all penalties, and as many through all but the first
 FEW_STARTS = 12  # where all lead to an impact, or none does
 MAX_OMITTED_SETS = 8  # sets of redundant measurements left out to find starts of a fit
 DISTINCT_TOL = 1e-6  # impacts whose scaled variables differ by less are the same
-DUPLICATE_TOL = 1e-5  # of end points closer than this one is polished
-CANDIDATE_TOL = 1e-3  # largest scaled residual of conditions where Newton's method is started
 MAX_OPEN_ENDS = 8  # end points polished where something is undetermined
 MAX_FAILURES = 12  # ends near which Newton's method finds no minimum
 MAX_SQUARES_RATIO = 4.0  # impacts with up to this many times the least sum of squares are reported

@@ -22,6 +22,7 @@ from ...collision.geometry import GEOMETRY
 from ...collision.uncertain import Uncertain
 from ...mechanics.state import BARRIER_SPEEDS, CRUSH, DIRECTIONS, SPEEDS, State
 from ...names import COEFFICIENTS, VELOCITIES
+from ..optimization.effort import CHUNK
 from .admissible import FRICTION, LAWS, Admissible, friction_limits
 from .coordinates import OTHER_ROOT, Branches, Coordinates
 from .sampler import Proposal, Sample, sample
@@ -34,7 +35,6 @@ Flags = NDArray[np.bool_]
 Turned = tuple[Floats, Branches, Floats]
 Progress = Callable[[int], object]
 
-CHUNK = 1 << 13  # impacts at a time, bounds the memory
 MIN_SIZE = 400  # effective draws; with fewer there is no answer
 
 # The proposals
@@ -51,11 +51,7 @@ LIMIT_TOL = 1e-9  # a value beyond a limit by less, in half-widths, is at it
 NARROW = 1e-3
 NARROWER = 0.05  # in bounds, in these standard deviations; one draw in 25 is as near
 
-# Rank decisions
-# Least ratio of the smallest singular value to the largest, of a Jacobian with columns of length 1,
-# where everything is determined
-DETERMINED_TOL = 1e-9
-# Points tried for this test, each at half the distance from the solution, until the quadratic
+# Points tried for a test of rank, each at half the distance from the solution, until the quadratic
 # condition has a solution
 MAX_NEIGHBOURS = 12
 
@@ -120,7 +116,7 @@ class Posterior:
         sizes = np.linalg.norm(slopes, axis=0)
         units = np.where(sizes > 0, sizes, 1.0)
         _, values, vt = np.linalg.svd(slopes / units)
-        rank = int((values > DETERMINED_TOL * values.max(initial=0.0)).sum())
+        rank = int((values > NULL_TOL * values.max(initial=0.0)).sum())
         open_parts = np.abs((velocities / units) @ vt[rank:].T).max(axis=1, initial=0.0)
         is_open = open_parts > NULL_TOL * np.abs(velocities / units).max(axis=1, initial=0.0)
         return not is_open.any()

@@ -17,7 +17,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..optimization.effort import granted
+from ..optimization.effort import CHUNK, granted
 
 Floats = NDArray[np.float64]
 Branches = NDArray[np.int64]
@@ -28,21 +28,15 @@ PROPOSAL_FACTOR = 12  # proposals per particle, so that thin parts of the distri
 ACCEPTED_MOVES = 4.0
 MAX_MOVES = 24
 MOVES_ALIKE = 4  # moves before proposals are fitted anew
-ENOUGH = 1000  # effective draws of every coordinate; with fewer, moves go on
-MAX_BURN_INS = 6
 THINNING = 2  # moves between one set of draws and the next
-MAX_STAGES = 80  # hardenings of the limits; if these do not suffice, no impact lies within limits
+MAX_STAGES = 25  # hardenings of the limits; if these do not suffice, no impact lies within limits
 MIN_EFFECTIVE = 0.5  # fraction of particles that stay effective from stage to stage
-MAX_HARDNESS = 40.0  # logarithm of the hardness where limits count as hard
-_CHUNK = 1 << 13  # points at a time, bounds the memory
 DEGREES_OF_FREEDOM = 4.0  # of the proposals, Student's t
 # Independent proposals: Student's t about clusters of the particles, and a broad one about all
 CLUSTERS = 8  # on each branch
 CLUSTER_ROUNDS = 10
-WIDENING = 1.3  # of a cluster's covariance
 SHARE_OF_ALL = 0.02  # of the covariance of all, added to a cluster's
 BROAD = 0.1  # fraction of the broad proposals
-BROADER = 3.0  # widening of their covariance
 FIRST = 0.05  # weight of the first proposals, which reach every branch
 FLOOR = 1e-6  # least variance, relative to that of each coordinate
 
@@ -168,13 +162,9 @@ class _Sampler:
                 break
         else:
             return None
-        for _ in range(MAX_BURN_INS):
-            self._adapt(particles)
-            self._move(particles, np.inf, granted().burn_in_moves)
-            drawn = self._collect(particles, count)
-            if min(map(drawn.effective_size, drawn.points)) >= min(ENOUGH, 0.25 * count):
-                break
-        return drawn
+        self._adapt(particles)
+        self._move(particles, np.inf, granted().burn_in_moves)
+        return self._collect(particles, count)
 
     def _collect(self, particles: _Particles, count: int) -> Sample:
         """Return draws from particles as they move."""
@@ -207,7 +197,7 @@ class _Sampler:
         for _ in range(30):
             middle = (low + high) / 2
             low, high = (middle, high) if is_effective(middle) else (low, middle)
-        return low if hardness < low <= MAX_HARDNESS else None
+        return low if hardness < low else None
 
     def _propose(self, count: int) -> _Particles:
         """Return the first particles."""
@@ -217,7 +207,7 @@ class _Sampler:
 
     def _logarithms(self, points: Floats, branches: Branches) -> tuple[Floats, Floats, Floats]:
         """Return the logarithms of particles, computed in blocks that bound the memory."""
-        parts = [slice(i, i + _CHUNK) for i in range(0, points.shape[1], _CHUNK)]
+        parts = [slice(i, i + CHUNK) for i in range(0, points.shape[1], CHUNK)]
         rows = [self.density.logarithms(points[:, part], branches[part]) for part in parts]
         return (
             np.concatenate([row[0] for row in rows]),
@@ -348,10 +338,10 @@ def _fit(points: Floats, branches: Branches, rng: np.random.Generator) -> list[P
         whole = np.cov(scaled.T).reshape(len(spread), len(spread)) + FLOOR * np.eye(len(spread))
         clusters = _clusters(scaled, rng)
         numbers = np.bincount(clusters, minlength=CLUSTERS)
-        mixture = [(BROAD, scaled.mean(axis=0), BROADER * whole)]
+        mixture = [(BROAD, scaled.mean(axis=0), whole)]
         for cluster in np.flatnonzero(numbers > 4 * len(spread)):
             part = scaled[clusters == cluster]
-            covariance = WIDENING * np.cov(part.T).reshape(whole.shape) + SHARE_OF_ALL * whole
+            covariance = np.cov(part.T).reshape(whole.shape) + SHARE_OF_ALL * whole
             fraction = (1 - BROAD) * numbers[cluster] / len(own)
             mixture.append((fraction, part.mean(axis=0), covariance))
         proposals += [
