@@ -9,11 +9,14 @@ from hashlib import sha256
 from pathlib import Path
 
 import captures
+import numpy as np
 import pytest
 
 from impact88.casework.report.frame import capture_hashes, hashes
 from impact88.conformance.qualification import selfcheck
 from impact88.interface.commands.selfcheck_command import _line
+from impact88.mechanics.accuracy import errorbound
+from impact88.mechanics.closedform import solve
 
 GOLDEN = captures.ROOT / "golden"
 FEW = 12
@@ -30,7 +33,7 @@ def write(path: Path, texts: list[str]) -> None:
 @pytest.fixture
 def few(tmp_path) -> Path:
     """A folder of captures with a few cases of each kind."""
-    for name in ("scenes", "fuzz"):
+    for name in ("scenes", "fuzz", "vectors"):
         write(tmp_path / f"{name}.jsonl.gz", lines(GOLDEN / f"{name}.jsonl.gz")[:FEW])
     (tmp_path / "arithmetic").mkdir()
     for path in (GOLDEN / "arithmetic").glob("*.gz"):
@@ -103,7 +106,31 @@ def test_a_changed_number_of_1980_fails(few: Path, old: str, new: str) -> None:
 
 def test_missing_captures_fail(few: Path) -> None:
     (few / "scenes.jsonl.gz").unlink()
-    assert failing(few) == {"port", "replay", "closed form"}
+    assert failing(few) == {"port", "replay"}
+
+
+def test_one_digit_of_a_vector_fails(few: Path) -> None:
+    path = few / "vectors.jsonl.gz"
+    rows = [json.loads(line) for line in lines(path)]
+    wbf = rows[0]["results"]["WBF"]
+    wbf["reference"] = f"{float(wbf['reference']) * (1 + 1e-11)!r}"
+    write(path, list(map(json.dumps, rows)))
+    assert failing(few) == {"solve"}
+
+
+@pytest.mark.parametrize("name", ["E", "MU", "EM"])
+def test_a_law_that_solve_has_wrong_fails(few: Path, monkeypatch, name: str) -> None:
+    """Restitution, friction and the moment: momentum is conserved all the same."""
+
+    correct = solve.solve
+
+    def wrong(scene, *outputs):
+        changed = np.where(scene["MU"] == -10, scene[name], scene[name] + 1e-9)
+        return correct({**scene, name: changed}, *outputs)
+
+    monkeypatch.setattr(errorbound, "solve", wrong)
+    monkeypatch.setattr(solve, "solve", wrong)
+    assert failing(few) == {"solve"}
 
 
 def test_nothing_to_compare_is_no_pass(few: Path) -> None:

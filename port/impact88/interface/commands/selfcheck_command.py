@@ -1,5 +1,6 @@
-"""Replays the packaged captures of a real Apple II Plus and the published runs on this machine, and
-prints what was checked, counts, hashes and versions: the record of an installation qualification.
+"""Replays the packaged captures of a real Apple II Plus and the published runs on this machine,
+compares every result of solve with the frozen vectors' digits, and prints what was checked, counts,
+hashes and versions: the record of an installation qualification.
 
 examples:
   impact88 selfcheck
