@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import dressedpages
 import pytest
 from longer import long_but
@@ -61,14 +63,69 @@ def test_a_digit_altered_on_an_exchanged_row_is_named_too() -> None:
     assert [check.name for check in result.differing] == ["VAX"]
 
 
-@pytest.mark.parametrize("word", long_but(FIRST, kept=(0, 3, 7)))
-def test_a_row_that_is_printed_twice_is_named(word: str) -> None:
+def once_more(page: str, at: int, row: str, below: int | None = None) -> list[Verification]:
+    """The verdicts on a page with ``row`` printed again below row ``at``, or elsewhere."""
+    rows = page.split("\n")
+    where = at if below is None else below
+    results = impact88.verify("\n".join([*rows[: where + 1], row, *rows[where + 1 :]]).encode())
+    assert Verdict.IDENTICAL not in [result.verdict for result in results]
+    return results
+
+
+def altered(row: str, digit: int) -> str:
+    """A row with one of its digits another."""
+    places = [match.start() for match in re.finditer("[0-9]", row)]
+    at = places[digit % len(places)]
+    return row[:at] + str((int(row[at]) + 3) % 10) + row[at + 1 :]
+
+
+@pytest.mark.parametrize("at", long_but([at for at, row in enumerate(PAGE.split("\n")) if row]))
+def test_a_row_that_is_printed_twice_is_named(at: int) -> None:
+    """Each of sample 1: the same digit by digit, and with a digit altered in the second or the
+    first."""
+    row = PAGE.split("\n")[at]
+    (same,) = once_more(PAGE, at, row)
+    assert same.verdict is Verdict.IDENTICAL_AS_READ
+    if "*" not in row:
+        named = f"line {at + 2}", f"line {at + 1} does not belong"  # a heading is the one above
+        assert any(name in "\n".join(lines(same)) for name in named)
+    if not re.search("[0-9]", row):
+        return
+    (other,) = once_more(PAGE, at, altered(row, at))
+    said = "\n".join(lines(other))
+    assert f"line {at + 2}" in said
+    if re.search("[A-Z]", row):  # angles have no label
+        assert other.verdict is Verdict.DIFFERS
+        assert other.explanations[0].kind == "row printed twice"
+        assert f"where line {at + 1} has" in said
+    once_more(PAGE.replace(row, altered(row, at)), at, row)
+
+
+@pytest.mark.parametrize("damaged", long_but([False, True], kept=()))
+def test_a_row_of_the_page_below_it_is_no_printout(damaged: bool) -> None:
+    """It is named, though an optical reader damaged its labels."""
     rows, at = rows_of(PAGE)
-    unit = 2 if word == " PA" else 1
-    again = rows[at[word] : at[word] + unit]
-    result = one("\n".join([*rows[: at[word] + unit], *again, *rows[at[word] + unit :]]))
-    assert result.verdict is Verdict.IDENTICAL_AS_READ
-    assert "is printed a second time" in "\n".join(lines(result))
+    for word in FIRST:
+        row = rows[at[word] + (word == " PA")]
+        for text in (row, altered(row, -1)):
+            text = text.replace("A=", "H=").replace("E=", "F=") if damaged else text
+            (result,) = once_more(PAGE, at[word], text, len(rows) - 2)
+            assert result.verdict is Verdict.IDENTICAL_AS_READ
+            assert f"line {len(rows)}" in "\n".join(lines(result))
+
+
+def test_another_value_within_the_page_contradicts_and_below_it_is_listed() -> None:
+    rows, at = rows_of(PAGE)
+    other = rows[at["VAX="]].replace("3.449", "3.941")
+    (within,) = once_more(PAGE, at["VAX="], other, at["VBX="])
+    assert within.verdict is Verdict.DIFFERS
+    (below,) = once_more(PAGE, at["VAX="], other, len(rows) - 2)
+    for result in (within, below):
+        assert "a second time with VAY 3.941, where line" in lines_of_rows(result)
+
+
+def lines_of_rows(result: Verification) -> str:
+    return "\n".join(result.rows)
 
 
 def test_a_retyped_page_has_an_order_of_its_own() -> None:
@@ -80,12 +137,30 @@ def test_a_retyped_page_has_an_order_of_its_own() -> None:
 
 
 def test_two_printouts_are_two() -> None:
-    """Of one scene, and the second without what stands above its results."""
-    results = impact88.verify((PAGE + PAGE).encode())
-    assert [result.verdict for result in results] == [Verdict.IDENTICAL] * 2
-    results_alone = PAGE[PAGE.index("VAX=") :]
-    first, *_ = impact88.verify((PAGE + results_alone).encode())
-    assert first.verdict is Verdict.IDENTICAL
+    """Of one scene, of two, below one that ends early, and cut at the top."""
+    second = impact88.run(impact88.sample(2)).page
+    body = PAGE[PAGE.index("MA=", PAGE.rindex("?")) :]
+    cut = PAGE[: PAGE.index("UX=")]
+    for text in (PAGE + PAGE, PAGE + second, body + body, second + body):
+        results = impact88.verify(text.encode())
+        assert [result.verdict for result in results] == [Verdict.IDENTICAL] * 2
+    for text in (cut + second, cut + body, PAGE[PAGE.index("VBX=") :] + PAGE):
+        *_, last = impact88.verify(text.encode())
+        assert last.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
+        assert not last.missing
+    for word in ("DA=", "UX=", " E="):
+        first, below = impact88.verify((PAGE + second[second.index(word) :]).encode())
+        assert first.verdict is Verdict.IDENTICAL
+        assert below.verdict is Verdict.INCOMPLETE
+
+
+def test_a_row_printed_twice_above_another_printout_is_the_first_ones() -> None:
+    rows, at = rows_of(PAGE)
+    again = "\n".join(
+        [*rows[: at[" WA="] + 1], altered(rows[at[" WA="]], 2), *rows[at[" WA="] + 1 :]]
+    )
+    first, second = impact88.verify((again + PAGE).encode())
+    assert (first.verdict, second.verdict) == (Verdict.DIFFERS, Verdict.IDENTICAL)
 
 
 def test_rows_of_fresh_pages_are_named() -> None:

@@ -27,7 +27,7 @@ Range = tuple[float, float]
 
 LABELS_EXCHANGED = "labels exchanged"
 LABEL_WRONG = "another label"
-ROWS = "order of rows"
+ROWS = "rows"
 NOT_APPLESOFT = "then this program on an Apple II did not print it"
 MAX_LEFT_FRACTION = 0.15
 """Largest fraction of the differing numbers that a cause may leave; doubled, one page changes."""
@@ -215,7 +215,7 @@ def differing(found: Judged) -> frozenset[str]:
     return frozenset(
         [f"{'reply ' * (id(check) in replies)}{check.name}" for check in found.contradicted]
         + [f"label {label.name}" for label in found.paper.mislabelled]
-        + [ROWS] * found.paper.out_of_order
+        + [ROWS] * found.paper.rows_contradict
     )
 
 

@@ -147,10 +147,11 @@ def _labels(page: PageEvidence) -> Iterator[Cause]:
 
 
 def _rows(page: PageEvidence) -> Iterator[Cause]:
-    """Yield a cause of rows that are out of the program's order."""
+    """Yield a cause of rows that are out of the program's order or printed twice."""
     if ROWS in page.base:
-        note, bits = "; ".join(page.paper.exchanged), slips.BITS[slips.SWAP]
-        yield Cause("rows exchanged", note, bits, page.base - {ROWS})
+        kind = "rows exchanged" if page.paper.out_of_order else "row printed twice"
+        note = "; ".join([*page.paper.exchanged, *page.paper.contradicting])
+        yield Cause(kind, note, slips.BITS[slips.SWAP], page.base - {ROWS})
 
 
 def _input_slips(page: PageEvidence, rereads: Iterable[Reread]) -> Iterator[Cause]:

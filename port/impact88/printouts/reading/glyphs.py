@@ -112,6 +112,11 @@ class Page:
         line = bisect_right(self._lines, offset)
         return line, offset - self._lines[line - 1] + 1
 
+    def lines_of(self, glyphs: Iterable[int]) -> set[int]:
+        """Return all glyphs of the lines on which some glyphs stand."""
+        starts = [line.start for line in self.lines]
+        return {at for glyph in glyphs for at in self.lines[bisect_right(starts, glyph) - 1]}
+
     def span(self, start: int, stop: int) -> tuple[int, int]:
         """Return the offsets in the text of glyphs ``start`` to ``stop``, without blanks behind."""
         return self.glyphs[start].offset, self.glyphs[stop - 1].offset + 1

@@ -1,35 +1,38 @@
 """Rows of a page that are exchanged or printed twice, before characters within rows are read.
 
-A line whose letters are those of one of the program's labelled rows is that row. Where the rows of
-one page are the program's but for two in each other's place, or one elsewhere, they are read in the
-program's order; a row that is printed a second time is none of the page's.
+A line whose letters are those of a prompt or of one of the program's labelled rows is that row.
+Where the rows of one page are the program's but for two in each other's place, or one elsewhere,
+they are read in the program's order; a row that is printed a second time, with the same numbers or
+others, is none of the page's. Another printout begins only as the program begins one, or where the
+rows that follow are repeated, too.
 """
 
 import re
-from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from ...collision.fields import ANGLES
 from .alignment import ANGLE_ROW, HEADING, LINES, PROMPTS
 from .glyphs import Page, letters
+from .numerals import value_of
 
 _MIN_ROWS = 6
 """Rows of a page from which one that is out of order was exchanged; fewer are a fragment, and what
 follows may be another printout."""
 _EXPONENT = re.compile("(?<=[0-9.])E(?=[-+][0-9])")
+_LABELLED_NUMBER = re.compile("=(.*?)(?=[A-Z%()]|$)")
 
 
 def _letters_of(text: str) -> str:
-    return "".join(filter(str.isalpha, text.upper()))
+    return "".join(filter(str.isalpha, _EXPONENT.sub("", text.upper())))
 
 
 _ROWS = {
     _letters_of(re.sub("{.*?}", "", line)): number
     for number, line in enumerate(LINES)
-    if number >= PROMPTS and number != ANGLE_ROW and "*" not in line
+    if number != ANGLE_ROW and "*" not in line
 }
-"""The labelled rows by their letters."""
+"""The prompts and labelled rows by their letters."""
 
 
 class _Row(NamedTuple):
@@ -41,11 +44,36 @@ class _Row(NamedTuple):
     lines: range
 
     @property
-    def name(self) -> str:
-        """The first field of the row."""
-        if self.number == HEADING:
-            return ANGLES[0]
-        return LINES[self.number].partition("{")[2].partition("}")[0]
+    def fields(self) -> Sequence[str]:
+        """The fields of the row."""
+        if self.number < PROMPTS:
+            return ("the reply",)
+        return ANGLES if self.number == HEADING else re.findall("{(.*?)}", LINES[self.number])
+
+    @property
+    def title(self) -> str:
+        """What it is called."""
+        if self.number < PROMPTS:
+            return f"the prompt of {LINES[self.number].partition(' :')[0][-2:]}"
+        return f"the row of {self.fields[0]}"
+
+
+class Repeated(NamedTuple):
+    """A row that is printed a second time.
+
+    Attributes
+    ----------
+    offset : int
+        Offset in the text of its first character.
+    sentence : str
+        What is said of it.
+    other : str
+        The same with the numbers that differ from those of the row's first print; "" for none.
+    """
+
+    offset: int
+    sentence: str
+    other: str
 
 
 class Rows(NamedTuple):
@@ -57,45 +85,63 @@ class Rows(NamedTuple):
         The page's lines in the program's order.
     doubled : set of int
         Glyphs of rows that are printed a second time.
-    repeated, exchanged : list of (int, str)
-        What is said of rows that are printed twice and of those out of order, with the offset in
-        the text of one of their characters.
+    repeated : list of Repeated
+        Rows that are printed twice.
+    exchanged : list of (int, str)
+        What is said of rows out of order, with the offset in the text of one of their characters.
     """
 
     order: list[int]
     doubled: set[int]
-    repeated: list[tuple[int, str]]
+    repeated: list[Repeated]
     exchanged: list[tuple[int, str]]
 
 
 def find_rows(page: Page) -> Rows:
     """Return the rows of a page that are exchanged or printed twice."""
     doubled: set[int] = set()
-    repeated: list[tuple[int, str]] = []
+    repeated: list[Repeated] = []
     exchanged: list[tuple[int, str]] = []
 
     def told(row: _Row) -> str:
-        return f"line {page.place(start_of(row))[0]}, the row of {row.name},"
+        return f"line {page.place(start_of(row))[0]}, {row.title},"
 
     def start_of(row: _Row) -> int:
         return page.glyphs[page.lines[row.line].start].offset
 
     rows = [*_labelled_rows(page)]
+    own = {line for row in rows for line in row.lines} | {
+        at for at, line in enumerate(page.lines) if {*_text(page, line)} == {"*"}
+    }
     groups: list[list[_Row]] = [[]]
-    for row, following in pairwise([*rows, None]):
-        assert row is not None
-        earlier = next((one for one in groups[-1] if one.number == row.number), None)
-        if earlier and _is_repeated(page, groups[-1], earlier, row, following):
-            doubled |= {at for line in row.lines for at in page.lines[line]}
+    for at, row in enumerate(rows):
+        group, below = groups[-1], rows[at + 1 :]
+        earlier = next((one for one in group if one.number == row.number), None)
+        if _begins(group, row, below):
+            groups.append([row])
+        elif earlier is None:
+            group.append(row)
+        elif _is_repeated(page, own, group, earlier, row, below):
+            # a heading without its angles is the one too many
+            extra = earlier if len(earlier.lines) < len(row.lines) else row
+            group[group.index(earlier)] = row if extra is earlier else earlier
+            doubled |= {glyph for line in extra.lines for glyph in page.lines[line]}
+            numbers, known = (
+                dict(zip(one.fields, _numbers(page, one), strict=False)) for one in (row, earlier)
+            )
             place, _ = page.place(start_of(earlier))
-            sentence = f"{told(row)} is printed a second time: line {place} has it already"
-            repeated.append((start_of(row), sentence))
-            continue
-        if earlier:
-            groups.append([])
-        groups[-1].append(row)
+            repeated.append(
+                Repeated(
+                    start_of(row),
+                    f"{told(row)} is printed a second time: line {place} has it already",
+                    told_otherwise(told(row), numbers, known, place),
+                )
+            )
+        else:
+            groups.append([row])
     order = [*range(len(page.lines))]
-    for group in groups:
+    for printed in groups:
+        group = [row for row in printed if row.number >= PROMPTS]
         moved = _moved(group)
         if len(moved) == 2:
             first, second = moved
@@ -111,28 +157,91 @@ def find_rows(page: Page) -> Rows:
 
 def _labelled_rows(page: Page) -> Iterator[_Row]:
     for number, line in enumerate(page.lines):
-        text = letters(page.glyphs[line.start : line.stop])
-        row = _ROWS.get(_letters_of(_EXPONENT.sub("", text)))
+        text = _text(page, line)
+        row = _ROWS.get(_letters_of(text))
         if row is not None:
             stop = number + 1
             if row == HEADING and stop < len(page.lines):
-                angles = letters(page.glyphs[page.lines[stop].start : page.lines[stop].stop])
-                stop += not _letters_of(_EXPONENT.sub("", angles))
+                angles = _text(page, page.lines[stop])
+                stop += not _letters_of(angles) and {*angles} != {"*"}
             yield _Row(row, number, range(number, stop))
 
 
-def _is_repeated(
-    page: Page, group: Sequence[_Row], earlier: _Row, row: _Row, following: _Row | None
-) -> bool:
-    """Return True for a row that is printed twice on one page, rather than first on another."""
-    texts = [
-        "".join(
-            letters(page.glyphs[page.lines[at].start : page.lines[at].stop]) for at in one.lines
-        )
-        for one in (earlier, row)
+def told_otherwise(
+    told: str, numbers: Mapping[str, str], known: Mapping[str, str], place: int
+) -> str:
+    """Return a sentence on a row that gives fields other numbers than the page has, "" where it
+    gives none. ``told``: its line and name; ``place``: the line of the page's own."""
+    differ = [
+        name
+        for name, text in numbers.items()
+        if name in known and (value_of(text) or text) != (value_of(known[name]) or known[name])
     ]
-    goes_on = following is None or following.number not in {one.number for one in group}
-    return texts[0] == texts[1] and goes_on
+    if not differ:
+        return ""
+    here = ", ".join(f"{name} {numbers[name]}" for name in differ)
+    there = ", ".join(known[name] for name in differ)
+    return f"{told} is printed a second time with {here}, where line {place} has {there}"
+
+
+def _text(page: Page, line: range) -> str:
+    return letters(page.glyphs[line.start : line.stop])
+
+
+def _numbers(page: Page, row: _Row) -> list[str]:
+    """Return the texts of a row's numbers."""
+    if row.number == HEADING:
+        return [
+            text
+            for at in row.lines[1:]
+            for text in page.shown(page.lines[at].start, page.lines[at].stop).split()
+        ]
+    text = _text(page, page.lines[row.line])
+    if row.number < PROMPTS:
+        return [text.rpartition("?")[2]]
+    return [
+        number.replace("\0", "E") for number in _LABELLED_NUMBER.findall(_EXPONENT.sub("\0", text))
+    ]
+
+
+def _begins(group: Sequence[_Row], row: _Row, below: Sequence[_Row]) -> bool:
+    """Return True for a row with which the program begins another page.
+
+    It is the first prompt below labelled rows, or the row of masses where all rows above it come
+    again below it.
+    """
+    rows = {one.number for one in group if one.number >= PROMPTS}
+    if row.number == 0:
+        return bool(rows)
+    again = {one.number for one in below[: _until_masses(below)]}
+    return row.number == PROMPTS and len(rows) > (PROMPTS in rows) and rows - {PROMPTS} <= again
+
+
+def _until_masses(below: Sequence[_Row]) -> int:
+    return next((at for at, row in enumerate(below) if row.number == PROMPTS), len(below))
+
+
+def _is_repeated(
+    page: Page,
+    own: set[int],
+    group: Sequence[_Row],
+    earlier: _Row,
+    row: _Row,
+    below: Sequence[_Row],
+) -> bool:
+    """Return True for a row that is printed twice on one page, rather than first on another.
+
+    What follows it is not repeated, or is another printout with such a row; and it is the same to
+    the letter, or nothing but rows of the page (``own``) stands between.
+    """
+    following = below[0].number if below else None
+    if following in {one.number for one in group}:
+        rest = below[_until_masses(below) + 1 :]
+        is_last = following in (0, PROMPTS) and any(one.number == row.number for one in rest)
+        if not is_last:
+            return False
+    texts = ["".join(_text(page, page.lines[at]) for at in one.lines) for one in (earlier, row)]
+    return texts[0] == texts[1] or own.issuperset(range(earlier.line, row.line))
 
 
 def _moved(group: Sequence[_Row]) -> list[_Row]:
@@ -142,7 +251,7 @@ def _moved(group: Sequence[_Row]) -> list[_Row]:
     if len(group) < _MIN_ROWS or [*group] == in_order:
         return []
     numbers = [row.number for row in in_order]
-    if numbers != [*filter(set(_ROWS.values()).__contains__, range(numbers[0], numbers[-1] + 1))]:
+    if numbers != [*filter({*_ROWS.values()}.__contains__, range(numbers[0], numbers[-1] + 1))]:
         return []
     apart = [at for at, row in enumerate(group) if row is not in_order[at]]
     if len(apart) == 2:

@@ -8,7 +8,7 @@ row of angles is cut, and what belongs nowhere is kept as left over.
 import re
 import unicodedata
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby
 
@@ -41,7 +41,7 @@ from .labels import (
     weigh_labels,
     words_before,
 )
-from .pagerows import find_rows
+from .pagerows import find_rows, told_otherwise
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
@@ -54,6 +54,9 @@ differ 58 of 88 readings of genuine pages have as many, and 2 of 84 of pages wit
 digit."""
 _MIN_NUMBERS = 15
 """Numbers of a page; labels of a smaller piece do not tell which numbers it holds."""
+_MIN_ROWS = 3
+"""Rows of a printout that begins elsewhere than the program's page; fewer are a row or two that
+stand below the page, or above it."""
 _MIN_NOTE_LETTERS = 5
 """Letters of no label, four a number, from which a line is a note: ``BREAK IN 640``.
 The program's labels have three letters a number at most but on the line of the energies."""
@@ -166,6 +169,9 @@ class Printout:
         Characters of markup that were passed over in the text of which it is the first printout.
     exchanged : list of str
         What is said of rows in another order than the program's.
+    repeated, contradicting : list of str
+        What is said of rows that are printed a second time; and of those among them that stand
+        within the page with other numbers.
     echoed : set of int
         Offsets of what the Apple shows in the replies besides their numbers.
 
@@ -199,6 +205,8 @@ class Printout:
     own: range = range(0)
     markup: int = 0
     exchanged: list[str] = field(default_factory=list)
+    repeated: list[str] = field(default_factory=list)
+    contradicting: list[str] = field(default_factory=list)
     echoed: set[int] = field(default_factory=set)
 
     def __post_init__(self) -> None:
@@ -279,9 +287,30 @@ class Printout:
         return bool(self.exchanged) and (bool(self.replies) or self.ended)
 
     @property
+    def rows_contradict(self) -> bool:
+        """True if rows are out of order, or printed a second time with other numbers: misread ones
+        where a machine read the page."""
+        return self.out_of_order or (bool(self.contradicting) and not self.machine_read)
+
+    @property
     def is_of_another_form(self) -> bool:
-        """True if labels or the order of rows contradict: no reader of the page did that."""
-        return bool(self.mislabelled) or self.out_of_order
+        """True if labels or rows contradict: no reader of the page did that."""
+        return bool(self.mislabelled) or self.rows_contradict
+
+    @property
+    def number_starts(self) -> list[int]:
+        """The first glyphs of its numbers; all its glyphs where it has none."""
+        return [start for start, _ in self._slots.values()] or [*self._states]
+
+    @property
+    def is_piece(self) -> bool:
+        """True if it is no page of the program's: it does not begin with the first prompt, and
+        holds the row of masses alone or one or two others."""
+        lines = {STATES[state].line for state in self._states.values() if state}
+        rows = {STATES[self._states[at]].line for at in self.number_starts} - {0, 1}
+        return not (self.ending or 0 in lines) and len(rows - {PROMPTS}) < (
+            1 if PROMPTS in rows else _MIN_ROWS
+        )
 
     @property
     def signs_of_reader(self) -> int:
@@ -693,7 +722,7 @@ def _read_column(text: str) -> tuple[list[Printout], str]:
     page.reorder(rows.order)
     budget = Budget()
     none_of_it = {at for at, glyph in enumerate(page.glyphs) if glyph.offset in doubled}
-    printouts = [*_printouts(page, budget, none_of_it)]
+    printouts, pieces = _printouts(page, budget, none_of_it)
     reason = ""
     if budget.stopped is not None:
         line, column = page.place(page.glyphs[budget.stopped].offset)
@@ -702,12 +731,21 @@ def _read_column(text: str) -> tuple[list[Printout], str]:
     if not printouts:
         return [], reason
     printouts[-1].unread = reason
-    _keep_left_over(page, printouts)
-    for offset, sentence in [*rows.repeated, *rows.exchanged]:
-        above = [printout for printout in printouts if printout.start <= offset]
-        owner = (above or printouts[:1])[-1]
+    apart = [page.glyphs[at].offset for piece in pieces for at in piece.number_starts]
+    _keep_left_over(page, printouts, {page.place(offset)[0] for offset in apart})
+    for offset, sentence in rows.exchanged:
+        owner = _owner(printouts, offset)
         owner.remarks.append(sentence)
-        owner.exchanged += [sentence] * ((offset, sentence) in rows.exchanged)
+        owner.exchanged.append(sentence)
+    repeated = [(row.offset, row.sentence, row.other) for row in rows.repeated]
+    for piece in pieces:
+        offset = page.glyphs[min(piece.number_starts)].offset
+        repeated.append((offset, "", _told_otherwise(piece, _owner(printouts, offset))))
+    for offset, sentence, other in repeated:
+        owner = _owner(printouts, offset)
+        owner.remarks += filter(None, [other or sentence])
+        owner.repeated += filter(None, [other or sentence])
+        owner.contradicting += [other] * (bool(other) and owner.start <= offset < owner.stop)
     commands = _slot_commands(page)
     for printout in printouts:
         printout.echoed |= {page.glyphs[at].offset for at in commands.intersection(printout.own)}
@@ -717,6 +755,25 @@ def _read_column(text: str) -> tuple[list[Printout], str]:
         printout.notes += form_note(printout.labels)
         printout.notes += asterisk_note({*printout._states.values()}, printout.fields)
     return printouts, reason
+
+
+def _owner(printouts: Sequence[Printout], offset: int) -> Printout:
+    """Return the printout that begins above a place of the text, or the first."""
+    above = [printout for printout in printouts if printout.start <= offset]
+    return (above or printouts[:1])[-1]
+
+
+def _told_otherwise(piece: Printout, owner: Printout) -> str:
+    """Return a sentence on a piece that gives numbers of the printout beside it other values."""
+    known = {name: owner.fields[name] for name in piece.fields if name in owner.fields}
+    if not known:
+        return ""
+    line = next(iter(piece.fields.values())).line
+    told = f"line {line}, the row of {next(iter(known))},"
+    numbers, known_texts = (
+        {name: reading.text for name, reading in fields.items()} for fields in (piece.fields, known)
+    )
+    return told_otherwise(told, numbers, known_texts, next(iter(known.values())).line)
 
 
 _ALIKE = str.maketrans("0QL1|!582’`", "OOIIIISBZ''")
@@ -735,25 +792,35 @@ def _slot_commands(page: Page) -> set[int]:
     return {at for match in matches for at in range(*match.span())}
 
 
-def _printouts(page: Page, budget: Budget, none_of_it: set[int]) -> Iterator[Printout]:
-    """Yield the printouts of a page; a message that ended a run ends its printout. ``none_of_it``:
-    glyphs that are known to be none of the program's."""
+def _printouts(
+    page: Page, budget: Budget, none_of_it: set[int]
+) -> tuple[list[Printout], list[Printout]]:
+    """Return the printouts of a page, and pieces that are none (`Printout.is_piece`) beside them; a
+    message that ended a run ends its printout. ``none_of_it``: glyphs that are known to be none of
+    the program's."""
     text = letters(page.glyphs)
     commands = _slot_commands(page) | none_of_it
+    found: list[Printout] = []
+    pieces: list[Printout] = []
     start = 0
     for message in [*_ENDING.finditer(text.translate(_ALIKE)), None]:
         stop = message.start() if message else len(text)
-        states_of_each = [*align(page.glyphs, start, stop, budget, commands)]
-        if notes := _note_glyphs(page, start, stop, states_of_each):
-            states_of_each = [*align(page.glyphs, start, stop, budget, notes | commands)]
-        readable = [
-            printout for states in states_of_each if (printout := Printout(page, states)).read()
-        ]
+        parts = [*align(page.glyphs, start, stop, budget, commands)]
+        if notes := _note_glyphs(page, start, stop, parts):
+            parts = [*align(page.glyphs, start, stop, budget, notes | commands)]
+        readable = [printout for part in parts if (printout := Printout(page, part)).read()]
+        apart = [printout for printout in readable if printout.is_piece]
+        if apart and len(apart) < len(readable):
+            pieces += apart
+            taken = {at for piece in apart for at in page.lines_of(piece.number_starts)}
+            parts = [*align(page.glyphs, start, stop, budget, notes | commands | taken)]
+            readable = [printout for part in parts if (printout := Printout(page, part)).read()]
         if message and readable:
             start = readable[-1].end(message, text)
-        yield from readable
+        found += readable
         if budget.stopped is not None:
-            return
+            break
+    return found, pieces
 
 
 def _note_glyphs(page: Page, start: int, stop: int, found: Sequence[Mapping[int, int]]) -> set[int]:
@@ -782,13 +849,14 @@ _NAMED_NUMBER = re.compile(r"[A-Za-z] ?= ?[-+.]?[0-9]")
 _LABEL_WORDS = {*re.findall("[A-Z]{2,}", re.sub("{.*?}", "", " ".join(LINES[PROMPTS:])))}
 
 
-def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
+def _keep_left_over(page: Page, found: Sequence[Printout], apart: set[int]) -> None:
     """Add text that belongs to no printout to ``left_over`` of the one above it, or of the first,
     and set the glyphs that each accounts for.
 
     A line belongs to a page if a number stands on it, half of its glyphs are letters as printed, or
     it is a row of asterisks; of such lines the rest is left over, of others all. What stands within
-    a page bears on it; so does outside of it a line that holds a label.
+    a page bears on it; so does outside of it a line that holds a label, or one of the lines
+    ``apart``.
     """
     starts = [0, *(min(printout._states) for printout in found[1:]), len(page.glyphs)]
     for printout, start, stop in zip(found, starts, starts[1:], strict=False):
@@ -823,6 +891,7 @@ def _keep_left_over(page: Page, found: Sequence[Printout]) -> None:
                 is_named = is_whole and _NAMED_NUMBER.search(piece.read)
                 is_beside = bool(numbers or label_words or is_word or is_named)
                 is_within = any(first <= piece.line <= last for first, last in spans)
+                is_within = is_within or piece.line in apart
                 owner = next(printout for printout in found if start in printout.own)
                 owner.left_over.append(piece._replace(bears=is_beside or is_within))
 

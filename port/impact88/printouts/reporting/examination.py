@@ -261,7 +261,7 @@ def _result(found: Judged) -> Verification:
         remarks=[*map(str, paper.remarks), *paper.notes, *filter(None, [paper.unread])],
         left_over=sorted([*paper.left_over, *found.notes], key=attrgetter("start")),
         labels=paper.labels, start=paper.start, stop=paper.stop, text=paper.page.text,
-        characters=found.characters(),
+        rows=[*paper.exchanged, *paper.repeated], characters=found.characters(),
     )  # fmt: skip
 
 

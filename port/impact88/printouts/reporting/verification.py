@@ -45,7 +45,6 @@ MEANINGS = {
 }
 """Sentence that explains each verdict."""
 
-ROWS_EXCHANGED = "rows exchanged"  # a kind of cause
 DOUBTFUL = "doubtful places"
 NOTES = "notes on the reading"
 MARKS = "on the page and not printed by the program"
@@ -87,8 +86,8 @@ class Verification:
     labels : list of Difference
         Labels, marks and words of the prompts that are not as the program prints them.
     rows : list of str
-        Of a picture, the findings and remarks on whole rows: exchanged, printed twice, in another
-        typeface, cut through.
+        The findings and remarks on whole rows: exchanged, printed twice, and of a picture in
+        another typeface, cut through.
     cells, marks : list of dict
         Of a picture, the cells of the printed characters, and all ink in and near the printout that
         the program does not print.
@@ -311,8 +310,6 @@ def summary(result: Verification) -> list[str]:
             sentences.append(f"{replies} {noun} from the velocities printed")
         if wrong := sum(label.kind is Kind.CONTRADICTS for label in result.labels):
             sentences.append("1 label contradicts" if wrong == 1 else f"{wrong} labels contradict")
-        if any(cause.kind == ROWS_EXCHANGED for cause in result.explanations):
-            sentences.append("its rows stand in another order than the program prints them")
         if lines := sum(bool(mark["contradicts"]) for mark in result.marks):
             verb = "1 typed line gives" if lines == 1 else f"{lines} typed lines give"
             sentences.append(f"{verb} numbers that are not the page's")
@@ -537,7 +534,10 @@ def _explanation_lines(result: Verification) -> list[str]:
     last_rank = 0
     for cause in result.explanations:
         if cause.rank != last_rank:
-            entries.append(f"{cause.rank}. {cause}; explains {cause.explains} of {cause.differing}")
+            share = (
+                "all that differs" if not cause.left else f"{cause.explains} of {cause.differing}"
+            )
+            entries.append(f"{cause.rank}. {cause}; explains {share}")
         else:
             entries.append(f"   or, equally well on this page: {cause}")
         last_rank = cause.rank

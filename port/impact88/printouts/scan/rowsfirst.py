@@ -97,7 +97,7 @@ def order_lines(grid: Grid, layout: Layout) -> Order | None:
             order.append(line)
     return Order(
         grid.in_order([*order, *last]),
-        [(page.place(offset)[0], sentence) for offset, sentence in rows.repeated],
+        [(page.place(row.offset)[0], row.sentence) for row in rows.repeated],
         [(page.place(offset)[0], sentence) for offset, sentence in rows.exchanged],
     )
 
