@@ -11,8 +11,11 @@ from installed import impact88
 from longer import long_but
 
 from impact88.collision.doubles import double
+from impact88.printouts.judging.judgement import FieldCheck, Status
 from impact88.printouts.reading.printout import read_printouts
-from impact88.printouts.reporting.examination import Verdict, verify
+from impact88.printouts.reporting.examination import Verdict, Verification, verify
+from impact88.printouts.reporting.verification import summary
+from impact88.program.run import run
 from impact88.program.scene import sample
 from printouts import SAMPLE, SWEEP
 
@@ -220,3 +223,56 @@ def test_a_scene_that_cannot_be_used(
     assert stderr.count("\n") == 1
     assert "scene.toml" in stderr
     assert says in stderr
+
+
+# --- sentences ------------------------------------------------------------------------------------
+
+FAINT = dict(
+    zip(
+        "MA MB IA IB DA DB PA PB TA TB GA UX UY WA VX VY WB E MU EM".split(),
+        "3.1666 834095 1.604 485972 .0261 53.634 -58 -115.8 0 144 -52 364.8449 -.0494 0 1.0635 "
+        "-1.07436 0 .16 -.22 -.953".split(),
+        strict=True,
+    )
+)
+"""A light vehicle against a heavy one: the last digits of IB, DB and UY show in no result."""
+
+
+def test_a_digit_repeated_at_the_prompt_is_not_called_one_that_cannot_show() -> None:
+    page = run({**FAINT, "M": "6"}).printout
+    body = page[page.index("MA=", page.rindex("?")) :]
+    of_page, of_body = (verify(text.encode())[0].unseen[-1] for text in (page, body))
+    assert "IB 485(972)" in of_page
+    assert "IB 485(972)" in of_body
+    assert "UY" not in of_page
+    assert "UY -.049(4)" in of_body
+    (altered,) = verify(page.replace("UY= -.0494", "UY= -.0493").encode())
+    assert altered.verdict is Verdict.DIFFERS
+    assert not altered.differing
+    said = " ".join(summary(altered))
+    assert "the reply at the prompt and the row of velocities do not agree" in said
+
+
+def test_lines_that_are_not_the_programs_are_counted() -> None:
+    (result,) = verify((SAMPLE + "\nDELTA-V A= 41.27 MPH\n").encode())
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert "1 line on the page is not the program's: see below" in summary(result)
+    assert not any("not the program's:" in said for said in summary(verify(SAMPLE.encode())[0]))
+
+
+@pytest.mark.parametrize("printed", ["-33.4", None])
+def test_an_incomplete_page_says_what_does_not_agree(printed: str | None) -> None:
+    """A reply at a prompt is named; an angle that the page shows is not called missing."""
+    fields = [FieldCheck("PA", printed, None), FieldCheck("UX", "-74.8898002", "-74.8898002")]
+    fields[1].status = Status.READ
+    replies = [FieldCheck("UX", "-74.8898", "-74.8898001", Status.CONTRADICTED)]
+    missing = [] if printed is None else ["PA"]
+    result = Verification(
+        "x.txt", 1, 1, Verdict.INCOMPLETE, {}, fields, replies=replies, missing=missing
+    )
+    said = summary(result)
+    assert said[0] == (
+        "UX: the reply at the prompt is -74.8898, and the row of velocities has -74.8898002"
+    )
+    assert not any("the results are missing" in sentence for sentence in said)
+    assert any("PA is not certain as read" in sentence for sentence in said) is bool(missing)

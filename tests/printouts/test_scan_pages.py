@@ -353,7 +353,9 @@ def test_a_number_that_contradicts_is_named_first_on_an_incomplete_page(verdict,
         FieldCheck("E", ".2", ".2", Status.READ),
     ]
     result = Verification("x.png", 1, 1, verdict, {}, fields, page=page)
-    named = summary(result)[0] == "1 number contradicts: LOSS 7.13, program 7.03"
+    named = summary(result)[0] == (
+        "1 number does not agree with the inputs as read: LOSS 7.13, the program 7.03"
+    )
     assert named is (verdict is Verdict.INCOMPLETE)
 
 

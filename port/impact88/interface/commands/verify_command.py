@@ -7,11 +7,11 @@ verdict and do not change it. A scan or photograph (PNG, JPEG, TIFF, PDF; pip in
 of the expected character.
 
 verdicts:
-  IDENTICAL                 every number was read, and is what the program prints, and so are the
-                            labels and marks; nothing else stands between its first and last line
-  IDENTICAL AS FAR AS READ  the program's page explains the paper; doubts are listed
-  DIFFERS                   no set of inputs consistent with the page gives
-                            all its numbers
+  IDENTICAL                 every number, label and mark is what the program prints, and nothing
+                            else stands between its first and last line (in a picture: anywhere)
+  IDENTICAL AS FAR AS READ  the numbers, as far as they were read, are the program's; doubts, and
+                            whatever the program does not print, are listed
+  DIFFERS                   something on the page is not as the program prints it for its inputs
   INCOMPLETE                numbers are missing or were not read, the rest decides nothing
 
 examples:

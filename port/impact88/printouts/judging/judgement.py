@@ -272,9 +272,7 @@ def _fields(paper: Printout, recovered: Recovered) -> tuple[list[FieldCheck], li
             check.status = status_of(check.doubts, text)
             if check.status is Status.READ:
                 check.printed = text
-            elif check.printed == text or (
-                check.status is Status.CONTRADICTED and not reading.clean
-            ):
+            elif check.printed == text or not reading.clean:
                 check.printed = _paper_text(paper, reading)
         elif not recovered.missing:
             check.status = Status.CONTRADICTED

@@ -215,9 +215,12 @@ def _verify_printout(paper: Printout, given: Mapping[str, str] | None) -> Verifi
         if not is_alteration(judgement, [len(cause.changes) for cause in result.explanations]):
             result.verdict, result.explanations = Verdict.INCOMPLETE, []
     if result.verdict is Verdict.INCOMPLETE and paper.machine_read and result.differing:
+        verb = (
+            "1 number is" if len(result.differing) == 1 else f"{len(result.differing)} numbers are"
+        )
         result.remarks.append(
-            f"{len(result.differing)} numbers are read otherwise than the program prints them, and "
-            "the page is read too poorly to separate alterations from misreadings"
+            f"{verb} read otherwise than the program prints for the inputs as read, and the page "
+            "is read too poorly to separate alterations from misreadings"
         )
     result.findings = [
         *(verification.attributed_digits(attributed) if attributed else ()),
@@ -269,7 +272,13 @@ def add_information(result: Verification, *program: beside.Program) -> Verificat
     """Add the information beside the verdict: errors that the page could not reveal, exact values
     and warnings. ``program``: the program that printed it, by default the restored listing."""
     if scene := result.complete_scene:
-        program_fields = {check.name: check.recomputed or "" for check in result.fields}
+        # a digit that is repeated at a prompt would show there
+        replied = {check.name for check in result.replies if check.same is not None}
+        program_fields = {
+            check.name: check.recomputed or ""
+            for check in result.fields
+            if check.name not in replied
+        }
         result.unseen = beside.unseen(scene, program_fields, *program)
         beside.add_exact_values(scene, result.fields)
         result.warnings = beside.warnings(scene)

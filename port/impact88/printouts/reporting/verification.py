@@ -35,11 +35,13 @@ TITLES = {
 }
 
 MEANINGS = {
-    Verdict.IDENTICAL: "every number that was found on the page is what the 1988 program prints "
-    "for the inputs on it, digit for digit, and nothing that was examined speaks against it",
-    Verdict.IDENTICAL_AS_READ: "the 1988 program's page explains the paper; every place that was "
-    "not read exactly and all that the program does not print are listed, to be looked at there",
-    Verdict.DIFFERS: "something on the paper contradicts every scene that its inputs allow",
+    Verdict.IDENTICAL: "every number, label and mark is what the 1988 program prints for the "
+    "inputs on the page, digit for digit, and nothing else stands between its first and last line "
+    "(in a picture: anywhere)",
+    Verdict.IDENTICAL_AS_READ: "the numbers, as far as they were read, are the 1988 program's; "
+    "every place that was not read exactly and all that the program does not print are listed, to "
+    "be looked at there",
+    Verdict.DIFFERS: "something on the page is not as the program prints it for the inputs on it",
     Verdict.INCOMPLETE: "numbers are missing or could not be read, and the others do not decide: "
     "what agrees is counted, and what contradicts is named",
 }
@@ -315,20 +317,26 @@ def summary(result: Verification) -> list[str]:
             sentences.append(f"{verb} numbers that are not the page's")
     elif verdict is Verdict.IDENTICAL_AS_READ:
         sentences.append(MEANINGS[verdict])
+        sentences += _foreign_lines(result)
     if verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ):
         if names := not_verifiable(result.unseen):
             sentences.insert(0, f"not verifiable on this page: {names}")
         if result.page is None:
             sentences.append(_extent(result))
-    if missing:
-        verb, it = ("is", "it") if len(missing) == 1 else ("are", "them")
-        sentences.append(
-            f"{', '.join(missing)} {verb} missing: what depends on {it} was not compared"
-        )
+    shown = {scene_name(check.name) for check in fields if check.printed}
+    for absent, adjective in (
+        ([name for name in missing if name not in shown], "missing"),
+        ([name for name in missing if name in shown], "not certain as read"),
+    ):
+        if absent:
+            verb, it = ("is", "it") if len(absent) == 1 else ("are", "them")
+            sentences.append(
+                f"{', '.join(absent)} {verb} {adjective}: what depends on {it} was not compared"
+            )
     not_read = [name for name in result.not_read if name not in missing]
     if not_read and verdict is not Verdict.IDENTICAL_AS_READ:
         sentences.append(f"not read: {', '.join(not_read)}")
-    is_explained = missing or not_read or result.page or result.differing
+    is_explained = missing or not_read or result.page or sentences[0] != counts(fields)
     if verdict is Verdict.INCOMPLETE and not is_explained:
         sentences.append("the results are missing, or the page ends before them")
     ending = result.ending
@@ -342,19 +350,44 @@ def summary(result: Verification) -> list[str]:
 
 
 def _contradicting(result: Verification) -> Iterator[str]:
-    """Yield a sentence on the numbers of an incomplete page that show other digits than the program
-    prints: no verdict is based on them, and none may hide them."""
+    """Yield sentences on the numbers of an incomplete page that show other digits than the program
+    prints, and on replies that are not the velocities printed: no verdict is based on them, and
+    none may hide them."""
     if result.verdict is not Verdict.INCOMPLETE:
         return
     named = [
-        f"{check.name} {check.printed}, program {check.recomputed}"
+        f"{check.name} {check.printed}, the program {check.recomputed}"
         for check in result.fields
         if check.status in (Status.CONTRADICTED, Status.NOT_COMPARED)
         if check.recomputed and check.printed and check.printed != check.recomputed
     ]
     if 0 < len(named) <= MAX_LEFT_OUT:
-        count = "1 number contradicts" if len(named) == 1 else f"{len(named)} numbers contradict"
-        yield f"{count}: {'; '.join(named)}"
+        verb = "1 number does" if len(named) == 1 else f"{len(named)} numbers do"
+        yield f"{verb} not agree with the inputs as read: {'; '.join(named)}"
+    yield from _wrong_replies(result)
+
+
+def _wrong_replies(result: Verification) -> Iterator[str]:
+    """Yield a sentence for each reply at a prompt that is not the velocity printed."""
+    rows = {check.name: check for check in result.fields}
+    for check in result.replies:
+        if check.same is False:
+            printed = (rows[check.name].printed if check.name in rows else None) or check.recomputed
+            yield (
+                f"{check.name}: the reply at the prompt is {check.printed}, and the row of "
+                f"velocities has {printed}"
+            )
+
+
+def _foreign_lines(result: Verification) -> Iterator[str]:
+    """Yield a sentence on the number of typed lines that the program does not print."""
+    lines = {str(piece.line) for piece in _of_kind(result.left_over, Kind.FOREIGN_LINE)}
+    lines |= {str(mark["line"] or mark["box"]) for mark in result.marks if mark["kind"] == "type"}
+    if lines:
+        count = (
+            "1 line on the page is" if len(lines) == 1 else f"{len(lines)} lines on the page are"
+        )
+        yield f"{count} not the program's: see below"
 
 
 def counts(fields: Sequence[FieldCheck]) -> str:
@@ -381,11 +414,7 @@ def sections(result: Verification) -> dict[str, list[str]]:
             doubtful += _doubts(check)
             suffix = f" ({check.name}: the program prints {check.recomputed})"
             doubtful += [place + suffix for place in look(check)]
-    notes = [
-        f"{check.name}: the reply {check.printed} is not the {check.recomputed} used"
-        for check in result.replies
-        if check.same is False
-    ]
+    notes = [*_wrong_replies(result)] if result.verdict is not Verdict.INCOMPLETE else []
     remarks = [remark for remark in result.remarks if remark not in result.rows]
     entries_by_heading = {
         DOUBTFUL: doubtful,
@@ -580,7 +609,9 @@ def _of_another_copy(result: Verification) -> Iterator[str]:
     labels = [label for label in result.labels if label.kind is Kind.CONTRADICTS]
     if not wrong_replies and not labels:
         return
-    finding = "what was typed at the prompts is not what it computed with"
+    finding = "the replies at the prompts do not agree with the rows of velocities"
+    if len(wrong_replies) == 1:
+        finding = "the reply at the prompt and the row of velocities do not agree"
     if not wrong_replies:
         finding = "its labels are not the listing's"
     ratios = [_ratio(check) for check in wrong_replies]
@@ -590,7 +621,7 @@ def _of_another_copy(result: Verification) -> Iterator[str]:
         and max(ratios) - min(ratios) <= 1e-3 * abs(max(ratios))
     ):
         finding += f" (each velocity printed is {ratios[0]:.6g} times the reply)"
-    yield f"the numbers agree, but {finding}"
+    yield f"the numbers agree with each other, but {finding}"
     yield (
         "another copy of the listing may have printed this page: if so, verify it with "
         "--listing COPY"
