@@ -9,6 +9,7 @@ rows that follow are repeated, too.
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from decimal import Decimal
 from typing import NamedTuple
 
 from ...collision.fields import ANGLES
@@ -134,7 +135,7 @@ def find_rows(page: Page) -> Rows:
                 Repeated(
                     start_of(row),
                     f"{told(row)} is printed a second time: line {place} has it already",
-                    told_otherwise(told(row), numbers, known, place),
+                    _told_otherwise(told(row), numbers, known, place),
                 )
             )
         else:
@@ -167,7 +168,7 @@ def _labelled_rows(page: Page) -> Iterator[_Row]:
             yield _Row(row, number, range(number, stop))
 
 
-def told_otherwise(
+def _told_otherwise(
     told: str, numbers: Mapping[str, str], known: Mapping[str, str], place: int
 ) -> str:
     """Return a sentence on a row that gives fields other numbers than the page has, "" where it
@@ -175,13 +176,18 @@ def told_otherwise(
     differ = [
         name
         for name, text in numbers.items()
-        if name in known and (value_of(text) or text) != (value_of(known[name]) or known[name])
+        if name in known and _value(text) != _value(known[name])
     ]
     if not differ:
         return ""
     here = ", ".join(f"{name} {numbers[name]}" for name in differ)
     there = ", ".join(known[name] for name in differ)
     return f"{told} is printed a second time with {here}, where line {place} has {there}"
+
+
+def _value(text: str) -> Decimal | str:
+    value = value_of(text)
+    return text if value is None else value
 
 
 def _text(page: Page, line: range) -> str:

@@ -41,7 +41,7 @@ from .labels import (
     weigh_labels,
     words_before,
 )
-from .pagerows import find_rows, told_otherwise
+from .pagerows import find_rows
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
@@ -288,8 +288,10 @@ class Printout:
 
     @property
     def rows_contradict(self) -> bool:
-        """True if rows are out of order, or printed a second time with other numbers: misread ones
-        where a machine read the page."""
+        """True if rows are out of order, or printed a second time with other numbers.
+
+        Where a machine read the page, the other numbers may be its misreadings.
+        """
         return self.out_of_order or (bool(self.contradicting) and not self.machine_read)
 
     @property
@@ -304,13 +306,13 @@ class Printout:
 
     @property
     def is_piece(self) -> bool:
-        """True if it is no page of the program's: it does not begin with the first prompt, and
-        holds the row of masses alone or one or two others."""
+        """True if it is no page of the program's, but a row or two.
+
+        It does not begin as a page does, with the first prompt or the row of masses.
+        """
         lines = {STATES[state].line for state in self._states.values() if state}
         rows = {STATES[self._states[at]].line for at in self.number_starts} - {0, 1}
-        return not (self.ending or 0 in lines) and len(rows - {PROMPTS}) < (
-            1 if PROMPTS in rows else _MIN_ROWS
-        )
+        return not (self.ending or lines & {0, PROMPTS}) and len(rows) < _MIN_ROWS
 
     @property
     def signs_of_reader(self) -> int:
@@ -737,14 +739,10 @@ def _read_column(text: str) -> tuple[list[Printout], str]:
         owner = _owner(printouts, offset)
         owner.remarks.append(sentence)
         owner.exchanged.append(sentence)
-    repeated = [(row.offset, row.sentence, row.other) for row in rows.repeated]
-    for piece in pieces:
-        offset = page.glyphs[min(piece.number_starts)].offset
-        repeated.append((offset, "", _told_otherwise(piece, _owner(printouts, offset))))
-    for offset, sentence, other in repeated:
+    for offset, sentence, other in rows.repeated:
         owner = _owner(printouts, offset)
-        owner.remarks += filter(None, [other or sentence])
-        owner.repeated += filter(None, [other or sentence])
+        owner.remarks.append(other or sentence)
+        owner.repeated.append(other or sentence)
         owner.contradicting += [other] * (bool(other) and owner.start <= offset < owner.stop)
     commands = _slot_commands(page)
     for printout in printouts:
@@ -761,19 +759,6 @@ def _owner(printouts: Sequence[Printout], offset: int) -> Printout:
     """Return the printout that begins above a place of the text, or the first."""
     above = [printout for printout in printouts if printout.start <= offset]
     return (above or printouts[:1])[-1]
-
-
-def _told_otherwise(piece: Printout, owner: Printout) -> str:
-    """Return a sentence on a piece that gives numbers of the printout beside it other values."""
-    known = {name: owner.fields[name] for name in piece.fields if name in owner.fields}
-    if not known:
-        return ""
-    line = next(iter(piece.fields.values())).line
-    told = f"line {line}, the row of {next(iter(known))},"
-    numbers, known_texts = (
-        {name: reading.text for name, reading in fields.items()} for fields in (piece.fields, known)
-    )
-    return told_otherwise(told, numbers, known_texts, next(iter(known.values())).line)
 
 
 _ALIKE = str.maketrans("0QL1|!582’`", "OOIIIISBZ''")
