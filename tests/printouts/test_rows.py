@@ -136,22 +136,34 @@ def test_a_retyped_page_has_an_order_of_its_own() -> None:
     assert "in each other's place" in "\n".join(lines(result))
 
 
-def test_two_printouts_are_two() -> None:
-    """Of one scene, of two, below one that ends early, and cut at the top."""
-    second = impact88.run(impact88.sample(2)).page
-    body = PAGE[PAGE.index("MA=", PAGE.rindex("?")) :]
-    cut = PAGE[: PAGE.index("UX=")]
-    for text in (PAGE + PAGE, PAGE + second, body + body, second + body):
-        results = impact88.verify(text.encode())
-        assert [result.verdict for result in results] == [Verdict.IDENTICAL] * 2
-    for text in (cut + second, cut + body, PAGE[PAGE.index("VBX=") :] + PAGE):
-        *_, last = impact88.verify(text.encode())
-        assert last.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
-        assert not last.missing
-    for word in ("DA=", "UX=", " E="):
-        first, below = impact88.verify((PAGE + second[second.index(word) :]).encode())
-        assert first.verdict is Verdict.IDENTICAL
-        assert below.verdict is Verdict.INCOMPLETE
+SECOND = impact88.run(impact88.sample(2)).page
+BODY = PAGE[PAGE.index("MA=", PAGE.rindex("?")) :]
+CUT = PAGE[: PAGE.index("UX=")]
+
+
+@pytest.mark.parametrize(
+    "text", long_but([PAGE + SECOND, BODY + BODY, PAGE + PAGE, SECOND + BODY], kept=(0, 1))
+)
+def test_two_printouts_are_two(text: str) -> None:
+    """Of one scene, or of two."""
+    results = impact88.verify(text.encode())
+    assert [result.verdict for result in results] == [Verdict.IDENTICAL] * 2
+
+
+@pytest.mark.parametrize(
+    "text", long_but([CUT + BODY, PAGE[PAGE.index("VBX=") :] + PAGE, CUT + SECOND])
+)
+def test_a_printout_below_a_part_of_one_is_whole(text: str) -> None:
+    *_, last = impact88.verify(text.encode())
+    assert last.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
+    assert not last.missing
+
+
+@pytest.mark.parametrize("word", long_but(["UX=", "DA=", " E="]))
+def test_a_printout_that_is_cut_at_its_top_is_another(word: str) -> None:
+    first, below = impact88.verify((PAGE + SECOND[SECOND.index(word) :]).encode())
+    assert first.verdict is Verdict.IDENTICAL
+    assert below.verdict is Verdict.INCOMPLETE
 
 
 def test_a_row_printed_twice_above_another_printout_is_the_first_ones() -> None:
