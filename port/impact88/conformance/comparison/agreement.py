@@ -324,8 +324,8 @@ def violated_equations(case: ComparedRows) -> dict[str, Bools]:
     """
     spelling, scene = spelling_of(A_IMPULSE), case.columns
     point = scene["M"] == 4
-    columns = zip(case.values, case.units * 0.5, case.loose, strict=True)
-    theirs: dict[str, Any] = dict(zip(case.names, columns, strict=True))
+    parts = zip(case.values, case.units * 0.5, case.loose, strict=True)
+    theirs: dict[str, Any] = dict(zip(case.names, parts, strict=True))
     is_velocity = [name in spelling.unknown for name in case.names]
     differ = (case.grade()[0][is_velocity] == DIFFER).any(0)
     for name in ("WAF", "WBF"):

@@ -35,6 +35,7 @@ _GROUPS = (
     ("PA", "PB"),
     ("TA", "TB"),
     ("DA", "DB"),
+    ("MA", "MB", "IA", "IB"),
     ("MA", "MB"),
     ("IA", "IB"),
     ("UX", "UY", "VX", "VY"),

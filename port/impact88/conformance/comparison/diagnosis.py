@@ -87,6 +87,8 @@ class TableCause(NamedTuple):
         The condition on the scene under which it holds, "" where it always does.
     explains, disagreeing : int
         The rows that disagree and that it predicts, of all that disagree.
+    open : list of str
+        Results that are wrong as well, and that it does not predict.
     fits, agreeing : int
         The rows that agree and that it predicts, of all looked at that agree.
     score : float
@@ -104,6 +106,7 @@ class TableCause(NamedTuple):
     where: str
     explains: int
     disagreeing: int
+    open: list[str]
     fits: int
     agreeing: int
     score: float
@@ -338,7 +341,7 @@ class Diagnosis:
         """Make a hypothesis a cause."""
         score = self._score(hypothesis) if score is None else score
         program = hypothesis.program
-        equivalents, apart = _tell_apart(hypothesis)
+        equivalents, apart = _tell_apart(hypothesis._replace(equivalents=self._alike(hypothesis)))
         self.hypotheses.append(hypothesis)
         self._evidence.append(
             TableCause(
@@ -347,6 +350,9 @@ class Diagnosis:
                 where=hypothesis.where.text if hypothesis.where else "",
                 explains=0,
                 disagreeing=0,
+                open=[name for name in self._names if name not in hypothesis.names]
+                if program
+                else [],
                 fits=0,
                 agreeing=0,
                 score=round(score, 1),
@@ -355,6 +361,22 @@ class Diagnosis:
                 parts={},
             )
         )
+
+    def _alike(self, hypothesis: TableHypothesis) -> list[Program]:
+        """Return the equivalents of a hypothesis that give the same in every column that is wrong
+        in the table, those too that the search for it left aside."""
+        if hypothesis.program is None:
+            return []
+        judge = judge_of(self._sample, self._wrong)
+        columns = [judge.select_results([name]) for name in self._names]
+
+        def fits(program: Program) -> Bools:
+            results = program.results(judge.scene)
+            return np.array([column.matches(results) for column in columns])
+
+        mine = fits(hypothesis.program)
+        candidates = hypothesis.equivalents[: 4 * _MAX_EQUIVALENTS]
+        return [x for x in candidates if ((fits(x) == mine).mean(-1) >= _NEARLY).all()]
 
     def _programs(self) -> Iterator[TableHypothesis]:
         """Yield the programs that explain rows of the sample, with the conditions under which they
@@ -398,6 +420,9 @@ class Diagnosis:
             for x in partial_ones
             if x.program is not None
         ]
+        # one constant may explain all results, and no single one tells what it belongs to
+        constants = rank_programs(fit_constants(small, small.wrong, Program()), small)
+        whole_ones += self._with_conditions(constants, ~small.wrong, small)
         yield from whole_ones
         best = self._best(partial_ones)
         if best and best.program and not best.where and not self._are_explained(whole_ones, small):
@@ -587,6 +612,8 @@ def _plainness(trial: Trial) -> tuple[int, bool, int]:
     """Return what programs that give the same are sorted by: the likeliest first, of these one that
     is said in words and not by a formula, and briefly."""
     sentence = trial.program.sentence
+    if any(edit.rank == FITTED for edit in trial.program.edits):  # in the order of their places
+        return trial.rank, False, 0
     return trial.rank, any(sign in sentence for sign in "*/+"), len(sentence)
 
 
@@ -657,7 +684,7 @@ def _tell_apart(hypothesis: TableHypothesis) -> tuple[list[str], dict[str, str]]
     same: list[str] = []
     different: list[str] = []
     apart: dict[str, str] = {}
-    for program in hypothesis.equivalents[: 4 * _MAX_EQUIVALENTS]:
+    for program in hypothesis.equivalents:
         results = hypothesis._replace(program=program).results(columns)
         off = np.max([_distance(mine[name], results[name]) for name in FINAL_VELOCITIES], 0)
         says = program.sentence

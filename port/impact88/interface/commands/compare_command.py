@@ -192,9 +192,10 @@ def _evidence_lines(cause: TableCause) -> Iterator[str]:
     yield f"\n{cause.says}"
     if cause.formula:
         yield f"  in the program: {cause.formula}"
+    but = f", but for their {', '.join(cause.open)}" if cause.open else ""
     yield (
-        f"  predicts {cause.explains} of {cause.disagreeing} rows that disagree, {cause.fits} of "
-        f"{cause.agreeing} examined that agree; {cause.score:.0f} bits"
+        f"  predicts {cause.explains} of {cause.disagreeing} rows that disagree{but}, "
+        f"{cause.fits} of {cause.agreeing} examined that agree; {cause.score:.0f} bits"
     )
     if remaining := cause.disagreeing - cause.explains:
         yield f"  it does not explain the other {remaining} rows that disagree"
