@@ -168,7 +168,7 @@ def _up_to(limit: float, back: float = 0.0) -> str:
     """Return the interval from 0 to ``limit``, extended to ``back``, in words."""
     if isinf(limit):
         return "above 0" if limit > 0 else "below 0"
-    low, high = min(limit, back, 0.0), max(limit, back, 0.0)
+    low, high = min(limit, back, 0.0) + 0.0, max(limit, back, 0.0)  # a zero without a sign
     if high - low < 5e-10:
         return "= 0 only"
     return f"from {low:.4g} to {high:.4g}"

@@ -315,6 +315,8 @@ def read(text: str, name: str, center: float | None = None, units: str | None = 
 NEARLY_UNIFORM = 0.9
 """Part of a uniform's standard deviation from which a skid of two ranges is one: that is then too
 large by 11 % at most, as a normal within the same limits would be too small by 14 %."""
+GREATEST_DRAG = 1.2
+"""Friction of tires on a dry road from which a skid is remarked upon: measured is .5 to 1."""
 _SKID = re.compile(r"skid (.+) at (.+)")
 
 
@@ -325,7 +327,8 @@ def skid(text: str, name: str, units: str | None) -> Uncertain:
     both, or uniform where one of them decides. ``units``: the system D is in. Raises UserError."""
     match, gravity = _SKID.fullmatch(" ".join(text.split())), gravity_in(system_of(units))
     if match is None:
-        raise UserError(f"{text!r} is not a skid; expected such as 'skid 62 ft at 0.7'", name)
+        needed = "a skid needs its friction" if " at " not in text else "is not a skid"
+        raise UserError(f"{text!r}: {needed}; expected such as 'skid 62 ft at 0.7 +- .1'", name)
     if gravity is None:
         raise UserError(f"{text!r} needs units; expected such as 'skid 62 ft at 0.7'", name)
     parts = [read(part, name) for part in match.groups()]
@@ -350,16 +353,23 @@ def skid(text: str, name: str, units: str | None) -> Uncertain:
     return Uncertain("normal", nominal, low, high, deviation)
 
 
-def shared_road(texts: Mapping[str, str]) -> list[str]:
-    """Return a remark where two skids have a range of friction each: they are taken as
-    independent."""
-    skids = [_SKID.fullmatch(" ".join(texts.get(name, "").split())) for name in ("SAF", "SBF")]
-    if not all(match and read(match[2], "MU").varies for match in skids):
-        return []
-    return [
-        "the friction of the two skids (SAF, SBF) is taken as independent; on one road both err "
-        "together: for its ends give both skids the lowest friction, then both the highest"
+def skid_remarks(texts: Mapping[str, str]) -> list[str]:
+    """Return remarks on skids: one on friction that no road has, and one where two skids have a
+    range of friction each: they are taken as independent."""
+    matches = {n: _SKID.fullmatch(" ".join(texts.get(n, "").split())) for n in ("SAF", "SBF")}
+    friction = {name: read(match[2], "MU") for name, match in matches.items() if match}
+    remarks = [
+        f"{name}: a skid at {value.nominal:g} is from friction above {GREATEST_DRAG:g}; tires on a "
+        "dry road have .5 to 1"
+        for name, value in friction.items()
+        if value.nominal > GREATEST_DRAG
     ]
+    if len(friction) == 2 and all(value.varies for value in friction.values()):
+        remarks.append(
+            "the friction of the two skids (SAF, SBF) is taken as independent; on one road both "
+            "err together, which the worst cases hold and the 90 % do not"
+        )
+    return remarks
 
 
 def _of_kind(

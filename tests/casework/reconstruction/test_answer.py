@@ -13,7 +13,7 @@ import pytest
 from impact88.casework.reconstruction.answer import answers
 from impact88.casework.reconstruction.answertable import first_lines
 from impact88.collision.geometry import clock
-from impact88.collision.uncertain import shared_road
+from impact88.collision.uncertain import skid_remarks
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
 
@@ -228,4 +228,12 @@ def test_a_refusal_names_what_would_make_it_answerable():
     [("skid 40 ft at .7 +- .1", 1), ("skid 40 ft at .7", 0), ("40 +- 5", 0), ("", 0)],
 )
 def test_two_skids_with_ranges_of_friction_are_said_to_be_independent(other, count):
-    assert len(shared_road({"SAF": "skid 30 ft at .6 .. .8", "SBF": other})) == count
+    assert len(skid_remarks({"SAF": "skid 30 ft at .6 .. .8", "SBF": other})) == count
+
+
+@pytest.mark.parametrize(("friction", "is_odd"), [("1.2", False), ("1.3", True), ("7 +- 1", True)])
+def test_friction_that_no_road_has_is_remarked_upon(friction, is_odd):
+    """A point left out of .7 makes the speed sqrt(10) times as high."""
+    remarks = skid_remarks({"SAF": f"skid 30 ft at {friction}"})
+    assert bool(remarks) == is_odd
+    assert all(remark.startswith("SAF: ") for remark in remarks)

@@ -56,7 +56,7 @@ class Vehicle(NamedTuple):
     """One vehicle in plan, in the scene's units; points are x + iy. ``center``: of gravity;
     ``front``: unit vector; ``outline``: four corners, the front's two first, or a disc's rim;
     ``kept``: the outline on its own side of the contact plane; ``wall``: too heavy to be a vehicle;
-    ``point``: a point mass."""
+    ``point``: a point mass; ``has_front``: which way it faces is given, not only drawn."""
 
     name: str
     center: complex
@@ -67,6 +67,7 @@ class Vehicle(NamedTuple):
     kept: tuple[complex, ...]
     wall: bool
     point: bool
+    has_front: bool
     before: Motion
     after: Motion | None
 
@@ -168,7 +169,8 @@ def plan(
         wall = heavy >= WALL * light and before[name] == (0, 0)
         motions = before[name], after.get(name)
         size = length, width, outline, outline_left
-        vehicles.append(Vehicle(name, center, front[name], *size, wall, points, *motions))
+        kind = wall, points, f"T{name}" in getattr(scene, "given", scene)
+        vehicles.append(Vehicle(name, center, front[name], *size, *kind, *motions))
     # momentum of the lighter vehicle: a wall's change of velocity has no digits left
     mover, sense = (vehicles[1], -1) if vehicles[0].wall else (vehicles[0], 1)
     impulse = None if mover.change is None else sense * values[f"M{mover.name}"] * mover.change

@@ -191,7 +191,8 @@ class _Field:
                 else (-self.force, "−P", "opposite impulse", 0.45, 2.2)
             )
             drawing.add(*d.arrow(at(0), at(force), IMPULSE_COLOUR, width, head=head, role=role))
-            text = f"{symbol}, {clock(vehicle.pdof(self.shapes.impulse or 0j))}"
+            hour = f", {clock(vehicle.pdof(self.shapes.impulse or 0j))}" * vehicle.has_front
+            text = f"{symbol}{hour}"
             bold = vehicle.name == "A"
             drawing.add(Label(at(force), force, text, 7.5, IMPULSE_COLOUR, bold, f"{role} label"))
         drawing.add(Path(d.circle(at(0), 0.75), d.BLACK, 0.3, fill=d.WHITE, role="contact"))
@@ -451,7 +452,7 @@ def description(shapes: Plan, units: System) -> str:
                 f", {with_unit(vehicle.after.speed, VELOCITY, units)} after, change of velocity "
             )
             text += with_unit(abs(vehicle.change), VELOCITY, units)
-            if shapes.impulse and not vehicle.wall:
+            if shapes.impulse and vehicle.has_front and not vehicle.wall:
                 text += f", force from {clock(vehicle.pdof(shapes.impulse))}"
         parts.append(text + ".")
     return " ".join(parts)

@@ -12,7 +12,7 @@ from ...collision.needs import join_words
 from ...collision.units import RULES, System, display_values
 from ...mechanics.state import CHANGES, COURSES, SPEEDS
 from ...messages.plaintable import decimals_for, format_fixed, number, paragraph, table
-from ...names import COEFFICIENTS, FINAL_STATE, PIVOT, VELOCITIES, VELOCITY, quantity
+from ...names import COEFFICIENTS, FINAL_STATE, NUMBER, PIVOT, VELOCITIES, VELOCITY, quantity
 from .answer import QUANTILES, Answer, bounds_without_noise
 from .answerremarks import remarks_on
 from .derived import NOISE, absent_quantities, without_noise
@@ -355,9 +355,14 @@ def _quantity_table(
             note += f" ({clock(values[name])})"
         if name == "EM":
             note += f"; {number(-values[name])} with the sign the other way"
-        unit = units.label(quantity(name).unit)
-        rows.append([name, f"{number(values[name])}{mark}", unit, note])
+        rows.append([name, f"{number(values[name])}{mark}", _unit_label(name, units), note])
     return table(rows, left=(0, 2, 3))
+
+
+def _unit_label(name: str, units: System) -> str:
+    """Return the unit of a quantity as a table has it, "" for a pure number."""
+    label = units.label(quantity(name).unit)
+    return "" if label == NUMBER else label
 
 
 def _friction_note(values: Mapping[str, float]) -> str:
@@ -414,7 +419,7 @@ def _adjustment_table(answer: Answer, units: System) -> list[str]:
                 entry.name,
                 *cells,
                 format_fixed(entry.normalized_residual, 2),
-                units.label(quantity(entry.name).unit),
+                _unit_label(entry.name, units),
             ]
         )
     heading = ["known", "measured", "half-width", "sd", "adjusted", "moved, tolerances", "unit"]
@@ -449,7 +454,7 @@ def _spread_table(answer: Answer, units: System) -> list[str]:
             quantiles = quantiles[::-1] if units.is_turned(name) else quantiles
             limits = (*quantiles, *units.ends(name, *bounds_without_noise(bound)))
             cells += [number(value, 5) for value in limits]
-        rows.append([*cells, units.label(quantity(name).unit)])
+        rows.append([*cells, _unit_label(name, units)])
     lines = table(rows, [*heading, "unit"], left=(0, len(heading))) if rows else []
     if answer.draws and rows:
         lines += paragraph(

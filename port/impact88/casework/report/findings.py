@@ -234,9 +234,16 @@ def _unjudged(case: Case) -> list[str]:
         sentences.append(f"Taken as exact, for no limits are given: {' '.join(exact)}.")
     if unsourced:
         sentences.append(f"The file names no source for {' '.join(unsourced)}.")
+    skids = [n for n, text in case.given.items() if text.lstrip().startswith("skid")]
+    if skids:
+        sentences.append(
+            f"{' and '.join(skids)} from a skid to rest: v = sqrt(2 mu g d), on a level road of "
+            "one friction, g = 32.174 ft/s2 (9.80665 m/s2)."
+        )
     return [
         *sentences,
-        "Motion before and after the impact, crush and injury: nothing of them is computed here.",
+        f"Motion before and after the impact{' but for skids' * bool(skids)}, crush and injury: "
+        "nothing of them is computed here.",
     ]
 
 
@@ -299,13 +306,13 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
 
 def _answers(case: Case, source: str, samples: int, seed: int, units: System) -> list[Answer]:
     """Return every impact that agrees with the case, as ``reconstruct`` finds them."""
-    from ...collision.uncertain import read, shared_road
+    from ...collision.uncertain import read, skid_remarks
     from ..reconstruction.answer import answers
 
     texts = {n: text for n, text in case.values.items() if text.strip() and n in KNOWABLE}
     texts.setdefault("M", DEFAULT_M)
     known = {n: read(t, f"{source}: {n}", units=units.name or None) for n, t in texts.items()}
-    said = [*remark_lines(case.remarks), *shared_road(texts)]
+    said = [*remark_lines(case.remarks), *skid_remarks(texts)]
     try:
         return answers(known, samples, seed, remarks=said)
     except UserError as error:

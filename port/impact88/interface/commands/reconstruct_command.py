@@ -63,7 +63,7 @@ from math import isclose
 from ...casework.reconstruction.answer import Answer, answers
 from ...collision.case import OWN_AXES, OWN_NAMES, SOURCE, Case, remark_lines
 from ...collision.scenefile import template
-from ...collision.uncertain import shared_road
+from ...collision.uncertain import skid_remarks
 from ...errors import UserError, note
 from ...files import replacing
 from ...mechanics.state import KNOWABLE, QUANTITIES
@@ -88,7 +88,7 @@ def main(args: options.Args) -> int:
     case = options.known_case(args, KNOWABLE)
     known = options.read_known(case, KNOWABLE)
     settings = (args.samples, args.seed, output_names, args.contact_time)
-    remarks = [*remark_lines(case.remarks), *shared_road(case.values)]
+    remarks = [*remark_lines(case.remarks), *skid_remarks(case.values)]
     with progress(None, "reconstruct") as meter:
         found = options.answers_of(args, lambda: answers(known, *settings, meter.update, remarks))
     if args.write_scene:

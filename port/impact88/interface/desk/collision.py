@@ -135,8 +135,7 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
         exact = {n: row["double"] for n, row in results.items() if row["double"] is not None}
         warnings = beside.warnings(scene)
         if scene.omitted:  # nothing is judged by a 0 that was typed for want of a value
-            exact, lines = _without(scene, results)
-            warnings = []
+            exact, warnings, lines = _without(scene, results)
             document["remarks"] += lines
         run_machine(machine)
         document |= {
@@ -156,9 +155,11 @@ def _known_numbers(scene: Scene) -> dict[str, float]:
     return {**doubles_of(scene.given), **dict.fromkeys(facing & {*scene.omitted}, math.nan)}
 
 
-def _without(scene: Scene, results: Collection[str]) -> tuple[dict[str, float], list[str]]:
-    """Return the results of a scene that do not need what it lacks, and remarks: what the program
-    is typed in its place, what the impact breaks, and what is needed for the rest."""
+def _without(
+    scene: Scene, results: Collection[str]
+) -> tuple[dict[str, float], list[str], list[str]]:
+    """Return the results of a scene that do not need what it lacks, warnings of what the impact
+    breaks, and remarks: what the program is typed in its place, and what is needed for the rest."""
     from ...mechanics.closedform.solve import solve
     from ...mechanics.posed import absent_results
 
@@ -167,10 +168,14 @@ def _without(scene: Scene, results: Collection[str]) -> tuple[dict[str, float], 
     needs = {**absent_results(columns), **getattr(solved, "absent", {})}
     unanswered = {name for _, *names in _ANSWER for name in names} - {*solved}
     omitted_names = [n if scene[n] == "0" else f"{n} (1: it divides)" for n in scene.omitted]
-    lines = [f"0 is typed for what is not given: {' '.join(omitted_names)}"]
-    lines += status.sentences(int(solved.get("STATUS", 0)), {**columns, **solved})
+    lines = [f"the printout takes 0 for what is not given: {' '.join(omitted_names)}"]
+    if "GA" in scene.omitted and "VC" in solved:
+        lines.append(
+            "the answer takes the contact plane across the motion, which is along one line"
+        )
+    warnings = status.sentences(int(solved.get("STATUS", 0)), {**columns, **solved})
     lines += needs_in_words({name: x for name, x in needs.items() if name in unanswered})
-    return {name: float(x) for name, x in solved.items() if name in results}, lines
+    return {name: float(x) for name, x in solved.items() if name in results}, warnings, lines
 
 
 def _answer(scene: Scene, exact: Mapping[str, float], system: System) -> list[dict[str, Any]]:

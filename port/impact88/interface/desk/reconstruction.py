@@ -8,7 +8,7 @@ from typing import Any
 from ...collision import uncertain
 from ...collision.case import Case, remark_lines
 from ...collision.scenefile import known_template
-from ...collision.uncertain import Uncertain, shared_road
+from ...collision.uncertain import Uncertain, skid_remarks
 from ...collision.units import RULES
 from ...errors import UserError
 from ...mechanics.state import KNOWABLE
@@ -66,7 +66,7 @@ def answer(values: dict[str, str], units: str = "", draws: int = DRAWS) -> dict[
     try:
         if problems or case is None:
             raise UserError(f"To be corrected: {' '.join(problems)}.")
-        found = answers(known, draws, remarks=[*reply["remarks"], *shared_road(case.values)])
+        found = answers(known, draws, remarks=[*reply["remarks"], *skid_remarks(case.values)])
         solutions = [
             (
                 json_of(answer, system),
