@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING
 from ..errors import UserError, quoted
 from .case import FACING_COURSE
 from .doubles import double, is_number
-from .units import ACCEPTED, gravity_in, parse, system_of
+from .units import ACCEPTED, NO_SKID, gravity_in, parse, system_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -327,8 +327,7 @@ def skid(text: str, name: str, units: str | None) -> Uncertain:
     both, or uniform where one of them decides. ``units``: the system D is in. Raises UserError."""
     match, gravity = _SKID.fullmatch(" ".join(text.split())), gravity_in(system_of(units))
     if match is None:
-        needed = "a skid needs its friction" if " at " not in text else "is not a skid"
-        raise UserError(f"{text!r}: {needed}; expected such as 'skid 62 ft at 0.7 +- .1'", name)
+        raise UserError(f"{text!r} {NO_SKID}", name)
     if gravity is None:
         raise UserError(f"{text!r} needs units; expected such as 'skid 62 ft at 0.7'", name)
     parts = [read(part, name) for part in match.groups()]

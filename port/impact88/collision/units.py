@@ -411,6 +411,7 @@ ACCEPTED = (
     "'A .. B', 'N +- D', 'N +- P%', 'uniform A B', 'triangular A M B' or "
     "'normal MEAN SD [within A .. B]'"
 )
+NO_SKID = "is not a skid; expected its friction, too, such as 'skid 62 ft at 0.7 +- .1'"
 ENTRY = "units"
 """Entry of a file that names its system of units."""
 SHARED = ("MU", "MUP")
@@ -570,6 +571,8 @@ class _Value:
         try:
             self.notation = parse(text)
         except ValueError:
+            if text.split()[:1] == ["skid"]:
+                raise UserError(f"{name} = {quoted(text)} {NO_SKID}", source) from None
             self._refuse(f"{name} = {quoted(text)} is not an amount")
         for unit in self.notation.units:
             try:
