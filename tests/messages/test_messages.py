@@ -59,6 +59,27 @@ def test_an_argument_of_another_kind_is_a_user_error(name: str) -> None:
             function(**arguments)
 
 
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("gauss", 1, 0, 2), "kind is 'gauss'; expected one of fixed uniform triangular normal"),
+        (("uniform", "1", 0, 2), "nominal is '1'; expected a number"),
+        (("uniform", 1, 2, 0), "low is 2 and high 0; expected low <= high"),
+        (("uniform", 1, 0, np.nan), "high nan"),
+        (("normal", 1, 0, 2, -0.1), "deviation is -0.1; expected 0 or more"),
+    ],
+)
+def test_a_range_that_is_none_is_a_user_error(arguments: tuple[Any, ...], words: str) -> None:
+    with pytest.raises(impact88.UserError, match=words):
+        impact88.Uncertain(*arguments)
+
+
+def test_a_normal_without_a_deviation_is_exact() -> None:
+    exact = impact88.Uncertain("normal", 0.5, 0.2, np.inf, 0)
+    assert exact.quantile(0.9) == exact.draws(np.random.default_rng(1), 2)[1] == 0.5
+    assert impact88.bounds({**NUMBERS, "MU": exact, "E": "0 .. 0.1"}, "LOSS", samples=10)
+
+
 def test_an_error_that_no_argument_explains_stays_what_it_is() -> None:
     @explains_arguments
     def broken(number: int) -> int:

@@ -22,6 +22,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from numbers import Real
 from typing import TYPE_CHECKING
 
 from ..errors import UserError, quoted
@@ -32,6 +33,8 @@ from .units import ACCEPTED, NO_SKID, gravity_in, parse, system_of
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+KINDS = ("fixed", "uniform", "triangular", "normal")
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +57,11 @@ class Uncertain:
         The critical friction at the nominal values that turned such fractions into numbers; the
         friction stays the same fraction of each impact's own critical friction.
 
+    Raises
+    ------
+    UserError
+        For another kind, what is no number, limits in the wrong order, or a deviation below 0.
+
     Examples
     --------
     >>> impact88.Uncertain("uniform", 0.8, 0.7, 0.9).varies
@@ -67,6 +75,19 @@ class Uncertain:
     deviation: float = 0.0
     share: bool = False
     critical: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            raise UserError(f"kind is {quoted(self.kind)}; expected one of {' '.join(KINDS)}")
+        if self.kind == "fixed":
+            return  # may be a column
+        for name in ("nominal", "low", "high", "deviation"):
+            if not isinstance(number := getattr(self, name), Real):
+                raise UserError(f"{name} is {quoted(number)}; expected a number")
+        if not self.low <= self.high:
+            raise UserError(f"low is {self.low} and high {self.high}; expected low <= high")
+        if not self.deviation >= 0:
+            raise UserError(f"deviation is {self.deviation}; expected 0 or more")
 
     def over(self, factor: float) -> Uncertain:
         """Return the value in another unit.
@@ -150,7 +171,7 @@ class Uncertain:
         float
             The value that is not exceeded with that probability.
         """
-        if self.kind == "fixed":
+        if self.kind == "fixed" or (self.kind == "normal" and not self.deviation):
             return self.nominal
         if self.kind == "uniform":
             return self.low + share * (self.high - self.low)
