@@ -271,6 +271,31 @@ class Comparison:
             line += f"; likely cause of {count}: {cause}" if is_cause else f"; {count}: {cause}"
         return line
 
+    def write_junit(self, path: str, name: str, strict: bool) -> None:
+        """Write the JUnit report: a failing test for every row that disagrees, one test for those
+        that agree, one for each reason why rows were not compared.
+
+        Parameters
+        ----------
+        path, name : str
+            The file to be written, and the table's name.
+        strict : bool
+            Rows, cells and columns that were not compared fail.
+        """
+        from .junit import Test, write  # XML takes 4 ms to import
+
+        tests = [Test(f"{self.agreeing} of {self.rows} rows agree")]
+        for row in self.differences:
+            place = f"row {row.row}" + (f", id {row.id}" if row.id else "")
+            says = f"{row.result} {row.theirs}, here {row.ours:.12g}, off by {row.relative:.2g}"
+            tests.append(Test(place, "failure", f"{says}; {row.cause}"))
+        tests += [Test(f"row {bad.row}", "error", str(bad)) for bad in self.bad]
+        tests += [Test(says, "failure" if strict else "skipped", says) for says in self.silent]
+        for reason in HARMLESS:
+            if skipped_rows := self.not_compared.get(reason):
+                tests.append(Test(f"{skipped_rows.rows} rows: {reason}", "skipped", reason))
+        write(path, f"impact88 compare {name}", tests)
+
     def as_json(self) -> dict[str, Any]:
         """Return the object that ``impact88 compare --json`` prints.
 
@@ -374,7 +399,7 @@ def compare(
     with open_table(table, form, encoding) as (reader, where):
         comparison.place, comparison.remarks = reader.place, reader.remarks
         wanted, unknown = result_columns(reader)
-        comparison.unknown = {name: _result_meant(name) for name in unknown}
+        comparison.unknown = unknown
         if not wanted:
             hints = [f"{name} for {meant}" for name, meant in comparison.unknown.items() if meant]
             hint = f" ({', '.join(hints)}?)" if hints else ""
@@ -495,11 +520,12 @@ class Block(NamedTuple):
         return np.flatnonzero(is_judged & ~np.isin(self.grades, (DIFFER, LOST)).any(0))
 
 
-def result_columns(reader: Reader) -> tuple[list[str], list[str]]:
-    """Return a table's columns of results that are compared, and those that are not recognised."""
+def result_columns(reader: Reader) -> tuple[list[str], dict[str, str]]:
+    """Return a table's columns of results that are compared, and those that are not recognised,
+    with the name that was probably meant, or ""."""
     results = [str(n) for n in reader.names if n in RESULTS and n not in NOT_COMPARED]
     known = {*SCENE, *RESULTS, *CARRIED}
-    return results, [name for name in reader.names if name not in known]
+    return results, {str(n): _result_meant(str(n)) for n in reader.names if n not in known}
 
 
 def read_blocks(
@@ -625,25 +651,3 @@ def _rows_of(block: Block) -> Iterator[Row]:
             relative=relative[place],
             cause=UNKNOWN,
         )
-
-
-def write_junit(path: str, name: str, comparison: Comparison, strict: bool) -> None:
-    """Write the JUnit report that systems for continuous integration read: a failing test for every
-    row that disagrees, one test for those that agree, one for each reason why rows were not
-    compared (failing with ``strict``). Raises UserError when the place cannot be written to."""
-    from .junit import Suite  # XML takes 4 ms to import
-
-    suite = Suite(f"impact88 compare {name}")
-    suite.test(f"{comparison.agreeing} of {comparison.rows} rows agree")
-    for row in comparison.differences:
-        place = f"row {row.row}" + (f", id {row.id}" if row.id else "")
-        difference = f"{row.result} {row.theirs}, here {row.ours:.12g}, off by {row.relative:.2g}"
-        suite.test(place, "failure", f"{difference}; {row.cause}")
-    for bad in comparison.bad:
-        suite.test(f"row {bad.row}", "error", str(bad))
-    for message in comparison.silent:
-        suite.test(message, "failure" if strict else "skipped", message)
-    for reason, skipped_rows in comparison.not_compared.items():
-        if reason in HARMLESS:
-            suite.test(f"{skipped_rows.rows} rows: {reason}", "skipped", reason)
-    suite.write(path)

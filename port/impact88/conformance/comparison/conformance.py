@@ -30,7 +30,7 @@ from ...tables.cells import TableUnits, numbers
 from ...tables.rows import Rows
 from .agreement import DIFFER, LOST, Floats
 from .compare import Block, compare_block, open_table, read_blocks, result_columns
-from .junit import Suite
+from .junit import Test, write
 from .kit import csv_lines
 from .vectors import (
     ANSWER,
@@ -110,8 +110,8 @@ class Conformance:
         One for each vector, in the kit's order.
     strays : list of str
         Rows without a vector: an unknown id, or none.
-    unknown : list of str
-        Columns that were not recognised.
+    unknown : dict of str to str
+        Columns that were not recognised, and the name that was probably meant, or "".
     refused : int
         Number of vectors that pass without an answer, which their class permits.
     place : dict
@@ -126,7 +126,7 @@ class Conformance:
     results: list[str]
     verdicts: list[Verdict] = field(default_factory=list)
     strays: list[str] = field(default_factory=list)
-    unknown: list[str] = field(default_factory=list)
+    unknown: dict[str, str] = field(default_factory=dict)
     refused: int = 0
     place: dict[str, Any] = field(default_factory=dict)
     remarks: list[str] = field(default_factory=list)
@@ -165,6 +165,23 @@ class Conformance:
             group["failed" if verdict.reason else "passed"] += 1
         return groups
 
+    def write_junit(self, path: str, name: str, strict: bool = True) -> None:
+        """Write the JUnit report: a test for each vector, with the vector's class, and one for each
+        stray row; all are strict."""
+        tests = []
+        for vector, reason, detail, _ in self.verdicts:
+            message = f"{REASONS[reason]}; {detail}".removesuffix("; ") if reason else ""
+            outcome = "failure" if reason else ""
+            title = f"{vector.id} {vector.label}"
+            tests.append(Test(title, outcome, message, f"kit.{vector.kind}"))
+        tests += [Test(stray, "failure", stray, "kit.strays") for stray in self.strays]
+        properties = {
+            "kit.sha256": self.kit.sha256,
+            "table.sha256": self.sha256,
+            "kit.vectors": f"vectors/{NUMBERS['vectors']} seed {self.kit.seed}",
+        }
+        write(path, f"impact88 compare --kit, {name}", tests, **properties)
+
     def as_json(self) -> dict[str, Any]:
         """Return the object that `impact88 compare --kit DIR --json` prints."""
         full_kit: dict[str, Any] = {
@@ -201,7 +218,7 @@ class Conformance:
                 for verdict in self.failures
             ],
             "strays": self.strays,
-            "unknown_columns": self.unknown,
+            "unknown_columns": list(self.unknown),
             "remarks": self.remarks,
         }
         return {name: plain(value) for name, value in full_kit.items()}
@@ -315,7 +332,7 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
                 f"no column {' '.join(missing)}; expected all of {' '.join(FINAL_VELOCITIES)}",
                 where,
             )
-        done = Conformance(full_kit, where, _digest(path), results, unknown=list(map(str, unknown)))
+        done = Conformance(full_kit, where, _digest(path), results, unknown=unknown)
         done.place, done.remarks = reader.place, reader.remarks
         judge = _Judge(done)
         for rows, units in read_blocks(reader, results, where):
@@ -430,24 +447,3 @@ def _verdict(
         for at in np.flatnonzero(grades == grade)[:1]:
             return reason, f"{names[at]} is {values[at]:.12g}, here {ours[at]:.12g}"
     return "", ""
-
-
-def write_junit(path: str, done: Conformance) -> None:
-    """Write a JUnit report: a test for each vector, with the vector's class, and one for each
-    stray row. Raises UserError when the place cannot be written to."""
-    suite = Suite(f"impact88 compare --kit, {done.table}")
-    suite.add_property("kit.sha256", done.kit.sha256)
-    suite.add_property("table.sha256", done.sha256)
-    suite.add_property("kit.vectors", f"vectors/{NUMBERS['vectors']} seed {done.kit.seed}")
-    for verdict in done.verdicts:
-        vector = verdict.vector
-        message = f"{REASONS[verdict.reason]}; {verdict.detail}" if verdict.reason else ""
-        suite.test(
-            f"{vector.id} {vector.label}",
-            "failure" if message else "",
-            message.removesuffix("; "),
-            f"kit.{vector.kind}",
-        )
-    for stray in done.strays:
-        suite.test(stray, "failure", stray, "kit.strays")
-    suite.write(path)

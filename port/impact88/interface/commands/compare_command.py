@@ -43,8 +43,9 @@ from collections import Counter
 from collections.abc import Iterator
 
 from ...conformance.comparison.agreement import EQUATIONS
-from ...conformance.comparison.compare import HARMLESS, Comparison, compare, write_junit
+from ...conformance.comparison.compare import HARMLESS, Comparison, compare
 from ...errors import UserError, note, one_line
+from ...files import display_name
 from ...mechanics.accuracy.errorbound import DOUBLE
 from ...tables.table import format_of
 from . import options
@@ -93,47 +94,30 @@ def main(args: options.Args) -> int:
     values = options.settings(args.set, units=args.units)
     if args.rtol is not None and not 0 <= args.rtol < 1:
         raise UserError(f"--rtol is {args.rtol}; expected a share such as 1e-9")
-    if args.kit is not None:
-        return _conformance(args)
-    comparison = compare(
-        args.theirs,
-        format_of(args.theirs, args.form),
-        values,
-        args.rtol,
-        args.encoding,
-        args.units,
-        not args.no_causes,
-    )
-    if args.junit:
-        write_junit(args.junit, args.theirs, comparison, args.strict)
-    options.show(args, "compare", comparison.as_json, lambda: _lines(comparison))
-    for line in _notes(comparison):
-        note("compare", line)
-    return int(bool(comparison.differing or comparison.bad or (args.strict and comparison.silent)))
-
-
-def _conformance(args: options.Args) -> int:
-    """Judge the table as answers to a kit's vectors."""
-    from ...conformance.comparison import conformance  # its archives take 10 ms to import
-
-    for option, value in (("--set", args.set), ("--units", args.units), ("--rtol", args.rtol)):
-        if value:
-            raise UserError(f"{option}: a kit's inputs and tolerances are its own; expected none")
     form = format_of(args.theirs, args.form)
-    conformance_result = conformance.check_conformance(args.kit, args.theirs, form, args.encoding)
+    judged: Comparison | Conformance
+    if args.kit is None:
+        judged = compare(
+            args.theirs, form, values, args.rtol, args.encoding, args.units, not args.no_causes
+        )
+        schema, lines = "compare", _lines(judged)
+        failed = bool(judged.differing or judged.bad or (args.strict and judged.silent))
+    else:
+        from ...conformance.comparison.conformance import check_conformance  # its archives: 10 ms
+
+        for option, value in (("--set", args.set), ("--units", args.units), ("--rtol", args.rtol)):
+            if value:
+                raise UserError(
+                    f"{option}: a kit's inputs and tolerances are its own; expected none"
+                )
+        judged = check_conformance(args.kit, args.theirs, form, args.encoding)
+        schema, lines, failed = "conformance", _conformance_lines(judged), not judged.conforms
     if args.junit:
-        conformance.write_junit(args.junit, conformance_result)
-    options.show(
-        args,
-        "conformance",
-        conformance_result.as_json,
-        lambda: _conformance_lines(conformance_result),
-    )
-    for remark in conformance_result.remarks:
-        note("compare", remark)
-    for name in conformance_result.unknown[:MAX_BAD_ROWS_LISTED]:
-        note("compare", f"column {name} is not recognised")
-    return int(not conformance_result.conforms)
+        judged.write_junit(args.junit, display_name(args.theirs), args.strict)
+    options.show(args, schema, judged.as_json, lambda: lines)
+    for line in _notes(judged):
+        note("compare", line)
+    return int(failed)
 
 
 def _conformance_lines(done: Conformance) -> Iterator[str]:
@@ -163,20 +147,22 @@ def _conformance_lines(done: Conformance) -> Iterator[str]:
     yield f"\n{done.badge}"
 
 
-def _notes(comparison: Comparison) -> Iterator[str]:
+def _notes(judged: Comparison | Conformance) -> Iterator[str]:
     """Yield the notes for stderr: how the table was read, what could not be or was not compared."""
-    yield from comparison.remarks
+    yield from judged.remarks
+    for name, suggestion in list(judged.unknown.items())[:MAX_BAD_ROWS_LISTED]:
+        hint = f"; did you mean {suggestion}? (a unit stands in brackets: {suggestion} [mph])"
+        yield f"column {name} is not recognised{hint * bool(suggestion)}"
+    if len(judged.unknown) > MAX_BAD_ROWS_LISTED:
+        yield f"and {len(judged.unknown) - MAX_BAD_ROWS_LISTED} more columns are not recognised"
+    if isinstance(judged, Comparison):
+        yield from _comparison_notes(judged)
+
+
+def _comparison_notes(comparison: Comparison) -> Iterator[str]:
     yield from map(str, comparison.bad[:MAX_BAD_ROWS_LISTED])
     if len(comparison.bad) > MAX_BAD_ROWS_LISTED:
         yield f"and {len(comparison.bad) - MAX_BAD_ROWS_LISTED} more"
-    for name, suggestion in list(comparison.unknown.items())[:MAX_BAD_ROWS_LISTED]:
-        hint = (
-            f"; did you mean {suggestion}? (a unit stands in brackets: {suggestion} [mph])"
-            * bool(suggestion)
-        )
-        yield f"column {name} is not recognised{hint}"
-    if len(comparison.unknown) > MAX_BAD_ROWS_LISTED:
-        yield f"and {len(comparison.unknown) - MAX_BAD_ROWS_LISTED} more columns are not recognised"
     for reason, count in comparison.not_compared.items():
         if reason not in HARMLESS:
             first = ", ".join(map(str, count.first[:5])) + (", ..." if count.rows > 5 else "")
