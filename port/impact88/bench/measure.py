@@ -13,6 +13,7 @@ from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..mechanics import native
 from ..mechanics.accuracy.errorbound import APPLESOFT, scales, sensitivity
@@ -29,6 +30,7 @@ from . import plainc
 from .methods import METHODS, Method, relative_errors
 
 Row = dict[str, Any]
+Floats = NDArray[np.float64]
 ORDER = tuple(FINAL_VELOCITIES)
 ROOF_SCENES = 1_000_000
 """Scenes whose columns are too many for any cache."""
@@ -137,13 +139,8 @@ def measure(
             if not applies(method, name, columns):
                 continue
             velocities = method.velocities(columns)
-            error = relative_errors(velocities, hi, lo)
-            fine = np.isfinite(error)
-            own_errors, scaled_errors = (
-                error[fine],
-                relative_errors(velocities, hi, lo, sizes)[fine],
-            )
-            condition = solutions["COND"][fine]
+            errors = relative_errors(velocities, hi, lo)
+            scaled = relative_errors(velocities, hi, lo, sizes) / solutions["COND"]
             scenes_timed = max(10, round(effort * method.timed))
             works.append((method, method.prepare(repeat_scenes(columns, scenes_timed)), []))
             mine.append(
@@ -153,14 +150,7 @@ def measure(
                     "name": method.name,
                     "scenes": count,
                     "timed": scenes_timed,
-                    "unanswered": int(count - fine.sum()),
-                    "median": float(np.median(own_errors)),
-                    "percentile_99": float(np.quantile(own_errors, 0.99)),
-                    "largest": float(own_errors.max()),
-                    "over_condition": float((scaled_errors / condition).max() / method.roundoff),
-                    "over_sensitivity": float(
-                        (own_errors / sensitive[fine]).max() / method.roundoff
-                    ),
+                    **_error_fields(errors, scaled, sensitive, method.roundoff),
                 }
             )
             progress(1)
@@ -183,6 +173,19 @@ def measure(
         slow = {"population": name, "method": "mpmath", "name": "mpmath, 50 digits"}
         rows += [*mine, {**slow, "scenes": count, "timed": count, "seconds": reference_seconds}]
     return rows
+
+
+def _error_fields(errors: Floats, scaled: Floats, sensitive: Floats, roundoff: float) -> Row:
+    """A row's fields on the errors of the scenes with an answer. ``scaled``: over COND."""
+    fine = np.isfinite(errors)
+    return {
+        "unanswered": int(errors.size - fine.sum()),
+        "median": float(np.median(errors[fine])),
+        "percentile_99": float(np.quantile(errors[fine], 0.99)),
+        "largest": float(errors[fine].max()),
+        "over_condition": float(scaled[fine].max() / roundoff),
+        "over_sensitivity": float((errors / sensitive)[fine].max() / roundoff),
+    }
 
 
 def as_json(rows: Sequence[Row]) -> list[Row]:

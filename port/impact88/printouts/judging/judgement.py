@@ -2,7 +2,7 @@
 
 Each number is read exactly, doubtful (look-alikes, illegible or stray glyphs, but what the program
 prints fits them), contradicted (cleanly read, and not what the program prints) or not read. The
-verdict follows from these alone.
+verdict follows from these, and from labels, order and what else stands on the page.
 """
 
 from collections.abc import Iterator, Sequence

@@ -1,9 +1,9 @@
 """One number's glyphs, compared with what the program prints there.
 
 `compare` returns how well a printed text explains the glyphs, and where it does not: a clean digit
-that is another digit contradicts, whatever it looks like; a glyph that stands in no number (a
-letter, a speck, a blank) is a doubt. `candidates` returns the texts that the glyphs may have been,
-the likeliest first. `cut_in_five` and `cut_as` do the same for the row of angles, which is divided
+that is another digit contradicts, whatever it looks like, and so does a letter that is usually read
+for another digit; another glyph that stands in no number (a speck, a blank) is a doubt.
+`candidates` returns the texts that the glyphs may have been, the likeliest first. `cut_in_five` and `cut_as` do the same for the row of angles, which is divided
 by blanks only. Costs are in units of one wrong letter (`glyphs.COSTS` in hundredths of it).
 """
 

@@ -1,6 +1,6 @@
 """Verification of a printout: recover the scene, replay it bit for bit, compare every digit.
 
-The verdict rests on printed digits alone; exact values and physical warnings are reported beside it
+The verdict rests on what is printed alone; exact values and physical warnings are reported beside it
 and never change it.
 """
 
