@@ -383,6 +383,6 @@ class TestFrames:
         with pytest.raises(UserError):
             impact88.compare(frame)
 
-    def test_form_is_a_files(self):
+    def test_format_is_a_files(self):
         with pytest.raises(UserError, match="a frame has its own"):
-            impact88.compare(ROWS, form="csv")
+            impact88.compare(ROWS, format="csv")

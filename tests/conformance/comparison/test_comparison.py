@@ -598,7 +598,7 @@ def test_formulas_never_computed_are_named(tmp_path) -> None:
 
 @pytest.mark.parametrize(
     "wrong",
-    [{"form": 5}, {"form": "pdf"}, {"values": 3}, {"rtol": "x"}, {"rtol": 2}, {"encoding": 7},
+    [{"format": 5}, {"format": "pdf"}, {"values": 3}, {"rtol": "x"}, {"rtol": 2}, {"encoding": 7},
      {"units": 5}],
     ids=str,
 )  # fmt: skip

@@ -339,7 +339,7 @@ class Comparison:
 @explains_arguments
 def compare(
     table: Any,
-    form: str | None = None,
+    format: str | None = None,
     values: Mapping[str, str] | None = None,
     rtol: float | None = None,
     encoding: str | None = None,
@@ -353,7 +353,7 @@ def compare(
     table : str, path or frame
         The table's file, or a DataFrame of pandas or polars, a pyarrow Table, a structured array, a
         list of dicts or a dict of columns.
-    form : str, optional
+    format : str, optional
         The file's format, where its name does not say: as ``--from`` of `impact88 solve`.
     values : mapping of str to str, optional
         Values, for all rows, of columns that the table lacks.
@@ -387,8 +387,8 @@ def compare(
     if values is not None and not isinstance(values, Mapping):
         raise UserError(f"values is {quoted(values)}; expected a mapping of names to values")
     values = texts(values or {})
-    if form is not None and form not in FORMATS:
-        raise UserError(f"form is {quoted(form)}; expected one of {' '.join(FORMATS)}")
+    if format is not None and format not in FORMATS:
+        raise UserError(f"format is {quoted(format)}; expected one of {' '.join(FORMATS)}")
     if rtol is not None and not (isinstance(rtol, int | float) and 0 <= rtol < 1):
         raise UserError(f"rtol is {quoted(rtol)}; expected a share such as 1e-9")
     for name, text in (("encoding", encoding), ("units", units)):
@@ -396,7 +396,7 @@ def compare(
             raise UserError(f"{name} is {quoted(text)}; expected a text")
     comparison = Comparison()
     search = _Search(comparison) if causes else None
-    with open_table(table, form, encoding) as (reader, where):
+    with open_table(table, format, encoding) as (reader, where):
         comparison.place, comparison.remarks = reader.place, reader.remarks
         wanted, unknown = result_columns(reader)
         comparison.unknown = unknown
@@ -470,18 +470,20 @@ class _Search:
 
 
 @contextmanager
-def open_table(table: Any, form: str | None, encoding: str | None) -> Iterator[tuple[Reader, str]]:
+def open_table(
+    table: Any, format: str | None, encoding: str | None
+) -> Iterator[tuple[Reader, str]]:
     """Open a table's file or a data frame; yields the reader, and the table's name in messages.
     Raises UserError."""
     if isinstance(table, str | os.PathLike):
         path = os.fspath(table)
-        with open_reader(path, format_of(path, form), encoding, True) as reader:
+        with open_reader(path, format_of(path, format), encoding, True) as reader:
             yield reader, display_name(path)
         return
     from ...tables.frames import read_frame
 
-    if form is not None or encoding is not None:
-        raise UserError("form and encoding are a file's; a frame has its own")
+    if format is not None or encoding is not None:
+        raise UserError("format and encoding are a file's; a frame has its own")
     with read_frame(table) as reader:
         yield reader, ""
 

@@ -302,7 +302,9 @@ def _vectors(count: int, seed: int) -> Iterator[Vector]:
         yield Vector(f"{seed}-{index:06d}", kind, label, expectation(kind, scene), scene)
 
 
-def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = None) -> Conformance:
+def check_conformance(
+    kit: str, theirs: str, format: str, encoding: str | None = None
+) -> Conformance:
     """Judge a table of another program's answers to a kit's vectors, vector by vector.
 
     Parameters
@@ -311,7 +313,7 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
         The kit's folder, or its archive.
     theirs : str
         The table; ``-`` is standard input.
-    form : str
+    format : str
         Its format, as ``--from`` of `impact88 solve` names it.
     encoding : str, optional
         Encoding of a CSV or JSON Lines file that is not UTF-8.
@@ -323,7 +325,7 @@ def check_conformance(kit: str, theirs: str, form: str, encoding: str | None = N
     """
     full_kit = read_kit(kit)
     where = display_name(theirs)
-    with _on_disk(theirs) as path, open_table(path, form, encoding) as (reader, _):
+    with _on_disk(theirs) as path, open_table(path, format, encoding) as (reader, _):
         results, unknown = result_columns(reader)
         if "id" not in reader.names:
             raise UserError("no column id; expected the kit's ids, one a row", where)

@@ -60,7 +60,7 @@ MAX_VECTORS_LISTED = 5  # for each reason why some do not pass
 
 ARGUMENTS = (
     options.reads("theirs", "THEIRS", "the table (- is standard input, CSV)"),
-    options.format_option("--from", "the format, if its name does not show it", dest="form"),
+    options.format_option("--from", "the format, if its name does not show it", dest="format"),
     options.setting("a value of the scene for all rows, where the table has no such column"),
     options.value(
         "--rtol",
@@ -94,11 +94,11 @@ def main(args: options.Args) -> int:
     values = options.settings(args.set, units=args.units)
     if args.rtol is not None and not 0 <= args.rtol < 1:
         raise UserError(f"--rtol is {args.rtol}; expected a share such as 1e-9")
-    form = format_of(args.theirs, args.form)
+    format = format_of(args.theirs, args.format)
     judged: Comparison | Conformance
     if args.kit is None:
         judged = compare(
-            args.theirs, form, values, args.rtol, args.encoding, args.units, not args.no_causes
+            args.theirs, format, values, args.rtol, args.encoding, args.units, not args.no_causes
         )
         schema, lines = "compare", _lines(judged)
         failed = bool(judged.differing or judged.bad or (args.strict and judged.silent))
@@ -110,7 +110,7 @@ def main(args: options.Args) -> int:
                 raise UserError(
                     f"{option}: a kit's inputs and tolerances are its own; expected none"
                 )
-        judged = check_conformance(args.kit, args.theirs, form, args.encoding)
+        judged = check_conformance(args.kit, args.theirs, format, args.encoding)
         schema, lines, failed = "conformance", _conformance_lines(judged), not judged.conforms
     if args.junit:
         judged.write_junit(args.junit, display_name(args.theirs), args.strict)

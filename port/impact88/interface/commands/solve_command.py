@@ -64,7 +64,7 @@ ARGUMENTS = (
     options.reads("--scene", "FILE.toml", "a scene file for the columns the table lacks"),
     options.ENCODING,
     options.writes("--errors", "FILE", "write the bad rows here (CSV)"),
-    options.format_option("--from", "the format of CASES", dest="form"),
+    options.format_option("--from", "the format of CASES", dest="format"),
     options.format_option("--to", "the format of RESULTS"),
 )
 

@@ -64,7 +64,7 @@ def solve_table(args: options.Args) -> int:
         raise UserError("--sweep is for one scene; expected CASES to be a scene file (.toml)")
     if args.scene and is_scene:
         raise UserError("--scene fills a table's columns; expected CASES to be a table")
-    source_format = "csv" if is_scene else format_of(args.cases, args.form)
+    source_format = "csv" if is_scene else format_of(args.cases, args.format)
     to = args.to or (source_format if args.output == "-" else None)
     result_format = format_of(args.output, to)
     outputs = _outputs(args)
