@@ -272,8 +272,10 @@ class Comparison:
         return line
 
     def write_junit(self, path: str, name: str, strict: bool) -> None:
-        """Write the JUnit report: a failing test for every row that disagrees, one test for those
-        that agree, one for each reason why rows were not compared.
+        """Write the comparison as a JUnit report.
+
+        A failing test for every row that disagrees, one test for those that agree, one for each
+        reason why rows were not compared.
 
         Parameters
         ----------
