@@ -140,7 +140,7 @@ def measure(
                 continue
             velocities = method.velocities(columns)
             errors = relative_errors(velocities, hi, lo)
-            scaled = relative_errors(velocities, hi, lo, sizes) / solutions["COND"]
+            scaled_errors = relative_errors(velocities, hi, lo, sizes) / solutions["COND"]
             scenes_timed = max(10, round(effort * method.timed))
             works.append((method, method.prepare(repeat_scenes(columns, scenes_timed)), []))
             mine.append(
@@ -150,7 +150,7 @@ def measure(
                     "name": method.name,
                     "scenes": count,
                     "timed": scenes_timed,
-                    **_error_fields(errors, scaled, sensitive, method.roundoff),
+                    **_error_fields(errors, scaled_errors, sensitive, method.roundoff),
                 }
             )
             progress(1)
@@ -175,15 +175,15 @@ def measure(
     return rows
 
 
-def _error_fields(errors: Floats, scaled: Floats, sensitive: Floats, roundoff: float) -> Row:
-    """A row's fields on the errors of the scenes with an answer. ``scaled``: over COND."""
+def _error_fields(errors: Floats, scaled_errors: Floats, sensitive: Floats, roundoff: float) -> Row:
+    """A row's fields on the errors of the scenes with an answer. ``scaled_errors``: over COND."""
     fine = np.isfinite(errors)
     return {
         "unanswered": int(errors.size - fine.sum()),
         "median": float(np.median(errors[fine])),
         "percentile_99": float(np.quantile(errors[fine], 0.99)),
         "largest": float(errors[fine].max()),
-        "over_condition": float(scaled[fine].max() / roundoff),
+        "over_condition": float(scaled_errors[fine].max() / roundoff),
         "over_sensitivity": float((errors / sensitive)[fine].max() / roundoff),
     }
 

@@ -49,8 +49,9 @@ _VELOCITIES = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
 
 
 class Implausible(namedtuple("Implausible", "name where words amount", defaults=(0.0,))):
-    """Where a value is implausible. ``where``: True or False, of a column a mask; ``words``: the
-    remark, with places for the entry as written and for ``amount``, of a column an array."""
+    """A finding on a value. ``where`` it is implausible: True or False, of a column a mask;
+    ``words``: the remark, with places for the entry as written and for ``amount``, of a column an
+    array."""
 
     __slots__ = ()
 
@@ -146,8 +147,8 @@ def remarks(
         As for `implausible`.
     """
     remarks_by_name = {}
-    for name, where, words, amount in implausible(numbers, courses_of(numbers), system, outlines):
-        if where:
+    for name, is_off, words, amount in implausible(numbers, courses_of(numbers), system, outlines):
+        if is_off:
             entries = [f"{n} = {texts[n]}" for n in _ARMS.get(name, (name,)) if n in texts]
             remarks_by_name[name] = words.format(entry=", ".join(entries), amount=amount)
     return remarks_by_name

@@ -87,7 +87,7 @@ class _Member:
                 raise EOFError("it ends before its size")
             return np.frombuffer(data, self.dtype, count)
 
-    def whole(self) -> NDArray[Any]:
+    def take_all(self) -> NDArray[Any]:
         """The array, of which nothing was taken yet."""
         array = self.take(self.size)
         return array.reshape(self.shape[::-1]).T if self.fortran else array.reshape(self.shape)
@@ -121,7 +121,7 @@ def read(path: str, encoding: str | None, results: bool) -> Iterator[Reader]:
 def _blocks(columns: dict[str, _Member], count: int) -> Iterator[Rows]:
     """Yield the rows; arrays that have no element for each as they are, the same every time."""
     running = {n: column for n, column in columns.items() if column.shape == (count,) != (1,)}
-    whole_arrays = {n: column.whole() for n, column in columns.items() if n not in running}
+    whole_arrays = {n: column.take_all() for n, column in columns.items() if n not in running}
     characters = sum(c.dtype.itemsize // 4 for c in running.values() if c.dtype.kind in "US")
     max_rows = max(1, min(BLOCK_ROWS, BLOCK_CHARACTERS // max(characters, 1)))
     whole_names = {name for name, array in whole_arrays.items() if array.size != 1}

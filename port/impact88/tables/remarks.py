@@ -58,21 +58,21 @@ def remarks(
     flat = {name: column for name, column in flat.items() if len(column) in (1, count)}
     if not every and count > COURSES:
         evenly = _rows_of(flat, np.linspace(0, count - 1, COURSES).astype(np.int64))
-        found = implausible(evenly, _courses(evenly), system, {})
-        amiss = {name for name, where, *_ in found if np.any(where)}
+        sampled_remarks = implausible(evenly, _courses(evenly), system, {})
+        amiss = {name for name, mask, *_ in sampled_remarks if np.any(mask)}
         flat = {n: column for n, column in flat.items() if n not in ("TA", "TB") or n in amiss}
     table_remarks: dict[str, Remark] = {}
     for start in range(0, count, _STRIP):
         strip = _rows_of(flat, slice(start, start + _STRIP))
         shape = (min(_STRIP, count - start),)
-        for name, where, words, amount in implausible(strip, _courses(strip), system, {}):
-            where = np.broadcast_to(where, shape)
-            if not (rows := int(np.count_nonzero(where))):
+        for name, mask, words, amount in implausible(strip, _courses(strip), system, {}):
+            mask = np.broadcast_to(mask, shape)
+            if not (rows := int(np.count_nonzero(mask))):
                 continue
             if name in table_remarks:
                 table_remarks[name].rows += rows
                 continue
-            at = int(where.argmax())
+            at = int(mask.argmax())
             entry = f"{name} = {cells(name, start + at)}"
             text = words.format(entry=entry, amount=np.broadcast_to(amount, shape)[at])
             table_remarks[name] = Remark(rows, start + at, text)

@@ -400,10 +400,10 @@ def compare(
     search = _Search(comparison) if causes else None
     with open_table(table, format, encoding) as (reader, where):
         comparison.place, comparison.remarks = reader.place, reader.remarks
-        wanted, unknown = result_columns(reader)
+        results, unknown = result_columns(reader)
         comparison.unknown = unknown
-        if not wanted:
-            hints = [f"{name} for {meant}" for name, meant in comparison.unknown.items() if meant]
+        if not results:
+            hints = [f"{name} for {column}" for name, column in unknown.items() if column]
             hint = f" ({', '.join(hints)}?)" if hints else ""
             says = f"no column of results{hint}; expected some of {' '.join(RESULTS)}, beside the "
             raise UserError(f"{says}scene's", where)
@@ -411,10 +411,10 @@ def compare(
         if "id" in reader.names:
             advice = f"where ids stand for the scenes of a kit, add --kit {FROZEN_ID}; {advice}"
         check_scene_columns({*reader.names, *values}, advice=advice, where=where)
-        comparison.tallies = {name: Tally() for name in wanted}
-        for rows, table_units in read_blocks(reader, wanted, where, units):
+        comparison.tallies = {name: Tally() for name in results}
+        for rows, table_units in read_blocks(reader, results, where, units):
             scene = _scene_of(rows, values, table_units)
-            block = compare_block(rows, scene, wanted, table_units, rtol)
+            block = compare_block(rows, scene, results, table_units, rtol)
             agreeing = block.agreeing[: max(0, MAX_AGREEING_KEPT - comparison.agreeing)]
             _count(block, comparison)
             if search is not None:
@@ -617,12 +617,12 @@ def _count_not_compared(block: Block, comparison: Comparison) -> None:
     for reason in REASONS:
         places = np.flatnonzero(skipped_rows & (reasons == reason))
         if places.size:
-            skipped = comparison.not_compared.setdefault(reason, Skipped())
-            skipped.rows += places.size
-            skipped.first = (skipped.first + (rows.first + places).tolist())[:MAX_ROWS_LISTED]
+            group = comparison.not_compared.setdefault(reason, Skipped())
+            group.rows += places.size
+            group.first = (group.first + (rows.first + places).tolist())[:MAX_ROWS_LISTED]
             if labels is not None:
-                found = dict.fromkeys(str(labels[place]) for place in places.tolist())
-                skipped.labels += [label for label in found if label not in skipped.labels]
+                row_labels = dict.fromkeys(str(labels[place]) for place in places.tolist())
+                group.labels += [label for label in row_labels if label not in group.labels]
 
 
 def _count_elimination(block: Block, elimination: Elimination) -> None:

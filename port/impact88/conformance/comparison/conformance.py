@@ -259,8 +259,8 @@ def read_kit(place: str) -> Kit:
         head = [vector.id, vector.kind, vector.expect]
         cells = line.split(",")
         if cells[:3] != head or cells[4 : 4 + len(SCENE)] != list(vector.scene.values()):
-            where = f"{_in(place, SCENES)}, line {number}"
-            raise UserError(f"is not the vector {vector.id} of seed {seed}", where)
+            line_place = f"{_in(place, SCENES)}, line {number}"
+            raise UserError(f"is not the vector {vector.id} of seed {seed}", line_place)
     return Kit(place, seed, digest, vectors_expected)
 
 
@@ -334,13 +334,13 @@ def check_conformance(
                 f"no column {' '.join(missing)}; expected all of {' '.join(FINAL_VELOCITIES)}",
                 where,
             )
-        done = Conformance(full_kit, where, _digest(path), results, unknown=unknown)
-        done.place, done.remarks = reader.place, reader.remarks
-        judge = _Judge(done)
+        result = Conformance(full_kit, where, _digest(path), results, unknown=unknown)
+        result.place, result.remarks = reader.place, reader.remarks
+        judge = _Judge(result)
         for rows, units in read_blocks(reader, results, where):
             judge.add(rows, units)
     judge.finish()
-    return done
+    return result
 
 
 @contextmanager

@@ -95,13 +95,13 @@ def main(args: options.Args) -> int:
     if args.rtol is not None and not 0 <= args.rtol < 1:
         raise UserError(f"--rtol is {args.rtol}; expected a share such as 1e-9")
     format = format_of(args.theirs, args.format)
-    judged: Comparison | Conformance
+    result: Comparison | Conformance
     if args.kit is None:
-        judged = compare(
+        result = compare(
             args.theirs, format, values, args.rtol, args.encoding, args.units, not args.no_causes
         )
-        schema, lines = "compare", _lines(judged)
-        failed = bool(judged.differing or judged.bad or (args.strict and judged.silent))
+        schema, lines = "compare", _lines(result)
+        is_adverse = bool(result.differing or result.bad or (args.strict and result.silent))
     else:
         from ...conformance.comparison.conformance import check_conformance  # its archives: 10 ms
 
@@ -110,14 +110,14 @@ def main(args: options.Args) -> int:
                 raise UserError(
                     f"{option}: a kit's inputs and tolerances are its own; expected none"
                 )
-        judged = check_conformance(args.kit, args.theirs, format, args.encoding)
-        schema, lines, failed = "conformance", _conformance_lines(judged), not judged.conforms
+        result = check_conformance(args.kit, args.theirs, format, args.encoding)
+        schema, lines, is_adverse = "conformance", _conformance_lines(result), not result.conforms
     if args.junit:
-        judged.write_junit(args.junit, display_name(args.theirs), args.strict)
-    options.show(args, schema, judged.as_json, lambda: lines)
-    for line in _notes(judged):
+        result.write_junit(args.junit, display_name(args.theirs), args.strict)
+    options.show(args, schema, result.as_json, lambda: lines)
+    for line in _notes(result):
         note("compare", line)
-    return int(failed)
+    return int(is_adverse)
 
 
 def _conformance_lines(done: Conformance) -> Iterator[str]:
