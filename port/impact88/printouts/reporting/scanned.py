@@ -19,7 +19,7 @@ from ..reading.printout import read_printouts
 from ..scan.cleaning import Paper, papers_of
 from ..scan.exhibit import character_name, exhibit
 from ..scan.grid import Grid
-from ..scan.holding import Cell, state
+from ..scan.holding import Cell, Objection, state
 from ..scan.ink import Floats
 from ..scan.layout import Place
 from ..scan.picture import Page, pages_of
@@ -96,8 +96,7 @@ def _compare_text_layer(results: list[Verification], text: str) -> None:
                 f"page {result.page}: its text layer does not agree with its picture: "
                 + ", ".join(disagreements)
             )
-            if result.verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ):
-                result.verdict = Verdict.INCOMPLETE
+            result.verdict = Objection.DISAGREEING.overrule(result.verdict)
 
 
 def _verification(

@@ -472,6 +472,29 @@ def _runs(cells: Mapping[Place, Cell]) -> Iterator[tuple[Place, list[Cell]]]:
         yield place, run
 
 
+_IDENTICAL = (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)
+
+
+class Objection(Enum):
+    """What stands against the verdict of a printout's cells: the verdicts that it overrules, and
+    the one in their place. Others stay."""
+
+    MORE = ((Verdict.IDENTICAL,), Verdict.IDENTICAL_AS_READ)
+    """The page shows more than the program prints: a mark, a row twice or in another typeface, or
+    an order of its own."""
+    OTHERWISE = (_IDENTICAL, Verdict.DIFFERS)
+    """It shows otherwise: rows in each other's place, typed text with another number."""
+    MISREAD = ((Verdict.DIFFERS,), Verdict.INCOMPLETE)
+    """What differs may be misread: it is in another typeface, or beside what was not read."""
+    DISAGREEING = (_IDENTICAL, Verdict.INCOMPLETE)
+    """The text in the file is not that of its picture."""
+
+    def overrule(self, verdict: Verdict) -> Verdict:
+        """Return the verdict that is left of one."""
+        overruled, left = self.value
+        return left if verdict in overruled else verdict
+
+
 @dataclass
 class CellJudgement:
     """Verdict on a printout from its cells, with its reasons.
@@ -492,6 +515,12 @@ class CellJudgement:
     doubtful: list[Cell] = field(default_factory=list)
     reason: str = ""
     legible: bool = True
+
+    def overrule(self, objection: Objection, reason: str = "") -> None:
+        """Replace the verdict if the objection overrules it, with a reason."""
+        left = objection.overrule(self.verdict)
+        if left is not self.verdict:
+            self.verdict, self.reason = left, reason or self.reason
 
 
 def judge_cells(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> CellJudgement:

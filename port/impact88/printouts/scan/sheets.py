@@ -3,7 +3,7 @@ steps of the other modules in their order."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import product
 from typing import NamedTuple
 
@@ -14,7 +14,15 @@ from ..judging.judgement import Verdict
 from ..reading.alignment import MAY_BE_MISSING
 from .claims import claims, is_of_a_printout
 from .grid import Grid, grids_of
-from .holding import Added, Cell, CellJudgement, compare_cells, judge_cells, state
+from .holding import (
+    Added,
+    Cell,
+    CellJudgement,
+    Objection,
+    compare_cells,
+    judge_cells,
+    state,
+)
 from .ink import (
     FEWEST_POINTS,
     MIN_SIDE,
@@ -262,9 +270,8 @@ def _ordered_leaves(
             if is_exchange and not leaf.judged.legible:
                 continue  # its rows were named by other things than their letters
             (leaf.exchanged if is_exchange else leaf.hurt).append(sentence)
-            if leaf.judged.verdict in _IDENTICAL:
-                is_program = is_exchange and not _FORM.isdisjoint(leaf.read.sheet.rows)
-                leaf.judged.verdict = Verdict.DIFFERS if is_program else Verdict.IDENTICAL_AS_READ
+            is_program = is_exchange and not _FORM.isdisjoint(leaf.read.sheet.rows)
+            leaf.judged.overrule(Objection.OTHERWISE if is_program else Objection.MORE)
     return leaves
 
 
@@ -290,8 +297,8 @@ def _add_marks(
         if copy and mark.kind is Kind.TYPE and copy.prints(mark.sure, scene):
             continue  # a line that only the copy prints
         leaf.marks.append(mark)
-        if mark.bears and leaf.judged.verdict is Verdict.IDENTICAL:
-            leaf.judged.verdict = Verdict.IDENTICAL_AS_READ
+        if mark.bears:
+            leaf.judged.overrule(Objection.MORE)
     _find_claims(leaves)
 
 
@@ -315,7 +322,7 @@ def _find_claims(leaves: Sequence[Leaf]) -> None:
         return
     for leaf, mark, contradicted in contradictions:
         mark.claims = contradicted
-        leaf.judged.verdict = Verdict.DIFFERS
+        leaf.judged.overrule(Objection.OTHERWISE)
 
 
 _NEXT_STEP = "expected a straight scan at 200 to 300 dpi, or the page typed in as text"
@@ -324,7 +331,11 @@ _NEXT_STEP = "expected a straight scan at 200 to 300 dpi, or the page typed in a
 def _leaves(
     grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]], copy: Copy | None = None
 ) -> list[Leaf]:
-    """Return the printouts of a grid with their verdicts."""
+    """Return the printouts of a grid with their verdicts: first their rows and numbers, then their
+    scenes, their cells, and what the cells give.
+
+    What is said of the rows and of the other printouts overrules that, see `Objection`.
+    """
     if sheets and grid.clarity < _MIN_CLARITY:
         likeliest = max(sheets, key=lambda sheet: sheet.gain)
         unread = CellJudgement(
@@ -333,46 +344,45 @@ def _leaves(
         return [Leaf(grid, Read(likeliest, {}), unread)]
     unread = CellJudgement(Verdict.INCOMPLETE, reason=f"no scene was found; {_NEXT_STEP}")
     leaves = [Leaf(grid, Read(sheet, {}), unread) for sheet in sheets]
-    for leaf in leaves:
-        for row in [*leaf.read.sheet.rows.values()]:
-            if not grid.cut.isdisjoint(range(row.start, row.start + row.used)):
-                _drop_cut_row(leaf, row)
     legible = [leaf for leaf in leaves if leaf.read.sheet.gain > _LEGIBLE_GAIN]
-    costs = read_numbers(grid, [leaf.read.sheet for leaf in legible])
-    for leaf, number_costs in zip(legible, costs, strict=True):
-        leaf.read.costs = number_costs
-    foreign = foreign_row(grid, [leaf.read for leaf in legible])
+    foreign = _read_rows(grid, leaves, legible)
     for leaf in legible:
-        if foreign and grid.is_at_edge(foreign.start):
-            _drop_cut_row(leaf, foreign)
         leaf.found = scene_of(leaf.read, seeds, copy)
     with_scene = [leaf for leaf in legible if leaf.found]
     _compare_leaves(grid, with_scene)
-    if sum(map(_drop_wrong_lines, with_scene)):
-        _compare_leaves(grid, with_scene)
-    earlier_scenes = [leaf.found for leaf in with_scene]
+    for correct in (_drop_wrong_lines, partial(_confirm_scene, copy=copy)):
+        if sum(map(correct, with_scene)):
+            _compare_leaves(grid, with_scene)
     for leaf in with_scene:
-        leaf.found = leaf.found and confirm_inputs(leaf.found, _inputs_on_paper(leaf.cells), copy)
-    if any(
-        leaf.found is not earlier for leaf, earlier in zip(with_scene, earlier_scenes, strict=True)
-    ):
-        _compare_leaves(grid, with_scene)
-    for leaf in with_scene:
-        if leaf.found:
-            candidate = leaf.found
-            if excess := _division_cost(leaf):
-                candidate = candidate._replace(cost=candidate.cost - excess)
-            leaf.judged = judge_cells(leaf.read.sheet, candidate, leaf.cells)
+        _judge(leaf)
     for leaf in legible:
         if foreign and foreign in leaf.read.sheet.rows.values():
             _name_foreign_row(leaf, foreign)
     # the printouts of a page share their mean characters: one misplaced spoils them for all
     if any(leaf.judged.verdict is Verdict.INCOMPLETE for leaf in leaves):
         for leaf in leaves:
-            if leaf.judged.verdict is Verdict.DIFFERS:
-                leaf.judged.verdict = Verdict.INCOMPLETE
-                leaf.judged.reason = "another printout on the page was not read"
+            leaf.judged.overrule(Objection.MISREAD, "another printout on the page was not read")
     return leaves
+
+
+def _read_rows(grid: Grid, leaves: Sequence[Leaf], legible: Sequence[Leaf]) -> Row | None:
+    """Read the numbers of the legible printouts; return the row in another typeface, if any.
+
+    Rows that an edge of the page cuts through are removed before, and one that only looks like
+    another typeface for it after.
+    """
+    for leaf in leaves:
+        for row in [*leaf.read.sheet.rows.values()]:
+            if not grid.cut.isdisjoint(range(row.start, row.start + row.used)):
+                _drop_cut_row(leaf, row)
+    costs = read_numbers(grid, [leaf.read.sheet for leaf in legible])
+    for leaf, number_costs in zip(legible, costs, strict=True):
+        leaf.read.costs = number_costs
+    foreign = foreign_row(grid, [leaf.read for leaf in legible])
+    if foreign and grid.is_at_edge(foreign.start):
+        for leaf in legible:
+            _drop_cut_row(leaf, foreign)
+    return foreign
 
 
 def _drop_cut_row(leaf: Leaf, row: Row) -> None:
@@ -395,23 +405,16 @@ def _drop_cut_row(leaf: Leaf, row: Row) -> None:
 
 
 def _name_foreign_row(leaf: Leaf, row: Row) -> None:
-    """Say that a row is in another typeface than the page.
-
-    A page with such a row is identical only as far as it was read, and does not differ where it
-    does in that row alone: a character may be like another one of the page.
-    """
+    """Say that a row is in another typeface than the page: a character of it may be like another
+    one of the page, so that the page does not differ where it does in that row alone."""
     names = [piece.name for piece in row.pieces if piece.name]
     name = _row_name(leaf.grid, row, names)
     leaf.hurt.append(f"{name} is in another typeface than the rest of the page")
+    leaf.judged.overrule(Objection.MORE)
     lines = range(row.start, row.start + row.used)
-    judged = leaf.judged
-    if judged.verdict is Verdict.IDENTICAL:
-        judged.verdict = Verdict.IDENTICAL_AS_READ
-    elif judged.verdict is Verdict.DIFFERS and all(
-        cell.place.line in lines for cell in judged.differing
-    ):
-        judged.verdict = Verdict.INCOMPLETE
-        judged.reason = "what differs is in another typeface, and may be another character there"
+    if all(cell.place.line in lines for cell in leaf.judged.differing):
+        reason = "what differs is in another typeface, and may be another character there"
+        leaf.judged.overrule(Objection.MISREAD, reason)
 
 
 def _row_name(grid: Grid, row: Row, names: Sequence[str]) -> str:
@@ -425,6 +428,14 @@ def _compare_leaves(grid: Grid, leaves: Sequence[Leaf]) -> None:
         leaf.cells = leaf_cells
 
 
+def _confirm_scene(leaf: Leaf, copy: Copy | None) -> bool:
+    """Set inputs that no result depends on as the paper shows them; return True if any changes."""
+    earlier = leaf.found
+    assert earlier
+    leaf.found = confirm_inputs(earlier, _inputs_on_paper(leaf.cells), copy)
+    return leaf.found is not earlier
+
+
 def _inputs_on_paper(cells: Sequence[Cell]) -> dict[str, str]:
     """Return the inputs in which a cell differs, as the paper shows them."""
     differing = {cell.name for cell in cells if state(cell) == "differs"}
@@ -435,22 +446,23 @@ def _inputs_on_paper(cells: Sequence[Cell]) -> dict[str, str]:
     return {name: text.strip() for name, text in texts.items()}
 
 
-def _division_cost(leaf: Leaf) -> float:
-    """Return the cost of first readings that was due to lines divided at a wrong place.
+def _judge(leaf: Leaf) -> None:
+    """Set the verdict that a printout's cells give.
 
-    A character added in the blank after a number shifts the division of its line. Counted are
+    The cost of first readings that was due to lines divided at a wrong place does not count: a
+    character added in the blank after a number shifts the division of its line. It is that of the
     numbers on such lines all of whose cells hold now.
     """
     assert leaf.found
     changed_lines = {cell.place.line for cell in leaf.cells if cell.added is Added.CHARACTER}
-    cost = 0.0
+    cost = leaf.found.cost
     for name, cells in leaf.by_name.items():
         inked = [cell for cell in cells if cell.predicted != BLANK]
         is_beside = any(cell.place.line in changed_lines for cell in inked)
         is_excluded = name.startswith("REPLY") or name not in leaf.read.costs
         if is_beside and not is_excluded and all(state(cell) == "holds" for cell in inked):
-            cost += leaf.read.cost(name, leaf.found.outcome.fields.get(name))
-    return cost
+            cost -= leaf.read.cost(name, leaf.found.outcome.fields.get(name))
+    leaf.judged = judge_cells(leaf.read.sheet, leaf.found._replace(cost=cost), leaf.cells)
 
 
 def _drop_wrong_lines(leaf: Leaf) -> bool:
