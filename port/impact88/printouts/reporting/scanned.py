@@ -19,7 +19,7 @@ from ..reading.printout import read_printouts
 from ..scan.cleaning import Paper, papers_of
 from ..scan.exhibit import character_name, exhibit
 from ..scan.grid import Grid
-from ..scan.holding import Cell, Objection, state
+from ..scan.holding import Cell, Objection, cells_text, state
 from ..scan.ink import Floats
 from ..scan.layout import Place
 from ..scan.picture import Page, pages_of
@@ -103,7 +103,8 @@ def _verification(
     path: str, number: int, page: Page, paper: Paper, leaf: Leaf, copy: CopyPages | None
 ) -> Verification:
     is_decided = leaf.judged.verdict is not Verdict.INCOMPLETE
-    texts = {name: _cells_text(cells) for name, cells in leaf.by_name.items()} if is_decided else {}
+    by_name = leaf.by_name
+    texts = {name: cells_text(cells) for name, cells in by_name.items()} if is_decided else {}
     text, starts = leaf.read.page(texts)
     program_fields = leaf.found.outcome.fields if leaf.found else {}
     scene: dict[str, str | None] = dict.fromkeys(SCENE)
@@ -114,7 +115,7 @@ def _verification(
             scene |= as_printed(leaf.found.scene, program_fields)
             is_converted = bool(converted_inputs(leaf.found.scene, program_fields))
     fields = [
-        _check(leaf, name, program_fields.get(name), leaf.by_name.get(name, []))
+        _check(leaf, name, program_fields.get(name), by_name.get(name, []))
         for name in FIELDS
         if name in program_fields or name in leaf.read.costs
     ]
@@ -178,15 +179,10 @@ def _check(leaf: Leaf, name: str, recomputed: str | None, cells: Sequence[Cell])
         status = Status.NOT_COMPARED
     elif recomputed is None or not cells:
         status = Status.NOT_READ
-    check = FieldCheck(name, _cells_text(cells) or None, recomputed, status, doubts=differences)
+    check = FieldCheck(name, cells_text(cells) or None, recomputed, status, doubts=differences)
     if cells:
         check.line, check.column = leaf.grid.number(cells[0].place.line), cells[0].place.cell + 1
     return check
-
-
-def _cells_text(cells: Sequence[Cell]) -> str:
-    """Return the text in cells that were compared with the page."""
-    return "".join(cell.other if state(cell) == "differs" else cell.predicted for cell in cells)
 
 
 def _replies(leaf: Leaf) -> Iterator[FieldCheck]:

@@ -579,6 +579,11 @@ def state(cell: Cell) -> str:
     return "differs"
 
 
+def cells_text(cells: Sequence[Cell]) -> str:
+    """Return the text in cells that were compared with the page."""
+    return "".join(cell.other if state(cell) == "differs" else cell.predicted for cell in cells)
+
+
 def _is_retyped(cell: Cell, questioned: Sequence[Cell]) -> bool:
     """Return True for a cell of a reply that differs in several cells, or in a mark.
 

@@ -19,6 +19,7 @@ from .holding import (
     Cell,
     CellJudgement,
     Objection,
+    cells_text,
     compare_cells,
     judge_cells,
     state,
@@ -93,7 +94,7 @@ class Leaf:
     hurt: list[str] = field(default_factory=list)
     cut_lines: set[int] = field(default_factory=set)
 
-    @cached_property
+    @property
     def by_name(self) -> dict[str, list[Cell]]:
         """Cells of each number and reply, in order."""
         by_name: dict[str, list[Cell]] = {}
@@ -430,20 +431,13 @@ def _compare_leaves(grid: Grid, leaves: Sequence[Leaf]) -> None:
 
 def _confirm_scene(leaf: Leaf, copy: Copy | None) -> bool:
     """Set inputs that no result depends on as the paper shows them; return True if any changes."""
-    earlier = leaf.found
-    assert earlier
-    leaf.found = confirm_inputs(earlier, _inputs_on_paper(leaf.cells), copy)
-    return leaf.found is not earlier
-
-
-def _inputs_on_paper(cells: Sequence[Cell]) -> dict[str, str]:
-    """Return the inputs in which a cell differs, as the paper shows them."""
-    differing = {cell.name for cell in cells if state(cell) == "differs"}
-    texts = dict.fromkeys(differing & set(INPUTS), "")
-    for cell in cells:
-        if cell.name in texts:
-            texts[cell.name] += cell.other if state(cell) == "differs" else cell.predicted
-    return {name: text.strip() for name, text in texts.items()}
+    assert leaf.found
+    differing = {cell.name for cell in leaf.cells if state(cell) == "differs"} & set(INPUTS)
+    on_paper = {name: cells_text(leaf.by_name[name]).strip() for name in differing}
+    confirmed = confirm_inputs(leaf.found, on_paper, copy)
+    has_changed = confirmed is not leaf.found
+    leaf.found = confirmed
+    return has_changed
 
 
 def _judge(leaf: Leaf) -> None:
