@@ -39,16 +39,16 @@ _MIN_SHARE = 0.7  # smallest gain of a line of print, relative to that of its in
 _SMOOTHING = 1.5
 """Standard deviation of the smoothing of rows that are compared, pixels: rows of one typeface may
 begin at different fractions of a pixel."""
-FOREIGN = 0.07
+FOREIGN = 0.085
 """Smallest distance of a row in another typeface from the glyphs of the others, in roots of their
-energies: on fresh pages, excellent ones, a row of the same typeface had 0.06."""
+energies: on excellent pages a row in the same one had 0.08."""
 FOREIGN_RATIO = 2.3
-"""Smallest ratio of it to that of the row that is next: of 269 genuine pages the largest was 2.2,
-of 56 with a row in another typeface 49 have more."""
+"""Smallest ratio of it to that of the row that is next: of 275 genuine pages the largest, of a row
+not so near, was 2.2; of 56 with a row in another typeface 49 have more."""
 _OWN_RATIO = 0.45  # largest ratio to it of the row's distance from its own glyphs
 _MAX_RISE = 1.5
-"""Pixels by which a compared row may be misplaced beyond the shifts of its cells: of one farther
-off, these were chosen on other parts of the glyphs."""
+"""Pixels by which such a row may be misplaced beyond the shifts of its cells: of one farther off,
+these were chosen on other parts of the glyphs."""
 _MIN_CELLS = 6  # cells of a row that are compared
 
 
@@ -201,13 +201,16 @@ class _RowCells(NamedTuple):
     row : ndarray, shape (cells,)
         Index of each cell's row.
     may_be : ndarray of bool, shape (cells, characters)
-        Characters with which each cell is compared; none for a row not found at its place.
+        Characters with which each cell is compared.
+    rises : list of float, one a row
+        Pixels by which its ink stood higher than that of other rows, before it was moved.
     """
 
     glyphs: Vectors
     names: NDArray[np.intp]
     row: NDArray[np.intp]
     may_be: Mask
+    rises: list[float]
 
     def distance(self, row: int, other_rows: Mask) -> float:
         """Return the median distance of a row's cells from the mean glyphs of some other rows, in
@@ -268,14 +271,20 @@ def _row_cells(grid: Grid, rows: Sequence[tuple[Read, Row]]) -> _RowCells:
     is_numeric = np.array([character in NUMERIC for character in typeface.characters])
     is_same = np.arange(len(is_numeric)) == typeface.names[:, None]
     of_number = np.repeat([False, True] * len(rows), np.ravel(sizes))
-    may_be = np.where(of_number[:, None], is_numeric, is_same)
     row_of_cell = np.repeat(np.arange(len(rows)), np.sum(sizes, axis=1))
+    rises = []
     for number in range(len(rows)):
         at = row_of_cell == number
-        if rise := _rise(glyphs, typeface.names, at):
-            glyphs[at] = ndimage.shift(glyphs[at], (0, rise, 0), order=1)
-            may_be[at] &= abs(rise) <= _MAX_RISE
-    return _RowCells(glyphs.reshape(len(places), -1), typeface.names, row_of_cell, may_be)
+        rises.append(_rise(glyphs, typeface.names, at))
+        if rises[-1]:
+            glyphs[at] = ndimage.shift(glyphs[at], (0, rises[-1], 0), order=1)
+    return _RowCells(
+        glyphs.reshape(len(places), -1),
+        typeface.names,
+        row_of_cell,
+        np.where(of_number[:, None], is_numeric, is_same),
+        rises,
+    )
 
 
 def _rise(glyphs: Vectors, names: NDArray[np.intp], at: Mask) -> float:
@@ -325,6 +334,7 @@ def foreign_row(grid: Grid, reads: Sequence[Read]) -> Row | None:
     second = max(apart for row, apart in enumerate(from_rest) if row != first)
     is_foreign = (
         from_all[first] > max(FOREIGN, FOREIGN_RATIO * second)
+        and abs(cells.rises[first]) <= _MAX_RISE
         and cells.distance_within(first) < _OWN_RATIO * from_all[first]
     )
     return rows[first][1] if is_foreign else None
