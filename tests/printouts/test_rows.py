@@ -166,6 +166,16 @@ def test_a_printout_that_is_cut_at_its_top_is_another(word: str) -> None:
     assert below.verdict is Verdict.INCOMPLETE
 
 
+def test_results_printed_twice_above_the_last_asterisks_are_one_page() -> None:
+    results = PAGE[PAGE.index("VAX=") : PAGE.rindex("*****")]
+    (result,) = impact88.verify(
+        PAGE.replace(results, results + results.replace("-1.745", "-1.845")).encode()
+    )
+    assert result.verdict is Verdict.DIFFERS
+    assert len(result.rows) == 3
+    assert "with WAF -1.845, where line" in result.rows[-1]
+
+
 def test_a_row_printed_twice_above_another_printout_is_the_first_ones() -> None:
     rows, at = rows_of(PAGE)
     again = "\n".join(

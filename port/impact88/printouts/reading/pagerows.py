@@ -20,6 +20,7 @@ from .numerals import value_of
 _MIN_ROWS = 6
 """Rows of a page from which one that is out of order was exchanged; fewer are a fragment, and what
 follows may be another printout."""
+_STARS = LINES.index("*****")  # the row of asterisks above the results
 _EXPONENT = re.compile("(?<=[0-9.])E(?=[-+][0-9])")
 _LABELLED_NUMBER = re.compile("=(.*?)(?=[A-Z%()]|$)")
 
@@ -111,9 +112,8 @@ def find_rows(page: Page) -> Rows:
         return page.glyphs[page.lines[row.line].start].offset
 
     rows = [*_labelled_rows(page)]
-    own = {line for row in rows for line in row.lines} | {
-        at for at, line in enumerate(page.lines) if {*_text(page, line)} == {"*"}
-    }
+    stars = [at for at, line in enumerate(page.lines) if {*_text(page, line)} == {"*"}]
+    own = {line for row in rows for line in row.lines}.union(stars)
     groups: list[list[_Row]] = [[]]
     for at, row in enumerate(rows):
         group, below = groups[-1], rows[at + 1 :]
@@ -122,7 +122,7 @@ def find_rows(page: Page) -> Rows:
             groups.append([row])
         elif earlier is None:
             group.append(row)
-        elif _is_repeated(page, own, group, earlier, row, below):
+        elif _is_within(stars, group, row) or _is_repeated(page, own, group, earlier, row, below):
             # a heading without its angles is the one too many
             extra = earlier if len(earlier.lines) < len(row.lines) else row
             group[group.index(earlier)] = row if extra is earlier else earlier
@@ -225,6 +225,12 @@ def _begins(group: Sequence[_Row], row: _Row, below: Sequence[_Row]) -> bool:
 
 def _until_masses(below: Sequence[_Row]) -> int:
     return next((at for at, row in enumerate(below) if row.number == PROMPTS), len(below))
+
+
+def _is_within(stars: Sequence[int], group: Sequence[_Row], row: _Row) -> bool:
+    """Return True for a row of results between the page's two rows of asterisks."""
+    above = sum(group[0].line < line < row.line for line in stars)
+    return row.number > _STARS and above == 1 and any(line > row.line for line in stars)
 
 
 def _is_repeated(
