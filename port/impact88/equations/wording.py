@@ -192,6 +192,8 @@ def _named_change(correct: Expression, actual: Expression, spelling: Spelling) -
             return f"{words(correct)} loses its sign"
         case (_, ("single", a)) if a == correct:
             return f"{words(correct)} is rounded to single precision"
+        case (_, ("degrees", a)) if a == correct:
+            return f"{words(correct)} is in degrees"
         case (("sin", a), ("cos", b)) if a == b:
             return f"the cosine of {words(a)} stands for the sine"
         case (("cos", a), ("sin", b)) if a == b:

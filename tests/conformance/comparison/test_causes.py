@@ -119,6 +119,19 @@ def test_what_no_row_tells_apart_is_said_in_both_words(results: str) -> None:
     assert inverted == (results == "velocities")
 
 
+@pytest.mark.parametrize(
+    ("says", "names"), [("MA, MB, IA, IB", ("MA", "MB", "IA", "IB")), ("MA, MB", ("MA", "MB"))]
+)
+@pytest.mark.long
+def test_one_factor_of_masses_explains_every_column(says: str, names: Sequence[str]) -> None:
+    rows = [scene for kind, _, scene in scenes(60, seed=8) if kind == CASEWORK]
+    light = [{**row, **{n: repr(float(row[n]) * 0.97) for n in names}} for row in rows]
+    found = answers(light, "impulse")
+    (cause,) = compared(rows, {n: found[n] for n in (*FINAL_VELOCITIES, "KI", "KF")}).evidence
+    assert cause.says == f"{says}: multiplied by 0.97"
+    assert (cause.explains, cause.open) == (len(rows), [])
+
+
 @pytest.mark.long
 def test_results_in_another_order_are_told() -> None:
     rows = [scene for kind, _, scene in scenes(60, seed=4) if kind == CASEWORK]

@@ -179,6 +179,36 @@ def test_digits_that_tell_nothing_are_not_agreement() -> None:
     assert sizes["VAX"][0] > 13
 
 
+@pytest.mark.parametrize("wrong", [1.0, 1.01])
+def test_a_result_is_graded_by_itself(wrong: float) -> None:
+    """By trial impulses a large velocity loses digits: with another column wrong, or other rows, it
+    agrees as it does alone."""
+    rows = [scene for kind, _, scene in scenes(120, 43) if kind != "failure"]
+    theirs = {
+        name: np.array([text or "nan" for text in column], float)
+        for name, column in wrongprograms.answers(rows, "jacobian").items()
+    }
+    rng = np.random.default_rng(3)
+    noise = 1 + 5e-12 * rng.choice((-1.0, 1.0), len(rows))
+    theirs = {name: column * noise for name, column in theirs.items()}
+    alone, _ = judged(columns(rows), {"VAX": theirs["VAX"]}).grade()
+    grades, _ = judged(columns(rows), {**theirs, "WBF": theirs["WBF"] * wrong}).grade()
+    np.testing.assert_array_equal(grades[list(theirs).index("VAX")], alone[0])
+
+
+def test_a_large_bound_of_ours_hides_no_violation() -> None:
+    """Next to a friction that makes the equations singular: of another friction than MU."""
+    rows = [scene for _, label, scene in scenes(1000, 1988) if label == "singular friction"]
+    scene = columns(rows)
+    ours = {name: solve(scene)[name] for name in FINAL_VELOCITIES}
+    other = solve({**scene, "MU": np.arctan(scene["MU"])})
+    for theirs, is_violated in ((ours, False), ({n: other[n] for n in ours}, True)):
+        violated = agreement.violated_equations(judged(scene, theirs))
+        assert (violated["16"] == is_violated).all()
+        assert not violated["13"].any()
+        assert not violated["14"].any()
+
+
 def test_no_bound_of_an_ordinary_scene_reaches_the_one_that_stands_for_it() -> None:
     """What is farther off is wrong whatever its own bound is, which is then not computed."""
     rows = [scene for _, _, scene in scenes(1500, seed=21)]

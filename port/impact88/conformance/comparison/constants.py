@@ -14,7 +14,7 @@ from ...equations.edits import BOOLEAN_NAMES, FITTED, Edit
 from ...equations.evaluation import Run
 from ...equations.spelling import IMPULSES, LISTING, SHOWN, TYPED, Expression, Sides, Spelling
 from ...equations.wording import subject_words
-from ...names import SCENE
+from ...names import PIVOT, SCENE
 from .agreement import Bools
 from .predicates import ABOVE, Predicate
 from .trials import MIN_FIT, Judge, Program, try_program
@@ -143,7 +143,9 @@ def limit_instead(program: Program, where: Predicate) -> Program | None:
         case ((("+", float() as number, ("*", 0, str() as typed)),), "above" | "below" as relation):
             name, more = ("minimum", "") if relation == ABOVE else ("maximum", " and more")
             text = f"{column} is limited to {number:.7g}{more}"
-            limited = (name, typed, float(f"{number:.7g}"))
+            limited: Expression = (name, typed, float(f"{number:.7g}"))
+            if column == "MU":
+                limited = ("where", ("==", typed, PIVOT), typed, limited)
             return Program((*others, Edit("", {column: (limited,)}, FITTED, text)))
     return None
 

@@ -667,11 +667,12 @@ def _independent_results(judge: Judge) -> list[str]:
 
 
 _SCENES_TRIED = 60  # to tell two programs apart
+_SAME_ELSEWHERE = 1e-6  # relative difference up to which they are the same
 
 
 def _tell_apart(hypothesis: TableHypothesis) -> tuple[list[str], dict[str, str]]:
-    """Return the programs that give the same in this table, those first that do not everywhere; and
-    a scene in which the first gives something else."""
+    """Return the programs that give the same in this table, and elsewhere other velocities or
+    impulses; and a scene in which the first of them gives other velocities."""
     if not hypothesis.equivalents:
         return [], {}
     rng = Random(88)
@@ -681,21 +682,17 @@ def _tell_apart(hypothesis: TableHypothesis) -> tuple[list[str], dict[str, str]]
     numbers = [doubles_of(scene) for scene in scenes]
     columns = {name: np.array([row[name] for row in numbers]) for name in SCENE}
     mine = hypothesis.results(columns)
-    same: list[str] = []
-    different: list[str] = []
+    others: list[str] = []
     apart: dict[str, str] = {}
     for program in hypothesis.equivalents:
         results = hypothesis._replace(program=program).results(columns)
         off = np.max([_distance(mine[name], results[name]) for name in FINAL_VELOCITIES], 0)
-        says = program.sentence
-        if off.max() <= 1e-6:
-            same.append(says)
-        else:
-            different.append(says)
-            scene = scenes[int(off.argmax())]
-            apart = apart or {name: scene[name] for name in SCENE}
-    others = dict.fromkeys(says for says in (*different, *same) if says != hypothesis.says)
-    return list(others)[:_MAX_EQUIVALENTS], apart
+        if max(off.max(), _distance(mine["PN"], results["PN"]).max()) > _SAME_ELSEWHERE:
+            if not others and off.max() > _SAME_ELSEWHERE:
+                scene = scenes[int(off.argmax())]
+                apart = {name: scene[name] for name in SCENE}
+            others.append(program.sentence)
+    return list(dict.fromkeys(others))[:_MAX_EQUIVALENTS], apart
 
 
 def _distance(one: Any, other: Any) -> Any:
