@@ -56,7 +56,8 @@ def scan(text: str, start: int = 0) -> Numeral:
 
 @lru_cache(maxsize=512)  # scenes and programs repeat their numbers
 def read(text: str, start: int = 0) -> tuple[Number, int]:
-    """Return the number that begins at ``start``, zero if there is none, and the index after it.
+    """FIN $EC4A: the number that begins at ``start``, zero if there is none, and the index
+    after it.
 
     The power of ten, exponent minus decimals, is kept in one signed byte and wraps. Raises
     OVERFLOW, also for any exponent of three digits, whatever the number."""
@@ -92,7 +93,8 @@ def number(text: str) -> Number:
 
 
 def write(x: Number) -> str:
-    """Return the text of ``x`` as PRINT and STR$ write it: at most nine digits, with extension."""
+    """FOUT $ED34: the text of ``x`` as PRINT and STR$ write it: at most nine digits, by the
+    extension too."""
     if not x[0]:
         return "0"
     sign, x, d = "-" if x[2] else "", real.absolute(x), 0
@@ -113,6 +115,7 @@ def write(x: Number) -> str:
 def lay_out(sign: str, text: str, d: int) -> str:
     """Return nine digits times ten to the power d in PRINT's layout: no leading zero before the
     point, no trailing zeros after it, with exponent below .01 and from 1E+09 on."""
+    # d + 9 digits stand before the point; an exponent from 10 on, and below -1
     if 0 <= d + 10 < 11:
         point = d + 9
         text = text[:point] + "." + text[point:] if point >= 0 else ".0" + text
