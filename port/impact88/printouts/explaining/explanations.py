@@ -79,13 +79,12 @@ def explain(found: Judged, rereading: Rereading) -> list[Cause]:
     if not found.recovered.missing and page.base - of_form:
         rows = Rows(page)
         causes += [
-            *_input_slips(page, rereading.best(single=True)),
+            *_input_slips(page, rereading.best),
             *_longer_inputs(page),
             *rows.causes(),
             *machines.causes(page),
         ]
         for try_more in (
-            lambda: _input_slips(page, rereading.best()),
             lambda: (*rows.unit_causes(), *_exchanges_with_slips(page, rows, rereading)),
             lambda: other_programs(page),
         ):
@@ -114,7 +113,7 @@ def explain_copy(
     causes = [*_slip_causes(page, (), page.base, found.recovered.outcome.fields), *_labels(page)]
     if not found.recovered.missing:
         rereading = Rereading(found.recovered)
-        reread_changes = [reread.changes for reread in rereading.best()[:MAX_SLIPS_BY_COPY]]
+        reread_changes = [reread.changes for reread in rereading.best[:MAX_SLIPS_BY_COPY]]
         nearest = _nearest_slips(page, rereading)[:MAX_SLIPS_BY_COPY]
         for changes in filter(None, dict.fromkeys([*nearest, *reread_changes])):
             judgement = rejudge(found, {change.field: change.would_be for change in changes})
@@ -191,7 +190,7 @@ def _exchanges_with_slips(page: PageEvidence, rows: Rows, rereading: Rereading) 
     """Yield causes of two kinds together: exchanged inputs of a side or an axis, and one slip."""
     for row, exchange in rows.exchanges():
         texts = {change.field: change.would_be for change in exchange}
-        for reread in rereading.best(single=True, exchanged=texts):
+        for reread in rereading.with_one(texts):
             changes = (*exchange, *reread.changes)
             bits = row.bits + sum(map(_bits_of, reread.changes))
             run = reread.scored

@@ -156,9 +156,7 @@ class Rows:
         if units:
             unit = self._every[min(units)[1]]
             columns = list(self._columns(unit))
-            search = self._page.recovered.search
-            picks = search.find_candidates(columns, MAX_ORIGINALS)
-            best = min(search.replay(columns, picks), key=lambda scored: scored.cost)
+            best = self._page.recovered.search.nearest(columns)[0][1]
             yield from self._test_hypotheses([unit._replace(scene=best.scene)])
 
     # --- the scene that a row implies ---

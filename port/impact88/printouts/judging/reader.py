@@ -23,7 +23,7 @@ attributed, and with one 1 of 10 fewer."""
 
 def attribute_to_reader(found: Judged, rereading: Rereading) -> Judged | None:
     """Judge the printout with its reader's errors corrected. Return None unless every difference
-    can be attributed to the reader.
+    can be attributed to the reader; where it is as likely that some cannot, the page is incomplete.
 
     Scenes with corrected slips are judged as if they were the printout's own; what still differs
     must be the reader's error. Of 110 readings of genuine pages, 6 are decided here. The scene
@@ -35,9 +35,7 @@ def attribute_to_reader(found: Judged, rereading: Rereading) -> Judged | None:
     if no_reader or base.missing:
         return None
     apart = set(base.apart)
-    rereads = [
-        r for r in rereading.best() if apart.isdisjoint(change.field for change in r.changes)
-    ]
+    rereads = [r for r in rereading.best if apart.isdisjoint(change.field for change in r.changes)]
     runs = [reread.scored for reread in rereads]
     runs.append(base.search.replayed_scene(base.scene, base.assumed))
     runs.sort(key=lambda run: run.cost)
@@ -47,7 +45,9 @@ def attribute_to_reader(found: Judged, rereading: Rereading) -> Judged | None:
             scene = replace(base, scene=run.scene, assumed=run.assumed, outcome=run.outcome)
             judgement = judge(paper, scene)
             if not is_reader_error(judgement.fields, judgement.replies):
-                return None
+                if best:
+                    best.verdict = Verdict.INCOMPLETE
+                return best
             best = best or judgement
     assert best is not None
     for check in [*best.fields, *best.replies]:

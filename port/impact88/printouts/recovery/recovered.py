@@ -13,11 +13,11 @@ from ...collision.case import VALUE_LIMIT
 from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS, scene_name
 from ...names import SCENE
 from ..reading.glyphs import letters
-from ..reading.numerals import candidates, printable
+from ..reading.numerals import candidates
 from ..reading.printout import Printout, Reading
 from . import replays
 from .search import MISMATCH, UNREAD, Column, Evidence, Expected, Search, column_of
-from .slips import TWO_DIGITS, slips_of
+from .slips import neighbours
 from .typedtext import stored_and_printed
 
 _STAND_INS = tuple(
@@ -191,10 +191,9 @@ def _rows_of_angles(shown: Printout) -> list[tuple[tuple[str, ...], float]]:
     row, least = shown.angles[0]
     rows = dict(shown.angles)
     for at, (name, text) in enumerate(zip(ANGLES, row, strict=True)):
-        for cost, change in slips_of(name, text):
-            other = (*row[:at], change.would_be, *row[at + 1 :])
-            if printable(change.would_be) and change.kind != TWO_DIGITS:
-                rows[other] = min(least + cost, rows.get(other, least + cost))
+        for would_be, cost in neighbours(name, text).items():
+            other = (*row[:at], would_be, *row[at + 1 :])
+            rows[other] = min(least + cost, rows.get(other, least + cost))
     return sorted(rows.items(), key=lambda option: option[1])
 
 

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
 from ...collision.fields import INPUTS, scene_name
 from ..reading.numerals import printable
 from .recovered import Recovered
-from .search import Column, Scored, column_of, one_each
+from .search import Column, Scored, column_of
 from .slips import Change, slips_of
 
 MAX_TWO_SLIPS_PENALTY = 6.05
 """Prior penalty of the rarest two slips: two digits misread as those least like them, 3.02 each."""
-MAX_REPLAYED_SLIPS = 60  # combinations of slips that are replayed
-MAX_SLIP_COMBINATIONS = 100_000  # combinations of slips that are screened
+MAX_REREADS = 60  # scenes with corrected inputs that are replayed
 
 
 class Reread(NamedTuple):
@@ -36,37 +35,32 @@ class Rereading:
         for name in recovered.apart if apart else ():
             self._base[name] = recovered.scene[scene_name(name)].replace(" ", "").upper()
 
-    def best(
-        self, single: bool = False, exchanged: Mapping[str, str] | None = None
-    ) -> list[Reread]:
-        """Return scenes with up to two corrected inputs, those of least cost first.
+    @cached_property
+    def best(self) -> list[Reread]:
+        """Scenes with up to two corrected inputs, those of least cost first."""
+        return self._nearest(self._columns)
 
-        ``single``: correct one input only; ``exchanged``: texts that replace printed ones, by
-        field, and are not corrected further.
-        """
+    def with_one(self, exchanged: Mapping[str, str]) -> list[Reread]:
+        """Return scenes with one corrected input and ``exchanged`` texts in place of printed ones,
+        by field, those of least cost first."""
         columns = [*self._columns]
-        for name, text in (exchanged or {}).items():
+        for name, text in exchanged.items():
             place = INPUTS.index(name)
             columns[place] = column_of(name, [(text, 0.0)], columns[place].typed)
-        search = self._recovered.search
-        if single:
-            count = 2 if exchanged else MAX_REPLAYED_SLIPS
-            picks = search.screen(columns, one_each(columns), count)
-        else:
-            wrong = self._recovered.wrong
-            picks = search.find_candidates(
-                columns,
-                MAX_SLIP_COMBINATIONS,
-                MAX_REPLAYED_SLIPS,
-                MAX_TWO_SLIPS_PENALTY,
-                wrong,
-            )
+        return self._nearest(columns, MAX_TWO_SLIPS_PENALTY / 2, 2)
+
+    def _nearest(
+        self,
+        columns: Sequence[Column],
+        limit: float = MAX_TWO_SLIPS_PENALTY,
+        most: int = MAX_REREADS,
+    ) -> list[Reread]:
         rereads = []
-        for pick, scored in zip(picks.tolist(), search.replay(columns, picks), strict=True):
+        for pick, scored in self._recovered.search.nearest(columns, limit, most):
             taken = zip(INPUTS, pick, strict=False)
             changes = tuple(self._slips[name][at - 1][1] for name, at in taken if at)
             rereads.append(Reread(changes, scored))
-        return sorted(rereads, key=lambda reread: reread.scored.cost)
+        return rereads
 
     @cached_property
     def _columns(self) -> list[Column]:

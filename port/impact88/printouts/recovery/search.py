@@ -3,10 +3,10 @@
 Text and pictures are searched alike: whoever read the page gives its `Evidence`, the texts that
 each printed result may be, and a `Column` of texts for each input, all with their costs.
 
-Each input has a few texts that the page may show, with what each costs to believe. Combinations are
-screened in double precision (the kinetic energy first, which few inputs enter, then all results),
-and the best of them are replayed in the Apple's own arithmetic. A scene's cost is the prior penalty
-of its inputs plus a mismatch penalty per printed result.
+Each input has a few texts that the page may show, with what each costs to believe. A scene's cost
+is that of its inputs plus a penalty per printed result that differs. The combinations whose inputs
+and kinetic energy cost least are tried first, two, then thousands; where there are more than may be
+replayed in the Apple's own arithmetic, those are that cost least in double precision.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -39,17 +39,11 @@ UNREAD = 0.6
 """Penalty of a result that is hardly legible, or that the page lacks."""
 _UNSEEN_ZEROS = 0.02
 """Penalty, times the rank of the text, of a number typed with zeros that do not print."""
-MAX_REPLAYED = 160  # combinations replayed in the Apple's arithmetic
-MAX_COMBINATIONS = 30_000
-"""Combinations of the other inputs tried with the likeliest masses and velocities."""
-MAX_RESCORED = 5_000
-"""Combinations left by a first screening on four results, which is done from four times as many."""
+MAX_REPLAYED = 160  # combinations replayed in the Apple's arithmetic at a time
+COUNTS = (2, 2_000, 60_000)
+"""Combinations tried, each more only where another might still explain the page better."""
 KINETIC = frozenset(("MA", "MB", "IA", "IB", "UX", "UY", "WA", "VX", "VY", "WB"))
 """The inputs that enter the kinetic energy."""
-KEY_RESULTS = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF", "XAF", "YAF", "XBF", "YBF", "LOSS")
-_SPINS = (("IA", "WA"), ("IB", "WB"))
-MAX_ENERGIES = 60
-"""Combinations of masses and velocities that are tried with the other inputs."""
 SCREENING_RTOL = 4e-7
 """Relative error allowed to the Apple's arithmetic in screening."""
 
@@ -84,7 +78,6 @@ def column_of(name: str, options: Iterable[tuple[str, float]], typed: bool = Fal
 
 
 Columns = Sequence[Column]
-Names = Collection[str]
 
 
 class Scored(NamedTuple):
@@ -109,15 +102,17 @@ class Expected(NamedTuple):
     def mismatch(self, values: Floats) -> Floats:
         """Return the penalty of each value, as computed before the program floors it: that of the
         cheapest text it may be printed as."""
-        costs: Floats = np.full(values.shape, self.default)
         places = FIELDS[self.name].places
         unit = 0.0 if places is None else 10.0**-places
-        for text, cost in self.texts.items():
-            number = _number(text)
-            slack = SCREENING_RTOL * abs(number) + max(0.05 * unit, 1e-9)
-            fits = (values >= number - slack) & (values < number + unit + slack)
-            costs = np.where(fits, np.minimum(costs, cost), costs)
-        return costs
+        numbers = np.array([_number(text) for text in self.texts])
+        slack = SCREENING_RTOL * np.abs(numbers) + max(0.05 * unit, 1e-9)
+        first, end = numbers - slack, numbers + unit + slack
+        edges = np.sort(np.concatenate([first, end]))
+        fits = (first <= edges[:, None]) & (edges[:, None] < end)
+        prices = np.where(fits, [*self.texts.values()], inf).min(axis=1, initial=self.default)
+        prices = np.append(prices, self.default)  # of what is below the first edge
+        found: Floats = prices[np.searchsorted(edges, values, side="right") - 1]
+        return found
 
 
 @dataclass(frozen=True)
@@ -157,123 +152,63 @@ class Search:
         self._found = {result.name for result in evidence.results} | {*INPUTS}
 
     def best(self, columns: Columns) -> Scored:
-        """Return the scene of least cost among combinations of the columns' options.
-
-        The two most plausible combinations are replayed first; only if neither explains the page
-        does the search by kinetic energy follow.
-        """
-        best = min(self.likeliest(columns), key=_cost)
-        if best.wrong or best.cost >= 0.05:
-            best = min([best, *self.nearest(columns)], key=_cost)
+        """Return the scene of least cost among combinations of the columns' options."""
+        best = self.nearest(columns)[0][1]
         return self._other_spellings(best) if best.wrong else best
 
-    def likeliest(self, columns: Columns) -> list[Scored]:
-        """Return the scenes of the two combinations of least prior penalty, whatever they print."""
-        return self.replay(columns, combinations(columns, 2))
-
-    def nearest(self, columns: Columns) -> list[Scored]:
+    def nearest(
+        self, columns: Columns, limit: float = inf, most: int = MAX_REPLAYED
+    ) -> list[tuple[list[int], Scored]]:
         """Return the scenes of least cost among combinations of the columns' options, the least
-        first."""
-        scores = self.replay(columns, self.find_candidates(columns, MAX_COMBINATIONS))
-        return sorted(scores, key=_cost)
+        first, each with its combination.
 
-    def find_candidates(
-        self,
-        columns: Columns,
-        max_combinations: int,
-        count: int = MAX_REPLAYED,
-        max_penalty: float = inf,
-        wrong: Names = (),
-    ) -> Picks:
-        """Return the combinations that are worth replaying, best first.
-
-        All combinations of all options are too many. The kinetic energy (line 320) depends on ten
-        inputs only, so combinations of these are ranked by how well they explain the printed energy
-        and the best ``MAX_ENERGIES`` are kept. Each is completed with the most plausible
-        combinations of the other inputs: ``max_combinations`` for the first, a fourth of that for
-        the second, a ninth for the third, two at least. `screen` then picks ``count`` of them by
-        all results in double precision.
-
-        ``max_penalty`` bounds the prior penalty of all inputs plus the energy's mismatch.
-        ``wrong`` names results that the best scene so far does not explain: they are screened
-        first.
+        Combinations are taken in the order of what they cost by their inputs and the energy, more
+        and more of them. The search ends when no other can cost less than a scene that was
+        replayed, and after the last of `COUNTS`. ``limit``: largest cost of that kind;
+        ``most``: number of scenes that are replayed at a time.
         """
-        kinetic = self._kinetic_columns(columns)
-        others = [place for place in range(len(columns)) if place not in kinetic]
-        picks, penalties = self._rank_energies(columns, kinetic, max_combinations, max_penalty)
-        rest_columns = [columns[place] for place in others]
-        rest_limit = max_penalty - penalties.min()
-        rest = combinations(rest_columns, max_combinations, rest_limit)
-        rest_penalties = _prior_penalty(rest_columns, rest)
-        parts = []
-        for rank, (pick, penalty) in enumerate(zip(picks, penalties, strict=True), 1):
-            affordable = int(np.searchsorted(rest_penalties, max_penalty - penalty, side="right"))
-            # 1 / rank^2 sums to 1.6 at most, so that the total stays near ``max_combinations``
-            size = min(affordable, max(2, max_combinations // rank**2))
-            part = np.zeros((size, len(columns)), np.intp, "F")
-            part[:] = pick
-            part[:, others] = rest[:size]
-            parts.append(part)
-        return self.screen(columns, np.concatenate(parts), count, wrong)
+        scores: list[tuple[list[int], Scored]] = []
+        for count in COUNTS:
+            picks, costs = self.cheapest(columns, count, limit)
+            picks = self.screen(columns, picks, most)
+            scored = zip(picks.tolist(), self.replay(columns, picks), strict=True)
+            scores = sorted(scored, key=lambda pair: pair[1].cost)
+            if len(costs) < count or costs[-1] >= scores[0][1].cost:
+                break
+        return scores
 
-    def _kinetic_columns(self, columns: Columns) -> list[int]:
-        """Return the places of the columns that enter the kinetic energy. The inertia of a vehicle
-        that does not spin does not."""
-        first = dict(
-            pair
-            for column in columns
-            for pair in zip(column.names, column.options[0][0], strict=True)
-        )
-        moving = KINETIC - {inertia for inertia, spin in _SPINS if not _number(first[spin])}
-        return [place for place, column in enumerate(columns) if moving & set(column.names)]
-
-    def _rank_energies(
-        self, columns: Columns, kinetic: Sequence[int], max_combinations: int, max_penalty: float
-    ) -> tuple[Picks, Floats]:
-        """Return combinations of the columns at ``kinetic``, the first option elsewhere, in the
-        order of how well they explain the printed energy, and the penalty of each, its mismatch
-        included. The most plausible combination stays first, in case the energy itself was
-        misread."""
-        some = combinations([columns[place] for place in kinetic], max_combinations, max_penalty)
-        picks = np.zeros((len(some), len(columns)), np.intp, "F")
-        picks[:, kinetic] = some
-        mismatches = np.zeros(len(picks))
+    def cheapest(self, columns: Columns, count: int, limit: float = inf) -> tuple[Picks, Floats]:
+        """Return the ``count`` combinations that cost least by their inputs and the kinetic energy
+        (line 320), into which ten of them enter; and these costs, smallest first, none above
+        ``limit``."""
+        kinetic = [at for at, column in enumerate(columns) if not KINETIC.isdisjoint(column.names)]
+        others = [at for at in range(len(columns)) if at not in kinetic]
+        moving = [columns[at] for at in kinetic]
+        some, costs = combinations([column.costs for column in moving], count, limit)
         for expected in self.expected:
             if expected.name == "KI":
-                mismatches = expected.mismatch(kinetic_energy(_values(columns, picks)))
-        # `combinations` puts the most plausible one first; -1, below every penalty, keeps it there
-        keys = np.append(-1.0, mismatches[1:])
-        order = np.argsort(keys, kind="stable")[:MAX_ENERGIES]
-        return picks[order], (_prior_penalty(columns, picks) + mismatches)[order]
+                costs = costs + expected.mismatch(kinetic_energy(_values(moving, some)))
+        order = np.argsort(costs, kind="stable")
+        rest = [columns[at].costs for at in others]
+        joined, costs = combinations([costs[order], *rest], count, limit)
+        picks = np.empty((len(costs), len(columns)), np.intp, "F")
+        picks[:, kinetic] = some[order[joined[:, 0]]]
+        picks[:, others] = joined[:, 1:]
+        return picks, costs
 
-    def screen(self, columns: Columns, picks: Picks, count: int, wrong: Names = ()) -> Picks:
-        """Return the ``count`` combinations of least cost in double precision.
-
-        There are two passes: more than 4 `MAX_RESCORED` combinations are first reduced to
-        `MAX_RESCORED` by four results only, those in ``wrong`` before others; the rest are then
-        ranked by all results. ``count`` combinations or fewer are returned as they are."""
-        key_names = sorted(KEY_RESULTS, key=lambda name: name not in wrong)[:4]
-        key_results = [
-            result
-            for result in self.expected
-            if result.default == MISMATCH and result.name in key_names
-        ]
-        rounds = (
-            (MAX_RESCORED, 4 * MAX_RESCORED, key_results),
-            (count, count, self.expected),
-        )
-        for size, threshold, expected in rounds:
-            if len(picks) > threshold:
-                value = _values(columns, picks)
-                value["MU"] = self._typed_mu(value)
-                costs = _prior_penalty(columns, picks)
-                results = in_doubles(value, [result.name for result in expected])
-                for result in expected:
-                    cost = result.mismatch(results[result.name])
-                    spun = result.name not in FINAL_SPINS or value["M"] == 6
-                    costs = costs + np.where(spun, cost, MISMATCH)
-                picks = picks[np.argsort(costs, kind="stable")[:size]]
-        return picks
+    def screen(self, columns: Columns, picks: Picks, most: int) -> Picks:
+        """Return the ``most`` combinations of least cost in double precision, if there are more."""
+        if len(picks) <= most:
+            return picks
+        value = _values(columns, picks)
+        value["MU"] = self._typed_mu(value)
+        costs = _prior_penalty(columns, picks)
+        results = in_doubles(value, [result.name for result in self.expected])
+        for result in self.expected:
+            cost = result.mismatch(results[result.name])
+            spun = result.name not in FINAL_SPINS or value["M"] == 6
+            costs = costs + np.where(spun, cost, MISMATCH)
+        return picks[np.argsort(costs, kind="stable")[:most]]
 
     def replay(self, columns: Columns, picks: Picks) -> list[Scored]:
         """Replay combinations in the Apple's arithmetic; return their scores in the same order."""
@@ -325,13 +260,13 @@ class Search:
                 texts = tuple(map(opposite, texts))
             ranks = enumerate(dict.fromkeys((typed, *texts)))
             columns.append(column_of(name, [(text, _UNSEEN_ZEROS * rank) for rank, text in ranks]))
-        picks = combinations(columns, MAX_RESCORED)
+        picks, prices = combinations([column.costs for column in columns], MAX_REPLAYED)
         extra = best.cost - self.replayed_scene(best.scene, best.assumed).cost
         scenes = []
-        for pick, cost in zip(picks.tolist(), _prior_penalty(columns, picks), strict=True):
+        for pick, cost in zip(picks.tolist(), prices.tolist(), strict=True):
             taken = zip(columns, pick, strict=True)
             scene = {column.names[0]: column.options[index][0][0] for column, index in taken}
-            scenes.append((scene, best.assumed, extra + float(cost)))
+            scenes.append((scene, best.assumed, extra + cost))
         return min([best, *self._score(scenes)], key=_cost)
 
     def replayed_scene(self, scene: dict[str, str], assumed: dict[str, str]) -> Scored:
@@ -363,26 +298,24 @@ class Search:
             yield Scored(total, scene, assumed, outcome, differing)
 
 
-def combinations(columns: Columns, count: int, max_penalty: float = inf) -> Picks:
-    """Return the ``count`` combinations of least prior penalty, smallest first, none of more than
-    ``max_penalty``. Columns are joined one at a time, keeping the best ``count`` at each step."""
+def combinations(columns: Sequence[Floats], count: int, limit: float = inf) -> tuple[Picks, Floats]:
+    """Return the ``count`` combinations of least cost, and their costs, smallest first, none above
+    ``limit``. ``columns``: the costs of each column's options, smallest first. Columns are joined
+    one at a time, keeping the best ``count`` at each step."""
     steps = []
     costs: Floats = np.zeros(1)
-    for column in columns:
-        options = column.costs
+    for options in columns:
         # both are sorted: with option j none but the first count / (j + 1) are among the cheapest
         counts = np.minimum(
             count // np.arange(1, len(options) + 1),
-            np.searchsorted(costs, max_penalty - options, side="right"),
+            np.searchsorted(costs, limit - options, side="right"),
         )
         before = np.concatenate([np.arange(count) for count in counts])
         option = np.repeat(np.arange(len(counts)), counts)
         every = costs[before] + options[option]
-        if len(every) > count:
-            order = np.argpartition(every, count - 1)[:count]
-            order = order[np.argsort(every[order], kind="stable")]
-        else:
-            order = np.argsort(every, kind="stable")
+        enough = np.partition(every, count - 1)[count - 1] if len(every) > count else inf
+        kept = np.flatnonzero(every <= enough)  # of equal ones those of the first columns
+        order = kept[np.argsort(every[kept], kind="stable")][:count]
         costs = every[order]
         steps.append((before[order], option[order]))
     picks = np.empty((len(costs), len(columns)), np.intp, "F")
@@ -390,17 +323,7 @@ def combinations(columns: Columns, count: int, max_penalty: float = inf) -> Pick
     for place in reversed(range(len(columns))):
         before, option = steps[place]
         picks[:, place], at = option[at], before[at]
-    return picks
-
-
-def one_each(columns: Columns) -> Picks:
-    """Return the cheapest combination, and each that departs from it in one column."""
-    picks = [np.zeros((1, len(columns)), np.intp)]
-    for place, column in enumerate(columns):
-        some = np.zeros((len(column.options) - 1, len(columns)), np.intp)
-        some[:, place] = np.arange(1, len(column.options))
-        picks.append(some)
-    return np.concatenate(picks)
+    return picks, costs
 
 
 def _number(text: str) -> float:

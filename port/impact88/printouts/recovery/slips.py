@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from ...collision.doubles import double
 from ...collision.fields import ANGLES
-from ..reading.numerals import is_number
+from ..reading.numerals import is_number, printable
 from .typedtext import opposite
 
 DIGIT = "digit misread"
@@ -66,6 +66,16 @@ def slips_of(name: str, text: str) -> list[tuple[float, Change]]:
     possible = [change for change in changes if is_number(change.would_be)]
     some = [(0.7 + change.bits / 5, change) for change in possible]
     return sorted(some, key=lambda pair: (pair[0], pair[1].would_be))
+
+
+def neighbours(name: str, text: str) -> dict[str, float]:
+    """Return the printable texts that a reader may have misread as a field's in one slip, each with
+    its prior penalty. Two digits misread are left to explanations: there are too many of them."""
+    return {
+        change.would_be: cost
+        for cost, change in slips_of(name, text)
+        if change.kind != TWO_DIGITS and printable(change.would_be)
+    }
 
 
 def misreadings(text: str) -> dict[str, str]:

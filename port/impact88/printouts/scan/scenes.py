@@ -17,7 +17,7 @@ from ..reading.printout import read_printouts
 from ..recovery.recovered import MAX_RESULT_TEXTS, MAX_TEXTS, recover
 from ..recovery.replays import Outcome, run_all
 from ..recovery.search import MISMATCH, Column, Evidence, Expected, Search, column_of
-from ..recovery.slips import TWO_DIGITS, slips_of
+from ..recovery.slips import neighbours
 from ..recovery.typedtext import stored_and_printed
 from .ink import Floats
 from .layout import Sheet
@@ -189,7 +189,8 @@ def scene_of(
     if not copy:
         best = search.best(columns)
         return _candidate(read, best.scene, best.outcome)
-    scores = [*search.likeliest(columns), *search.nearest(columns)]
+    likeliest, _ = search.cheapest(columns, 2)
+    scores = search.replay(columns, likeliest) + [score for _, score in search.nearest(columns)]
     return _scene_in_copy(read, copy, [scored.scene for scored in scores])
 
 
@@ -241,13 +242,10 @@ def _slips(read: Read, name: str) -> dict[str, float]:
     figure may have been erased, which leaves a wider gap."""
     as_read = read.text(name)
     text = as_printed(as_read) or as_read
-    return {
-        change.would_be: cost
-        for base in (as_read.ljust(len(read.costs[name]), "0"), text)
-        if is_number(base)
-        for cost, change in slips_of(name, base)
-        if change.kind != TWO_DIGITS and printable(change.would_be)
-    }
+    slips: dict[str, float] = {}
+    for base in (as_read.ljust(len(read.costs[name]), "0"), text):
+        slips |= neighbours(name, base) if is_number(base) else {}
+    return slips
 
 
 def _evidence(read: Read) -> Evidence:
