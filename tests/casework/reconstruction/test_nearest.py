@@ -88,6 +88,19 @@ def test_of_several_nearest_impacts_the_nearest_is_told():
     assert free.nearest.values["E"] == pytest.approx(0, abs=1e-8)
 
 
+@pytest.mark.parametrize(("beyond", "count"), [(0.3, 2), (0.5, 1)])
+def test_an_impact_that_fits_much_worse_than_another_is_not_listed(beyond, count):
+    """B's speed of 3 has either direction, and v_B' = c v + k u with k = (1 + e) m_a / (m_a + m_b),
+    c = 1 - k. The sums of squares of the two are (c 3 -+ beyond)^2 / (1 + c^2), where v_B' is
+    measured beyond k u; one with more than four times the other's is left out."""
+    known = along_a_line(1.0, SB=3.0) | {"UX": 20.0, "E": 0.1}
+    k = 1.1 * MASSES["MA"] / sum(MASSES.values())
+    known["VBX"] = Uncertain("normal", 20 * k + beyond, -math.inf, math.inf, 1.0)
+    squares = [(3 * (1 - k) - sign * beyond) ** 2 / (1 + (1 - k) ** 2) for sign in (1, -1)]
+    found = sorted(impact.squares for impact in reconstruct(known))
+    assert found == pytest.approx(squares[:count])
+
+
 def test_vehicles_that_separate_are_no_impact():
     (free,) = reconstruct(along_a_line(0.1, UX=-5.0, VX=20.0, VAX=-4.0, VBX=19.0))
     text = dict(first_lines(Answer(free, 0), RULES))["NO IMPACT"]

@@ -20,7 +20,7 @@ Flags = NDArray[np.bool_]
 MAX_STEP = 0.5  # initial and largest trust-region radius, per coordinate
 MIN_STEP = 1e-7  # a search point has converged when its trust region is smaller
 CONSTRAINT_TOL = 1e-9  # a constraint exceeded by no more counts as met
-MAX_ROUNDS = 60
+MAX_ROUNDS = 60  # steps of a search point
 # Rounds of all searches for an extreme; then the best of them goes on alone. Nearly all that reach
 # the extreme have converged by then.
 ROUNDS_OF_ALL = 20

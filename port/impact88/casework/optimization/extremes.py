@@ -33,12 +33,12 @@ BISECTIONS = 34  # to locate a denominator's zero; 17 do as well
 # A function is compared at these two distances from a zero, as fractions of the bracket: a pole
 # makes it a hundred times as large at the second. Thresholds from 3 to 60 find the same poles.
 POLE_DISTANCES = (1e-4, 1e-6)
-POLE_GROWTH = 30.0
+POLE_GROWTH = 30.0  # least ratio of the two
 POLE_PAIRS = 64  # pairs of points between which a denominator's zeros are bracketed
 # Random steps beside points without a value. Twice or half as many move a bound beside excluded
 # scenes by .005 of its range, either way.
 STEP_LENGTHS = 0.25 * 0.85 ** np.arange(80)
-STEPS_PER_LENGTH = 32
+STEPS_PER_LENGTH = 32  # from each end
 
 _SENSE = np.array([[-1.0], [1.0]])  # the minimum of f is minus the maximum of -f
 

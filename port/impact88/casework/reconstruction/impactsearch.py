@@ -27,7 +27,7 @@ Counts = NDArray[np.int64]
 Progress = Callable[[int], object]
 
 EXACT_STARTS = 240  # in a batch of the search for exact impacts
-MAX_BATCHES = 8
+MAX_BATCHES = 8  # of that search, where impacts go on being found only once
 FIT_STARTS = 60  # through all penalties, and as many through all but the first
 FEW_STARTS = 12  # where all lead to an impact, or none does
 MAX_OMITTED_SETS = 8  # sets of redundant measurements left out to find starts of a fit

@@ -17,10 +17,9 @@ Floats = NDArray[np.float64]
 # Weights of a condition, relative to an observation of one standard deviation
 PENALTIES = (1.0, 1e2, 1e4, 1e6)
 MAX_STEPS = 40  # of each stage
-MAX_NEWTON_STEPS = 50
+MAX_NEWTON_STEPS = 50  # of one end of iterations
 FIRST_DAMPING = 1e-2  # relative to the columns of the Jacobian
-MIN_DAMPING = 1e-18
-MAX_DAMPING = 1e8
+MIN_DAMPING = 1e-18  # keeps steps finite where nothing determines a direction
 XTOL = 1e-13  # relative step at convergence
 MAX_POLISH_SHIFT = 0.5  # longest relative step of Newton's method
 DIFFERENCE_STEP = 1e-6  # half width of the central differences for second derivatives
@@ -61,7 +60,7 @@ def _descend(system: System, starts: Floats, penalty: float) -> Floats:
         damping[running] = np.where(
             better,
             np.maximum(damping[running] / 10, MIN_DAMPING),
-            np.minimum(damping[running] * 5, MAX_DAMPING),
+            damping[running] * 5,
         )
         lengths = np.abs(steps).max(axis=0, initial=0.0)
         running = running[lengths > XTOL * (1 + np.abs(trial).max(axis=0, initial=0.0))]

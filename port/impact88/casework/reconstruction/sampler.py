@@ -26,7 +26,7 @@ PROPOSAL_FACTOR = 12  # proposals per particle, so that thin parts of the distri
 # After each hardening of the limits particles move until so many moves of each were accepted, on
 # average. With fewer, what resampling lost does not come back: low closing speeds are missed
 ACCEPTED_MOVES = 4.0
-MAX_MOVES = 24
+MAX_MOVES = 24  # of each particle, where few are accepted
 MOVES_ALIKE = 4  # moves before proposals are fitted anew
 THINNING = 2  # moves between one set of draws and the next
 MAX_STAGES = 25  # hardenings of the limits; if these do not suffice, no impact lies within limits
@@ -34,9 +34,9 @@ MIN_EFFECTIVE = 0.5  # fraction of particles that stay effective from stage to s
 DEGREES_OF_FREEDOM = 4.0  # of the proposals, Student's t
 # Independent proposals: Student's t about clusters of the particles, and a broad one about all
 CLUSTERS = 8  # on each branch
-CLUSTER_ROUNDS = 10
+CLUSTER_ROUNDS = 10  # of k means
 SHARE_OF_ALL = 0.02  # of the covariance of all, added to a cluster's
-BROAD = 0.1  # fraction of the broad proposals
+BROAD = 0.1  # least fraction of the broad proposals
 FIRST = 0.05  # weight of the first proposals, which reach every branch
 FLOOR = 1e-6  # least variance, relative to that of each coordinate
 
@@ -338,12 +338,14 @@ def _fit(points: Floats, branches: Branches, rng: np.random.Generator) -> list[P
         whole = np.cov(scaled.T).reshape(len(spread), len(spread)) + FLOOR * np.eye(len(spread))
         clusters = _clusters(scaled, rng)
         numbers = np.bincount(clusters, minlength=CLUSTERS)
-        mixture = [(BROAD, scaled.mean(axis=0), whole)]
+        mixture = []
         for cluster in np.flatnonzero(numbers > 4 * len(spread)):
             part = scaled[clusters == cluster]
             covariance = np.cov(part.T).reshape(whole.shape) + SHARE_OF_ALL * whole
             fraction = (1 - BROAD) * numbers[cluster] / len(own)
             mixture.append((fraction, part.mean(axis=0), covariance))
+        rest = 1 - sum(fraction for fraction, _, _ in mixture)  # of small clusters, too
+        mixture.append((rest, scaled.mean(axis=0), whole))
         proposals += [
             Proposal(
                 center * spread,
