@@ -45,7 +45,7 @@ def assert_same_bits(compiled, alone):
 
 
 @pytest.mark.parametrize("name", POPULATIONS)
-@pytest.mark.parametrize("count", [2, MAX_CONVERTED, MAX_CONVERTED + 1])
+@pytest.mark.parametrize("count", [1, 2, MAX_CONVERTED, MAX_CONVERTED + 1])
 def test_every_result_of_every_population(name, count):
     assert_same_bits(*both(repeat_scenes(scenes(name, min(count, 500), 11), count), threads=1))
 

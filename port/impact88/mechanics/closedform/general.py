@@ -1,4 +1,6 @@
-"""The general path of `solve`: columns of any types and shapes that broadcast, block by block.
+"""Columns of any types and shapes that broadcast, solved block by block.
+
+A block is computed by the compiled library where that is usable, else by numpy.
 
 MU may be a share of the critical friction ("85 %"), of the one that just ends the sliding at
 separation, MUC: it is solved for first.
@@ -20,8 +22,8 @@ from ..native.processors import run_in_threads, workers
 from . import compiledcalls
 from .columns import Source, examine, part, sources
 from .impactprograms import program_for
-from .plain import address, allocate_results, results_into
 from .plan import Plan
+from .results import address, allocate_results, results_into
 
 Array = NDArray[Any]
 
@@ -109,8 +111,7 @@ def _solve_part(
     start: int,
     stop: int,
 ) -> None:
-    """Solve scenes ``start`` to ``stop``, block by block: by the compiled library where that is
-    usable, else by numpy."""
+    """Solve scenes ``start`` to ``stop``, block by block."""
     use_library = sign is None and compiledcalls.usable()
     for at in range(start, stop, 2 * tile):
         end = min(at + 2 * tile, stop)
@@ -118,13 +119,21 @@ def _solve_part(
         targets = {name: array[at:end] for name, array in results.items()}
         if use_library:
             starts = [address(target) for target in targets.values()]
-            compiledcalls.solve_columns(list(values.values()), tuple(results), starts, end - at)
-            continue
-        block = examine(values)
-        constants = {name: float(column[0]) for name, column in block.fixed.items()}
-        program = program_for(block.kinds, tuple(results), sign)
-        columns = [block.varying[name] for name in program.columns]
-        Plan(program).run(columns, targets, constants, tile)
-        if block.refused is not None:
-            for name, result in targets.items():
-                result[block.refused] = Status.NOT_FINITE if name == "STATUS" else np.nan
+            columns, steps = [*map(address, values.values())], [len(x) > 1 for x in values.values()]
+            compiledcalls.compute(columns, steps, tuple(results), starts, end - at, 1)
+        else:
+            _compute_by_numpy(values, targets, tile, sign)
+
+
+def _compute_by_numpy(
+    values: Mapping[str, Array], targets: Mapping[str, Array], tile: int, sign: float | None
+) -> None:
+    """Write the results of a block of scenes to the ``targets``."""
+    block = examine(values)
+    constants = {name: float(column[0]) for name, column in block.fixed.items()}
+    program = program_for(block.kinds, tuple(targets), sign)
+    columns = [block.varying[name] for name in program.columns]
+    Plan(program).run(columns, targets, constants, tile)
+    if block.refused is not None:
+        for name, result in targets.items():
+            result[block.refused] = Status.NOT_FINITE if name == "STATUS" else np.nan

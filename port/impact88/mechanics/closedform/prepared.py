@@ -1,7 +1,9 @@
 """`impact88.prepared`: everything that calls of `solve` have in common, done once."""
 
+import ctypes
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,9 +19,9 @@ from ...status import Status
 from .. import native
 from . import compiledcalls
 from .columns import sources
-from .compiledcalls import PreparedCall
+from .compiledcalls import RowsCall
 from .impactprograms import ALL, COLUMNS
-from .plain import PLAIN, address
+from .plain import PLAIN
 from .solve import solve
 
 Array = NDArray[Any]
@@ -143,9 +145,7 @@ class Prepared:
                 "names that are given at each call"
             )
         self._values = np.array([float(inputs[name][0]) for name in COLUMNS])
-        self._call: PreparedCall | None = None
-        self._rows = tuple(name for name in outputs if name != "STATUS")
-        self._has_status = len(self._rows) < len(outputs)
+        self._call = RowsCall(outputs, [COLUMNS.index(n) for n in names], (), self._values)
         self._expected = (len(names),)
         self._factors = None
         if "units" in self._scene:
@@ -163,16 +163,7 @@ class Prepared:
             rows = rows / self._factors.reshape(-1, *[1] * (rows.ndim - 1))
         if not compiledcalls.usable():
             return self._solve_by_numpy(rows)
-        call = self._call or self._create_call()
-        shape = rows.shape[1:]
-        results, bits = self._room(shape)
-        call.run(
-            address(rows),
-            address(results),
-            0 if bits is None else address(bits),
-            math.prod(shape),
-        )
-        return self._by_name(results, bits)
+        return self._call.solve(rows, rows.shape[1:])
 
     @explains_arguments
     def bind(self, values: Array) -> "Bound":
@@ -224,23 +215,6 @@ class Prepared:
         scene = dict(zip(COLUMNS, self._values.tolist(), strict=True))
         return solve({**scene, **dict(zip(self.names, rows, strict=True))}, self.outputs)
 
-    def _create_call(self) -> PreparedCall:
-        places = [COLUMNS.index(name) for name in self.names]
-        self._call = PreparedCall(self.outputs, places, self._values)
-        return self._call
-
-    def _room(self, shape: tuple[int, ...]) -> tuple[Array, Array | None]:
-        """Return uninitialized arrays for the float64 results, as rows, and for STATUS."""
-        results = np.empty((len(self._rows), *shape))
-        return results, np.empty(shape, np.uint16) if self._has_status else None
-
-    def _by_name(self, results: Array, bits: Array | None) -> dict[str, Array]:
-        by_name = dict(zip(self._rows, results))  # noqa: B905 - strict takes as long as the rest
-        if bits is None:
-            return by_name
-        by_name["STATUS"] = bits[()]
-        return {name: by_name[name] for name in self.outputs}
-
     def _read(self, values: Any) -> Array:
         """Return values of any accepted kind as an array of rows. Raises UserError."""
         expectation = f"one row for each of {' '.join(self.names)}"
@@ -283,33 +257,33 @@ class Bound:
     def __init__(self, prepared_call: Prepared, values: Array) -> None:
         self.values = values
         self._prepared = prepared_call
-        self._kept = results, bits = prepared_call._room(values.shape[1:])
+        call = prepared_call._call
+        self._kept = results, bits = call.room(values.shape[1:])
         results.fill(np.nan)
+        rows = iter(results[..., np.newaxis])
         if bits is not None:
             bits.fill(Status.NOT_FINITE)
-        names = prepared_call._rows
-        rows = {name: results[place, ...] for place, name in enumerate(names)}
-        if bits is not None:
-            rows["STATUS"] = bits
-        self.results: dict[str, Array] = {name: rows[name] for name in prepared_call.outputs}
-        self._at: int | None = None
-        self._machine = native.library if compiledcalls.usable() else None
+        self.results: dict[str, Array] = {
+            name: bits if bits is not None and name == "STATUS" else next(rows)[..., 0]
+            for name in prepared_call.outputs
+        }
         count = math.prod(values.shape[1:])
+        self._run: Callable[[], object] | None = None
+        self._machine = native.library if compiledcalls.usable() else None
         in_one_call = (
             count < 2 * compiledcalls.MIN_SCENES_PER_THREAD and prepared_call._factors is None
         )
         if self._machine is not None and in_one_call:
-            call = prepared_call._call or prepared_call._create_call()
-            status = 0 if bits is None else address(bits)
-            self._block = call.bound(address(values), address(results), status, count)
-            self._call = call
-            self._at = self._block.ctypes.data
-            self._run = self._machine.solve_bound
+            self._block = call.bound(values, results, bits)
+            at = self._block.ctypes.data
+            # numbers of C's own types are passed on as they are
+            arguments = ctypes.c_void_p(at), ctypes.c_int64(0), ctypes.c_int64(count)
+            self._run = partial(self._machine.solve_impacts, *arguments)
 
     def __call__(self) -> dict[str, Array]:
         """Return the results of what ``values`` hold, in the arrays of the call before."""
-        if self._at is not None and native.library is self._machine:
-            self._run(self._at)
+        if self._run is not None and native.library is self._machine:
+            self._run()
         else:
             for name, result in self._prepared(self.values).items():
                 self.results[name][...] = result

@@ -105,12 +105,12 @@ def solve(
     elif isinstance(outputs, str):
         outputs = split_names(outputs)
     wanted = _check_results(tuple(outputs))
-    # the short path: plain numbers and float64 arrays need no reading
+    # plain numbers and float64 arrays need no reading
     if isinstance(columns, dict) and wanted and compiledcalls.usable():
         results = solve_plain(columns, wanted, threads, out)
         if results is not None:
             return results
-    # the long one: texts, units, lists, frames' columns, scenes that lack inputs
+    # texts, units, lists, frames' columns, scenes that lack inputs do
     scene, shares = scene_columns(columns)
     if out is None and (lacking := not_given(scene)):
         return solve_without(scene, shares, lacking, wanted, threads)

@@ -34,9 +34,8 @@ def _declare_functions(loaded: ctypes.CDLL) -> ctypes.CDLL:
     number, address = ctypes.c_int64, ctypes.c_void_p
     loaded.run_program.argtypes, loaded.run_program.restype = [address], None
     loaded.solve_impacts.argtypes, loaded.solve_impacts.restype = [address, number, number], None
-    loaded.solve_prepared.argtypes = [*[address] * 4, *[number] * 3]
-    loaded.solve_bound.argtypes = [address]
-    loaded.solve_prepared.restype = loaded.solve_bound.restype = None
+    loaded.solve_rows.argtypes = [*[address] * 4, *[number] * 3]
+    loaded.solve_rows.restype = None
     loaded.formulas.restype = loaded.results.restype = ctypes.c_char_p
     loaded.read_numbers.argtypes = [ctypes.c_char_p, number, address, address]
     loaded.write_numbers.argtypes = [address, number, address, address]

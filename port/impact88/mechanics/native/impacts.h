@@ -372,7 +372,7 @@ static void compute_together(
 }
 
 /* Scenes ``start`` to ``stop``. */
-EXPORT void solve_impacts(const impacts *c, int64_t start, int64_t stop)
+static void solve_scenes(const impacts *c, int64_t start, int64_t stop)
 {
     work w;
     tile t;
@@ -412,35 +412,30 @@ EXPORT void solve_impacts(const impacts *c, int64_t start, int64_t stop)
     }
 }
 
-/* -- calls that are made again and again: of some columns and all results wanted only the places are
-   known, their rows lie one after another in memory, but STATUS */
+/* Scenes ``start`` to ``stop`` of columns that are anywhere. */
+EXPORT void solve_impacts(const impacts *its, int64_t start, int64_t stop)
+{
+    impacts c = *its;
+    solve_scenes(&c, start, stop);
+}
+
+/* Values in one array: a row of each of some columns, then single numbers. Of those and of the results
+   wanted but STATUS, which are rows, too, only the places are known. */
 typedef struct {
     impacts rest;
-    int64_t columns, results, given[COLUMNS], wanted[RESULTS];
-} prepared;
+    int64_t columns, numbers, results, given[COLUMNS], wanted[RESULTS];
+} rows;
 
 /* Scenes ``start`` to ``stop`` of ``count``. */
-EXPORT void solve_prepared(
-    const prepared *its, const double *values, double *results, uint16_t *status, int64_t count,
+EXPORT void solve_rows(
+    const rows *its, const double *values, double *results, uint16_t *status, int64_t count,
     int64_t start, int64_t stop)
 {
     impacts c = its->rest;
+    const double *numbers = values + its->columns * count;
     for (int64_t k = 0; k < its->columns; k++) c.column[its->given[k]] = values + k * count;
+    for (int64_t k = 0; k < its->numbers; k++) c.column[its->given[its->columns + k]] = numbers + k;
     for (int64_t r = 0; r < its->results; r++) c.result[its->wanted[r]] = results + r * count;
     c.result[TO_STATUS] = status;
-    solve_impacts(&c, start, stop);
-}
-
-/* The same arrays at each call. */
-typedef struct {
-    const prepared *call;
-    const double *values;
-    double *results;
-    uint16_t *status;
-    int64_t count;
-} bound;
-
-EXPORT void solve_bound(const bound *its)
-{
-    solve_prepared(its->call, its->values, its->results, its->status, its->count, 0, its->count);
+    solve_scenes(&c, start, stop);
 }
