@@ -94,68 +94,69 @@ def solve_without(
     def solve(scene: Mapping[str, Any], names: Sequence[str]) -> dict[str, Array]:
         return solve_arrays(scene, tuple(names), threads, shares=shares)
 
-    columns_known = {"M": np.array(float(DEFAULT_M)), **columns}
+    known = {"M": np.array(float(DEFAULT_M)), **columns}
     rng = np.random.default_rng(1988)
     trials = {name: _trials(name, rng) for name in lacking}
     if "GA" in trials:
         trials["GA"] = [360.0 / TRIALS * trial for trial in range(TRIALS)]
-    along = _along_a_line(columns_known, lacking)
-    completed = _complete_all(columns_known, trials, along)
+    along = _along_a_line(known, lacking)
+    completed = _complete_all(known, trials, along)
     names = [name for name in wanted if name != "STATUS"]
     if len(names) < len(wanted) and "KF" not in names:
         names.append("KF")
-    first, *other_trials = [solve(scene, names) for scene in completed]
-    stands = _same(first, other_trials, first)
-    zero = [n for n in names if all(not np.any(x[n]) for x in (first, *other_trials))]
-    if zero:  # one that is not below 0, such as EESA where energy is gained, hides its inputs
-        scenes = _ordinary_scenes(columns_known, shares is not None, rng)
-        ordinary_trials = _complete_all(scenes, trials, np.zeros(()))
-        elsewhere = [solve_arrays(scene, tuple(names), threads) for scene in ordinary_trials]
-        same = _same(elsewhere[0], elsewhere[1:], elsewhere[0])
-        stands |= {name: stands[name] & (np.all(same[name]) | along) for name in zero}
-    results = {name: np.where(stands[name], first[name], np.nan) for name in names}
-    names_changed = [name for name in names if not np.any(stands[name])]
-    absent = dict.fromkeys(names_changed, tuple(lacking))
-    if names_changed:
-        for name, needs in _inputs_used(lacking, completed, other_trials[0], absent, solve).items():
-            absent[name] = needs or absent[name]
-            del results[name]
-    if "STATUS" in wanted and "KF" in absent:  # an impact that is not known is not judged
+    solutions = [solve(scene, names) for scene in completed]
+    stands = _same(solutions[0], solutions[1:], names)
+    # one that is not below 0, such as EESA where energy is gained, hides its inputs
+    if zeros := [name for name in names if not any(np.any(found[name]) for found in solutions)]:
+        ordinary_scenes = _ordinary_scenes(known, shares is not None, rng)
+        completed_scenes = _complete_all(ordinary_scenes, trials, np.zeros(()))
+        elsewhere = [solve_arrays(scene, tuple(names), threads) for scene in completed_scenes]
+        same = _same(elsewhere[0], elsewhere[1:], zeros)
+        stands |= {name: stands[name] & (np.all(same[name]) | along) for name in zeros}
+    absent = _inputs_used(
+        lacking, completed, solutions[1], [n for n in names if not np.any(stands[n])], solve
+    )
+    if "KF" in absent:  # an impact that is not known is not judged
         absent["STATUS"] = absent["KF"]
     absent = {name: needs for name, needs in absent.items() if name in wanted}
     if wanted and len(absent) == len(wanted):
         needs_in_words = "; ".join(sentences(absent))
         raise UserError(f"missing: {' '.join(lacking)}; {needs_in_words}")
+    results = {name: np.where(stands[name], solutions[0][name], np.nan) for name in names}
     if "STATUS" in wanted and "STATUS" not in absent:
-        statuses = [np.asarray(solve(scene, ["STATUS"])["STATUS"]) for scene in completed]
-        # along a line all bits are known, where no more is lacking
-        is_known = along & (not {*lacking} - {"GA", "MU"})
-        mask = np.where(is_known, np.uint16(0xFFFF), np.uint16(_JUDGED))
-        results["STATUS"] = np.bitwise_and.reduce(statuses) & mask
-    return Results({n: _number(results[n]) for n in wanted if n in results}, absent)
+        statuses = [solve(scene, ["STATUS"])["STATUS"] for scene in completed]
+        results["STATUS"] = _bits_for_all(statuses, along, lacking)
+    # a number for an array without dimensions
+    return Results({n: np.asarray(results[n])[()] for n in wanted if n not in absent}, absent)
+
+
+def _bits_for_all(statuses: Sequence[Array], along: Array, lacking: Collection[str]) -> Array:
+    """Return the bits of STATUS that hold for all values of what is lacking."""
+    # along a line all bits are known, where no more is lacking
+    is_known = along & (not {*lacking} - {"GA", "MU"})
+    mask = np.where(is_known, np.uint16(0xFFFF), np.uint16(_JUDGED))
+    return np.asarray(np.bitwise_and.reduce(statuses) & mask)
 
 
 def _inputs_used(
     lacking: Sequence[str],
     completed: Sequence[Mapping[str, Any]],
     second: Mapping[str, Array],
-    names: Collection[str],
+    names: Sequence[str],
     solve: Solve,
 ) -> dict[str, tuple[str, ...]]:
-    """Return, for each of the results ``names``, the inputs of which a change alone changes it.
-    ``second``: the results of the second of the ``completed`` scenes."""
-    one_by_one = {
-        name: [solve({**completed[1], name: other[name]}, tuple(names)) for other in completed[2:5]]
-        for name in lacking
-    }
-    return {
-        result: tuple(
-            name
-            for name, changes in one_by_one.items()
-            if not np.all(_same({result: second[result]}, changes, second)[result])
-        )
-        for result in names
-    }
+    """Return, for each of the results ``names``, the inputs of which a change alone changes it, all
+    that are lacking where none does. ``second``: the results of the second of the ``completed``
+    scenes."""
+    if not names:
+        return {}
+    used: dict[str, list[str]] = {result: [] for result in names}
+    for name in lacking:
+        changes = [solve({**completed[1], name: other[name]}, names) for other in completed[2:5]]
+        for result, same in _same(second, changes, names).items():
+            if not np.all(same):
+                used[result].append(name)
+    return {result: tuple(inputs or lacking) for result, inputs in used.items()}
 
 
 def _trials(name: str, rng: np.random.Generator) -> list[float]:
@@ -188,21 +189,17 @@ def _ordinary_scenes(
     return {name: np.asarray(value, np.float64) for name, value in scenes.items()}
 
 
-def _number(value: Any) -> Any:
-    """Return a number for an array without dimensions."""
-    return np.asarray(value)[()]
-
-
 def _same(
-    first: Mapping[str, Array], others: Sequence[Mapping[str, Array]], all_of: Mapping[str, Array]
+    first: Mapping[str, Array], others: Sequence[Mapping[str, Array]], names: Sequence[str]
 ) -> dict[str, Array]:
-    """Return, for each result, where all others have it too."""
+    """Return, for each of the results ``names``, where all ``others`` have it as the ``first``."""
     largest: dict[str, Any] = {}
-    for name, value in all_of.items():
+    for name, value in first.items():
         rule = quantity(name).unit
         largest[rule] = np.fmax(largest.get(rule, 0.0), np.abs(value))
     same = {}
-    for name, value in first.items():
+    for name in names:
+        value = first[name]
         agrees: Any = np.True_
         for other in others:
             size = np.fmax(np.abs(value), np.abs(other[name]))
