@@ -55,9 +55,8 @@ FOREIGN = 20.0  # distance beyond which a cell is like no character of the page
 _EVEN = 0.8
 """Strength of ink, 1 for the page's usual, that 99 % of the cells exceed on evenly inked paper:
 0.82 and more on seven pages of which a digit was erased, 0.4 to 0.75 on those that lost some."""
-INKED = 0.35  # margin of a blank cell from which it holds a character
+INKED = 0.35  # margin of a blank cell from which it holds a character, or a speck is seen in it
 INKED_SMALL = 0.5  # margin from which it holds a point, a comma or a dash, as light as specks
-SPECK = 0.25  # margin of a blank from which a speck is seen in it
 MAX_SPECKS = 2  # specks in a printout, above which a mark as small as a point may be one, too
 FIT = 0.6  # smallest fraction of the ink in a blank that the character explains
 _SMALL = frozenset(".,-:'`*")
@@ -67,11 +66,9 @@ HOLDS = 0.0  # margin of a cell below which it is the predicted character
 DIFFERS = 4.0  # margin of a cell from which it is another character
 _FOREIGN_DIGIT = 2.0  # distance from a known digit at which one in another typeface is assumed
 MAX_DIFFERING = 4
-"""Most differing cells with which a printout can differ. More suggest a misreading."""
-MAX_UNEXPLAINED = 4
-"""Most cells that no character explains, or that cannot be seen, of a printout of which anything is
-said. More suggest a misreading."""
-MAX_BLOTS = 1  # most such cells of a printout that can differ
+"""Most differing cells of a printout of which anything is said, and most that no character explains
+or that cannot be seen. More suggest a misreading."""
+MAX_BLOTS = 1  # most cells of the second kind in a printout that can differ
 MAX_MISREAD = 2.0
 """Most cells that were read otherwise at first and do not differ, of a printout that can differ:
 240 of 245 altered pages stay within; three genuine pages, wrongly found to differ before this
@@ -430,7 +427,7 @@ def _find_added(cells: Sequence[Cell]) -> None:
     blanks = [cell for cell in cells if cell.predicted == BLANK and not (cell.name or cell.cut)]
     characters = {cell.place: cell for cell in blanks if _is_typed(cell)}
     # where several blanks hold a little ink, a mark as small may be a speck
-    specks = sum(cell.other in _SMALL and cell.margin > SPECK for cell in blanks)
+    specks = sum(cell.other in _SMALL and cell.margin > INKED for cell in blanks)
     for cell in blanks:
         if cell.place not in characters and cell.margin > INKED_SMALL:
             cell.added = Added.MARK
@@ -534,7 +531,7 @@ def judge_cells(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> Ce
     spins = "WAF" in candidate.outcome.fields
     unexplained = sum(cell.cut or cell.distance > FOREIGN for cell in doubtful)
     misread = candidate.cost / MAX_CELL_COST - len(differing)
-    is_legible = len(differing) <= MAX_DIFFERING and unexplained <= MAX_UNEXPLAINED
+    is_legible = len(differing) <= MAX_DIFFERING and unexplained <= MAX_DIFFERING
     reason = ""
     if not sheet.whole:
         reason = "lines of the printout were not found"
