@@ -118,8 +118,10 @@ def test_a_small_error_is_found_in_any_units(system: str) -> None:
     rows = [scene for kind, _, scene in scenes(90, 8) if kind == CASEWORK]
     scene = converted(columns([dict(sample(1)), *rows]), system)
     ours = {name: solve(scene)[name] for name in FINAL_VELOCITIES}
+    sizes = scales(scene, solve(scene))
     for name in FINAL_VELOCITIES:
-        grades, _ = judged(scene, {**ours, name: ours[name] * (1 + 1e-9)}).grade()
+        off = 2 * tolerance.ORDINARY_BOUND * sizes[name]  # trial impulses may lose half of it
+        grades, _ = judged(scene, {**ours, name: ours[name] + off}).grade()
         assert (grades == DIFFER).any(0).mean() > 0.9
         grades, _ = judged(scene, {**ours, name: ours[name] * 1.03}).grade()
         assert (grades == DIFFER).any(0).all()
