@@ -266,6 +266,13 @@ def test_figures_right_after_a_number_differ_and_are_shown_as_they_stand(figures
     assert check.printed == f"-13.263 {figures}"
 
 
+@pytest.mark.parametrize(("mark", "behind"), [("15.91)", "3"), ("57.47 %", " 3")])
+def test_what_stands_behind_a_closing_mark_is_no_part_of_the_number(mark: str, behind: str) -> None:
+    result = one(SAMPLE.replace(mark, mark + behind))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert [piece.read for piece in result.left_over] == ["3"]
+
+
 INSERTED = (
     *("-", ".", "5", "+", "X", "=", "31.2", " -", " 5", "\n5\n", "\n-\n", " VOID", " (31.2)"),
     *(" <VAX 31.2>", "\nVAX= 31.2\n", "*", "(", ")", "%", ",", ":", "?", "E", "I", "O", "\x07"),

@@ -14,7 +14,7 @@ import printouts
 from impact88.collision.fields import ANGLES, FIELDS
 from impact88.errors import UserError
 from impact88.printouts.reading import glyphs
-from impact88.printouts.reading.numerals import candidates
+from impact88.printouts.reading.numerals import candidates, rows
 from impact88.printouts.reading.plaintext import decode
 from impact88.printouts.reading.printout import read_printouts
 from printouts import SAMPLE
@@ -63,7 +63,7 @@ def test_blanks_and_line_breaks_do_not_matter(how: str) -> None:
                 ways = candidates(shown.fields[name].region, 6)
                 assert plain.fields[name].text in [text for text, _ in ways], name
         rows = [tuple(shown.fields[name].text for name in ANGLES if name in shown.fields)]
-        rows += [row for row, _ in shown.angles]
+        rows += [row.texts for row in shown.angles]
         assert tuple(plain.fields[name].text for name in ANGLES) in rows
         if how in printouts.MANGLED_HARMLESSLY:
             assert rows[0] == tuple(plain.fields[name].text for name in ANGLES)
@@ -224,6 +224,16 @@ def test_truncated_anywhere_reads_or_is_refused() -> None:
         whole = [name for name, reading in shown.fields.items() if not reading.cut]
         expected = texts(SAMPLE)
         assert all(shown.text(name) == expected[name] for name in whole if name not in ANGLES)
+
+
+@pytest.mark.parametrize(
+    "row",
+    ["-19.8 -38.7 C) 60 -30", "-19.8-38.7060-30", "-19. 8 ~38.7 0 60 -3 0", "-19.8 -38.7 0 6? -30"],
+)
+def test_a_row_that_blanks_do_not_divide_is_parted_in_likely_ways(row: str) -> None:
+    read = rows(glyphs.Page(row).glyphs, len(ANGLES))
+    assert ("-19.8", "-38.7", "0", "60", "-30") in [way.texts for way in read[:20]]
+    assert [way.cost for way in read] == sorted(way.cost for way in read)
 
 
 @pytest.mark.parametrize("note", ["\n   177\n", "seen 1988\n", "12\n", "-8.78\n", "VAX= 3.449\n"])

@@ -15,6 +15,7 @@ from installed import impact88
 import printouts
 from impact88.collision.fields import ANGLES, INPUTS, outcome_fields
 from impact88.names import SCENE
+from impact88.printouts.judging.judgement import Status
 from impact88.printouts.reading.printout import read_printouts
 from impact88.printouts.recovery.search import in_doubles
 from impact88.printouts.recovery.typedtext import stored_and_printed, texts_that_print
@@ -171,6 +172,37 @@ def test_digits_that_fit_an_illegible_character() -> None:
     (doubt,) = doubtful(result)[0].doubts
     assert (doubt.line, doubt.column, doubt.read, doubt.printed) == (1, 6, "?", "4")
     assert result.guessed == ["MA"]
+
+
+@pytest.mark.parametrize(
+    ("text", "shown", "status"),
+    [
+        ("-13.263", "-13.???", Status.DOUBTFUL),
+        ("-13.263", "-1?.???", Status.NOT_READ),
+        ("19.982", "?9.??2", Status.DOUBTFUL),
+        ("19.982", "?9.B??", Status.NOT_READ),  # a look-alike is half a character
+        ("19.982", "?9.BB?", Status.DOUBTFUL),
+    ],
+)
+def test_a_number_is_read_where_half_of_it_is(text: str, shown: str, status: Status) -> None:
+    checks = verified(SAMPLE.replace(text, shown)).fields
+    assert [check.status for check in checks if check.recomputed == text] == [status]
+
+
+def test_a_speck_beside_the_row_of_angles_is_left_over() -> None:
+    row = SAMPLE[SAMPLE.index("-19.8") : SAMPLE.index("-30") + 3]
+    for page in (SAMPLE.replace(row, f"{row} |"), SAMPLE.replace(row, f". {row}")):
+        result = verified(page)
+        assert result.verdict is Verdict.IDENTICAL_AS_READ
+        assert [piece.read for piece in result.left_over] in (["|"], ["."])
+
+
+def test_an_o_for_the_first_or_last_angle_is_a_zero() -> None:
+    page = run(sample(1).replaced({"PA": "0", "GA": "0"})).printout
+    row = page.split("TB GA\n")[1].split("\n")[0]
+    for shown in (row.replace(" 0", " O", 1), row[:-1] + "O"):
+        result = verified(page.replace(row, shown))
+        assert result.verdict is Verdict.IDENTICAL_AS_READ
 
 
 def test_a_printout_cut_short_is_incomplete() -> None:

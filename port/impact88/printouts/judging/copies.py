@@ -21,7 +21,7 @@ from ...errors import UserError
 from ...program.emulated import ListingCopy
 from ...program.run import run
 from ...program.scene import sample
-from ..reading.numerals import value_of
+from ..reading.numerals import NUMBER, value_of
 from ..reading.printout import Printout, read_printouts
 from ..recovery.recovered import Recovered
 from ..recovery.replays import Outcome
@@ -35,7 +35,6 @@ CONVERSION_RTOL = 1e-3
 MAX_TYPED_DIGITS = 9  # digits tried for a typed number
 _OPTIONAL = re.compile(r"ENTER THE INITIAL|\*+$")
 """Lines that a page on a picture may lack: prompts, and rows of asterisks."""
-_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:E[-+]?[0-9]+)?")
 
 
 class CopyPages:
@@ -298,7 +297,7 @@ def _texts(printed: Printout) -> dict[str, str]:
 
 
 def _letters(line: str) -> str:
-    return "".join(filter(str.isalpha, _NUMBER.sub("", line.upper())))
+    return "".join(filter(str.isalpha, NUMBER.sub("", line.upper())))
 
 
 def _label_lines(printed: str) -> list[str]:
@@ -311,7 +310,7 @@ def _layout(page: str) -> Iterator[str]:
     """Yield the lines of a page that are not blank, with ``#`` for each number."""
     for line in page.split("\n"):
         if line.strip():
-            yield _NUMBER.sub("#", line).rstrip()
+            yield NUMBER.sub("#", line).rstrip()
 
 
 def _plain(line: str, number: str = "") -> str:
@@ -321,7 +320,7 @@ def _plain(line: str, number: str = "") -> str:
         value = value_of(match[0])
         return number or (f"{value.normalize()}" if value else "0")
 
-    return _NUMBER.sub(replacement, "".join(line.split()))
+    return NUMBER.sub(replacement, "".join(line.split()))
 
 
 def _typed_texts(name: str, printed: str) -> list[str]:

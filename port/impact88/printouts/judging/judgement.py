@@ -1,20 +1,20 @@
-"""Judgement of every number on the paper by the program's page for the recovered scene.
+"""Judgement of all that is on the paper by the program's page for the recovered scene.
 
 Each number is read exactly, doubtful (look-alikes, illegible or stray glyphs, but what the program
 prints fits them), contradicted (cleanly read, and not what the program prints) or not read. The
-verdict follows from these, and from labels, order and what else stands on the page.
+verdict follows from these; from the replies, the ending, the labels and marks, the order of rows
+and the text left over; from what is missing of the page; and from how badly it was read.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import groupby
 from typing import Any
 
 from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES
 from ..reading.differences import Difference, Kind, difference_at, differences_along
-from ..reading.glyphs import Region
-from ..reading.numerals import Match, compare, cut_as, note_start
+from ..reading.numerals import compare
 from ..reading.printout import Printout, Reading, reading_of
 from ..recovery.recovered import Recovered, reply_candidates, without_mark
 from ..recovery.typedtext import stored_and_printed
@@ -117,9 +117,9 @@ class FieldCheck:
 @dataclass
 class Judged:
     """A printout compared with the page of the recovered scene: every number, the replies, the
-    ending, and the verdict. ``notes``: text typed beside a number, or in a number's place and not
-    compared; ``account``: by the offset of every character that the printout accounts for, the
-    difference that it belongs to, None for one that is as printed."""
+    ending, and the verdict. ``notes``: text in a number's place that is not compared; ``account``:
+    by the offset of every character that the printout accounts for, the difference that it belongs
+    to, None for one that is as printed."""
 
     paper: Printout
     recovered: Recovered
@@ -150,11 +150,11 @@ def judge(paper: Printout, recovered: Recovered, others: Sequence[FieldCheck] = 
     """Compare a printout with the recovered scene's page. ``others``: replies compared
     elsewhere."""
     replies = [_reply(paper, recovered, name, reading) for name, reading in paper.replies.items()]
-    checks, notes = _fields(paper, recovered)
+    checks = _fields(paper, recovered)
     if all(check.status != Status.CONTRADICTED for check in checks):
         _doubt_damaged_replies(paper, replies)
     ending = _ending(paper, recovered)
-    notes += _not_compared(paper, [*checks, *replies], notes)
+    notes = [*_not_compared(paper, [*checks, *replies])]
     account = _account(paper, [*checks, *replies], notes)
     judgement = Judged(
         paper, recovered, checks, [*replies, *others], ending, Verdict.IDENTICAL, notes, account
@@ -217,13 +217,11 @@ def _account(
     return account
 
 
-def _not_compared(
-    paper: Printout, checks: Sequence[FieldCheck], notes: Sequence[Difference]
-) -> Iterator[Difference]:
+def _not_compared(paper: Printout, checks: Sequence[FieldCheck]) -> Iterator[Difference]:
     """Yield what stands in a number's place and is in none of the numbers compared, such as a reply
     before the one that counts."""
     spans = [(check.start or 0, check.stop or 0) for check in checks]
-    spans += [(one.start, one.stop) for one in [*paper.left_over, *notes]]
+    spans += [(one.start, one.stop) for one in paper.left_over]
     known = paper.echoed | {at for span in spans for at in range(*span)}
     roles, glyphs = paper.roles(), paper.page.glyphs
     loose = [
@@ -241,11 +239,11 @@ def _not_compared(
 # --- numbers -------------------------------------------------------------------------------------
 
 
-def _fields(paper: Printout, recovered: Recovered) -> tuple[list[FieldCheck], list[Difference]]:
-    """Return a check of every field that is printed or should be, in the order of the printout; and
-    the notes typed beside numbers that were read."""
-    checks, notes = [], []
-    row = _angle_row(paper, recovered)
+def _fields(paper: Printout, recovered: Recovered) -> list[FieldCheck]:
+    """Return a check of every field that is printed or should be, in the order of the printout."""
+    checks = []
+    angles = [text for name in ANGLES if (text := recovered.outcome.fields.get(name))]
+    row = paper.angle_regions(angles) if len(angles) == len(ANGLES) else {}
     for name in FIELDS:
         text = recovered.outcome.fields.get(name)
         reading = reading_of(paper.page, row[name]) if name in row else paper.fields.get(name)
@@ -257,15 +255,8 @@ def _fields(paper: Printout, recovered: Recovered) -> tuple[list[FieldCheck], li
         if reading is None:
             check.status = Status.NOT_READ
         elif text is not None:
-            note_at = note_start(reading.region)
-            number, rest = reading.region[:note_at], reading.region[note_at:]
-            if rest and number and not compare(number, text).contradicts:
-                span = rest[0].offset, rest[-1].offset + 1
-                notes.append(difference_at(paper.page, Kind.LEFT_OVER, name, "", span))
-                check.stop = number[-1].offset + 1
-                reading = replace(reading, region=number, stop=check.stop)
-            match = compare(reading.region, text, reading.cut, reading.sign_free)
-            check.doubts = _differences(paper, name, reading, text, match)
+            path = compare(reading.region, text, reading.cut, reading.sign_free).path
+            check.doubts = [*differences_along(paper.page, name, reading.region, text, path)]
             if name in row and name != ANGLES[0] and not reading.region[0].gap:
                 joint = difference_at(paper.page, Kind.BLANK, name, "", (reading.start,) * 2, "")
                 check.doubts.insert(0, joint)
@@ -277,7 +268,7 @@ def _fields(paper: Printout, recovered: Recovered) -> tuple[list[FieldCheck], li
         elif not recovered.missing:
             check.status = Status.CONTRADICTED
         checks.append(check)
-    return checks, notes
+    return checks
 
 
 MAX_SHOWN = 30  # characters shown of the text in a number's place
@@ -314,30 +305,19 @@ def status_of(differences: Sequence[Difference], text: str | None = None) -> Sta
     return Status.CONTRADICTED if contradicts else Status.DOUBTFUL
 
 
+LEAST_READ = 0.5
+"""Share of a number's characters, look-alikes as halves, below which the number is not read."""
+
+
 def _hardly_read(differences: Sequence[Difference], text: str) -> bool:
-    """Return True if fewer than half of a number's characters were read, look-alikes as halves."""
+    """Return True if fewer than `LEAST_READ` of a number's characters were read."""
     if any(one.kind is Kind.OTHER_FORM for one in differences):
         return False
     exact = len(text) - sum(len(one.printed) for one in differences if one.kind is not Kind.BLANK)
     alike = sum(one.kind in (Kind.LOOK_ALIKE, Kind.BLANK) for one in differences)
     if not exact and not alike:
         return True
-    return len(text) > 2 and 2 * exact + alike < len(text)
-
-
-def _angle_row(paper: Printout, recovered: Recovered) -> dict[str, Region]:
-    """Return the regions of the angles in a row that blanks alone do not divide; empty where they
-    do."""
-    texts = tuple(recovered.outcome.fields.get(name, "") for name in ANGLES)
-    cuts = cut_as(paper.angle_row, texts) if paper.angle_row and all(texts) else ()
-    pairs = zip(ANGLES, cuts, strict=bool(cuts))
-    return {name: paper.angle_row[start:stop] for name, (start, stop) in pairs}
-
-
-def _differences(
-    paper: Printout, name: str, reading: Reading, text: str, match: Match
-) -> list[Difference]:
-    return [*differences_along(paper.page, name, reading.region, text, match.path)]
+    return len(text) > 2 and exact + alike / 2 < LEAST_READ * len(text)
 
 
 # --- replies, and the ending ---------------------------------------------------------------------
@@ -358,11 +338,11 @@ def _reply(paper: Printout, recovered: Recovered, name: str, reading: Reading) -
     parts = filter(None, (reading, without_mark(reading)))
     matches = [(part, text, compare(part.region, text)) for part in parts for text in texts]
     part, text, match = min(matches, key=lambda found: found[2].cost)
-    differences = _differences(paper, name, part, text, match)
+    differences = [*differences_along(paper.page, name, part.region, text, match.path)]
     check.status, kind = Status.NOT_READ, Kind.ILLEGIBLE
     if any(same_value(text, value) for text, _, _ in reply_candidates(reading)):
         check.status, kind = Status.DOUBTFUL, Kind.LOOK_ALIKE
-    elif reading.clean or (match.contradicts and not _hardly_read(differences, text)):
+    elif reading.clean or status_of(differences, text) is Status.CONTRADICTED:
         check.status, check.doubts = Status.CONTRADICTED, differences
         return check
     span = reading.start, reading.stop

@@ -20,7 +20,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...collision.fields import ANGLES
 from .glyphs import (
     COSTS,
     GAP_COSTS,
@@ -56,7 +55,9 @@ MAY_BE_MISSING = (0, 1, 10, 13, 14)
 """Lines that genuine pages lack: the prompts, rows of asterisks, the final spins where M = 4."""
 _LABELLED = "PA={PA}PB={PB}TA={TA}TB={TB}GA={GA}"
 """The angles with a label each, as some people type them."""
-ROWS = (*LINES[:6], _LABELLED, *LINES[6:])
+ANGLES_ROW = "ANGLES"
+"""Name of the row of angles, which nothing but blanks divides: one stretch of glyphs."""
+ROWS = (*LINES[:5], f"{{{ANGLES_ROW}}}", _LABELLED, *LINES[6:])
 """Lines that pages have: the program's, and angles with labels as line 6."""
 # Indices of lines in `ROWS`.
 PROMPTS = 2  # the lines before this one are prompts
@@ -66,7 +67,7 @@ LABELLED_ANGLES = 6
 FIRST_STARS = 11
 SPINS = 14
 STARS = 15
-_OPTIONAL = (0, 1, HEADING, LABELLED_ANGLES, FIRST_STARS, SPINS, STARS)
+_OPTIONAL = (0, 1, HEADING, ANGLE_ROW, LABELLED_ANGLES, FIRST_STARS, SPINS, STARS)
 _INFINITE: int = np.iinfo(np.int16).max // 3
 """Cost of what is impossible; three of them still fit into an int16."""
 
@@ -78,7 +79,7 @@ class State(NamedTuple):
     ----------
     kind : str
         ``"outside"``, ``"between"``, ``"letter"``, ``"loose"`` (a letter that typed copies leave
-        out) or ``"number"``.
+        out) or ``"number"`` (the row of angles, too).
     name : str
         The letter of a label, or a number's field.
     line : int
@@ -239,15 +240,12 @@ def _add_gap_costs(place: int, numbers: NDArray[np.intp], jumps: Costs, staying:
     ``place``: the number's state; ``numbers``: the states of all numbers.
     """
     state = STATES[place]
-    is_reply, is_angle = state.line < PROMPTS, state.line == ANGLE_ROW
     if STATES[place - 1].name == "=":
         is_other = np.arange(len(STATES)) != place - 1
         jumps[:, is_other, place] += np.array(GAP_COSTS["unlabelled"])[:, None]
-    staying[:, place] = GAP_COSTS["reply" if is_reply else "angle" if is_angle else "number"]
-    if is_angle and state.name != ANGLES[0]:
-        jumps[Gap.NONE, :, place] += COSTS["angle without gap"]
-    elif not is_angle:
-        jumps[Gap.NONE, numbers[numbers != place], place] += COSTS["number without gap"]
+    holds_several = state.line < PROMPTS or state.name == ANGLES_ROW
+    staying[:, place] = GAP_COSTS["numbers" if holds_several else "number"]
+    jumps[Gap.NONE, numbers[numbers != place], place] += COSTS["number without gap"]
 
 
 def _skip_cost(state: State) -> int:
@@ -255,9 +253,13 @@ def _skip_cost(state: State) -> int:
     if state.kind == "letter":
         lost = "letter" if state.name.isalpha() else "=" if state.name == "=" else "mark"
         return COSTS[f"{lost} lost"]
-    if state.kind == "number":
+    if state.kind == "number" and state.name != ANGLES_ROW:
         return COSTS["reply lost" if state.line < PROMPTS else "number lost"]
-    return {"outside": _INFINITE, "loose": COSTS["mark lost"]}.get(state.kind, 0)
+    return {
+        "outside": _INFINITE,
+        "loose": COSTS["mark lost"],
+        "number": COSTS["line may be missing"],  # where the angles have labels
+    }.get(state.kind, 0)
 
 
 def _may_end(state: State) -> bool:
@@ -329,12 +331,10 @@ def _in_number(char: str, reply: bool) -> int:
 
 WINDOW = 9000
 """Glyphs aligned at a time: a dozen printouts."""
-_MIN_NUMBERS = 20
-"""Numbers from which a page fills the budget again; labels without end are aligned as 14."""
+_MIN_NUMBERS = 16
+"""Numbers, the row of angles as one, from which a page fills the budget again: half of all."""
 _LABELS = re.compile("=|VAX|VAY|VBX|VBY|LOSS|M[AB]|[IDPTWXY][AB]|[UV][XY]")
-_EXPONENT = re.compile("(?<=[0-9.])E(?=[-+][0-9])")
-_ROW_PIECE = 10
-"""Glyphs of a row of angles that may stand outside between its pieces: one number."""
+EXPONENT = re.compile("(?<=[0-9.])E(?=[-+][0-9])")
 _MAX_INTERRUPTION = 1000
 """Glyphs that may stand between two parts of a page: half a page of text."""
 
@@ -385,7 +385,7 @@ def align(
             budget.stopped = start
             return
         chars = ["" if at in notes else glyph.char for at, glyph in enumerate(window, start)]
-        for exponent in _EXPONENT.finditer(text):
+        for exponent in EXPONENT.finditer(text):
             chars[exponent.start()] = "0"  # as good as a figure, and no label
         parts = _segments(start, _decode(chars, [glyph.gap for glyph in window]))
         # the last segment may go on behind the window: it is aligned again with what follows
@@ -443,23 +443,4 @@ def _segments(start: int, states: Sequence[int]) -> list[dict[int, int]]:
                 parts[-1].update(dict.fromkeys(range(last + 1, index), 0))
             parts[-1][index] = state
             last, before = index, state
-    return _join_angle_rows(parts)
-
-
-def _join_angle_rows(parts: Sequence[dict[int, int]]) -> list[dict[int, int]]:
-    """Return the parts with those that are a continued row of angles joined to the one before.
-
-    Blanks and line breaks may cut the row into more than five pieces. The pieces beyond begin no
-    printout, since nothing of a page stands between them.
-    """
-    row = [place for place, state in enumerate(STATES) if state.line == ANGLE_ROW]
-    merged: list[dict[int, int]] = []
-    for part in parts:
-        begin, end = min(part), max(merged[-1]) if merged else 0
-        if merged and merged[-1][end] in row and part[begin] in row and begin - end <= _ROW_PIECE:
-            pieces = [index for index, state in part.items() if state in row]
-            merged[-1].update(part)
-            merged[-1].update(dict.fromkeys(range(end + 1, max(pieces) + 1), row[-1]))
-        else:
-            merged.append(part)
-    return merged
+    return parts

@@ -148,40 +148,34 @@ def _words_read(
 
 
 def _heading(page: Page, first: int, last: int) -> Iterator[tuple[Token, int, int, str]]:
-    """Yield the five labels of the heading, by its words or, if these are not five, in pairs."""
+    """Yield the five labels of the heading, by its words outside brackets such as ``(DEG)`` or, if
+    these are not five, in pairs of letters."""
     glyphs, end = page.glyphs, last + 1
-    outside = _outside_brackets(page, last)
-    starts = [at for at in outside if at == outside[0] or glyphs[at].gap or at - 1 not in outside]
-    if len(starts) == len(ANGLES):
-        for token, start, stop in zip(
-            _HEADING, starts, [*starts[1:], outside[-1] + 1], strict=True
-        ):
-            word = [at for at in outside if start <= at < stop]
-            yield token, *page.span(start, word[-1] + 1), letters(glyphs[at] for at in word)
-        return
-    while first and glyphs[first].gap is not Gap.LINE and glyphs[first - 1].char.isalpha():
+    while first and glyphs[first].gap is not Gap.LINE and _is_of_heading(glyphs[first - 1].char):
         first -= 1
-    while end < len(glyphs) and glyphs[end].gap is not Gap.LINE and glyphs[end].char.isalpha():
+    while (
+        end < len(glyphs) and glyphs[end].gap is not Gap.LINE and _is_of_heading(glyphs[end].char)
+    ):
         end += 1
-    starts = [at for at in range(first, end) if at == first or glyphs[at].gap]
+    text = letters(glyphs[first:end])
+    inside = {at for match in re.finditer(r"\([^()]*\)?", text) for at in range(*match.span())}
+    own = [at for at in range(first, end) if at - first not in inside]
+    starts = [at for at in own if at == own[0] or glyphs[at].gap or at - 1 not in own]
     if len(starts) != len(ANGLES):
-        starts = [*range(first, end, 2)]
-    exact = "".join(ANGLES) in letters(glyphs[first:end])
+        starts = own[::2]
+    exact = "".join(ANGLES) in text
     for number, token in enumerate(_HEADING):
         if len(starts) == len(ANGLES):
             start, stop = [*starts, end][number : number + 2]
-            yield token, *page.span(start, stop), letters(glyphs[start:stop])
+            word = [at for at in own if start <= at < stop]
+            read = letters(glyphs[at] for at in word)
+            yield token, *page.span(start, word[-1] + 1), read
         else:
             yield token, *page.span(first, end), token.text if exact else ""
 
 
-def _outside_brackets(page: Page, last: int) -> list[int]:
-    """Return the glyphs of a line that stand outside brackets such as ``(DEG)``; none if it has no
-    brackets."""
-    line = next(line for line in page.lines if last in line)
-    text = letters(page.glyphs[line.start : line.stop])
-    inside = {at for match in re.finditer(r"\([^()]*\)", text) for at in range(*match.span())}
-    return [at for at in line if at - line.start not in inside] if inside else []
+def _is_of_heading(char: str) -> bool:
+    return char.isalpha() or char in "()"
 
 
 def _compare_word(token: Token, read: str) -> tuple[Kind, bool]:

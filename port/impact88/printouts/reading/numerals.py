@@ -1,17 +1,18 @@
 """One number's glyphs, compared with what the program prints there.
 
-`compare` returns how well a printed text explains the glyphs, and where it does not: a clean digit
-that is another digit contradicts, whatever it looks like, and so does a letter that is usually read
-for another digit; another glyph that stands in no number (a speck, a blank) is a doubt.
-`candidates` returns the texts that the glyphs may have been, the likeliest first. `cut_in_five` and `cut_as` do the same for the row of angles, which is divided
-by blanks only. Costs are in units of one wrong letter (`glyphs.COSTS` in hundredths of it).
+`compare` returns how well a printed text explains the glyphs, and where it does not: a digit that
+is another digit contradicts, and so does a letter that is the usual look-alike of another digit (an
+O for a 3); any other letter, a speck and a blank are doubts. `candidates` returns the texts that
+the glyphs may have been, the likeliest first; `rows` those of a row of numbers that only blanks
+divide. Costs are in units of one wrong letter (`glyphs.COSTS` in hundredths of it).
 """
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections import Counter
+from collections.abc import Iterator
 from decimal import Decimal
-from functools import cache, lru_cache
-from typing import NamedTuple
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 from ...apple.applesoft.decimaltext import lay_out
 from .differences import Kind
@@ -42,17 +43,12 @@ class Match(NamedTuple):
     cost: float
     path: tuple[Step, ...]
 
-    @property
-    def contradicts(self) -> bool:
-        """True if some glyph, cleanly read, is not what the program prints."""
-        return any(kind is Kind.CONTRADICTS for _, _, kind in self.path)
-
 
 Glyphs = tuple[tuple[str, Gap], ...]
 """Glyphs and the gaps before them."""
 
 _PRINTABLE = re.compile(r"-?(?:0|[1-9][0-9]*|(?=[.]))(?:[.][0-9]*[1-9])?(?:E[+-][0-9]{2})?")
-_NUMBER = re.compile(r"[+-]?(?=[.]?[0-9])[0-9]*(?:[.][0-9]*)?(?:E[+-]?[0-9]{1,2})?")
+NUMBER = re.compile(r"[+-]?(?=[.]?[0-9])[0-9]*(?:[.][0-9]*)?(?:E[+-]?[0-9]{1,2})?")
 
 _CONTRADICTION = COSTS["contradiction"] / 100  # a figure for another figure, or for none
 _FOREIGN = COSTS["foreign"] / 100  # a glyph that no figure looks like
@@ -73,7 +69,7 @@ def printable(text: str) -> bool:
 
 def is_number(text: str) -> bool:
     """Return True for a text that is a number as people write them."""
-    return _NUMBER.fullmatch(text) is not None
+    return NUMBER.fullmatch(text) is not None
 
 
 def value_of(text: str) -> Decimal | None:
@@ -267,8 +263,24 @@ _BEAM = 48
 """Readings of a number's first glyphs that are extended; ten times as many from the first foreign
 glyph on."""
 _MAX_ILLEGIBLE = 4  # glyphs that may be any; doubled, none of 47 texts is read otherwise
+_MAX_ROWS = 400  # readings of the row of angles; doubled, 4 of 47 texts have more of them
 Ways = tuple[tuple[str, float], ...]
 """Texts with their costs, the cheapest first."""
+
+
+class Row(NamedTuple):
+    """A reading of glyphs as a row of numbers: their texts, its cost, and the glyph at which each
+    number begins."""
+
+    texts: tuple[str, ...]
+    cost: float
+    starts: tuple[int, ...]
+
+
+_CLOSED = " "
+"""Stands at the end of a number of which the glyphs behind a gap are no part."""
+_Beam = dict[tuple[str, ...], tuple[float, tuple[int, ...]]]
+"""Costs of rows and the glyphs at which their numbers begin, by their texts."""
 
 
 def candidates(region: Region, most: int = 40, sign_free: bool = False) -> Ways:
@@ -287,14 +299,13 @@ def candidates(region: Region, most: int = 40, sign_free: bool = False) -> Ways:
     tuple of (str, float)
         Texts with their costs, the cheapest first.
     """
-    note = note_start(region)
-    ways = _candidates(tuple(glyph[:2] for glyph in region[:LONGEST]), most, sign_free)
-    if note == len(region):
-        return ways
-    costs = dict(_candidates(tuple(glyph[:2] for glyph in region[:note]), most, sign_free))
-    costs = {text: cost + _SPECK for text, cost in costs.items()}
-    costs |= {text: min(cost, costs.get(text, cost)) for text, cost in ways}
-    return tuple(sorted(costs.items(), key=lambda way: way[1])[:most])
+    glyphs = tuple(glyph[:2] for glyph in region[:LONGEST])
+    return tuple((text, cost) for (text,), cost, _ in _readings(glyphs, 1, most, sign_free))
+
+
+def rows(region: Region, count: int) -> list[Row]:
+    """Return the rows of ``count`` numbers that glyphs may have been, the likeliest first."""
+    return [*_readings(tuple(glyph[:2] for glyph in region[:LONGEST]), count, _MAX_ROWS, False)]
 
 
 def taken_for(region: Region, sign_free: bool) -> str | None:
@@ -317,36 +328,76 @@ def taken_for(region: Region, sign_free: bool) -> str | None:
 
 
 @lru_cache(maxsize=20000)
-def _candidates(region: Glyphs, most: int, sign_free: bool) -> Ways:
-    """Return the printable texts that glyphs may have been, by a beam search glyph by glyph."""
+def _readings(region: Glyphs, count: int, most: int, sign_free: bool) -> tuple[Row, ...]:
+    """Return the rows of printable texts that glyphs may have been, by a beam search glyph by
+    glyph."""
     chars = "".join(char for char, _ in region)
     strange = sum(char not in "0123456789OIL.-" for char in chars)
     if 3 < len(chars) < 2 * strange and not any(map(str.isdigit, chars)):
         return ()  # a word
-    beam: dict[str, float] = {"": 0.0}
-    endings: dict[str, float] = {}  # texts of which the glyphs behind a gap are no part
+    beams: list[_Beam] = [{} for _ in range(len(region) + 1)]
+    beams[0][("",)] = 0.0, (0,)
     foreign_count = 0
     for index, (char, gap) in enumerate(region):
+        width = 10 * _BEAM if foreign_count else _BEAM
         is_foreign = (char not in NUMERIC and not printed_for(char)) or char == ILLEGIBLE
         foreign_count += is_foreign
-        any_char = is_foreign and foreign_count <= _MAX_ILLEGIBLE
-        figures = sum(part[0].isdigit() for part in region[index:])
-        next_beam: dict[str, float] = {}
-        for text, cost in beam.items():
-            for longer, price in _extensions(text, cost, region, index, any_char, sign_free):
-                next_beam[longer] = min(price, next_beam.get(longer, price))
-            if gap and text:
-                stop = cost + _SPECK * (len(region) - index) / 2 + _FOREIGN * figures
-                endings[text] = min(stop, endings.get(text, stop))
-        width = 10 * _BEAM if foreign_count else _BEAM
-        beam = dict(sorted(next_beam.items(), key=lambda way: way[1])[:width])
-    costs: dict[str, float] = {"0": _SPECK} if _is_broken_zero(chars) else {}
-    for text, cost in [*beam.items(), *endings.items()]:
-        as_written = text if printable(text) else as_printed(text)
-        if as_written and is_number(text):
-            price = cost + _SLIGHT * (as_written != text)
-            costs[as_written] = min(price, costs.get(as_written, price))
-    return tuple(sorted(costs.items(), key=lambda way: way[1])[:most])
+        any_char = is_foreign and foreign_count <= _MAX_ILLEGIBLE * count
+        for texts, (cost, starts) in _likeliest(beams[index], width):
+            *done, text = texts
+            number = text.rstrip(_CLOSED)
+            uncut = GAP_COSTS["uncut"][gap] / 100 if count > 1 and index > starts[-1] else 0.0
+            begun = [((*done,), text, cost + uncut, starts)]
+            if text and (gap or text != number):
+                passed = cost + uncut + _SPECK / 2 + _FOREIGN * char.isdigit()
+                _keep(beams[index + 1], (*done, number + _CLOSED), passed, starts)
+            if text != number:
+                begun = []
+            if len(texts) < count and is_number(number):
+                joint = 0.0 if gap else COSTS["joined sign" if char in "-~" else "joined"] / 100
+                begun.append(((*done, number), "", cost + joint, (*starts, index)))
+            for others, own, price, places in begun:
+                for longer, total in _extensions(own, price, region, index, any_char, sign_free):
+                    _keep(beams[index + 1], (*others, longer), total, places)
+                for end in () if own else _broken_zeros(region, index):
+                    _keep(beams[end], (*others, "0"), price + _SPECK, places)
+    found: _Beam = {}
+    for texts, (cost, starts) in beams[-1].items():
+        numbers = [text.rstrip(_CLOSED) for text in texts]
+        if len(texts) == count and all(map(is_number, numbers)):
+            row = [text if printable(text) else as_printed(text) or "" for text in numbers]
+            if all(row):
+                rewritten = sum(map(str.__ne__, numbers, row))
+                _keep(found, tuple(row), cost + _SLIGHT * rewritten, starts)
+    ways = sorted(found.items(), key=_cost_of)[:most]
+    return tuple(Row(texts, cost, starts) for texts, (cost, starts) in ways)
+
+
+def _likeliest(ways: _Beam, width: int) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Yield the rows of least cost, ``width`` of each number of numbers."""
+    sizes: Counter[int] = Counter()
+    for texts, way in sorted(ways.items(), key=_cost_of):
+        sizes[len(texts)] += 1
+        if sizes[len(texts)] <= width:
+            yield texts, way
+
+
+def _cost_of(way: tuple[Any, tuple[float, Any]]) -> float:
+    return way[1][0]
+
+
+def _keep(ways: _Beam, texts: tuple[str, ...], cost: float, starts: tuple[int, ...]) -> None:
+    """Add a row, if it is none of the ways yet or costs less so."""
+    if texts not in ways or cost < ways[texts][0]:
+        ways[texts] = cost, starts
+
+
+def _broken_zeros(region: Glyphs, start: int) -> Iterator[int]:
+    """Yield where glyphs that may be a single 0 end, if a gap or nothing follows."""
+    for end in range(start + 1, min(start + 3, len(region)) + 1):
+        is_whole = end == len(region) or region[end][1]
+        if is_whole and _is_broken_zero("".join(char for char, _ in region[start:end])):
+            yield end
 
 
 def _extensions(
@@ -359,7 +410,7 @@ def _extensions(
     char, gap = region[index]
     after_gap = gap and text
     blank = _SLIGHT if after_gap else 0.0
-    for character, price in _possible_characters(region, index, any_char).items():
+    for character, price in _possible_characters(region, index, any_char, not text).items():
         yield text + character, cost + blank + price
     if after_gap and gap is Gap.BLANK and char.isdigit() and "." not in text:
         yield f"{text}.{char}", cost + _FOREIGN
@@ -371,107 +422,17 @@ def _extensions(
         yield text, cost + (_SPECK if is_last else _MARK)
 
 
-def _possible_characters(region: Glyphs, index: int, any_char: bool) -> dict[str, float]:
+def _possible_characters(
+    region: Glyphs, index: int, any_char: bool, first: bool
+) -> dict[str, float]:
     """Return the characters that a glyph may be, with what it costs to read them so.
 
-    ``any_char``: True for a foreign glyph that may be any character.
+    ``any_char``: True for a foreign glyph that may be any character; ``first``: of its number.
     """
     char = region[index][0]
     if any_char:
-        possible = ".0123456789" if index else "-0123456789"
+        possible = "-0123456789" if first else ".0123456789"
     else:
         possible = char + "-." * (char in "+-") if char in NUMERIC else "".join(printed_for(char))
     costs = {other: _substitution_cost(region, index, other) for other in possible}
     return {other: cost for other, (cost, kind) in costs.items() if kind is not Kind.CONTRADICTS}
-
-
-_MAX_CUTS = 400  # ways to cut the row; doubled, 4 of 47 texts have more of them
-_MAX_SURPLUS = 12  # glyphs that a number's part of the row may hold beyond its own
-_NOT_THERE = COSTS["not there"] / 100
-
-
-def has_clean_numbers(region: Region, count: int) -> bool:
-    """Return True if blanks divide glyphs into ``count`` numbers, each read beyond doubt."""
-    starts = [0, *(at for at in range(1, len(region)) if region[at].gap)]
-    parts = [region[start:stop] for start, stop in zip(starts, [*starts[1:], None], strict=True)]
-    return len(parts) == count and all(map(clean, parts))
-
-
-def cut_in_five(region: Region) -> list[tuple[tuple[str, ...], float]]:
-    """Return the ways to cut glyphs into five numbers with their costs, the cheapest first."""
-
-    @cache
-    def piece(i: int, j: int) -> list[tuple[str, float]]:
-        part = region[i:j]
-        gap_cost = sum(GAP_COSTS["uncut"][glyph.gap] for glyph in part[1:]) / 100
-        if gap_cost > _NOT_THERE or not 0 < len(part) <= 2 * _MAX_SURPLUS:
-            return []
-        return [(text, cost + gap_cost) for text, cost in candidates(part, 14) if cost < _NOT_THERE]
-
-    cuts = _cut(region[:LONGEST], 5, lambda _, i, j: piece(i, j), _MAX_CUTS)
-    return [(tuple(text for text, _, _ in cut), cost) for cost, cut in cuts]
-
-
-def cut_as(region: Region, printed: tuple[str, ...]) -> list[tuple[int, int]]:
-    """Return the range of glyphs of a row that stands for each of the printed texts.
-
-    Each is ``(start, stop)``, the two equal for a text of which nothing was read; [] if the row
-    cannot be cut so.
-    """
-
-    def piece(number: int, i: int, j: int) -> list[tuple[str, float]]:
-        text = printed[number]
-        if j - i > len(text) + _MAX_SURPLUS:
-            return []
-        return [(text, _NOT_THERE if i == j else compare(region[i:j], text).cost)]
-
-    cuts = _cut(region[:LONGEST], len(printed), piece, 1)
-    return [(i, j) for _, i, j in cuts[0][1]] if cuts else []
-
-
-_Way = tuple[float, tuple[tuple[str, int, int], ...]]
-
-
-def _cut(
-    region: Region,
-    count: int,
-    piece: Callable[[int, int, int], Iterable[tuple[str, float]]],
-    most: int,
-) -> list[_Way]:
-    """Return the cheapest ways to cut a row into numbers.
-
-    Parameters
-    ----------
-    region : tuple of Glyph
-        The row.
-    count : int
-        Number of numbers.
-    piece : callable
-        Maps n, i, j to the texts that the n-th number may be in glyphs i to j, with their costs.
-    most : int
-        Largest number of ways for each place of the last cut.
-
-    Returns
-    -------
-    list of (float, tuple of (str, int, int))
-        Cost, and each number with its range of glyphs.
-    """
-    length = len(region)
-    places = [at for at in range(1, length) if region[at].gap or region[at].char in "-~"]
-    if len(places) < count - 1 or length <= 16:  # five numbers of three glyphs
-        places = [*range(1, length)]
-    cuts: dict[int, list[_Way]] = {0: [(0.0, ())]}
-    for number in range(count):
-        extended: dict[int, list[_Way]] = {}
-        for i, so_far in cuts.items():
-            price = 0.0
-            if 0 < i < length and not region[i].gap:
-                price = COSTS["joined sign" if region[i].char in "-~" else "joined"] / 100
-            for j in (length,) if number == count - 1 else (0, *places, length):
-                for text, cost in piece(number, i, j) if i <= j else ():
-                    total = cost + (price if i < j else 0.0)
-                    extended.setdefault(j, []).extend(
-                        (before + total, (*parts, (text, i, j))) for before, parts in so_far
-                    )
-        cuts = {place: sorted(set(partial_cuts))[:most] for place, partial_cuts in extended.items()}
-    return cuts.get(length, [])

@@ -13,7 +13,7 @@ from decimal import Decimal
 from typing import NamedTuple
 
 from ...collision.fields import ANGLES
-from .alignment import ANGLE_ROW, HEADING, LINES, PROMPTS
+from .alignment import ANGLE_ROW, EXPONENT, HEADING, LINES, PROMPTS
 from .glyphs import Page, letters
 from .numerals import value_of
 
@@ -21,12 +21,11 @@ _MIN_ROWS = 6
 """Rows of a page from which one that is out of order was exchanged; fewer are a fragment, and what
 follows may be another printout."""
 _STARS = LINES.index("*****")  # the row of asterisks above the results
-_EXPONENT = re.compile("(?<=[0-9.])E(?=[-+][0-9])")
 _LABELLED_NUMBER = re.compile("=(.*?)(?=[A-Z%()]|$)")
 
 
 def _letters_of(text: str) -> str:
-    return "".join(filter(str.isalpha, _EXPONENT.sub("", text.upper())))
+    return "".join(filter(str.isalpha, EXPONENT.sub("", text.upper())))
 
 
 _ROWS = {
@@ -206,7 +205,7 @@ def _numbers(page: Page, row: _Row) -> list[str]:
     if row.number < PROMPTS:
         return [text.rpartition("?")[2]]
     return [
-        number.replace("\0", "E") for number in _LABELLED_NUMBER.findall(_EXPONENT.sub("\0", text))
+        number.replace("\0", "E") for number in _LABELLED_NUMBER.findall(EXPONENT.sub("\0", text))
     ]
 
 

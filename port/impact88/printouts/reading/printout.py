@@ -10,7 +10,7 @@ import unicodedata
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import groupby
+from itertools import groupby, pairwise
 
 from ...apple.applesoft.errorcodes import CODES
 from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT
@@ -19,6 +19,7 @@ from ...messages.arguments import explains_arguments
 from . import numerals
 from . import plaintext as pasted
 from .alignment import (
+    ANGLES_ROW,
     LINES,
     PROMPTS,
     SPINS,
@@ -137,11 +138,9 @@ class Printout:
         Every number found, by the field's name.
     replies : dict of str to Reading
         The velocities typed at the prompts, where the transcript shows them.
-    angles : list of tuple
-        Where blanks alone do not tell the five angles of a row apart: the ways to part the row, as
-        five texts and a penalty each, the likeliest first.
-    angle_row : tuple of Glyph
-        The glyphs of that row.
+    angles : list of Row
+        Where blanks alone do not tell the five angles of a row apart: the ways to read the row, the
+        likeliest first.
     ending : str, optional
         ``ZERO DETERMINANT`` or an Applesoft error as printed, with its line.
     ended : bool
@@ -190,8 +189,7 @@ class Printout:
     stop: int = 0
     fields: dict[str, Reading] = field(default_factory=dict)
     replies: dict[str, Reading] = field(default_factory=dict)
-    angles: list[tuple[tuple[str, ...], float]] = field(default_factory=list)
-    angle_row: Region = ()
+    angles: list[numerals.Row] = field(default_factory=list)
     ending: str | None = None
     ended: bool = False
     has_final_spins: bool = False
@@ -227,7 +225,11 @@ class Printout:
                 elif first <= start <= sign < stop - 1:
                     self._slots[name] = (sign + 1, stop)
         self._close_numbers()
-        self._end_row()
+        self._part_angles()
+        for name, (start, stop) in self._slots.items():
+            if name in FIELDS:
+                end = start + numerals.note_start(glyphs[start:stop])
+                self._slots[name] = (start, end)
         self._exact = {
             index: STATES[state].line
             for index, state in self._states.items()
@@ -255,20 +257,48 @@ class Printout:
                     self._states = {**self._states, **after, at: place}
                 break
 
-    def _end_row(self) -> None:
-        """End the row of angles at the end of its line, if five clean numbers stand on it."""
+    def _part_angles(self) -> None:
+        """Part the row of angles: at blanks, on its line or in all, where these leave five clean
+        numbers between what holds no figure; else in the likeliest way. Four clean numbers are left
+        together: nothing tells which of the five is lost."""
+        if ANGLES_ROW not in self._slots:
+            return
         glyphs = self.page.glyphs
-        places = [index for name in ANGLES for index in self._slots.get(name, ())]
-        starts = places[:1]
-        for index in range(min(places, default=0) + 1, max(places, default=0)):
-            if glyphs[index].gap is Gap.LINE:
-                parts = list(zip(starts, [*starts[1:], index], strict=True))
-                clean = all(numerals.clean(glyphs[i:j]) for i, j in parts)
-                if clean and len(parts) == len(ANGLES):
-                    self._slots.update(zip(ANGLES, parts, strict=True))
-                return
-            if glyphs[index].gap:
-                starts.append(index)
+        begin, stop = self._row = self._slots[ANGLES_ROW]
+        starts = [at for at in range(begin, stop) if at == begin or glyphs[at].gap]
+        parts = [*pairwise([*starts, stop])]
+        figures = [any(map(str.isdigit, letters(glyphs[slice(*part)]))) for part in parts]
+        while figures and not figures[-1]:  # a speck at the line's end
+            figures.pop()
+        parts = parts[figures.index(True) : len(figures)] if figures else []
+        breaks = (at for at, (i, _) in enumerate(parts) if at and glyphs[i].gap is Gap.LINE)
+        rows = [
+            row
+            for row in (parts[: next(breaks, None)], parts)
+            if all(numerals.clean(glyphs[slice(*part)]) for part in row)
+        ]
+        parts = next((row for row in rows if len(row) == len(ANGLES)), [])
+        one_is_lost = any(len(row) == len(starts) == len(ANGLES) - 1 for row in rows)
+        if not parts and not one_is_lost:
+            self.angles = numerals.rows(glyphs[begin:stop], len(ANGLES))
+            parts = self._parts_of(self.angles[0]) if self.angles else []
+        if parts:
+            del self._slots[ANGLES_ROW]
+            self._slots.update(zip(ANGLES, parts, strict=True))
+
+    def _parts_of(self, row: numerals.Row) -> list[tuple[int, int]]:
+        """Return the range of glyphs of each angle in a reading of their row."""
+        begin, stop = self._row
+        return [*pairwise([*(begin + start for start in row.starts), stop])]
+
+    def angle_regions(self, texts: Sequence[str]) -> dict[str, Region]:
+        """Return the glyphs of each angle, parted as in the reading of their row that is nearest to
+        what the program prints; empty where blanks alone divide it."""
+        if not self.angles:
+            return {}
+        nearest = max(self.angles, key=lambda row: sum(map(str.__eq__, row.texts, texts)))
+        parts = zip(ANGLES, self._parts_of(nearest), strict=True)
+        return {name: self.page.glyphs[start:stop] for name, (start, stop) in parts}
 
     def __repr__(self) -> str:
         return f"<Printout at line {self.line}: {len(self.fields)} numbers read>"
@@ -325,12 +355,14 @@ class Printout:
             piece.kind is Kind.LEFT_OVER and bool(piece.name) and len(piece.read) <= 3
             for piece in self.left_over
         )
-        return self.misread_letters + sum(specks) + sum(
-            any(glyph.gap for glyph in region[1:]) or not _TYPED.issuperset(letters(region))
-            for region in (
-                field.region[: numerals.note_start(field.region)] for field in self.fields.values()
+        return (
+            self.misread_letters
+            + sum(specks)
+            + sum(
+                any(glyph.gap for glyph in region[1:]) or not _TYPED.issuperset(letters(region))
+                for region in (field.region for field in self.fields.values())
             )
-        )  # fmt: skip
+        )
 
     @property
     def machine_read(self) -> bool:
@@ -401,7 +433,10 @@ class Printout:
         for side, names in REPLIES.items():
             if slot := self._slots.get(f"REPLY_{side}"):
                 self._read_reply(names, slot[0])
-        self._read_angles()
+        if ANGLES_ROW in self._slots:
+            start, stop = self._slots[ANGLES_ROW]
+            row = self.page.shown(start, stop)
+            self._remark("PA", start, ": expected five angles, PA PB TA TB GA", row)
         self.ended = any(self._line(index) == STARS for index in self._states)
         return True
 
@@ -511,7 +546,7 @@ class Printout:
         if sum(line < PROMPTS for line in self._exact.values()) >= _PROMPT_LETTERS:
             return True
         numbers = {name for name, field in self.fields.items() if any(map(str.isdigit, field.text))}
-        if not numbers.issuperset(ANGLES[:-1]):
+        if self.angles or not numbers.issuperset(ANGLES[:-1]):
             numbers -= set(ANGLES)
         read = {self._states[index] for index in self._exact}
         labelled = {word.name for word in WORDS if not read.isdisjoint(word.states)} | {*ANGLES}
@@ -523,25 +558,6 @@ class Printout:
         line, column = self.page.place(self.page.glyphs[index].offset)
         quoted_text = "" if read is None else repr(read if len(read) <= 30 else read[:27] + "...")
         self.remarks.append(f"line {line}, column {column}: {name}: {quoted_text}{message}")
-
-    def _read_angles(self) -> None:
-        """Set ``angles`` and ``angle_row`` if blanks alone do not separate the five angles."""
-        glyphs = self.page.glyphs
-        places = [self._slots[name] for name in ANGLES if name in self._slots]
-        clean = all(name in self.fields and self.fields[name].clean for name in ANGLES)
-        if not places or (clean and all(glyphs[start].gap for start, _ in places[1:])):
-            return
-        start, stop = min(places)[0], max(stop for _, stop in places)
-        self.angle_row = glyphs[start:stop]
-        one_is_lost = numerals.has_clean_numbers(self.angle_row, len(ANGLES) - 1)
-        self.angles = [] if one_is_lost else numerals.cut_in_five(self.angle_row)
-        if one_is_lost:  # blanks stand between all others: which of the five it is, nothing tells
-            self.angle_row = ()
-            for name in ANGLES:
-                self.fields.pop(name, None)
-        if not self.angles and (one_is_lost or len(places) < len(ANGLES)):
-            row = self.page.shown(start, stop)
-            self._remark("PA", start, ": expected five angles, PA PB TA TB GA", row)
 
     def _read_reply(self, names: Sequence[str], start: int) -> None:
         """Read the three numbers typed at a prompt, after any that INPUT refused."""
@@ -849,7 +865,7 @@ def _keep_left_over(page: Page, found: Sequence[Printout], apart: set[int]) -> N
     spans = [(printout.line, page.place(printout.stop - 1)[0]) for printout in found]
     roles = {index: role for printout in found for index, role in printout.roles().items()}
     fields = {
-        index: name
+        index: ANGLES[0] if name == ANGLES_ROW else name
         for printout in found
         for name, span in printout._slots.items()
         for index in range(*span)

@@ -186,10 +186,10 @@ def _choices(
 def _rows_of_angles(shown: Printout) -> list[tuple[tuple[str, ...], float]]:
     """Return the texts that a row of angles may be; and those one slip away from the likeliest,
     where no machine read the page: a machine damages a row in more ways than a slip."""
+    rows = {row.texts: row.cost for row in shown.angles}
     if shown.machine_read:
-        return shown.angles
-    row, least = shown.angles[0]
-    rows = dict(shown.angles)
+        return [*rows.items()]
+    row, least, _ = shown.angles[0]
     for at, (name, text) in enumerate(zip(ANGLES, row, strict=True)):
         for would_be, cost in neighbours(name, text).items():
             other = (*row[:at], would_be, *row[at + 1 :])
