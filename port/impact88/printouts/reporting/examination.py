@@ -1,7 +1,7 @@
 """Verification of a printout: recover the scene, replay it bit for bit, compare every digit.
 
-The verdict rests on what is printed alone; exact values and physical warnings are reported beside it
-and never change it.
+The verdict rests on what is printed alone; exact values and physical warnings are reported beside
+it and never change it.
 """
 
 from __future__ import annotations
