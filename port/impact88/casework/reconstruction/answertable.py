@@ -62,9 +62,11 @@ def first_lines(answer: Answer, units: System = RULES) -> list[tuple[str, str]]:
     for vehicle in vehicles:
         if {f"V{vehicle}X", f"V{vehicle}Y", f"S{vehicle}F", f"H{vehicle}F"} & {*sought}:
             lines.append(("AFTER IMPACT", _motion(answer, vehicle, "F", values, units)))
-    found = [_found(answer, n, values, units) for n in sought if n in _ALSO and n in values]
-    if found:
-        lines.append(("FOUND", "; ".join(found)))
+    coefficients = [
+        _coefficient_text(answer, n, values, units) for n in sought if n in _ALSO and n in values
+    ]
+    if coefficients:
+        lines.append(("FOUND", "; ".join(coefficients)))
     for vehicle in vehicles:
         origin = values.get(f"PDOF{vehicle}", math.nan)
         force = ""
@@ -122,8 +124,8 @@ def _verdicts(answer: Answer, units: System) -> Iterator[tuple[str, str]]:
 
 def _beyond(item: Adjusted, answer: Answer, units: System) -> str:
     """Return an adjusted value that lies beyond its limits, with them."""
-    known = answer.solution.system.known[item.name]
-    low, high = sorted(units.display_unwrapped(item.name, x) for x in known.limits(SIGMAS))
+    item_limits = answer.solution.system.known[item.name]
+    low, high = sorted(units.display_unwrapped(item.name, x) for x in item_limits.limits(SIGMAS))
     value = number(units.display_unwrapped(item.name, item.adjusted), 4)
     unit = units.unit(item.name)
     return f"{item.name} {value}, not from {number(low, 4)} to {number(high, 4)} {unit}".rstrip()
@@ -226,7 +228,7 @@ def _deviation(answer: Answer, name: str, shown: Callable[[float], str]) -> str:
     return f", sd {deviation}" if deviation else ""
 
 
-def _found(answer: Answer, name: str, values: Mapping[str, float], units: System) -> str:
+def _coefficient_text(answer: Answer, name: str, values: Mapping[str, float], units: System) -> str:
     """Return a spin or coefficient that was sought, with its unit and interval."""
 
     def shown(deviation: float) -> str:

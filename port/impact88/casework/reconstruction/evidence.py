@@ -142,15 +142,15 @@ class Evidence:
             The verdict, without a full stop.
         """
         if self.verdict == UNCHECKED:
-            what = "exact value" if self.exact else "measurement"
-            return f"not checked: no more is known than needed, so no {what} tests another"
+            kind = "exact value" if self.exact else "measurement"
+            return f"not checked: no more is known than needed, so no {kind} tests another"
         if self.exact and self.verdict == AGREE:
-            named = [name for name in self.tested if name]
-            hold = "hold" if len(named) > 1 else "holds"
-            which = (
-                f"{join_words(named)} {hold}" if named else f"{len(self.tested)} more than needed"
+            names = [name for name in self.tested if name]
+            hold = "hold" if len(names) > 1 else "holds"
+            words = (
+                f"{join_words(names)} {hold}" if names else f"{len(self.tested)} more than needed"
             )
-            return f"these exact values agree: {which}"
+            return f"these exact values agree: {words}"
         if self.exact:
             laws = f": {describe_laws(self.laws, units)}" if self.laws else ""
             if not self.contradictory:

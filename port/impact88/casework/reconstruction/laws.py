@@ -122,13 +122,13 @@ def missed_laws(known: Mapping[str, float]) -> tuple[MissedLaw, ...]:
     laws = _KnownLaws.of(known)
     if laws is None:
         return ()
-    missed = [*_missed_quantities(known, laws.values, laws), *laws.missed_alone()]
-    if not missed:
-        missed = [*_missed_together(laws)]
-    if not missed:
-        missed = [*_missed_quantities(known, laws.with_determined_velocities(), laws)]
-    largest = max((law.fraction for law in missed), default=0.0)
-    return tuple(law for law in missed if law.fraction >= NAMED * largest)
+    violations = [*_missed_quantities(known, laws.values, laws), *laws.missed_alone()]
+    if not violations:
+        violations = [*_missed_together(laws)]
+    if not violations:
+        violations = [*_missed_quantities(known, laws.with_determined_velocities(), laws)]
+    largest = max((law.fraction for law in violations), default=0.0)
+    return tuple(law for law in violations if law.fraction >= NAMED * largest)
 
 
 @within_doubles
@@ -195,12 +195,12 @@ class _KnownLaws:
 
     @property
     def sizes(self) -> Floats:
-        """What an ordinary velocity contributes to each law."""
+        """The contribution of an ordinary velocity to each law."""
         return np.asarray(np.abs(self.matrix * self.units).max(axis=1, initial=0.0) * self.speed)
 
     @property
     def residuals(self) -> Floats:
-        """What the known velocities leave of each law."""
+        """The remainder that the known velocities leave of each law."""
         return np.asarray(self.matrix @ self.velocities)
 
     @property
@@ -221,14 +221,14 @@ class _KnownLaws:
 
     def missed_alone(self) -> list[MissedLaw]:
         """Return the violated laws without unknowns."""
-        missed, residuals = [], np.abs(self.residuals)
+        violations, residuals = [], np.abs(self.residuals)
         is_missed = ~self.is_open & (self.sizes > 0) & (residuals > ROUNDING * self.sizes)
         for i in np.flatnonzero(is_missed):
             law, residual = self.names[i], float(residuals[i])
             fraction = residual / float(self.largest_terms[i])
             numbers = _coefficient(law, self.values, self.geometry, self.velocities)
-            missed.append(MissedLaw(law, _MEASURED_AS[law], residual, fraction, *numbers))
-        return missed
+            violations.append(MissedLaw(law, _MEASURED_AS[law], residual, fraction, *numbers))
+        return violations
 
     def with_determined_velocities(self) -> dict[str, float]:
         """Return the values with those velocities that the laws determine."""
@@ -237,10 +237,10 @@ class _KnownLaws:
         sizes = np.where(self.sizes > 0, self.sizes, 1.0)
         matrix = self.coefficients * self.speed / sizes[:, None]
         inverse = np.linalg.pinv(matrix, rcond=1e-10)
-        found = -inverse @ (self.residuals / sizes) * self.speed * self.units[self.is_unknown]
+        velocities = -inverse @ (self.residuals / sizes) * self.speed * self.units[self.is_unknown]
         is_determined = np.abs(inverse @ matrix - np.eye(matrix.shape[1])).max(axis=1) < 1e-9
         names = [n for n, is_unknown in zip(_MOTION, self.is_unknown, strict=True) if is_unknown]
-        rows = zip(names, found, is_determined, strict=True)
+        rows = zip(names, velocities, is_determined, strict=True)
         return self.values | {name: float(x) for name, x, known in rows if known}
 
 
@@ -251,7 +251,7 @@ def _tested_quantities(
     as the velocities give them, and the largest term."""
     state = State.of_known({name: np.float64(x) for name, x in values.items()})
     state.here = laws.geometry
-    tested = []
+    rows = []
     for name in QUANTITIES:
         if name not in known or {*SPEEDS.get(name, ())} & {*laws.values} - {*known}:
             continue  # the components were computed from it
@@ -260,8 +260,8 @@ def _tested_quantities(
             # the loss is a difference of two energies
             largest = float(np.real(state.initial_energy)) if name == "EL" else abs(present)
             largest = max(largest, abs(known[name]), 1.0 if name == "LOSS" else 0.0)
-            tested.append((name, known[name], present, largest))
-    return tested
+            rows.append((name, known[name], present, largest))
+    return rows
 
 
 def _missed_quantities(
@@ -269,17 +269,17 @@ def _missed_quantities(
 ) -> list[MissedLaw]:
     """Return the known quantities that contradict the velocities ``values``, and changes of
     velocity that contradict momentum."""
-    missed = []
+    violations = []
     for name, given, present, largest in _tested_quantities(known, values, laws):
         deviation = abs(present - given)
         if deviation > ROUNDING * largest:
-            missed.append(MissedLaw(name, name, deviation, deviation / largest, given, present))
+            violations.append(MissedLaw(name, name, deviation, deviation / largest, given, present))
     if {"DVA", "DVB"} <= {*known}:
         impulses = [known["M" + vehicle] * known["DV" + vehicle] for vehicle in "AB"]
         deviation, largest = abs(impulses[0] - impulses[1]), max(impulses)
         if math.isfinite(largest) and deviation > ROUNDING * largest:
-            missed.append(MissedLaw("changes", "PN", deviation, deviation / largest))
-    return missed
+            violations.append(MissedLaw("changes", "PN", deviation, deviation / largest))
+    return violations
 
 
 def _missed_together(known: _KnownLaws) -> tuple[MissedLaw, ...]:

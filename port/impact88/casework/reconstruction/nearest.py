@@ -110,8 +110,8 @@ def with_nearest(
     first, if it agrees with what is known, and else beside each. Exact values cannot move: the
     nearest impact is sought with the same tolerance on all known velocities. ``count``: of random
     starts."""
-    exact, assumed = solutions[0].system, solutions[0].assumed
-    is_acceptable = is_admissible if exact.observations and not assumed else counts
+    exact, is_assumed = solutions[0].system, solutions[0].assumed
+    is_acceptable = is_admissible if exact.observations and not is_assumed else counts
     if any(solution.undetermined or is_acceptable(solution) for solution in solutions):
         return solutions
     system = exact if exact.observations else exact.with_equal_tolerances()
@@ -119,12 +119,12 @@ def with_nearest(
     found = find_nearest(system, np.concatenate([system.random_starts(rng, count), *roots], axis=1))
     if found is None:
         return solutions
-    assumed |= system is not exact
-    nearest = replace(describe(found.system, found.x, assumed), limited=found.borders)
+    is_assumed |= system is not exact
+    nearest = replace(describe(found.system, found.x, is_assumed), limited=found.borders)
     if nearest.undetermined or nearest.impossible:
         return solutions
     agrees = nearest.is_within_limits or not nearest.evidence.contradictory
-    if agrees and not assumed:
+    if agrees and not is_assumed:
         return [nearest, *solutions]
     return [replace(solution, nearest=nearest) for solution in solutions]
 

@@ -371,10 +371,10 @@ class Reconstruction:
         }
         nominal = self.system.nominal
         laws = missed_laws(nominal) if self.assumed else ()
-        tested = () if values else tested_laws(nominal)
+        holding = () if values else tested_laws(nominal)
         speed = float(self.system.speed)
         return weigh(
-            self.squares, self.redundancy, values, inside, self.assumed, laws, tested, speed
+            self.squares, self.redundancy, values, inside, self.assumed, laws, holding, speed
         )
 
     @within_doubles

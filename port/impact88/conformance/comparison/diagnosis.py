@@ -341,7 +341,9 @@ class Diagnosis:
         """Make a hypothesis a cause."""
         score = self._score(hypothesis) if score is None else score
         program = hypothesis.program
-        equivalents, apart = _tell_apart(hypothesis._replace(equivalents=self._alike(hypothesis)))
+        equivalents, apart = _tell_apart(
+            hypothesis._replace(equivalents=self._equal_programs(hypothesis))
+        )
         self.hypotheses.append(hypothesis)
         self._evidence.append(
             TableCause(
@@ -362,7 +364,7 @@ class Diagnosis:
             )
         )
 
-    def _alike(self, hypothesis: TableHypothesis) -> list[Program]:
+    def _equal_programs(self, hypothesis: TableHypothesis) -> list[Program]:
         """Return the equivalents of a hypothesis that give the same in every column that is wrong
         in the table, those too that the search for it left aside."""
         if hypothesis.program is None:

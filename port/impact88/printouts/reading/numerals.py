@@ -344,23 +344,23 @@ def _readings(region: Glyphs, count: int, most: int, sign_free: bool) -> tuple[R
         foreign_count += is_foreign
         any_char = is_foreign and foreign_count <= _MAX_ILLEGIBLE * count
         for texts, (cost, starts) in _likeliest(beams[index], width):
-            *done, text = texts
+            *head, text = texts
             number = text.rstrip(_CLOSED)
             uncut = GAP_COSTS["uncut"][gap] / 100 if count > 1 and index > starts[-1] else 0.0
-            begun = [((*done,), text, cost + uncut, starts)]
+            open_texts = [((*head,), text, cost + uncut, starts)]
             if text and (gap or text != number):
-                passed = cost + uncut + _SPECK / 2 + _FOREIGN * char.isdigit()
-                _keep(beams[index + 1], (*done, number + _CLOSED), passed, starts)
+                price = cost + uncut + _SPECK / 2 + _FOREIGN * char.isdigit()
+                _keep(beams[index + 1], (*head, number + _CLOSED), price, starts)
             if text != number:
-                begun = []
+                open_texts = []
             if len(texts) < count and is_number(number):
                 joint = 0.0 if gap else COSTS["joined sign" if char in "-~" else "joined"] / 100
-                begun.append(((*done, number), "", cost + joint, (*starts, index)))
-            for others, own, price, places in begun:
-                for longer, total in _extensions(own, price, region, index, any_char, sign_free):
-                    _keep(beams[index + 1], (*others, longer), total, places)
-                for end in () if own else _broken_zeros(region, index):
-                    _keep(beams[end], (*others, "0"), price + _SPECK, places)
+                open_texts.append(((*head, number), "", cost + joint, (*starts, index)))
+            for head, tail, price, places in open_texts:
+                for longer, total in _extensions(tail, price, region, index, any_char, sign_free):
+                    _keep(beams[index + 1], (*head, longer), total, places)
+                for end in () if tail else _broken_zeros(region, index):
+                    _keep(beams[end], (*head, "0"), price + _SPECK, places)
     found: _Beam = {}
     for texts, (cost, starts) in beams[-1].items():
         numbers = [text.rstrip(_CLOSED) for text in texts]

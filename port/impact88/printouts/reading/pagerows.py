@@ -215,11 +215,15 @@ def _begins(group: Sequence[_Row], row: _Row, below: Sequence[_Row]) -> bool:
     It is the first prompt below labelled rows, or the row of masses where all rows above it come
     again below it.
     """
-    rows = {one.number for one in group if one.number >= PROMPTS}
+    rows = {other_row.number for other_row in group if other_row.number >= PROMPTS}
     if row.number == 0:
         return bool(rows)
-    again = {one.number for one in below[: _until_masses(below)]}
-    return row.number == PROMPTS and len(rows) > (PROMPTS in rows) and rows - {PROMPTS} <= again
+    numbers_below = {other_row.number for other_row in below[: _until_masses(below)]}
+    return (
+        row.number == PROMPTS
+        and len(rows) > (PROMPTS in rows)
+        and rows - {PROMPTS} <= numbers_below
+    )
 
 
 def _until_masses(below: Sequence[_Row]) -> int:
@@ -246,12 +250,17 @@ def _is_repeated(
     the letter, or nothing but rows of the page (``own``) stands between.
     """
     following = below[0].number if below else None
-    if following in {one.number for one in group}:
+    if following in {other_row.number for other_row in group}:
         rest = below[_until_masses(below) + 1 :]
-        is_last = following in (0, PROMPTS) and any(one.number == row.number for one in rest)
+        is_last = following in (0, PROMPTS) and any(
+            other_row.number == row.number for other_row in rest
+        )
         if not is_last:
             return False
-    texts = ["".join(_text(page, page.lines[at]) for at in one.lines) for one in (earlier, row)]
+    texts = [
+        "".join(_text(page, page.lines[at]) for at in other_row.lines)
+        for other_row in (earlier, row)
+    ]
     return texts[0] == texts[1] or own.issuperset(range(earlier.line, row.line))
 
 
