@@ -261,7 +261,7 @@ def _is_broken_zero(chars: str) -> bool:
 
 _BEAM = 48
 """Readings of a number's first glyphs that are extended; ten times as many from the first foreign
-glyph on."""
+glyph on, and in a row that has fewer gaps than cuts."""
 _MAX_ILLEGIBLE = 4  # glyphs that may be any; doubled, none of 47 texts is read otherwise
 _MAX_ROWS = 400  # readings of the row of angles; doubled, 4 of 47 texts have more of them
 Ways = tuple[tuple[str, float], ...]
@@ -337,9 +337,10 @@ def _readings(region: Glyphs, count: int, most: int, sign_free: bool) -> tuple[R
         return ()  # a word
     beams: list[_Beam] = [{} for _ in range(len(region) + 1)]
     beams[0][("",)] = 0.0, (0,)
+    are_joined = sum(gap is not Gap.NONE for _, gap in region[1:]) < count - 1
     foreign_count = 0
     for index, (char, gap) in enumerate(region):
-        width = 10 * _BEAM if foreign_count else _BEAM
+        width = 10 * _BEAM if foreign_count or are_joined else _BEAM
         is_foreign = (char not in NUMERIC and not printed_for(char)) or char == ILLEGIBLE
         foreign_count += is_foreign
         any_char = is_foreign and foreign_count <= _MAX_ILLEGIBLE * count
