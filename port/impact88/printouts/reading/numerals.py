@@ -357,11 +357,11 @@ def _readings(region: Glyphs, count: int, most: int, sign_free: bool) -> tuple[R
             if len(texts) < count and is_number(number):
                 joint = 0.0 if gap else COSTS["joined sign" if char in "-~" else "joined"] / 100
                 open_texts.append(((*head, number), "", cost + joint, (*starts, index)))
-            for head, tail, price, places in open_texts:
+            for numbers_before, tail, price, places in open_texts:
                 for longer, total in _extensions(tail, price, region, index, any_char, sign_free):
-                    _keep(beams[index + 1], (*head, longer), total, places)
+                    _keep(beams[index + 1], (*numbers_before, longer), total, places)
                 for end in () if tail else _broken_zeros(region, index):
-                    _keep(beams[end], (*head, "0"), price + _SPECK, places)
+                    _keep(beams[end], (*numbers_before, "0"), price + _SPECK, places)
     found: _Beam = {}
     for texts, (cost, starts) in beams[-1].items():
         numbers = [text.rstrip(_CLOSED) for text in texts]
