@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+RESTORATIONS = 5  # last steps of points that are still beyond limits
+RESTORING_STEP = 1e-2  # and their length at most, per coordinate
 MAX_STEP = 0.5  # initial and largest trust-region radius, per coordinate
 MIN_STEP = 1e-7  # a search point has converged when its trust region is smaller
 CONSTRAINT_TOL = 1e-9  # a constraint exceeded by no more counts as met
@@ -69,6 +71,7 @@ def climb(
             search.keep_best()
         if not search.advance(min_gain):
             break
+    search.restore()
     return search.u, search.x, search.functions, (search.reach >= 0) & (search.reach < MIN_STEP)
 
 
@@ -117,6 +120,28 @@ class _Climb:
         is_inside = excess(self.constraints[active]).max(axis=1, initial=0.0) <= CONSTRAINT_TOL
         self.reach[active[(predicted_gain <= min_gain[active]) & is_inside]] = 0.0
         return True
+
+    def restore(self) -> None:
+        """Move the points that are still beyond limits by the least steps that meet them."""
+        for _ in range(RESTORATIONS):
+            beyond = excess(self.constraints).max(axis=1, initial=0.0)
+            active = np.flatnonzero(beyond > CONSTRAINT_TOL)
+            if not active.size:
+                break
+            _, rows, _ = self.problem.slopes(self.u[active], self.x[:, active])
+            nowhere, dimensions = np.zeros_like(self.u[active]), self.u.shape[1]
+            self.reach[active] = np.maximum(self.reach[active], RESTORING_STEP)
+            nearness = np.broadcast_to(np.eye(dimensions), (len(active), dimensions, dimensions))
+            step, _ = self._programs(active, nowhere, rows, nearness).solve()
+            u = np.clip(self.u[active] + step, 0.0, 1.0)
+            x, functions, constraints, usable = self.problem.evaluate(u, self.x[:, active])
+            better = usable & (excess(constraints).max(axis=1, initial=0.0) < beyond[active])
+            moving = active[better]
+            self.u[moving], self.x[:, moving] = u[better], x[:, better]
+            self.functions[moving], self.constraints[moving] = (
+                functions[better],
+                constraints[better],
+            )
 
     def keep_best(self) -> None:
         """End all searches but the best for each function and sense."""
