@@ -292,8 +292,18 @@ class Printout:
         return [*pairwise([*(begin + start for start in row.starts), stop])]
 
     def angle_regions(self, texts: Sequence[str]) -> dict[str, Region]:
-        """Return the glyphs of each angle, parted as in the reading of their row that is nearest to
-        what the program prints; empty where blanks alone divide it."""
+        """Return the glyphs of each angle, as the reading of their row nearest to a page parts it.
+
+        Parameters
+        ----------
+        texts : sequence of str
+            The five angles that the program prints.
+
+        Returns
+        -------
+        dict of str to sequence
+            Glyphs by name; empty where blanks alone divide the row.
+        """
         if not self.angles:
             return {}
         nearest = max(self.angles, key=lambda row: sum(map(str.__eq__, row.texts, texts)))
