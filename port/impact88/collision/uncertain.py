@@ -18,7 +18,6 @@ normal variates (the rank correlation is then 6/π·asin(ρ/2)).
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -28,7 +27,7 @@ from typing import TYPE_CHECKING
 from ..errors import UserError, quoted
 from .case import FACING_COURSE
 from .doubles import double, is_number
-from .units import ACCEPTED, NO_SKID, gravity_in, parse, system_of
+from .units import ACCEPTED, NO_SKID, SKID, gravity_in, parse, system_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -338,7 +337,6 @@ NEARLY_UNIFORM = 0.9
 large by 11 % at most, as a normal within the same limits would be too small by 14 %."""
 GREATEST_DRAG = 1.2
 """Friction of tires on a dry road from which a skid is remarked upon: measured is .5 to 1."""
-_SKID = re.compile(r"skid (.+) at (.+)")
 
 
 def skid(text: str, name: str, units: str | None) -> Uncertain:
@@ -346,7 +344,7 @@ def skid(text: str, name: str, units: str | None) -> Uncertain:
 
     D and MU may be ranges, which are independent: the speed of two is a normal within the limits of
     both, or uniform where one of them decides. ``units``: the system D is in. Raises UserError."""
-    match, gravity = _SKID.fullmatch(" ".join(text.split())), gravity_in(system_of(units))
+    match, gravity = SKID.fullmatch(" ".join(text.split())), gravity_in(system_of(units))
     if match is None:
         raise UserError(f"{text!r} {NO_SKID}", name)
     if gravity is None:
@@ -376,7 +374,7 @@ def skid(text: str, name: str, units: str | None) -> Uncertain:
 def skid_remarks(texts: Mapping[str, str]) -> list[str]:
     """Return remarks on skids: one on friction that no road has, and one where two skids have a
     range of friction each: they are taken as independent."""
-    matches = {n: _SKID.fullmatch(" ".join(texts.get(n, "").split())) for n in ("SAF", "SBF")}
+    matches = {n: SKID.fullmatch(" ".join(texts.get(n, "").split())) for n in ("SAF", "SBF")}
     friction = {name: read(match[2], "MU") for name, match in matches.items() if match}
     remarks = [
         f"{name}: a skid at {value.nominal:g} is from friction above {GREATEST_DRAG:g}; tires on a "

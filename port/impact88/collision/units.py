@@ -438,9 +438,11 @@ _FORMS = (
     ("range", r"(.+?) ?\.\. ?(.+)", (1, 1), "{} .. {}"),
 )
 """Notations of a range: kind, pattern, number of amounts in each group, layout."""
+SKID = re.compile(r"skid (.+) at (.+)")
+"""A skid to rest: its distance and its friction."""
 _PHRASES: dict[str, tuple[re.Pattern[str], tuple[str, ...]]] = {
     "estimate": (re.compile(r"estimate(?: (.+))?"), ("",)),
-    "skid": (re.compile(r"skid (.+) at (.+)"), (LENGTH, NUMBER)),
+    "skid": (SKID, (LENGTH, NUMBER)),
 }
 """Phrases that contain amounts: the pattern, and the rule of each amount ("": that of the entry).
 The phrase is kept, with its amounts in base units, for the code that reads the entry."""

@@ -189,3 +189,11 @@ def test_where_nothing_is_unknown_the_laws_missed_are_told():
         UserError, match=r"nothing is unknown, and .* momentum along n does not balance"
     ):
         solve_for({**known, "VAX": known["VAX"] + 1})
+
+
+@pytest.mark.parametrize(("speed", "names"), [(38.6667, ["EL"]), (30.0, ["EL", "n"])])
+def test_what_rounding_leaves_of_a_law_is_not_named_beside_a_large_error(speed, names):
+    """A standing car is struck by momentum at 38.6667: four digits leave 1e-6 of it."""
+    known = {"M": 4.0, "MA": 3000.0, "MB": 4000.0, "GA": 180.0, "UX": speed, "UY": 0.0}
+    known |= {"VX": 0.0, "VY": 0.0, "VAX": 12.0, "VAY": 0.0, "VBX": 20.0, "VBY": 0.0, "EL": 2e5}
+    assert [law.law for law in missed_laws(known)] == names

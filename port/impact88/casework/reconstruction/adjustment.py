@@ -74,8 +74,9 @@ def reconstruct(
         with suppress(UserError):
             others = _impacts({**values, "GA": replace(plane, **ends)}, progress)
             turned_status = int(outcome(others[0].values)["STATUS"])
-            wrong = is_wrong_way(turned_status, point), turned_status & Status.SEPARATING
-            if not wrong[0] or (not wrong[1] and status & Status.SEPARATING):
+            # where both sides are wrong, the one from which the vehicles approach is told
+            approaches = status & Status.SEPARATING and not turned_status & Status.SEPARATING
+            if approaches or not is_wrong_way(turned_status, point):
                 solutions = others
                 if "GA" in known:
                     remarks.append(turned_sentence(plane.nominal))

@@ -141,8 +141,9 @@ class System:
 
     def with_equal_tolerances(self) -> "System":
         """Return the equations of exact values with a standard deviation of one unit on each known
-        velocity. What one unit adds at the typical speed is that of a spin, over the radius of
-        gyration, and of an energy; across a course it turns that of its vehicle."""
+        velocity. That of a spin is one unit over the radius of gyration; that of an energy, what
+        one unit adds to it at the typical speed; that of a course, the angle by which one unit
+        across turns its vehicle's velocity."""
         turning = np.degrees(1.0)
         deviations = {
             "length/time": 1.0,

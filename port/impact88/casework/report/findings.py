@@ -11,7 +11,7 @@ import numpy as np
 from ...collision.case import ABOUT, Case, remark_lines
 from ...collision.geometry import MOVES, clock, coordinate_names, resolve_contact_point
 from ...collision.needs import sentences as needs_in_words
-from ...collision.units import System, base_of
+from ...collision.units import System, base_of, gravity_in
 from ...errors import UserError
 from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
 from ...mechanics.state import COURSES, KNOWABLE
@@ -236,9 +236,10 @@ def _unjudged(case: Case) -> list[str]:
         sentences.append(f"The file names no source for {' '.join(unsourced)}.")
     skids = [n for n, text in case.given.items() if text.lstrip().startswith("skid")]
     if skids:
+        gravity = f"{number(gravity_in(case.system), 5)} {case.system.label(LENGTH)}/s2"
         sentences.append(
             f"{' and '.join(skids)} from a skid to rest: v = sqrt(2 mu g d), on a level road of "
-            "one friction, g = 32.174 ft/s2 (9.80665 m/s2)."
+            f"one friction, g = {gravity}."
         )
     return [
         *sentences,
