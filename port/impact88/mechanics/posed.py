@@ -149,6 +149,17 @@ def is_wrong_way(status: int, point: bool) -> bool:
     return bool(broken) and (point or status & _WRONG_SIDES == _WRONG_SIDES)
 
 
+def is_meant_turned(status: int, turned_status: int, point: bool) -> bool:
+    """Return True if GA is meant the other way round: so the vehicles approach, and as it is given
+    the impact is the wrong way.
+
+    ``status``, ``turned_status``: STATUS of the impact with GA as given and turned by 180 degrees.
+    Where both are the wrong way, the side from which the vehicles approach is taken."""
+    if not is_wrong_way(status, point) or turned_status & Status.SEPARATING:
+        return False
+    return bool(status & Status.SEPARATING) or not is_wrong_way(turned_status, point)
+
+
 def turned(degrees: float) -> float:
     """Return the opposite direction, of the smaller size."""
     return degrees - 180 if degrees > 0 else degrees + 180

@@ -13,7 +13,7 @@ from longer import long_but
 
 import impact88
 from impact88.interface.commands.cli import main
-from impact88.status import IMPOSSIBLE
+from impact88.status import IMPOSSIBLE, Status
 
 PROBLEMS = int(os.environ.get("IMPACT88_EXAMPLES") or 6)  # .ci/run takes more
 SPEED_NAMES = ("UX", "UY", "VX", "VY", "SA", "SB", "SAF", "SBF")
@@ -134,6 +134,29 @@ def test_solve_and_bounds_have_a_spreadsheet_with_ga_either_way_round(
     assert ("is taken as" in told.err) == is_turned
     nominal = json.loads(told.out)["outputs"]["DVA"]["nominal"]
     assert nominal == pytest.approx(sheet["published"]["DVA"], rel=1e-12)
+
+
+POINTS = "M = 4\nMA = 100\nMB = 50\nUX = 10\nUY = 0\nVX = 0\nVY = 0\nMU = 0"
+
+
+@pytest.mark.parametrize("e", [0.3, -2])
+@pytest.mark.parametrize(
+    ("ga", "is_turned"),
+    [(-180, False), (180, False), (0, True), (89, True), (91, False), (90, False)],
+)
+def test_every_command_has_the_same_side_of_a_plane_of_which_nothing_else_is_known(
+    ga, e, is_turned, tmp_path, capsys
+):
+    path = tmp_path / "points.toml"
+    path.write_text(f"{POINTS}\nE = {e}\nGA = {ga}")
+    main(["solve", str(path), "--outputs", "STATUS", "--results-only"])
+    told = capsys.readouterr()
+    assert ("is taken as" in told.err) == is_turned
+    assert bool(int(told.out.split()[-1]) & Status.SEPARATING) == (ga == 90)
+    main(["bounds", str(path), "--range", "UX=9..11", "--outputs", "DVA", "--samples", "0"])
+    assert ("is taken as" in capsys.readouterr().err) == is_turned
+    main(["reconstruct", str(path), "--samples", "0"])
+    assert ("is taken as" in capsys.readouterr().out) == is_turned
 
 
 # -- random problems, with what is known removed entry by entry

@@ -21,7 +21,7 @@ from ...errors import UserError
 from ...mechanics.closedform.general import share_typed
 from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import outcome
-from ...mechanics.posed import is_wrong_way, pose, turned, turned_sentence
+from ...mechanics.posed import is_meant_turned, is_wrong_way, pose, turned, turned_sentence
 from ...mechanics.state import COURSES, CRUSH, KNOWABLE, SPEEDS
 from ...names import PIVOT, SCENE, VELOCITIES, check_names
 from ...status import Status
@@ -74,9 +74,7 @@ def reconstruct(
         with suppress(UserError):
             others = _impacts({**values, "GA": replace(plane, **ends)}, progress)
             turned_status = int(outcome(others[0].values)["STATUS"])
-            # where both sides are wrong, the one from which the vehicles approach is told
-            approaches = status & Status.SEPARATING and not turned_status & Status.SEPARATING
-            if approaches or not is_wrong_way(turned_status, point):
+            if is_meant_turned(status, turned_status, point):
                 solutions = others
                 if "GA" in known:
                     remarks.append(turned_sentence(plane.nominal))
