@@ -3,12 +3,14 @@ with or without a compiler."""
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
+
 import numpy as np
 import pytest
 from captures import ROOT
 
-from impact88.mechanics import loops
-from impact88.mechanics.closedform.impactprograms import FORMULAS
+from impact88.mechanics import loops, native
 from impact88.names import RESULTS
 
 SIX = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
@@ -23,9 +25,12 @@ def test_what_is_compiled_is_what_the_formulas_say(file_regression, request):
         if request.config.getoption("force_regen"):
             raise
         pytest.fail(f"loops.h is not of the formulas as they are; next step: {rewrite}")
-    assert loops.digest() == FORMULAS, (
-        f'next step: FORMULAS = "{loops.digest()}" in mechanics/closedform/impactprograms.py'
+    assert loops.digest() == native.FORMULAS, (
+        f'next step: FORMULAS = "{loops.digest()}" in mechanics/native/__init__.py'
     )
+    is_built = any(Path(native.__file__).parent.glob("_machine.*"))
+    if is_built and os.environ.get(native.VARIABLE) != "0":
+        assert native.library, "the library is of other formulas; next step: pip install -e ."
 
 
 @pytest.mark.parametrize("kind", loops.KINDS)

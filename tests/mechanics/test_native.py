@@ -17,7 +17,6 @@ from longer import long_but
 import impact88
 from impact88.mechanics import native
 from impact88.mechanics.accuracy.populations import POPULATIONS, repeat_scenes, scenes, texts
-from impact88.mechanics.closedform import compiledcalls
 from impact88.mechanics.closedform import solve as solving
 from impact88.mechanics.closedform.general import TILE, quantities
 from impact88.mechanics.closedform.plain import MAX_CONVERTED
@@ -48,10 +47,6 @@ def assert_same_bits(compiled, alone):
 @pytest.mark.parametrize("count", [1, 2, MAX_CONVERTED, MAX_CONVERTED + 1])
 def test_every_result_of_every_population(name, count):
     assert_same_bits(*both(repeat_scenes(scenes(name, min(count, 500), 11), count), threads=1))
-
-
-def test_the_library_is_of_these_formulas():
-    assert compiledcalls.usable(), "the library is of other formulas; next step: pip install -e ."
 
 
 def odd(count: int, seed: int) -> dict[str, np.ndarray]:
@@ -198,11 +193,17 @@ def compare_replays(columns):
         assert np.array_equal(compiled.reals(name), alone.reals(name)), name
 
 
-def test_the_variable_turns_it_off(monkeypatch):
-    monkeypatch.setenv(native.VARIABLE, "0")
-    code = "import impact88; print(impact88.accelerated)"
+@pytest.mark.parametrize("reason", ["the variable", "an older library"])
+def test_it_is_used_by_all_or_by_none(reason, monkeypatch):
+    """By `solve`, `replay` and the texts; and reports say what is used."""
+    code = "import impact88\nfrom impact88.casework.report.frame import versions\n"
+    code += "print(impact88.accelerated, versions()['solve'])"
+    if reason == "the variable":
+        monkeypatch.setenv(native.VARIABLE, "0")
+    else:  # a result that it was not built with
+        code = f"import impact88.names as n\nn.RESULTS['XF'] = n.RESULTS['XA']\n{code}"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "None\n"
+    assert done.stdout == "None numpy\n"
     assert impact88.accelerated
 
 

@@ -20,7 +20,8 @@ from typing import NamedTuple
 from ..names import FINAL_VELOCITIES
 from . import native
 from .closedform.impact import impact
-from .closedform.impactprograms import ALL, COLUMNS, QUANTITIES
+from .closedform.impactprograms import ALL, COLUMNS
+from .native import QUANTITIES
 from .native.expressiontable import Expression, ExpressionTable
 from .native.schedule import in_order
 
@@ -457,7 +458,7 @@ def _operand(x: Expression, as_number: bool, value: dict[Expression, str]) -> st
 def main() -> None:
     """Write loops.h, and print the next steps."""
     Path(native.__file__).with_name("loops.h").write_text(text(), encoding="ascii")
-    print(f'FORMULAS = "{digest()}" in mechanics/closedform/impactprograms.py; pip install -e .')
+    print(f'FORMULAS = "{digest()}" in mechanics/native/__init__.py; pip install -e .')
 
 
 if __name__ == "__main__":

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import native
+from ..native import QUANTITIES
 from ..native.processors import run_in_threads, workers
 from .columns import ORDINARY
-from .impactprograms import CIRCLE, COLUMNS, FORMULAS, QUANTITIES
+from .impactprograms import CIRCLE, COLUMNS
 from .results import address
 
 Array = NDArray[Any]
@@ -28,18 +29,6 @@ _LIMITS = np.array([{**ORDINARY, "MU": (-_LARGEST, _LARGEST)}[name] for name in 
 _NO_ARGUMENTS = np.array(
     [0] * (2 * len(COLUMNS) + len(QUANTITIES)) + [_LIMITS.ctypes.data, CIRCLE], np.int64
 )
-
-
-def usable() -> bool:
-    """Return True where the library is built, and from these formulas."""
-    return native.library is not None and _of_these_formulas()
-
-
-@lru_cache(maxsize=1)
-def _of_these_formulas() -> bool:
-    # a result that was added since the library was built is none of its results
-    results = tuple(native.library.results().decode().split())
-    return results == QUANTITIES and bool(native.library.formulas().decode() == FORMULAS)
 
 
 @lru_cache(maxsize=256)

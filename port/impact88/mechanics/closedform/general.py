@@ -18,6 +18,7 @@ from ...collision.doubles import double
 from ...errors import UserError
 from ...names import DEFAULT_M, PIVOT, SCENE
 from ...status import Status
+from .. import native
 from ..native.processors import run_in_threads, workers
 from . import compiledcalls
 from .columns import Source, examine, part, sources
@@ -112,7 +113,7 @@ def _solve_part(
     stop: int,
 ) -> None:
     """Solve scenes ``start`` to ``stop``, block by block."""
-    use_library = sign is None and compiledcalls.usable()
+    use_library = sign is None and native.library is not None
     for at in range(start, stop, 2 * tile):
         end = min(at + 2 * tile, stop)
         values = {name: part(source, at, end) for name, source in inputs.items()}

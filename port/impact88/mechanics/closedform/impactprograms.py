@@ -28,8 +28,6 @@ _CIRCLE = np.frombuffer(
 ).copy()
 CIRCLE = _CIRCLE.ctypes.data
 """Address of the table of sines and its constants, ``circle`` in `native/impacts.h`."""
-FORMULAS = "a14c68646dac0027"
-"""Digest of `native/loops.h`: a library that was built from the same formulas has it, too."""
 
 
 @lru_cache(maxsize=1024)
@@ -64,6 +62,4 @@ def program_for(
 
 
 ALL = tuple(RESULTS)
-QUANTITIES = (*ALL, "gn", "gt", "determinant", "critical_denominator")
-"""Results, and other quantities of `impact` by the names there."""
 COLUMNS = tuple(SCENE)

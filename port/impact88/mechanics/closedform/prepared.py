@@ -161,7 +161,7 @@ class Prepared:
         rows = self._rows_of(values)
         if self._factors is not None:
             rows = rows / self._factors.reshape(-1, *[1] * (rows.ndim - 1))
-        if not compiledcalls.usable():
+        if native.library is None:
             return self._solve_by_numpy(rows)
         return self._call.solve(rows, rows.shape[1:])
 
@@ -269,7 +269,7 @@ class Bound:
         }
         count = math.prod(values.shape[1:])
         self._run: Callable[[], object] | None = None
-        self._machine = native.library if compiledcalls.usable() else None
+        self._machine = native.library
         in_one_call = (
             count < 2 * compiledcalls.MIN_SCENES_PER_THREAD and prepared_call._factors is None
         )

@@ -14,7 +14,7 @@ from ...collision.mappings import scene_columns
 from ...errors import UserError
 from ...messages.arguments import explains_arguments
 from ...names import RESULTS, split_names
-from . import compiledcalls
+from .. import native
 from .general import solve_arrays
 from .impactprograms import ALL
 from .omitted import not_given, solve_without
@@ -106,7 +106,7 @@ def solve(
         outputs = split_names(outputs)
     wanted = _check_results(tuple(outputs))
     # plain numbers and float64 arrays need no reading
-    if isinstance(columns, dict) and wanted and compiledcalls.usable():
+    if isinstance(columns, dict) and wanted and native.library is not None:
         results = solve_plain(columns, wanted, threads, out)
         if results is not None:
             return results

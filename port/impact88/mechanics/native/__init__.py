@@ -1,7 +1,8 @@
 """The compiled library, where it was built: `machine.c`, loaded by ctypes.
 
-It is optional. Where no compiler was found when the package was installed, or where the environment
-variable IMPACT88_ACCELERATED is 0, `library` is None and numpy computes the same bits.
+It is optional. Where no compiler was found when the package was installed, where it was built from
+other formulas, or where the environment variable IMPACT88_ACCELERATED is 0, `library` is None and
+numpy computes the same bits.
 """
 
 import ctypes
@@ -11,8 +12,14 @@ from contextlib import contextmanager
 from importlib.machinery import EXTENSION_SUFFIXES
 from typing import Any
 
+from ...names import RESULTS
+
 VARIABLE = "IMPACT88_ACCELERATED"
 """Environment variable: 0 leaves everything to numpy."""
+FORMULAS = "a14c68646dac0027"
+"""Digest of `loops.h`: a library that was built from the same formulas has it, too."""
+QUANTITIES = (*RESULTS, "gn", "gt", "determinant", "critical_denominator")
+"""Results, and other quantities of `closedform.impact` by the names there."""
 
 
 def _load() -> ctypes.CDLL | None:
@@ -22,9 +29,13 @@ def _load() -> ctypes.CDLL | None:
         path = os.path.join(os.path.dirname(__file__), f"_machine{suffix}")
         if os.path.exists(path):  # pathlib takes 4 ms to import
             try:
-                return _declare_functions(ctypes.CDLL(path))
+                loaded = _declare_functions(ctypes.CDLL(path))
             except (OSError, AttributeError):  # built for another machine, or from older sources
                 continue
+            # a result that was added since the library was built is none of its results
+            results = tuple(loaded.results().decode().split())
+            if results == QUANTITIES and loaded.formulas().decode() == FORMULAS:
+                return loaded
     return None
 
 
