@@ -18,11 +18,12 @@ from installed import impact88 as command
 from tinyrom import rom
 
 import impact88
-from impact88.conformance.comparison.vectors import frozen
+from impact88.conformance.comparison.vectors import FROZEN_ID, frozen
 from impact88.conformance.qualification.selfcheck import checks
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
 from impact88.messages import schemas
+from impact88.names import FINAL_VELOCITIES
 from impact88.program.run import run
 from impact88.program.scene import sample
 
@@ -150,6 +151,9 @@ def test_compare_right_wrong_and_incomplete(tmp_path) -> None:
         done = command("compare", "--json", str(path))
         if done.returncode != 2:
             check("compare", done.stdout)
+    rows = [{"id": one["id"], **dict.fromkeys(FINAL_VELOCITIES, "")} for one in frozen(9)]
+    path.write_text("".join(f"{json.dumps(row)}\n" for row in rows), encoding="utf-8")
+    check("compare", command("compare", "--json", "--kit", FROZEN_ID, str(path)).stdout)
 
 
 def test_selfcheck(tmp_path, monkeypatch, capsys) -> None:

@@ -27,14 +27,13 @@ from wrongprograms import CATALOGUE, CONVENTIONS, CORRECT, Wrong, answers
 
 from impact88.conformance.comparison import diagnosis
 from impact88.conformance.comparison.agreement import read_theirs
-from impact88.conformance.comparison.compare import (
+from impact88.conformance.comparison.compare import Comparison, compare
+from impact88.conformance.comparison.reasons import (
     NO_RESULT,
     NO_SCENE,
     NOTHING_HERE,
     NOTHING_THERE,
     REFUSED,
-    Comparison,
-    compare,
 )
 from impact88.conformance.comparison.tablehypotheses import (
     INFINITE,

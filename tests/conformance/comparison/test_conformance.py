@@ -17,10 +17,21 @@ from xml.etree import ElementTree
 import jsonschema
 import pytest
 from installed import impact88
-from longer import long_but
 
-from impact88.conformance.comparison.conformance import Conformance, check_conformance
+from impact88.conformance.comparison.compare import Comparison, compare
 from impact88.conformance.comparison.kit import write_kit
+from impact88.conformance.comparison.reasons import (
+    CHANGED,
+    DISAGREES,
+    MISSING,
+    NO_DIGIT,
+    NO_SCENE,
+    NOTHING_THERE,
+    PARTIAL,
+    REPEATED,
+    STRAY,
+    UNREADABLE,
+)
 from impact88.conformance.comparison.vectors import REFUSE
 from impact88.errors import UserError
 from impact88.messages import schemas
@@ -55,9 +66,9 @@ def written(rows: Table) -> str:
     return out.getvalue()
 
 
-def judged(kit: Path, path: Path, rows: Table) -> Conformance:
+def judged(kit: Path, path: Path, rows: Table) -> Comparison:
     path.write_text(written(rows), encoding="utf-8")
-    return check_conformance(str(kit), str(path), "csv")
+    return compare(path, causes=False, kit=str(kit))
 
 
 def of_a_kind(rows: Table, expect: str) -> list[int]:
@@ -66,102 +77,77 @@ def of_a_kind(rows: Table, expect: str) -> list[int]:
 
 def test_a_correct_program_conforms(kit: Path, answers: Table, tmp_path: Path) -> None:
     done = judged(kit, tmp_path / "theirs.csv", answers)
-    assert (done.conforms, done.passed) == (True, COUNT)
-    assert done.refused >= len(of_a_kind(answers, REFUSE)) > 0
+    assert done.passes()
+    assert f"conforms, {COUNT} of {COUNT}" in done.kit.badge
+    refused = [verdict for verdict in done.kit.verdicts if verdict.reason]
+    assert len(refused) >= len(of_a_kind(answers, REFUSE)) > 0
     digest = hashlib.sha256((tmp_path / "theirs.csv").read_bytes()).hexdigest()
-    assert done.sha256 == digest
-    assert digest[:12] in done.badge
+    assert done.kit.sha256 == digest
+    assert digest[:12] in done.kit.badge
     few = [{name: row[name] for name in ("id", *FINAL_VELOCITIES)} for row in answers]
-    assert judged(kit, tmp_path / "few.csv", few[::-1]).conforms
+    assert judged(kit, tmp_path / "few.csv", few[::-1]).passes()
+    assert compare(few, kit=str(kit)).passes()
 
 
-def two_thirds_deleted(rows: Table) -> Table:
-    return rows[::3]
+def changed(rows: Table, at: int, **cells: str) -> Table:
+    return [*rows[:at], {**rows[at], **cells}, *rows[at + 1 :]]
 
 
-def infinite_from_row_12(rows: Table) -> Table:
-    return [*rows[:11], *(row | dict.fromkeys(FINAL_VELOCITIES, "Infinity") for row in rows[11:])]
+def all_answered(rows: Table, text: str, expect: str = "") -> Table:
+    """Rows with one text for every result, those of one expectation or all."""
+    cells = dict.fromkeys(FINAL_VELOCITIES, text)
+    return [row | cells if expect in row["expect"] else row for row in rows]
 
 
-def empty_from_row_12(rows: Table) -> Table:
-    return [*rows[:11], *(row | dict.fromkeys(FINAL_VELOCITIES, "") for row in rows[11:])]
+def shifted(rows: Table) -> Table:
+    """Rows with the ids of others."""
+    ids = [row["id"] for row in rows[3:] + rows[:3]]
+    return [{**row, "id": other} for row, other in zip(rows, ids, strict=True)]
 
 
-def one_where_there_is_nothing(rows: Table) -> Table:
-    return [
-        row | dict.fromkeys(FINAL_VELOCITIES, "1") if row["expect"] == REFUSE else row
-        for row in rows
-    ]
+def refused(rows: Table) -> int:
+    """The first row that has no answer."""
+    return of_a_kind(rows, REFUSE)[0]
 
 
-def a_row_twice(rows: Table) -> Table:
-    return [*rows, rows[5]]
-
-
-def an_id_made_up(rows: Table) -> Table:
-    return [*rows, {**rows[5], "id": "1988-999999"}]
-
-
-def an_input_one_bit_off(rows: Table) -> Table:
-    return [{**rows[0], "MA": repr(math.nextafter(float(rows[0]["MA"]), 0))}, *rows[1:]]
-
-
-def a_cell_left_out(rows: Table) -> Table:
-    return [{**rows[0], "VBX": ""}, *rows[1:]]
-
-
-def a_word_for_a_refusal(rows: Table) -> Table:
-    at = of_a_kind(rows, REFUSE)[0]
-    return [*rows[:at], {**rows[at], "VAX": "impossible"}, *rows[at + 1 :]]
-
-
-def one_infinity_for_a_refusal(rows: Table) -> Table:
-    at = of_a_kind(rows, REFUSE)[0]
-    return [*rows[:at], {**rows[at], "VAX": "-inf"}, *rows[at + 1 :]]
-
-
-def ids_of_other_rows(rows: Table) -> Table:
-    return [
-        {**row, "id": other["id"]} for row, other in zip(rows, rows[3:] + rows[:3], strict=True)
-    ]
-
-
-def digits_that_say_nothing(rows: Table) -> Table:
-    return [{**rows[0], "VAX": "0E9"}, *rows[1:]]
-
-
-def a_number_off(rows: Table) -> Table:
-    return [{**rows[0], "WBF": repr(float(rows[0]["WBF"]) * (1 + 1e-9))}, *rows[1:]]
-
-
-WRONG: dict[Callable[[Table], Table], str] = {
-    two_thirds_deleted: "missing",
-    infinite_from_row_12: "no answer",
-    empty_from_row_12: "no answer",
-    one_where_there_is_nothing: "no solution",
-    a_row_twice: "repeated",
-    an_id_made_up: "",
-    an_input_one_bit_off: "inputs",
-    a_cell_left_out: "partial",
-    a_word_for_a_refusal: "malformed",
-    one_infinity_for_a_refusal: "no solution",
-    ids_of_other_rows: "inputs",
-    digits_that_say_nothing: "no digit",
-    a_number_off: "differs",
+WRONG: dict[str, tuple[str, Callable[[Table], Table]]] = {
+    "two thirds deleted": (MISSING, lambda rows: rows[::3]),
+    "infinite": (DISAGREES, lambda rows: [*rows[:11], *all_answered(rows[11:], "Infinity")]),
+    "empty": (NOTHING_THERE, lambda rows: [*rows[:11], *all_answered(rows[11:], "")]),
+    "empty throughout": (NOTHING_THERE, lambda rows: all_answered(rows, "")),
+    "1 where there is nothing": (NO_SCENE, lambda rows: all_answered(rows, "1", REFUSE)),
+    "a row twice": (REPEATED, lambda rows: [*rows, rows[5]]),
+    "an id made up": (STRAY, lambda rows: [*rows, {**rows[5], "id": "1988-999999"}]),
+    "no id": (STRAY, lambda rows: [*rows, {**rows[5], "id": ""}]),
+    "an input one bit off": (
+        CHANGED,
+        lambda rows: changed(rows, 0, MA=repr(math.nextafter(float(rows[0]["MA"]), 0))),
+    ),
+    "an input in words": (UNREADABLE, lambda rows: changed(rows, 0, MA="heavy")),
+    "a cell left out": (PARTIAL, lambda rows: changed(rows, 0, VBX="")),
+    "a word for a refusal": (UNREADABLE, lambda rows: changed(rows, refused(rows), VAX="no")),
+    "infinity for a refusal": (
+        NO_SCENE,
+        lambda rows: changed(rows, refused(rows), VAX="inf"),
+    ),
+    "ids of other rows": (CHANGED, shifted),
+    "digits that say nothing": (NO_DIGIT, lambda rows: changed(rows, 0, VAX="0E9")),
+    "a number off": (
+        DISAGREES,
+        lambda rows: changed(rows, 0, WBF=repr(float(rows[0]["WBF"]) * (1 + 1e-9))),
+    ),
 }
+"""What is wrong -> what is said of it, and the table."""
 
 
-@pytest.mark.parametrize(
-    "change", long_but(WRONG, kept=range(5)), ids=lambda change: change.__name__
-)
-def test_what_is_wrong_does_not_pass(
-    kit: Path, answers: Table, tmp_path: Path, change: Callable[[Table], Table]
-) -> None:
+@pytest.mark.parametrize("what", WRONG)
+def test_what_is_wrong_does_not_pass(kit: Path, answers: Table, tmp_path: Path, what: str) -> None:
+    reason, change = WRONG[what]
     done = judged(kit, tmp_path / "theirs.csv", change(answers))
-    assert not done.conforms
-    reasons = {verdict.reason for verdict in done.failures}
-    assert (WRONG[change] in reasons) if WRONG[change] else done.strays
-    assert "does not conform" in done.badge
+    assert not done.passes()
+    assert reason in ([DISAGREES] if done.differing else done.not_compared)
+    assert reason == STRAY or reason in {verdict.reason for verdict in done.kit.failures}
+    assert "does not conform" in done.kit.badge
 
 
 @pytest.mark.long
@@ -177,7 +163,7 @@ def test_every_vector_is_judged_by_itself(kit: Path, answers: Table, tmp_path: P
         if "singular" in row["comment"] or "stale" in row["comment"]:
             continue
         done = judged(kit, tmp_path / "theirs.csv", [*answers[:at], changed, *answers[at + 1 :]])
-        assert [verdict.vector.id for verdict in done.failures] == [row["id"]], row["comment"]
+        assert [one.vector.id for one in done.kit.failures] == [row["id"]], row["comment"]
         if at > 4:
             break
 
@@ -189,45 +175,48 @@ def test_a_kit_that_was_changed_is_refused(kit: Path, answers: Table, tmp_path: 
     first = names["vectors.csv"].split(b"\n")[1]
     easier = names["vectors.csv"].replace(first, first.replace(b",6,", b",4,"))
     about = json.loads(names["KIT.json"])
-    again = {**about, "sha256": {"vectors.csv": hashlib.sha256(easier).hexdigest()}}
-    hostile = {
-        "not the file": {"vectors.csv": easier},
-        "not the vector": {"vectors.csv": easier, "KIT.json": json.dumps(again).encode()},
-        "not a JSON object": {"KIT.json": b"[1]"},
-        "this version judges": {"KIT.json": json.dumps({**about, "kit": "vectors/1"}).encode()},
-        "no seed": {"KIT.json": json.dumps({**about, "vectors": -1}).encode()},
-        "has 96 vectors": {"KIT.json": json.dumps({**about, "vectors": 90}).encode()},
-    }
-    for number, (says, changed) in enumerate(hostile.items()):
-        place = tmp_path / f"{number}.zip"
+    hashes = {"vectors.csv": hashlib.sha256(easier).hexdigest()}
+    for says, vectors, changes in (
+        ("not hold the vectors of seed 1988", easier, {}),
+        ("not hold the vectors of seed 1988", easier, {"sha256": hashes}),
+        ("not hold the vectors of seed 1988", names["vectors.csv"], {"vectors": 90}),
+        ("not hold the vectors of seed 1988", b"id", {"vectors": 0}),
+        ("not hold the vectors of seed 3", names["vectors.csv"], {"seed": 3}),
+        ("has no seed", names["vectors.csv"], {"seed": None}),
+        ("this version judges", names["vectors.csv"], {"kit": "vectors/1"}),
+        ("not a JSON object", names["vectors.csv"], None),
+    ):
+        place = tmp_path / "changed.zip"
+        record = [1] if changes is None else {**about, **changes}
         with zipfile.ZipFile(place, "w") as archive:
-            for name, data in {**names, **changed}.items():
-                archive.writestr(name, data)
+            archive.writestr("vectors.csv", vectors)
+            archive.writestr("KIT.json", json.dumps(record))
         with pytest.raises(UserError, match=says):
-            check_conformance(str(place), str(theirs), "csv")
+            compare(theirs, kit=str(place))
     for place in (tmp_path / "nowhere", theirs):
         with pytest.raises(UserError):
-            check_conformance(str(place), str(theirs), "csv")
+            compare(theirs, kit=str(place))
 
 
 def test_the_command(kit: Path, answers: Table, tmp_path: Path) -> None:
     theirs, junit = tmp_path / "theirs.csv", tmp_path / "junit.xml"
-    theirs.write_text(written(a_number_off(answers)), encoding="utf-8")
-    done = impact88("compare", "--kit", str(kit), str(theirs), "--junit", str(junit), "--json")
+    theirs.write_text(written(WRONG["a number off"][1](answers)), encoding="utf-8")
+    judge = ["compare", "--kit", str(kit), "--no-causes"]
+    done = impact88(*judge, str(theirs), "--junit", str(junit), "--json")
     assert done.returncode == 1, done.stderr
     found = json.loads(done.stdout)
-    jsonschema.Draft202012Validator(json.loads(schemas.text("conformance"))).validate(found)
-    assert set(found) == set(json.loads(schemas.text("conformance"))["properties"])
-    assert (found["passed"], found["failed"]) == (COUNT - 1, 1)
-    assert found["failures"][0]["reason"] == "differs"
+    jsonschema.Draft202012Validator(json.loads(schemas.text("compare"))).validate(found)
+    assert set(found) == set(json.loads(schemas.text("compare"))["properties"])
+    assert (found["kit"]["passed"], found["kit"]["failed"]) == (COUNT - 1, 1)
+    assert found["kit"]["failures"][0]["reason"] == DISAGREES
     suite = ElementTree.parse(junit).getroot()
     assert (suite.get("tests"), suite.get("failures")) == (str(COUNT), "1")
     theirs.write_text(written(answers), encoding="utf-8")
-    done = impact88("compare", "--kit", str(kit), "-", input=theirs.read_text(encoding="utf-8"))
+    done = impact88(*judge, "-", input=theirs.read_text(encoding="utf-8"))
     assert done.returncode == 0, done.stdout
     assert done.stdout.splitlines()[-1].startswith("impact88 vectors/2 seed 1988: conforms, 96 of")
     for more in (("--set", "EM=1"), ("--rtol", "1e-9"), ("--units", "us")):
-        done = impact88("compare", "--kit", str(kit), str(theirs), *more)
+        done = impact88(*judge, str(theirs), *more)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1)
 
 

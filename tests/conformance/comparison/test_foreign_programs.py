@@ -17,7 +17,6 @@ import wrongprograms
 from wrongprograms import FOREIGN, Wrong
 
 from impact88.conformance.comparison.compare import Comparison, compare
-from impact88.conformance.comparison.conformance import check_conformance
 from impact88.conformance.comparison.vectors import FAILURE, FROZEN_ID, frozen, scenes
 from impact88.names import FINAL_VELOCITIES, SCENE
 
@@ -147,10 +146,9 @@ def test_a_program_in_any_language_conforms_to_the_frozen_set(tmp_path, program:
         writer.writerow([vector["id"], *scene, *(column[place] for column in answers.values())])
     path = tmp_path / "theirs.csv"
     path.write_text(out.getvalue(), encoding="utf-8")
-    done = check_conformance(FROZEN_ID, str(path), "csv")
-    failures = [(x.vector.label, x.reason, x.detail) for x in done.failures]
-    assert done.conforms, failures[:5]
-    assert done.badge.startswith(f"impact88 vectors {FROZEN_ID}: conforms, 1000 of 1000")
+    done = compare(path, kit=FROZEN_ID)
+    assert done.passes(), done.kit.failures[:5]
+    assert done.kit.badge.startswith(f"impact88 vectors {FROZEN_ID}: conforms, 1000 of 1000")
 
 
 @pytest.mark.parametrize("mistake", MISTAKES if SWEEP else FEW, ids=str)

@@ -1,14 +1,15 @@
 """Compare another implementation's results with ours, row by row, and explain the differences.
 
 `agreement` grades each result by the scene's condition; `diagnosis` explains differences. Rows that
-could not be compared are counted by reason.
+could not be compared are counted by reason. Of a kit, `answers` finds each row's vector: its scene
+is then compared, every result is due, and so is every vector.
 """
 
 import os
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -17,21 +18,41 @@ from numpy.typing import NDArray
 
 from ...collision.doubles import double
 from ...collision.mappings import texts
-from ...errors import UserError, quoted
+from ...errors import UserError, one_line, quoted
 from ...files import display_name
 from ...messages.arguments import explains_arguments
 from ...messages.plaintable import plain
 from ...messages.progress import progress
-from ...names import DEFAULT_M, RESULTS, SCENE
+from ...names import DEFAULT_M, FINAL_VELOCITIES, RESULTS, SCENE
 from ...tables.cells import TableUnits, check_scene_columns, numbers
 from ...tables.formats import FORMATS
-from ...tables.rows import BadCell, Reader, Rows
+from ...tables.rows import BadCell, Column, Reader, Rows
 from ...tables.table import format_of, open_reader
 from . import agreement
 from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, ComparedRows
 from .diagnosis import Diagnosis, TableCause, Unexplained
+from .reasons import (
+    AGREEMENT,
+    DISAGREES,
+    HARMLESS,
+    MISSING,
+    NO_DIGIT,
+    NO_RESULT,
+    NO_SCENE,
+    NOTHING_HERE,
+    NOTHING_THERE,
+    PARTIAL,
+    REASONS,
+    REFUSED,
+    UNREADABLE,
+    describe,
+)
 from .tablehypotheses import AGREES, UNKNOWN, TableHypothesis
 from .vectors import FAILURE, FROZEN_ID
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from .answers import KitAnswers
 
 MAX_ROWS_KEPT = 20_000
 """Rows that disagree from which a search starts; with its causes the rest is judged as it is read,
@@ -42,20 +63,6 @@ NOT_COMPARED = ("STATUS", "COND")  # result columns
 POSITIVE = ("MA", "MB", "IA", "IB")  # a scene has no other
 CARRIED = ("id", "class", "label", "expect", "flags", "comment")
 """Columns of test vectors that identify the row."""
-
-NO_RESULT = "no result on either side: theirs refuses, and so does the mathematics"
-NOTHING_HERE = "theirs gives numbers where the equations have no solution"
-NO_SCENE = (
-    "theirs gives numbers although a mass or a moment of inertia is not positive; "
-    "a program leaves the cells empty"
-)
-NOTHING_THERE = "theirs gives nothing where there is a result"
-REFUSED = "theirs refuses a vector of the class failure, as it may"
-UNREADABLE = "the row could not be read"
-NO_DIGIT = "a number shares no digit with ours, where rounding or the digits written leave none"
-REASONS = (UNREADABLE, NO_RESULT, NO_SCENE, NOTHING_HERE, REFUSED, NO_DIGIT, NOTHING_THERE)
-HARMLESS = (NO_RESULT, REFUSED)
-"""Reasons that are no fault of the program."""
 
 
 class Row(NamedTuple):
@@ -83,6 +90,10 @@ class Row(NamedTuple):
     ours: float
     relative: float
     cause: str
+
+    def __str__(self) -> str:
+        theirs = one_line(self.theirs, 40)
+        return f"{self.result} {theirs}, here {self.ours:.12g}, off by {self.relative:.2g}"
 
 
 @dataclass
@@ -208,6 +219,8 @@ class Comparison:
         Of a workbook, the sheet and the row of the headings.
     remarks : list of str
         How the headings were understood.
+    kit : KitAnswers or None
+        The verdict on each vector, where the table was judged as answers to a kit.
 
     Examples
     --------
@@ -234,6 +247,7 @@ class Comparison:
     unknown: dict[str, str] = field(default_factory=dict)
     place: dict[str, Any] = field(default_factory=dict)
     remarks: list[str] = field(default_factory=list)
+    kit: "KitAnswers | None" = None
 
     @property
     def worst(self) -> list[Row]:
@@ -246,7 +260,7 @@ class Comparison:
         messages = [f"column {name} not recognised" for name in self.unknown]
         for reason, skipped_rows in self.not_compared.items():
             if reason not in HARMLESS:
-                messages.append(f"{skipped_rows.rows} rows not compared: {reason}")
+                messages.append(describe(reason, skipped_rows.rows))
         for name, tally in self.tallies.items():
             if tally.missing:
                 messages.append(
@@ -259,23 +273,38 @@ class Comparison:
         """The counts and the commonest cause, in one line."""
         rows = f"{self.rows} row{'s' if self.rows != 1 else ''}"
         line = f"{rows}: {self.agreeing} agree, {self.differing} disagree"
-        refused_rows = sum(
-            self.not_compared[name].rows for name in HARMLESS if name in self.not_compared
-        )
-        if refused_rows:
-            line += f", {refused_rows} refused"
-        if skipped_rows := sum(group.rows for group in self.not_compared.values()) - refused_rows:
-            line += f", {skipped_rows} not compared"
+        counts = {reason: group.rows for reason, group in self.not_compared.items()}
+        missing = counts.pop(MISSING, 0)
+        refused = sum(counts.pop(reason, 0) for reason in HARMLESS)
+        others = {"refused": refused, "missing": missing, "not compared": sum(counts.values())}
+        line += "".join(f", {count} {word}" for word, count in others.items() if count)
         for cause, count in self.causes.most_common(1):
             is_cause = not cause.startswith(AGREES)
             line += f"; likely cause of {count}: {cause}" if is_cause else f"; {count}: {cause}"
         return line
 
+    def passes(self, strict: bool = False) -> bool:
+        """Return True if nothing disagrees and every row could be read; of a kit, if every vector
+        passes.
+
+        Parameters
+        ----------
+        strict : bool, default False
+            Rows, cells and columns that were not compared fail.
+
+        Returns
+        -------
+        bool
+        """
+        if self.kit is not None:
+            return self.kit.conforms
+        return not (self.differing or self.bad or (strict and self.silent))
+
     def write_junit(self, path: str, name: str, strict: bool) -> None:
         """Write the comparison as a JUnit report.
 
         A failing test for every row that disagrees, one test for those that agree, one for each
-        reason why rows were not compared.
+        reason why rows were not compared. Of a kit, a test for every vector, with its class.
 
         Parameters
         ----------
@@ -286,16 +315,19 @@ class Comparison:
         """
         from .junit import Test, write  # XML takes 4 ms to import
 
+        if self.kit is not None:
+            properties = {f"kit.{key}": str(value) for key, value in self.kit.identity.items()}
+            write(path, f"impact88 compare --kit, {name}", self.kit.tests(), **properties)
+            return
         tests = [Test(f"{self.agreeing} of {self.rows} rows agree")]
         for row in self.differences:
             place = f"row {row.row}" + (f", id {row.id}" if row.id else "")
-            says = f"{row.result} {row.theirs}, here {row.ours:.12g}, off by {row.relative:.2g}"
-            tests.append(Test(place, "failure", f"{says}; {row.cause}"))
+            tests.append(Test(place, "failure", f"{row}; {row.cause}"))
         tests += [Test(f"row {bad.row}", "error", str(bad)) for bad in self.bad]
         tests += [Test(says, "failure" if strict else "skipped", says) for says in self.silent]
         for reason in HARMLESS:
             if skipped_rows := self.not_compared.get(reason):
-                tests.append(Test(f"{skipped_rows.rows} rows: {reason}", "skipped", reason))
+                tests.append(Test(describe(reason, skipped_rows.rows), "skipped", reason))
         write(path, f"impact88 compare {name}", tests)
 
     def as_json(self) -> dict[str, Any]:
@@ -335,6 +367,8 @@ class Comparison:
             "table": self.place,
             "remarks": self.remarks,
         }
+        if self.kit is not None:
+            fields["kit"] = self.kit.as_json()
         return {name: plain(value) for name, value in fields.items()}
 
 
@@ -347,6 +381,7 @@ def compare(
     encoding: str | None = None,
     units: str | None = None,
     causes: bool = True,
+    kit: str | None = None,
 ) -> Comparison:
     """Compare a table of scenes and results, block by block.
 
@@ -368,6 +403,9 @@ def compare(
         System of units of columns whose heading names no unit.
     causes : bool, default True
         Look for causes where rows disagree.
+    kit : str, optional
+        A kit of test vectors that the table answers, by their ids: its folder, its archive (.zip),
+        or the id of the frozen set. The scenes are the kit's, and every vector must be answered.
 
     Returns
     -------
@@ -377,7 +415,8 @@ def compare(
     Raises
     ------
     UserError
-        When the table has no result column or does not give a whole scene.
+        When the table has no result column or does not give a whole scene; with a kit, when that
+        cannot be read, or the table lacks ids or a final velocity.
 
     Examples
     --------
@@ -388,44 +427,70 @@ def compare(
     """
     if values is not None and not isinstance(values, Mapping):
         raise UserError(f"values is {quoted(values)}; expected a mapping of names to values")
+    if kit is not None and (values or units or rtol is not None):
+        says = "a kit has scenes, units and tolerances of its own"
+        raise UserError(f"{says}; expected no --set, --units or --rtol with it")
     values = texts(values or {})
     if format is not None and format not in FORMATS:
         raise UserError(f"format is {quoted(format)}; expected one of {' '.join(FORMATS)}")
     if rtol is not None and not (isinstance(rtol, int | float) and 0 <= rtol < 1):
         raise UserError(f"rtol is {quoted(rtol)}; expected a share such as 1e-9")
-    for name, text in (("encoding", encoding), ("units", units)):
+    for name, text in (("encoding", encoding), ("units", units), ("kit", kit)):
         if text is not None and not isinstance(text, str):
             raise UserError(f"{name} is {quoted(text)}; expected a text")
     comparison = Comparison()
+    answers = comparison.kit = None if kit is None else _read_answers(kit)
     search = _Search(comparison) if causes else None
-    with open_table(table, format, encoding) as (reader, where):
+    with _open_table(table, format, encoding, answers) as (reader, where):
         comparison.place, comparison.remarks = reader.place, reader.remarks
-        results, unknown = result_columns(reader)
+        results, unknown = _result_columns(reader)
         comparison.unknown = unknown
-        if not results:
+        if answers is not None:
+            if missing := [name for name in ("id", *FINAL_VELOCITIES) if name not in reader.names]:
+                wanted = f"the kit's id and all of {' '.join(FINAL_VELOCITIES)}"
+                raise UserError(f"no column {' '.join(missing)}; expected {wanted}", where)
+        elif not results:
             hints = [f"{name} for {column}" for name, column in unknown.items() if column]
             hint = f" ({', '.join(hints)}?)" if hints else ""
             says = f"no column of results{hint}; expected some of {' '.join(RESULTS)}, beside the "
             raise UserError(f"{says}scene's", where)
-        advice = "--set NAME=VALUE"
-        if "id" in reader.names:
-            advice = f"where ids stand for the scenes of a kit, add --kit {FROZEN_ID}; {advice}"
-        check_scene_columns({*reader.names, *values}, advice=advice, where=where)
+        else:
+            advice = "--set NAME=VALUE"
+            if "id" in reader.names:
+                advice = f"where ids stand for the scenes of a kit, add --kit {FROZEN_ID}; {advice}"
+            check_scene_columns({*reader.names, *values}, advice=advice, where=where)
         comparison.tallies = {name: Tally() for name in results}
-        for rows, table_units in read_blocks(reader, results, where, units):
-            scene = _scene_of(rows, values, table_units)
-            block = compare_block(rows, scene, results, table_units, rtol)
+        for rows, table_units in _read_blocks(reader, results, where, units):
+            if answers is not None:
+                question = answers.find(rows, table_units)
+            else:
+                scene = _scene_of(rows, values, table_units)
+                question = Question(scene, rows.columns.get("class"), rows.columns.get("label"))
+            block = _compare_block(rows, question, results, table_units, rtol)
             agreeing = block.agreeing[: max(0, MAX_AGREEING_KEPT - comparison.agreeing)]
             _count(block, comparison)
+            if answers is not None:
+                answers.add(rows, block.reasons, _details(block))
             if search is not None:
                 kept = np.sort(np.concatenate([block.differing, agreeing]))
                 search.add(block.case.select_rows(kept))
-    if not any(tally.compared for tally in comparison.tallies.values()):
+    if answers is not None:
+        labels = [verdict.vector.label for verdict in answers.verdicts if not verdict.row]
+        _skip(comparison, MISSING, [0] * len(labels), labels)
+    elif not any(tally.compared for tally in comparison.tallies.values()):
         raise UserError("no result could be compared", where)
     if search is not None and comparison.differing:
         search.finish()
         comparison.causes.update(row.cause for row in comparison.differences)
     return comparison
+
+
+def _read_answers(kit: str) -> "KitAnswers":
+    """Return the verdicts on a kit's vectors, of which none is answered yet."""
+    from .answers import KitAnswers  # archives take 10 ms to import
+    from .kit import read_kit
+
+    return KitAnswers(read_kit(kit))
 
 
 class _Search:
@@ -472,14 +537,15 @@ class _Search:
 
 
 @contextmanager
-def open_table(
-    table: Any, format: str | None, encoding: str | None
+def _open_table(
+    table: Any, format: str | None, encoding: str | None, answers: "KitAnswers | None"
 ) -> Iterator[tuple[Reader, str]]:
     """Open a table's file or a data frame; yields the reader, and the table's name in messages.
     Raises UserError."""
     if isinstance(table, str | os.PathLike):
         path = os.fspath(table)
-        with open_reader(path, format_of(path, format), encoding, True) as reader:
+        hashed = nullcontext(path) if answers is None else answers.hash_table(path)
+        with hashed as copy, open_reader(copy, format_of(path, format), encoding, True) as reader:
             yield reader, display_name(path)
         return
     from ...tables.frames import read_frame
@@ -503,28 +569,42 @@ def _result_meant(name: str) -> str:
     return next(iter(get_close_matches(upper, columns, 1, 0.75)), "")
 
 
+class Question(NamedTuple):
+    """What rows of a table answer.
+
+    ``scene``: columns of n; ``classes``, ``labels``: of test vectors, where the rows have them;
+    ``refusals``: of a kit's vectors, why a row is not compared (its place in `REASONS`, or 0).
+    """
+
+    scene: Mapping[str, NDArray[np.float64]]
+    classes: Column | None
+    labels: Column | None
+    refusals: NDArray[np.intp] | None = None
+
+
 class Block(NamedTuple):
-    """Some rows of a table, compared: grades and relative differences are (results, rows)."""
+    """Some rows of a table, compared: grades and relative differences are (results, rows);
+    ``reasons``: the place in `REASONS` of what is said of each row, 0 where it agrees."""
 
     rows: Rows
-    scene: Mapping[str, NDArray[np.float64]]
+    question: Question
     case: ComparedRows
     grades: NDArray[np.intp]
     relative: NDArray[np.float64]
+    reasons: NDArray[np.intp]
 
     @property
     def differing(self) -> NDArray[np.intp]:
         """The rows with a result that disagrees."""
-        return np.flatnonzero((self.grades == DIFFER).any(0))
+        return np.flatnonzero(self.reasons == REASONS.index(DISAGREES))
 
     @property
     def agreeing(self) -> NDArray[np.intp]:
         """The rows that could be compared, and agree."""
-        is_judged = ((self.grades > ABSENT) & (self.grades < LOST)).any(0)
-        return np.flatnonzero(is_judged & ~np.isin(self.grades, (DIFFER, LOST)).any(0))
+        return np.flatnonzero(self.reasons == 0)
 
 
-def result_columns(reader: Reader) -> tuple[list[str], dict[str, str]]:
+def _result_columns(reader: Reader) -> tuple[list[str], dict[str, str]]:
     """Return a table's columns of results that are compared, and those that are not recognised,
     with the name that was probably meant, or ""."""
     results = [str(n) for n in reader.names if n in RESULTS and n not in NOT_COMPARED]
@@ -532,8 +612,8 @@ def result_columns(reader: Reader) -> tuple[list[str], dict[str, str]]:
     return results, {str(n): _result_meant(str(n)) for n in reader.names if n not in known}
 
 
-def read_blocks(
-    reader: Reader, results: Sequence[str], where: str, units: str | None = None
+def _read_blocks(
+    reader: Reader, results: Sequence[str], where: str, units: str | None
 ) -> Iterator[tuple[Rows, TableUnits]]:
     """Yield a table's rows, some at a time, with the units of its columns; shows the progress."""
     table_units: TableUnits | None = None
@@ -547,21 +627,54 @@ def read_blocks(
 
 
 @np.errstate(all="ignore")
-def compare_block(
+def _compare_block(
     rows: Rows,
-    scene: Mapping[str, NDArray[np.float64]],
+    question: Question,
     results: Sequence[str],
     units: TableUnits,
-    rtol: float | None = None,
+    rtol: float | None,
 ) -> Block:
-    """Compare rows of a table with our results for scenes (columns of n). Of a row with a cell that
-    could not be read, no result is compared."""
+    """Compare rows of a table with our results. Of a row with a cell that could not be read, or
+    that does not answer its vector, no result is compared."""
     theirs = {name: agreement.read_theirs(rows, name, units) for name in results}
-    unreadable = [index for index, *_ in rows.bad]
+    refusals = np.zeros(rows.count, int) if question.refusals is None else question.refusals
+    refusals[[index for index, *_ in rows.bad]] = REASONS.index(UNREADABLE)
     for column, _ in theirs.values():
-        column[unreadable] = np.nan
-    case = agreement.make_case(scene, theirs, rtol, rows.first)
-    return Block(rows, scene, case, *case.grade())
+        column[refusals > 0] = np.nan
+    case = agreement.make_case(question.scene, theirs, rtol, rows.first)
+    grades, relative = case.grade()
+    reasons = np.where(refusals > 0, refusals, _reasons(question, case, grades))
+    return Block(rows, question, case, grades, relative, reasons)
+
+
+def _reasons(question: Question, case: ComparedRows, grades: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return what is said of each row, as a place in `REASONS`."""
+    given, due = np.isfinite(case.values), np.isfinite(case.ours)
+    has_answer, is_solvable, is_lost = given.any(0), due.any(0), (grades == LOST).any(0)
+    may_refuse = is_partial = np.zeros(has_answer.size, bool)
+    if question.classes is not None:
+        may_refuse = np.array([str(kind) == FAILURE for kind in question.classes], bool)
+    is_excess = ~is_solvable & has_answer
+    if question.refusals is not None:
+        # of a kit every result is due, and no number where there is none, an infinite one included
+        is_final = [name in FINAL_VELOCITIES for name in case.names]
+        must_refuse = may_refuse & ~due[is_final].all(0)
+        is_excess |= (~np.isnan(case.values) & (~due | must_refuse)).any(0)
+        is_partial = np.asarray((due & ~given).any(0) & has_answer)
+    is_positive = np.all([question.scene[name] > 0 for name in POSITIVE], 0)
+    # the first that holds is said
+    rows_by_reason = {
+        DISAGREES: (grades == DIFFER).any(0),
+        NO_SCENE: is_excess & ~is_positive,
+        NOTHING_HERE: is_excess,
+        PARTIAL: is_partial,
+        AGREEMENT: ((grades > ABSENT) & (grades < LOST)).any(0) & ~is_lost,
+        NO_RESULT: ~is_solvable,
+        REFUSED: ~has_answer & may_refuse,
+        NO_DIGIT: is_lost,
+    }
+    places = [REASONS.index(reason) for reason in rows_by_reason]
+    return np.select(list(rows_by_reason.values()), places, REASONS.index(NOTHING_THERE))
 
 
 def _scene_of(
@@ -586,43 +699,23 @@ def _count(block: Block, comparison: Comparison) -> None:
     for place, tally in enumerate(comparison.tallies.values()):
         tally.add(grades[place], block.relative[place])
         tally.missing += int((is_solved[place] & (grades[place] == ABSENT)).sum())
-    _count_not_compared(block, comparison)
+    for code in np.unique(block.reasons).tolist():
+        if REASONS[code] not in (AGREEMENT, DISAGREES):
+            places = np.flatnonzero(block.reasons == code).tolist()
+            labels = block.question.labels
+            row_labels = [] if labels is None else [str(labels[place]) for place in places]
+            _skip(comparison, REASONS[code], [rows.first + place for place in places], row_labels)
     _count_elimination(block, comparison.elimination)
     comparison.differences += _rows_of(block)
 
 
-def _count_not_compared(block: Block, comparison: Comparison) -> None:
-    """Count a block's rows that were not compared, by reason."""
-    rows, case, grades = block.rows, block.case, block.grades
-    unreadable = np.zeros(rows.count, bool)
-    unreadable[[index for index, *_ in rows.bad]] = True
-    skipped_rows = np.ones(rows.count, bool)
-    skipped_rows[np.concatenate([block.differing, block.agreeing])] = False
-    if not skipped_rows.any():
-        return
-    solvable, has_answer = np.isfinite(case.ours).any(0), np.isfinite(case.values).any(0)
-    kinds = rows.columns.get("class", [""] * rows.count)
-    refused_rows = solvable & ~has_answer & np.array([str(kind) == FAILURE for kind in kinds], bool)
-    positive = np.all([block.scene[name] > 0 for name in POSITIVE], 0)
-    lost = (grades == LOST).any(0)
-    conditions = (
-        unreadable,
-        ~solvable & ~has_answer,
-        ~solvable & ~positive,
-        ~solvable,
-        refused_rows,
-    )
-    reasons = np.select((*conditions, lost), REASONS[:-1], REASONS[-1])
-    labels = rows.columns.get("label")
-    for reason in REASONS:
-        places = np.flatnonzero(skipped_rows & (reasons == reason))
-        if places.size:
-            group = comparison.not_compared.setdefault(reason, Skipped())
-            group.rows += places.size
-            group.first = (group.first + (rows.first + places).tolist())[:MAX_ROWS_LISTED]
-            if labels is not None:
-                row_labels = dict.fromkeys(str(labels[place]) for place in places.tolist())
-                group.labels += [label for label in row_labels if label not in group.labels]
+def _skip(comparison: Comparison, reason: str, rows: Sequence[int], labels: Sequence[str]) -> None:
+    """Count rows that were not compared; of one that the table lacks the number is 0."""
+    if rows:
+        group = comparison.not_compared.setdefault(reason, Skipped())
+        group.rows += len(rows)
+        group.first = [*group.first, *filter(None, rows)][:MAX_ROWS_LISTED]
+        group.labels = list(dict.fromkeys([*group.labels, *labels]))
 
 
 def _count_elimination(block: Block, elimination: Elimination) -> None:
@@ -655,3 +748,13 @@ def _rows_of(block: Block) -> Iterator[Row]:
             relative=relative[place],
             cause=UNKNOWN,
         )
+
+
+def _details(block: Block) -> dict[int, str]:
+    """Return the results at fault, by row, of the rows that do not agree."""
+    case, names = block.case, np.array(block.case.names)
+    given, due = ~np.isnan(case.values), np.isfinite(case.ours)
+    at_fault = (given ^ due) | (block.grades == LOST)
+    places = np.flatnonzero(block.reasons).tolist()
+    details = {block.rows.first + place: " ".join(names[at_fault[:, place]]) for place in places}
+    return details | {row.row: str(row) for row in _rows_of(block)}

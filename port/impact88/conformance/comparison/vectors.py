@@ -6,18 +6,15 @@ any machine.
 """
 
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from itertools import count as count_from
 from itertools import islice
 from math import cos, radians, sin
 from random import Random
 from typing import Any
 
-import numpy as np
-
 from ...collision.doubles import doubles_of
 from ...files import packaged_bytes
-from ...mechanics.closedform.solve import solve
 from ...messages.schemas import with_schema
 from ...names import FINAL_VELOCITIES, SCENE
 from .oracle import BATCH, oracle
@@ -74,14 +71,8 @@ def vectors(
             yield with_schema("vectors", head | answer)
 
 
-def expectation(kind: str, scene: Mapping[str, str]) -> str:
-    """Return what is expected of a program for a scene of a class: an answer, a refusal or either;
-    for failures it depends on whether the scene has final velocities."""
-    finals = solve(doubles_of(scene), FINAL_VELOCITIES)
-    return _expected_answer(kind, all(np.isfinite(finals[name]) for name in FINAL_VELOCITIES))
-
-
 def _expected_answer(kind: str, has_solution: bool) -> str:
+    """Return what is expected of a program: an answer, a refusal or either."""
     if kind != FAILURE:
         return ANSWER
     return EITHER if has_solution else REFUSE

@@ -19,9 +19,10 @@ says what it did not look for.
 What could not be compared is listed on standard error; rows that theirs refuses where there is
 no result, or that are vectors of the class failure, are counted as refused.
 
-With --kit DIR the table is judged as answers to the vectors of that kit (impact88 oracle --kit):
-every id once, its inputs bit for bit, all final velocities, an answer where one is due and no
-number where there is none. It prints a result per class and label and one line for a badge.
+With --kit DIR the table is judged as answers to the vectors of that kit (impact88 oracle --kit),
+whose scenes need not be in it: every id once, inputs that are given bit for bit, all final
+velocities, every result where one is due and no number where there is none. It prints a result per
+class and label, too, and one line for a badge.
 
 Conventions (axes, signs, units, how close is close, vector classes): impact88 schema conventions.
 
@@ -39,11 +40,11 @@ or was not compared; with --kit: a vector does not pass); 2 bad input
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Iterator
 
 from ...conformance.comparison.agreement import EQUATIONS
-from ...conformance.comparison.compare import HARMLESS, Comparison, compare
+from ...conformance.comparison.compare import Comparison, Skipped, compare
+from ...conformance.comparison.reasons import HARMLESS, describe
 from ...errors import UserError, note, one_line
 from ...files import display_name
 from ...mechanics.accuracy.errorbound import DOUBLE
@@ -52,11 +53,12 @@ from . import options
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from ...conformance.comparison.conformance import Conformance
+    from ...conformance.comparison.answers import KitAnswers
     from ...conformance.comparison.diagnosis import TableCause
 
 MAX_BAD_ROWS_LISTED = 20  # one screenful
-MAX_VECTORS_LISTED = 5  # for each reason why some do not pass
+MAX_LABELS = 10  # listed for each reason; all of them stand in --json
+MAX_VECTORS_LISTED = 5  # of a kit, for each reason why some do not pass
 
 ARGUMENTS = (
     options.reads("theirs", "THEIRS", "the table (- is standard input, CSV)"),
@@ -95,82 +97,49 @@ def main(args: options.Args) -> int:
     if args.rtol is not None and not 0 <= args.rtol < 1:
         raise UserError(f"--rtol is {args.rtol}; expected a share such as 1e-9")
     format = format_of(args.theirs, args.format)
-    result: Comparison | Conformance
-    if args.kit is None:
-        result = compare(
-            args.theirs, format, values, args.rtol, args.encoding, args.units, not args.no_causes
-        )
-        schema, lines = "compare", _lines(result)
-        is_adverse = bool(result.differing or result.bad or (args.strict and result.silent))
-    else:
-        from ...conformance.comparison.conformance import check_conformance  # its archives: 10 ms
-
-        for option, value in (("--set", args.set), ("--units", args.units), ("--rtol", args.rtol)):
-            if value:
-                raise UserError(
-                    f"{option}: a kit's inputs and tolerances are its own; expected none"
-                )
-        result = check_conformance(args.kit, args.theirs, format, args.encoding)
-        schema, lines, is_adverse = "conformance", _conformance_lines(result), not result.conforms
+    comparison = compare(
+        args.theirs,
+        format,
+        values,
+        args.rtol,
+        args.encoding,
+        args.units,
+        not args.no_causes,
+        args.kit,
+    )
     if args.junit:
-        result.write_junit(args.junit, display_name(args.theirs), args.strict)
-    options.show(args, schema, result.as_json, lambda: lines)
-    for line in _notes(result):
+        comparison.write_junit(args.junit, display_name(args.theirs), args.strict)
+    options.show(args, "compare", comparison.as_json, lambda: _lines(comparison))
+    for line in _notes(comparison):
         note("compare", line)
-    return int(is_adverse)
+    return int(not comparison.passes(args.strict))
 
 
-def _conformance_lines(done: Conformance) -> Iterator[str]:
-    from ...conformance.comparison.conformance import REASONS
-
-    yield f"{'class':<30}  passed  failed"
-    for name, count in done.counts("kind").items():
-        yield f"{name:<30}  {count['passed']:>6}  {count['failed']:>6}"
-    yield f"of those that pass, {done.refused} are refused, as they may be"
-    if done.failures:
-        yield f"\n{'label':<30}  passed  failed"
-        for name, count in done.counts("label").items():
-            if count["failed"]:
-                yield f"{name:<30}  {count['passed']:>6}  {count['failed']:>6}"
-    reasons = Counter(verdict.reason for verdict in done.failures)
-    for reason, failures in reasons.most_common():
-        yield f"\n{failures} vectors: {REASONS[reason]}"
-        for verdict in [v for v in done.failures if v.reason == reason][:MAX_VECTORS_LISTED]:
-            place = f"row {verdict.row}" if verdict.row else "no row"
-            detail = f": {one_line(verdict.detail, 100)}" if verdict.detail else ""
-            yield f"  {verdict.vector.id} ({verdict.vector.label}), {place}{detail}"
-    if done.strays:
-        yield f"\n{len(done.strays)} rows are no vector's"
-        yield from (f"  {stray}" for stray in done.strays[:MAX_VECTORS_LISTED])
-    if done.failures:
-        yield "\nimpact88 compare without --kit looks for the cause"
-    yield f"\n{done.badge}"
-
-
-def _notes(judged: Comparison | Conformance) -> Iterator[str]:
+def _notes(comparison: Comparison) -> Iterator[str]:
     """Yield the notes for stderr: how the table was read, what could not be or was not compared."""
-    yield from judged.remarks
-    for name, suggestion in list(judged.unknown.items())[:MAX_BAD_ROWS_LISTED]:
+    yield from comparison.remarks
+    for name, suggestion in list(comparison.unknown.items())[:MAX_BAD_ROWS_LISTED]:
         hint = f"; did you mean {suggestion}? (a unit stands in brackets: {suggestion} [mph])"
         yield f"column {name} is not recognised{hint * bool(suggestion)}"
-    if len(judged.unknown) > MAX_BAD_ROWS_LISTED:
-        yield f"and {len(judged.unknown) - MAX_BAD_ROWS_LISTED} more columns are not recognised"
-    if isinstance(judged, Comparison):
-        yield from _comparison_notes(judged)
-
-
-def _comparison_notes(comparison: Comparison) -> Iterator[str]:
+    if len(comparison.unknown) > MAX_BAD_ROWS_LISTED:
+        yield f"and {len(comparison.unknown) - MAX_BAD_ROWS_LISTED} more columns are not recognised"
     yield from map(str, comparison.bad[:MAX_BAD_ROWS_LISTED])
     if len(comparison.bad) > MAX_BAD_ROWS_LISTED:
         yield f"and {len(comparison.bad) - MAX_BAD_ROWS_LISTED} more"
     for reason, count in comparison.not_compared.items():
-        if reason not in HARMLESS:
+        if reason not in HARMLESS and count.first:
             first = ", ".join(map(str, count.first[:5])) + (", ..." if count.rows > 5 else "")
-            labels = f" (labels: {', '.join(count.labels)})" if any(count.labels) else ""
-            yield f"{count.rows} rows not compared ({first}): {reason}{labels}"
+            yield f"{describe(reason, count.rows, f' ({first})')}{_labels(count)}"
     for name, tally in comparison.tallies.items():
         if tally.missing:
             yield f"{tally.missing} cells of {name} are empty where there is a result"
+
+
+def _labels(count: Skipped) -> str:
+    """Return the labels of rows, in brackets, if they have some."""
+    labels = [*filter(None, count.labels)]
+    more = [f"and {len(labels) - MAX_LABELS} more"] * (len(labels) > MAX_LABELS)
+    return f" (labels: {', '.join(labels[:MAX_LABELS] + more)})" if labels else ""
 
 
 def _evidence_lines(cause: TableCause) -> Iterator[str]:
@@ -241,13 +210,22 @@ def _lines(comparison: Comparison) -> Iterator[str]:
         for cell in comparison.worst:
             place = f"row {cell.row}" + (f" (line {cell.line})" if cell.line else "")
             name = f", id {one_line(cell.id, 40)}" if cell.id else ""
-            yield (
-                f"  {place}{name}: {cell.result} {one_line(cell.theirs, 40)}, "
-                f"here {cell.ours:.12g}, off by {cell.relative:.2g}; {cell.cause}"
-            )
-    for reason, skipped_count in comparison.not_compared.items():
-        word = "refused" if reason in HARMLESS else "not compared"
-        labels = (
-            f" (labels: {', '.join(skipped_count.labels)})" if any(skipped_count.labels) else ""
-        )
-        yield f"\n{skipped_count.rows} rows {word}: {reason}{labels}"
+            yield (f"  {place}{name}: {cell}; {cell.cause}")
+    failures = comparison.kit.failures if comparison.kit is not None else []
+    for reason, group in comparison.not_compared.items():
+        yield f"\n{describe(reason, group.rows)}{_labels(group)}"
+        listed = [verdict for verdict in failures if verdict.reason == reason]
+        yield from (f"  {verdict}" for verdict in listed[:MAX_VECTORS_LISTED])
+    if comparison.kit is not None:
+        yield from _kit_lines(comparison.kit)
+
+
+def _kit_lines(answers: KitAnswers) -> Iterator[str]:
+    for attribute, title in (("kind", "class"), ("label", "label")):
+        yield f"\n{title:<30}  passed  failed"
+        for name, count in answers.counts(attribute).items():
+            if attribute == "kind" or count["failed"]:
+                yield f"{name:<30}  {count['passed']:>6}  {count['failed']:>6}"
+        if answers.conforms:
+            break
+    yield f"\n{answers.badge}"

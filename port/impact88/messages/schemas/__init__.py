@@ -17,7 +17,6 @@ NUMBERS = {
     "oracle": 1,
     "vectors": 2,
     "compare": 1,
-    "conformance": 1,
     "verify": 3,
     "selfcheck": 1,
     "witness": 1,
@@ -28,8 +27,8 @@ NUMBERS = {
     "example": 1,
     "staged": 2,
 }
-"""Name of a form -> its version number. Names are those of the commands, the oracle's ``vectors``,
-and ``conformance`` for compare --kit."""
+"""Name of a form -> its version number. Names are those of the commands, and the oracle's
+``vectors``."""
 CONVENTIONS = "conventions"
 
 
