@@ -76,7 +76,7 @@ def photograph_desk(picture: Path) -> None:
     with desk() as address, browser() as page:
         page.driver.set_window_size(*DESK_SIZE)
         page.open(address)
-        page.choose("collision-sample", "1")
+        page.choose("collision-begin", "solve/1")
         page.run("location.hash = '#collision'")
         until(lambda: page.count("#collision-first td"), "the answer", 60)
         until(lambda: page.run("return document.getElementById('collision-figure').naturalWidth"))

@@ -385,7 +385,7 @@ def skid_remarks(texts: Mapping[str, str]) -> list[str]:
     if len(friction) == 2 and all(value.varies for value in friction.values()):
         remarks.append(
             "the friction of the two skids (SAF, SBF) is taken as independent; on one road both "
-            "err together, which the worst cases hold and the 90 % do not"
+            "err together, which the bounds hold and the 90 % do not"
         )
     return remarks
 

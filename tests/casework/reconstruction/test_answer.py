@@ -226,6 +226,16 @@ def test_a_refusal_names_what_would_make_it_answerable():
     assert answer.values["SA"] == pytest.approx(20 + 25 * 3500 / 3000)
 
 
+def test_what_would_do_as_well_as_a_coefficient_is_named():
+    """A strikes a standing B along one line: E, or one speed after, leaves nothing open."""
+    known = {name: text for name, text in ALONG.items() if name != "HAF"}
+    (answer,) = answers(known, 0)
+    assert dict(first_lines(answer))["NOT FOUND"] == "VAX, VBX, E: give E, SAF or SBF"
+    for name, text in {"E": ".2", "SAF": "3", "SBF": "5"}.items():
+        determined, *_ = answers({**known, name: text}, 0)
+        assert not determined.undetermined
+
+
 @pytest.mark.parametrize(
     ("other", "count"),
     [("skid 40 ft at .7 +- .1", 1), ("skid 40 ft at .7", 0), ("40 +- 5", 0), ("", 0)],

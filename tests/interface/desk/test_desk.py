@@ -33,6 +33,7 @@ from installed import impact88 as command
 from longer import long_but
 
 from impact88.collision import units
+from impact88.collision.scenefile import CASES, case_template, toml_texts
 from impact88.errors import UserError
 from impact88.interface.commands import options, reconstruct_command
 from impact88.interface.commands.cli import main
@@ -411,11 +412,21 @@ def test_a_contact_point_in_a_vehicles_own_axes_is_worked_out(client: Client) ->
 
 @pytest.mark.parametrize("number", [1, 2, 3])
 def test_a_scene_saved_is_the_commands_own_file(client: Client, number: int, own: Own) -> None:
-    scene = client.post(f"sample/{number}").json
+    scene = client.post(f"solve/{number}").json
     saved = client.post("file/collision", scene)
     assert saved.data == own("scene", "--sample", str(number)).encode()
     assert 'filename="scene.toml"' in saved.headers["Content-Disposition"]
     assert client.post("scene?name=scene.toml", saved.data).json == scene
+
+
+def test_kinds_of_collision_are_forms_to_fill_in(client: Client) -> None:
+    """Those whose command a view answers for, each with the entries of its file."""
+    offered = set(re.findall(r'value="template/([^"]+)"', client.get().get_data(as_text=True)))
+    assert offered == {n for n, c in CASES.items() if c.command in ("solve", "reconstruct")}
+    for name in offered:
+        form = client.post(f"template/{name}").json
+        assert {**form["values"], "units": "us"} == toml_texts(case_template(name), "")
+    assert client.post("template/none").status_code == 404
 
 
 def test_a_scene_file_with_ranges_is_read_again(client: Client) -> None:
@@ -444,7 +455,7 @@ def test_an_unusable_scene_file_is_named(client: Client, data: bytes, problem: s
 def test_the_figure_is_the_commands_own(client: Client, tmp_path: Path, own: Own) -> None:
     path = tmp_path / "scene.svg"
     own("figure", "scene", "--sample", "3", "-o", str(path))
-    drawn = client.post("figure", client.post("sample/3").json)
+    drawn = client.post("figure", client.post("solve/3").json)
     _, _, element = path.read_text(encoding="utf-8").partition("?>\n")
     assert drawn.get_data(as_text=True) == element
 
@@ -571,7 +582,7 @@ def test_what_was_reconstructed_opens_as_a_collision_in_its_units(units: str) ->
 def test_what_is_known_is_saved_as_the_commands_file(
     client: Client, tmp_path: Path, own: Own
 ) -> None:
-    known = {**client.post("known/1").json["values"], "VAX": "-13.26 +- 0.5", "UY": "0"}
+    known = {**client.post("reconstruct/1").json["values"], "VAX": "-13.26 +- 0.5", "UY": "0"}
     saved = client.post("file/reconstruction", {"values": known})
     assert saved.status_code == 200
     read = client.post("known?name=k.toml", saved.data).json

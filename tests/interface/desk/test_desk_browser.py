@@ -55,7 +55,7 @@ def page(one_browser: Page, address: str) -> Iterator[Page]:
 @pytest.fixture
 def collision(page: Page) -> Page:
     page.run("location.hash = '#collision'")
-    page.choose("collision-sample", "1")
+    page.choose("collision-begin", "solve/1")
     until(lambda: "VAX= -13.263" in page.text("collision-screen"), "the first answer")
     return page
 
@@ -66,7 +66,7 @@ def collision(page: Page) -> Page:
 @pytest.mark.parametrize("number", [1, 2, 3])
 def test_a_published_run_shows_its_printout_and_the_figure(page: Page, number: int) -> None:
     page.run("location.hash = '#collision'")
-    page.choose("collision-sample", str(number))
+    page.choose("collision-begin", f"solve/{number}")
     printed = run(sample(number)).page
     until(lambda: page.text("collision-screen") == printed, "the printout")
     results = re.sub(r"[\s*]", "", printed[printed.index("MA=") :])
@@ -359,7 +359,7 @@ def test_the_cells_of_a_scan_are_outlined_and_what_is_corrected_is_tried_on_the_
 
 def test_what_is_unticked_is_solved_for_with_its_uncertainty(page: Page) -> None:
     page.run("location.hash = '#reconstruction'")
-    page.choose("reconstruction-sample", "3")
+    page.choose("reconstruction-begin", "reconstruct/3")
     solved = page.at("reconstruction-UX-answer")
     until(lambda: solved.text == "solved: -36.667", "the initial velocity")
     tick = page.at("reconstruction-E-known")

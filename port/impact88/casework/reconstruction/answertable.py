@@ -75,7 +75,7 @@ def first_lines(answer: Answer, units: System = RULES) -> list[tuple[str, str]]:
         lines.append(("DELTA-V", _size(answer, vehicle, f"DV{vehicle}", values, units, force)))
     if any(f"{kind}{v}" in answer.ranges for kind in ("S", "DV") for v in vehicles):
         cut = any(item.kind == "normal" for item in answer.known.values())
-        text = "90 %: middle of the draws; worst cases: lowest and highest within all limits given"
+        text = "90 %: middle of the draws; bounds: lowest and highest found within all limits"
         lines.append(("INTERVALS", text + f" (normal values: {SIGMAS:g} sd)" * cut))
     for vehicle in vehicles:
         drivers = answer.drivers.get(f"S{vehicle}", ())[:DRIVERS]
@@ -206,7 +206,7 @@ def _size(
     ends = [shown(x) for x in _interval(answer, name)]
     if ends:
         text += direction + f", 90 % {ends[0]} to {ends[1]}"
-        return text + (f", worst cases {ends[2]} to {ends[3]}" if all(ends) else "")
+        return text + (f", bounds {ends[2]} to {ends[3]}" if all(ends) else "")
     return text + direction + _deviation(answer, name, shown)
 
 
@@ -252,7 +252,9 @@ def _missing(answer: Answer) -> str:
     text = ", ".join(["spins", *names] if {*_SPINS} <= {*missing} else missing)
     helpful = answer.solution.helpful if answer.undetermined else ()
     if helpful:
-        text += f": give {join_words(helpful)}"
+        *others, last = *helpful, *answer.solution.alternatives
+        is_choice = bool(answer.solution.alternatives)
+        text += ": give " + (f"{', '.join(others)} or {last}" if is_choice else join_words(helpful))
         if tuple(helpful) == ("UX", "UY") and {"VX", "VY"} <= {*missing}:
             text += ", or HA and HB, courses that cross"
     return text

@@ -2,7 +2,7 @@
 first-order uncertainty."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -278,14 +278,28 @@ class Reconstruction:
         known = self.system.known
         courses = [c for c, speed in COURSES.items() if speed in known and c not in known]
         wanted = [*dict.fromkeys((*courses, *PREFERRED_MEASUREMENTS, *self.undetermined))]
-        for name, gradient in zip(wanted, self.system.gradients(self.x, wanted), strict=True):
-            if name in (*courses, *self.undetermined) and np.isfinite(gradient).all():
-                row = gradient @ null / np.abs(gradient).max(initial=1e-300)
+        for name, row in self._changes_along(null, wanted):
+            if name in (*courses, *self.undetermined):
                 candidate_rows = np.vstack([rows, row])
                 if np.linalg.matrix_rank(candidate_rows, tol=NULL_TOL) > len(rows):
                     rows = candidate_rows
                     names.append(name)
         return tuple(names) if len(rows) == null.shape[1] else ()
+
+    @cached_property
+    def alternatives(self) -> tuple[str, ...]:
+        """Speeds, each of which would do as well as the only helpful value."""
+        if len(self.helpful) != 1:
+            return ()
+        _, null = pseudo_inverse(self.system.jacobian(self.x))
+        unknown = [name for name in SPEEDS if name not in self.system.known]
+        return tuple(n for n, row in self._changes_along(null, unknown) if abs(row[0]) > NULL_TOL)
+
+    def _changes_along(self, null: Floats, names: Sequence[str]) -> Iterator[tuple[str, Floats]]:
+        """Yield how each quantity changes along the columns of a null space, by its gradient."""
+        for name, gradient in zip(names, self.system.gradients(self.x, names), strict=True):
+            if np.isfinite(gradient).all():
+                yield name, gradient @ null / np.abs(gradient).max(initial=1e-300)
 
     @cached_property
     def _unit_responses(self) -> tuple[Floats, Floats]:
@@ -323,6 +337,7 @@ class Reconstruction:
         units = {n: float(exact.gyration) if n in SPINS else 1.0 for n in names}
         units |= dict.fromkeys(COEFFICIENTS, closing)
         sizes = np.sqrt(np.square(responses).sum(axis=1))
+        sizes[sizes < RESIDUAL_TOL * sizes.max()] = 0.0  # rounding
         return {n: float(size * units[n]) for n, size in zip(names, sizes, strict=True)}
 
     @cached_property

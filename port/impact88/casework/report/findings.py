@@ -51,9 +51,7 @@ INVERSE = (
     "MUP",
     "EM",
 )
-"""Results of a reconstruction that the answer shows, where they were not known."""
-ESTIMATED = ("SA", "SB", "SAF", "SBF", "DVA", "DVB")
-"""Results shown also where they were known within limits: measured values are adjusted."""
+"""Results of a reconstruction that the answer shows, where they were not known exactly."""
 _SPREAD: tuple[str, ...] = ("value", "sd", "5 %", "95 %", "lower bound", "upper bound")
 _CAPTION = (
     "sd: standard deviation; 5 and 95 %: of the draws; bounds: attained within the limits of the "
@@ -134,6 +132,8 @@ class Findings(NamedTuple):
         True if the given values contradict one another.
     adjusted : sequence of Adjusted
         Each measured value beside its adjusted one.
+    redundancy : int
+        Number of values known beyond those needed: without any, none is adjusted.
     impossible : bool
         True if the impact breaks a law of physics.
     adverse : bool
@@ -149,6 +149,7 @@ class Findings(NamedTuple):
     lines: Sequence[tuple[str, str, bool]] = ()
     contradictory: bool = False
     adjusted: Sequence[Adjusted] = ()
+    redundancy: int = 0
     impossible: bool = False
     adverse: bool = False
 
@@ -332,8 +333,7 @@ def _inverse(case: Case, source: str, samples: int, seed: int, units: System) ->
     from ..reconstruction.answerremarks import remarks_on
 
     answer, *others = _answers(case, source, samples, seed, units)
-    known = answer.given
-    sought = [n for n in INVERSE if n not in known or (n in ESTIMATED and known[n].varies)]
+    sought = [n for n in INVERSE if n not in answer.given or n in answer.names]
     values = without_noise(answer.values)
     spreads = {}
     for name in [n for n in answer.names if n in sought]:
@@ -379,6 +379,7 @@ def _inverse(case: Case, source: str, samples: int, seed: int, units: System) ->
         lines=_lines(answer, units),
         contradictory=answer.evidence.contradictory,
         adjusted=answer.solution.adjusted,
+        redundancy=answer.solution.redundancy,
         impossible=bool(answer.impossible),
         adverse=answer.is_adverse,
     )
@@ -617,7 +618,7 @@ def _details(found: Findings, case: Case, units: System) -> list[Table]:
         rows.append([name, quantity(name).meaning, text, unit, "; ".join(filter(None, source))])
     headings = ["", "input", "given", "unit", "source"]
     tables = []
-    if found.adjusted:
+    if found.redundancy:
         measured_rows = [
             [
                 item.name,

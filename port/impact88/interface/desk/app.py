@@ -21,7 +21,7 @@ from jinja2 import ChoiceLoader, PackageLoader
 from markupsafe import Markup, escape
 from werkzeug.exceptions import HTTPException
 
-from ...collision.scenefile import SIGNS
+from ...collision.scenefile import CASES, SIGNS
 from ...errors import UserError
 from ...files import packaged_text
 from ...mechanics.state import KNOWABLE
@@ -30,7 +30,7 @@ from ...names import DEFAULT_M, SCENE, quantity
 from ...program.scene import SAMPLES, sample
 from ...version import __version__
 from . import collision, reconstruction
-from .formview import convert_values, digits, filled_in
+from .formview import convert_values, digits, filled_in, to_fill_in
 from .guard import HEADERS, LARGEST_BODY, TOO_LONG, refusal
 from .workers import Bench, BrokenError, SupersededError
 
@@ -225,6 +225,7 @@ def _add_page(routes: Blueprint, desk: Desk) -> None:
             systems=SYSTEMS.items(),
             default_m=DEFAULT_M,
             signs=signs,
+            cases=CASES,
             samples=[(number, sample(number).title) for number in SAMPLES],
         )
 
@@ -269,7 +270,7 @@ def _add_papers(routes: Blueprint, ask: Ask) -> None:
 
 
 def _add_collision(routes: Blueprint, ask: Ask) -> None:
-    routes.post("/sample/<int:which>")(collision.sample_scene)
+    routes.post("/solve/<int:which>")(collision.sample_scene)
 
     @routes.post("/collision")
     def collision_answer() -> Any:
@@ -295,7 +296,7 @@ def _add_collision(routes: Blueprint, ask: Ask) -> None:
 
 
 def _add_reconstruction(routes: Blueprint, ask: Ask) -> None:
-    routes.post("/known/<int:which>")(reconstruction.known_of_sample)
+    routes.post("/reconstruct/<int:which>")(reconstruction.known_of_sample)
 
     @routes.post("/reconstruct")
     def reconstruct() -> Any:
@@ -304,7 +305,7 @@ def _add_reconstruction(routes: Blueprint, ask: Ask) -> None:
 
 
 def _add_files(routes: Blueprint, ask: Ask) -> None:
-    """A form's file and case report; a file into a form."""
+    """A form's file and case report; a file, or a kind of collision to fill in, into a form."""
 
     def file_of(view: str) -> tuple[str, str]:
         if view == "collision":
@@ -322,10 +323,18 @@ def _add_files(routes: Blueprint, ask: Ask) -> None:
     def case_report(view: str) -> Response:
         text, name = file_of(view)
         document = ask("report", "case_report", text=text, name=name)
-        return _download(document, "text/html", "case.html")
+        response = _download(document, "text/html", "case.html")
+        response.headers["X-Case-File"] = name
+        return response
 
     def file_read(names: Collection[str]) -> Any:
         return filled_in(request.get_data(), request.args.get("name", "the file")[:200], names)
+
+    @routes.post("/template/<name>")
+    def template(name: str) -> Any:
+        if name not in CASES:
+            abort(404)
+        return to_fill_in(CASES[name])
 
     routes.post("/scene", endpoint="scene")(partial(file_read, SCENE))
     routes.post("/known", endpoint="known")(partial(file_read, KNOWABLE))

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from ...collision.case import ABOUT, OWN_AXES, SOURCE, Case, in_base_units
 from ...collision.estimates import SIZES
 from ...collision.geometry import clock
-from ...collision.scenefile import toml_texts
+from ...collision.scenefile import SIGNS, CaseTemplate, toml_texts
 from ...collision.units import System, base_of, units_in
 from ...errors import UserError
 from ...files import decode
@@ -118,6 +118,13 @@ def filled_in(data: bytes, name: str, allowed: Collection[str]) -> dict[str, Any
     if extra:
         read["extra"] = extra
     return {**read, "values": values}
+
+
+def to_fill_in(case: CaseTemplate) -> dict[str, Any]:
+    """Return a kind of collision as a form has it: ``values``, "" where one is to be filled in,
+    ``units``, and a ``hint``; sides and signs are drawn beside it."""
+    lines = [line for line in case.remarks if line not in SIGNS]
+    return {"values": dict(case.entries), "units": "us", "hint": " ".join(lines)}
 
 
 POINTS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")

@@ -420,8 +420,8 @@ def sections(result: Verification) -> dict[str, list[str]]:
         DOUBTFUL: doubtful,
         MARKS: list(_marks(result.marks)),
         EXPLAINED: _explanation_lines(result),
-        "Errors this page could not reveal": result.unseen,
         "Other findings": [entry for entry in result.findings if entry not in result.rows],
+        "Errors this page could not reveal": result.unseen,
         "beside the verdict": result.warnings,
         NOTES: [*notes, *remarks, *_left_over(result.left_over)],
     }

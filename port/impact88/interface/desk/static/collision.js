@@ -3,7 +3,6 @@ import { asked, drawInto, element, newest, page, settled, showList, showUnits, s
 import { formView } from "./form.js";
 
 const view = formView("collision", {
-  sample: "sample",
   file: "scene",
   read: () => Object.fromEntries(view.inputs().map((input) => [input.name, input.value])),
   put: (input, text) => { input.value = text; },
@@ -16,7 +15,7 @@ function waitingFor(answer) {
   const wrong = Object.keys(answer.problems);
   const parts = [];
   if (answer.missing.length >= inputs().length - 1) {
-    parts.push("Fill in the values, or begin with a published run. The answer appears here while you type.");
+    parts.push("Fill in the values, or begin with a published run or a kind of collision. The answer appears here while you type.");
   } else if (answer.missing.length) {
     parts.push(`Still to fill in: ${answer.missing.join(" ")}.`);
   }
@@ -62,7 +61,8 @@ function showBounds({ found, table }) {
   const warned = Object.entries(found.warnings).map(([name, share]) => `${shown(100 * share, 3)} % ${name}`);
   page("collision-bounds-note").textContent =
     `Lower and upper: extremes over all ranges, attained, sought in ${found.evaluations.toLocaleString("en")} scenes. `
-    + `Quantiles: ${found.samples.toLocaleString("en")} draws, seed ${found.seed}.`
+    + `Quantiles: ${found.samples.toLocaleString("en")} draws, seed ${found.seed}. `
+    + "Swing: how far a result goes while that input alone goes through its range."
     + (warned.length ? ` Draws with a warning: ${warned.join(", ")}.` : "");
 }
 

@@ -5,9 +5,9 @@ const ABOUT = ["title", "case", "examiner", "date"];
 
 /**
  * A form named `view`. `read` gives the texts that count by name, `put` shows one at its field, `answer` asks anew;
- * `loaded` is called with a file or a published run, once it stands in the form.
+ * `loaded` is called with a file or what one begins with, once it stands in the form.
  */
-export function formView(view, { sample, file, read, put, answer, loaded = () => {} }) {
+export function formView(view, { file, read, put, answer, loaded = () => {} }) {
   const at = (part) => page(`${view}-${part}`);
   const form = () => at("form");
   const inputs = () => [...form().querySelectorAll("fieldset input[name]")];
@@ -56,7 +56,11 @@ export function formView(view, { sample, file, read, put, answer, loaded = () =>
       delete extra[name];
     }
     at("title").value = given.title ?? "";
-    for (const input of inputs()) put(input, given.values[input.name] ?? "");
+    for (const input of inputs()) {
+      put(input, given.values[input.name] ?? "");
+      input.placeholder = given.values[input.name] === "" ? "to fill in" : "";
+    }
+    tell(at("hint"), given.hint && { message: given.hint });
     units = given.units ?? "";
     at("units").value = units;
     at("asks").hidden = true;
@@ -89,10 +93,10 @@ export function formView(view, { sample, file, read, put, answer, loaded = () =>
   /** Start the form. */
   function start() {
     form().addEventListener("submit", (event) => event.preventDefault());
-    at("sample").addEventListener("change", (event) => {
-      const number = event.target.value;
+    at("begin").addEventListener("change", (event) => {
+      const address = event.target.value;
       event.target.value = "";
-      if (number) doing(async () => load(await asked(`${sample}/${number}`)));
+      if (address) doing(async () => load(await asked(address)));
     });
     at("units").addEventListener("change", changeUnits);
     at("reread").addEventListener("click", () => settle(at("units").value));
@@ -119,7 +123,10 @@ export function formView(view, { sample, file, read, put, answer, loaded = () =>
     at("report").addEventListener("click", () => doing(async () => {
       const writing = ask(`case-report/${view}`, question());
       const response = await watched(at("busy"), "Writing the report", "report", writing);
-      if (response) await save(response);
+      if (!response) return;
+      await save(response);
+      const name = response.headers.get("X-Case-File");
+      tell(at("hint"), { message: `The report names the file ${name} by its SHA-256: save that, too, and keep both.` });
     }));
     at("print").addEventListener("click", () => print());
   }

@@ -3,7 +3,6 @@ import { asked, drawInto, page, settled, showList, showUnits, watched } from "./
 import { formView } from "./form.js";
 
 const view = formView("reconstruction", {
-  sample: "known",
   file: "known",
   read: values,
   put,
@@ -91,7 +90,8 @@ const solve = settled(async () => {
   showUnits(form(), told.units);
   latest = told.solutions;
   const whole = told.solutions.length > 0;
-  page("reconstruction-waiting").textContent = told.waiting;
+  const open = inputs().filter((input) => input.placeholder && !input.value.trim()).map((input) => input.name);
+  page("reconstruction-waiting").textContent = open.length ? `Still to fill in: ${open.join(" ")}.` : told.waiting;
   page("reconstruction-answer").classList.toggle("stale", !whole);
   showAtFields(told.solutions);
   if (!whole) return;
@@ -107,11 +107,11 @@ function answer() {
   solve();
 }
 
-/** Tick what a file has, and open the part of the form that it fills. */
+/** Tick what a file has, and open the part of the form that it fills or that is to be filled in. */
 function showAll() {
   for (const tick of ticks()) tick.checked = Boolean(page(tick.id.replace(/-known$/, "")).value);
   const more = page("reconstruction-more");
-  more.open ||= inputs().some((input) => more.contains(input) && input.value);
+  more.open ||= inputs().some((input) => more.contains(input) && (input.value || input.placeholder));
 }
 
 /** Start the view. */
