@@ -221,6 +221,25 @@ def test_himem_and_lomem_bound_the_room():
     assert displayed("10 A=1:LOMEM:4000:PRINT A;PEEK(105)+256*PEEK(106)") == "04000\n"
 
 
+@pytest.mark.parametrize(
+    ("name", "statement", "shown"),
+    [((65, 128), 'A$="XYZ"', "LEN(A$)"), ((65, 0), "A=5", "A"), ((193, 128), "A%=5", "A%")],
+)
+def test_a_variable_in_the_addresses_of_devices_keeps_nothing(
+    name: tuple[int, int], statement: str, shown: str
+) -> None:
+    """Its name is the last two bytes of RAM, its value begins at $C000."""
+    first, second = name
+    assert (
+        displayed(
+            f"10 POKE 49150,{first}:POKE 49151,{second}\n"
+            f"20 POKE 107,5:POKE 108,192:POKE 105,254:POKE 106,191\n"
+            f"30 {statement}:PRINT {shown}"
+        )
+        == "0\n"
+    )
+
+
 def test_poke_changes_a_token_of_the_running_program():
     # line 20's + becomes -
     program = "10 POKE 2049+{at},201\n20 PRINT 5+2"

@@ -43,7 +43,6 @@ from .tokens import (
     TOKENS,
     following_line,
 )
-from .variables import store
 
 FOR_SIZE = 18  # bytes on the stack
 FOR_ROOM = 74  # the lowest stack pointer at FOR
@@ -387,8 +386,7 @@ class Machine(InputOutput):
         elif of_integer:
             self.assign_integer(target, fac, sp - 2)
         else:
-            e, m, s = self.fac = rounded(fac) if fac[1] & 0xFF else fac
-            store(self.ram, target, e, m >> 8 & 0x7FFFFFFF | s << 31)
+            self.assign(target, fac)
 
     def for_(self) -> None:
         """FOR: push a loop. Like the ROM, continue with whatever follows the statement."""
