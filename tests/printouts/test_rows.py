@@ -10,6 +10,8 @@ from longer import long_but
 
 import impact88
 import printouts
+from impact88.printouts.reading.glyphs import Page
+from impact88.printouts.reading.pagerows import find_rows
 from impact88.printouts.reporting.examination import Verdict, Verification
 from impact88.printouts.reporting.verification import lines
 
@@ -174,6 +176,15 @@ def test_results_printed_twice_above_the_last_asterisks_are_one_page() -> None:
     assert result.verdict is Verdict.DIFFERS
     assert len(result.rows) == 3
     assert "with WAF -1.845, where line" in result.rows[-1]
+
+
+def test_a_repeated_row_and_another_printout_are_told_apart() -> None:
+    """By what follows them: the rest of the page, or the same rows once more."""
+    masses = PAGE[PAGE.index("MA=", PAGE.rindex("?")) : PAGE.index("DA=")]
+    (repeated,) = find_rows(Page(PAGE.replace(masses, masses + masses))).repeated
+    assert "the row of MA, is printed a second time" in repeated.sentence
+    results = PAGE[PAGE.index("VAX=") : PAGE.rindex("*****")]
+    assert not find_rows(Page(PAGE[: PAGE.rindex("*****")] + results)).repeated
 
 
 def test_a_row_printed_twice_above_another_printout_is_the_first_ones() -> None:

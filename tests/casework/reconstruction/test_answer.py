@@ -12,6 +12,7 @@ import pytest
 from longer import long_but
 
 from impact88.casework.reconstruction.answer import answers
+from impact88.casework.reconstruction.answerremarks import ILL_POSED, remarks_on
 from impact88.casework.reconstruction.answertable import first_lines
 from impact88.collision.geometry import clock
 from impact88.collision.uncertain import skid_remarks
@@ -224,6 +225,18 @@ def test_a_refusal_names_what_would_make_it_answerable():
         answers(known, 0)
     (answer,) = answers({**known, "HAF": "0", "HBF": "0", "HA": "0"}, 0)
     assert answer.values["SA"] == pytest.approx(20 + 25 * 3500 / 3000)
+
+
+@pytest.mark.parametrize(("tolerance", "is_poor"), [("2", False), ("5", True)])
+def test_a_speed_is_poorly_determined_beside_the_largest_that_is_found(tolerance, is_poor):
+    """Courses that nearly agree: 80 mph before, where no known speed is above 33."""
+    known = {"M": "4", "MA": "3000", "MB": "4000", "HA": "0", "HB": "175", "SAF": "29", "SBF": "32"}
+    known |= {"HAF": f"-3 +- {tolerance}", "HBF": f"3 +- {tolerance}"}
+    (answer, *_) = answers(known, 0)
+    largest = max(answer.values[name] for name in ("SA", "SB", "SAF", "SBF"))
+    assert largest > 2 * 32
+    said = [remark for remark in remarks_on(answer) if remark.startswith("poorly determined")]
+    assert bool(said) == is_poor == (answer.deviations["UX"] > ILL_POSED * largest)
 
 
 def test_what_would_do_as_well_as_a_coefficient_is_named():

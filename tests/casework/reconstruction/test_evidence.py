@@ -10,7 +10,7 @@ import pytest
 from impact88.casework.reconstruction.adjustment import reconstruct
 from impact88.casework.reconstruction.answer import Answer
 from impact88.casework.reconstruction.answerremarks import remarks_on
-from impact88.casework.reconstruction.evidence import chi_square_tail
+from impact88.casework.reconstruction.evidence import ROUNDED, chi_square_tail, weigh
 from impact88.collision.uncertain import Uncertain, fixed_value
 from impact88.interface.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
@@ -115,6 +115,16 @@ def test_a_search_for_draws_that_finds_nothing_accuses_nobody(monkeypatch):
         assert found.evidence.contradictory == contradictory
         lines = " ".join(remarks_on(found))
         assert ("found none there" in lines) != contradictory
+
+
+@pytest.mark.parametrize("is_exact", [True, False])
+def test_deviations_are_those_of_the_misfit_of_exact_values(is_exact):
+    """Also of values that miss one another by rounding alone; tolerances are widened by a
+    contradiction only."""
+    values = {"UX": (30.0, 30.01, 0.01, 0.5)}
+    evidence = weigh(4 * 0.01**2, 4, values, exact=is_exact, speed=0.03 / ROUNDED)
+    assert not evidence.contradictory
+    assert evidence.widening == pytest.approx(0.01 if is_exact else 1.0)
 
 
 def test_amounts_of_the_verdict_are_written_out():

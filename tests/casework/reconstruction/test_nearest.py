@@ -74,6 +74,18 @@ def test_where_no_impact_agrees_that_is_said_with_what_would_have_to_move():
     assert (shown.draws, shown.ranges) == (None, {})
 
 
+def test_what_hardly_moves_is_no_value_that_would_have_to_move():
+    """Two speeds that are known a hundred times as well as the others move by less than one of
+    their deviations."""
+    known = along_a_line(0.1, UX=20.0, VX=-5.0, VAX=9.0, VBX=7.0)
+    sure = {
+        n: Uncertain("normal", known[n].nominal, -math.inf, math.inf, 1e-3) for n in ("UX", "VX")
+    }
+    (free,) = reconstruct({**known, **sure})
+    _, moves = dict(first_lines(Answer(free, 0), RULES))["NO IMPACT"].split("The nearest one has ")
+    assert sorted(move.split()[0] for move in moves.split("; ")) == ["VAX", "VBX"]
+
+
 def test_of_several_nearest_impacts_the_nearest_is_told():
     """Speeds, whose directions are open: of each choice of signs another impact is nearest. The
     nearest of all has the vehicles stick together."""
