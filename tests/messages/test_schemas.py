@@ -85,6 +85,9 @@ def test_names_conventions_and_unknown_names() -> None:
     listed = printed("schema")
     assert all(name in listed for name in (*schemas.NUMBERS, schemas.CONVENTIONS))
     assert "a program that refuses is right" in printed("schema", "conventions")
+    table = printed("schema", "conventions").splitlines()
+    for result in impact88.names.RESULTS.values():
+        assert f"| {result.name} | {result.symbol} | {result.meaning} | {result.unit} |" in table
     with pytest.raises(UserError, match="no schema solve"):
         schemas.text("solve")
     assert command("schema", "solve").returncode == 2

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 
 from ...errors import UserError
 from ...files import packaged_text
+from ...names import RESULTS
 from ...version import __version__
 
 NUMBERS = {
@@ -45,7 +46,13 @@ def text(name: str) -> str:
             f"there is no schema {name}; expected one of {' '.join(NUMBERS)}, or {CONVENTIONS}"
         )
     if name == CONVENTIONS:
-        return packaged_text(__name__, f"{name}.md")
+        rows = [
+            ("result", "symbol", "meaning", "unit"),
+            ("---",) * 4,
+            *(row[:4] for row in RESULTS.values()),
+        ]
+        table = "\n".join(f"| {' | '.join(row)} |" for row in rows)
+        return packaged_text(__name__, f"{name}.md").replace("{results}", table)
     import json
 
     from .forms import expand_form
