@@ -134,7 +134,7 @@ WRONG: dict[str, tuple[str, Callable[[Table], Table]]] = {
     "digits that say nothing": (NO_DIGIT, lambda rows: changed(rows, 0, VAX="0E9")),
     "a number off": (
         DISAGREES,
-        lambda rows: changed(rows, 0, WBF=repr(float(rows[0]["WBF"]) * (1 + 1e-9))),
+        lambda rows: changed(rows, 0, WBF=repr(float(rows[0]["WBF"]) * (1 + 1e-10))),
     ),
 }
 """What is wrong -> what is said of it, and the table."""
