@@ -193,13 +193,25 @@ def compare_replays(columns):
         assert np.array_equal(compiled.reals(name), alone.reals(name)), name
 
 
-@pytest.mark.parametrize("reason", ["the variable", "an older library"])
+OTHER_FORMULAS = """
+import ctypes
+class Library(ctypes.CDLL):
+    class formulas:
+        def __new__(cls):
+            return b"0"
+ctypes.CDLL = Library
+"""
+
+
+@pytest.mark.parametrize("reason", ["the variable", "an older library", "other formulas"])
 def test_it_is_used_by_all_or_by_none(reason, monkeypatch):
     """By `solve`, `replay` and the texts; and reports say what is used."""
     code = "import impact88\nfrom impact88.casework.report.frame import versions\n"
     code += "print(impact88.accelerated, versions()['solve'])"
     if reason == "the variable":
         monkeypatch.setenv(native.VARIABLE, "0")
+    elif reason == "other formulas":
+        code = OTHER_FORMULAS + code
     else:  # a result that it was not built with
         code = f"import impact88.names as n\nn.RESULTS['XF'] = n.RESULTS['XA']\n{code}"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -14,6 +14,7 @@ import printouts
 from impact88.collision.fields import ANGLES, FIELDS
 from impact88.errors import UserError
 from impact88.printouts.reading import glyphs
+from impact88.printouts.reading.alignment import WINDOW, Budget, align
 from impact88.printouts.reading.numerals import candidates, rows
 from impact88.printouts.reading.plaintext import decode
 from impact88.printouts.reading.printout import read_printouts
@@ -288,3 +289,20 @@ def test_printouts_side_by_side_are_read_each_in_its_column() -> None:
         assert [impact88.verify(printout).verdict.name for printout in read] == [
             "IDENTICAL"
         ] * count
+
+
+@pytest.mark.parametrize(("marks", "count"), [(980, 1), (1020, 2)])
+def test_a_page_goes_on_behind_half_a_page_of_other_text(marks: int, count: int) -> None:
+    page = impact88.run(impact88.sample(1)).page
+    at = page.index("UX=")
+    text = glyphs.Page(page[:at] + "#" * marks + "\n" + page[at:]).glyphs
+    assert len([*align(text, 0, len(text), Budget(), ())]) == count
+
+
+def test_a_page_that_is_found_fills_the_budget_again() -> None:
+    """More than fits into one window: what is left of a small budget would end it."""
+    page = impact88.run(impact88.sample(1)).page
+    count = WINDOW // len(glyphs.Page(page).glyphs) + 2
+    text, budget = glyphs.Page(page * count).glyphs, Budget(left=1)
+    assert len([*align(text, 0, len(text), budget, ())]) == count
+    assert budget.stopped is None

@@ -83,6 +83,18 @@ def test_a_scene_that_its_inputs_make_unlikely_is_found_in_a_later_batch(
     assert (best.scene["MA"], best.wrong) == ("148.5", frozenset())
 
 
+def test_results_that_a_page_lacks_count_against_a_scene_that_prints_them() -> None:
+    """Of central impacts without spins M = 4 prints the same but for the final spins."""
+    page = printed({**sample(1), "DA": "0", "DB": "0", "M": "4"})
+    results = [Expected(name, {page[name]: 0.0}, MISMATCH) for name in RESULTS if name in page]
+    assert len(results) == len(RESULTS) - 2
+    *inputs, _ = columns(page, {})
+    for dearer, found in ((0.5, "4"), (2.0, "6")):  # two results that are not there cost .6 each
+        of_m = column_of("M", [("6", 0.0), ("4", dearer)], True)
+        _, best = Search(Evidence(results, {*INPUTS}, {})).nearest([*inputs, of_m])[0]
+        assert best.scene["M"] == found
+
+
 def test_the_energy_in_doubles_is_as_near_as_the_search_takes_it_to_be() -> None:
     draw = Random(7)
     texts = {
