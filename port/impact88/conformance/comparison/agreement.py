@@ -25,7 +25,7 @@ from ...mechanics.accuracy import errorbound
 from ...mechanics.closedform.solve import solve
 from ...names import FINAL_VELOCITIES, SCENE
 from ...tables.cells import TableUnits, last_digit
-from ...tables.rows import Rows
+from ...tables.rows import Column, Rows
 from . import tolerance
 
 Floats = NDArray[np.float64]
@@ -86,6 +86,19 @@ _MAX_TRIAL_FACTOR = (
 )
 _MAX_EQUATION_SLACK = 1e-6  # relative to their results: what is off by more violates an equation
 _MIN_EQUATION_SLACK = 1e-9  # the same of a row off by more than rounding: of programs of their own
+
+
+class Question(NamedTuple):
+    """What rows of a table answer.
+
+    ``scene``: columns of n; ``classes``, ``labels``: of test vectors, where the rows have them;
+    ``refusals``: of a kit's vectors, why a row is not compared (its place in `REASONS`, or 0).
+    """
+
+    scene: Mapping[str, Floats]
+    classes: Column | None
+    labels: Column | None
+    refusals: NDArray[np.intp] | None = None
 
 
 class ComparedRows(NamedTuple):

@@ -22,7 +22,7 @@ from ...files import open_bytes
 from ...names import SCENE
 from ...tables.cells import TableUnits, numbers
 from ...tables.rows import Rows
-from .compare import Question
+from .agreement import Question
 from .junit import Test
 from .kit import FORM, Kit, Vector
 from .reasons import AGREEMENT, CHANGED, HARMLESS, MISSING, REASONS, REPEATED, STRAY, describe

@@ -26,10 +26,10 @@ from ...messages.progress import progress
 from ...names import DEFAULT_M, FINAL_VELOCITIES, RESULTS, SCENE
 from ...tables.cells import TableUnits, check_scene_columns, numbers
 from ...tables.formats import FORMATS
-from ...tables.rows import BadCell, Column, Reader, Rows
+from ...tables.rows import BadCell, Reader, Rows
 from ...tables.table import format_of, open_reader
 from . import agreement
-from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, ComparedRows
+from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, ComparedRows, Question
 from .diagnosis import Diagnosis, TableCause, Unexplained
 from .reasons import (
     AGREEMENT,
@@ -567,19 +567,6 @@ def _result_meant(name: str) -> str:
     from difflib import get_close_matches  # rarely needed
 
     return next(iter(get_close_matches(upper, columns, 1, 0.75)), "")
-
-
-class Question(NamedTuple):
-    """What rows of a table answer.
-
-    ``scene``: columns of n; ``classes``, ``labels``: of test vectors, where the rows have them;
-    ``refusals``: of a kit's vectors, why a row is not compared (its place in `REASONS`, or 0).
-    """
-
-    scene: Mapping[str, NDArray[np.float64]]
-    classes: Column | None
-    labels: Column | None
-    refusals: NDArray[np.intp] | None = None
 
 
 class Block(NamedTuple):
