@@ -93,7 +93,8 @@ class Row(NamedTuple):
 
     def __str__(self) -> str:
         theirs = one_line(self.theirs, 40)
-        return f"{self.result} {theirs}, here {self.ours:.12g}, off by {self.relative:.2g}"
+        size = f"relative difference {self.relative:.2g}"
+        return f"{self.result} {theirs}, expected {self.ours:.12g}, {size}"
 
 
 @dataclass

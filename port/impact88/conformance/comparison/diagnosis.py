@@ -455,7 +455,7 @@ class Diagnosis:
             if self._are_explained([best, *more], judge):
                 return
         elif not is_large:
-            self.skipped.append("two mistakes at once, for differences so small")
+            self.skipped.append("two mistakes at once (the differences are too small)")
             return
         for programs in find_pairs(judge, singles):
             self._meter.update(1)
@@ -503,7 +503,7 @@ class Diagnosis:
             return
         for base in self._bases(best, hypotheses):
             if not self._has_time():
-                self.skipped.append("further mistakes in the rows without a cause")
+                self.skipped.append("further mistakes in the unexplained rows")
                 return
             trials, more = self._try_one_change(judge, rows_left, known_rows, base)
             yield from more

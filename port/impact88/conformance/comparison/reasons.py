@@ -1,23 +1,23 @@
 """The reasons why a row of a table does not count as agreeing, in words."""
 
 AGREEMENT = ""
-DISAGREES = "a number differs"
+DISAGREES = "a result disagrees"
 UNREADABLE = "the row could not be read"
-NO_RESULT = "no result on either side: theirs refuses, and so does the mathematics"
-REFUSED = "theirs refuses a vector of the class failure, as it may"
+NO_RESULT = "the table has no result, and there is none"
+REFUSED = "the table has no result for a vector of the class failure, which is allowed"
 NO_SCENE = (
-    "theirs gives numbers although a mass or a moment of inertia is not positive; "
-    "a program leaves the cells empty"
+    "the table has numbers although a mass or a moment of inertia is not positive; "
+    "expected empty cells"
 )
-NOTHING_HERE = "theirs gives numbers where the equations have no solution"
-NOTHING_THERE = "theirs gives nothing where there is a result"
-NO_DIGIT = "a number shares no digit with ours, where rounding or the digits written leave none"
+NOTHING_HERE = "the table has numbers where the equations have no solution; expected empty cells"
+NOTHING_THERE = "the table has no result where there is one"
+NO_DIGIT = "rounding, or the digits written, leave no digit to compare"
 
 # of the answers to a kit
-PARTIAL = "theirs gives some of the results and leaves others out"
-CHANGED = "the inputs are not the vector's"
-REPEATED = "the id has occurred before"
-STRAY = "the id is none of the kit's"
+PARTIAL = "the table has some of the results and lacks others"
+CHANGED = "the inputs differ from the vector's"
+REPEATED = "the id occurs more than once"
+STRAY = "the kit has no vector with this id"
 MISSING = "the table has no row with the vector's id"
 
 REASONS = (

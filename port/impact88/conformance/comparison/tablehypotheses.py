@@ -25,9 +25,9 @@ from .trials import MIN_FIT, Judge, Program, try_program
 PRINTED = "digits of the 1988 printout, which floors"
 FLOORED = "floored to the digits given, not rounded"
 TRUNCATED = "cut off at the digits given, not rounded"
-APPLESOFT = "rounding in 32 bits, as Applesoft's"
+APPLESOFT = "rounding to 32 bits, as in Applesoft"
 SINGLE = "rounding in single precision"
-OTHER_ROWS = "results of other rows: the order of the rows, or of the results, is another"
+OTHER_ROWS = "results of other rows: the rows, or the results, are in another order"
 INFINITE = "infinite where there is a result"
 AGREES = "agrees to"  # so many digits: the row's own, and no cause
 UNKNOWN = "unexplained"

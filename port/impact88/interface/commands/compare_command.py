@@ -7,17 +7,17 @@ their own. A note on standard error says how the table was read. Each result agr
 
   to the double       within the rounding errors of the best programs in double precision
   to digits claimed   to all digits it is written with
-  as elimination      as closely as a correct but less careful program in double precision can in
-                      that scene: by elimination, or by trial impulses beside large velocities
+  as elimination      within the rounding errors of a correct but less careful program in double
+                      precision: by elimination, or by trial impulses beside large velocities
 
-or it does not. For rows that disagree, compare tries some 50,000 small errors, in eleven ways of
+or it disagrees. For rows that disagree, compare tries some 50,000 small errors in eleven ways of
 writing the equations, conventions, other laws of friction and restitution, and constants, singly
-and in pairs. It says in a sentence which of them predicts the numbers, those that agree as well,
-and under which condition on the scene ("where the closing speed is below 10"). It finds causes in
-400 rows that disagree and as many that agree, in about 15 seconds, then counts in all rows; and it
-says what it did not look for.
-What could not be compared is listed on standard error; rows that theirs refuses where there is
-no result, or that are vectors of the class failure, are counted as refused.
+and in pairs. It names the one that predicts the numbers in the table, of rows that agree, too, and
+the condition on the scene under which it holds ("where the closing speed is below 10"). It
+searches 400 rows that disagree and as many that agree, in about 15 seconds, then counts in all
+rows; and it says what it did not search for.
+What could not be compared is listed on standard error. Rows without numbers count as refused where
+there is no result, or where they are vectors of the class failure.
 
 With --kit DIR the table is judged as answers to the vectors of that kit (impact88 oracle --kit),
 whose scenes need not be in it: every id once, inputs that are given bit for bit, all final
@@ -147,41 +147,41 @@ def _evidence_lines(cause: TableCause) -> Iterator[str]:
     yield f"\n{cause.says}"
     if cause.formula:
         yield f"  in the program: {cause.formula}"
-    but = f", but for their {', '.join(cause.open)}" if cause.open else ""
+    but = f" (except their {', '.join(cause.open)})" if cause.open else ""
     yield (
-        f"  predicts {cause.explains} of {cause.disagreeing} rows that disagree{but}, "
-        f"{cause.fits} of {cause.agreeing} examined that agree; {cause.score:.0f} bits"
+        f"  predicts {cause.explains} of {cause.disagreeing} rows that disagree{but} and "
+        f"{cause.fits} of {cause.agreeing} examined rows that agree; score {cause.score:.0f} bits"
     )
     if remaining := cause.disagreeing - cause.explains:
-        yield f"  it does not explain the other {remaining} rows that disagree"
+        yield f"  leaves {remaining} rows that disagree unexplained"
     for says, row in cause.parts.items():
         yield f"  row {row} shows: {says}"
     for equivalent in cause.equivalents:
-        yield f"  or, the same in this table: {equivalent}"
+        yield f"  gives the same results in this table: {equivalent}"
     if cause.apart:
-        yield f"  this row tells it from the first of those: {','.join(cause.apart)}"
+        yield f"  this scene tells the two apart: {','.join(cause.apart)}"
         yield f"  {','.join(cause.apart.values())}"
 
 
 def _lines(comparison: Comparison) -> Iterator[str]:
     yield f"{comparison.summary.partition('; ')[0]}\n"
     yield (
-        "result  compared  to the double  to digits claimed  as elimination      not  "
+        "result  compared  to the double  to digits claimed  as elimination  disagree  "
         "largest difference"
     )
     for name, tally in comparison.tallies.items():
         yield (
             f"{name:<6}  {tally.compared:>8}  {tally.double:>13}  {tally.digits:>17}  "
-            f"{tally.elimination:>14}  {tally.differ:>7}  {tally.largest:>18.2g}"
+            f"{tally.elimination:>14}  {tally.differ:>8}  {tally.largest:>18.2g}"
         )
-    yield "(difference relative to the scene's largest velocity, spin or energy)"
+    yield "(differences are relative to the scene's largest velocity, spin or energy)"
     loose = comparison.elimination
     if loose.rows:
         lost = max(0, round(math.log10(max(loose.worst_relative, DOUBLE) / DOUBLE)))
-        yield f"\n{loose.rows} rows agree only as a correct but less careful program's may there;"
         yield (
-            f"the worst, row {loose.worst_row}, has lost {lost} of 16 digits (the best of programs "
-            f"has condition {loose.worst_condition:.2g} there)"
+            "\nrows that agree only within the rounding errors of a correct but less careful program: "
+            f"{loose.rows};\nin the worst, row {loose.worst_row}, {lost} of 16 digits are lost "
+            f"(condition number {loose.worst_condition:.2g})"
         )
     if comparison.causes:
         yield "\nrows that disagree, by likely cause:"
@@ -190,23 +190,23 @@ def _lines(comparison: Comparison) -> Iterator[str]:
         for evidence in comparison.evidence:
             yield from _evidence_lines(evidence)
         for what in comparison.skipped:
-            yield f"\nnot looked for: {what}"
+            yield f"\nnot searched for: {what}"
         if comparison.unexplained:
-            yield "\nrows without a cause, of those that disagree, by kind of scene:"
+            yield "\nunexplained rows, of those that disagree, by kind of scene:"
             for name, kind in comparison.unexplained.items():
                 laws = ", ".join(kind.violated)
                 says = f"; Equations {laws} violated" if laws else ""
                 yield f"  {name}: {kind.unexplained} of {kind.rows}{says}"
         broken = {number: tally for number, tally in comparison.equations.items() if tally[1]}
         if broken:
-            yield "\nequations of the chapter that their final velocities violate:"
+            yield "\nequations of the chapter violated by the final velocities in the table:"
             for number, (row_count, violations) in broken.items():
                 share = f"in {violations} of {row_count} rows that disagree"
                 yield f"  Equation {number} ({EQUATIONS[number]}): {share}"
         elif comparison.equations:
-            yield "\ntheir final velocities violate none of Equations 13 to 18"
+            yield "\nthe final velocities in the table violate none of Equations 13 to 18"
     if comparison.differing:
-        yield "\nworst first:"
+        yield "\nlargest differences first:"
         for cell in comparison.worst:
             place = f"row {cell.row}" + (f" (line {cell.line})" if cell.line else "")
             name = f", id {one_line(cell.id, 40)}" if cell.id else ""
