@@ -179,7 +179,7 @@ def _lines(comparison: Comparison) -> Iterator[str]:
     if loose.rows:
         lost = max(0, round(math.log10(max(loose.worst_relative, DOUBLE) / DOUBLE)))
         yield (
-            "\nrows that agree only within the rounding errors of a correct but less careful program: "
+            "\nrows that agree only within the rounding errors of a less careful program: "
             f"{loose.rows};\nin the worst, row {loose.worst_row}, {lost} of 16 digits are lost "
             f"(condition number {loose.worst_condition:.2g})"
         )
