@@ -106,13 +106,15 @@ def test_the_wings_are_in_an_order() -> None:
 
 @pytest.mark.parametrize("wing", WINGS)
 def test_a_wing_says_what_it_needs(wing: str) -> None:
-    """And what comes in, what goes out and who uses it, at the top of its ``__init__``."""
+    """And what comes in, what goes out, the way through it and who uses it, at its top."""
     path = PACKAGE / wing / "__init__.py"
     says = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
-    parts = re.split(r"\b(Needs|In|Out|Used by): ", says)
-    assert parts[1::2] == ["Needs", "In", "Out", "Used by"]
+    parts = re.split(r"\b(Needs|In|Out|Way|Used by): ", says)
+    assert parts[1::2] == ["Needs", "In", "Out", "Way", "Used by"]
     assert set(re.findall(r"`(\w+)`", parts[2])) == wings_imported(wing)
     assert ("Core." in parts[2]) == (wing in CORE)
+    way = re.findall("`(.*?)`", re.sub(r"\(.*?\)", "", parts[8]))
+    assert {f"impact88.{wing}.{step}" for step in way} <= {*FILES}
     assert len(says.splitlines()) <= 14
 
 
@@ -225,3 +227,21 @@ def test_no_module_name_is_used_twice() -> None:
         name.rpartition(".")[2] for name, path in FILES.items() if path.stem != "__init__"
     )
     assert not [name for name, uses in names.items() if uses > 1]
+
+
+def test_long_functions_and_those_of_many_arguments_say_why() -> None:
+    """More than 60 lines below the docstring, or 7 arguments: a comment says why not fewer."""
+    silent = []
+    for name, path in FILES.items():
+        text = path.read_text(encoding="utf-8")
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.FunctionDef):
+                arguments = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+                is_short = len([one for one in arguments if one.arg != "self"]) <= 7
+                above = node.body[0].end_lineno if ast.get_docstring(node) else node.lineno
+                source = "\n".join(text.split("\n")[above or 0 : node.end_lineno])
+                if (source.count("\n") >= 60 or not is_short) and not re.search(
+                    "# .*(not split|arguments).*: ", source
+                ):
+                    silent.append(f"{name}.{node.name}")
+    assert not silent

@@ -6,6 +6,7 @@ difference; `qualification` replays the ROM's captures, and a ROM image on anoth
 Needs: `apple`, `program` and `mechanics` (what is right), `collision`, `equations` (mistakes),
 `tables` (other programs' results), `casework` (published crash tests, versions on a record).
 In: tables of another program's results; captures. Out: verdicts, causes, vectors, the kit.
+Way: `comparison.oracle`, `comparison.vectors`, `comparison.compare`; `qualification.selfcheck`.
 Used by: developers of comparable programs (`oracle`, `compare`, `schema`), and whoever must show
 that an installation is sound (`selfcheck`, `witness`).
 """

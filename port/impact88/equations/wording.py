@@ -140,6 +140,7 @@ def _change(correct: Expression, actual: Expression, spelling: Spelling) -> str:
 
 def _named_change(correct: Expression, actual: Expression, spelling: Spelling) -> str:
     """Return a change that has a name of its own, "" where it has none."""
+    # not split: the first of these names that fits is taken, in this order
     # not split: one table, a line a name; of two that fit the first is meant
 
     def words(node: Expression) -> str:

@@ -106,7 +106,7 @@ def colinear_inverse(known: Mapping[str, Any]) -> dict[str, Array]:
 def _equations_9_to_12(
     ma: Array, mb: Array, e: Array, mu: Array, van: Array, vat: Array, vbn: Array, vbt: Array
 ) -> list[Array]:
-    # Equations 9 to 12 have these eight symbols
+    # eight arguments: the symbols of Equations 9 to 12
     share = (1 + e) * (vbn - van) / (ma + mb)
     return [van + mb * share, vat + mu * mb * share, vbn - ma * share, vbt - mu * ma * share]
 

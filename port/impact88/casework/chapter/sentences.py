@@ -62,6 +62,7 @@ def _extent(rule: Callable[[Collision], Array], alike: list[Collision]) -> tuple
 def _varied_checks() -> tuple[Claim, ...]:
     """Return the claims that something hardly matters, each with what it does to the eleven
     collisions."""
+    # not split: a table of claims, an entry each
     # not split, as `_of_tables`: a row for each claim
 
     def solve_changed(c: Collision, changes: Mapping[str, Any]) -> dict[str, Array]:
@@ -173,6 +174,7 @@ def _range(values: list[float], digits: int = 3) -> str:
 
 def _of_tables() -> tuple[Claim, ...]:
     """Return the claims of Section V and VI about the staged collisions' own numbers."""
+    # not split: a table of claims, an entry each
     tests = collisions()
     sides = [c for c in tests if _are_sides(c)]
     remaining = [c for c in tests if not _are_sides(c)]

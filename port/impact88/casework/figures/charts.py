@@ -65,6 +65,7 @@ class Panel:
         y_ticks: Sequence[tuple[float, str]],
         log: bool = False,
     ) -> None:
+        # nine arguments: a box, and three for each axis
         self.drawing, self.box = drawing, box
         self.x = Axis(*x, box.left, box.right, log)
         self.y = Axis(*y, box.bottom, box.top, log)

@@ -107,6 +107,16 @@ class Plan(NamedTuple):
         return [vehicle for vehicle in self.vehicles if not vehicle.wall]
 
 
+def _rectangle(front: complex, length: float, width: float) -> list[complex]:
+    corners = ((1, -1), (1, 1), (-1, 1), (-1, -1))
+    return [front * complex(i * length, j * width) / 2 for i, j in corners]
+
+
+def _disc(diameter: float) -> list[complex]:
+    steps = range(DISC_CORNERS)
+    return [cmath.rect(diameter / 2, math.tau * step / DISC_CORNERS) for step in steps]
+
+
 def plan(
     scene: Any,
     result: Mapping[str, Any] | None = None,
@@ -156,13 +166,8 @@ def plan(
             direction = front[name] * normal.conjugate()
             half = (abs(direction.real) * length + abs(direction.imag) * width) / 2
             center = inward * (length / 2 if points else half)
-        corners = ((1, -1), (1, 1), (-1, 1), (-1, -1))
-        outline = tuple(
-            center + front[name] * complex(i * length, j * width) / 2 for i, j in corners
-        )
-        if points:
-            rim = (cmath.rect(length / 2, math.tau * k / DISC_CORNERS) for k in range(DISC_CORNERS))
-            outline = tuple(center + point for point in rim)
+        around = _disc(length) if points else _rectangle(front[name], length, width)
+        outline = tuple(center + corner for corner in around)
         cut = not points and _depth(center, inward) > 0.15 * width
         outline_left = _clip_outline(outline, inward) if cut else outline
         heavy, light = (abs(values[f"M{which}"]) for which in (name, "B" if name == "A" else "A"))

@@ -1,8 +1,8 @@
 """Equations 13 to 18 solved for any unknowns: which impacts agree with what is known.
 
 `adjustment` finds the impacts (entry: `reconstruct`); `answer` has everything that follows from
-each (entry: `answers`). Exact values are measurements of no tolerance. `unknowns` solves the
-equations over arrays.
+each (entry: `answers`), `reconstructions` is `impact88.reconstruct`. Exact values are measurements
+of no tolerance. `unknowns` solves the equations over arrays.
 `reconstructed` has the uncertainty of a reconstruction: draws and bounds (entries: `draws`,
 `ranges`).
 

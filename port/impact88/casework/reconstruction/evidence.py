@@ -278,6 +278,7 @@ def weigh(
     ``exact``: the values are exact and contradict one another; ``laws``: the laws they violate;
     ``tested``: those that exact values satisfy; ``speed``: the largest known velocity, of which
     exact values may miss `ROUNDED`."""
+    # eight arguments: what searches and laws found, which the verdict alone brings together
     if redundancy < 1:
         verdict = AGREE if tested and not values else UNCHECKED
         exact = not values

@@ -202,6 +202,7 @@ def _track_paths(
     Along F(z, s) = start + s (target - start), s from 0 to 1, each step predicts by the classical
     Runge-Kutta method and corrects by three Newton iterations. It is rejected, and shortened to a
     third, where these do not converge."""
+    # not split: one step of one iteration, all of whose arrays its parts share
     count = len(forms)
     # random orthogonal combinations of the normalized equations
     rotation = np.linalg.qr(rng.standard_normal((count, count)))[0]

@@ -371,6 +371,7 @@ def _solve_block(known: Mapping[str, Any], wanted: Sequence[str], point: bool) -
     before the impact, ``mismatch`` and ``gyration``; ``parts``: True where numerator and
     denominator of all wanted coefficients are determined.
     """
+    # not split: steps of one solution, each of which needs what all above it found
     count, ignored = len(known["MA"]), (*SPINS, "EM", "PM") if point else ()
     system = System(
         {n: fixed_value(v) for n, v in known.items() if n not in ignored},

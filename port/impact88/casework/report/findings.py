@@ -172,6 +172,7 @@ def report(
     ``source`` is the name of the case's file and ``data`` its bytes. A complete scene with nothing
     known after the impact is computed forward, any other reconstructed. Raises UserError.
     """
+    # ten arguments, and not split: the options of `impact88 report`, and the parts of its page
     units = case.system
     names = {n for n, text in case.values.items() if text.strip()}
     scene = coordinate_names(SCENE, names)

@@ -118,6 +118,7 @@ def bounds(
     >>> round(found.bounds["DVA"].lower, 2), round(found.bounds["DVA"].upper, 2)
     (13.42, 18.37)
     """
+    # eleven arguments, and not split: the options of `impact88 bounds`, each used once
     check_mapping(values)
     inputs = dict(values)
     pairs = dict(correlations or {})

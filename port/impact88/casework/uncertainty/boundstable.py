@@ -211,6 +211,7 @@ class Bounds:
 def in_units(bounds: Bounds, system: System | str | None) -> Bounds:
     """Return ``bounds`` converted from base units and the listing's axes to ``system`` (or its
     name); unchanged for None."""
+    # not split: a function for each part of the bounds, and one system for all
     system = system_of(system) if system is None or isinstance(system, str) else system
     if system.is_bare and not system.convention:
         return bounds

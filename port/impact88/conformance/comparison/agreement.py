@@ -203,6 +203,7 @@ def _compare_scenes(
     scene: Columns, theirs: Mapping[str, tuple[Floats, Floats]], rtol: float | None
 ) -> tuple[ComparedRows, NDArray[np.intp]]:
     """Return the case, and the rows in which rounding decides which way the contact slides."""
+    # not split: the columns of one case, most of which depend on those above
     solution = {name: column.astype(float) for name, column in solve(scene).items()}
     scales = errorbound.scales(scene, solution)
     columns = np.stack([scene[name] for name in SCENE])

@@ -426,6 +426,7 @@ def compare(
     >>> impact88.compare([row]).summary
     '1 row: 1 agree, 0 disagree'
     """
+    # eight arguments, and not split: the options of `impact88 compare`, each used once
     if values is not None and not isinstance(values, Mapping):
         raise UserError(f"values is {quoted(values)}; expected a mapping of names to values")
     if kit is not None and (values or units or rtol is not None):

@@ -723,6 +723,7 @@ def impact(
     ``point``: the same for M = 4. ``infinite``: whether a body may be. ``sign``: what MU is
     multiplied with instead of the sign rule.
     """
+    # not split: one result after another, each from those above
     g = Given(table, scene, pivot, point, infinite, sign)
     p = Pivot(g)
     if isinstance(pivot, bool):
