@@ -238,10 +238,9 @@ def test_long_functions_and_those_of_many_arguments_say_why() -> None:
             if isinstance(node, ast.FunctionDef):
                 arguments = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
                 is_short = len([one for one in arguments if one.arg != "self"]) <= 7
-                above = node.body[0].end_lineno if ast.get_docstring(node) else node.lineno
-                source = "\n".join(text.split("\n")[above or 0 : node.end_lineno])
-                if (source.count("\n") >= 60 or not is_short) and not re.search(
-                    "# .*(not split|arguments).*: ", source
-                ):
+                docstring_end = node.body[0].end_lineno if ast.get_docstring(node) else node.lineno
+                is_short &= (node.end_lineno or 0) - (docstring_end or 0) <= 60
+                source = "\n".join(text.split("\n")[node.lineno - 1 : node.end_lineno])
+                if not is_short and not re.search("# .*(not split|arguments).*: ", source):
                     silent.append(f"{name}.{node.name}")
     assert not silent

@@ -94,8 +94,7 @@ def impact(
     J = I = MX = CO = RO = RX = AP = OL = AS = AR = KF = UNSET
     A: Any = None
 
-    def main() -> None:
-        # not split: the listing's lines in order
+    def main() -> None:  # not split: the listing's lines in order
         nonlocal UX, UY, WA, VX, VY, WB, E, MU, EM, DA, DB, GA, PA, PB, TA, TB, AG, MA, MB, IA
         nonlocal IB, KI, D1, D2, D3, D4, XA, YA, XB, YB, N, M, KF, A
         # 100 REM THIS PROGRAM CALCULATES THE FINAL VELOCITIES OF AN IMPACT BETWEEN TWO RIGID BODIES
