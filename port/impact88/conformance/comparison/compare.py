@@ -285,8 +285,7 @@ class Comparison:
         return line
 
     def passes(self, strict: bool = False) -> bool:
-        """Return True if nothing disagrees and every row could be read; of a kit, if every vector
-        passes.
+        """Return True if nothing disagrees, every row was read and every vector of a kit passes.
 
         Parameters
         ----------
@@ -296,6 +295,7 @@ class Comparison:
         Returns
         -------
         bool
+            False where something fails.
         """
         if self.kit is not None:
             return self.kit.conforms
