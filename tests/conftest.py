@@ -148,7 +148,7 @@ def brief_search() -> Iterator[None]:
 
     brief = Effort(
         particles=400,
-        burn_in_moves=4,
+        burn_in_moves=8,
         draws_of_bounds=200,
         spread_points=200,
         spread_steps=3,

@@ -214,10 +214,11 @@ class State:
         x, y = SPEEDS[speed]
         return self[x], self[y]
 
-    def along_and_across(self, direction: str) -> tuple[Any, Any]:
+    def along_and_across(self, direction: str, value: Any = None) -> tuple[Any, Any]:
         """Return the components of a velocity along and across its given course, or of the impulse
-        along and across its given PDOF; the second is 0 where the direction agrees."""
-        (x, y), (cosine, sine) = self._vector(direction), self._unit_vector(direction)
+        along and across its given PDOF, or another ``value``; the second is 0 where the direction
+        agrees."""
+        (x, y), (cosine, sine) = self._vector(direction), self._unit_vector(direction, value)
         return x * cosine + y * sine, y * cosine - x * sine
 
     def _vector(self, direction: str) -> tuple[Any, Any]:
@@ -245,9 +246,9 @@ class State:
         stood = (stood & ~np.isnan(np.real(late))) | np.isnan(np.real(early))
         return np.where(stood, late, early)
 
-    def _unit_vector(self, direction: str) -> tuple[Any, Any]:
-        """Return the unit vector of a given course or PDOF."""
-        value = self.values[direction]
+    def _unit_vector(self, direction: str, value: Any = None) -> tuple[Any, Any]:
+        """Return the unit vector of a given course or PDOF, or of another ``value``."""
+        value = self.values[direction] if value is None else value
         if direction in FORCES:
             value = self._facing(FORCES[direction]) + 180 - value
         return _unit(value)

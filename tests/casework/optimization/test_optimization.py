@@ -73,6 +73,36 @@ def test_a_climb_ends_on_a_curved_border():
     assert disc.evaluations <= 15
 
 
+class Bowl(Disc):
+    """The height y, and far more for the distance from the center of the unit disc."""
+
+    def evaluate(self, u, guess):
+        guess, _, squares, usable = super().evaluate(u, guess)
+        return guess, u[:, 1:] + 100 * squares, squares, usable
+
+    def slopes(self, u, x):
+        _, squares, states = super().slopes(u, x)
+        return squares * 100 + np.array([0.0, 1.0]), squares, states
+
+
+def test_a_climb_follows_a_curved_border():
+    """Along the border straight steps leave the disc; where they are not brought back to it, only
+    the shortest are better, and searches end far from the top."""
+    bowl, begin = Bowl(), np.radians([[5.0], [20.0], [35.0]])
+    starts = np.hstack([np.cos(begin), np.sin(begin)])
+    count = len(starts)
+    _, _, heights, converged = climb(
+        bowl,
+        starts,
+        np.empty((0, count)),
+        np.zeros(count, int),
+        np.ones(count),
+        np.full(count, 1e-10),
+    )
+    assert converged.all()
+    assert heights == pytest.approx(np.full((count, 1), 101.0), abs=1e-6)
+
+
 def test_jump_across_the_box():
     # the height falls off at an oblique edge: the best lies on it, at its upper end
     extremes = extremes_of(

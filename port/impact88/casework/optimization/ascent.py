@@ -5,8 +5,9 @@ to 1, too) is linearized within a trust region around each search point; the cur
 and constraints along the steps taken is learnt from their slopes (the symmetric rank-one update,
 Conn, Gould and Toint, 1991), and what is concave of it bends the program. The programs are solved
 by a primal-dual interior-point method. A step may leave the feasible region, as constraints are
-curved: what it gains counts less a penalty for what is exceeded, twice the largest multiplier. A
-step that is better doubles the trust region, one that is not cuts it to a quarter."""
+curved: it is brought back along the normals of constraints (a second-order correction), and what it
+gains counts less a penalty for what is exceeded, twice the largest multiplier. A step that is
+better doubles the trust region, one that is not cuts it to a quarter."""
 
 from dataclasses import dataclass, fields
 from typing import Protocol
@@ -19,9 +20,10 @@ Flags = NDArray[np.bool_]
 
 RESTORATIONS = 5  # last steps of points that are still beyond limits
 RESTORING_STEP = 1e-2  # and their length at most, per coordinate
-MAX_STEP = 0.5  # initial and largest trust-region radius, per coordinate
+MAX_STEP = 0.5  # largest trust-region radius, per coordinate
 MIN_STEP = 1e-7  # a search point has converged when its trust region is smaller
 CONSTRAINT_TOL = 1e-9  # a constraint exceeded by no more counts as met
+HELD_TOL = 1e-6  # a constraint predicted so near an end is held there
 MAX_ROUNDS = 60  # steps of a search point
 # Rounds of all searches for an extreme; then the best of them goes on alone. Nearly all that reach
 # the extreme have converged by then.
@@ -29,8 +31,10 @@ ROUNDS_OF_ALL = 20
 ABANDONED = -1.0  # trust region of a search that does not go on
 # Cosine between a step and the change of gradient that is missing; with less nothing is learnt
 LEAST_CURVATURE = 1e-8
+GRADIENT_TOL = 1e-9  # relative; smaller changes of a gradient are rounding
 MAX_BARRIER_ITERATIONS = 30  # interior-point method: each cuts the gap to about a fifth
 MAX_COMPLEMENTARITY = 1e-11  # it stops below
+RIDGE = 1e-14  # relative; rounding leaves matrices singular where constraints depend on one another
 
 
 class SearchProblem(Protocol):
@@ -56,16 +60,17 @@ def climb(
     index: NDArray[np.intp],
     sense: Array,
     min_gain: Array,
+    reach: Array | float = MAX_STEP,
 ) -> tuple[Array, Array, Array, Flags]:
     """Maximize or minimize a function from each of c search points.
 
     ``u`` (c x k) and ``x`` (s x c): the points to start from and their states. ``index``: which
     function each optimizes. ``sense``: +1 maximizes, -1 minimizes. ``min_gain``: stop where the
-    model promises less.
+    model promises less. ``reach``: the initial trust-region radius of each.
 
     Return coordinates, states and all functions at the end, and True for each point that
     converged."""
-    search = _Climb(problem, u, x, index, sense)
+    search = _Climb(problem, u, x, index, sense, reach)
     for round_number in range(MAX_ROUNDS):
         if round_number == ROUNDS_OF_ALL:
             search.keep_best()
@@ -80,12 +85,18 @@ class _Climb:
     far their model is trusted (``reach``), and what is learnt of the ``curvature``."""
 
     def __init__(
-        self, problem: SearchProblem, u: Array, x: Array, index: NDArray[np.intp], sense: Array
+        self,
+        problem: SearchProblem,
+        u: Array,
+        x: Array,
+        index: NDArray[np.intp],
+        sense: Array,
+        reach: Array | float,
     ) -> None:
         self.problem, self.index, self.sense = problem, index, sense
         self.x, self.functions, self.constraints, usable = problem.evaluate(u, x)
         self.u, (count, dimensions) = u.copy(), u.shape
-        self.reach = np.where(usable, MAX_STEP, 0.0)
+        self.reach = np.where(usable, reach, 0.0)
         self.curvature = np.zeros((count, dimensions, dimensions))
         self.steps = np.zeros((count, dimensions))
         self.gradients = np.zeros((count, dimensions))
@@ -112,6 +123,7 @@ class _Climb:
         u = np.clip(self.u[active] + step, 0.0, 1.0)
         change = np.einsum("csk,ck->sc", state_slopes, u - self.u[active])
         reached = self.problem.evaluate(u, self.x[:, active] + change)
+        self._correct(active, u, reached, step, constraint_slopes)
         lagrangian = objective - np.einsum("cr,crk->ck", multipliers, constraint_slopes)
         better = self._accept(active, u, reached)
         self.multipliers[active[better]] = multipliers[better]
@@ -120,6 +132,48 @@ class _Climb:
         is_inside = excess(self.constraints[active]).max(axis=1, initial=0.0) <= CONSTRAINT_TOL
         self.reach[active[(predicted_gain <= min_gain[active]) & is_inside]] = 0.0
         return True
+
+    def _correct(
+        self,
+        active: NDArray[np.intp],
+        u: Array,
+        reached: tuple[Array, Array, Array, Flags],
+        step: Array,
+        rows: Array,
+    ) -> None:
+        """Bring trial points ``u`` that have left the feasible region back along its normals, where
+        that is better: a second-order correction. Constraints are curved, and without it steps
+        along them are as short as the least radius."""
+        x, functions, constraints, usable = reached
+        beyond = np.flatnonzero(
+            usable & (excess(constraints).max(axis=1, initial=0.0) > CONSTRAINT_TOL)
+        )
+        if not beyond.size:
+            return
+        own = active[beyond]
+        predicted = self.constraints[own] + np.einsum("crk,ck->cr", rows[beyond], step[beyond])
+        ends = np.where(predicted > 0.5, 1.0, 0.0)
+        is_held = (np.abs(predicted - ends) < HELD_TOL) | (excess(constraints[beyond]) > 0)
+        ends = np.where(excess(constraints[beyond]) > 0, np.clip(constraints[beyond], 0, 1), ends)
+        is_free = (u[beyond] > 0) & (u[beyond] < 1)
+        normals = rows[beyond] * is_held[:, :, None] * is_free[:, None]
+        products = normals @ normals.swapaxes(1, 2)
+        diagonal = np.einsum("crr->cr", products)
+        diagonal += np.where(is_held, 1e-12 * diagonal.max(axis=1, keepdims=True), 1.0)
+        diagonal += np.where(diagonal > 0, 0.0, 1.0)
+        missing = np.where(is_held, ends - constraints[beyond], 0.0)
+        corrections = np.einsum(
+            "crk,cr->ck", normals, np.linalg.solve(products, missing[:, :, None])[:, :, 0]
+        )
+        trial = np.clip(u[beyond] + corrections, 0.0, 1.0)
+        corrected = self.problem.evaluate(trial, x[:, beyond])
+        better = corrected[3] & (
+            self._merit(own, corrected[1], corrected[2])
+            > self._merit(own, functions[beyond], constraints[beyond])
+        )
+        moved = beyond[better]
+        u[moved], x[:, moved] = trial[better], corrected[0][:, better]
+        functions[moved], constraints[moved] = corrected[1][better], corrected[2][better]
 
     def restore(self) -> None:
         """Move the points that are still beyond limits by the least steps that meet them."""
@@ -160,9 +214,9 @@ class _Climb:
         missing = (self.gradients[active] - gradient) - np.einsum(
             "ckl,cl->ck", self.curvature[active], step
         )
-        along = (missing * step).sum(axis=1)
-        sizes = np.linalg.norm(missing, axis=1) * np.linalg.norm(step, axis=1)
-        learns = (np.abs(along) > LEAST_CURVATURE * sizes) & (sizes > 0)
+        along, size = (missing * step).sum(axis=1), np.linalg.norm(missing, axis=1)
+        learns = np.abs(along) > LEAST_CURVATURE * size * np.linalg.norm(step, axis=1)
+        learns &= size > GRADIENT_TOL * np.linalg.norm(gradient, axis=1)
         update = (
             missing[:, :, None] * missing[:, None] / np.where(learns, along, 1.0)[:, None, None]
         )
@@ -286,10 +340,11 @@ class _Programs:
             normal = transposed @ (matrix * (multipliers / slacks)[:, :, None]) + curvatures
             finite = np.isfinite(normal).all(axis=(1, 2)) & np.isfinite(right_side).all(axis=1)
             normal[~finite], right_side[~finite] = np.eye(dimensions), 0.0
-            try:
-                newton_step = np.linalg.solve(normal, right_side[:, :, None])[:, :, 0]
-            except np.linalg.LinAlgError:
-                break
+            # in units of its diagonal, and with RIDGE on that, no matrix is singular
+            scale = 1 / np.sqrt(np.einsum("ckk->ck", normal))
+            normal = normal * scale[:, :, None] * scale[:, None] + RIDGE * np.eye(dimensions)
+            right_side = (right_side * scale)[:, :, None]
+            newton_step = scale * np.linalg.solve(normal, right_side)[:, :, 0]
             slack_step = residual - _times(matrix, newton_step)
             multiplier_step = (target_product - multipliers * (slacks + slack_step)) / slacks
             primal_length = running * _fraction_to_zero(slacks, slack_step)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .ascent import CONSTRAINT_TOL, SearchProblem, climb, excess, replace_nonfinite
+from .ascent import CONSTRAINT_TOL, MAX_STEP, SearchProblem, climb, excess, replace_nonfinite
 from .effort import CHUNK, granted
 
 Array = NDArray[np.float64]
@@ -18,6 +18,9 @@ Flags = NDArray[np.bool_]
 Numbers = NDArray[np.intp]
 
 MIN_GAIN = 1e-10  # of a function's range: a search stops below
+# Initial trust-region radii of searches, in turns: long steps lead to one of several extremes,
+# short ones to the nearest
+FIRST_STEPS = (0.02, 0.5, 0.1, 0.004)
 IMPROVEMENT_TOL = 1e-4  # of a function's range: a smaller improvement does not count
 
 
@@ -111,7 +114,8 @@ class _Search:
             for group in groups
         ]
         begin = np.concatenate(best_of_groups)
-        self.climb(begin.reshape(-1), np.tile(goals, len(begin)))
+        steps = np.resize(FIRST_STEPS, len(begin))
+        self.climb(begin.reshape(-1), np.tile(goals, len(begin)), np.repeat(steps, len(goals)))
         for _ in range(granted().rounds):
             best = self.objectives(self.pool).max(axis=0)
             goals = np.flatnonzero(self.ends < best - IMPROVEMENT_TOL * self.ranges(best))
@@ -125,12 +129,12 @@ class _Search:
         count = len(best) // 2
         return np.maximum(np.nan_to_num(best + np.roll(best, count), neginf=0.0), 0.0)
 
-    def climb(self, begin: Numbers, goals: Numbers) -> None:
+    def climb(self, begin: Numbers, goals: Numbers, reach: Array | float = MAX_STEP) -> None:
         """Search from points of the pool, one for each of some goals, and add where they end."""
         start = self.pool.chosen(begin)
         gains = MIN_GAIN * self.ranges(self.objectives(self.pool).max(axis=0))[goals]
         u, x, _, converged = climb(
-            self.problem, start.u, start.x, self.index[goals], self.sense[goals], gains
+            self.problem, start.u, start.x, self.index[goals], self.sense[goals], gains, reach
         )
         reached, inside = pool_of(self.problem, u, x)
         values = self.objectives(reached)[np.arange(len(goals)), goals]

@@ -13,8 +13,8 @@ class Effort(NamedTuple):
 
     particles: int = 1000
     """Points that a sampler moves at a time, at most."""
-    burn_in_moves: int = 8
-    """Moves of each before the first draws are taken."""
+    burn_in_moves: int = 16
+    """Moves of each before the first draws are taken, shared by its copies."""
     draws_of_bounds: int = 2000
     """Draws from which bounds are searched for, where none are given."""
     spread_points: int = 2000

@@ -26,6 +26,8 @@ WIDER = 0.2  # widening of friction's limits on either side, relative to their d
 MORE = 0.1  # and beside that
 # Where nothing ends the sliding, P_t/P_n has no other limit; 10, as MU = -10 is the listing's pivot
 LARGEST_FRICTION = 10.0
+# Least closing speed and normal impulse, relative to typical ones: at 0 coefficients are 0 / 0
+LEAST_IMPACT = 1e-8
 
 APPROACH = "approach"
 PUSH = "push"
@@ -74,23 +76,26 @@ class Admissible:
             return np.where(broken_laws(state) == 0, 0.5, -1.0)
         above_low, below_high = self.ends(state, name)
         if name in LAWS:
-            return above_low / (1 + np.where(np.real(above_low) < 0, -above_low, above_low))
+            return one_sided(above_low)
         return above_low / (above_low + below_high)
 
-    def ends(self, state: State, name: str) -> tuple[Any, Any]:
+    def ends(
+        self, state: State, name: str, limits: tuple[float, float] | None = None
+    ) -> tuple[Any, Any]:
         """Return how far impacts lie within the lower and the upper end of a condition, beyond
         where negative, as velocities and impulses in typical ones: without quotients, so that they
-        are smooth where a denominator vanishes. A law has no upper end."""
+        are smooth where a denominator vanishes. A law has no upper end. ``limits``: those of a
+        coefficient that is known within some."""
         if name in LAWS:
             values = {
-                APPROACH: -state.relative_before[0] / self.speed,
-                PUSH: state.values["PN"] / (self.mass * self.speed),
+                APPROACH: -state.relative_before[0] / self.speed - LEAST_IMPACT,
+                PUSH: state.values["PN"] / (self.mass * self.speed) - LEAST_IMPACT,
                 ENERGY: state.energy_lost / (self.mass * self.speed**2),
             }
             return values[name], np.inf
         above, below = state.quotient(name)
         sign = np.where(np.real(below) < 0, -1.0, 1.0)
-        low, high = RANGES[name] if name in RANGES else friction_limits(state)
+        low, high = limits or (RANGES[name] if name in RANGES else friction_limits(state))
         size = {"E": self.speed, "EM": self.spin}.get(name, self.mass * self.speed)
         return sign * (above - low * below) / size, sign * (high * below - above) / size
 
@@ -106,6 +111,11 @@ class Admissible:
                 f"{MORE:g} more on either side, and within {LARGEST_FRICTION:g}"
             )
         return f"{', '.join(parts[:-1])} and {parts[-1]}" if parts[1:] else parts[0]
+
+
+def one_sided(within: Any) -> Any:
+    """Return a number that lies from 0 to 1 where ``within`` is not negative."""
+    return within / (1 + np.where(np.real(within) < 0, -within, within))
 
 
 def friction_limits(state: State, strict: bool = False) -> tuple[Any, Any]:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ...collision.geometry import GEOMETRY
 from ...collision.uncertain import Uncertain
 from .laws import describe_laws, missed_laws
-from .leastsquares import PENALTIES, descend, polish, pseudo_inverse
+from .leastsquares import DISTINCT_TOL, PENALTIES, descend, polish, pseudo_inverse
 from .nearest import CANDIDATE_TOL, DUPLICATE_TOL, with_nearest
 from .quadrics import MAX_EQUATIONS, Paths, follow_paths, quadratic_equations
 from .solution import RESIDUAL_TOL, Reconstruction, describe, invariants
@@ -31,7 +31,6 @@ MAX_BATCHES = 8  # of that search, where impacts go on being found only once
 FIT_STARTS = 60  # through all penalties, and as many through all but the first
 FEW_STARTS = 12  # where all lead to an impact, or none does
 MAX_OMITTED_SETS = 8  # sets of redundant measurements left out to find starts of a fit
-DISTINCT_TOL = 1e-6  # impacts whose scaled variables differ by less are the same
 MAX_OPEN_ENDS = 8  # end points polished where something is undetermined
 MAX_FAILURES = 12  # ends near which Newton's method finds no minimum
 MAX_SQUARES_RATIO = 4.0  # impacts with up to this many times the least sum of squares are reported

@@ -20,6 +20,7 @@ MAX_STEPS = 40  # of each stage
 MAX_NEWTON_STEPS = 50  # of one end of iterations
 FIRST_DAMPING = 1e-2  # relative to the columns of the Jacobian
 MIN_DAMPING = 1e-18  # keeps steps finite where nothing determines a direction
+DISTINCT_TOL = 1e-6  # points whose scaled variables differ by less are the same
 XTOL = 1e-13  # relative step at convergence
 MAX_POLISH_SHIFT = 0.5  # longest relative step of Newton's method
 DIFFERENCE_STEP = 1e-6  # half width of the central differences for second derivatives
@@ -30,10 +31,22 @@ RANK_TOL = 1e-10  # singular values below, relative to the largest, count as zer
 def descend(system: System, starts: Floats, penalties: Sequence[float] = PENALTIES) -> Floats:
     """Return the ends of Levenberg-Marquardt iterations from several starts, a column each, with
     ever larger ``penalties``. A start that is not finite ends where it is."""
-    x = starts
+    x, places = starts, np.arange(starts.shape[1])
     for penalty in penalties if system.observations else PENALTIES[:1]:
         x = _descend(system, x, penalty)
-    return x
+        x, merged = _merge(x)
+        places = merged[places]
+    return x[:, places]
+
+
+def _merge(x: Floats) -> tuple[Floats, NDArray[np.intp]]:
+    """Return the distinct columns, and the number among them of each: ends that coincide go on as
+    one."""
+    is_same = np.abs(x[:, :, None] - x[:, None]).max(axis=0, initial=0.0) < DISTINCT_TOL
+    np.fill_diagonal(is_same, True)
+    same = np.array([row.argmax() for row in is_same], np.intp)
+    first, places = np.unique(same, return_inverse=True)
+    return x[:, first], places
 
 
 def _descend(system: System, starts: Floats, penalty: float) -> Floats:

@@ -33,8 +33,6 @@ from .system import System
 
 Floats = NDArray[np.float64]
 
-# Least closing speed and normal impulse, relative to typical ones: at 0 there is no impact
-LEAST_IMPACT = 1e-6
 CONDITION_TOL = 1e-9  # beyond a border by less, a condition holds
 BORDER_TOL = 1e-5  # iterations that end at a border may stop as near, on either side
 CANDIDATE_TOL = 1e-3  # largest scaled residual of conditions where Newton's method is started
@@ -56,8 +54,7 @@ class Border(NamedTuple):
 
     def within(self, state: State, admissible: Admissible) -> Any:
         """Return how far impacts lie within, negative beyond; real or complex."""
-        least = LEAST_IMPACT if self.name in (APPROACH, PUSH) else 0.0
-        return admissible.ends(state, self.name)[self.end] - least
+        return admissible.ends(state, self.name)[self.end]
 
     def beyond(self, state: State, admissible: Admissible) -> Any:
         """Return the same beyond the border, and 0 within."""

@@ -20,10 +20,10 @@ from numpy.typing import NDArray
 
 from ...collision.geometry import GEOMETRY
 from ...collision.uncertain import Uncertain
-from ...mechanics.state import BARRIER_SPEEDS, CRUSH, DIRECTIONS, SPEEDS, State
+from ...mechanics.state import BARRIER_SPEEDS, CRUSH, DIRECTIONS, FORCES, SPEEDS, State
 from ...names import COEFFICIENTS, VELOCITIES
 from ..optimization.effort import CHUNK
-from .admissible import FRICTION, LAWS, Admissible, friction_limits
+from .admissible import FRICTION, LAWS, NORMAL, Admissible, friction_limits, one_sided
 from .coordinates import OTHER_ROOT, Branches, Coordinates
 from .sampler import Proposal, Sample, sample
 from .solution import NULL_TOL, SIGMAS, Reconstruction
@@ -55,8 +55,7 @@ NARROWER = 0.05  # in bounds, in these standard deviations; one draw in 25 is as
 # condition has a solution
 MAX_NEIGHBOURS = 12
 
-STANDSTILL_STEPS = 25  # Newton steps to a speed of 0
-STANDSTILL_TOL = 1e-9  # relative to a typical speed
+HALF_TURN = 180.0  # degrees; directions within less form a wedge
 
 
 class Posterior:
@@ -225,6 +224,11 @@ class Posterior:
         return value, 0.0
 
     @property
+    def is_friction_relative(self) -> bool:
+        """True where friction is known as a fraction of the critical one, or in size only."""
+        return "MUC" in self.system.constants or self.is_sign_open
+
+    @property
     def is_sign_open(self) -> bool:
         """True where friction is known in size, within limits: line 400 chooses its sign."""
         here = self.coordinates
@@ -357,8 +361,8 @@ class FeasibleRegion:
 
     Coordinates run from 0 to 1, from limit to limit, or over the range of the draws and
     ``BEYOND_DRAWS`` times as much on either side. The state of a point is its branch. Functions:
-    the quantities ``names``. Constraints: the values within limits that are no coordinates, and the
-    conditions of the admissible set."""
+    the quantities ``names``, speeds squared, as a speed has a kink at 0. Constraints: the values
+    within limits that are no coordinates, and the conditions of the admissible set."""
 
     BEYOND_DRAWS = 2.0
 
@@ -400,16 +404,41 @@ class FeasibleRegion:
 
     def _constraints(self, state: State) -> list[Any]:
         """Return the constraints of impacts, real or complex."""
-        posterior, rows = self.posterior, []
+        admissible, rows = self.posterior.admissible, []
         for name, item in self.limited.items():
-            value, _ = posterior.limited_value(state, name)
-            rows.append((value - item.low) / (item.high - item.low))
-        return rows + [posterior.admissible.row(state, n) for n in posterior.admissible.rows]
+            rows += self._within(state, name, item)
+        for name in admissible.rows:
+            if name in (*LAWS, NORMAL):
+                rows.append(admissible.row(state, name))
+            else:
+                rows += map(one_sided, admissible.ends(state, name))
+        return rows
+
+    def _within(self, state: State, name: str, item: Uncertain) -> list[Any]:
+        """Return the constraints that hold where a value lies within its limits. Coefficients and
+        courses are quotients; their limits are products, in which they are smooth at a closing
+        speed of 0 and at a standstill."""
+        posterior, system = self.posterior, self.posterior.system
+        if name in COEFFICIENTS and not (name == "MUP" and posterior.is_friction_relative):
+            ends = posterior.admissible.ends(state, name, (item.low, item.high))
+            return [one_sided(end) for end in ends]
+        if name in DIRECTIONS and item.high - item.low < HALF_TURN:
+            size = system.scale("PN") if name in FORCES else -system.speed
+            low, high = (state.along_and_across(name, x)[1] for x in (item.low, item.high))
+            return [one_sided(-low / size), one_sided(high / size)]
+        value, _ = posterior.limited_value(state, name)
+        return [(value - item.low) / (item.high - item.low)]
 
     def _rows(self, state: State, count: int) -> Array:
         """Return functions, then constraints of impacts, real or complex."""
-        rows = [self.posterior.value(state, n) for n in self.names] + self._constraints(state)
+        rows = [self._function(state, n) for n in self.names] + self._constraints(state)
         return np.array([np.broadcast_to(row, count) for row in rows])
+
+    def _function(self, state: State, name: str) -> Any:
+        if name not in SPEEDS:
+            return self.posterior.value(state, name)
+        x, y = (state[n] for n in SPEEDS[name])
+        return x * x + y * y
 
     def evaluate(self, u: Floats, guess: Floats) -> tuple[Floats, Floats, Floats, Flags]:
         """Evaluate points (`ascent.SearchProblem`)."""
@@ -438,33 +467,6 @@ class FeasibleRegion:
         rows = np.nan_to_num(rows).reshape(len(rows), dimensions, count).transpose(2, 0, 1)
         size = len(self.names)
         return rows[:, :size], rows[:, size:], np.zeros((count, 1, dimensions))
-
-    def standstill(self, speed: str, u: Floats, branches: Branches) -> Floats:
-        """Return points within all limits where a speed is 0, by Gauss-Newton steps from the points
-        ``u``. A speed has a kink there, where sequential linear programming does not converge."""
-        posterior, (count, dimensions) = self.posterior, u.shape
-        typical = posterior.system.scale(speed)
-        for _ in range(STANDSTILL_STEPS):
-            state, total = self._offset_impacts(u, branches), dimensions * count
-            rows = [np.broadcast_to(state[n] / typical, total) for n in SPEEDS[speed]]
-            for fraction in self._constraints(state):
-                inside = np.clip(np.real(fraction), 0.0, 1.0)
-                is_outside = np.real(fraction) != inside
-                beyond = np.where(is_outside, fraction - inside, 0.0)
-                rows.append(np.broadcast_to(beyond, total))
-            residuals = np.array(rows).reshape(len(rows), dimensions, count)
-            if not np.isfinite(residuals).all():
-                return u[:0]
-            slopes = (np.imag(residuals) / COMPLEX_STEP).transpose(2, 0, 1)
-            steps = np.linalg.pinv(slopes, rcond=1e-9) @ np.real(residuals[:, 0]).T[:, :, None]
-            u = np.clip(u - steps[:, :, 0], 0.0, 1.0)
-        _, _, constraints, usable = self.evaluate(u, branches[None].astype(float))
-        state, _, _ = posterior.coordinates.impacts(self.points(u), branches)
-        stands_still = (
-            np.hypot(*(np.real(state[n]) for n in SPEEDS[speed])) < STANDSTILL_TOL * typical
-        )
-        inside = (np.abs(constraints - 0.5) <= 0.5 + LIMIT_TOL).all(axis=1)
-        return np.asarray(u[stands_still & usable & inside])
 
     def known_values(self, u: Floats, branch: float) -> dict[str, float]:
         """Return the values known within limits at one point."""

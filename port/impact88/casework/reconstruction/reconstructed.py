@@ -4,6 +4,7 @@ Both are over the admissible impacts within the limits of what is known, of all 
 (`posterior`): draws by sequential Monte Carlo (`sampler`), bounds by a search from the draws
 (`optimization.boxsearch`)."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -27,8 +28,8 @@ Floats = NDArray[np.float64]
 Progress = Callable[[int], object]
 
 GROUPS = 8  # of draws; searches begin at the best of each
+REST = 1e-10  # of the square of a speed's upper bound: with less a vehicle stands
 MIN_GAIN = 1e-7  # of a quantity's range: the resolution of bounds
-STANDSTILL_STARTS = 16  # slowest draws, from which a standstill is searched for
 LIMIT_REACHED = 0.5  # of the largest velocity: draws beyond hang on that limit
 # A condition ends an interval if most of the outermost draws, and far more of them than of all
 # draws, lie at its border
@@ -109,7 +110,7 @@ def draws(
 
 def _ends(values: Floats, conditions: Mapping[str, Floats]) -> tuple[str, str]:
     """Return the conditions that end the draws of a quantity below and above."""
-    order, count = np.argsort(values, kind="stable"), int(OUTERMOST * len(values))
+    order, count = np.argsort(values), int(OUTERMOST * len(values))
     ends = []
     for outermost in (order[:count], order[len(values) - count :]):
         fractions = {
@@ -155,33 +156,15 @@ def ranges(
         ends, branches = found.at[:, i], found.states[0, :, i]
         low, high = (region.known_values(ends[side], branches[side]) for side in (0, 1))
         is_inside = (np.abs(ends[:, components] - 0.5) < 0.5).all()
-        bound = Range(
-            float(found.values[0, i]),
-            float(found.values[1, i]),
-            low,
-            high,
-            bool(found.done[:, i].all()) and bool(is_inside),
-        )
-        if name in SPEEDS and bound.lower > 0:
-            bound = _with_standstill(bound, region, name, sample, bool(found.done[1, i]))
-        results[name] = bound
+        lower, upper = found.values[:, i].tolist()
+        if name in SPEEDS:
+            lower = 0.0 if lower <= REST * upper else math.sqrt(lower)
+            upper = math.sqrt(upper)
+        is_searched = bool(found.done[:, i].all()) and bool(is_inside)
+        results[name] = Range(lower, upper, low, high, is_searched)
     for name in _unbounded_names(solution, posterior.known, names):
         results[name] = Range(-np.inf, np.inf, {}, {})
     return results
-
-
-def _with_standstill(
-    bound: Range, region: FeasibleRegion, name: str, sample: Sample, is_upper_searched: bool
-) -> Range:
-    """Return the bound of a speed, 0 where some impact within all limits has a standing vehicle."""
-    speeds = region.posterior.values(sample.points, sample.branches, [name])[0]
-    slowest = np.argsort(speeds, kind="stable")[:STANDSTILL_STARTS]
-    branches = sample.branches[slowest]
-    standstills = region.standstill(name, region.fractions(sample.points[:, slowest]), branches)
-    if not len(standstills):
-        return bound
-    at_lower = region.known_values(standstills[0], branches[0])
-    return Range(0.0, bound.upper, at_lower, bound.at_upper, is_upper_searched)
 
 
 def _unbounded_names(

@@ -21,6 +21,7 @@ from ..optimization.effort import CHUNK, granted
 
 Floats = NDArray[np.float64]
 Branches = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 PROPOSAL_FACTOR = 12  # proposals per particle, so that thin parts of the distribution are found
 # After each hardening of the limits particles move until so many moves of each were accepted, on
@@ -29,6 +30,7 @@ ACCEPTED_MOVES = 4.0
 MAX_MOVES = 24  # of each particle, where few are accepted
 MOVES_ALIKE = 4  # moves before proposals are fitted anew
 THINNING = 2  # moves between one set of draws and the next
+COPIES = 4  # of each particle, which move on apart while draws are collected: fewer, longer sets
 MAX_STAGES = 25  # hardenings of the limits; if these do not suffice, no impact lies within limits
 MIN_EFFECTIVE = 0.5  # fraction of particles that stay effective from stage to stage
 DEGREES_OF_FREEDOM = 4.0  # of the proposals, Student's t
@@ -84,8 +86,8 @@ class Sample:
     def effective_size(self, values: Floats) -> float:
         """Return the number of independent draws whose mean rank is as accurate as that of these
         values (n)."""
-        ranks = np.argsort(np.argsort(values, kind="stable"), kind="stable").astype(float)
-        ranks -= ranks.mean()
+        ranks = np.empty(len(values))
+        ranks[np.argsort(values)] = np.arange(len(values)) - (len(values) - 1) / 2
         sums = np.bincount(self.families, weights=ranks)
         families = np.count_nonzero(np.bincount(self.families))
         if families < 2:
@@ -135,12 +137,14 @@ def sample(density: Density, count: int, rng: np.random.Generator) -> Sample | N
 
 
 class _Sampler:
-    """``mixtures``: what moves propose in turns."""
+    """``mixtures``: what moves propose in turns; ``proposed``: the log density of particles as each
+    proposes them."""
 
     def __init__(self, density: Density, rng: np.random.Generator) -> None:
         self.density, self.rng = density, rng
         self.first = _Mixture(density.proposals())
         self.mixtures: list[_Mixture | _Turned] = [self.first]
+        self.proposed: list[Floats] = []
         self.families = 0
 
     def run(self, count: int) -> Sample | None:
@@ -162,8 +166,10 @@ class _Sampler:
                 break
         else:
             return None
+        copies = min(COPIES, -(-count // number))
+        particles = particles.chosen(np.tile(np.arange(number), copies))
         self._adapt(particles)
-        self._move(particles, np.inf, granted().burn_in_moves)
+        self._move(particles, np.inf, granted().burn_in_moves // copies)
         return self._collect(particles, count)
 
     def _collect(self, particles: _Particles, count: int) -> Sample:
@@ -224,6 +230,9 @@ class _Sampler:
             points, branches, _ = self.density.turned(points, branches)
             if parts := _fit(points, branches, self.rng):
                 self.mixtures.append(_Turned(_Mixture(parts), self.density))
+        self.proposed = [
+            mixture.log_density(particles.points, particles.branches) for mixture in self.mixtures
+        ]
 
     def _move_on(self, particles: _Particles, hardness: float) -> None:
         """Move all particles until they have forgotten where they were."""
@@ -238,21 +247,28 @@ class _Sampler:
         """Move all particles so often; return how many moves of each were accepted, on average."""
         number, accepted = len(particles.branches), 0.0
         for move in range(moves):
-            mixture = self.mixtures[move % len(self.mixtures)]
-            here = mixture.log_density(particles.points, particles.branches)
-            points, branches, there = mixture.propose(number, self.rng)
+            turn = move % len(self.mixtures)
+            points, branches, there = self.mixtures[turn].propose(number, self.rng)
             families = self.families + np.arange(number)
             self.families += number
             trial = _Particles(points, branches, self._logarithms(points, branches), families)
-            accepted += self._accept(particles, trial, hardness, here - there)
+            rows = self._accept(particles, trial, hardness, self.proposed[turn] - there)
+            accepted += float(rows.mean())
+            for other, (mixture, proposed) in enumerate(
+                zip(self.mixtures, self.proposed, strict=True)
+            ):
+                proposed[rows] = (
+                    there[rows]
+                    if other == turn
+                    else mixture.log_density(points[:, rows], branches[rows])
+                )
         return accepted
 
     def _accept(
         self, particles: _Particles, trial: _Particles, hardness: float, proposed: Floats
-    ) -> float:
-        """Replace particles by their trials, where the Metropolis rule accepts them; return the
-        fraction of these. ``proposed``: how much likelier the move back is proposed, as a
-        logarithm."""
+    ) -> Flags:
+        """Replace particles by their trials, where the Metropolis rule accepts them; return True
+        for each. ``proposed``: how much likelier the move back is proposed, as a logarithm."""
         gain = trial.log_density(hardness) - particles.log_density(hardness) + proposed
         rows = -self.rng.standard_exponential(len(gain)) < gain
         particles.points[:, rows] = trial.points[:, rows]
@@ -260,7 +276,7 @@ class _Sampler:
         particles.families[rows] = trial.families[rows]
         for log, trial_log in zip(particles.logs, trial.logs, strict=True):
             log[rows] = trial_log[rows]
-        return float(rows.mean())
+        return np.asarray(rows)
 
 
 class _Mixture:
@@ -270,7 +286,10 @@ class _Mixture:
         self.parts = parts
         fractions = np.array([part.fraction for part in parts])
         self.fractions = fractions / fractions.sum()
-        self.inverses = [np.linalg.inv(part.root) for part in parts]
+        self.branches = np.array([part.branch for part in parts])
+        self.inverses = np.linalg.inv(np.array([part.root for part in parts]))
+        self.offsets = self.inverses @ np.array([part.center for part in parts])[:, :, None]
+        self.logs = np.linalg.slogdet(self.inverses)[1] + np.log(self.fractions)
 
     def draw(self, count: int, rng: np.random.Generator) -> tuple[Floats, Branches]:
         """Return random points and their branches."""
@@ -286,7 +305,7 @@ class _Mixture:
             axis=1,
         )
         order = rng.permutation(count)
-        branches = np.array([part.branch for part in self.parts])[chosen]
+        branches = self.branches[chosen]
         return points[:, order], branches[order]
 
     def propose(self, count: int, rng: np.random.Generator) -> tuple[Floats, Branches, Floats]:
@@ -296,15 +315,17 @@ class _Mixture:
 
     def log_density(self, points: Floats, branches: Branches) -> Floats:
         size = len(points)
-        logs = np.full((len(self.parts), points.shape[1]), -np.inf)
-        for row, part, inverse, fraction in zip(
-            logs, self.parts, self.inverses, self.fractions, strict=True
-        ):
-            own = branches == part.branch
-            square = np.square(inverse @ (points[:, own] - part.center[:, None])).sum(axis=0)
-            log = -(DEGREES_OF_FREEDOM + size) / 2 * np.log1p(square / DEGREES_OF_FREEDOM)
-            row[own] = log + np.linalg.slogdet(inverse)[1] + np.log(fraction)
-        return np.asarray(np.logaddexp.reduce(logs, axis=0))
+        away = self.inverses @ points
+        away -= self.offsets  # in place: fresh memory takes longer than the sums
+        away *= away
+        squares = away.sum(axis=1)
+        logs = self.logs[:, None] - (DEGREES_OF_FREEDOM + size) / 2 * np.log1p(
+            squares / DEGREES_OF_FREEDOM
+        )
+        logs[self.branches[:, None] != branches] = -np.inf
+        largest = logs.max(axis=0)
+        sums = np.exp(logs - np.where(np.isfinite(largest), largest, 0.0)).sum(axis=0)
+        return np.asarray(largest + np.log(sums))
 
 
 @dataclass(frozen=True)
