@@ -127,7 +127,9 @@ class KitAnswers:
         scenes = {name: column[places] for name, column in self._scenes.items()}
         refusals = np.where(places < 0, REASONS.index(STRAY), 0)
         for name, column in numbers(rows, units).items():
-            for index in np.flatnonzero((column != scenes[name]) & (refusals == 0)).tolist():
+            is_read = ~np.isnan(column) | (scenes["M"] != 4)  # of point masses not every cell is
+            differs = is_read & (column != scenes[name]) & (refusals == 0)
+            for index in np.flatnonzero(differs).tolist():
                 refusals[index] = REASONS.index(CHANGED)
                 vector = self.kit.vectors[places[index]]
                 says = f"{name} is {float(column[index])!r}, not {vector.scene[name]}"

@@ -28,25 +28,9 @@ from ...tables.cells import TableUnits, check_scene_columns, numbers
 from ...tables.formats import FORMATS
 from ...tables.rows import BadCell, Reader, Rows
 from ...tables.table import format_of, open_reader
-from . import agreement
+from . import agreement, reasons
 from .agreement import ABSENT, DIFFER, ELIMINATION, LOST, ComparedRows, Question
 from .diagnosis import Diagnosis, TableCause, Unexplained
-from .reasons import (
-    AGREEMENT,
-    DISAGREES,
-    HARMLESS,
-    MISSING,
-    NO_DIGIT,
-    NO_RESULT,
-    NO_SCENE,
-    NOTHING_HERE,
-    NOTHING_THERE,
-    PARTIAL,
-    REASONS,
-    REFUSED,
-    UNREADABLE,
-    describe,
-)
 from .tablehypotheses import AGREES, UNKNOWN, TableHypothesis
 from .vectors import FAILURE, FROZEN_ID
 
@@ -260,8 +244,8 @@ class Comparison:
         """Messages about columns, rows and cells that were not compared."""
         messages = [f"column {name} not recognised" for name in self.unknown]
         for reason, skipped_rows in self.not_compared.items():
-            if reason not in HARMLESS:
-                messages.append(describe(reason, skipped_rows.rows))
+            if reason not in reasons.HARMLESS:
+                messages.append(reasons.describe(reason, skipped_rows.rows))
         for name, tally in self.tallies.items():
             if tally.missing:
                 messages.append(
@@ -275,8 +259,8 @@ class Comparison:
         rows = f"{self.rows} row{'s' if self.rows != 1 else ''}"
         line = f"{rows}: {self.agreeing} agree, {self.differing} disagree"
         counts = {reason: group.rows for reason, group in self.not_compared.items()}
-        missing = counts.pop(MISSING, 0)
-        refused = sum(counts.pop(reason, 0) for reason in HARMLESS)
+        missing = counts.pop(reasons.MISSING, 0)
+        refused = sum(counts.pop(reason, 0) for reason in reasons.HARMLESS)
         others = {"refused": refused, "missing": missing, "not compared": sum(counts.values())}
         line += "".join(f", {count} {word}" for word, count in others.items() if count)
         for cause, count in self.causes.most_common(1):
@@ -326,9 +310,9 @@ class Comparison:
             tests.append(Test(place, "failure", f"{row}; {row.cause}"))
         tests += [Test(f"row {bad.row}", "error", str(bad)) for bad in self.bad]
         tests += [Test(says, "failure" if strict else "skipped", says) for says in self.silent]
-        for reason in HARMLESS:
+        for reason in reasons.HARMLESS:
             if skipped_rows := self.not_compared.get(reason):
-                tests.append(Test(describe(reason, skipped_rows.rows), "skipped", reason))
+                tests.append(Test(reasons.describe(reason, skipped_rows.rows), "skipped", reason))
         write(path, f"impact88 compare {name}", tests)
 
     def as_json(self) -> dict[str, Any]:
@@ -472,13 +456,13 @@ def compare(
             agreeing = block.agreeing[: max(0, MAX_AGREEING_KEPT - comparison.agreeing)]
             _count(block, comparison)
             if answers is not None:
-                answers.add(rows, block.reasons, _details(block))
+                answers.add(rows, block.codes, _details(block))
             if search is not None:
                 kept = np.sort(np.concatenate([block.differing, agreeing]))
                 search.add(block.case.select_rows(kept))
     if answers is not None:
         labels = [verdict.vector.label for verdict in answers.verdicts if not verdict.row]
-        _skip(comparison, MISSING, [0] * len(labels), labels)
+        _skip(comparison, reasons.MISSING, [0] * len(labels), labels)
     elif not any(tally.compared for tally in comparison.tallies.values()):
         raise UserError("no result could be compared", where)
     if search is not None and comparison.differing:
@@ -573,24 +557,24 @@ def _result_meant(name: str) -> str:
 
 class Block(NamedTuple):
     """Some rows of a table, compared: grades and relative differences are (results, rows);
-    ``reasons``: the place in `REASONS` of what is said of each row, 0 where it agrees."""
+    ``codes``: the place in `REASONS` of what is said of each row, 0 where it agrees."""
 
     rows: Rows
     question: Question
     case: ComparedRows
     grades: NDArray[np.intp]
     relative: NDArray[np.float64]
-    reasons: NDArray[np.intp]
+    codes: NDArray[np.intp]
 
     @property
     def differing(self) -> NDArray[np.intp]:
         """The rows with a result that disagrees."""
-        return np.flatnonzero(self.reasons == REASONS.index(DISAGREES))
+        return np.flatnonzero(self.codes == reasons.REASONS.index(reasons.DISAGREES))
 
     @property
     def agreeing(self) -> NDArray[np.intp]:
         """The rows that could be compared, and agree."""
-        return np.flatnonzero(self.reasons == 0)
+        return np.flatnonzero(self.codes == 0)
 
 
 def _result_columns(reader: Reader) -> tuple[list[str], dict[str, str]]:
@@ -627,13 +611,13 @@ def _compare_block(
     that does not answer its vector, no result is compared."""
     theirs = {name: agreement.read_theirs(rows, name, units) for name in results}
     refusals = np.zeros(rows.count, int) if question.refusals is None else question.refusals
-    refusals[[index for index, *_ in rows.bad]] = REASONS.index(UNREADABLE)
+    refusals[[index for index, *_ in rows.bad]] = reasons.REASONS.index(reasons.UNREADABLE)
     for column, _ in theirs.values():
         column[refusals > 0] = np.nan
     case = agreement.make_case(question.scene, theirs, rtol, rows.first)
     grades, relative = case.grade()
-    reasons = np.where(refusals > 0, refusals, _reasons(question, case, grades))
-    return Block(rows, question, case, grades, relative, reasons)
+    codes = np.where(refusals > 0, refusals, _reasons(question, case, grades))
+    return Block(rows, question, case, grades, relative, codes)
 
 
 def _reasons(question: Question, case: ComparedRows, grades: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -646,24 +630,23 @@ def _reasons(question: Question, case: ComparedRows, grades: NDArray[np.intp]) -
     is_excess = ~is_solvable & has_answer
     if question.refusals is not None:
         # of a kit every result is due, and no number where there is none, an infinite one included
-        is_final = [name in FINAL_VELOCITIES for name in case.names]
-        must_refuse = may_refuse & ~due[is_final].all(0)
-        is_excess |= (~np.isnan(case.values) & (~due | must_refuse)).any(0)
+        is_excess |= (~np.isnan(case.values) & ~due).any(0)
         is_partial = np.asarray((due & ~given).any(0) & has_answer)
     is_positive = np.all([question.scene[name] > 0 for name in POSITIVE], 0)
     # the first that holds is said
     rows_by_reason = {
-        DISAGREES: (grades == DIFFER).any(0),
-        NO_SCENE: is_excess & ~is_positive,
-        NOTHING_HERE: is_excess,
-        PARTIAL: is_partial,
-        AGREEMENT: ((grades > ABSENT) & (grades < LOST)).any(0) & ~is_lost,
-        NO_RESULT: ~is_solvable,
-        REFUSED: ~has_answer & may_refuse,
-        NO_DIGIT: is_lost,
+        reasons.DISAGREES: (grades == DIFFER).any(0),
+        reasons.NO_SCENE: is_excess & ~is_positive,
+        reasons.NOTHING_HERE: is_excess,
+        reasons.PARTIAL: is_partial,
+        reasons.AGREEMENT: ((grades > ABSENT) & (grades < LOST)).any(0) & ~is_lost,
+        reasons.NO_RESULT: ~is_solvable,
+        reasons.REFUSED: ~has_answer & may_refuse,
+        reasons.NO_DIGIT: is_lost,
+        reasons.NOTHING_THERE: np.ones_like(may_refuse),
     }
-    places = [REASONS.index(reason) for reason in rows_by_reason]
-    return np.select(list(rows_by_reason.values()), places, REASONS.index(NOTHING_THERE))
+    places = [reasons.REASONS.index(reason) for reason in rows_by_reason]
+    return np.select(list(rows_by_reason.values()), places)
 
 
 def _scene_of(
@@ -688,12 +671,13 @@ def _count(block: Block, comparison: Comparison) -> None:
     for place, tally in enumerate(comparison.tallies.values()):
         tally.add(grades[place], block.relative[place])
         tally.missing += int((is_solved[place] & (grades[place] == ABSENT)).sum())
-    for code in np.unique(block.reasons).tolist():
-        if REASONS[code] not in (AGREEMENT, DISAGREES):
-            places = np.flatnonzero(block.reasons == code).tolist()
+    for code in np.unique(block.codes).tolist():
+        reason = reasons.REASONS[code]
+        if reason not in (reasons.AGREEMENT, reasons.DISAGREES):
+            places = np.flatnonzero(block.codes == code).tolist()
             labels = block.question.labels
             row_labels = [] if labels is None else [str(labels[place]) for place in places]
-            _skip(comparison, REASONS[code], [rows.first + place for place in places], row_labels)
+            _skip(comparison, reason, [rows.first + place for place in places], row_labels)
     _count_elimination(block, comparison.elimination)
     comparison.differences += _rows_of(block)
 
@@ -744,6 +728,6 @@ def _details(block: Block) -> dict[int, str]:
     case, names = block.case, np.array(block.case.names)
     given, due = ~np.isnan(case.values), np.isfinite(case.ours)
     at_fault = (given ^ due) | (block.grades == LOST)
-    places = np.flatnonzero(block.reasons).tolist()
+    places = np.flatnonzero(block.codes).tolist()
     details = {block.rows.first + place: " ".join(names[at_fault[:, place]]) for place in places}
     return details | {row.row: str(row) for row in _rows_of(block)}
