@@ -447,3 +447,20 @@ def test_a_page_from_elsewhere_gets_nothing(
         server.server_close()
         one_browser.open("about:blank")
         one_browser.complaints()
+
+
+def test_a_kind_of_collision_says_what_is_to_be_filled_in(page: Page) -> None:
+    page.run("location.hash = '#reconstruction'")
+    page.choose("reconstruction-begin", "template/rear-end")
+    until(lambda: page.text("reconstruction-waiting") == "Still to fill in: MA MB E SA.", "it")
+    assert page.at("reconstruction-SA").is_displayed()
+    assert "E is .1 to .4" in page.text("reconstruction-hint")
+    for name, text in {"MA": "3000", "MB": "2500", "SA": "30"}.items():
+        page.put(f"reconstruction-{name}", text)
+    until(lambda: "give E, SAF or SBF" in page.text("reconstruction-answer"), "what would do")
+    page.put("reconstruction-E", ".2")
+    until(lambda: "16.4 mph" in page.text("reconstruction-answer"), "the answer")
+    assert not page.at("reconstruction-waiting").is_displayed()
+    page.at("reconstruction-report").click()
+    assert b"known.toml" in page.saved("case.html")
+    until(lambda: "names the file known.toml" in page.text("reconstruction-hint"), "the offer")

@@ -91,7 +91,8 @@ const solve = settled(async () => {
   latest = told.solutions;
   const whole = told.solutions.length > 0;
   const open = inputs().filter((input) => input.placeholder && !input.value.trim()).map((input) => input.name);
-  page("reconstruction-waiting").textContent = open.length ? `Still to fill in: ${open.join(" ")}.` : told.waiting;
+  const fillIn = open.length && !whole ? `Still to fill in: ${open.join(" ")}.` : "";
+  page("reconstruction-waiting").textContent = fillIn || told.waiting;
   page("reconstruction-answer").classList.toggle("stale", !whole);
   showAtFields(told.solutions);
   if (!whole) return;
