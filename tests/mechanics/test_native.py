@@ -18,10 +18,10 @@ import impact88
 from impact88.mechanics import native
 from impact88.mechanics.accuracy.populations import POPULATIONS, repeat_scenes, scenes, texts
 from impact88.mechanics.closedform import solve as solving
-from impact88.mechanics.closedform.general import TILE, quantities
-from impact88.mechanics.closedform.plain import MAX_CONVERTED
+from impact88.mechanics.closedform.columns import BLOCK
+from impact88.mechanics.closedform.compiledcalls import TILE
+from impact88.mechanics.closedform.general import quantities
 from impact88.names import RESULTS
-from impact88.program.vectorized import blocks
 
 pytestmark = pytest.mark.skipif(native.library is None, reason="built without a C compiler")
 
@@ -44,7 +44,7 @@ def assert_same_bits(compiled, alone):
 
 
 @pytest.mark.parametrize("name", POPULATIONS)
-@pytest.mark.parametrize("count", [1, 2, MAX_CONVERTED, MAX_CONVERTED + 1])
+@pytest.mark.parametrize("count", [1, 2, TILE, TILE + 1])
 def test_every_result_of_every_population(name, count):
     assert_same_bits(*both(repeat_scenes(scenes(name, min(count, 500), 11), count), threads=1))
 
@@ -81,7 +81,7 @@ def test_scenes_of_all_kinds_among_each_other(count):
 
 def test_kinds_that_change_far_behind_what_was_looked_at():
     """The library goes on over all scenes of one kind, and must notice where another begins."""
-    count = 2 * TILE + 5000
+    count = 2 * BLOCK + 5000
     for name, value in {"MU": -10.0, "GA": 1e6, "IA": np.inf, "UX": np.nan, "M": 4.0}.items():
         columns = repeat_scenes(scenes("casework", 5000, 5), count)
         columns["M"] = np.full(count, 6.0)
@@ -92,9 +92,7 @@ def test_kinds_that_change_far_behind_what_was_looked_at():
 
 
 def test_a_column_of_one_value_that_another_follows_far_behind():
-    columns = {
-        name: values.copy() for name, values in scenes("casework", 3 * MAX_CONVERTED, 6).items()
-    }
+    columns = {name: values.copy() for name, values in scenes("casework", 3 * TILE, 6).items()}
     columns["EM"][:] = -0.5
     columns["EM"][-7] = -0.25
     assert_same_bits(*both(columns, threads=1))
@@ -102,7 +100,7 @@ def test_a_column_of_one_value_that_another_follows_far_behind():
 
 def test_what_varies_may_go_beyond_what_was_looked_at(monkeypatch):
     """Numbers that are only larger than those looked at make no other kind."""
-    columns = scenes("casework", 3 * MAX_CONVERTED, 6)
+    columns = scenes("casework", 3 * TILE, 6)
     columns["UX"][-7] = 10 * columns["UX"].max()
     with native.switched_off():
         expected = impact88.solve(columns, SIX)
@@ -122,12 +120,14 @@ def test_slices_types_and_shapes():
     scalar = {name: float(values[0]) for name, values in columns.items()} | {"M": 6}
     for name in ("MU", "GA", "IA", "E"):
         assert_same_bits(*both({**scalar, name: columns[name][:50]}))
+    for cell in ("85 %", "0.5", 1):
+        assert_same_bits(*both({**scalar, "MU": np.full(2 * TILE, cell, object)}))
     empty = {**scalar, "MU": np.empty(0)}
     assert_same_bits(*both(empty))
 
 
 def test_selections():
-    columns = odd(3 * MAX_CONVERTED, 9)
+    columns = odd(3 * TILE, 9)
     for name in RESULTS:
         assert_same_bits(*both(columns, name))
     few = {name: values[:100] for name, values in scenes("casework", 100, 4).items()}
@@ -176,10 +176,9 @@ def test_replay_of_every_population(name):
 
 
 @pytest.mark.parametrize("shared", ["MU", "UX", "IA"])
-def test_replay_of_scenes_that_share_all_but_one(shared, monkeypatch):
+def test_replay_of_scenes_that_share_all_but_one(shared):
     columns = texts(scenes("casework", 2500, 6))
     one = {key: values[0] for key, values in columns.items()}
-    monkeypatch.setattr(blocks, "MIN_SCENES_TO_SPECIALIZE", 0)
     compare_replays({**one, shared: columns[shared]})
 
 

@@ -20,8 +20,7 @@ from impact88.mechanics import native
 from impact88.mechanics.accuracy.errorbound import scales
 from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
 from impact88.mechanics.accuracy.reference import fifty_digits
-from impact88.mechanics.closedform.columns import examine, part, sources
-from impact88.mechanics.closedform.general import SHARED_TILE
+from impact88.mechanics.closedform.columns import BLOCK, examine, part, sources
 from impact88.mechanics.closedform.impactprograms import program_for
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 from impact88.status import Status
@@ -218,9 +217,10 @@ def test_a_barrier_of_constants_is_one_of_columns(change, usable):
 
 
 def test_threads_and_blocks_change_nothing():
-    count = 2 * SHARED_TILE + 77
+    count = 2 * BLOCK + 77
     g = {name: np.resize(v, count) for name, v in mixed_scenes(999).items()}
-    one, two = solve(g, threads=1), solve(g, threads=2)
+    one = solve(g, threads=1)
+    two = solve({name: np.repeat(v, 2)[::2] for name, v in g.items()}, threads=2)
     for name in RESULTS:
         assert np.all(same(one[name] * 1.0, two[name] * 1.0)), name
         assert np.all(same(one[name][:999] * 1.0, one[name][999:1998] * 1.0)), name

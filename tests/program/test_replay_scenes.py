@@ -378,7 +378,7 @@ def test_blocks_and_threads_change_nothing(awkward: list[dict[str, Any]]) -> Non
     scenes = read_columns(columns_of([run["scene"] for run in awkward]))
     whole = replay_scenes(scenes, threads=1)
     same(whole, replay_scenes(scenes, threads=1, block=60), scenes.size)
-    count = 2 * blocks.MIN_SCENES_PER_THREAD
+    count = 2 * blocks.BLOCK_SIZE
     many = scenes._replace(
         values={name: np.resize(v, count) for name, v in scenes.values.items()},
         size=count,

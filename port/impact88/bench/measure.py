@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..mechanics import native
 from ..mechanics.accuracy.errorbound import APPLESOFT, scales, sensitivity
 from ..mechanics.accuracy.populations import POPULATIONS, repeat_scenes, scenes
-from ..mechanics.closedform.general import TILE
+from ..mechanics.closedform.columns import BLOCK
 from ..mechanics.closedform.plan import Plan
 from ..mechanics.closedform.solve import solve
 from ..mechanics.native.expressiontable import ExpressionTable
@@ -68,7 +68,7 @@ def mover(columns: Mapping[str, Any], results: Mapping[str, Any]) -> Callable[[]
     first, *columns_left = (table.column(name, varies=True) for name in columns)
     program = Schedule(dict.fromkeys(results, sum(columns_left, first)), ["RESULT"] * len(results))
     read = [columns[name] for name in program.columns]
-    return partial(Plan(program).run, read, results, {}, TILE)
+    return partial(Plan(program).run, read, results, {}, BLOCK)
 
 
 def memory_roof() -> float:

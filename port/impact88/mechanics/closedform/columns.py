@@ -27,6 +27,9 @@ UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
 OPTIONAL_OF_POINTS = (*UNUSED_BY_POINTS, "GA", "E", "MU", "WA", "WB")
 """Names that it may lack: not every result uses them."""
 
+BLOCK = 16384
+"""Scenes computed at a time, and the least that a thread gets: two columns of them fit a
+second-level cache, all columns a third."""
 LARGE_ANGLE = 720.0
 """Angles beyond this, in degrees, are taken modulo 360 (which is exact) before they are added up:
 the sums are then rounded no more coarsely than the angles people give are."""
@@ -70,10 +73,11 @@ def sources(columns: Mapping[str, object]) -> tuple[dict[str, Source], tuple[int
     if missing:
         raise UserError(f"missing: {' '.join(missing)}; a scene needs {' '.join(SCENE)}")
     shape = common_shape("columns", arrays)
-    return {name: _source(arrays[name], shape) for name in SCENE}, shape
+    return {name: source_of(arrays[name], shape) for name in SCENE}, shape
 
 
-def _source(array: Array, shape: tuple[int, ...]) -> Source:
+def source_of(array: Array, shape: tuple[int, ...]) -> Source:
+    """Return an array, which broadcasts to the common shape, as a source."""
     if array.size == 1:
         return array.reshape(1)
     if array.shape == shape and (array.ndim == 1 or array.flags.c_contiguous):

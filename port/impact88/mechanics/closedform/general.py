@@ -19,23 +19,14 @@ from ...errors import UserError
 from ...names import DEFAULT_M, PIVOT, SCENE
 from ...status import Status
 from .. import native
-from ..native.processors import run_in_threads, workers
-from . import compiledcalls
-from .columns import Source, examine, part, sources
+from ..native.processors import run_in_threads
+from .columns import BLOCK, Source, examine, part, sources
+from .compiledcalls import Call, call_of
 from .impactprograms import program_for
 from .plan import Plan
 from .results import address, allocate_results, results_into
 
 Array = NDArray[Any]
-
-TILE = 16384
-"""Scenes per pass of numpy. Two arrays fit the second-level cache and all of them the third, and
-numpy's cost of starting an operation (half a microsecond) is spread over enough scenes.
-Measured: 4096 takes a fifth longer, 8192 and 32768 a few percent."""
-SHARED_TILE = 4 * TILE
-"""Scenes per pass with several threads. Each operation releases and re-acquires the GIL; when
-operations are short the other thread has not woken up by then, and the threads take turns. Measured
-on two cores: 1.6 times as fast as one thread with tiles this long, 1.1 times with `TILE`."""
 
 
 def solve_arrays(
@@ -53,19 +44,36 @@ def solve_arrays(
         mu = np.where(np.isnan(shares), numbers, share_typed(columns, shares))
         columns = {**columns, "MU": mu}
     inputs, shape = sources(columns)
-    count = math.prod(shape)
+    return solve_sources(inputs, shape, wanted, threads, out, sign) if wanted else {}
+
+
+def solve_sources(
+    inputs: Mapping[str, Source],
+    shape: tuple[int, ...],
+    wanted: tuple[str, ...],
+    threads: int | None,
+    out: Mapping[str, Array] | None = None,
+    sign: float | None = None,
+) -> dict[str, Array]:
+    """Solve columns of one ``shape``, in the table's order; otherwise as `solve_arrays`."""
     if out is None:
-        arrays, _ = allocate_results(wanted, shape)
+        arrays, starts = allocate_results(wanted, shape)
     else:
         input_arrays = [x.base if isinstance(x, np.flatiter) else x for x in inputs.values()]
-        arrays, _ = results_into(out, wanted, shape, input_arrays)
-    results: dict[str, Array] = {name: arrays[name].reshape(count) for name in wanted}
-    if not wanted:
-        return {}
-    number = workers(count, threads, SHARED_TILE)
-    tile = TILE if number == 1 else SHARED_TILE
-    run_in_threads(partial(_solve_part, inputs, results, tile, sign), count, number)
-    return {name: arrays[name] for name in wanted}
+        arrays, starts = results_into(out, wanted, shape, input_arrays)
+    count = math.prod(shape)
+    if sign is None and native.library is not None:
+        every = [*inputs.values()]
+        columns = [at for at, source in enumerate(every) if len(source) > 1]
+        numbers = [at for at, source in enumerate(every) if len(source) == 1]
+        call = call_of(wanted, tuple(columns))
+        sizes = [array.itemsize for array in arrays.values()]
+        targets = [*zip(starts, sizes, strict=True)]
+        work = partial(_compute_by_library, [every[at] for at in columns + numbers], call, targets)
+        run_in_threads(work, count, BLOCK, threads)
+    else:  # numpy's short operations hold the interpreter's lock: threads would take turns
+        _compute_by_numpy(inputs, {n: array.reshape(count) for n, array in arrays.items()}, sign)
+    return arrays
 
 
 def quantities(
@@ -103,38 +111,31 @@ def resolve_share(texts: Mapping[str, str], share: float, source: str) -> tuple[
     return number, f"MU = {number} is {100 * share:g} % of the critical friction"
 
 
+def _compute_by_library(
+    inputs: Sequence[Source], call: Call, targets: Sequence[tuple[int, int]], begin: int, end: int
+) -> None:
+    """Solve scenes ``begin`` to ``end`` by the library, a block of columns converted at a time.
+    ``targets``: address and item size of each result."""
+    for at in range(begin, end, BLOCK):
+        stop = min(at + BLOCK, end)
+        values = [part(source, at, stop) for source in inputs]
+        results = [start + size * at for start, size in targets]
+        call.compute([*map(address, values), *results], stop - at, 1)
+
+
 @np.errstate(all="ignore")
-def _solve_part(
-    inputs: Mapping[str, Source],
-    results: Mapping[str, Array],
-    tile: int,
-    sign: float | None,
-    start: int,
-    stop: int,
-) -> None:
-    """Solve scenes ``start`` to ``stop``, block by block."""
-    use_library = sign is None and native.library is not None
-    for at in range(start, stop, 2 * tile):
-        end = min(at + 2 * tile, stop)
-        values = {name: part(source, at, end) for name, source in inputs.items()}
-        targets = {name: array[at:end] for name, array in results.items()}
-        if use_library:
-            starts = [address(target) for target in targets.values()]
-            columns, steps = [*map(address, values.values())], [len(x) > 1 for x in values.values()]
-            compiledcalls.compute(columns, steps, tuple(results), starts, end - at, 1)
-        else:
-            _compute_by_numpy(values, targets, tile, sign)
-
-
 def _compute_by_numpy(
-    values: Mapping[str, Array], targets: Mapping[str, Array], tile: int, sign: float | None
+    inputs: Mapping[str, Source], results: Mapping[str, Array], sign: float | None
 ) -> None:
-    """Write the results of a block of scenes to the ``targets``."""
-    block = examine(values)
-    constants = {name: float(column[0]) for name, column in block.fixed.items()}
-    program = program_for(block.kinds, tuple(targets), sign)
-    columns = [block.varying[name] for name in program.columns]
-    Plan(program).run(columns, targets, constants, tile)
-    if block.refused is not None:
-        for name, result in targets.items():
-            result[block.refused] = Status.NOT_FINITE if name == "STATUS" else np.nan
+    """Solve all scenes by numpy, block by block."""
+    count = len(next(iter(results.values())))
+    for at in range(0, count, BLOCK):
+        block = examine({name: part(source, at, at + BLOCK) for name, source in inputs.items()})
+        targets = {name: array[at : at + BLOCK] for name, array in results.items()}
+        constants = {name: float(column[0]) for name, column in block.fixed.items()}
+        program = program_for(block.kinds, tuple(targets), sign)
+        columns = [block.varying[name] for name in program.columns]
+        Plan(program).run(columns, targets, constants, BLOCK)
+        if block.refused is not None:
+            for name, result in targets.items():
+                result[block.refused] = Status.NOT_FINITE if name == "STATUS" else np.nan

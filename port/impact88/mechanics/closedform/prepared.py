@@ -17,11 +17,11 @@ from ...messages.arguments import explains_arguments
 from ...names import RESULTS, SCENE, split_names
 from ...status import Status
 from .. import native
-from . import compiledcalls
 from .columns import sources
-from .compiledcalls import RowsCall
+from .compiledcalls import Call
 from .impactprograms import ALL, COLUMNS
 from .plain import PLAIN
+from .results import address
 from .solve import solve
 
 Array = NDArray[Any]
@@ -145,7 +145,7 @@ class Prepared:
                 "names that are given at each call"
             )
         self._values = np.array([float(inputs[name][0]) for name in COLUMNS])
-        self._call = RowsCall(outputs, [COLUMNS.index(n) for n in names], (), self._values)
+        self._call = Call(outputs, [COLUMNS.index(n) for n in names], (), self._values)
         self._expected = (len(names),)
         self._factors = None
         if "units" in self._scene:
@@ -270,11 +270,9 @@ class Bound:
         count = math.prod(values.shape[1:])
         self._run: Callable[[], object] | None = None
         self._machine = native.library
-        in_one_call = (
-            count < 2 * compiledcalls.MIN_SCENES_PER_THREAD and prepared_call._factors is None
-        )
-        if self._machine is not None and in_one_call:
-            self._block = call.bound(values, results, bits)
+        if self._machine is not None and prepared_call._factors is None:
+            places = [*values[..., np.newaxis], *self.results.values()]
+            self._block = call.arguments([*map(address, places)])
             at = self._block.ctypes.data
             # numbers of C's own types are passed on as they are
             arguments = ctypes.c_void_p(at), ctypes.c_int64(0), ctypes.c_int64(count)

@@ -16,10 +16,10 @@ Array = NDArray[Any]
 
 _FLOATS = np.dtype(np.float64)
 _BITS = np.dtype(np.uint16)
-MAX_TOGETHER = 1 << 25
-"""Bytes up to which the results are rows of one array, which takes less time to make than many but
-lives as long as any of them. Larger arrays the C library maps anew each time."""
 
+MAX_TOGETHER = 1 << 25
+"""Bytes of an array whose rows are results: larger ones the C library maps anew each time. Fewer
+arrays take less time to make, but live as long as any of their rows."""
 
 _buffer, _start = ctypes.c_char.from_buffer, ctypes.addressof
 
@@ -39,17 +39,19 @@ def allocate_results(
 ) -> tuple[dict[str, Array], list[int]]:
     """Return an uninitialized array for each result, and their addresses."""
     size = 8 * math.prod(shape)
-    if not shape or size * len(names) > MAX_TOGETHER or len(names) == 1:
-        arrays = {name: np.empty(shape, _type_of(name)) for name in names}
-        return arrays, [address(array) for array in arrays.values()]
-    block = np.empty((len(names), *shape))
-    first = address(block)
-    arrays = dict(zip(names, block, strict=True))
-    starts = list(range(first, first + size * len(names), size)) if size else [first] * len(names)
-    if "STATUS" in arrays:
+    rows = [name for name in names if name != "STATUS"]
+    together = max(1, MAX_TOGETHER // max(1, size))
+    arrays, starts = {}, {}
+    for at in range(0, len(rows), together):
+        group = rows[at : at + together]
+        block = np.empty((len(group), *shape))
+        first = address(block)
+        for row, name in enumerate(group):
+            arrays[name], starts[name] = block[row, ...], first + size * row
+    if len(rows) < len(names):
         arrays["STATUS"] = np.empty(shape, _BITS)
-        starts[names.index("STATUS")] = address(arrays["STATUS"])
-    return arrays, starts
+        starts["STATUS"] = address(arrays["STATUS"])
+    return {name: arrays[name] for name in names}, [starts[name] for name in names]
 
 
 def results_into(

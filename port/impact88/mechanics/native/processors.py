@@ -20,22 +20,20 @@ def idle_processors() -> int:
     return min(processors(), max(1, (os.cpu_count() or 1) - busy))
 
 
-def workers(count: int, threads: int | None, share: int) -> int:
-    """Return the number of threads for ``count`` scenes, at least ``share`` for each thread."""
-    if threads == 1 or count < 2 * share:
-        return 1
-    return max(1, min(threads or idle_processors(), count // share))
+def run_in_threads(
+    work: Callable[[int, int], None], count: int, block: int, threads: int | None
+) -> None:
+    """Call ``work(start, stop)`` for all of ``count`` scenes, an equal part on each thread.
 
-
-def run_in_threads(work: Callable[[int, int], None], count: int, workers: int) -> None:
-    """Call ``work(start, stop)`` for all of ``count`` scenes, an equal part on each thread. Raises
-    the first exception of any of them."""
-    if workers == 1:
+    ``threads``: at most so many (None: as many as there are idle processors), and none with less
+    than a ``block``. Raises the first exception of any of them."""
+    if threads == 1 or count < 2 * block:
         work(0, count)
         return
     import threading
 
-    size = -(-count // workers)
+    number = max(1, min(threads or idle_processors(), count // block))
+    size = -(-count // number)
     failures: list[BaseException] = []
 
     def part(start: int) -> None:
@@ -44,7 +42,7 @@ def run_in_threads(work: Callable[[int, int], None], count: int, workers: int) -
         except BaseException as error:
             failures.append(error)
 
-    helpers = [threading.Thread(target=part, args=(k * size,)) for k in range(1, workers)]
+    helpers = [threading.Thread(target=part, args=(k * size,)) for k in range(1, number)]
     for thread in helpers:
         thread.start()
     part(0)

@@ -1,6 +1,7 @@
 """Replays: results that the faithful program prints for scenes a printout may have come from.
 
-Few scenes go through the port itself, many through the array replay, which gives the same digits.
+A scene whose values are looked into runs in the port itself; others go through the array replay,
+which gives the same digits.
 """
 
 from collections.abc import Mapping, Sequence
@@ -57,8 +58,6 @@ def run_whole(
 
 def run_all(scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
     """Run scenes and return their outcomes, in order."""
-    if len(scenes) <= 6:  # the port is as quick as the replay, and needs no numpy
-        return [run_once(scene) for scene in scenes]
     endings, columns = run_columns(scenes, tuple(FIELDS))
     outcomes = [Outcome({}, ending or None) for ending in endings]
     for name, column in columns.items():
@@ -75,13 +74,8 @@ def run_columns(
     printed field as an array of texts ("" where the run does not get as far)."""
     from ...program.vectorized import replay
 
-    scene_columns = {}
-    for name in SCENE:
-        column = [scene[name] for scene in scenes]
-        is_constant = column.count(column[0]) == len(column)
-        # a list of one keeps the result an array however much the scenes share
-        scene_columns[name] = column[0] if is_constant and name != "M" else column
-    replayed = replay(scene_columns)
+    # columns throughout: one program serves all batches
+    replayed = replay({name: [scene[name] for scene in scenes] for name in SCENE})
     replayed.write_fields(names)
     endings = replayed.error.tolist()
     for index in replayed.zero_determinant.nonzero()[0].tolist():

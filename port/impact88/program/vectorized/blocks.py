@@ -1,13 +1,12 @@
 """Many scenes: sorted into kinds, cut into blocks that stay in cache, and computed."""
 
 from collections.abc import Callable, Mapping
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ...mechanics import native
-from ...mechanics.native.processors import run_in_threads, workers
+from ...mechanics.native.processors import run_in_threads
 from . import compiled, statements
 from .blockerrors import NEVER, BlockErrors, Bools, Ints, stamp
 from .realcolumns import Scenes
@@ -17,23 +16,16 @@ from .result import OTHER_M, Replay
 Computed = tuple[Mapping[str, Floats], Ints, Any]
 """Results by name, records of errors (`BlockErrors.first`), and the scenes still to be computed
 (True)."""
-BLOCK_SIZE = 16384
-"""Scenes computed at a time. Smaller blocks pay more overhead for numpy's calls and for passing the
-GIL between threads; larger ones fall out of the cache. With the compiled kernel half the size takes
-5 % longer and twice the size as long; with numpy half the size takes 3 % less."""
-MIN_SCENES_TO_SPECIALIZE = 32768
-"""Scenes from which a program is traced for the columns that vary, which computes shared values
-once: tracing takes 14 ms and, if three columns vary, saves 0.4 us a scene. A threshold twice
-as high makes no difference to 50,000 scenes; half as high, the first call becomes slower."""
-MIN_SCENES_PER_THREAD = 8192
-"""With fewer scenes each, threads wait for one another more than they compute."""
+BLOCK_SIZE = 8192
+"""Scenes computed at a time, and by one thread. Smaller blocks pay more overhead for numpy's calls
+and for passing the GIL between threads; larger ones fall out of the cache."""
 
 
 def replay_scenes(scenes: Scenes, threads: int | None = None, block: int = BLOCK_SIZE) -> Replay:
     """Replay scenes and return their results.
 
-    ``threads``: at most so many; None for as many as there are idle processors, if each has enough
-    to do. ``block``: scenes per block, at most."""
+    ``threads``: at most so many; None for as many as there are idle processors. ``block``: scenes
+    per block, at most."""
     errors = BlockErrors(scenes.size)
     errors.first[...] = scenes.first
     M = scenes.values["M"]
@@ -44,9 +36,6 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int = BLOCK
     errors.at(350)
     errors.record_error(~valid_m, OTHER_M)
     values = {name: np.zeros(scenes.size) for name in statements.ASSIGNED}
-    threads = workers(scenes.size, threads, MIN_SCENES_PER_THREAD)
-    block = max(1, min(block, -(-scenes.size // threads)))
-
     pending = np.array(valid_m)  # scenes not computed yet
 
     def compute(work: Callable[..., Computed]) -> None:
@@ -60,10 +49,10 @@ def replay_scenes(scenes: Scenes, threads: int | None = None, block: int = BLOCK
                     values[name][rows] = column
 
         jobs = _blocks(pending, six, pivot, block)
-        run_in_threads(compute_jobs, len(jobs), max(1, min(threads, len(jobs))))
+        run_in_threads(compute_jobs, len(jobs), 1, threads)
 
     if native.library is not None:
-        compute(partial(_compute_compiled, scenes.size >= MIN_SCENES_TO_SPECIALIZE))
+        compute(_compute_compiled)
     compute(_compute_by_arrays)
     return Replay(scenes, six, errors, values)
 
@@ -85,12 +74,9 @@ def _blocks(
     return result
 
 
-def _compute_compiled(
-    specialize: bool, columns: dict[str, Floats], first: Ints, kind: statements.Kind
-) -> Computed:
-    """Compute one block with the compiled kernel; the scenes it marks as `ODD` stay pending."""
-    if not specialize:
-        columns = {name: np.broadcast_to(v, first.size) for name, v in columns.items()}
+def _compute_compiled(columns: dict[str, Floats], first: Ints, kind: statements.Kind) -> Computed:
+    """Compute one block with the compiled kernel; the scenes it marks as `ODD` stay pending. What
+    one value given for all scenes decides is computed once."""
     varying = frozenset(name for name in compiled.NAMES if columns[name].size > 1)
     program = compiled.program(kind, varying)
     results, odd = compiled.run_program(program, columns, first.size)

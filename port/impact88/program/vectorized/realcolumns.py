@@ -10,11 +10,7 @@ from ...errors import UserError
 from ...names import DEFAULT_M, SCENE, VELOCITIES
 from .blockerrors import NEVER, BlockErrors, Ints, key
 from .reals import Floats, Packed, from_packed
-from .textcolumns import read
-
-_MAX_TEXTS_TOGETHER = 32768
-"""Up to this many texts all columns are read in one call; more are read column by column, to stay
-in the cache."""
+from .textcolumns import MAX_TEXTS, read
 
 PLACES = {
     name: (SCENE[name].line, i) for i, name in enumerate(dict.fromkeys([*VELOCITIES, *SCENE]))
@@ -57,9 +53,9 @@ def read_columns(columns: Mapping[str, Any]) -> Scenes:
     count = lengths.pop() if lengths else 1
     first = np.full(count, NEVER, np.int64)
     values = {name: from_packed(column, None).v for name, column in packed_columns.items()}
-    together = sum(sizes[name] for name in texts) <= _MAX_TEXTS_TOGETHER
-    for group in [texts] if texts and together else [{name: texts[name]} for name in texts]:
-        _read_texts(group, values, first)
+    text_names, together = [*texts], max(1, MAX_TEXTS // max(count, 1))
+    for at in range(0, len(texts), together):
+        _read_texts({name: texts[name] for name in text_names[at : at + together]}, values, first)
     return Scenes(values, count, first)
 
 

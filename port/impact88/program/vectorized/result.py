@@ -12,12 +12,9 @@ from .blockerrors import BlockErrors, Bools, Ints
 from .realcolumns import Scenes
 from .reals import Floats, Packed, Reals, from_floats
 from .statements import ZERO_DETERMINANT
-from .textcolumns import TEXT, Strings, write
+from .textcolumns import MAX_TEXTS, TEXT, Strings, write
 
 OTHER_M = 2  # the code of a scene whose M is neither 4 nor 6, which is not replayed
-MAX_WRITTEN_TOGETHER = 8192
-"""Up to this many scenes all fields are written in one call. At this size one call a field takes as
-long, at twice the size an eighth less; for few scenes the calls themselves count."""
 NEITHER = "M IS NEITHER 4 NOR 6"
 _KINDS = {code: kind for kind, code in CODES.items()}
 
@@ -202,18 +199,18 @@ class Replay:
         names = [name for name in wanted if name not in self._fields]
         if not names:
             return
-        columns = self._to_print(names)
+        columns = dict(zip(names, self._to_print(names), strict=True))
+        varying = [name for name in names if columns[name].size == self.count]
+        shared = [name for name in names if name not in varying]
         # one array is paged in twice as fast as many
         texts = np.empty((len(names), self.count), TEXT)
-        if self.count <= MAX_WRITTEN_TOGETHER:
-            write(Reals(np.array([np.broadcast_to(v, self.count) for v in columns]), None), texts)
-        else:
-            for field, v in zip(texts, columns, strict=True):
-                if v.size > 1:
-                    write(Reals(v, None), field)
-                else:
-                    field[...] = write(Reals(v, None))
-        for name, field in zip(names, texts, strict=True):
+        together = max(1, MAX_TEXTS // max(self.count, 1))
+        for at in range(0, len(varying), together):
+            group = np.array([columns[name] for name in varying[at : at + together]])
+            write(Reals(group, None), texts[at : at + len(group)])
+        values = np.array([columns[name] for name in shared]).reshape(-1, 1)
+        texts[len(varying) :] = write(Reals(values, None))
+        for name, field in zip([*varying, *shared], texts, strict=True):
             is_printed = self._has_passed(name, statements.PRINTED)
             if not is_printed.all():
                 field[~is_printed] = ""

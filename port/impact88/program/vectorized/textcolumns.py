@@ -27,7 +27,7 @@ _EXACT_DIGITS = 9  # a whole number with so many digits is below 2^32, where MUL
 
 TEXT = np.dtype("<U15")
 """The longest field: sign, point, nine digits, exponent."""
-WRITE_BLOCK = 32768  # numbers written at a time with arrays, to stay in the cache
+MAX_TEXTS = 32768  # read or written at a time, or one column: bounds the memory, stays in the cache
 
 _QUARTER_LIMIT = 2.0**125  # four times this is exponent byte 256
 _ROUNDS_TO_OVERFLOW = 2.0**127 - 2.0**94  # exponent byte 255, mantissa FFFFFFFF, extension 80
@@ -124,8 +124,8 @@ def write(x: Reals, texts: Strings | None = None) -> Strings:
             v.ctypes.data, v.size, texts.ctypes.data, unwritten.ctypes.data
         )
     rows = np.flatnonzero(unwritten)
-    for at in range(0, rows.size, WRITE_BLOCK):
-        block = rows[at : at + WRITE_BLOCK]
+    for at in range(0, rows.size, MAX_TEXTS):
+        block = rows[at : at + MAX_TEXTS]
         part = errors.part(block)
         texts.reshape(-1)[block] = _write_with_arrays(Reals(v.reshape(-1)[block], part))
         errors.join(part, block)
