@@ -34,14 +34,16 @@ UNITS = {
 }
 """System -> what a foot, a slug and a second are in it."""
 LENGTHS, VELOCITIES = ("DA", "DB"), ("UX", "UY", "VX", "VY")
-FLAGS = {
-    "double": (),
-    "extended": ("-mfpmath=387",),
-    "fused": ("-O3", "-march=native", "-ffp-contract=fast"),
-    "reassociated": ("-O3", "-ffast-math", "-fno-finite-math-only"),
+LONG_DOUBLE = [("double", "long double"), ("math.h", "tgmath.h")]
+ARITHMETICS = {
+    "double": {},
+    "extended": {"flags": ("-mfpmath=387",)},
+    "fused": {"flags": ("-O3", "-march=native", "-ffp-contract=fast")},
+    "reassociated": {"flags": ("-O3", "-ffast-math", "-fno-finite-math-only")},
+    "long double": {"throughout": [*LONG_DOUBLE, ("%.17g", "%.21Lg")]},
+    "long double, printed as a double": {"throughout": [*LONG_DOUBLE, ("%.17g", "%.17Lg")]},
 }
-"""Arithmetic -> the compiler's flags."""
-LONG_DOUBLE = [("double", "long double"), ("math.h", "tgmath.h"), ("%.17g", "%.21Lg")]
+"""Arithmetic -> the compiler's flags, or edits of the program."""
 
 
 def table(rows: Sequence[Mapping[str, str]], answers: Mapping[str, Sequence[str]]) -> list[dict]:
@@ -94,7 +96,7 @@ def test_a_correct_program_is_not_accused(program: str) -> None:
         assert done.differing == 0, (digits, done.worst[:3])
 
 
-@pytest.mark.parametrize("arithmetic", FLAGS)
+@pytest.mark.parametrize("arithmetic", ARITHMETICS)
 def test_a_correct_program_in_another_arithmetic_is_not_accused(arithmetic: str) -> None:
     """Of trial impulses, whose equations lose digits to large velocities, in closed form, and by
     elimination in Fortran's order."""
@@ -102,18 +104,7 @@ def test_a_correct_program_in_another_arithmetic_is_not_accused(arithmetic: str)
         pytest.skip("no compiler")
     rows = [scene for kind, _, scene in scenes(240, seed=43) if kind != FAILURE]
     for program in ("trial.c", "phases.c", "columns.c"):
-        answers = wrongprograms.answers(rows, program, (), FLAGS[arithmetic])
-        done = compare(table(rows, answers), causes=False)
-        assert done.differing == 0, (program, done.worst[:3])
-
-
-@pytest.mark.parametrize("program", ["trial.c", "phases.c", "columns.c"])
-def test_a_correct_program_in_long_doubles_is_not_accused(program: str) -> None:
-    if not wrongprograms.is_available(program):
-        pytest.skip("no compiler")
-    rows = [scene for kind, _, scene in scenes(240, seed=43) if kind != FAILURE]
-    for printed in (LONG_DOUBLE, [*LONG_DOUBLE[:2], ("%.17g", "%.17Lg")]):
-        answers = wrongprograms.answers(rows, program, throughout=printed)
+        answers = wrongprograms.answers(rows, program, **ARITHMETICS[arithmetic])
         done = compare(table(rows, answers), causes=False)
         assert done.differing == 0, (program, done.worst[:3])
 
