@@ -295,6 +295,22 @@ def test_what_has_no_value_is_no_fault(changes: dict[str, str]) -> None:
     assert rows["Speed before"]
 
 
+def test_point_masses_along_a_line_need_neither_spins_nor_a_plane(tmp_path: Path, own: Own) -> None:
+    """What the program is typed in their place is said, what faces nowhere has no direction."""
+    values = {"M": "4", "MA": "94", "MB": "78", "UX": "29", "VX": "0", "UY": "0", "VY": "0"}
+    values |= {"E": ".2", "MU": "0"}
+    told = collision.answer(values)
+    assert told["answer"][0]["values"][0]["value"] == pytest.approx(1.2 * 29 * 78 / (94 + 78))
+    said = " ".join(told["remarks"])
+    assert "takes 0 for what is not given" in said
+    assert "contact plane across the motion" in said
+    assert "need TA" in said
+    (tmp_path / "line.toml").write_text(toml(values), encoding="utf-8")
+    own("report", "line.toml", "-o", "line.html")
+    for text in (said, (tmp_path / "line.html").read_text("utf-8")):
+        assert "initial spin" not in text
+
+
 @pytest.mark.parametrize("units", ["", "us"])
 def test_the_case_report_is_the_commands_own(
     client: Client, units: str, tmp_path: Path, own: Own

@@ -15,6 +15,7 @@ from ...apple.emulator.screen import shown_character
 from ...collision import uncertain
 from ...collision.case import FACING_COURSE, Case, check_value, remark_lines
 from ...collision.doubles import double_or_none, doubles_of, is_number
+from ...collision.fields import FINAL_SPINS
 from ...collision.geometry import coordinate_names
 from ...collision.needs import sentences as needs_in_words
 from ...collision.scenefile import template, toml_texts
@@ -167,6 +168,7 @@ def _without(
     solved = solve(columns)
     needs = {**absent_results(columns), **getattr(solved, "absent", {})}
     unanswered = {name for _, *names in _ANSWER for name in names} - {*solved}
+    unanswered -= {*FINAL_SPINS} if scene.case.of_points else set()
     omitted_names = [n if scene[n] == "0" else f"{n} (1: it divides)" for n in scene.omitted]
     lines = [f"the printout takes 0 for what is not given: {' '.join(omitted_names)}"]
     if "GA" in scene.omitted and "VC" in solved:
