@@ -42,6 +42,7 @@ MAX_ROWS_KEPT = 20_000
 """Rows that disagree from which a search starts; with its causes the rest is judged as it is read,
 so that the memory for large tables is bounded."""
 MAX_AGREEING_KEPT = 4000  # rows that a cause must not contradict
+MAX_NAMED = 5  # rows and labels in one sentence
 MAX_ROWS_LISTED = 20  # of those that disagree most, and of those not compared for each reason
 NOT_COMPARED = ("STATUS", "COND")  # result columns
 POSITIVE = ("MA", "MB", "IA", "IB")  # a scene has no other
@@ -242,10 +243,16 @@ class Comparison:
     @property
     def silent(self) -> list[str]:
         """Messages about columns, rows and cells that were not compared."""
-        messages = [f"column {name} not recognised" for name in self.unknown]
-        for reason, skipped_rows in self.not_compared.items():
+        messages = []
+        for name, meant in list(self.unknown.items())[:MAX_ROWS_LISTED]:
+            hint = f"; did you mean {meant}? (a unit stands in brackets: {meant} [mph])"
+            messages.append(f"column {name} is not recognised{hint * bool(meant)}")
+        if len(self.unknown) > MAX_ROWS_LISTED:
+            count = len(self.unknown) - MAX_ROWS_LISTED
+            messages.append(f"and {count} more columns are not recognised")
+        for reason, group in self.not_compared.items():
             if reason not in reasons.HARMLESS:
-                messages.append(reasons.describe(reason, skipped_rows.rows))
+                messages.append(describe(reason, group, lists_rows=True))
         for name, tally in self.tallies.items():
             if tally.missing:
                 messages.append(
@@ -311,8 +318,8 @@ class Comparison:
         tests += [Test(f"row {bad.row}", "error", str(bad)) for bad in self.bad]
         tests += [Test(says, "failure" if strict else "skipped", says) for says in self.silent]
         for reason in reasons.HARMLESS:
-            if skipped_rows := self.not_compared.get(reason):
-                tests.append(Test(reasons.describe(reason, skipped_rows.rows), "skipped", reason))
+            if group := self.not_compared.get(reason):
+                tests.append(Test(describe(reason, group), "skipped", reason))
         write(path, f"impact88 compare {name}", tests)
 
     def as_json(self) -> dict[str, Any]:
@@ -355,6 +362,18 @@ class Comparison:
         if self.kit is not None:
             fields["kit"] = self.kit.as_json()
         return {name: plain(value) for name, value in fields.items()}
+
+
+def describe(reason: str, group: Skipped, lists_rows: bool = False) -> str:
+    """Return how many rows were refused, are missing or were not compared, and why."""
+    word = "refused" if reason in reasons.HARMLESS else "not compared"
+    word = "missing" if reason == reasons.MISSING else word
+    first = ", ".join(map(str, group.first[:MAX_NAMED])) + ", ..." * (group.rows > MAX_NAMED)
+    rows = f" ({first})" if lists_rows and group.first else ""
+    labels = ", ".join(filter(None, group.labels[:MAX_NAMED]))
+    labels += f" and {len(group.labels) - MAX_NAMED} more" * (len(group.labels) > MAX_NAMED)
+    ending = f" (labels: {labels})" if labels else ""
+    return f"{group.rows} row{'s' * (group.rows != 1)} {word}{rows}: {reason}{ending}"
 
 
 @explains_arguments

@@ -38,10 +38,3 @@ REASONS = (
 )
 HARMLESS = (NO_RESULT, REFUSED)
 """Reasons that are no fault of the program."""
-
-
-def describe(reason: str, rows: int, places: str = "") -> str:
-    """Return how many rows were refused, are missing or were not compared, and why; ``places``:
-    which ones, in brackets."""
-    word = "refused" if reason in HARMLESS else "missing" if reason == MISSING else "not compared"
-    return f"{rows} row{'s' if rows != 1 else ''} {word}{places}: {reason}"

@@ -43,8 +43,7 @@ import math
 from collections.abc import Iterator
 
 from ...conformance.comparison.agreement import EQUATIONS
-from ...conformance.comparison.compare import Comparison, Skipped, compare
-from ...conformance.comparison.reasons import HARMLESS, describe
+from ...conformance.comparison.compare import Comparison, compare, describe
 from ...errors import UserError, note, one_line
 from ...files import display_name
 from ...mechanics.accuracy.errorbound import DOUBLE
@@ -57,7 +56,6 @@ if TYPE_CHECKING:
     from ...conformance.comparison.diagnosis import TableCause
 
 MAX_BAD_ROWS_LISTED = 20  # one screenful
-MAX_LABELS = 10  # listed for each reason; all of them stand in --json
 MAX_VECTORS_LISTED = 5  # of a kit, for each reason why some do not pass
 
 ARGUMENTS = (
@@ -118,28 +116,10 @@ def main(args: options.Args) -> int:
 def _notes(comparison: Comparison) -> Iterator[str]:
     """Yield the notes for stderr: how the table was read, what could not be or was not compared."""
     yield from comparison.remarks
-    for name, suggestion in list(comparison.unknown.items())[:MAX_BAD_ROWS_LISTED]:
-        hint = f"; did you mean {suggestion}? (a unit stands in brackets: {suggestion} [mph])"
-        yield f"column {name} is not recognised{hint * bool(suggestion)}"
-    if len(comparison.unknown) > MAX_BAD_ROWS_LISTED:
-        yield f"and {len(comparison.unknown) - MAX_BAD_ROWS_LISTED} more columns are not recognised"
     yield from map(str, comparison.bad[:MAX_BAD_ROWS_LISTED])
     if len(comparison.bad) > MAX_BAD_ROWS_LISTED:
         yield f"and {len(comparison.bad) - MAX_BAD_ROWS_LISTED} more"
-    for reason, count in comparison.not_compared.items():
-        if reason not in HARMLESS and count.first:
-            first = ", ".join(map(str, count.first[:5])) + (", ..." if count.rows > 5 else "")
-            yield f"{describe(reason, count.rows, f' ({first})')}{_labels(count)}"
-    for name, tally in comparison.tallies.items():
-        if tally.missing:
-            yield f"{tally.missing} cells of {name} are empty where there is a result"
-
-
-def _labels(count: Skipped) -> str:
-    """Return the labels of rows, in brackets, if they have some."""
-    labels = [*filter(None, count.labels)]
-    more = [f"and {len(labels) - MAX_LABELS} more"] * (len(labels) > MAX_LABELS)
-    return f" (labels: {', '.join(labels[:MAX_LABELS] + more)})" if labels else ""
+    yield from comparison.silent
 
 
 def _evidence_lines(cause: TableCause) -> Iterator[str]:
@@ -213,7 +193,7 @@ def _lines(comparison: Comparison) -> Iterator[str]:
             yield (f"  {place}{name}: {cell}; {cell.cause}")
     failures = comparison.kit.failures if comparison.kit is not None else []
     for reason, group in comparison.not_compared.items():
-        yield f"\n{describe(reason, group.rows)}{_labels(group)}"
+        yield f"\n{describe(reason, group)}"
         listed = [verdict for verdict in failures if verdict.reason == reason]
         yield from (f"  {verdict}" for verdict in listed[:MAX_VECTORS_LISTED])
     if comparison.kit is not None:
