@@ -17,6 +17,7 @@ from impact88.casework.uncertainty.bounds import bounds
 from impact88.collision.uncertain import fixed_value
 from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
 from impact88.mechanics.closedform.solve import solve
+from impact88.mechanics.friction import admissible_friction
 from impact88.mechanics.outcome import outcome
 from impact88.program.scene import sample
 from impact88.status import Status
@@ -146,7 +147,7 @@ class TestFriction:
                 assert bool(friction(scene_there)) == accused
             values = {**one, "MU": sign * outside * 1.0001}
             values |= {name: float(value) for name, value in solve(values).items()}
-            (text,) = status.admissible_friction(int(values["STATUS"]), values)
+            (text,) = admissible_friction(int(values["STATUS"]), values)
             assert "by sliding forth and back" in text
             assert "assumed: the moment impulse grows in proportion to the normal" in text
             limit = float(text.partition("; ")[2].split()[0])
@@ -183,7 +184,7 @@ class TestFriction:
         assert friction({**scene, "MU": -0.3}) == Status.FRICTION_ABOVE_CRITICAL
         assert friction({**scene, "MU": critical / 2}) == 0
         found = {name: float(value) for name, value in solve(scene).items()}
-        text = status.sentences(int(found["STATUS"]), scene | found)[-1]
+        text = admissible_friction(int(found["STATUS"]), scene | found)[-1]
         assert f"P_t/P_n from {critical:.4g} to 0, that is MU from {critical:.4g} to 0" in text
         assert text.endswith("line 400 keeps the sign of MU")
 
@@ -198,7 +199,7 @@ class TestFriction:
         one = {name: float(column[wrong]) for name, column in scene.items()}
         values = one | {name: float(value) for name, value in solve(one).items()}
         limit = "below 0" if values["MUP"] > 0 else "above 0"
-        assert f"P_t/P_n {limit}" in status.sentences(int(values["STATUS"]), values)[-1]
+        assert f"P_t/P_n {limit}" in admissible_friction(int(values["STATUS"]), values)[-1]
 
     def test_no_slip_and_no_friction_are_no_fault(self):
         head_on = {"GA": 0.0, "UY": 0.0, "VX": 14.0, "VY": 0.0, "DA": 0.0, "DB": 0.0}
@@ -206,7 +207,7 @@ class TestFriction:
         assert bits(**head_on, MU=0.3) == Status.FRICTION_ABOVE_CRITICAL
         values = RUN_1 | head_on | {"MU": 0.3}
         values |= {name: float(value) for name, value in solve(values).items()}
-        assert "P_t/P_n = 0 only" in status.sentences(int(values["STATUS"]), values)[-1]
+        assert "P_t/P_n = 0 only" in admissible_friction(int(values["STATUS"]), values)[-1]
 
     def test_colinear_judges_alike(self):
         known = {"MA": 154.7, "MB": 99.1, "E": 0.1, "UN": -50.0, "UT": 10.0, "VN": 0.0, "VT": 0.0}

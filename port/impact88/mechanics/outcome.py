@@ -183,7 +183,7 @@ def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Ar
     with np.errstate(all="ignore"):
         lost, initial = 2 * state.energy_lost, state.initial_energy
         normal_slip, slip, _ = state.relative_before
-        turning, yielding = _slip_changes(here, value)
+        turning, yielding = state.slip_changes
         conditions = findings(
             Evidence(
                 gn=normal_slip,
@@ -217,17 +217,6 @@ def _is_complete(values: Mapping[str, Any]) -> bool:
     point = bool((np.asarray(values.get("M", 6.0)) == 4).all())
     names_unused = ("M", *(UNUSED_BY_POINTS if point else ()))
     return all(name in values for name in SCENE if name not in names_unused)
-
-
-def _slip_changes(here: Geometry, value: Mapping[str, Any]) -> tuple[Any, Any]:
-    """Return the change of the sliding velocity by the normal and the moment impulse, and that by
-    a unit of the tangential impulse."""
-    a, b = here.inverse_ia, here.inverse_ib
-    by_normal = here.an * here.at * a + here.bn * here.bt * b
-    by_moment = here.at * a - here.bt * b
-    moment = np.where(here.point, 0.0, value.get("PM", np.nan))
-    yielding = here.inverse_mass + here.at * here.at * a + here.bt * here.bt * b
-    return by_normal * value["PN"] + by_moment * moment, yielding
 
 
 def forces(impulse: Any, contact_time: Any) -> dict[str, Array]:

@@ -7,7 +7,7 @@ carries a derivative).
 """
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from functools import cached_property, lru_cache, reduce
 from typing import Any, Self
 
@@ -65,6 +65,16 @@ KNOWABLE = (*names.SCENE, "MUP", *names.FINAL_VELOCITIES, *OTHERS)
 
 REST_TOLERANCE = 1e-9
 """A speed below this fraction of the largest is rounding, and printed as 0."""
+
+
+NO_SLIDING = 1e-14
+"""Sliding below this fraction of the largest velocity is rounding, and has no sign."""
+
+
+def without_rounding(sliding: Any, velocities: Iterable[Any]) -> Any:
+    """Return sliding velocities, 0 where they are rounding of the ``velocities`` they are of."""
+    largest = reduce(np.maximum, map(np.abs, velocities))
+    return np.where(np.abs(sliding) <= NO_SLIDING * largest, 0.0, sliding)
 
 
 class State:
@@ -133,9 +143,25 @@ class State:
     def relative_before(self) -> tuple[Any, Any, Any]:
         return self.here.relative(self.before)
 
+    @property
+    def sliding(self) -> Any:
+        """Tangential relative velocity of the contact points before the impact, real numbers."""
+        return without_rounding(np.real(self.relative_before[1]), map(np.real, self.before))
+
     @cached_property
     def relative_after(self) -> tuple[Any, Any, Any]:
         return self.here.relative(self.after)
+
+    @property
+    def slip_changes(self) -> tuple[Any, Any]:
+        """What the normal and the moment impulse add to the sliding velocity, and what a unit of
+        the tangential impulse adds."""
+        here, (pn, _, moment) = self.here, self.impulse
+        a, b = here.inverse_ia, here.inverse_ib
+        by_normal = here.an * here.at * a + here.bn * here.bt * b
+        by_moment = here.at * a - here.bt * b
+        yielding = here.inverse_mass + here.at * here.at * a + here.bt * here.bt * b
+        return by_normal * pn + by_moment * np.where(here.point, 0.0, moment), yielding
 
     def law(self, coefficient: str) -> Any:
         """Return the residual of Equation 15 (E), 16 (MUP) or 18 (EM): a velocity, an impulse or a

@@ -22,8 +22,8 @@ from impact88.casework.chapter.staged import (
     emendations,
     experimental,
     forward,
-    typed_friction,
 )
+from impact88.mechanics.closedform.general import typed_friction
 
 ORDER = [1, 6, 7, 8, 9, 10, 11, 12, 3, 4, 5]
 SLIPS = {(3, "loss"), (6, "dVb_pred"), (8, "dVa_exp"), (11, "dVa_comp"), (12, "dVb_comp")}

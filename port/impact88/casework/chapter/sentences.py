@@ -15,10 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...collision.geometry import resolve_contact_point
+from ...mechanics.closedform.general import typed_friction
 from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import forces
 from . import example
-from .staged import Collision, collisions, forward, predict_delta_v, typed_friction
+from .staged import Collision, collisions, forward, predict_delta_v
 
 Array = NDArray[np.float64]
 

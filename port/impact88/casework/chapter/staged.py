@@ -22,9 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...files import packaged_text
+from ...mechanics.closedform.general import typed_friction
 from ...mechanics.closedform.solve import solve
 from ...mechanics.state import State
-from ..reconstruction.unknowns import mu_to_type
 from .deltav import delta_v
 
 Array = NDArray[np.float64]
@@ -168,12 +168,6 @@ def collisions() -> tuple[Collision, ...]:
 
 
 # -- forward, experimental, predict_delta_v
-
-
-def typed_friction(scene: Mapping[str, Any], signed: Any) -> Array:
-    """Return the MU to type for a signed P_t/P_n: line 400 changes its sign where gt > 0."""
-    state = State.of_known(scene)
-    return mu_to_type(np.asarray(signed, np.float64), state.relative_before[1], state.before)
 
 
 def forward(

@@ -22,9 +22,9 @@ from typing import Any, NamedTuple
 from ...collision.doubles import double
 from ...collision.units import RULES, System
 from ...errors import UserError
+from ...mechanics.friction import status_sentences
 from ...names import FINAL_VELOCITIES, SCENE, missing
 from ...program.scene import numbers_of
-from ...status import sentences
 from .drawing import check_drawable, degrees, unit
 
 PROPORTION = 2.6  # length over width of a vehicle
@@ -180,7 +180,7 @@ def plan(
     mover, sense = (vehicles[1], -1) if vehicles[0].wall else (vehicles[0], 1)
     impulse = None if mover.change is None else sense * values[f"M{mover.name}"] * mover.change
     all_values = {**values, **(result or {})}
-    remarks = tuple(sentences(int(all_values.get("STATUS") or 0), all_values))
+    remarks = tuple(status_sentences(int(all_values.get("STATUS") or 0), all_values))
     pair = vehicles[0], vehicles[1]
     return Plan(pair, normal, 1j * normal, impulse, apart, remarks, values, sizes_from)
 

@@ -18,7 +18,7 @@ from ...collision.geometry import within_doubles
 from ...collision.mappings import within_limits
 from ...collision.uncertain import Uncertain, fixed_value
 from ...errors import UserError
-from ...mechanics.closedform.general import share_typed
+from ...mechanics.closedform.general import opposing, share_typed
 from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import outcome
 from ...mechanics.posed import is_meant_turned, is_wrong_way, pose, turned, turned_sentence
@@ -27,7 +27,7 @@ from ...names import PIVOT, SCENE, VELOCITIES, check_names
 from ...status import Status
 from .impactsearch import MAX_SQUARES_RATIO, Search
 from .nearest import counts
-from .solution import Reconstruction, Searched, invariants, typed_friction
+from .solution import Reconstruction, Searched, invariants
 from .system import SPINS
 from .unknowns import UnsolvableError, check_physical
 
@@ -237,7 +237,7 @@ def _agrees(solution: Reconstruction, mu: float) -> bool:
     determined."""
     signed = solution.system.nominal["MUP"]
     is_determined = not set(VELOCITIES) & set(solution.undetermined)
-    return not is_determined or typed_friction(solution.system.state(solution.x), signed) == mu
+    return not is_determined or opposing(signed, solution.system.state(solution.x).sliding) == mu
 
 
 # -- friction given as a fraction of the critical one

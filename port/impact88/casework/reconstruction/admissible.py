@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...mechanics.friction import friction_forth_and_back
 from ...mechanics.outcome import broken_laws
 from ...mechanics.posed import absent_results
 from ...mechanics.state import State
@@ -121,7 +122,7 @@ def one_sided(within: Any) -> Any:
 def friction_limits(state: State, strict: bool = False) -> tuple[Any, Any]:
     """Return the lowest and the highest P_t/P_n that friction makes, widened unless ``strict``."""
     critical = _clipped(_critical_friction(state))
-    back = _forth_and_back(state)
+    back = friction_forth_and_back(state)
     low, high = _least(critical, back), -_least(-critical, -back)
     if strict:
         return low, high
@@ -152,20 +153,3 @@ def _critical_friction(state: State) -> Any:
         tangential / np.where(np.real(normal) > 0, normal, 1.0),
         _largest_along(tangential),
     )
-
-
-def _forth_and_back(state: State) -> Any:
-    """Return P_t/P_n of sliding forth and back at most, 0 where the normal impulse does not reverse
-    the sliding (`closedform.statusbits.slides_forth_and_back`)."""
-    here, impulse = state.here, state.values
-    sliding = state.relative_before[1]
-    turning = here.relative(here.changes(impulse["PN"], 0.0, impulse.get("PM", 0.0)))[1]
-    yielding = here.relative(here.changes(0.0, 1.0, 0.0))[1]
-    size = np.where(np.real(turning) < 0, -turning, turning)
-    speed = np.where(np.real(sliding) < 0, -sliding, sliding)
-    reverses = np.real(turning) * np.real(sliding) < 0
-    reverses &= (np.real(speed) > 0.5 * np.real(size)) & (np.real(speed) < 2 * np.real(size))
-    reverses &= np.real(impulse["PN"]) > 0
-    size, speed = np.where(reverses, size, 1.0), np.where(reverses, speed, 1.0)
-    largest = np.square(np.sqrt(2 * speed * size) - size) / (size * yielding * impulse["PN"])
-    return np.where(reverses, -np.sign(np.real(sliding)) * largest, 0.0)

@@ -21,7 +21,7 @@ from . import adjustment
 from .derived import NOISE, with_derived_values
 from .nearest import counts, refusal
 from .reconstructed import MIN_GAIN, Draws, Range, draws, ranges
-from .solution import Reconstruction, typed_friction
+from .solution import Reconstruction
 
 _RESULTS = (
     *VELOCITIES,
@@ -85,7 +85,7 @@ class Answer:
         self.solution, self.known = solution, solution.system.known
         values = dict(solution.values)
         if "MUP" in values and "UX" in values:
-            values["MU"] = typed_friction(solution.system.state(solution.x), values["MUP"])
+            values["MU"] = solution.typed_friction
         self.values = with_derived_values(values, contact_time)
         self.undetermined, self.absent = solution.undetermined, solution.absent
         self.remarks: Sequence[str] = solution.remarks

@@ -8,11 +8,12 @@ import numpy as np
 from ...collision.geometry import within_doubles
 from ...collision.needs import needs_in_words
 from ...collision.units import RULES, System
+from ...mechanics.friction import status_sentences
 from ...mechanics.outcome import broken_laws
 from ...mechanics.state import COURSES, FORCES, SPEEDS
 from ...messages.plaintable import number
 from ...names import FINAL_STATE, VELOCITIES
-from ...status import IMPOSSIBLE, sentences
+from ...status import IMPOSSIBLE
 from .admissible import ENDS
 from .answer import Answer
 from .posterior import MAX_VELOCITY, MIN_SIZE
@@ -30,7 +31,7 @@ def remarks_on(answer: Answer, units: System = RULES) -> list[str]:
     status = int(answer.values.get("STATUS", 0))
     return [
         *_directions(answer),
-        *sentences(status & ~IMPOSSIBLE, answer.values),
+        *status_sentences(status & ~IMPOSSIBLE, answer.values),
         *_limits(answer),
         *_misfit(answer, units),
         *_folds(answer, units),

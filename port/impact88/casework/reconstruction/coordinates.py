@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...collision.geometry import GEOMETRY, Geometry
+from ...mechanics.closedform.general import opposing
 from ...mechanics.posed import absent_results
 from ...mechanics.state import COURSES, CRUSH, DIRECTIONS, ENERGIES, SPEEDS, State
 from ...names import COEFFICIENTS, IMPULSES, PIVOT, VELOCITIES
@@ -32,7 +33,6 @@ from .admissible import LARGEST_FRICTION, RANGES
 from .leastsquares import RANK_TOL
 from .solution import Reconstruction
 from .system import COMPLEX_STEP, System
-from .unknowns import TIE
 
 Floats = NDArray[np.float64]
 Array = NDArray[Any]
@@ -427,15 +427,13 @@ class Coordinates:
                 if name not in self.implied:
                     volume = volume + np.log(np.abs(size))
         if self.has_sign_branches:
-            agrees &= self.line_400(state) == friction_signs(branches)
+            agrees &= self.sign_by_line_400(state) == friction_signs(branches)
         return state, volume, agrees
 
-    def line_400(self, state: State) -> Array:
+    def sign_by_line_400(self, state: State) -> Array:
         """Return the sign, relative to the first impact's, that line 400 gives friction known in
         size."""
-        speeds = np.max(np.broadcast_arrays(*(np.abs(np.real(v)) for v in state.before)), axis=0)
-        changes_sign = np.real(state.relative_before[1]) > TIE * speeds
-        return np.where(changes_sign, -self.first_sign, self.first_sign)
+        return opposing(self.first_sign, state.sliding)
 
     def coefficient_volume(self, state: State, points: Array) -> Array:
         """Return the log volume of coefficients that a unit of impulses is at points.

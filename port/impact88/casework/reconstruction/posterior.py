@@ -220,7 +220,7 @@ class Posterior:
             critical = state.critical_friction
             return value * self.system.constants["MUC"] / critical, -np.log(np.abs(critical))
         if self.is_sign_open:
-            return value * self.coordinates.line_400(state), 0.0
+            return value * self.coordinates.sign_by_line_400(state), 0.0
         return value, 0.0
 
     @property

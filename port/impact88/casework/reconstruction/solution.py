@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ...collision.geometry import GEOMETRY, within_doubles
 from ...collision.needs import join_words
 from ...errors import UserError
+from ...mechanics.closedform.general import opposing
 from ...mechanics.outcome import outcome
 from ...mechanics.posed import absent_results, with_headings
 from ...mechanics.state import COURSES, DIRECTIONS, FORCES, QUANTITIES, SPEEDS, State
@@ -22,7 +23,7 @@ from .evidence import Evidence, weigh
 from .laws import missed_laws, tested_laws
 from .leastsquares import polish, pseudo_inverse
 from .system import SPINS, System
-from .unknowns import UnsolvableError, coefficient_to_blame, mu_to_type
+from .unknowns import UnsolvableError, coefficient_to_blame
 
 Floats = NDArray[np.float64]
 
@@ -468,15 +469,14 @@ class Reconstruction:
         if missing:
             raise UnsolvableError(f"no scene: {' '.join(missing)} not determined")
         values = {n: self.values[n] for n in (*GEOMETRY, *names) if n in self.values}
-        values |= {"MU": typed_friction(self.system.state(self.x), self.values["MUP"])}
+        values["MU"] = self.typed_friction
         return {"M": 4.0 if self.system.point else 6.0, "EM": 0.0, **values}
 
-
-def typed_friction(state: State, signed: float) -> float:
-    """Return the MU that line 400 of the listing turns into ``signed`` for this impact's
-    sliding."""
-    sliding = float(np.ravel(np.real(state.relative_before[1]))[0])
-    return float(np.ravel(mu_to_type(signed, sliding, map(np.real, state.before)))[0])
+    @property
+    def typed_friction(self) -> float:
+        """The MU that line 400 of the listing turns into this impact's P_t/P_n."""
+        slip = np.real(self.system.state(self.x).relative_before[1])
+        return float(opposing(self.values["MUP"], slip).item())
 
 
 def invariants(values: Mapping[str, float]) -> list[float]:

@@ -15,7 +15,6 @@ signs are tried, and each solution that agrees with its own sign is returned."""
 from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
-from functools import reduce
 from itertools import combinations
 from typing import Any, NamedTuple
 
@@ -26,9 +25,9 @@ from ...collision.geometry import GEOMETRY, within_doubles
 from ...collision.mappings import columns
 from ...collision.uncertain import fixed_value
 from ...errors import UserError
-from ...mechanics.closedform.solve import solve
+from ...mechanics.closedform.general import opposing, typed_friction
 from ...mechanics.posed import absent_results, pose
-from ...mechanics.state import State
+from ...mechanics.state import State, without_rounding
 from ...messages.arguments import explains_arguments
 from ...names import (
     COEFFICIENTS,
@@ -52,7 +51,6 @@ BADLY_CONDITIONED = 10.0  # error amplification at which a solution is flagged
 ORDINARY = {"E": 0.37, "EM": -0.61, "MUP": 0.43}  # coefficients at which nothing special happens
 CHUNK = 1 << 12  # scenes solved at a time, bounds the memory
 # Twice or a hundredth of these changes none of 260 problems.
-TIE = 1e-14  # relative sliding below counts as none (line 400)
 RANK_TOL = 1e-12  # relative singular values and denominators of coefficients below count as zero
 NULL_TOL = 1e-9  # relative part of a gradient in the null space, or mismatch, that counts as zero
 
@@ -240,10 +238,8 @@ class _Problem:
         if (mu == PIVOT).any() or not mu.any():
             return [self._solve(mu)]
         if all(name in self.known for name in VELOCITIES if not (self.point and name in SPINS)):
-            # line 400 as `solve` computes it; other values have no effect on it
-            scene = {"WA": 0.0, "WB": 0.0, "E": 0.0, "EM": 0.0, **self.known}
-            signed = solve({name: scene[name] for name in SCENE if name in scene}, ("MUP",))
-            return [self._solve(np.where(signed["MUP"] == mu, mu, -mu))]
+            # point masses need no spins
+            return [self._solve(typed_friction({"WA": 0.0, "WB": 0.0, **self.known}, mu))]
         return [self._solve(mu, must_agree=True), self._solve(-mu, must_agree=True)]
 
     def _solve(self, mu: Array | None, must_agree: bool = False) -> Solution:
@@ -265,8 +261,10 @@ class _Problem:
         sliding = join_blocks("sliding")
         agrees = np.all([np.isfinite(values[n]) for n in self.wanted], axis=0)
         if "MUP" in values:
-            speeds = [values[n] for n in (*VELOCITIES, *FINAL_STATE) if n in values]
-            values["MU"] = mu_to_type(values["MUP"], sliding, speeds)
+            if must_agree:
+                speeds = [values[n] for n in (*VELOCITIES, *FINAL_STATE) if n in values]
+                sliding = without_rounding(sliding, speeds)
+            values["MU"] = opposing(values["MUP"], sliding)
             if must_agree:
                 agrees = agrees & ((values["MU"] == self.known["MU"]) | np.isnan(sliding))
         return Solution(
@@ -476,14 +474,6 @@ def _pseudo_inverse(matrix: Array) -> tuple[Array, Array]:
     counts, v = s > RANK_TOL * s.max(axis=1, initial=0.0)[:, None], vt.swapaxes(1, 2)
     pseudo = (v * np.where(counts, 1 / s, 0.0)[:, None]) @ u.swapaxes(1, 2)
     return pseudo, np.eye(matrix.shape[2]) - (v * counts[:, None]) @ vt
-
-
-def mu_to_type(mup: Any, sliding: Any, velocities: Iterable[Any]) -> Array:
-    """Return the MU to type in line 280 so that line 400 turns it into ``mup``: the sign is changed
-    where the sliding is positive. Where the sliding is nan the sign stays."""
-    mu, speed = np.asarray(mup), reduce(np.maximum, map(np.abs, velocities))
-    is_changed = (sliding > TIE * speed) & (mu != PIVOT) & (mu != 0)
-    return np.where(is_changed, -mu, mu)
 
 
 _NO_VALUE = {

@@ -15,10 +15,11 @@ from ...collision.needs import sentences as needs_in_words
 from ...collision.units import System, base_of, gravity_in
 from ...errors import UserError
 from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
+from ...mechanics.friction import status_sentences
 from ...mechanics.state import COURSES, KNOWABLE
 from ...messages.plaintable import format_fixed, number
 from ...names import DEFAULT_M, LENGTH, MASS, SCENE, SPIN, VELOCITY, check_names, quantity
-from ...status import IMPOSSIBLE, sentences
+from ...status import IMPOSSIBLE
 from ..figures.canvas import svg
 from ..figures.sceneview import scene_drawing
 from ..reconstruction.derived import without_noise
@@ -267,7 +268,7 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
     values = with_derived_values({**{n: float(v) for n, v in nominal.items()}, **results}, None)
     spreads: dict[str, Spread] = {}
     status = int(results.get("STATUS", 0))
-    remarks = [*remark_lines(case.remarks), *sentences(status, {**nominal, **results})]
+    remarks = [*remark_lines(case.remarks), *status_sentences(status, {**nominal, **results})]
     needs = {**absent_results(nominal), **getattr(solved, "absent", {})}
     shown = {*FORWARD, *_CONSEQUENCES} - {*values, *(FINAL_SPINS if case.of_points else ())}
     remarks += needs_in_words({name: x for name, x in needs.items() if name in shown})

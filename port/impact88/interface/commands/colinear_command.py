@@ -18,10 +18,10 @@ from collections.abc import Iterator
 from ...casework.chapter.colinear import colinear, colinear_inverse
 from ...collision.units import display_values
 from ...errors import UserError
+from ...mechanics.friction import status_sentences
 from ...mechanics.outcome import forces
 from ...messages.plaintable import decimals_for, format_fixed, paragraph, quantities, table
 from ...names import quantity
-from ...status import sentences
 from . import options
 
 COMMON = ("MA", "MB", "E", "MUP")
@@ -57,7 +57,7 @@ def main(args: options.Args) -> None:
         values["P"] = math.hypot(values["PN"], values["PT"])
         values["TF"] = args.contact_time
         values |= {n: float(v) for n, v in forces(values["P"], args.contact_time).items()}
-    warnings = sentences(int(values.pop("STATUS")), values)
+    warnings = status_sentences(int(values.pop("STATUS")), values)
     values = display_values(values, system)
     solved_for = BEFORE if after else AFTER
     units = {name: system.label(quantity(name).unit) for name in values}

@@ -10,7 +10,6 @@ from collections.abc import Collection, Mapping
 from itertools import groupby
 from typing import Any, NamedTuple
 
-from ... import status
 from ...apple.emulator.screen import shown_character
 from ...collision import uncertain
 from ...collision.case import FACING_COURSE, Case, check_value, remark_lines
@@ -162,6 +161,7 @@ def _without(
     """Return the results of a scene that do not need what it lacks, warnings of what the impact
     breaks, and remarks: what the program is typed in its place, and what is needed for the rest."""
     from ...mechanics.closedform.solve import solve
+    from ...mechanics.friction import status_sentences
     from ...mechanics.posed import absent_results
 
     columns = _known_numbers(scene)
@@ -175,7 +175,7 @@ def _without(
         lines.append(
             "the answer takes the contact plane across the motion, which is along one line"
         )
-    warnings = status.sentences(int(solved.get("STATUS", 0)), {**columns, **solved})
+    warnings = status_sentences(int(solved.get("STATUS", 0)), {**columns, **solved})
     lines += needs_in_words({name: x for name, x in needs.items() if name in unanswered})
     return {name: float(x) for name, x in solved.items() if name in results}, warnings, lines
 

@@ -42,7 +42,7 @@ class Terms:
         along = g["UY"], -(self.D4 * self.WA), -g["VY"], -(self.D2 * self.WB)
         self.gn = self.products(self.s, along, self.c, across)
         self.gt = self.products(self.c, along, -self.s, across)
-        self.mu = g["MU"] if pivot else self.against(g["MU"], self.gt)
+        self.mu = g["MU"] if pivot else self.opposing(g["MU"], self.gt)
 
     def turn(self, *degrees: Any) -> tuple[Any, Any]:
         """Sine and cosine of a sum of angles."""
@@ -51,7 +51,7 @@ class Terms:
     def products(self, a: Any, x: Sequence[Any], b: Any, y: Sequence[Any]) -> Any:
         return a * reduce(add, x) + b * reduce(add, y)
 
-    def against(self, mu: Any, slip: Any) -> Any:
+    def opposing(self, mu: Any, slip: Any) -> Any:
         """MU by the sign rule of line 400."""
         return -mu if slip > self.zero else mu
 
@@ -102,7 +102,7 @@ class _Columns(Terms):
         angle = sum(x * (self.pi / 180) for x in degrees)
         return np.sin(angle), np.cos(angle)
 
-    def against(self, mu: Array, slip: Array) -> Array:
+    def opposing(self, mu: Array, slip: Array) -> Array:
         return np.where(slip > 0, -mu, mu)
 
 

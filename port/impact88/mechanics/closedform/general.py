@@ -87,6 +87,22 @@ def quantities(
     return solve_arrays(columns, tuple(names), 1, sign)
 
 
+def opposing(mu: Any, slip: Any) -> Array:
+    """Return ``mu`` with the sign that line 400 gives it, changed where the slip gt > 0, so that
+    friction opposes the sliding; of the signed P_t/P_n the MU to type in line 280. The pivot stays,
+    and so does the sign where the slip is NaN."""
+    mu = np.asarray(mu)
+    return np.asarray(np.where((slip > 0) & (mu != PIVOT), -mu, mu) + 0.0)
+
+
+def typed_friction(columns: Mapping[str, Any], signed: Any) -> Array:
+    """Return the MU to type for a ``signed`` P_t/P_n of scenes, or that of a MU typed.
+
+    ``columns`` need no E, EM and MU, which the sliding before the impact does not depend on."""
+    scene = {"E": 0.0, "EM": 0.0, **columns, "MU": PIVOT}
+    return opposing(signed, quantities(scene, ("gt",))["gt"])
+
+
 def share_typed(columns: Mapping[str, Any], share: Any) -> Array:
     """Return the friction for a share of each scene's critical friction (MUC), a fraction of
     P_t/P_n, as line 280 would take it: line 400 turns its sign where gt > 0. NaN where no friction
@@ -94,7 +110,7 @@ def share_typed(columns: Mapping[str, Any], share: Any) -> Array:
     critical = quantities({**columns, "MU": PIVOT}, ("MUC", "PN", "gt"))
     with np.errstate(invalid="ignore"):
         mu = np.where(critical["PN"] > 0, np.asarray(share) * critical["MUC"], np.nan)
-        return np.asarray(np.where(critical["gt"] > 0, -mu, mu) + 0.0)
+        return opposing(mu, critical["gt"])
 
 
 def resolve_share(texts: Mapping[str, str], share: float, source: str) -> tuple[str, str]:

@@ -21,6 +21,7 @@ from ... import status
 from ...collision.doubles import double, doubles_of
 from ...collision.fields import ANGLES, FIELDS, INPUTS, scene_name
 from ...mechanics.closedform.solve import solve
+from ...mechanics.friction import admissible_friction
 from ...names import RESULTS
 from ..reading.numerals import printable, value_of
 from ..recovery.replays import run_columns
@@ -65,10 +66,10 @@ def warnings(scene: Scene) -> list[str]:
     """Return a sentence for each unphysical trait of a scene (a bit of STATUS) and for each known
     fault of the program that the scene triggers."""
     values: dict[str, Any] = dict(doubles_of(scene))
-    values |= solve(values, ["STATUS", "MUC", "MUP", "XA", "YA", "XB", "YB"])
+    values |= solve(values, ["STATUS", "MUC", "MUP", "PN", "PM"])
     bits = int(values["STATUS"])
     sentences = [f"{bit.name}: {status.WORDS[bit]}" for bit in status.Status if bits & bit]
-    sentences += status.admissible_friction(bits, values)
+    sentences += admissible_friction(bits, values)
     point, mu = values["M"] == 4, values["MU"]
     if point and (values["DA"] or values["DB"]):
         sentences.append(

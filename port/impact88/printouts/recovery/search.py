@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from ...collision.doubles import double
 from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS, scene_name
 from ...mechanics.closedform import energy as closed_form
+from ...mechanics.closedform.general import typed_friction
 from ...mechanics.closedform.solve import solve
 from ...names import VELOCITIES
 from . import replays
@@ -247,7 +248,7 @@ class Search:
         mu = value["MU"]
         if "MUP" not in self.evidence.inputs:
             return mu
-        return np.where(in_doubles(value, ["MUP"])["MUP"] == -mu, -mu, mu)
+        return typed_friction(value, mu)
 
     def _other_spellings(self, best: Scored) -> Scored:
         """Return the best scene over other spellings of the same printed inputs: typed zeros that
