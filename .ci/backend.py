@@ -60,7 +60,7 @@ PROGRAMS = Path("golden/programs")
 
 @contextmanager
 def programs_archived():
-    """Within, the 600 captured programs are one archive beside their folder, for the wheel."""
+    """Within, the files of the captured programs are one archive beside their folder, for the wheel."""
     archive = PROGRAMS.with_suffix(".zip")
     try:
         with zipfile.ZipFile(archive, "w") as packed:

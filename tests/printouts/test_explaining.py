@@ -18,7 +18,7 @@ from impact88.printouts.reading.printout import FIELDS, read_printouts
 from impact88.printouts.recovery import replays
 from impact88.printouts.recovery.recovered import recover
 from impact88.printouts.recovery.rereading import Rereading
-from impact88.printouts.recovery.search import Expected, in_doubles
+from impact88.printouts.recovery.search import Expected, printed_in_doubles
 from impact88.printouts.recovery.slips import BITS, Change, slip
 from impact88.printouts.recovery.typedtext import opposite
 from impact88.printouts.reporting.examination import Verdict, verify
@@ -306,6 +306,6 @@ def test_point_masses_lose_the_energy_that_the_listing_counts() -> None:
     texts = {name: [text] for name, text in scene.items()}
     numbers = {name: np.array([float(column[0])]) for name, column in texts.items()}
     printed = replay(texts)
-    found = in_doubles(numbers, ["KI", "LOSS"])
+    found = printed_in_doubles(numbers, ["KI", "LOSS"])
     assert found["KI"] == pytest.approx(float(printed.printed("KI")[0]), rel=1e-8)
     assert 0 <= found["LOSS"][0] - float(printed.printed("LOSS")[0]) < 0.01

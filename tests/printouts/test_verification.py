@@ -17,7 +17,7 @@ from impact88.collision.fields import ANGLES, INPUTS, outcome_fields
 from impact88.names import SCENE
 from impact88.printouts.judging.judgement import Status
 from impact88.printouts.reading.printout import read_printouts
-from impact88.printouts.recovery.search import in_doubles
+from impact88.printouts.recovery.search import printed_in_doubles
 from impact88.printouts.recovery.typedtext import stored_and_printed, texts_that_print
 from impact88.printouts.reporting.examination import Verdict, Verification, verify
 from impact88.printouts.reporting.verification import lines
@@ -230,7 +230,7 @@ def test_energies_are_screened_as_the_listing_counts_them(m: str) -> None:
     scene = sample(1).replaced({"M": m, "WB": ".8", "DA": "0", "DB": "0"})
     printout = run(scene).printout
     values = {name: np.array([float(text)]) for name, text in scene.items()}
-    results = in_doubles(values, ["KI", "LOSS"])
+    results = printed_in_doubles(values, ["KI", "LOSS"])
     printed = outcome_fields(printout)
     assert f"{results['KI'][0]:.3f}".rstrip("0") == printed["KI"]
     assert np.floor(100 * results["LOSS"][0]) / 100 == float(printed["LOSS"])

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from ..errors import BEYOND_DOUBLES, UserError
 from .case import OWN_AXES
-from .degrees import sin_cos as real_sin_cos
+from .degrees import sin_cos
 from .doubles import double
 
 Array = NDArray[Any]
@@ -62,12 +62,12 @@ def _numbers(value: Any) -> Array:
     return array if np.iscomplexobj(array) else array.astype(np.float64, copy=False)
 
 
-def sin_cos(degrees: Any) -> tuple[Array, Array]:
+def sin_cos_with_slopes(degrees: Any) -> tuple[Array, Array]:
     """Return sine and cosine of angles in degrees; of complex ones with their derivatives."""
     degrees = np.asarray(degrees)
     if not np.iscomplexobj(degrees):
-        return real_sin_cos(degrees)
-    sine, cosine = real_sin_cos(degrees.real)
+        return sin_cos(degrees)
+    sine, cosine = sin_cos(degrees.real)
     turn = 1j * np.radians(degrees.imag)
     return sine + turn * cosine, cosine - turn * sine
 
@@ -111,9 +111,9 @@ class Geometry:
             self.point = np.ones_like(self.point)
         for name in ("TA", "TB"):  # a point mass may face the way it travels, `state.COURSE`
             value[name] = np.where(self.point, 0.0, value[name])
-        self.sine, self.cosine = sin_cos(value["GA"])
-        sine_a, cosine_a = sin_cos(value["TA"] + value["PA"])
-        sine_b, cosine_b = sin_cos(value["TB"] + value["PB"])
+        self.sine, self.cosine = sin_cos_with_slopes(value["GA"])
+        sine_a, cosine_a = sin_cos_with_slopes(value["TA"] + value["PA"])
+        sine_b, cosine_b = sin_cos_with_slopes(value["TB"] + value["PB"])
         da, db = (np.where(self.point, 0.0, value[name]) for name in ("DA", "DB"))
         self.d1, self.d2, self.d3, self.d4 = db * sine_b, db * cosine_b, da * sine_a, da * cosine_a
         self.inverse_ma, self.inverse_mb = 1 / value["MA"], 1 / value["MB"]

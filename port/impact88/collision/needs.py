@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..names import ANGLE, INERTIA, LENGTH, MASS, NUMBER, RESULTS, SCENE, SPIN, VELOCITY, quantity
 
-ORDINARY: dict[str, tuple[float, float]] = {
+ORDINARY_RANGES: dict[str, tuple[float, float]] = {
     ANGLE: (-180.0, 180.0),
     LENGTH: (1.0, 9.0),
     MASS: (50.0, 200.0),
@@ -23,7 +23,7 @@ ORDINARY: dict[str, tuple[float, float]] = {
 
 def ordinary(name: str, rng: np.random.Generator, count: int) -> NDArray[np.float64]:
     """Return ordinary numbers for a value of an impact."""
-    values = rng.uniform(*ORDINARY[quantity(name).unit], count)
+    values = rng.uniform(*ORDINARY_RANGES[quantity(name).unit], count)
     return np.asarray(-values if name == "EM" else values)
 
 
@@ -59,7 +59,7 @@ def _sentence(results: Sequence[str], inputs: Sequence[str]) -> str:
     return f"{join_words(results)} {verb} {_describe_inputs(inputs)}"
 
 
-def sentences(needs: Mapping[str, Collection[str]]) -> list[str]:
+def needs_sentences(needs: Mapping[str, Collection[str]]) -> list[str]:
     """Return the sentences of `needs_in_words`."""
     return [sentence for _, sentence in needs_in_words(needs)]
 

@@ -207,7 +207,7 @@ class Convention(NamedTuple):
     def sign_and_offset(self, name: str) -> tuple[int, int] | None:
         """Return (sign, offset in degrees) of ``shown = offset + sign * value``; None if the value
         is shown unchanged. The sign is -1, so the same pair converts back."""
-        if self.headings and name in COURSES:
+        if self.headings and name in FROM_NORTH:
             # A faces TA + 180
             return -1, (0 if self.axes else 90) + (180 if name == "TA" else 0)
         return (-1, 0) if self.axes and name in MIRRORED else None
@@ -217,7 +217,7 @@ AXES = ("listing", "sae")
 """Choices of ``axes = "..."`` and ``--axes``."""
 HEADINGS = ("listing", "compass")
 """Choices of ``headings = "..."`` and ``--headings``."""
-COURSES = ("TA", "TB", "HA", "HB", "HAF", "HBF")
+FROM_NORTH = ("TA", "TB", "HA", "HB", "HAF", "HBF")
 """Names of directions of vehicles and velocities."""
 MIRRORED = frozenset(
     "UY WA VY WB VAY WAF VBY WBF YA YB YAF YBF GA PA PB TA TB HA HB HAF HBF PT PM MUP MUC "
@@ -287,7 +287,7 @@ class System(NamedTuple):
             factor = self.factor(name)
             return value if factor == 1 else value * factor
         sign, offset = turn
-        if self.convention and self.convention.headings and name in COURSES:
+        if self.convention and self.convention.headings and name in FROM_NORTH:
             return (offset + sign * value) % 360.0
         # MUP = -10 marks a pivot and keeps its sign
         sign = 1 - 2 * (value != PIVOT) if name == "MUP" else sign
@@ -302,7 +302,7 @@ class System(NamedTuple):
         """Return values like `display`, but directions not reduced to one turn, to keep limits in
         order."""
         turn = self.convention.sign_and_offset(name) if self.convention else None
-        if turn and name in COURSES:
+        if turn and name in FROM_NORTH:
             return turn[1] + turn[0] * value
         return self.display(name, value)
 
@@ -835,7 +835,7 @@ def shown_text(name: str, text: str, system: System) -> str:
     if turn and any(map(str.isdigit, text)) and "%" not in text:
         text = reorient_text(name, text, *turn)
         headings = system.convention is not None and system.convention.headings
-        if headings and name in COURSES and is_number(text):
+        if headings and name in FROM_NORTH and is_number(text):
             return digits(double(text) % 360.0)
     factor = system.factor(name)
     if factor == 1 or not is_number(text):

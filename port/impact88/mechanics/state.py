@@ -14,7 +14,7 @@ from typing import Any, Self
 import numpy as np
 
 from .. import names
-from ..collision.geometry import Geometry, facing, sin_cos
+from ..collision.geometry import Geometry, facing, sin_cos_with_slopes
 from ..names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES
 from .closedform.energy import kinetic_energy
 
@@ -376,12 +376,14 @@ def _size(x: Any, y: Any) -> Any:
 
 
 def _unit(degrees: Any) -> tuple[Any, Any]:
-    sine, cosine = _of_number(degrees) if isinstance(degrees, float) else sin_cos(degrees)
+    sine, cosine = (
+        _of_number(degrees) if isinstance(degrees, float) else sin_cos_with_slopes(degrees)
+    )
     return cosine, sine
 
 
-_of_number = lru_cache(maxsize=64)(sin_cos)
-"""`sin_cos` of numbers, cached: exactly known angles recur at every evaluation."""
+_of_number = lru_cache(maxsize=64)(sin_cos_with_slopes)
+"""`sin_cos_with_slopes` of numbers, cached: exactly known angles recur at every evaluation."""
 
 
 def course(x: Any, y: Any) -> Any:

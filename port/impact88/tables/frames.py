@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..collision.doubles import is_number
-from ..collision.needs import sentences
+from ..collision.needs import needs_sentences
 from ..errors import PlausibilityWarning, UserError, library, quoted
 from ..mechanics.closedform.solve import solve
 from ..messages.arguments import explains_arguments
@@ -113,7 +113,7 @@ def solve_frame(
     solution = solve(columns, outputs, threads=threads)
     shown = table.shown(solution)
     results = {heading(name): shown[name] for name in table.headings(list(shown))}
-    for sentence in sentences(getattr(solution, "absent", {})):
+    for sentence in needs_sentences(getattr(solution, "absent", {})):
         warnings.warn(sentence, PlausibilityWarning, stacklevel=3)  # in who called this
     cell = partial(_cell, scene_columns, scene)
     for remark in remarks(columns, table.system, cell, False).values():

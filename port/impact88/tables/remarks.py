@@ -13,7 +13,7 @@ from ..collision.units import System
 Floats = NDArray[np.float64]
 Cells = Callable[[str, int], str]
 """The text of a column's cell, as it stands in the table."""
-COURSES = 1000
+COURSES_SAMPLED = 1000
 """Rows of an array whose courses are looked at where not all are: as many spread evenly."""
 _STRIP = 16384
 """Rows looked at together: they stay in cache."""
@@ -49,15 +49,16 @@ def remarks(
     cells
         The text of a cell.
     every
-        Look at every row's courses; else at `COURSES` of them, and at all where one is amiss.
+        Look at every row's courses; else at `COURSES_SAMPLED` of them, and at all where one is
+        amiss.
     """
     flat = {name: np.ravel(column) for name, column in columns.items()}
     if not all(column.size for column in flat.values()):
         return {}
     count = max(map(len, flat.values()))
     flat = {name: column for name, column in flat.items() if len(column) in (1, count)}
-    if not every and count > COURSES:
-        evenly = _rows_of(flat, np.linspace(0, count - 1, COURSES).astype(np.int64))
+    if not every and count > COURSES_SAMPLED:
+        evenly = _rows_of(flat, np.linspace(0, count - 1, COURSES_SAMPLED).astype(np.int64))
         sampled_remarks = implausible(evenly, _courses(evenly), system, {})
         amiss = {name for name, mask, *_ in sampled_remarks if np.any(mask)}
         flat = {n: column for n, column in flat.items() if n not in ("TA", "TB") or n in amiss}

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..collision.case import VALUE_LIMIT, Case, share_of
 from ..collision.doubles import double, is_number
 from ..collision.fields import ZERO_DETERMINANT
-from ..collision.needs import sentences
+from ..collision.needs import needs_sentences
 from ..errors import UserError, quoted
 from ..mechanics.closedform.columns import BODY_CONSTANTS, UNUSED_BY_POINTS, examine, refusals
 from ..mechanics.closedform.general import resolve_share, share_typed
@@ -125,7 +125,7 @@ class RowSolver:
 
     def needs(self) -> list[str]:
         """Return sentences on the results that need inputs for which there is no column."""
-        return sentences(self._absent)
+        return needs_sentences(self._absent)
 
     def remarks(self) -> list[str]:
         """Return the remarks on all rows so far."""

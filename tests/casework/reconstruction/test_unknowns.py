@@ -14,12 +14,14 @@ from hypothesis import strategies as st
 from reference_cases import Case, cases_of
 
 from impact88 import sample, solve, solve_for
+from impact88.casework.reconstruction.adjustment import reconstruct
 from impact88.casework.reconstruction.derived import without_noise
 from impact88.casework.reconstruction.system import System
 from impact88.casework.reconstruction.unknowns import UnsolvableError
 from impact88.collision.uncertain import fixed_value
 from impact88.errors import UserError
 from impact88.mechanics.accuracy.populations import scenes
+from impact88.mechanics.closedform.general import quantities, typed_friction
 from impact88.mechanics.outcome import initial_impact, outcome
 from impact88.names import COEFFICIENTS, FINAL_STATE, VELOCITIES
 
@@ -282,6 +284,25 @@ def test_the_forward_problem_applies_line_400() -> None:
     assert float(found["MUP"]) == -0.911
     expected = {n: float(v) for n, v in solve(turned, FINAL_STATE).items()}
     assert largest_error(found, expected) < 1e-14
+
+
+def test_the_mu_to_type_gives_back_the_impact_where_nothing_slides_but_by_rounding() -> None:
+    """Head-ons in any direction: the slip before is 0 but for rounding, of either sign."""
+    slips = []
+    for angle in np.random.default_rng(4).uniform(-180, 180, 12):
+        x, y = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+        scene = sample(3).numbers() | {"GA": angle, "TA": angle, "TB": angle, "PA": 20.0, "PB": 0.0}
+        scene |= {"UX": -30 * x, "UY": -30 * y, "VX": 20 * x, "VY": 20 * y, "WA": 0.0, "WB": 0.0}
+        slips.append(float(quantities({**scene, "MU": 0.0}, ("gt",))["gt"]))
+        for mup in (0.2, -0.2):
+            known = {n: v for n, v in scene.items() if n not in (*VELOCITIES, "MU")}
+            known |= {"MUP": mup, **solve({**scene, "MU": typed_friction(scene, mup)}, FINAL_STATE)}
+            found = [solve_for(known)[0].values, reconstruct(known)[0].scene()]
+            for values in found:
+                typed = {**scene, **{n: values[n] for n in (*VELOCITIES, "MU")}}
+                assert float(solve(typed, ("MUP",))["MUP"]) == mup
+    assert min(slips) < 0 < max(slips)
+    assert np.abs(slips).max() < 1e-13
 
 
 # -- arrays

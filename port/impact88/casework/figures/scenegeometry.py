@@ -97,7 +97,7 @@ class Plan(NamedTuple):
     sizes_from: dict[str, str]
 
     @property
-    def closing(self) -> float:
+    def speed_of_centers(self) -> float:
         """The relative speed of the centers of gravity before the impact."""
         a, b = self.vehicles
         return abs(a.before.velocity - b.before.velocity)

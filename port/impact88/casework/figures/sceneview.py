@@ -430,7 +430,9 @@ def _notes(shapes: Plan, units: System) -> list[str]:
     first = [_sizes_words(shapes, units)] if shapes.numbers["M"] != 4 else []
     barrier = len(shapes.bodies) < 2
     if not barrier:
-        first.append(f"Relative speed of the centers {with_unit(shapes.closing, VELOCITY, units)}.")
+        first.append(
+            f"Relative speed of the centers {with_unit(shapes.speed_of_centers, VELOCITY, units)}."
+        )
     if not units.is_bare:
         first.append(f"Speeds in {units.label(VELOCITY)}, spins in {units.label(SPIN)}.")
     notes = [" ".join(filter(None, first))]

@@ -392,8 +392,8 @@ def _amplifications(answer: Answer) -> list[str]:
     gyration = number(answer.solution.system.gyration, 4)
     return paragraph(
         "Error amplification (error of the unknown when each known velocity errs independently by "
-        f"1; spins times the radius of gyration {gyration}, coefficients times the closing speed): "
-        f"{', '.join(errors)}"
+        f"1; spins times the radius of gyration {gyration}, coefficients times the relative speed "
+        f"at C): {', '.join(errors)}"
     )
 
 

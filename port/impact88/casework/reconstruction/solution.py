@@ -324,7 +324,8 @@ class Reconstruction:
         """Error of each unknown velocity and coefficient when each known velocity errs by one unit.
 
         The errors are independent. A spin's unit is one of velocity over the radius of gyration; a
-        coefficient's error is multiplied by the closing speed. Empty unless all values are exact.
+        coefficient's error is multiplied by the relative speed at C. Empty unless all values are
+        exact.
         """
         exact = self.system
         names = [n for n in SOUGHT if n in self.values and n not in exact.known]
@@ -334,9 +335,11 @@ class Reconstruction:
         x = system.starts_at(exact, self.x, np.random.default_rng(0))
         measured = replace(self, system=system, x=x)
         responses = system.gradients(x, names) @ measured._unit_responses[0]
-        closing = float(np.hypot(*np.real(exact.state(self.x).relative_before[:2])).ravel()[0])
+        contact_speed = float(
+            np.hypot(*np.real(exact.state(self.x).relative_before[:2])).ravel()[0]
+        )
         units = {n: float(exact.gyration) if n in SPINS else 1.0 for n in names}
-        units |= dict.fromkeys(COEFFICIENTS, closing)
+        units |= dict.fromkeys(COEFFICIENTS, contact_speed)
         sizes = np.sqrt(np.square(responses).sum(axis=1))
         sizes[sizes < RESIDUAL_TOL * sizes.max()] = 0.0  # rounding
         return {n: float(size * units[n]) for n, size in zip(names, sizes, strict=True)}

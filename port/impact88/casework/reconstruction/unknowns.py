@@ -48,7 +48,8 @@ Array = NDArray[np.float64]
 UNKNOWNS = (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS)
 
 BADLY_CONDITIONED = 10.0  # error amplification at which a solution is flagged
-ORDINARY = {"E": 0.37, "EM": -0.61, "MUP": 0.43}  # coefficients at which nothing special happens
+# at which nothing special happens
+ORDINARY_COEFFICIENTS = {"E": 0.37, "EM": -0.61, "MUP": 0.43}
 CHUNK = 1 << 12  # scenes solved at a time, bounds the memory
 # Twice or a hundredth of these changes none of 260 problems.
 RANK_TOL = 1e-12  # relative singular values and denominators of coefficients below count as zero
@@ -83,7 +84,7 @@ class Solution:
     amplification : dict of str to ndarray
         The error of each unknown when every known velocity errs, independently, by one unit (a
         spin's unit is one of velocity over ``gyration``, a coefficient's error is multiplied by the
-        closing speed).
+        relative speed at C).
     agrees : ndarray of bool
         True where the sign of MUP is the one line 400 gives.
     mismatch : ndarray
@@ -325,7 +326,7 @@ class _Problem:
             coefficients["MUP"] = self.friction.flat[0]
         for size in range(1, len(coefficients) + 1):
             for names in combinations(coefficients, size):
-                if self._determines(self.wanted, **{n: ORDINARY[n] for n in names}):
+                if self._determines(self.wanted, **{n: ORDINARY_COEFFICIENTS[n] for n in names}):
                     return "; and ".join(
                         _explain_coefficient(n, float(coefficients[n])) for n in names
                     )
@@ -402,7 +403,7 @@ def _solve_block(known: Mapping[str, Any], wanted: Sequence[str], point: bool) -
     is_determined = null_parts <= NULL_TOL * np.abs(slopes).max(axis=1)
     offset_state = system.state(fit.x[:, None] + 1j * COMPLEX_STEP * fit.errors, offset_data)
     row_errors = np.imag(scaled_quantities(offset_state)) / COMPLEX_STEP
-    closing_speed = np.hypot(*rows[-2:])
+    contact_speed = np.hypot(*rows[-2:])
     rows = np.where(is_determined, rows, np.nan)
     row_errors = np.where(is_determined[:, None], row_errors, np.nan)
     values = {n: row * system.scale(n) for n, row in zip(names, rows, strict=False)}
@@ -415,7 +416,7 @@ def _solve_block(known: Mapping[str, Any], wanted: Sequence[str], point: bool) -
         is_quotient = np.abs(denominator) > RANK_TOL * sizes
         value = np.where(is_quotient, numerator / denominator, np.nan)
         values[name] = value
-        errors[name] = (d_numerator - value * d_denominator) / denominator * closing_speed
+        errors[name] = (d_numerator - value * d_denominator) / denominator * contact_speed
         parts_determined &= is_determined[pair].all(axis=0) | (name not in wanted)
     if point:  # nothing turns a point mass: no moment, and a spin passes through
         values["PM"] = np.zeros(count)

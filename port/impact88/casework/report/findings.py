@@ -11,7 +11,7 @@ import numpy as np
 from ...collision.case import ABOUT, Case, remark_lines
 from ...collision.fields import FINAL_SPINS
 from ...collision.geometry import MOVES, clock, coordinate_names, resolve_contact_point
-from ...collision.needs import sentences as needs_in_words
+from ...collision.needs import needs_sentences
 from ...collision.units import System, base_of, gravity_in
 from ...errors import UserError
 from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
@@ -271,7 +271,7 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
     remarks = [*remark_lines(case.remarks), *status_sentences(status, {**nominal, **results})]
     needs = {**absent_results(nominal), **getattr(solved, "absent", {})}
     shown = {*FORWARD, *_CONSEQUENCES} - {*values, *(FINAL_SPINS if case.of_points else ())}
-    remarks += needs_in_words({name: x for name, x in needs.items() if name in shown})
+    remarks += needs_sentences({name: x for name, x in needs.items() if name in shown})
     if any(item.varies for item in inputs.values.values()):
         from ..uncertainty.bounds import bounds
         from ..uncertainty.boundstable import quantiles_of

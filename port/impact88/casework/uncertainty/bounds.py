@@ -21,7 +21,7 @@ from ... import status
 from ...collision.case import check_mapping
 from ...collision.geometry import MOVES, coordinate_names, resolve_contact_point
 from ...collision.mappings import base_system, within_limits
-from ...collision.needs import sentences
+from ...collision.needs import needs_sentences
 from ...collision.uncertain import (
     Uncertain,
     columns_of,
@@ -294,7 +294,7 @@ class _Box:
         nominal = {name: item.nominal for name, item in given.items()} | self.known
         absent = getattr(solve(nominal, tuple(RESULTS)), "absent", {}) if lacking else {}
         if outputs is not None and (needs := {n: absent[n] for n in wanted if n in absent}):
-            raise UserError("; ".join(sentences(needs)))
+            raise UserError("; ".join(needs_sentences(needs)))
         self.known |= dict.fromkeys(lacking, 0.0)
         if lacking:  # nothing is judged by what stands in
             self.judged = int(status.Status.NOT_FINITE)

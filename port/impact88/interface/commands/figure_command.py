@@ -24,7 +24,7 @@ from ...casework.figures.canvas import check_ending, save
 from ...casework.figures.drawing import Drawing
 from ...casework.figures.sceneview import scene_drawing
 from ...collision.doubles import double
-from ...collision.needs import sentences
+from ...collision.needs import needs_sentences
 from ...errors import UserError, note
 from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
 from ...mechanics.closedform.solve import solve
@@ -114,6 +114,6 @@ def solve_scene(scene: Scene) -> dict[str, Any]:
     """The results of one scene as numbers, for a drawing."""
     numbers = {name: double(text) for name, text in scene.given.items()}
     results = solve(numbers, (*FINAL_VELOCITIES, "STATUS"))
-    for sentence in sentences(getattr(results, "absent", {})):
+    for sentence in needs_sentences(getattr(results, "absent", {})):
         note("figure", sentence)
     return {name: value.item() for name, value in results.items()}

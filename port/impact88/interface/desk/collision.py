@@ -16,7 +16,7 @@ from ...collision.case import FACING_COURSE, Case, check_value, remark_lines
 from ...collision.doubles import double_or_none, doubles_of, is_number
 from ...collision.fields import FINAL_SPINS
 from ...collision.geometry import coordinate_names
-from ...collision.needs import sentences as needs_in_words
+from ...collision.needs import needs_sentences
 from ...collision.scenefile import template, toml_texts
 from ...collision.units import RULES, System
 from ...errors import UserError
@@ -176,7 +176,7 @@ def _without(
             "the answer takes the contact plane across the motion, which is along one line"
         )
     warnings = status_sentences(int(solved.get("STATUS", 0)), {**columns, **solved})
-    lines += needs_in_words({name: x for name, x in needs.items() if name in unanswered})
+    lines += needs_sentences({name: x for name, x in needs.items() if name in unanswered})
     return {name: float(x) for name, x in solved.items() if name in results}, warnings, lines
 
 

@@ -134,7 +134,7 @@ def examine(values: Mapping[str, Floats]) -> Block:
 
 def _is_ordinary(name: str, limits: Limits) -> bool:
     """Return True if a column's least and largest number, no NaN, need no closer look."""
-    low, high = ORDINARY[name]
+    low, high = UNEXAMINED[name]
     return low <= limits[0] and limits[1] <= high
 
 
@@ -174,7 +174,7 @@ def _extremes(column: Floats) -> Limits:
     return float(column.min()), float(column.max())
 
 
-ORDINARY: dict[str, Limits] = {
+UNEXAMINED: dict[str, Limits] = {
     **dict.fromkeys(SCENE, (-_LARGEST, _LARGEST)),
     **dict.fromkeys(ANGLES, (-LARGE_ANGLE, LARGE_ANGLE)),
     **dict.fromkeys(BODY_CONSTANTS, (_SMALLEST, _LARGEST)),
@@ -185,7 +185,7 @@ ORDINARY: dict[str, Limits] = {
 
 
 def alike_kind(name: str, value: float) -> str:
-    """Return the kind of a column that has one value, within its limits in `ORDINARY`."""
+    """Return the kind of a column that has one value, within its limits in `UNEXAMINED`."""
     if name == "M":
         return str(int(value))
     # formulas keep every inertia, even of 1

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .. import native
 from ..native import QUANTITIES
 from ..native.processors import run_in_threads
-from .columns import BLOCK, ORDINARY
+from .columns import BLOCK, UNEXAMINED
 from .impactprograms import CIRCLE, COLUMNS
 from .results import address
 
@@ -24,7 +24,7 @@ TILE = 1024
 """Scenes whose columns the library copies side by side, as ``TILE`` of `native/impacts.h`."""
 _LARGEST = np.finfo(np.float64).max
 # least and largest number of each column that needs no look at single scenes
-_LIMITS = np.array([{**ORDINARY, "MU": (-_LARGEST, _LARGEST)}[name] for name in COLUMNS])
+_LIMITS = np.array([{**UNEXAMINED, "MU": (-_LARGEST, _LARGEST)}[name] for name in COLUMNS])
 _NO_ARGUMENTS = np.array(
     [0] * (2 * len(COLUMNS) + len(QUANTITIES)) + [_LIMITS.ctypes.data, CIRCLE], np.int64
 )

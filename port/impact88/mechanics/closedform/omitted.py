@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...collision.needs import ordinary, sentences
+from ...collision.needs import needs_sentences, ordinary
 from ...errors import UserError
 from ...names import ANGLE, DEFAULT_M, LENGTH, PIVOT, SCENE, SPIN, VELOCITY, quantity
 from ...status import IMPOSSIBLE, Status
@@ -48,7 +48,7 @@ class Results(dict[str, Any]):
 
     def __missing__(self, name: str) -> Any:
         if name in self.absent:
-            raise KeyError("; ".join(sentences({name: self.absent[name]})))
+            raise KeyError("; ".join(needs_sentences({name: self.absent[name]})))
         raise KeyError(name)
 
 
@@ -120,8 +120,7 @@ def solve_without(
         absent["STATUS"] = absent["KF"]
     absent = {name: needs for name, needs in absent.items() if name in wanted}
     if wanted and len(absent) == len(wanted):
-        needs_in_words = "; ".join(sentences(absent))
-        raise UserError(f"missing: {' '.join(lacking)}; {needs_in_words}")
+        raise UserError("; ".join([f"missing: {' '.join(lacking)}", *needs_sentences(absent)]))
     results = {name: np.where(stands[name], solutions[0][name], np.nan) for name in names}
     if "STATUS" in wanted and "STATUS" not in absent:
         statuses = [solve(scene, ["STATUS"])["STATUS"] for scene in completed]

@@ -24,7 +24,7 @@ from ..reading.numerals import compare
 from ..recovery import slips
 from ..recovery.replays import run_all
 from ..recovery.rereading import Reread, Rereading
-from ..recovery.search import in_doubles
+from ..recovery.search import printed_in_doubles
 from ..recovery.slips import Change
 from ..recovery.typedtext import longer_texts, mu_turned, opposite
 from . import machines
@@ -217,7 +217,9 @@ def _nearest_slips(page: PageEvidence, rereading: Rereading) -> list[tuple[Chang
         )
     results = {
         name: column - column[0] + double(fields[name])
-        for name, column in in_doubles(columns, [n for n in page.results if n in fields]).items()
+        for name, column in printed_in_doubles(
+            columns, [n for n in page.results if n in fields]
+        ).items()
     }
     order = np.argsort(page.median_error(results, len(candidates) + 1)[1:], kind="stable")
     return [(candidates[index],) for index in order]

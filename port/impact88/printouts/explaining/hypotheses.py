@@ -29,7 +29,7 @@ from ...equations.spelling import LISTING, NEGATIVE, SHOWN, Expression, spelling
 from ...files import packaged_text
 from ..reading import numerals
 from ..recovery import replays
-from ..recovery.search import Column, in_doubles
+from ..recovery.search import Column, printed_in_doubles
 from ..recovery.slips import BITS, DIGIT, Change
 from ..recovery.typedtext import with_opposite_mu
 from .causes import NOT_APPLESOFT, Cause, PageEvidence, Range, decimals_of, digits_of
@@ -215,7 +215,7 @@ class Rows:
             for name, text in scene.items():
                 if text is not self._scene[name]:
                     columns[name][index] = double(text)
-        return in_doubles(columns, list(names))
+        return printed_in_doubles(columns, list(names))
 
     def _columns(self, unit: Hypothesis) -> Iterator[Column]:
         """Yield the columns of a search: for converted inputs, every possible original value."""

@@ -20,7 +20,7 @@ from ...collision.doubles import double
 from ...collision.fields import ANGLES, FIELDS, INPUTS
 from ...program.arithmetics import APPLESOFT, FLOAT64, Arithmetic
 from ..recovery import replays
-from ..recovery.search import in_doubles
+from ..recovery.search import printed_in_doubles
 from .causes import NOT_APPLESOFT, Cause, PageEvidence, Range, as_printed, digits_of
 
 _BITS = 14.0
@@ -108,7 +108,7 @@ def _is_near(page: PageEvidence, scene: Mapping[str, str], pis: Iterable[float])
     pi_ratios = np.array([*pis]) / math.pi
     columns = {n: np.full(len(pi_ratios), double(text)) for n, text in scene.items()}
     columns |= {name: columns[name] * pi_ratios for name in ANGLES}
-    results = in_doubles(columns, list(page.results))
+    results = printed_in_doubles(columns, list(page.results))
     return list(page.fits(results, len(pi_ratios), MAX_RANGE_UNITS, MAX_RANGE_FRACTION))
 
 

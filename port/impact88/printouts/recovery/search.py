@@ -204,7 +204,7 @@ class Search:
         value = _values(columns, picks)
         value["MU"] = self._typed_mu(value)
         costs = _prior_penalty(columns, picks)
-        results = in_doubles(value, [result.name for result in self.expected])
+        results = printed_in_doubles(value, [result.name for result in self.expected])
         for result in self.expected:
             cost = result.mismatch(results[result.name])
             spun = result.name not in FINAL_SPINS or value["M"] == 6
@@ -360,7 +360,7 @@ def kinetic_energy(value: Mapping[str, Floats]) -> Floats:
     return energy
 
 
-def in_doubles(value: Mapping[str, Floats], names: Sequence[str]) -> dict[str, Floats]:
+def printed_in_doubles(value: Mapping[str, Floats], names: Sequence[str]) -> dict[str, Floats]:
     """Return the results that the program prints, in double precision, before it floors them.
 
     With M = 4 the closed form leaves the spins out of both energies; the listing counts the initial
