@@ -11,10 +11,10 @@ from ..collision.needs import needs_in_words
 from ..collision.uncertain import Uncertain
 from ..names import FINAL_STATE, PIVOT, VELOCITIES
 from ..status import Status
+from .closedform.omitted import are_parallel, plane_across
 from .state import COURSE_AFTER, COURSES, CRUSH, FORCES, KNOWABLE, QUANTITIES, SPEEDS
 from .uses import inputs_of
 
-PARALLEL_TOLERANCE = 1e-9  # degrees between directions along one line
 _ENERGIES = ("KI", "KF", "EL", "LOSS", "DT", *CRUSH)
 _COURSE_OF = {speed: course for course, speed in COURSES.items()}
 _SPINS = ("WA", "WB", "WAF", "WBF")
@@ -51,9 +51,7 @@ def pose(
                 "the motion is along one line: the contact plane is taken across it, and nothing "
                 "acts along the plane"
             )
-        along = across or abs(np.remainder(_single_number(values["GA"]) - line + 90, 180) - 90) <= (
-            PARALLEL_TOLERANCE
-        )
+        along = across or are_parallel(_single_number(values["GA"]), line)
         friction = next((n for n in ("MUP", "MU") if n in values), None)
         if along and friction is None and not is_implied:
             values["MUP"] = fixed(0.0)
@@ -180,7 +178,8 @@ def line_of_motion(known: Mapping[str, Any]) -> tuple[float | None, bool]:
 
     Their directions are known to be parallel before the impact, or after it, or those of one
     vehicle before and after and one of the other, and nothing known is across the line. A vehicle
-    at rest has no direction. A is taken to be the faster one."""
+    at rest has no direction. A is taken to be the faster one where not both velocities before are
+    known."""
     nowhere = None, False
     if not {*FORCES, "DVAR", "DVBR"}.isdisjoint(known):
         return nowhere
@@ -197,14 +196,17 @@ def line_of_motion(known: Mapping[str, Any]) -> tuple[float | None, bool]:
     if not moving:
         return nowhere
     first, *other_courses = moving.values()
-    if any(abs((other - first + 90) % 180 - 90) > PARALLEL_TOLERANCE for other in other_courses):
+    if not all(are_parallel(first, other) for other in other_courses):
         return nowhere
     for speed in SPEEDS:
         if speed not in directions and _may_leave(known, speed, first):
             return nowhere
-    name = next(iter(moving))
-    line = float(np.remainder(first + 180 if name[1] == "A" else first, 360))
-    return (line if line <= 180 else line - 360), any(complete[2:])
+    before = [_single_number(known.get(name, np.nan)) for name in ("UX", "UY", "VX", "VY")]
+    line = float(plane_across(*before))
+    if np.isnan(line):
+        name = next(iter(moving))
+        line = 180 - float(np.remainder(-first if name[1] == "A" else 180 - first, 360))
+    return line, any(complete[2:])
 
 
 def _may_leave(known: Mapping[str, Any], speed: str, line: float) -> bool:

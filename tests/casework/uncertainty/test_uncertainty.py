@@ -18,6 +18,7 @@ from impact88.collision.uncertain import Uncertain, fixed_value, read
 from impact88.errors import UserError
 from impact88.mechanics.accuracy.populations import scenes
 from impact88.mechanics.closedform.general import quantities
+from impact88.mechanics.closedform.solve import solve
 from impact88.mechanics.outcome import forward_model, reconstruction_model
 from impact88.names import FINAL_VELOCITIES, SCENE, VELOCITIES, quantity
 from impact88.program.scene import sample
@@ -578,3 +579,14 @@ def test_energy_is_judged_where_what_is_not_given_has_no_part_in_it() -> None:
     known = bounds(values | {"MU": 0.0}, outputs=["VC"], samples=100)
     assert known.warnings["ENERGY_GAINED"] == 1
     assert bounds(values, outputs=["VC"], samples=100).warnings == {}
+
+
+@pytest.mark.parametrize(("of_a", "of_b"), [(5, 10), (10, 5), (-5, -10), (-10, 5), (5, 0), (0, 5)])
+def test_the_plane_across_a_line_is_the_one_that_solve_takes(of_a: float, of_b: float) -> None:
+    """Whichever is faster, A approaches against the normal: VC and PN are above 0."""
+    known = {"M": 4.0, "MA": 100.0, "MB": 90.0, "UX": of_a, "UY": 0.0, "VX": of_b, "VY": 0.0}
+    found = bounds({**known, "E": read("0.2 .. 0.4", "E")}, outputs=["VC", "PN"], samples=2).bounds
+    expected = solve({**known, "E": 0.3}, ("VC", "PN"))
+    assert found["VC"].nominal == expected["VC"] == abs(of_a - of_b)
+    assert found["PN"].nominal == pytest.approx(float(expected["PN"]))
+    assert found["PN"].lower > 0

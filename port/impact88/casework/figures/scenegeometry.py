@@ -22,6 +22,7 @@ from typing import Any, NamedTuple
 from ...collision.doubles import double
 from ...collision.units import RULES, System
 from ...errors import UserError
+from ...mechanics.closedform.omitted import plane_across
 from ...mechanics.friction import status_sentences
 from ...names import FINAL_VELOCITIES, SCENE, missing
 from ...program.scene import numbers_of
@@ -211,9 +212,9 @@ def _drawable(scene: Any, result: Mapping[str, Any]) -> dict[str, Any]:
         values.setdefault(f"T{vehicle}", theta)
     if "GA" not in values:
         a, b = speeds["A"], speeds["B"]
-        if not abs((a * b.conjugate()).imag) <= 1e-12 * abs(a) * abs(b):
+        values["GA"] = float(plane_across(a.real, a.imag, b.real, b.imag))
+        if math.isnan(values["GA"]):
             raise UserError(f"{missing(['GA'])}; the drawing shows the contact plane")
-        values["GA"] = math.degrees(cmath.phase(b - a)) if a != b else math.degrees(cmath.phase(-a))
     return values
 
 

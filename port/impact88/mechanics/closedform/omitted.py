@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...collision.degrees import sin_cos
 from ...collision.needs import needs_sentences, ordinary
 from ...errors import UserError
 from ...names import ANGLE, DEFAULT_M, LENGTH, PIVOT, SCENE, SPIN, VELOCITY, quantity
@@ -29,7 +30,7 @@ SPECIAL = {"E": (0.0, 1.0), "MU": (0.0, PIVOT), "EM": (0.0, 1.0)}
 OUTWEIGHING = np.array([100.0, -100.0, 1000.0, -1000.0])
 SAME = 1e-9  # relative difference of results that are the same but for rounding
 ROUNDING = 1e-12  # the same relative to the largest result of its unit
-PARALLEL = 1e-12  # sine of the angle between velocities along one line
+PARALLEL = 1e-11  # sine of the angle between directions along one line
 _JUDGED = IMPOSSIBLE | Status.NOT_FINITE | Status.SINGULAR | Status.MU_OUT_OF_RANGE
 
 
@@ -215,13 +216,10 @@ def _along_a_line(given: Mapping[str, Array], lacking: Collection[str]) -> Array
     names = ("UX", "UY", "VX", "VY")
     if not {*names} <= given.keys() or _lacks_more(lacking):
         return np.False_  # type: ignore[return-value]
-    ux, uy, vx, vy = (given[name] for name in names)
-    sizes = np.hypot(ux, uy) * np.hypot(vx, vy)
-    moving = (np.hypot(ux, uy) > 0) | (np.hypot(vx, vy) > 0)
-    along = (given["M"] == 4) & moving & (np.abs(ux * vy - uy * vx) <= PARALLEL * sizes)
+    plane = _plane_across(given)
+    along = (given["M"] == 4) & np.isfinite(plane)
     if "GA" in given:
-        across = np.radians(given["GA"] - _line(given))
-        along = along & (np.abs(np.sin(across)) <= PARALLEL)
+        along = along & are_parallel(given["GA"], plane)
     return np.asarray(along)
 
 
@@ -230,12 +228,25 @@ def _lacks_more(lacking: Collection[str]) -> bool:
     return bool({*lacking} & {"UX", "UY", "VX", "VY"}) or not {*lacking} & {"GA", "MU"}
 
 
-def _line(given: Mapping[str, Array]) -> Array:
-    """Return the normal of a contact plane across the motion, as GA: A approaches against it."""
-    x, y = given["UX"] - given["VX"], given["UY"] - given["VY"]
+def are_parallel(first: Any, second: Any) -> Any:
+    """Return where two directions, in degrees, are along one line."""
+    return np.abs(sin_cos(np.subtract(first, second))[0]) <= PARALLEL
+
+
+def plane_across(ux: Any, uy: Any, vx: Any, vy: Any) -> Array:
+    """Return GA of a contact plane across the motion of vehicles along one line, against whose
+    normal A approaches; NaN where they do not move so."""
+    sizes = np.hypot(ux, uy), np.hypot(vx, vy)
+    along = np.abs(ux * vy - uy * vx) <= PARALLEL * sizes[0] * sizes[1]
+    x, y = ux - vx, uy - vy
     still = (x == 0) & (y == 0)
-    x, y = np.where(still, given["UX"], x), np.where(still, given["UY"], y)
-    return np.asarray(np.degrees(np.arctan2(-y + 0.0, -x + 0.0)))
+    x, y = np.where(still, ux, x), np.where(still, uy, y)
+    ga = np.degrees(np.arctan2(-y + 0.0, -x + 0.0))
+    return np.asarray(np.where(along & (np.fmax(*sizes) > 0), ga, np.nan))
+
+
+def _plane_across(given: Mapping[str, Array]) -> Array:
+    return plane_across(*(given[name] for name in ("UX", "UY", "VX", "VY")))
 
 
 def _complete_all(
@@ -261,7 +272,7 @@ def _complete_scene(
                 scene[name] = np.where(infinite, 0.0, trial[name])
     if np.any(along):
         if "GA" in trial:
-            scene["GA"] = np.where(along, _line(given), trial["GA"])
+            scene["GA"] = np.where(along, _plane_across(given), trial["GA"])
         free = along if "MU" in trial else along & (np.asarray(scene["MU"]) != PIVOT)
         scene["MU"] = np.where(free, 0.0, scene["MU"])
     return scene
