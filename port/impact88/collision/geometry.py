@@ -188,10 +188,9 @@ def resolve_contact_point(values: Mapping[str, Any]) -> dict[str, Any]:
     for vehicle, sign in (("A", -1.0), ("B", 1.0)):
         heading = np.asarray(values[f"T{vehicle}"], np.float64)
         distance = np.asarray(values[f"D{vehicle}"], np.float64)
-        angle = np.radians(heading + values[f"P{vehicle}"])
+        sine, cosine = sin_cos(heading + values[f"P{vehicle}"])
         # A's polar coordinates point from the contact point to its center of gravity
-        x = distance * np.cos(angle) + sign * dx
-        y = distance * np.sin(angle) + sign * dy
+        x, y = distance * cosine + sign * dx, distance * sine + sign * dy
         result[f"D{vehicle}"] = np.hypot(x, y)
         result[f"P{vehicle}"] = np.degrees(np.arctan2(y, x)) - heading
     return result

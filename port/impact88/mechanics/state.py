@@ -281,10 +281,7 @@ class State:
 
     def _pdof(self, name: str) -> Any:
         """Return a PDOF in degrees, above -180 and up to 180; NaN without impulse."""
-        vehicle, (x, y) = FORCES[name], self._vector(name)
-        clockwise = self._facing(vehicle) + 180 - course(x, y)
-        angle = clockwise - 360 * np.ceil((np.real(clockwise) - 180) / 360)
-        return np.where((x == 0) & (y == 0), np.nan, angle)
+        return pdof(self._facing(FORCES[name]), *self._vector(name))
 
     # -- quantities
 
@@ -384,6 +381,14 @@ def _unit(degrees: Any) -> tuple[Any, Any]:
 
 _of_number = lru_cache(maxsize=64)(sin_cos_with_slopes)
 """`sin_cos_with_slopes` of numbers, cached: exactly known angles recur at every evaluation."""
+
+
+def pdof(front: Any, x: Any, y: Any) -> Any:
+    """Return where a force along (x, y) comes from, in degrees clockwise from the ``front`` (its
+    direction in degrees), above -180 and up to 180; NaN without force."""
+    clockwise = front + 180 - course(x, y)
+    angle = clockwise - 360 * np.ceil((np.real(clockwise) - 180) / 360)
+    return np.where((x == 0) & (y == 0), np.nan, angle)
 
 
 def course(x: Any, y: Any) -> Any:

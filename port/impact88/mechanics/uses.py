@@ -17,16 +17,12 @@ from numpy.typing import NDArray
 
 from ..collision.geometry import GEOMETRY
 from ..collision.needs import ordinary
-from ..names import (
-    FINAL_STATE,
-    VELOCITIES,
-)
+from ..names import FINAL_STATE, VELOCITIES
+from .closedform.omitted import same_results
 from .state import QUANTITIES, State
 
 Floats = NDArray[np.float64]
 
-MIN_CHANGE = 1e-9
-"""Relative change of a result that is none: rounding."""
 TRIALS = 3  # ordinary impacts at which an input is changed; one could hide it by chance
 _CONTACT_POINT = ("CAX", "CAY", "CBX", "CBY")
 
@@ -65,8 +61,8 @@ def _table(point: bool) -> dict[str, frozenset[str]]:
     uses: dict[str, set[str]] = {result: set() for result in before}
     for name in names:
         after = _consequences({**base, name: ordinary(name, rng, TRIALS)})
-        for result, value in before.items():
-            if _differs(value, after[result]).any():
+        for result, same in same_results(before, [after], [*before]).items():
+            if not same.all():
                 uses[result].add(name)
     if point:  # a spin passes a point mass by, and nothing turns it
         for result in ("WA", "WB", "WAF", "WBF", "PM", "EM"):
@@ -86,9 +82,3 @@ def _consequences(values: Mapping[str, Floats]) -> dict[str, Any]:
     result = {name: state[name] for name in QUANTITIES} | state.contact_velocities()
     arms = (-here.d4, -here.d3, here.d2, here.d1)
     return {**result, "P": np.hypot(x, y), **dict(zip(_CONTACT_POINT, arms, strict=True))}
-
-
-def _differs(first: Any, second: Any) -> Any:
-    first, second = (np.asarray(value, np.float64) for value in (first, second))
-    with np.errstate(invalid="ignore"):
-        return np.abs(first - second) > MIN_CHANGE * np.maximum(abs(first), abs(second))

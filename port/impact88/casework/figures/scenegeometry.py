@@ -24,6 +24,7 @@ from ...collision.units import RULES, System
 from ...errors import UserError
 from ...mechanics.closedform.omitted import plane_across
 from ...mechanics.friction import status_sentences
+from ...mechanics.state import pdof
 from ...names import FINAL_VELOCITIES, SCENE, missing
 from ...program.scene import numbers_of
 from .drawing import check_drawable, degrees, unit
@@ -79,8 +80,8 @@ class Vehicle(NamedTuple):
     def pdof(self, impulse: complex) -> float:
         """Return the principal direction of force, in degrees clockwise from the front, of the
         impulse on A."""
-        source = -impulse if self.name == "A" else impulse
-        return -degrees(self.front.conjugate() * source)
+        force = impulse if self.name == "A" else -impulse
+        return float(pdof(degrees(self.front), force.real, force.imag))
 
 
 class Plan(NamedTuple):

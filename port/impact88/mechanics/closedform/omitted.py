@@ -106,13 +106,13 @@ def solve_without(
     if len(names) < len(wanted) and "KF" not in names:
         names.append("KF")
     solutions = [solve(scene, names) for scene in completed]
-    stands = _same(solutions[0], solutions[1:], names)
+    stands = same_results(solutions[0], solutions[1:], names)
     # one that is not below 0, such as EESA where energy is gained, hides its inputs
     if zeros := [name for name in names if not any(np.any(found[name]) for found in solutions)]:
         ordinary_scenes = _ordinary_scenes(known, shares is not None, rng)
         completed_scenes = _complete_all(ordinary_scenes, trials, np.zeros(()))
         elsewhere = [solve_arrays(scene, tuple(names), threads) for scene in completed_scenes]
-        same = _same(elsewhere[0], elsewhere[1:], zeros)
+        same = same_results(elsewhere[0], elsewhere[1:], zeros)
         stands |= {name: stands[name] & (np.all(same[name]) | along) for name in zeros}
     absent = _inputs_used(
         lacking, completed, solutions[1], [n for n in names if not np.any(stands[n])], solve
@@ -153,7 +153,7 @@ def _inputs_used(
     used: dict[str, list[str]] = {result: [] for result in names}
     for name in lacking:
         changes = [solve({**completed[1], name: other[name]}, names) for other in completed[2:5]]
-        for result, same in _same(second, changes, names).items():
+        for result, same in same_results(second, changes, names).items():
             if not np.all(same):
                 used[result].append(name)
     return {result: tuple(inputs or lacking) for result, inputs in used.items()}
@@ -189,7 +189,7 @@ def _ordinary_scenes(
     return {name: np.asarray(value, np.float64) for name, value in scenes.items()}
 
 
-def _same(
+def same_results(
     first: Mapping[str, Array], others: Sequence[Mapping[str, Array]], names: Sequence[str]
 ) -> dict[str, Array]:
     """Return, for each of the results ``names``, where all ``others`` have it as the ``first``."""
