@@ -31,7 +31,7 @@ from ..status import IMPOSSIBLE, Status
 from .closedform.columns import UNUSED_BY_POINTS
 from .closedform.general import quantities
 from .closedform.solve import solve
-from .closedform.statusbits import Evidence, bits, findings, forward_friction
+from .closedform.statusbits import RANGES, UNKNOWN, Evidence, bits, findings, forward_friction
 from .state import CHANGES, CONTACT, COURSES, FORCES, SPEEDS, State
 from .uses import inputs_of
 
@@ -119,8 +119,8 @@ def broken_laws(state: State) -> Array:
         "pn": np.real(pn),
         "twice_lost": np.real(2 * state.energy_lost),
         "initial": np.real(state.initial_energy),
-        "e": _within_range(e, 0.0, 1.0),
-        "em": np.where(state.here.point, 0.0, _within_range(em, -1.0, 0.0)),
+        "e": _within_range("E", e),
+        "em": np.where(state.here.point, 0.0, _within_range("EM", em)),
     }
     conditions = findings(Evidence(**laws))
     broken = bits({bit: conditions[bit] for bit in IMPOSSIBLE})
@@ -157,10 +157,10 @@ def _forbidden_for_every_normal(state: State) -> Array:
     return result | np.where(is_known & out_of_range, int(Status.E_OUT_OF_RANGE), 0)
 
 
-def _within_range(coefficient: Any, low: float, high: float) -> Array:
+def _within_range(name: str, coefficient: Any) -> Array:
     """Return a coefficient without the rounding by which it lies outside its range."""
     value = np.real(np.asarray(coefficient))
-    nearest = np.clip(value, low, high)
+    nearest = np.clip(value, *RANGES[name])
     return np.where(abs(value - nearest) <= COEFFICIENT_TOLERANCE, nearest, value)
 
 
@@ -171,7 +171,7 @@ def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Ar
     where the forward equations can be set up.
     """
     here, value = state.here, state.values
-    e, em, mu = (value.get(name, np.array(np.nan)) for name in ("E", "EM", "MUP"))
+    mu = value.get("MUP", np.array(np.nan))
     velocities = [given[name] for name in (*VELOCITIES, *FINAL_STATE) if name in given]
     # the same impact if the sliding ended at separation
     pivot = {name: given[name] for name in SCENE if name in given} | {"MU": np.array(PIVOT)}
@@ -195,8 +195,8 @@ def status(state: State, given: Mapping[str, Array], condition: Any = 1.0) -> Ar
                 # an energy that is not known must not set NOT_FINITE
                 twice_lost=np.where(np.isnan(lost), 0.0, lost),
                 initial=np.where(np.isnan(initial), 1.0, initial),
-                e=_within_range(e, 0.0, 1.0),
-                em=np.where(here.point, 0.0, _within_range(em, -1.0, 0.0)),
+                e=UNKNOWN,  # `broken_laws` judges the coefficients
+                em=UNKNOWN,
                 mu=friction_mu,
                 forward=forward_friction(friction_mu, pivot_pt),
                 pivot_pn=pivot_impulse["PN"],

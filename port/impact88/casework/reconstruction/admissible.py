@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...mechanics.closedform.statusbits import RANGES
 from ...mechanics.friction import friction_forth_and_back
 from ...mechanics.outcome import broken_laws
 from ...mechanics.posed import absent_results
@@ -36,7 +37,6 @@ ENERGY = "energy"
 NORMAL = "normal"  # some normal allows the impact; judged where the contact plane is not given
 FRICTION = "MUP"
 LAWS = (APPROACH, PUSH, ENERGY)
-RANGES = {"E": (0.0, 1.0), "EM": (-1.0, 0.0)}
 
 SENTENCE = "counted are impacts in which the vehicles approach, push and gain no energy"
 ENDS = {

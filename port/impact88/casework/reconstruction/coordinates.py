@@ -26,10 +26,11 @@ from numpy.typing import NDArray
 
 from ...collision.geometry import GEOMETRY, Geometry
 from ...mechanics.closedform.general import opposing
+from ...mechanics.closedform.statusbits import RANGES
 from ...mechanics.posed import absent_results
 from ...mechanics.state import COURSES, CRUSH, DIRECTIONS, ENERGIES, SPEEDS, State
 from ...names import COEFFICIENTS, IMPULSES, PIVOT, VELOCITIES
-from .admissible import LARGEST_FRICTION, RANGES
+from .admissible import LARGEST_FRICTION
 from .leastsquares import RANK_TOL
 from .solution import Reconstruction
 from .system import COMPLEX_STEP, System

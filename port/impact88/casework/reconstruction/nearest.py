@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ...collision.geometry import within_doubles
 from ...collision.units import System as Units
+from ...mechanics.closedform.statusbits import RANGES
 from ...mechanics.state import State
 from ...messages.plaintable import number
 from ...status import sentences
@@ -23,7 +24,6 @@ from .admissible import (
     LAWS,
     NORMAL,
     PUSH,
-    RANGES,
     Admissible,
     friction_limits,
 )

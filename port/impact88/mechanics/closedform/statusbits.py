@@ -23,6 +23,8 @@ last digit anyone gives."""
 SIDE_TOLERANCE = 1e-9
 """A center this far beyond the contact plane, as a fraction of its distance to the contact point,
 is still on its own side."""
+RANGES = {"E": (0.0, 1.0), "EM": (-1.0, 0.0)}
+"""Least and greatest coefficients; EM = 1 beside them stands for no moment impulse."""
 LISTING_MISREADS = PIVOT
 """Line 510 takes any MU up to this for a pivot."""
 
@@ -137,17 +139,18 @@ def findings(x: Evidence) -> dict[Status, Any]:
     finite = (
         finite & (abs(x.initial - 0.5 * x.twice_lost) < inf) & (abs(x.twice_lost / x.initial) < inf)
     )
+    (least_e, most_e), (least_em, most_em) = RANGES.values()
     return {
         Status.SEPARATING: x.gn >= 0,
         Status.PULLING: x.pn < 0,
         Status.ENERGY_GAINED: -x.twice_lost > (2 * ENERGY_TOLERANCE) * x.initial,
-        Status.E_OUT_OF_RANGE: (x.e < 0) | (x.e > 1),
+        Status.E_OUT_OF_RANGE: (x.e < least_e) | (x.e > most_e),
         # a NaN in COND is 0/0: singular, too
         Status.SINGULAR: ~(x.condition < SINGULAR_FROM),
         Status.NOT_FINITE: ~(finite & (x.condition <= inf)),
         Status.A_ON_WRONG_SIDE: x.arm_a > SIDE_TOLERANCE * abs(x.da),
         Status.B_ON_WRONG_SIDE: x.arm_b > SIDE_TOLERANCE * abs(x.db),
-        Status.EM_OUT_OF_RANGE: (x.em < -1) | (x.em > 0) & ((x.em < 1) | (x.em > 1)),
+        Status.EM_OUT_OF_RANGE: (x.em < least_em) | (x.em > most_em) & ((x.em < 1) | (x.em > 1)),
         Status.MU_OUT_OF_RANGE: x.mu <= LISTING_MISREADS,
         Status.FRICTION_ABOVE_CRITICAL: above,
         Status.FRICTION_WRONG_DIRECTION: wrong,
