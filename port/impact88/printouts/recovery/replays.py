@@ -58,6 +58,8 @@ def run_whole(
 
 def run_all(scenes: Sequence[Mapping[str, str]]) -> list[Outcome]:
     """Run scenes and return their outcomes, in order."""
+    if not scenes:
+        return []
     endings, columns = run_columns(scenes, tuple(FIELDS))
     outcomes = [Outcome({}, ending or None) for ending in endings]
     for name, column in columns.items():
