@@ -24,6 +24,7 @@ from ..reading.plaintext import decode
 from ..reading.printout import LARGEST_FILE, Printout, read_printouts
 from ..recovery.recovered import recover, without_angles
 from ..recovery.rereading import Rereading
+from ..recovery.slips import DIGIT
 from . import verification
 from .verification import Examined, Verification, Verifications
 
@@ -97,12 +98,43 @@ def _verify_picture(
         )
         raise UserError(problem, files.display_name(path)) from None
     if not copy:
-        return map(add_information, verify_pages(path, data, seed))
+        return (add_information(_with_ties(result)) for result in verify_pages(path, data, seed))
     from ..judging.copies import pages_of
 
     pages = pages_of(copy)
     pages.check_layout()
     return (_add_copy(result, pages) for result in verify_pages(path, data, seed, pages))
+
+
+def _with_ties(result: Verification) -> Verification:
+    """Say of a picture which other digits would explain its page as well as the one that differs:
+    its cells were compared with the page of one scene."""
+    if result.verdict is not Verdict.DIFFERS or len(result.differing) != 1:
+        return result
+    from ..explaining.explanations import explain
+
+    try:
+        (paper,) = read_printouts(result.text)
+    except (UserError, ValueError):
+        return result
+    scene = recover(paper)
+    causes = explain(judge(paper, scene), Rereading(scene, apart=True))
+    changes = [cause.right[0] for cause in causes if cause.rank == 1 and len(cause.right) == 1]
+    (check,) = result.differing
+    would_be = {f"{check.name} {check.printed}": [check.recomputed or ""]}
+    for change in changes:
+        if change.kind == DIGIT:
+            texts = would_be.setdefault(f"{change.field} {change.printed}", [])
+            texts += [change.would_be] * (change.would_be not in texts)
+    if sum(map(len, would_be.values())) > 1:
+        numbers = [
+            f"{number} (would be {' or '.join(texts)})" for number, texts in would_be.items()
+        ]
+        listed = " or ".join(filter(None, [", ".join(numbers[:-1]), numbers[-1]]))
+        sentence = f"the page does not show which number is altered: {listed}"
+        result.findings.append(sentence)
+        result.rows.append(sentence)
+    return result
 
 
 def _verify_text(

@@ -17,9 +17,9 @@ from ..judging.judgement import FieldCheck, Status, Verdict, status_of
 from ..reading.differences import Difference, Kind
 from ..reading.printout import read_printouts
 from ..scan.cleaning import Paper, papers_of
-from ..scan.exhibit import character_name, exhibit
+from ..scan.exhibit import exhibit
 from ..scan.grid import Grid
-from ..scan.holding import Cell, Objection, cells_text, state
+from ..scan.holding import Cell, Objection, appearance, cells_text, state
 from ..scan.ink import Floats
 from ..scan.layout import Place
 from ..scan.picture import Page, pages_of
@@ -27,7 +27,7 @@ from ..scan.residue import Mark
 from ..scan.scenes import scenes_in
 from ..scan.sheets import Leaf, read_page
 from ..scan.typeface import BLANK
-from .verification import Verification
+from .verification import Verification, name_of
 
 
 def verify_pages(
@@ -134,24 +134,15 @@ def _verification(
         if (cell.name and cell.predicted != BLANK) or state(cell) != "holds"
     ]
     result.marks = [_mark_as_json(mark, page, paper, leaf.grid) for mark in leaf.marks]
-    if leaf.judged.reason:
-        result.remarks.append(f"page {page.number}: {leaf.judged.reason}")
-    exchanged, hurt = (
-        [f"page {page.number}: {sentence}" for sentence in sentences]
-        for sentences in (leaf.exchanged, leaf.hurt)
-    )
-    result.findings += exchanged
-    result.remarks += hurt
-    result.rows = [*exchanged, *hurt]
+    result.remarks += [*filter(None, [leaf.judged.reason]), *leaf.hurt]
+    result.findings += leaf.exchanged
+    result.rows = [*leaf.exchanged, *leaf.hurt]
     result.findings += [
-        f"page {page.number}, {_where(cell.place, leaf.grid)}: "
-        f"{cell.name or 'a label'} shows {character_name(cell.other)} where the program prints "
-        f"{character_name(cell.predicted)} (margin {cell.margin:+.1f}, "
-        f"{cell.count} and {cell.other_count} cells of each on the page)"
+        f"{_where(cell.place, leaf.grid)}: {name_of(cell.name)} {appearance(cell)}"
         for cell in leaf.judged.differing
     ]
     result.findings += [
-        f"page {page.number}, {_where(mark.place, leaf.grid)}: the typed text {mark.reads!r} gives "
+        f"{_where(mark.place, leaf.grid)}: the typed text {mark.reads!r} gives "
         f"{claim.label} {claim.typed}, where the program prints {claim.printed}"
         for mark in leaf.marks
         for claim in mark.claims
@@ -161,7 +152,7 @@ def _verification(
 
 def _where(place: Place | None, grid: Grid) -> str:
     assert place is not None
-    return f"line {grid.number(place.line)}, cell {place.cell + 1}"
+    return f"line {grid.number(place.line)}, column {place.cell + 1}"
 
 
 def _check(leaf: Leaf, name: str, recomputed: str | None, cells: Sequence[Cell]) -> FieldCheck:
@@ -226,9 +217,12 @@ def _cell_as_json(cell: Cell, page: Page, paper: Paper, grid: Grid) -> dict[str,
     return {
         "page": page.number,
         "box": _box(grid.around(*cell.place), page, paper, grid.turns),
+        "line": grid.number(cell.place.line),
+        "column": cell.place.cell + 1,
         "field": cell.name or None,
         "predicted": cell.predicted,
         "state": state(cell),
+        "appearance": "" if state(cell) == "holds" else appearance(cell),
         "margin": round(cell.margin, 3),
         "runner_up": cell.other,
         "distance": round(cell.distance, 2),

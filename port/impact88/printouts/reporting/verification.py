@@ -88,8 +88,8 @@ class Verification:
     labels : list of Difference
         Labels, marks and words of the prompts that are not as the program prints them.
     rows : list of str
-        The findings and remarks on whole rows: exchanged, printed twice, and of a picture in
-        another typeface, cut through.
+        The findings and remarks that are said first: on whole rows, exchanged, printed twice, and
+        of a picture in another typeface, cut through; and on which number is altered.
     cells, marks : list of dict
         Of a picture, the cells of the printed characters, and all ink in and near the printout that
         the program does not print.
@@ -301,7 +301,9 @@ def summary(result: Verification) -> list[str]:
     elif verdict is Verdict.DIFFERS:
         compared_count = sum(check.same is not None for check in fields)
         sentences = [*_of_another_copy(result)]
-        count = f"{compared_count} printed numbers compared, {len(result.differing)} differ"
+        differing = len(result.differing)
+        verb = "differs" if differing == 1 else "differ"
+        count = f"{compared_count} printed numbers compared, {differing} {verb}"
         left_out = [check.name for check in fields if check.same is None]
         if 0 < len(left_out) <= MAX_LEFT_OUT:
             count += f"; not compared: {', '.join(left_out)}"
@@ -334,7 +336,7 @@ def summary(result: Verification) -> list[str]:
                 f"{', '.join(absent)} {verb} {adjective}: what depends on {it} was not compared"
             )
     not_read = [name for name in result.not_read if name not in missing]
-    if not_read and verdict is not Verdict.IDENTICAL_AS_READ:
+    if 0 < len(not_read) < len(fields) and verdict is not Verdict.IDENTICAL_AS_READ:
         sentences.append(f"not read: {', '.join(not_read)}")
     is_explained = missing or not_read or result.page or sentences[0] != counts(fields)
     if verdict is Verdict.INCOMPLETE and not is_explained:
@@ -407,7 +409,7 @@ def counts(fields: Sequence[FieldCheck]) -> str:
 def sections(result: Verification) -> dict[str, list[str]]:
     """Return the headings below the verdict, in order, with their lines, for any form of output. A
     line that begins with blanks belongs to the one above it."""
-    doubtful = [*_labels(result.labels), *_label_cells(result.cells)]
+    doubtful = [*_labels(result.labels), *_doubtful_cells(result.cells)]
     unread = [check for check in result.replies if check.status is Status.NOT_READ]
     for check in [*result.fields, *result.replies]:
         if check.status is Status.DOUBTFUL or check in unread:
@@ -428,17 +430,19 @@ def sections(result: Verification) -> dict[str, list[str]]:
     return {heading: entries for heading, entries in entries_by_heading.items() if entries}
 
 
-def _label_cells(cells: Sequence[Mapping[str, Any]]) -> Iterator[str]:
-    """Yield a sentence for each cell of a picture's labels that is in doubt."""
+def _doubtful_cells(cells: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """Yield a sentence for each cell of a picture that is in doubt."""
     for cell in cells:
-        if cell["state"] == "doubtful" and not cell["field"]:
-            x, y, _, _ = cell["box"]
-            characters = (cell["runner_up"], cell["predicted"])
-            other, printed = (repr(char) if char.strip() else "a blank" for char in characters)
-            yield (
-                f"page {cell['page']}, {x:.0f} pixels from the left, {y:.0f} from the top: a label "
-                f"shows nearly as much {other} as {printed}"
-            )
+        if cell["state"] == "doubtful":
+            place = f"line {cell['line']}, column {cell['column']}"
+            yield f"{place}: {name_of(cell['field'])} {cell['appearance']}"
+
+
+def name_of(field: str | None) -> str:
+    """Return the name of a picture's number, reply or label."""
+    if field and field.startswith("REPLY"):
+        return f"the reply for vehicle {field[-1]}"
+    return field or "a label"
 
 
 _MARK_WORDS = {
@@ -454,9 +458,9 @@ def _marks(marks: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     """Yield a sentence for each mark that the program does not print."""
     for mark in marks:
         x, y, _, _ = mark["box"]
-        place = f"line {mark['line']}, cell {mark['cell']}" if mark["line"] else ""
+        place = f"line {mark['line']}, column {mark['cell']}" if mark["line"] else ""
         place = place or f"{x:.0f} pixels from the left, {y:.0f} from the top"
-        sentence = f"page {mark['page']}, {place}: {_MARK_WORDS[mark['kind']].format(**mark)}"
+        sentence = f"{place}: {_MARK_WORDS[mark['kind']].format(**mark)}"
         is_in_margin = mark["beside"] and not mark["line"] and not mark["touches"]
         sentence += ", in or beside a line of the printout" if is_in_margin else ""
         touches = ", ".join(mark["touches"])
@@ -472,7 +476,6 @@ _DOUBTS = {
     Kind.OTHER_FORM: "read {whole}; the program prints {program}, never this form",
     Kind.CUT: "cut off; the program prints {program}",
     Kind.LEFT_OVER: "{read!r} left over beside {program}",
-    Kind.PICTURE: "nearly as much like {read!r} as {printed!r} ({program})",
 }
 
 
@@ -764,7 +767,8 @@ def _lines(result: Verification, brief: bool) -> Iterator[str]:
     parts = sections(result)
     doubtful, notes = parts.pop(DOUBTFUL, []), parts.pop(NOTES, [])
     yield from (f"  {line}" for line in [*summary(result), *_first_lines(doubtful, brief)])
-    if checks := result.differing if brief else result.fields:
+    checks = result.differing if brief else result.fields
+    if any(check.printed or check.recomputed for check in checks):
         yield ""
         yield from (f"  {line}" for line in _table(checks, exact=not brief))
     for heading, entries in parts.items():

@@ -123,7 +123,7 @@ def _strips(
         crop, (line, at) = upright[y0:y1, x0:x1], cell.place
         strips.append(
             {
-                "place": f"{cell.name or 'label'}, line {leaf.grid.number(line)}, cell {at + 1}",
+                "place": f"{cell.name or 'label'}, line {leaf.grid.number(line)}, column {at + 1}",
                 "paper": _uri(crop) if crop.size else "",
                 "glyphs": [glyph(cell.predicted, cell.count), glyph(cell.other, cell.other_count)],
                 "margin": f"{cell.margin:+.1f}",

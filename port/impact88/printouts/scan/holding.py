@@ -539,7 +539,7 @@ def judge_cells(sheet: Sheet, candidate: Candidate, cells: Sequence[Cell]) -> Ce
         reason = "too few characters could be read with certainty"
     elif candidate.outcome.ending is not None or spins is not (13 in sheet.rows):
         reason = "the final spins were not found"
-    elif differing and all(_is_retyped(cell, [*differing, *doubtful]) for cell in differing):
+    elif differing and all(_may_be_spelling(cell, [*differing, *doubtful]) for cell in differing):
         reason = "a reply was typed differently than expected"
     if reason:
         differing = differing if is_legible else []
@@ -576,15 +576,37 @@ def state(cell: Cell) -> str:
     return "differs"
 
 
+def appearance(cell: Cell) -> str:
+    """Return how a cell that does not hold looks, beside what the program prints there."""
+    printed, other = (
+        "a blank" if character == BLANK else repr(character)
+        for character in (cell.predicted, cell.other)
+    )
+    if cell.cut:
+        seen = "is beyond the edge of the page"
+    elif cell.predicted == BLANK or state(cell) == "differs":
+        seen = f"shows {other}"
+    elif cell.margin < HOLDS:
+        seen = "is like no character of the page"
+    elif cell.other == BLANK:
+        seen = "is blank" if cell.margin > DIFFERS else "is hardly inked"
+    else:
+        seen = f"is {'more' if cell.margin > DIFFERS else 'nearly as much'} like {other}"
+        if cell.margin <= DIFFERS:
+            return f"{seen} as {printed}, which the program prints there"
+    return f"{seen} where the program prints {printed}"
+
+
 def cells_text(cells: Sequence[Cell]) -> str:
     """Return the text in cells that were compared with the page."""
     return "".join(cell.other if state(cell) == "differs" else cell.predicted for cell in cells)
 
 
-def _is_retyped(cell: Cell, questioned: Sequence[Cell]) -> bool:
+def _may_be_spelling(cell: Cell, questioned: Sequence[Cell]) -> bool:
     """Return True for a cell of a reply that differs in several cells, or in a mark.
 
-    One number can be typed in many ways, and what was typed never outranks what was printed.
+    A reply without a point may have one, blanks or a sign: that moves what follows, and the page is
+    left open. What was typed never outranks what was printed.
     ``questioned``: the printout's cells that differ or are in doubt.
     """
     is_one_of_several = sum(other.name == cell.name for other in questioned) > 1

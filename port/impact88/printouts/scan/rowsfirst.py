@@ -24,7 +24,6 @@ from .typeface import (
     BLANK,
     NUMERIC,
     READABLE,
-    Sample,
     Typeface,
     Vectors,
     distances,
@@ -34,18 +33,20 @@ from .typeface import (
 )
 
 _WRONG_LETTER = 3.0  # log odds that a label's cell loses which is more like another letter
+_MAX_WRONG = 0.5  # largest fraction of such letters in a line of print: a foot of the page has more
 _MIN_SHARE = 0.7  # smallest gain of a line of print, relative to that of its ink if all were its
 
 _SMOOTHING = 1.5
-"""Standard deviation of the smoothing of rows that are compared, pixels: rows of one typeface may
-begin at different fractions of a pixel."""
-FOREIGN = 0.085
-"""Smallest distance of a row in another typeface from the glyphs of the others, in roots of their
-energies: on excellent pages a row in the same one had 0.08."""
-FOREIGN_RATIO = 2.3
-"""Smallest ratio of it to that of the row that is next: of 275 genuine pages the largest, of a row
-not so near, was 2.2; of 56 with a row in another typeface 49 have more."""
-_OWN_RATIO = 0.45  # largest ratio to it of the row's distance from its own glyphs
+"""Standard deviation of the smoothing of glyphs before their differences are taken, pixels."""
+FOREIGN = 0.01
+"""Smallest fraction of a row's ink that the page's glyphs leave unexplained in another typeface:
+rows in the same one have up to 0.006 on pages whose other rows have hardly any."""
+FOREIGN_RATIO = 3.0
+"""Smallest ratio of it to that of the row that is next: genuine pages have up to 2.8, those with a
+row in another typeface mostly 6 to 1,000, and up to 2 if the two can hardly be told apart."""
+_OWN_RATIO = 0.5
+"""Largest ratio to it of what the row's own glyphs leave unexplained: a row that is only worn is
+as unlike itself as it is unlike the others."""
 _MAX_RISE = 1.5
 """Pixels by which such a row may be misplaced beyond the shifts of its cells: of one farther off,
 these were chosen on other parts of the glyphs."""
@@ -131,8 +132,9 @@ def _label_cells(row: Row) -> tuple[list[str], list[Place]]:
 def _name_lines(grid: Grid, layout: Layout, lines: Mapping[int, LineFit]) -> dict[int, LineFit]:
     """Return the line of print that stands on each line of the grid, by its first line.
 
-    It has the largest gain after `_WRONG_LETTER` for each letter that is more like another;
-    ``lines``, named before, show the letters.
+    It has the largest gain after `_WRONG_LETTER` for each letter that is more like another, of
+    which a foot of the page, as long as a line of print, has too many; ``lines``, named before,
+    show the letters.
     """
     names: list[str] = []
     places: list[Place] = []
@@ -148,36 +150,35 @@ def _name_lines(grid: Grid, layout: Layout, lines: Mapping[int, LineFit]) -> dic
     taken: set[int] = set()
     for start in range(len(grid.pictures)):
         before = named.get(start - 1)
-        fits = [
-            fit
-            for used in (1, 2)
-            for fit in layout.candidates(start, used)
+        scores: dict[float, LineFit] = {}
+        for fit in (fit for used in (1, 2) for fit in layout.candidates(start, used)):
             # numbers without labels are the angles' if they stand below their heading
-            if fit.line != ANGLE_ROW or (before and before.line == HEADING)
-            if fit.gain > _MIN_SHARE * sum(line_ink[line] for line in _grid_lines(fit.row))
-        ]
-        if start not in taken and fits:
-            # of one no letter need be read
-            wrong = [len(fits) > 1 and _wrong_letters(grid, typeface, fit) for fit in fits]
-            scores = [
-                fit.gain - _WRONG_LETTER * count for fit, count in zip(fits, wrong, strict=True)
-            ]
-            named[start] = fits[int(np.argmax(scores))]
+            may_be_line = fit.line != ANGLE_ROW or (before and before.line == HEADING)
+            least = _MIN_SHARE * sum(line_ink[line] for line in _grid_lines(fit.row))
+            if start in taken or not may_be_line or fit.gain <= least:
+                continue
+            wrong, letters = _wrong_letters(grid, typeface, fit)
+            if wrong <= _MAX_WRONG * letters:
+                scores[fit.gain - _WRONG_LETTER * wrong] = fit
+        if scores:
+            named[start] = scores[max(scores)]
             taken.update(_grid_lines(named[start].row))
     return named
 
 
-def _wrong_letters(grid: Grid, typeface: Typeface, fit: LineFit) -> int:
-    """Return how many letters of a row's labels are more like another letter of the page."""
+def _wrong_letters(grid: Grid, typeface: Typeface, fit: LineFit) -> tuple[int, int]:
+    """Return how many letters of a row's labels are more like another letter of the page, and how
+    many there are."""
     names, places = _label_cells(fit.row)
     if not names:
-        return 0
+        return 0, 0
     to_means, _ = distances(sample_of(grid, places), typeface.means)
     nearest = [typeface.characters[at] for at in to_means.argmin(axis=1).tolist()]
-    return sum(
+    wrong = sum(
         name in typeface.characters and name != other
         for name, other in zip(names, nearest, strict=True)
     )
+    return wrong, len(names)
 
 
 def _text(grid: Grid, lines: Mapping[int, LineFit]) -> str:
@@ -194,7 +195,7 @@ class _RowCells(NamedTuple):
 
     Attributes
     ----------
-    glyphs : ndarray, shape (cells, pixels)
+    glyphs : ndarray, shape (cells, height, width)
         The cells, smoothed, each shifted onto the mean of its character.
     names : ndarray, shape (cells,)
         Index of each cell's character; those of numbers are named as they were read.
@@ -212,40 +213,53 @@ class _RowCells(NamedTuple):
     may_be: Mask
     rises: list[float]
 
-    def distance(self, row: int, other_rows: Mask) -> float:
-        """Return the median distance of a row's cells from the mean glyphs of some other rows, in
-        roots of the glyphs' energies; 0 where few cells have such a glyph.
+    def unexplained(self, row: int, other_rows: Mask) -> float:
+        """Return the median fraction of the ink of a row's cells that the mean glyphs of some other
+        rows leave unexplained; 0 where few cells have such a glyph.
 
-        A mean of n cells has 1/n of a cell's variance, which adds to the distance.
+        A mean of n cells has 1/n of a cell's variance, which adds to it.
         """
         at, others = self.row == row, other_rows[self.row]
         members = self.names[others] == np.arange(self.may_be.shape[1])[:, None]
-        counts = np.maximum(members.sum(axis=1), 1)
-        means = members.astype(np.float32) @ self.glyphs[others] / counts[:, None]
         is_compared = self.may_be[at] & members.any(axis=1)
-        apart = _distances(self.glyphs[at], means) / (1 + 1 / counts)
-        least = np.where(is_compared, apart, np.inf).min(axis=1)[is_compared.any(axis=1)]
-        return float(np.median(least)) if len(least) >= _MIN_CELLS else 0.0
+        used = is_compared.any(axis=0)
+        counts = members[used].sum(axis=1)
+        is_compared = is_compared[:, used]
+        if np.sum(is_compared.any(axis=1)) < _MIN_CELLS:
+            return 0.0
+        means = np.tensordot(members[used].astype(np.float32), self.glyphs[others], 1)
+        fractions = _unexplained(self.glyphs[at], means) / (1 + 1 / counts)
+        least = np.where(is_compared, fractions, np.inf).min(axis=1)
+        return float(np.median(least[is_compared.any(axis=1)]))
 
-    def distance_within(self, row: int) -> float:
-        """Return the same from each other: of each cell from the mean of those in its row that
-        have its character; infinite where none has another's."""
+    def unexplained_within(self, row: int) -> float:
+        """Return the same by each other: of each cell by the mean of those in its row that have its
+        character; infinite where none has another's."""
         glyphs, names = self.glyphs[self.row == row], self.names[self.row == row]
-        apart = []
+        fractions = []
         for cell, name in enumerate(names):
             is_like = (names == name) & (np.arange(len(names)) != cell)
             if is_like.any():
                 mean = glyphs[is_like].mean(axis=0, keepdims=True)
-                apart.append(float(_distances(glyphs[[cell]], mean)[0, 0]))
-        return float(np.median(apart)) if apart else np.inf
+                fractions.append(float(_unexplained(glyphs[[cell]], mean)[0, 0]))
+        return float(np.median(fractions)) if fractions else np.inf
 
 
-def _distances(glyphs: Vectors, means: Vectors) -> Floats:
-    """Return the distances of glyphs from means, in roots of the means' energies."""
-    norms = np.einsum("np,np->n", glyphs, glyphs)
-    apart, _ = distances(Sample(glyphs[:, None], norms[:, None], (0, 0)), means)
-    energies: Floats = np.maximum(np.einsum("mp,mp->m", means, means), 1.0).astype(float)
-    return apart / np.sqrt(energies)
+def _unexplained(glyphs: Vectors, means: Vectors) -> Floats:
+    """Return the fractions of glyphs' energies that means leave unexplained, whatever the strength
+    of the ink and wherever between the pixels a glyph stands: type differs in both from stroke to
+    stroke.
+
+    To first order these are a mean's multiples and its derivatives', which are projected out.
+    """
+    down, across = np.gradient(means, axis=(1, 2))
+    tangents = np.stack([means, down, across], axis=-1).reshape(len(means), -1, 3)
+    bases, _ = np.linalg.qr(tangents)
+    vectors = glyphs.reshape(len(glyphs), -1)
+    energies = np.maximum(np.einsum("np,np->n", vectors, vectors), 1e-6)
+    explained = np.sum(np.tensordot(vectors, bases, axes=(1, 1)) ** 2, axis=2)
+    fractions: Floats = np.maximum(1 - explained / energies[:, None], 0).astype(float)
+    return fractions
 
 
 def _row_cells(grid: Grid, rows: Sequence[tuple[Read, Row]]) -> _RowCells:
@@ -276,15 +290,9 @@ def _row_cells(grid: Grid, rows: Sequence[tuple[Read, Row]]) -> _RowCells:
     for number in range(len(rows)):
         at = row_of_cell == number
         rises.append(_rise(glyphs, typeface.names, at))
-        if rises[-1]:
-            glyphs[at] = ndimage.shift(glyphs[at], (0, rises[-1], 0), order=1)
-    return _RowCells(
-        glyphs.reshape(len(places), -1),
-        typeface.names,
-        row_of_cell,
-        np.where(of_number[:, None], is_numeric, is_same),
-        rises,
-    )
+        glyphs[at] = ndimage.shift(glyphs[at], (0, rises[-1], 0), order=1)
+    may_be = np.where(of_number[:, None], is_numeric, is_same)
+    return _RowCells(glyphs, typeface.names, row_of_cell, may_be, rises)
 
 
 def _rise(glyphs: Vectors, names: NDArray[np.intp], at: Mask) -> float:
@@ -309,8 +317,8 @@ def foreign_row(grid: Grid, reads: Sequence[Read]) -> Row | None:
     """Return the row of a grid's printouts, one with numbers, that is in another typeface than the
     others, None if there is none.
 
-    Its cells are far from the glyphs of all other rows, much farther than those of any other row
-    are, and near each other. Letters of labels are compared with the same letters, characters of
+    The glyphs of all other rows leave much of its ink unexplained, much more than of any other
+    row's, and its own do not. Letters of labels are compared with the same letters, characters of
     numbers with the nearest one, so that it does not matter as what they were read.
     """
     rows = [(read, row) for read in reads for row in read.sheet.rows.values()]
@@ -320,21 +328,21 @@ def foreign_row(grid: Grid, reads: Sequence[Read]) -> Row | None:
     cells = _row_cells(grid, rows)
     is_other = ~np.eye(len(rows), dtype=bool)
 
-    def far(allowed: Mask) -> list[float]:
-        """Return the distance of each row with numbers from the others that are allowed."""
+    def unexplained(allowed: Mask) -> list[float]:
+        """Return what the other rows that are allowed leave unexplained of each with numbers."""
         return [
-            cells.distance(row, is_other[row] & allowed) if has_numbers[row] else 0.0
+            cells.unexplained(row, is_other[row] & allowed) if has_numbers[row] else 0.0
             for row in range(len(rows))
         ]
 
-    from_all = far(np.ones(len(rows), bool))
-    first = int(np.argmax(from_all))
+    by_all = unexplained(np.ones(len(rows), bool))
+    first = int(np.argmax(by_all))
     # what is said of a row must not be due to the first one's part in the glyphs
-    from_rest = far(is_other[first])
-    second = max(apart for row, apart in enumerate(from_rest) if row != first)
+    by_rest = unexplained(is_other[first])
+    second = max(fraction for row, fraction in enumerate(by_rest) if row != first)
     is_foreign = (
-        from_all[first] > max(FOREIGN, FOREIGN_RATIO * second)
+        by_all[first] > max(FOREIGN, FOREIGN_RATIO * second)
         and abs(cells.rises[first]) <= _MAX_RISE
-        and cells.distance_within(first) < _OWN_RATIO * from_all[first]
+        and cells.unexplained_within(first) < _OWN_RATIO * by_all[first]
     )
     return rows[first][1] if is_foreign else None

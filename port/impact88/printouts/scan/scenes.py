@@ -194,6 +194,11 @@ def scene_of(
     return _scene_in_copy(read, copy, [scored.scene for scored in scores])
 
 
+def unread_inputs(read: Read) -> list[str]:
+    """Return the inputs of which nothing that was read is a number: each is needed for a scene."""
+    return [column.names[0] for column in _columns(read, []) if not column.options]
+
+
 def _scene_in_copy(read: Read, copy: Copy, scenes: Sequence[dict[str, str]]) -> Candidate | None:
     """Return what was typed into a copy of the listing, from the scenes of the numbers as read and
     those that are the nearest by the restored one."""

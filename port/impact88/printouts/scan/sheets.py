@@ -38,7 +38,7 @@ from .ink import (
 from .layout import AS_GOOD, Row, Sheet, layout_of
 from .residue import Explained, Kind, Mark, residue_of
 from .rowsfirst import Order, foreign_row, order_lines
-from .scenes import Candidate, Copy, Read, confirm_inputs, scene_of
+from .scenes import Candidate, Copy, Read, confirm_inputs, scene_of, unread_inputs
 from .typeface import BLANK, read_numbers
 
 _UPRIGHT_GAIN = 600.0
@@ -82,6 +82,8 @@ class Leaf:
         Sentences on rows printed twice, in another typeface, and cut through.
     cut_lines : set of int
         Lines of the grid that its rows take which are cut through.
+    repeated_lines : set of int
+        Numbers of the lines on the paper in which a row of it is printed a second time.
     """
 
     grid: Grid
@@ -93,6 +95,7 @@ class Leaf:
     exchanged: list[str] = field(default_factory=list)
     hurt: list[str] = field(default_factory=list)
     cut_lines: set[int] = field(default_factory=set)
+    repeated_lines: set[int] = field(default_factory=set)
 
     @property
     def by_name(self) -> dict[str, list[Cell]]:
@@ -271,6 +274,7 @@ def _ordered_leaves(
             if is_exchange and not leaf.judged.legible:
                 continue  # its rows were named by other things than their letters
             (leaf.exchanged if is_exchange else leaf.hurt).append(sentence)
+            leaf.repeated_lines |= set() if is_exchange else {number}
             is_program = is_exchange and not _FORM.isdisjoint(leaf.read.sheet.rows)
             leaf.judged.overrule(Objection.OTHERWISE if is_program else Objection.MORE)
     return leaves
@@ -307,12 +311,18 @@ def _find_claims(leaves: Sequence[Leaf]) -> None:
     """Set ``claims`` of typed lines that give a number of the page another value.
 
     A printout that was identical but for such a line differs. Nothing is set where the sheet has
-    lines of another printout of which the rest is missing or was not read: the text may be its.
+    lines of another printout of which the rest is missing or was not read: the text may be its. A
+    row printed a second time is none of these.
     """
     if any(leaf.judged.verdict not in _IDENTICAL for leaf in leaves):
         return
     lines = [(leaf, mark) for leaf in leaves for mark in leaf.marks if mark.kind is Kind.TYPE]
-    if any(is_of_a_printout(mark.reads) for _, mark in lines):
+    repeated = {number for leaf in leaves for number in leaf.repeated_lines}
+    if any(
+        is_of_a_printout(mark.reads)
+        for leaf, mark in lines
+        if not mark.place or leaf.grid.number(mark.place.line) not in repeated
+    ):
         return
     numbers = [leaf.certain for leaf in leaves]
     contradictions = [
@@ -343,12 +353,15 @@ def _leaves(
             Verdict.INCOMPLETE, reason=f"its type stands in no clear columns; {_NEXT_STEP}"
         )
         return [Leaf(grid, Read(likeliest, {}), unread)]
-    unread = CellJudgement(Verdict.INCOMPLETE, reason=f"no scene was found; {_NEXT_STEP}")
+    reason = f"too little of it is like the program's lines; {_NEXT_STEP}"
+    unread = CellJudgement(Verdict.INCOMPLETE, reason=reason)
     leaves = [Leaf(grid, Read(sheet, {}), unread) for sheet in sheets]
     legible = [leaf for leaf in leaves if leaf.read.sheet.gain > _LEGIBLE_GAIN]
     foreign = _read_rows(grid, leaves, legible)
     for leaf in legible:
         leaf.found = scene_of(leaf.read, seeds, copy)
+        if not leaf.found:
+            leaf.judged = CellJudgement(Verdict.INCOMPLETE, reason=_reason_unread(leaf))
     with_scene = [leaf for leaf in legible if leaf.found]
     _compare_leaves(grid, with_scene)
     for correct in (_drop_wrong_lines, partial(_confirm_scene, copy=copy)):
@@ -364,6 +377,23 @@ def _leaves(
         for leaf in leaves:
             leaf.judged.overrule(Objection.MISREAD, "another printout on the page was not read")
     return leaves
+
+
+def _reason_unread(leaf: Leaf) -> str:
+    """Return why no scene was found: of one input that was not read its row may be altered."""
+    names = unread_inputs(leaf.read)
+    if not names:
+        return f"no scene was found; {_NEXT_STEP}"
+    if len(names) > 1:
+        return f"these inputs could not be read: {', '.join(names)}; {_NEXT_STEP}"
+    for row in leaf.read.sheet.rows.values():
+        row_names = [piece.name for piece in row.pieces if piece.name]
+        if names[0] in row_names:
+            return (
+                f"{_row_name(leaf.grid, row, row_names)} has no number for {names[0]}: look there "
+                "for a character that is erased or altered, or type the page in as text"
+            )
+    return f"the row of {names[0]} was not found; {_NEXT_STEP}"
 
 
 def _read_rows(grid: Grid, leaves: Sequence[Leaf], legible: Sequence[Leaf]) -> Row | None:
