@@ -230,8 +230,9 @@ def test_an_equivalent_barrier_speed_is_flat_in_itself():
     known = {"M": 4.0, "MA": 100.0, "MB": 80.0, "GA": 180.0, **dict.fromkeys(("UY", "VY"), 0.0)}
     known |= {"VX": 0.0, "MUP": 0.0, "E": 0.0, "EBSA": 0.0, "EBSB": read("5 .. 25", "EBSB")}
     (first, *_) = reconstruct(known)
-    drawn = draws(first, ["UX"], 4000).values["UX"]
-    ratio = math.sqrt(80 * (1 / 100 + 1 / 80))
+    values = draws(first, ["UX", "EBSB"], 4000).values
+    drawn, ratio = values["UX"], math.sqrt(80 * (1 / 100 + 1 / 80))
+    assert values["EBSB"] * ratio == pytest.approx(drawn, rel=1e-9)
     fractions = np.log(drawn / (5 * ratio)) / math.log(5)
     assert np.quantile(fractions, (0.1, 0.5, 0.9)) == pytest.approx([0.1, 0.5, 0.9], abs=0.03)
 

@@ -167,6 +167,8 @@ class Posterior:
 
     def value(self, state: State, name: str) -> Any:
         """Return a quantity of impacts, or a known value; directions near the nominal one."""
+        if name in self.coordinates.crush[:1]:  # follows from the energy lost and the others'
+            return self.limited_value(state, name)[0]
         is_input = name in self.known and name in (*GEOMETRY, *CRUSH)
         value = state.values[name] if is_input else self._quantity(state, name)
         return _unwrapped(name, value, self.nominal.get(name))

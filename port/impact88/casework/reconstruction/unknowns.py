@@ -163,7 +163,10 @@ def solve_for(known: Mapping[str, Any], unknown: Iterable[str] | None = None) ->
 
     Notes
     -----
-    Equations 13 to 18.
+    Equations 13 to 18. `reconstruct` gives the same values of one impact, and also takes speeds,
+    courses, energies and values with a tolerance. This function solves arrays of impacts, each in a
+    thousandth of the time, finds chosen quantities where the rest is not determined, and says why a
+    set of unknowns is not.
 
     Examples
     --------
