@@ -11,12 +11,11 @@ from ..collision.needs import needs_in_words
 from ..collision.uncertain import Uncertain
 from ..names import FINAL_STATE, PIVOT, VELOCITIES
 from ..status import Status
-from .closedform.omitted import are_parallel, plane_across
-from .state import COURSE_AFTER, COURSES, CRUSH, FORCES, KNOWABLE, QUANTITIES, SPEEDS
+from .closedform.omitted import COMPONENTS, are_parallel, plane_across
+from .state import COURSE_AFTER, COURSE_OF, CRUSH, FORCES, KNOWABLE, QUANTITIES, SPEEDS
 from .uses import inputs_of
 
 _ENERGIES = ("KI", "KF", "EL", "LOSS", "DT", *CRUSH)
-_COURSE_OF = {speed: course for course, speed in COURSES.items()}
 _SPINS = ("WA", "WB", "WAF", "WBF")
 
 
@@ -201,8 +200,8 @@ def line_of_motion(known: Mapping[str, Any]) -> tuple[float | None, bool]:
     for speed in SPEEDS:
         if speed not in directions and _may_leave(known, speed, first):
             return nowhere
-    before = [_single_number(known.get(name, np.nan)) for name in ("UX", "UY", "VX", "VY")]
-    line = float(plane_across(*before))
+    before = {name: _single_number(known.get(name, np.nan)) for name in COMPONENTS}
+    line = float(plane_across(before))
     if np.isnan(line):
         name = next(iter(moving))
         line = 180 - float(np.remainder(-first if name[1] == "A" else 180 - first, 360))
@@ -214,14 +213,14 @@ def _may_leave(known: Mapping[str, Any], speed: str, line: float) -> bool:
     exactly, and its course is known otherwise, or its component across an axis."""
     x, y = SPEEDS[speed]
     across = {0.0: y, 90.0: x}.get(round(line % 180, 6) % 180)
-    return _COURSE_OF[speed] in known or {x, y} <= {*known} or across in known
+    return COURSE_OF[speed] in known or {x, y} <= {*known} or across in known
 
 
 def _direction(known: Mapping[str, Any], speed: str) -> float | None:
     """Return the exact direction of a velocity in degrees, NaN for one at rest; None where it is
     not known exactly."""
     parts = [known.get(name) for name in SPEEDS[speed]]
-    course = known.get(_COURSE_OF[speed])
+    course = known.get(COURSE_OF[speed])
     if speed in known and _is_exact(known[speed]) and _single_number(known[speed]) == 0:
         return np.nan
     if all(part is not None for part in parts):

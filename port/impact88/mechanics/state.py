@@ -21,7 +21,8 @@ from .closedform.energy import kinetic_energy
 SPEEDS = {"SA": ("UX", "UY"), "SB": ("VX", "VY"), "SAF": ("VAX", "VAY"), "SBF": ("VBX", "VBY")}
 """Speeds, each with its velocity's components."""
 COURSES = {"HA": "SA", "HB": "SB", "HAF": "SAF", "HBF": "SBF"}
-"""The course that belongs to each speed, the direction of that velocity from the x axis."""
+"""The speed that belongs to each course, the direction of that velocity from the x axis."""
+COURSE_OF = {speed: course for course, speed in COURSES.items()}
 FORCES = {"PDOFA": "A", "PDOFB": "B"}
 """Directions the force on a vehicle comes from, in degrees clockwise from its front."""
 DIRECTIONS = (*COURSES, *FORCES)

@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 from ...collision.doubles import double
 from ...collision.units import RULES, System
 from ...errors import UserError
-from ...mechanics.closedform.omitted import plane_across
+from ...mechanics.closedform.omitted import COMPONENTS, plane_across
 from ...mechanics.friction import status_sentences
 from ...mechanics.state import pdof
 from ...names import FINAL_VELOCITIES, SCENE, missing
@@ -201,19 +201,16 @@ def _drawable(scene: Any, result: Mapping[str, Any]) -> dict[str, Any]:
     if double(str(values.get("M", 6))) != 4 or {*SCENE} <= {*values}:
         return values
     values = {**_OF_NO_EFFECT, **values}
-    speeds: dict[str, complex] = {}
     for vehicle, (x, y) in {"A": ("UX", "UY"), "B": ("VX", "VY")}.items():
         after = (float(result.get(f"V{vehicle}{axis}", math.nan)) for axis in "XY")
         before = tuple(_number(values.get(name)) for name in (x, y))
         if math.isnan(sum(before)):
             raise UserError(f"{missing([x, y])}; the drawing shows the velocities before")
-        speeds[vehicle] = complex(*before)
-        course = next((v for v in (speeds[vehicle], complex(*after)) if abs(v) > 0), 0j)
+        course = next((v for v in (complex(*before), complex(*after)) if abs(v) > 0), 0j)
         theta = math.degrees(cmath.phase(course)) + (180.0 if vehicle == "A" else 0.0)
         values.setdefault(f"T{vehicle}", theta)
     if "GA" not in values:
-        a, b = speeds["A"], speeds["B"]
-        values["GA"] = float(plane_across(a.real, a.imag, b.real, b.imag))
+        values["GA"] = float(plane_across({n: _number(values[n]) for n in COMPONENTS}))
         if math.isnan(values["GA"]):
             raise UserError(f"{missing(['GA'])}; the drawing shows the contact plane")
     return values

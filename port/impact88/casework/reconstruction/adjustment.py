@@ -22,7 +22,7 @@ from ...mechanics.closedform.general import opposing, share_typed
 from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import outcome
 from ...mechanics.posed import is_meant_turned, is_wrong_way, pose, turned, turned_sentence
-from ...mechanics.state import COURSES, CRUSH, KNOWABLE, SPEEDS
+from ...mechanics.state import COURSE_OF, CRUSH, KNOWABLE, SPEEDS
 from ...names import PIVOT, SCENE, VELOCITIES, check_names
 from ...status import Status
 from .impactsearch import MAX_SQUARES_RATIO, Search
@@ -206,11 +206,10 @@ def _check_known(known: Mapping[str, Uncertain | float | str]) -> dict[str, Unce
 def _with_standing_vehicles(values: dict[str, Uncertain]) -> dict[str, Uncertain]:
     """Return the values with both components of an exact speed of 0 in its place: as a condition it
     has no slope there."""
-    courses = {speed: course for course, speed in COURSES.items()}
     for speed, components in SPEEDS.items():
         item = values.get(speed)
         if item is not None and not item.varies and item.nominal == 0:
-            values = {n: x for n, x in values.items() if n not in (speed, courses[speed])}
+            values = {n: x for n, x in values.items() if n not in (speed, COURSE_OF[speed])}
             values = {n: fixed_value(0.0) for n in components} | values
     return values
 

@@ -10,7 +10,7 @@ from textwrap import wrap
 from ...collision.geometry import clock, within_doubles
 from ...collision.needs import join_words
 from ...collision.units import RULES, System, display_values
-from ...mechanics.state import CHANGES, COURSES, SPEEDS
+from ...mechanics.state import CHANGES, COURSE_OF, COURSES, SPEEDS
 from ...messages.plaintable import decimals_for, format_fixed, number, paragraph, table
 from ...names import COEFFICIENTS, FINAL_STATE, NUMBER, PIVOT, VELOCITIES, VELOCITY, quantity
 from .answer import QUANTILES, Answer, bounds_without_noise
@@ -20,7 +20,6 @@ from .evidence import AGREE, as_given
 from .solution import SIGMAS, SOUGHT, Adjusted
 
 _ROAD = {"ft/s": ("mph", 3600 / 5280), "m/s": ("km/h", 3.6)}  # units of speeds on the road
-_COURSE_OF = {speed: course for course, speed in COURSES.items()}
 _SPINS = ("WA", "WB", "WAF", "WBF")
 _ALSO = (*COEFFICIENTS, *_SPINS)  # sought, and in no line on motion
 DRIVERS = 3  # values named as the causes of a result's uncertainty
@@ -136,7 +135,7 @@ def _sought(answer: Answer) -> list[str]:
     given = [n for n in answer.given if n != "M"]
     candidates = {*answer.values, *answer.undetermined} - {*answer.known, *answer.absent}
     sought = [n for n in SOUGHT if n in candidates]
-    for speed, course in reversed(_COURSE_OF.items()):  # one known, the other sought
+    for speed, course in reversed(COURSE_OF.items()):  # one known, the other sought
         if speed in given or course in given:
             missing = [n for n in (speed, course) if n not in given]
             rest = [n for n in sought if n not in SPEEDS[speed]]

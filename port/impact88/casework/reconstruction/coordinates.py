@@ -28,7 +28,7 @@ from ...collision.geometry import GEOMETRY, Geometry
 from ...mechanics.closedform.general import opposing
 from ...mechanics.closedform.statusbits import RANGES
 from ...mechanics.posed import absent_results
-from ...mechanics.state import COURSES, CRUSH, DIRECTIONS, ENERGIES, SPEEDS, State
+from ...mechanics.state import COURSE_OF, COURSES, CRUSH, DIRECTIONS, ENERGIES, SPEEDS, State
 from ...names import COEFFICIENTS, IMPULSES, PIVOT, VELOCITIES
 from .admissible import LARGEST_FRICTION
 from .leastsquares import RANK_TOL
@@ -283,8 +283,7 @@ class Coordinates:
             if name in DIRECTIONS:
                 rows.append(state.along_and_across(name)[1])
             elif name in SPEEDS:
-                course = next(c for c, speed in COURSES.items() if speed == name)
-                rows.append(state.along_and_across(course)[0] - target)
+                rows.append(state.along_and_across(COURSE_OF[name])[0] - target)
             else:
                 rows.append(state[name] - target)
         size = len(self.unknown)

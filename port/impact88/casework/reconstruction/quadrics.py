@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...mechanics.state import COURSES, SPEEDS, State
+from ...mechanics.state import COURSE_OF, SPEEDS, State
 from .system import System
 
 Floats = NDArray[np.float64]
@@ -37,7 +37,6 @@ INFINITY_TOL = 1e-7  # homogenizing coordinate of a unit vector below which it i
 MIN_EXPONENT = 0.1
 DISTINCT_TOL = 1e-6  # distance of unit vectors below which two paths have met
 MAX_ROUNDS = 2  # with new random constants where paths met or did not end
-_COURSE_OF = {speed: course for course, speed in COURSES.items()}
 # Names of the fraction of the initial energy that is lost, each with its unit
 _RATIOS = {"LOSS": 0.01, "DT": 1.0}
 
@@ -81,7 +80,7 @@ def _polynomials(system: System, state: State) -> Floats:
     rows = [state.law(name) / system.law_scale(name) for name in system.laws]
     for name in system.exact:
         value = system.nominal[name]
-        if name in SPEEDS and _COURSE_OF[name] not in system.known:
+        if name in SPEEDS and COURSE_OF[name] not in system.known:
             x, y = (state[part] for part in SPEEDS[name])
         elif name in ("DVA", "DVB"):
             x, y = state.changes[:2] if name == "DVA" else state.changes[3:5]
@@ -106,7 +105,7 @@ def quadratic_equations(system: System) -> Quadrics | None:
     lengths = [
         name
         for name in system.exact
-        if name in ("DVA", "DVB") or (name in SPEEDS and _COURSE_OF[name] not in system.known)
+        if name in ("DVA", "DVB") or (name in SPEEDS and COURSE_OF[name] not in system.known)
     ]
     # a velocity of length 0 is two conditions in one
     has_zero_length = any(not system.nominal[name] > 0 for name in lengths)

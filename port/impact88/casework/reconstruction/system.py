@@ -19,6 +19,7 @@ from ...collision.uncertain import Uncertain
 from ...mechanics.state import (
     CHANGES,
     CONTACT,
+    COURSE_OF,
     COURSES,
     CRUSH,
     DIRECTIONS,
@@ -38,7 +39,6 @@ SPINS = ("WA", "WB", "WAF", "WBF")
 PARAMETERS = (*GEOMETRY, *COEFFICIENTS, *SPEEDS, *DIRECTIONS, *CRUSH)
 MEASURABLE = (*VELOCITIES, *FINAL_STATE, *CHANGES, *ENERGIES, *CONTACT)
 COMPLEX_STEP = 1e-30  # imaginary step of derivatives: without subtraction there is no rounding
-_COURSE_OF = {speed: course for course, speed in COURSES.items()}
 # Quantities whose conditions are not linear: several impacts may have the same
 _NONLINEAR = ("SA", "SB", "SAF", "SBF", *CHANGES, *ENERGIES, *CRUSH)
 
@@ -78,7 +78,7 @@ class System:
         self.linear = (
             not adjusted
             and "MUC" not in self.constants
-            and not any(n in _NONLINEAR and _COURSE_OF.get(n) not in known for n in known)
+            and not any(n in _NONLINEAR and COURSE_OF.get(n) not in known for n in known)
         )
 
     def _set_sizes(self, geometry: Geometry) -> None:
@@ -250,7 +250,7 @@ class System:
             parts = state.crush_energy("A") + state.crush_energy("B")
             return (state["EL"] - parts) / self.scale("EL")
         if name in SPEEDS:
-            course = _COURSE_OF[name]
+            course = COURSE_OF[name]
             size = state.along_and_across(course)[0] if course in self.known else state[name]
             value = state.values[name] if name in self.variables else targets[name]
             return (size - value) / self.speed

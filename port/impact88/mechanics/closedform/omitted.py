@@ -31,6 +31,7 @@ OUTWEIGHING = np.array([100.0, -100.0, 1000.0, -1000.0])
 SAME = 1e-9  # relative difference of results that are the same but for rounding
 ROUNDING = 1e-12  # the same relative to the largest result of its unit
 PARALLEL = 1e-11  # sine of the angle between directions along one line
+COMPONENTS = ("UX", "UY", "VX", "VY")
 _JUDGED = IMPOSSIBLE | Status.NOT_FINITE | Status.SINGULAR | Status.MU_OUT_OF_RANGE
 
 
@@ -213,10 +214,9 @@ def same_results(
 def _along_a_line(given: Mapping[str, Array], lacking: Collection[str]) -> Array:
     """Return where point masses move along one line, and the contact plane lies across it: there
     is none given, or the given one does."""
-    names = ("UX", "UY", "VX", "VY")
-    if not {*names} <= given.keys() or _lacks_more(lacking):
+    if not {*COMPONENTS} <= given.keys() or _lacks_more(lacking):
         return np.False_  # type: ignore[return-value]
-    plane = _plane_across(given)
+    plane = plane_across(given)
     along = (given["M"] == 4) & np.isfinite(plane)
     if "GA" in given:
         along = along & are_parallel(given["GA"], plane)
@@ -225,7 +225,7 @@ def _along_a_line(given: Mapping[str, Array], lacking: Collection[str]) -> Array
 
 def _lacks_more(lacking: Collection[str]) -> bool:
     """Return True if more is lacking than motion along one line makes up for."""
-    return bool({*lacking} & {"UX", "UY", "VX", "VY"}) or not {*lacking} & {"GA", "MU"}
+    return bool({*lacking} & {*COMPONENTS}) or not {*lacking} & {"GA", "MU"}
 
 
 def are_parallel(first: Any, second: Any) -> Any:
@@ -233,9 +233,10 @@ def are_parallel(first: Any, second: Any) -> Any:
     return np.abs(sin_cos(np.subtract(first, second))[0]) <= PARALLEL
 
 
-def plane_across(ux: Any, uy: Any, vx: Any, vy: Any) -> Array:
+def plane_across(velocities: Mapping[str, Any]) -> Array:
     """Return GA of a contact plane across the motion of vehicles along one line, against whose
-    normal A approaches; NaN where they do not move so."""
+    normal A approaches; NaN where they do not move so. ``velocities``: UX UY VX VY."""
+    ux, uy, vx, vy = (velocities[name] for name in COMPONENTS)
     sizes = np.hypot(ux, uy), np.hypot(vx, vy)
     along = np.abs(ux * vy - uy * vx) <= PARALLEL * sizes[0] * sizes[1]
     x, y = ux - vx, uy - vy
@@ -243,10 +244,6 @@ def plane_across(ux: Any, uy: Any, vx: Any, vy: Any) -> Array:
     x, y = np.where(still, ux, x), np.where(still, uy, y)
     ga = np.degrees(np.arctan2(-y + 0.0, -x + 0.0))
     return np.asarray(np.where(along & (np.fmax(*sizes) > 0), ga, np.nan))
-
-
-def _plane_across(given: Mapping[str, Array]) -> Array:
-    return plane_across(*(given[name] for name in ("UX", "UY", "VX", "VY")))
 
 
 def _complete_all(
@@ -272,7 +269,7 @@ def _complete_scene(
                 scene[name] = np.where(infinite, 0.0, trial[name])
     if np.any(along):
         if "GA" in trial:
-            scene["GA"] = np.where(along, _plane_across(given), trial["GA"])
+            scene["GA"] = np.where(along, plane_across(given), trial["GA"])
         free = along if "MU" in trial else along & (np.asarray(scene["MU"]) != PIVOT)
         scene["MU"] = np.where(free, 0.0, scene["MU"])
     return scene
