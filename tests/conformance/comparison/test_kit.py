@@ -326,8 +326,8 @@ def test_a_kit_that_was_changed_is_refused(kit: Path, answers: Table, tmp_path: 
             archive.writestr("KIT.json", json.dumps(record))
         with pytest.raises(UserError, match=says):
             compare(theirs, kit=str(place))
-    for place in (tmp_path / "nowhere", theirs):
-        with pytest.raises(UserError):
+    for place, says in ((tmp_path / "nowhere", "cannot be read"), (theirs, "is no kit")):
+        with pytest.raises(UserError, match=says):
             compare(theirs, kit=str(place))
 
 

@@ -106,8 +106,9 @@ def read_kit(place: str) -> Kit:
     if place == FROZEN_ID and not os.path.exists(place):
         digest = hashlib.sha256("".join(csv_lines(frozen())).encode()).hexdigest()
         return Kit(FROZEN_SEED, digest, _vectors(FROZEN_COUNT, FROZEN_SEED))
+    record = _kit_file(place, KIT)
     try:
-        about = json.loads(_kit_file(place, KIT))
+        about = json.loads(record)
     except (ValueError, RecursionError):
         about = None
     if not isinstance(about, dict):
