@@ -3,12 +3,12 @@
 Fields are separated by commas, semicolons or tabs (detected in the header), quoted as usual, and
 passed through as they stand. With pyarrow the file is read in blocks while these are plain: what is
 quoted is quoted from a field's begin to its end (RFC 4180), and every record has as many fields as
-the header. From the first block that is not, it is read line by line, and so is a small file.
+the header. From the first block that is not, it is read line by line, and so is a file of one
+block: pyarrow, and pandas with it where that is installed, is imported for the others alone.
 """
 
 import csv
 import re
-import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
@@ -44,12 +44,6 @@ _MAX_WITHOUT_EXPONENT = 1e10
 _LIVE = ("=", "@")
 BLOCK_BYTES = 1 << 22
 """A pass over a block of 4 MB takes some milliseconds; blocks of 1 and of 16 MB take as long."""
-
-WORTH_ARROW = 1 << 20
-"""Bytes from which pyarrow pays: importing it, and pandas where it is installed, takes as long as a
-megabyte takes without it."""
-WORTH_ARROW_CELLS = WORTH_ARROW >> 4
-"""Cells, numbers of some sixteen digits, from which pyarrow pays for writing."""
 
 
 def arrow_available() -> bool:
@@ -184,12 +178,11 @@ def _blocks(
 ) -> Iterator[_Block]:
     """The fields of some rows by column, the line in which each row ends, and what is bad."""
     number = lines.number
-    first = True
+    is_first = True
     while in_blocks:
         data = _whole_records(lines.binary, BLOCK_BYTES)
-        small = first and len(data) < WORTH_ARROW and "pyarrow" not in sys.modules
-        first = False
-        if small or (block := _parse_plain(data, delimiter, width)) is None:
+        is_all, is_first = is_first and len(data) < BLOCK_BYTES, False
+        if is_all or (block := _parse_plain(data, delimiter, width)) is None:
             lines.encoding = "utf-8"
             lines.go_on(data, number)
             records, in_blocks = _records(lines, lines, delimiter), False
@@ -330,8 +323,10 @@ def has_live_text(column: Column) -> bool:
 
 @contextmanager
 def write(path: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
-    """Write a CSV table. Blocks of pyarrow's texts and of arrays go out through pyarrow."""
+    """Write a CSV table. From the first block of pyarrow's texts, or with as many rows as a block
+    has, arrays go out through pyarrow."""
     ends = f'[{re.escape(delimiter)}"\r\n]'
+    is_long = False
 
     def fields(column: Column) -> Sequence[str]:
         """Not every version of csv's own writer thinks of a carriage return."""
@@ -341,11 +336,13 @@ def write(path: str, delimiter: str, headings: Sequence[str]) -> Iterator[Put]:
         return ['"{}"'.format(t.replace('"', '""')) if re.search(ends, t) else t for t in texts]
 
     def put_block(columns: Named) -> None:
-        cell_count = sum(len(column) for _, column in columns)
-        worth = through_arrow and (cell_count >= WORTH_ARROW_CELLS or "pyarrow" in sys.modules)
-        candidates = (_in_arrow(column) for _, column in columns if worth)
+        nonlocal is_long
+        is_long = is_long or any(
+            isinstance(column, ArrowTexts) or len(column) >= BLOCK_ROWS for _, column in columns
+        )
+        candidates = (_in_arrow(column) for _, column in columns if through_arrow and is_long)
         arrays = list(takewhile(lambda array: array is not None, candidates))
-        if len(arrays) == len(columns):
+        if arrays and len(arrays) == len(columns) and len(arrays[0]):
             file.flush()
             file.buffer.write(_row_bytes(arrays, delimiter, ends))  # type: ignore[attr-defined]
         else:

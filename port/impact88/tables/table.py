@@ -5,10 +5,11 @@ A reader yields `tables.rows.Rows`; a writer takes them back with their results.
 grow with the file (what is written of .npz and .xlsx is held, and a JSON array that is read).
 """
 
+import _thread
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import chain
 from typing import Any
 
@@ -125,14 +126,30 @@ def may_wait(path: str) -> bool:
     return path == "-" or (os.path.exists(path) and not os.path.isfile(path))
 
 
-WORTH_THREADS = 1 << 20
-"""Bytes of a file from which threads that read ahead and write behind are worth importing them,
-which takes 5 ms."""
+def _start(call: Callable[..., Any], *arguments: Any) -> Callable[[], Any]:
+    """Call on a thread of its own; return a function that waits for the value, or raises the error.
 
+    A table of one row has such threads, too: `_thread` is imported in no time."""
+    outcome: list[Any] = []
+    running = _thread.allocate_lock()
+    running.acquire()
 
-def is_short(path: str) -> bool:
-    """Return whether ``path`` is a file too short for threads."""
-    return os.path.isfile(path) and os.path.getsize(path) < WORTH_THREADS
+    def run() -> None:
+        try:
+            outcome.extend((call(*arguments), None))
+        except BaseException as error:
+            outcome.extend((None, error))
+        running.release()
+
+    def result() -> Any:
+        with running:
+            value, error = outcome
+        if error is not None:
+            raise error
+        return value
+
+    _thread.start_new_thread(run, ())
+    return result
 
 
 @contextmanager
@@ -142,36 +159,39 @@ def read_ahead(blocks: Iterable[Any]) -> Iterator[Iterator[Any]]:
     An error of reading is raised when its block is asked for. pyarrow and numpy release the GIL, so
     that a second processor is of use.
     """
-    from concurrent.futures import ThreadPoolExecutor
-
     iterator = iter(blocks)
-    with ThreadPoolExecutor(1, "read") as pool:
+    waiting = _start(next, iterator, None)
 
-        def read_blocks() -> Iterator[Any]:
-            waiting = pool.submit(next, iterator, None)
-            while (block := waiting.result()) is not None:
-                waiting = pool.submit(next, iterator, None)
-                yield block
+    def read_blocks() -> Iterator[Any]:
+        nonlocal waiting
+        while (block := waiting()) is not None:
+            waiting = _start(next, iterator, None)
+            yield block
 
+    try:
         yield read_blocks()
+    finally:
+        with suppress(BaseException):
+            waiting()
 
 
 @contextmanager
 def write_behind(write: Callable[..., object]) -> Iterator[Callable[..., None]]:
-    """Yield a function that queues one call of ``write`` for a thread.
+    """Yield a function that has a thread call ``write``.
 
     Calls keep their order; more than one that waits gains nothing. An error of one is raised by the
     next call, or at the end.
     """
-    from concurrent.futures import Future, ThreadPoolExecutor
+    waiting = _start(bool)
 
-    with ThreadPoolExecutor(1, "write") as pool:
-        waiting: Future[object] = pool.submit(bool)
+    def later(*arguments: Any) -> None:
+        nonlocal waiting
+        waiting()
+        waiting = _start(write, *arguments)
 
-        def later(*arguments: Any) -> None:
-            nonlocal waiting
-            waiting.result()
-            waiting = pool.submit(write, *arguments)
-
+    try:
         yield later
-        waiting.result()
+    finally:
+        with suppress(BaseException):
+            waiting()
+    waiting()

@@ -26,7 +26,6 @@ from ...tables.rowsolver import Filling, Results, RowSolver
 from ...tables.sweep import estimates, read_ranges, read_sweep
 from ...tables.table import (
     format_of,
-    is_short,
     may_wait,
     open_reader,
     open_writer,
@@ -41,8 +40,7 @@ MAX_BAD_ROWS_LISTED = 20  # on stderr, when no file takes them all: one screenfu
 @dataclass
 class _Table:
     """Rows to solve: their reader, its blocks, units, and what fills columns. ``where``: its name
-    in messages; ``points``: all rows are point masses; ``swept``: values that run; ``is_long``: it
-    is read and written beside the arithmetic."""
+    in messages; ``points``: all rows are point masses; ``swept``: values that run."""
 
     reader: Reader
     blocks: Iterator[Rows]
@@ -51,7 +49,6 @@ class _Table:
     where: str
     points: bool
     swept: Collection[str]
-    is_long: bool
 
 
 def solve_table(args: options.Args) -> int:
@@ -91,9 +88,9 @@ def solve_table(args: options.Args) -> int:
         complain = stack.enter_context(_complaints(args.errors))
         meter = stack.enter_context(progress(table.reader.total, "solve"))
         read = table.blocks
-        if table.is_long and not may_wait(args.output):
+        if not may_wait(args.output):
             write = stack.enter_context(write_behind(write))
-        if table.is_long and not may_wait(args.cases or ""):
+        if not may_wait(args.cases or ""):
             read = stack.enter_context(read_ahead(read))
         table.units.based = table.filling.constants
         stack.callback(_say, solver.remarks)
@@ -138,7 +135,7 @@ def _scene_given(args: options.Args) -> Iterator[_Table]:
         units.convention = case.system.convention
         filling = Filling(case=case, noted=[*case.at_nominal().remarks])
         points = case.of_points
-        yield _Table(reader, blocks, units, filling, where, points, swept, bool(swept))
+        yield _Table(reader, blocks, units, filling, where, points, swept)
 
 
 @contextmanager
@@ -159,8 +156,7 @@ def _table_given(args: options.Args, format_name: str) -> Iterator[_Table]:
         m = filling.constants.get("M", "4" if "M" in reader.names else "6")
         points = double_or_none(m) == 4
         check_scene_columns(present, points, where=where)
-        is_long = not is_short(args.cases)
-        yield _Table(reader, blocks, units, filling, where, points, (), is_long)
+        yield _Table(reader, blocks, units, filling, where, points, ())
 
 
 def _first_block(reader: Reader) -> tuple[Rows | None, Iterator[Rows]]:
