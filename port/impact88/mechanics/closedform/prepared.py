@@ -20,9 +20,8 @@ from .. import native
 from .columns import sources
 from .compiledcalls import Call
 from .impactprograms import ALL, COLUMNS
-from .plain import PLAIN
 from .results import address
-from .solve import solve
+from .solve import PLAIN, solve
 
 Array = NDArray[Any]
 
