@@ -182,14 +182,44 @@ def test_what_follows_a_page_on_its_last_line_is_told() -> None:
     [
         ("-", "\N{EN DASH}", "en dash"),
         ("5", "\N{FULLWIDTH DIGIT FIVE}", "fullwidth digit five"),
-        ("MA=", "M\N{ZERO WIDTH SPACE}A=", "1 zero width space"),
+        ("3.449", "\N{MATHEMATICAL BOLD DIGIT THREE}.449", "the first at line 18, column 19"),
+        ("MA=", "M\N{ZERO WIDTH SPACE}A=", "1 zero width space; the first at line 1, column 2"),
         ("MA=", "MA=\0", "1 NUL"),
+        ("LOSS", "L\bLO\bOS\bSS\bS", "4 backspace"),
     ],
 )
 def test_characters_read_as_plain_ones_are_counted(old: str, new: str, told: str) -> None:
     result = one(SAMPLE.replace(old, new))
     assert result.verdict is Verdict.IDENTICAL
     assert any(told in remark for remark in result.remarks)
+
+
+@pytest.mark.parametrize(
+    "figure", ["\N{MATHEMATICAL BOLD DIGIT EIGHT}", "\N{FULLWIDTH DIGIT EIGHT}"]
+)
+def test_another_figure_in_another_typeface_differs(figure: str) -> None:
+    assert one(SAMPLE.replace("3.449", f"{figure}.449")).verdict is Verdict.DIFFERS
+
+
+@pytest.mark.parametrize(
+    "letter", ["\N{CYRILLIC CAPITAL LETTER KA}", "\N{GREEK CAPITAL LETTER KAPPA}"]
+)
+def test_a_letter_of_another_script_is_a_doubt_in_a_label(letter: str) -> None:
+    result = one(SAMPLE.replace("INITIAL KE", f"INITIAL {letter}E"))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+
+
+@pytest.mark.parametrize(
+    "number",
+    [
+        "-\u202e13.263\u202c", "-1\b3.263", "-13.\u2066263", "-13.2\x7f63", "-13.263\U000e0031",
+        "-13.263\x1b[8m7\x1b[0m",
+    ],
+)  # fmt: skip
+def test_what_changes_how_a_number_is_shown_bars_identical(number: str) -> None:
+    result = one(SAMPLE.replace("-13.263", number))
+    assert result.verdict is not Verdict.IDENTICAL
+    assert "line 18, column" in "\n".join(lines(result))
 
 
 def test_a_number_without_its_label_is_no_part_of_the_reply_above_it() -> None:
@@ -211,14 +241,40 @@ def test_a_reply_never_outranks_the_printed_number() -> None:
     assert one(text.replace("?-29.04", "?-29.84")).verdict is Verdict.DIFFERS
 
 
-@pytest.mark.parametrize("number", ["{} {}", "{}: {}", "{:3}| {}", "[{}] {}", "{:04} {}"])
-@pytest.mark.parametrize("blank", [True, False])
-def test_line_numbers_of_a_pasted_page_are_no_numbers_of_it(number: str, blank: bool) -> None:
-    numbered = [
-        number.format(count, line) if blank or line.strip() else line
-        for count, line in enumerate(SAMPLE.split("\n"), 1)
+PREFIXES = (
+    *("{} ", "{}: ", "{:3}| ", "[{}] ", "{:04} ", "run7.txt:{}:", "[10:33:{:02}] "),
+    *("2024-01-03 10:33:{:02} ", "> ", "• ", "- "),
+)
+
+
+def prefixed(prefix: str, text: str, blank: bool = True) -> list[str]:
+    """The lines of a text, with something before each."""
+    return [
+        prefix.format(count) + line if blank or line.strip() else line
+        for count, line in enumerate(text.split("\n"), 1)
     ]
-    assert one("\n".join(numbered)).verdict is Verdict.IDENTICAL
+
+
+@pytest.mark.parametrize("prefix", PREFIXES)
+@pytest.mark.parametrize("blank", [True, False])
+def test_what_stands_before_every_line_is_no_part_of_the_page(prefix: str, blank: bool) -> None:
+    result = one("\n".join(prefixed(prefix, SAMPLE, blank)))
+    assert result.verdict is Verdict.IDENTICAL
+    assert any(prefix.format(1)[:1] in remark for remark in result.remarks)
+
+
+@pytest.mark.parametrize("prefix", PREFIXES[::3])
+def test_what_stands_before_some_lines_only_bars_identical(prefix: str) -> None:
+    numbered = prefixed(prefix, SAMPLE)
+    numbered[5] = SAMPLE.split("\n")[5]
+    assert Verdict.IDENTICAL not in verdicts("\n".join(numbered))
+
+
+@pytest.mark.parametrize("prefix", ["1", "{}", "-", ".", "5 "])
+def test_figures_before_every_line_that_number_none_bar_identical(prefix: str) -> None:
+    assert Verdict.IDENTICAL not in verdicts("\n".join(prefixed(prefix, SAMPLE, False)))
+    falling = prefixed("{} ", SAMPLE, False)
+    assert Verdict.IDENTICAL not in verdicts("\n".join([*falling[4:], *falling[:4]]))
 
 
 @pytest.mark.parametrize("text", ["5x10^-3", "5 x 10^-3", "5*10^-3", "5x10-3", "5×10⁻³"])
@@ -323,6 +379,26 @@ def test_letters_read_as_others_are_told_where_they_leave_no_doubt() -> None:
 )
 def test_markup_that_is_passed_over_is_named(page: str, note: str) -> None:
     assert any(note in remark for remark in one(page).remarks)
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        '735 PRINT "THE SPEED OF A IS 12.3"', '<p VAX="12.3">', "<!-- 12.3 -->", "```VAX 12.3",
+        "```", "<b>", "> VAX 12.3",
+    ],
+)  # fmt: skip
+def test_markup_and_program_lines_on_few_lines_of_the_page_bar_identical(typed: str) -> None:
+    result = one(SAMPLE.replace("VBX=", f"{typed}\n\nVBX="))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert any(piece.read in typed for piece in result.left_over)
+
+
+@pytest.mark.parametrize("markup", ["{}<br>", "<p class='row'>{}</p>", "> {}", "\x1b[32m{}\x1b[0m"])
+def test_markup_throughout_the_page_bars_nothing(markup: str) -> None:
+    text = "\n".join(markup.format(line) if line.strip() else line for line in SAMPLE.split("\n"))
+    assert one(text).verdict is Verdict.IDENTICAL
+    assert one(f"<pre>{SAMPLE.replace(' -', ' &minus;')}</pre>").verdict is Verdict.IDENTICAL
 
 
 @pytest.mark.parametrize("typed", ["<VAX 31.2>", "<should be 31.2>"])

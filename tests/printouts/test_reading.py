@@ -201,6 +201,31 @@ def test_two_bytes_a_character_are_seen_without_their_mark(encoding: str) -> Non
     assert decode(page.encode(encoding), "page") == page
 
 
+DASHED = SAMPLE.replace("-", "–")
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        DASHED.replace(" ", "\xa0").encode("cp1252"),
+        ("Gutachten für Müller, § 14\n" + DASHED).encode("cp1252"),
+        ("Café\n" + DASHED).encode("mac_roman"),
+        ("Привет\n" + DASHED).encode(),
+        DASHED.encode().decode("cp1252").encode(),
+        bytes(byte | 0x80 for byte in SAMPLE.replace("\n", "\r").encode()),
+        SAMPLE.encode("cp037"),
+        SAMPLE.encode("utf-32"),
+        SAMPLE.replace("=", "=3D").replace("VAX", "VA=\nX").encode(),
+        SAMPLE.encode() + b"\x1a" * 90,
+        SAMPLE.replace("\n", "\v").encode(),
+    ],
+)
+def test_a_file_is_read_in_the_encoding_that_leaves_least_foreign(data: bytes) -> None:
+    (shown,) = printouts.from_bytes(data, "page")
+    assert {name: reading.text for name, reading in shown.fields.items()} == texts(SAMPLE)
+    assert shown.page.text.count("\n") >= SAMPLE.count("\n")
+
+
 def test_a_minus_may_belong_to_the_label_only_where_the_label_has_no_equals_sign() -> None:
     for printed, sign_free in (("MA= 143.5", False), ("MA= -143.5", False), ("MA - 143.5", True)):
         (shown,) = read_printouts(SAMPLE.replace("MA= 143.5", printed))

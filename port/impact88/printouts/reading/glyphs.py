@@ -1,9 +1,9 @@
 """Glyphs: the characters of a text, and those that typists and optical readers put for others.
 
-A page is a row of glyphs, blanks and control characters left out, each with the kind of gap before
-it and the place where it stood. Capitals and small letters, the many minus signs and the full-width
-forms are one glyph each; a soft hyphen, a superscript or a stroke through a digit stay what they
-are, for they mean something else.
+A page is a row of glyphs, blanks and characters without width left out, each with the kind of gap
+before it and the place where it stood. Capitals and small letters, the many minus signs, other
+widths and typefaces are one glyph each; a soft hyphen, a superscript, a stroke through a digit or
+what controls how others are shown stay what they are, for they mean something else.
 """
 
 import re
@@ -27,6 +27,11 @@ _GLYPHS = {
     **dict.fromkeys("∗✱⁎", "*"),
     **dict.fromkeys("μµ", "M"),
 }
+
+_INVISIBLE = frozenset("\0\x04\a\u200b\u200c\u200d\u200e\u2060\ufeff")
+"""Characters that are not shown, and change nothing in how others are."""
+_OVERSTRUCK = re.compile(r"(?<=(\S))\x08\1")
+"""A backspace, and the character before it once more: bold type."""
 
 NUMERIC = frozenset("0123456789.-+E")
 """The glyphs numbers are made of."""
@@ -65,6 +70,8 @@ class Page:
         Indices of the glyphs of each line.
     width : int
         Column at which lines were broken or cut off, 0 if they were not.
+    converted : dict of int to str
+        Characters read as plain ones or passed over, by their offsets.
     """
 
     def __init__(self, text: str) -> None:
@@ -74,6 +81,7 @@ class Page:
         lengths = [len(line.rstrip("\r")) for line in text.split("\n")]
         full = 0 < max(lengths) <= 80 and lengths.count(max(lengths)) >= 3
         self.width = max(lengths) if full else 0
+        self.converted: dict[int, str] = {}
         self.glyphs = tuple(self._read())
         starts = [at for at, glyph in enumerate(self.glyphs) if glyph.gap is Gap.LINE or not at]
         self.lines = [range(*ends) for ends in pairwise([*starts, len(self.glyphs)])]
@@ -87,8 +95,14 @@ class Page:
                 last = word.end()
                 yield from map(Glyph, text[1:].upper(), repeat(Gap.NONE), range(start + 1, last))
                 continue
+            overstruck = {start + match.start() for match in _OVERSTRUCK.finditer(text)}
             for offset, character in enumerate(text, start):
-                for plain in plain_glyphs(character):
+                if offset - 1 in overstruck:
+                    continue
+                plain = "" if offset in overstruck else plain_glyphs(character)
+                if plain != character.upper():
+                    self.converted[offset] = character
+                if plain:
                     yield Glyph(plain, self._gap(last, offset), offset)
                     last = offset + 1
 
@@ -128,17 +142,21 @@ class Page:
 
 @lru_cache(maxsize=4096)
 def plain_glyphs(character: str) -> str:
-    """Return the glyphs of a character in capitals, "" for one that does not show."""
+    """Return the glyph of a character in capitals, "" for one that does not show."""
     if " " < character < "\x7f":
         return character.upper()
-    plain = _GLYPHS.get(character)
-    if plain is None and character != "\u00ad":
-        if unicodedata.category(character) in ("Cf", "Cc"):
-            return ""
-        if "\uff01" <= character <= "\uff5e":
-            return chr(ord(character) - 0xFEE0).upper()
-    upper = plain or character.upper()
+    if character in _INVISIBLE:
+        return ""
+    form, _, code = unicodedata.decomposition(character).partition(" ")
+    if form in ("<wide>", "<narrow>", "<font>"):  # the same in another width or typeface
+        character = chr(int(code, 16))
+    upper = _GLYPHS.get(character) or character.upper()
     return upper if len(upper) == 1 else character
+
+
+def is_plain(character: str) -> bool:
+    """Return True for a character that is read as one of ASCII's that show."""
+    return " " < plain_glyphs(character) < "\x7f"
 
 
 def letters(region: Iterable[Glyph]) -> str:

@@ -4,50 +4,60 @@ Markup is blanked out, never shortened, so that every character keeps its line a
 """
 
 import re
-from collections.abc import Sequence
+from binascii import a2b_qp
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from itertools import pairwise
 
 from ...errors import UserError
 from ...files import check_text
+from .glyphs import is_plain
 
-_MARKS = ("MA=", "MB=", "KE=", "VAX", "UX=", "ENTER", "LOSS", "PA PB", "ZERO DET", "MA ")
+_LINE_END = re.compile("\r\n?|[\v\x85\u2028\u2029]")
+_ENCODINGS = (
+    "utf-16", "utf-16-le", "utf-16-be", "utf-32", "cp1252", "mac_roman", "latin-1", "cp037",
+)  # fmt: skip
+"""Encodings of texts that are not UTF-8."""
+_APPLE_TEXT = dict.fromkeys(range(0x21, 0x80), "\ufffd") | {
+    byte: chr(byte & 0x7F) for byte in range(0x80, 0x100)
+}
+"""Characters of an Apple II's text, by byte; the high bit of each is set."""
+_QUOTED_PRINTABLE = re.compile(rb"(?:[^=]|=[0-9A-F]{2}|=\r?\n)*")
 
 
 def decode(data: bytes, where: str) -> str:
-    """Return the text of a file in the encoding that makes sense of it.
+    """Return the text of a file, in the encoding that leaves the fewest foreign characters.
 
     Raises UserError for a file that is no text.
     """
     check_text(data, where)
-    text = _decode(data)
-    odd = sum(char < " " and char not in "\t\n\r\f\a\b\0\x04\x1b" for char in text)
+    if b"=3D" in data and _QUOTED_PRINTABLE.fullmatch(data):
+        data = a2b_qp(data)
+    text = min(_readings(data), key=_foreign_share).rstrip("\x1a\0")  # padding of a CP/M file
+    odd = sum(char < " " and char not in "\t\n\r\f\v\a\b\0\x04\x1b" for char in text)
     if odd > 4 + len(text) / 50:
         raise UserError("is not UTF-8 text, nor any other this reads; expected plain text", where)
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+    return _LINE_END.sub("\n", text)
 
 
-def _decode(data: bytes) -> str:
-    """Return bytes as text, in the encoding that is marked or makes most sense."""
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        return data.decode("utf-16", "replace")
-    # UTF-16 whose byte-order mark was lost: every other byte of such a text is zero
-    for encoding, zeros in (("utf-16-le", data[1::2]), ("utf-16-be", data[0::2])):
-        if len(data) > 8 and zeros.count(0) > 0.9 * len(zeros):
-            return data.decode(encoding, "replace")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        ways = [data.decode(name, "replace") for name in ("cp1252", "mac_roman", "latin-1")]
-        # a mainframe's, and an Apple II's with its high bits set
-        ways.append(data.decode("cp037").replace("\x85", "\n"))
-        ways.append(bytes(byte & 0x7F for byte in data).decode("ascii"))
-        return max(ways, key=_sense)
+def _readings(data: bytes) -> Iterator[str]:
+    """Yield bytes as UTF-8, and where that is not what they are, in other encodings."""
+    text = data.decode("utf-8-sig", "replace")
+    yield text
+    with suppress(UnicodeError):  # UTF-8 that was taken for the encoding of Windows
+        yield text.encode("cp1252").decode()
+    if "\0" in text or "\ufffd" in text:
+        yield from (data.decode(encoding, "replace") for encoding in _ENCODINGS)
+        yield data.decode("latin-1").translate(_APPLE_TEXT)
 
 
-def _sense(text: str) -> tuple[int, int]:
-    """Return the number of a printout's words in a text, and of dashes right before numbers."""
-    dashes = len(re.findall(r"[–—−\u00ad-]\s?[.0-9]", text))
-    return sum(mark in text.upper() for mark in _MARKS), dashes - 5 * text.count("�")
+def _foreign_share(text: str) -> float:
+    """Return the share of a text's characters that stand on no printout; what is no character of
+    the encoding counts twice."""
+    counts = Counter(text)
+    known = sum(counts[char] for char in counts if char.isspace() or is_plain(char))
+    return 1 - (known - counts["\ufffd"]) / len(text) if text else 0.0
 
 
 _ELEMENTS = (
@@ -60,18 +70,15 @@ _ELEMENTS = (
 _MARKUP = re.compile(
     rf"""(?mx) ^(?:\s*>)+                                   # quotes of a mail
     | <(?:/?(?i:{_ELEMENTS})(?![\w:])[^<>\n]{{0,80}}|!--.*?--|[!?][a-zA-Z][^<>\n]{{0,80}})>
-    | ^[ \t]*(?:```|~~~).*$                                # fences of Markdown, its list marks
-    | ^[ \t]*[•*‣◦][ \t]+(?=[-A-Za-z(.0-9])
+    | ^[ \t]*(?:```|~~~).*$                                # fences of Markdown
+    | \x1b\[(?:(?!8(?!\d))\d+;?)*m                          # colours of a terminal, none hidden
     | ^[ \t]*[0-9]{{1,5}}[ ]+(?:                           # lines of a BASIC program
       (?:REM|PRINT|INPUT|IF|GOTO|GOSUB|FOR|NEXT|DIM|END|RETURN|DATA|ON)\b
       |[A-Z][A-Z0-9]*[$%]?(?:\([^)\n]*\))?[ ]?=[^=\n]*:).*$"""
 )
-_DASHED_ITEM = re.compile(r"(?m)^[ \t]*[-+][ \t]+(?=[-A-Za-z(])")
-"""An item of a list; a dash before a line by itself may be a minus."""
 _RTF = re.compile(r"\\[a-z]+-?[0-9]* ?|[{}]")
 _ENTITY = re.compile(r"&(?:#[0-9]{1,6}|#[xX][0-9a-fA-F]{1,6}|[a-zA-Z]{2,8});")
 _ROW_OF_TABLE = re.compile(r"(?m)^\s*\|.*\|\s*$")
-_NUMBERED = re.compile(r"(?m)^[ \t]*[\[(]?([0-9]{1,5})[\])]?[:.|]?(?=[ \t]|$)")
 _SMALL = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−–", "0123456789---")
 _POWER = re.compile(
     r"(?<=[0-9])[ ]?[×xX·*][ ]?10(?:\^[{(]?([-−–]?[0-9])[)}]?|([-⁻−–][0-9]|[⁻−–]?[⁰¹²³⁴⁵⁶⁷⁸⁹]))"
@@ -89,34 +96,66 @@ _HEADING = re.compile(
 )
 _GROUPED = re.compile(r"(?<![0-9.,])[0-9]{1,3}(?:[.][0-9]{3})+(?=,[0-9]|(?![0-9.,]))")
 _MIN_LINES = 6
-"""Lines from which numbers before all of them are an editor's, and rows of names and numbers a
-table."""
+"""Lines from which what stands before all of them is none of theirs, and rows of names and numbers
+are a table."""
+_PAGE_LINE = re.compile(r"(?i)ENTER +THE|[A-Z] *=|\*{3}")
+"""A line that the program prints, or one like it."""
+_AROUND_NUMBERS = re.compile(r"[-+.,0 ]+")
 
 
 def strip_markup(text: str) -> str:
     """Return a text with markup blanked out, of equal length.
 
-    Markup is e-mail quotes, HTML, RTF, TeX, Markdown, line numbers and separators of tables.
+    Markup is e-mail quotes, HTML, RTF, Markdown, colours, and separators of tables.
     """
-    text = text.replace("\r\n", " \n").replace("\r", "\n")
-    lines = [line for line in text.split("\n") if line.strip()]
-    if len(lines) >= _MIN_LINES and all(map(_NUMBERED.match, lines)):
-        numbers = [int(number) for number in _NUMBERED.findall(text)]
-        if all(before < after for before, after in pairwise(numbers)):
-            text = _NUMBERED.sub(_blank, text)
     if text.lstrip().startswith("{\\rtf"):
         text = _RTF.sub(_blank, text)
-    if len(_DASHED_ITEM.findall(text)) >= _MIN_LINES:
-        text = _DASHED_ITEM.sub(_blank, text)
     text = _ENTITY.sub(_entity, _MARKUP.sub(_blank, text))
-    text = re.sub(r"\$(-|−)\$", r"  \1", text)
-    text = re.sub(r"(?<=[VW])_\{?|(?<=[VW]_\{[abxy])\}|(?<=[VW]_\{[ab][xy])\}", _blank, text)
     if len(_ROW_OF_TABLE.findall(text)) >= 3:
         text = re.sub(r"(?m)^\s*\|[-:| \t]+\|\s*$", _blank, text)
         text = _ROW_OF_TABLE.sub(lambda row: row.group().replace("|", " "), text)
     if len(_ROW.findall(text)) >= _MIN_LINES:
         text = _ROW.sub(_split_row, _HEADING.sub(_blank, text))
+    return text
+
+
+def plain_formulas(text: str) -> str:
+    """Return a text, of equal length, without TeX's marks of minus signs and subscripts, with
+    powers of ten as exponents and thousands not parted."""
+    text = re.sub(r"\$(-|−)\$", r"  \1", text)
+    text = re.sub(r"(?<=[VW])_\{?|(?<=[VW]_\{[abxy])\}|(?<=[VW]_\{[ab][xy])\}", _blank, text)
     return _POWER.sub(_exponent, _join_groups(text))
+
+
+def strip_prefix(text: str) -> tuple[str, str]:
+    """Return a text with what stands before all lines of a page blanked out; and the first of it.
+
+    It has one shape on all of them, blanks and digits apart, and ends with a blank or a mark:
+    numbers of lines, time stamps, a file's name, the mark of a list. Its numbers never fall but to
+    begin again with 1; a number alone always rises.
+    """
+    lines = text.split("\n")
+    labelled = [at for at, line in enumerate(lines) if _PAGE_LINE.search(line)] or [0]
+    page = [line for line in lines[labelled[0] : labelled[-1] + 1] if line.strip()]
+    shapes = sorted(re.sub("[0-9]+", "0", " ".join(line.split())) + " " for line in page)
+    if len(page) < _MIN_LINES:
+        return text, ""
+    # what the first and the last of sorted texts begin with begins all
+    pairs = zip(shapes[0], shapes[-1], strict=False)
+    length = next((at for at, (one, other) in enumerate(pairs) if one != other), len(shapes[0]))
+    shape = re.sub(r"[^]\s:|)>]+$", "", shapes[0][:length])
+    marks = {"0": "[0-9]+", " ": r"(?:\s+|$)"}
+    prefix = re.compile(r"^\s*" + "".join(marks.get(char) or re.escape(char) for char in shape))
+    found = [match.group() for line in lines[labelled[0] :] if (match := prefix.match(line))]
+    numbers = [[*map(int, re.findall("[0-9]+", before))] for before in found]
+    is_bare = "0" in shape and _AROUND_NUMBERS.fullmatch(shape) is not None
+    falls = any(
+        second < [*first, *[0] * is_bare] and (is_bare or second[-1] != 1)
+        for first, second in pairwise(numbers)
+    )
+    if falls or not shape.strip():
+        return text, ""
+    return "\n".join(prefix.sub(_blank, line, count=1) for line in lines), found[0].strip()
 
 
 def _median(values: Sequence[float]) -> float:

@@ -699,7 +699,10 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     """
     if not isinstance(text, str):
         raise UserError(f"{quoted(text)}: expected a text; impact88.verify takes files and bytes")
-    stripped = pasted.strip_markup(text)
+    text = text.replace("\r\n", " \n").replace("\r", "\n")
+    unmarked = pasted.strip_markup(text)
+    plain = pasted.plain_formulas(unmarked)
+    stripped, prefix = pasted.strip_prefix(plain)
     columns = [_read_column(part) for part in pasted.columns(stripped)]
     if not all(found for found, _ in columns):
         columns = [_read_column(stripped)]
@@ -707,34 +710,55 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     if not found:
         expected = "expected text with labels such as MA= ... MB= ... VAX= ... VAY= ..."
         raise UserError(f"no printout of the program in it; {columns[0][1] or expected}", where)
-    found[0].notes += [*_left_out_note(text, stripped), *_markup_note(text, stripped)]
+    found[0].notes += [*_left_out_note(text, plain), *_markup_note(text, plain)]
+    if prefix:
+        note = f"what stands before every line was passed over: the first is {printable(prefix)}"
+        found[0].notes.append(note)
     found[0].markup = _count_shown(text) - _count_shown(stripped)
     for printout in found:
-        printout.left_over += _markup_pieces(printout, text, stripped)
+        printout.left_over += _markup_pieces(printout, text, unmarked)
     return found
 
 
-def _markup_pieces(printout: Printout, text: str, stripped: str) -> list[Difference]:
-    """Return the markup that a printout has once only: characters typed there, rather than the form
-    of the text."""
+_MIN_MARKED = 5
+"""The share of a page's lines on which a piece of markup stands that is the form of the text: one
+of so many. Others were typed there, or are shown to nobody."""
+
+
+def _markup_pieces(printout: Printout, text: str, unmarked: str) -> list[Difference]:
+    """Return the markup within a printout that is not the form of the text: all that stands on few
+    of its lines."""
     last, _ = printout.page.place(printout.stop - 1)
-    lines = zip(text.split("\n"), stripped.split("\n"), strict=False)
-    pieces, start = dict[str, list[Difference]](), 0
-    for number, (line, stripped_line) in enumerate(lines, 1):
-        if printout.line <= number <= last and line.strip():
-            runs = [at for at, char in enumerate(line) if stripped_line[at : at + 1] != char]
-            places = range(printout.start - start, printout.stop - start)
-            runs = [at for at in runs if at in places and not line[at].isspace()]
-            if runs:
-                first, end = runs[0], runs[-1] + 1
-                place = (number, first + 1, start + first, start + end)
-                piece = Difference(Kind.LEFT_OVER, "", line[first:end], "", *place)
-                removed = Counter(line[at] for at in runs if not line[at].isalnum())
-                pieces.setdefault("".join(sorted(removed)), []).extend(
-                    [piece] * max(removed.values(), default=1)
-                )
+    first, start = printout.line - 1, printout.start - printout.column + 1
+    pairs = zip(text.split("\n")[first:last], unmarked.split("\n")[first:last], strict=True)
+    lines = [(line, _markup_runs(line, unmarked_line)) for line, unmarked_line in pairs]
+    counts = Counter(kind for _, runs in lines for kind in {kind for *_, kind in runs})
+    least = sum(bool(line.strip()) for line, _ in lines) / _MIN_MARKED
+    pieces = []
+    for number, (line, runs) in enumerate(lines, printout.line):
+        within = range(printout.start - start, printout.stop - start)
+        odd = [run for run in runs if counts[run[2]] < least and run[0] in within]
+        if odd:
+            begin, end = odd[0][0], odd[-1][1]
+            place = (number, begin + 1, start + begin, start + end)
+            pieces.append(Difference(Kind.LEFT_OVER, "", line[begin:end], "", *place))
         start += len(line) + 1
-    return [same[0] for same in pieces.values() if len(same) == 1]
+    return pieces
+
+
+def _markup_runs(line: str, unmarked: str) -> list[tuple[int, int, str]]:
+    """Return begin, end and kind of each run of characters that were stripped from a line.
+
+    Its kind is its text; all names of characters are of one kind.
+    """
+    mask = "".join(
+        " " if char.isspace() or char == after else "x"
+        for char, after in zip(line, unmarked, strict=False)
+    )
+    return [
+        (*match.span(), re.sub("(&[^;]*;)+", "&", line[slice(*match.span())]))
+        for match in re.finditer("x+", mask)
+    ]
 
 
 def _count_shown(text: str) -> int:
@@ -774,7 +798,7 @@ def _read_column(text: str) -> tuple[list[Printout], str]:
     for printout in printouts:
         printout.echoed |= {page.glyphs[at].offset for at in commands.intersection(printout.own)}
         printout.check_labels()
-        printout.notes += _character_notes(page.text[printout.start : printout.stop])
+        printout.notes += _character_notes(printout)
         printout.notes += printout.read_otherwise()
         printout.notes += form_note(printout.labels)
         printout.notes += asterisk_note({*printout._states.values()}, printout.fields)
@@ -907,15 +931,25 @@ def _keep_left_over(page: Page, found: Sequence[Printout], apart: set[int]) -> N
                 owner.left_over.append(piece._replace(bears=is_beside or is_within))
 
 
-def _character_notes(text: str) -> list[str]:
+def _character_notes(printout: Printout) -> list[str]:
     """Return a note on characters that were read as plain ones, with their number by kind."""
-    count = Counter(
-        unicodedata.name(char, f"U+{ord(char):04X}").lower().replace("u+0000", "NUL")
-        for char in text
-        if not " " <= char <= "~" and not char.isspace() and plain_glyphs(char) != char.upper()
-    )
+    page = printout.page
+    places = [at for at in sorted(page.converted) if printout.start <= at < printout.stop]
+    count = Counter(_name_of(page.converted[at]) for at in places)
     kinds = ", ".join(f"{number} {name}" for name, number in sorted(count.items()))
-    return [f"characters read as plain ones or passed over: {kinds}"] if kinds else []
+    return [
+        f"characters read as plain ones or passed over: {kinds}; the first at line "
+        f"{line}, column {column}"
+        for line, column in map(page.place, places[:1])
+    ]
+
+
+def _name_of(character: str) -> str:
+    """Return what a character is called."""
+    code = f"U+{ord(character):04X}"
+    return {"\0": "NUL", "\b": "backspace"}.get(character) or unicodedata.name(
+        character, code
+    ).lower()
 
 
 _MAX_MARKUP = 6
