@@ -394,6 +394,13 @@ def test_markup_and_program_lines_on_few_lines_of_the_page_bar_identical(typed: 
     assert any(piece.read in typed for piece in result.left_over)
 
 
+def test_a_comment_on_a_page_of_one_line_bars_identical() -> None:
+    line = " ".join(SAMPLE.split())
+    assert one(line).verdict is Verdict.IDENTICAL
+    commented = line.replace("VBX=", "<!-- 12.3 --> VBX=")
+    assert one(commented).verdict is Verdict.IDENTICAL_AS_READ
+
+
 @pytest.mark.parametrize("markup", ["{}<br>", "<p class='row'>{}</p>", "> {}", "\x1b[32m{}\x1b[0m"])
 def test_markup_throughout_the_page_bars_nothing(markup: str) -> None:
     text = "\n".join(markup.format(line) if line.strip() else line for line in SAMPLE.split("\n"))

@@ -720,24 +720,21 @@ def read_printouts(text: str, where: str = "text") -> list[Printout]:
     return found
 
 
-_MIN_MARKED = 5
-"""The share of a page's lines on which a piece of markup stands that is the form of the text: one
-of so many. Others were typed there, or are shown to nobody."""
+_MIN_MARKED = 5  # times that a piece of markup stands on a page of which it is the form
 
 
 def _markup_pieces(printout: Printout, text: str, unmarked: str) -> list[Difference]:
-    """Return the markup within a printout that is not the form of the text: all that stands on few
-    of its lines."""
+    """Return the markup within a printout that stands there few times: it was typed there, or is
+    shown to nobody, rather than the form of the text."""
     last, _ = printout.page.place(printout.stop - 1)
     first, start = printout.line - 1, printout.start - printout.column + 1
     pairs = zip(text.split("\n")[first:last], unmarked.split("\n")[first:last], strict=True)
     lines = [(line, _markup_runs(line, unmarked_line)) for line, unmarked_line in pairs]
-    counts = Counter(kind for _, runs in lines for kind in {kind for *_, kind in runs})
-    least = sum(bool(line.strip()) for line, _ in lines) / _MIN_MARKED
+    counts = Counter(kind for _, runs in lines for *_, kind in runs)
     pieces = []
     for number, (line, runs) in enumerate(lines, printout.line):
         within = range(printout.start - start, printout.stop - start)
-        odd = [run for run in runs if counts[run[2]] < least and run[0] in within]
+        odd = [run for run in runs if counts[run[2]] < _MIN_MARKED and run[0] in within]
         if odd:
             begin, end = odd[0][0], odd[-1][1]
             place = (number, begin + 1, start + begin, start + end)
