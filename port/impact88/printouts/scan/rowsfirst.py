@@ -134,7 +134,7 @@ def _name_lines(grid: Grid, layout: Layout, lines: Mapping[int, LineFit]) -> dic
 
     It has the largest gain after `_WRONG_LETTER` for each letter that is more like another, of
     which a foot of the page, as long as a line of print, has too many; ``lines``, named before,
-    show the letters.
+    show the letters, and begin where no other is continued.
     """
     names: list[str] = []
     places: list[Place] = []
@@ -151,7 +151,8 @@ def _name_lines(grid: Grid, layout: Layout, lines: Mapping[int, LineFit]) -> dic
     for start in range(len(grid.pictures)):
         before = named.get(start - 1)
         scores: dict[float, LineFit] = {}
-        for fit in (fit for used in (1, 2) for fit in layout.candidates(start, used)):
+        widths = (1,) if start + 1 in lines else (1, 2)  # a row may be broken over two lines
+        for fit in (fit for used in widths for fit in layout.candidates(start, used)):
             # numbers without labels are the angles' if they stand below their heading
             may_be_line = fit.line != ANGLE_ROW or (before and before.line == HEADING)
             least = _MIN_SHARE * sum(line_ink[line] for line in _grid_lines(fit.row))
