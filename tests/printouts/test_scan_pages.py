@@ -1084,7 +1084,7 @@ def test_a_row_without_a_number_is_where_to_look(monkeypatch) -> None:
         monkeypatch.setattr(sheets, "unread_inputs", lambda read, names=names: names)
         assert expected in sheets._reason_unread(leaf)
     monkeypatch.setattr(sheets, "unread_inputs", lambda read: ["VX", "E"])
-    assert "these inputs could not be read: VX, E" in sheets._reason_unread(leaf)
+    assert "VX, E were not found" in sheets._reason_unread(leaf)
 
 
 @pytest.mark.long

@@ -19,7 +19,7 @@ from ..reading.printout import read_printouts
 from ..scan.cleaning import Paper, papers_of
 from ..scan.exhibit import exhibit
 from ..scan.grid import Grid
-from ..scan.holding import Cell, Objection, appearance, cells_text, state
+from ..scan.holding import Added, Cell, Objection, appearance, cells_text, state
 from ..scan.ink import Floats
 from ..scan.layout import Place
 from ..scan.picture import Page, pages_of
@@ -140,6 +140,7 @@ def _verification(
     result.findings += [
         f"{_where(cell.place, leaf.grid)}: {name_of(cell.name)} {appearance(cell)}"
         for cell in leaf.judged.differing
+        if cell.added is not Added.CHARACTER  # a mark
     ]
     result.findings += [
         f"{_where(mark.place, leaf.grid)}: the typed text {mark.reads!r} gives "

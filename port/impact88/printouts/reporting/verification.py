@@ -463,11 +463,11 @@ def _marks(marks: Sequence[Mapping[str, Any]]) -> Iterator[str]:
         sentence = f"{place}: {_MARK_WORDS[mark['kind']].format(**mark)}"
         is_in_margin = mark["beside"] and not mark["line"] and not mark["touches"]
         sentence += ", in or beside a line of the printout" if is_in_margin else ""
-        touches = ", ".join(mark["touches"])
-        yield sentence + (f"; touches {touches}" if touches and mark["kind"] not in _TYPED else "")
+        if mark["touches"] and mark["kind"] != "type":
+            verb = "beside" if mark["kind"] == "character" else "touches"
+            sentence += f"; {verb} {', '.join(map(name_of, mark['touches']))}"
+        yield sentence
 
-
-_TYPED = ("character", "type")
 
 _DOUBTS = {
     Kind.LOOK_ALIKE: "read {read!r} where the program prints {printed!r} ({program})",

@@ -307,6 +307,11 @@ def _add_marks(
     _find_claims(leaves)
 
 
+def _repeats(leaf: Leaf, mark: Mark) -> bool:
+    """Return True for the type of a row that is printed a second time."""
+    return mark.place is not None and leaf.grid.number(mark.place.line) in leaf.repeated_lines
+
+
 def _find_claims(leaves: Sequence[Leaf]) -> None:
     """Set ``claims`` of typed lines that give a number of the page another value.
 
@@ -317,12 +322,7 @@ def _find_claims(leaves: Sequence[Leaf]) -> None:
     if any(leaf.judged.verdict not in _IDENTICAL for leaf in leaves):
         return
     lines = [(leaf, mark) for leaf in leaves for mark in leaf.marks if mark.kind is Kind.TYPE]
-    repeated = {number for leaf in leaves for number in leaf.repeated_lines}
-    if any(
-        is_of_a_printout(mark.reads)
-        for leaf, mark in lines
-        if not mark.place or leaf.grid.number(mark.place.line) not in repeated
-    ):
+    if any(is_of_a_printout(mark.reads) for leaf, mark in lines if not _repeats(leaf, mark)):
         return
     numbers = [leaf.certain for leaf in leaves]
     contradictions = [
@@ -385,7 +385,9 @@ def _reason_unread(leaf: Leaf) -> str:
     if not names:
         return f"no scene was found; {_NEXT_STEP}"
     if len(names) > 1:
-        return f"these inputs could not be read: {', '.join(names)}; {_NEXT_STEP}"
+        are_missing = leaf.read.costs.keys().isdisjoint(names)
+        problem = "were not found" if are_missing else "could not be read"
+        return f"{', '.join(names)} {problem}; {_NEXT_STEP}"
     for row in leaf.read.sheet.rows.values():
         row_names = [piece.name for piece in row.pieces if piece.name]
         if names[0] in row_names:
