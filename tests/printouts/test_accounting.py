@@ -109,8 +109,8 @@ def test_what_the_program_does_not_print_bars_a_bare_identical(old: str, new: st
 
 
 @pytest.mark.parametrize("place", ["above", "below"])
-def test_text_around_the_page_bars_nothing(place: str) -> None:
-    around = "BROWN AND PARTNERS, FILE 88-1432\nPAGE 3 OF 7\n"
+@pytest.mark.parametrize("around", ["BROWN AND PARTNERS, FILE 88-1432\nPAGE 3 OF 7\n", "]\n"])
+def test_text_around_the_page_bars_nothing(place: str, around: str) -> None:
     page = around + PAGE if place == "above" else PAGE + around
     (result,) = check(page)
     assert result.verdict is Verdict.IDENTICAL

@@ -235,7 +235,8 @@ class Printout:
             for index, state in self._states.items()
             if letter_of(state) == glyphs[index].char
         }
-        offsets = [glyphs[index].offset for index in states]
+        # without what was put in behind its last character
+        offsets = [glyphs[index].offset for index in self.roles() or states]
         self.start, self.stop = min(offsets), max(offsets) + 1
         self.line, self.column = self.page.place(self.start)
 
