@@ -71,7 +71,7 @@ _MARKUP = re.compile(
     rf"""(?mx) ^(?:\s*>)+                                   # quotes of a mail
     | <(?:/?(?i:{_ELEMENTS})(?![\w:])[^<>\n]{{0,80}}|!--.*?--|[!?][a-zA-Z][^<>\n]{{0,80}})>
     | ^[ \t]*(?:```|~~~).*$                                # fences of Markdown
-    | \x1b\[(?:(?!8(?!\d))\d+;?)*m                          # colours of a terminal, none hidden
+    | \x1b\[(?:(?!8[;m])[0-9]{{1,3}}(?:;|(?=m)))*m          # colours of a terminal, none hidden
     | ^[ \t]*[0-9]{{1,5}}[ ]+(?:                           # lines of a BASIC program
       (?:REM|PRINT|INPUT|IF|GOTO|GOSUB|FOR|NEXT|DIM|END|RETURN|DATA|ON)\b
       |[A-Z][A-Z0-9]*[$%]?(?:\([^)\n]*\))?[ ]?=[^=\n]*:).*$"""
@@ -100,6 +100,7 @@ _MIN_LINES = 6
 are a table."""
 _PAGE_LINE = re.compile(r"(?i)ENTER +THE|[A-Z] *=|\*{3}")
 """A line that the program prints, or one like it."""
+_LONGEST_PREFIX = 80  # characters
 _AROUND_NUMBERS = re.compile(r"[-+.,0 ]+")
 
 
@@ -137,16 +138,22 @@ def strip_prefix(text: str) -> tuple[str, str]:
     lines = text.split("\n")
     labelled = [at for at, line in enumerate(lines) if _PAGE_LINE.search(line)] or [0]
     page = [line for line in lines[labelled[0] : labelled[-1] + 1] if line.strip()]
-    shapes = sorted(re.sub("[0-9]+", "0", " ".join(line.split())) + " " for line in page)
     if len(page) < _MIN_LINES:
         return text, ""
+    starts = [" ".join(line[:_LONGEST_PREFIX].split()) + " " for line in page]
+    shapes = sorted(re.sub("[0-9]+", "0", start) for start in starts)
     # what the first and the last of sorted texts begin with begins all
     pairs = zip(shapes[0], shapes[-1], strict=False)
     length = next((at for at, (one, other) in enumerate(pairs) if one != other), len(shapes[0]))
-    shape = re.sub(r"[^]\s:|)>]+$", "", shapes[0][:length])
+    common = shapes[0][:length]
+    shape = common[: 1 + max(map(common.rfind, "] :|)>"))]
     marks = {"0": "[0-9]+", " ": r"(?:\s+|$)"}
     prefix = re.compile(r"^\s*" + "".join(marks.get(char) or re.escape(char) for char in shape))
-    found = [match.group() for line in lines[labelled[0] :] if (match := prefix.match(line))]
+    found = [
+        match.group()
+        for line in lines[labelled[0] :]
+        if (match := prefix.match(line[:_LONGEST_PREFIX]))
+    ]
     numbers = [[*map(int, re.findall("[0-9]+", before))] for before in found]
     is_bare = "0" in shape and _AROUND_NUMBERS.fullmatch(shape) is not None
     falls = any(

@@ -754,7 +754,7 @@ def _markup_runs(line: str, unmarked: str) -> list[tuple[int, int, str]]:
         for char, after in zip(line, unmarked, strict=False)
     )
     return [
-        (*match.span(), re.sub("(&[^;]*;)+", "&", line[slice(*match.span())]))
+        (*match.span(), re.sub("(&[^;]{1,9};)+", "&", line[slice(*match.span())]))
         for match in re.finditer("x+", mask)
     ]
 
