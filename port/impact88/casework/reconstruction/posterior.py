@@ -23,7 +23,7 @@ from ...collision.uncertain import Uncertain
 from ...mechanics.state import BARRIER_SPEEDS, CRUSH, DIRECTIONS, FORCES, SPEEDS, State
 from ...names import COEFFICIENTS, VELOCITIES
 from ..optimization.effort import CHUNK
-from .admissible import FRICTION, LAWS, NORMAL, Admissible, friction_limits, one_sided
+from .admissible import FRICTION, LAWS, LEAST_IMPACT, NORMAL, Admissible, friction_limits, one_sided
 from .coordinates import OTHER_ROOT, Branches, Coordinates
 from .sampler import Proposal, Sample, sample
 from .solution import NULL_TOL, SIGMAS, Reconstruction
@@ -425,9 +425,12 @@ class FeasibleRegion:
             ends = posterior.admissible.ends(state, name, (item.low, item.high))
             return [one_sided(end) for end in ends]
         if name in DIRECTIONS and item.high - item.low < HALF_TURN:
-            size = system.scale("PN") if name in FORCES else -system.speed
+            size = system.scale("PN") if name in FORCES else system.speed
+            sign = -1.0 if name in FORCES else 1.0
             low, high = (state.along_and_across(name, x)[1] for x in (item.low, item.high))
-            return [one_sided(-low / size), one_sided(high / size)]
+            along = state.along_and_across(name, (item.low + item.high) / 2)[0]
+            ends = (sign * low / size, -sign * high / size, along / size - LEAST_IMPACT)
+            return [one_sided(end) for end in ends]
         value, _ = posterior.limited_value(state, name)
         return [(value - item.low) / (item.high - item.low)]
 
