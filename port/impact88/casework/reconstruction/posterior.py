@@ -429,8 +429,8 @@ class FeasibleRegion:
             sign = -1.0 if name in FORCES else 1.0
             low, high = (state.along_and_across(name, x)[1] for x in (item.low, item.high))
             along = state.along_and_across(name, (item.low + item.high) / 2)[0]
-            ends = (sign * low / size, -sign * high / size, along / size - LEAST_IMPACT)
-            return [one_sided(end) for end in ends]
+            inside = [sign * low / size, -sign * high / size, along / size - LEAST_IMPACT]
+            return [one_sided(distance) for distance in inside]
         value, _ = posterior.limited_value(state, name)
         return [(value - item.low) / (item.high - item.low)]
 
