@@ -3,11 +3,13 @@ and what would have to move where none agrees, against sums done by hand."""
 
 import math
 from itertools import product
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from impact88.casework.reconstruction.adjustment import reconstruct
+from impact88.casework.reconstruction.admissible import APPROACH, ENERGY, PUSH, Admissible
 from impact88.casework.reconstruction.answer import Answer
 from impact88.casework.reconstruction.answerremarks import remarks_on
 from impact88.casework.reconstruction.answertable import first_lines
@@ -84,6 +86,15 @@ def test_what_hardly_moves_is_no_value_that_would_have_to_move():
     (free,) = reconstruct({**known, **sure})
     _, moves = dict(first_lines(Answer(free, 0), RULES))["NO IMPACT"].split("The nearest one has ")
     assert sorted(move.split()[0] for move in moves.split("; ")) == ["VAX", "VBX"]
+
+
+def test_neither_a_touch_without_impulse_nor_one_without_approach_is_an_impact():
+    """Both are beyond their borders, not on them; no loss of energy is on its border."""
+    best, *_ = reconstruct(along_a_line(1.0, UX=20.0, VX=-5.0, VAX=9.0, VBX=7.0))
+    touch = SimpleNamespace(values={"PN": 0.0}, relative_before=(0.0,), energy_lost=0.0)
+    admissible = Admissible(best.system)
+    ends = [admissible.ends(touch, name)[0] for name in (APPROACH, PUSH, ENERGY)]
+    assert max(ends[:2]) < 0.0 == ends[2]
 
 
 def test_of_several_nearest_impacts_the_nearest_is_told():
