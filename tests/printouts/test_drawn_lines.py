@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 from longer import long_but
 
+from impact88.printouts.scan.cleaning import papers_of
 from impact88.printouts.scan.grid import grids_of
 from impact88.printouts.scan.ink import points_of
 from impact88.printouts.scan.layout import WRAP, Sheet, layout_of
 from impact88.program.run import run
 from impact88.program.scene import sample
-
-pytest.importorskip("scipy", reason="the extra scan is not installed")
 
 ROWS = [row for row in run(sample(1)).page.split("\n") if row.strip()]
 (ANGLES,) = (number for number, row in enumerate(ROWS) if "-19.8" in row)
@@ -42,7 +41,7 @@ def numbers(sheet: Sheet, rows: list[str]) -> dict[str, str]:
     }
 
 
-@pytest.mark.parametrize(("gap", "is_read"), [(1, True), (14, True), (15, False)])
+@pytest.mark.parametrize(("gap", "is_read"), long_but([(15, False), (14, True), (1, True)]))
 def test_angles_stand_apart_as_people_type_them(gap: int, is_read: bool) -> None:
     rows = [*ROWS]
     rows[ANGLES] = f" -19.8{' ' * gap}-38.7   0 60 -30"
@@ -50,7 +49,7 @@ def test_angles_stand_apart_as_people_type_them(gap: int, is_read: bool) -> None
     assert (numbers(sheet, rows)["PB"] == "-38.7") is is_read
 
 
-@pytest.mark.parametrize(("blanks", "is_read"), [(2, False), (3, True)])
+@pytest.mark.parametrize(("blanks", "is_read"), long_but([(2, False), (3, True)]))
 def test_other_text_may_stand_behind_a_line_after_some_blanks(blanks: int, is_read: bool) -> None:
     rows = [row + " " * blanks + "VAX= 37.64" if " MU=" in row else row for row in ROWS]
     (sheet,) = laid_out(rows)
@@ -79,13 +78,16 @@ UX = next(number for number, row in enumerate(ROWS) if row.startswith("UX"))
 
 @pytest.mark.parametrize(
     ("rows", "places"),
-    [
-        (ROWS, [range(15)]),
-        ([*ROWS[:UX], *ROWS[UX + 1 :]], [[*range(UX), None, *range(UX, 14)]]),
-        (["R. M. BRACH", *ROWS], [range(1, 16)]),
-        ([*ROWS[:UX], "CHECKED BY RMB", *ROWS[UX:]], [[*range(UX), *range(UX + 1, 16)]]),
-        ([*ROWS, *ROWS], [range(15), range(15, 30)]),
-    ],
+    long_but(
+        [
+            (ROWS, [range(15)]),
+            ([*ROWS[:UX], *ROWS[UX + 1 :]], [[*range(UX), None, *range(UX, 14)]]),
+            (["R. M. BRACH", *ROWS], [range(1, 16)]),
+            ([*ROWS[:UX], "CHECKED BY RMB", *ROWS[UX:]], [[*range(UX), *range(UX + 1, 16)]]),
+            ([*ROWS, *ROWS], [range(15), range(15, 30)]),
+        ],
+        kept=(3,),
+    ),
     ids=["alone", "a line lost", "below a letterhead", "with a line between", "twice"],
 )
 def test_each_line_of_print_is_found(rows: list[str], places: list[Any]) -> None:
@@ -96,7 +98,7 @@ def test_each_line_of_print_is_found(rows: list[str], places: list[Any]) -> None
     assert [sheet.whole for sheet in sheets] == [None not in on_sheet for on_sheet in places]
 
 
-@pytest.mark.parametrize("number", ["100904.929", "57.47"])
+@pytest.mark.parametrize("number", long_but(["100904.929", "57.47"]))
 def test_a_number_whose_digit_is_faint_is_one_number(number: str) -> None:
     (line,) = (line for line, row in enumerate(ROWS) if number in row)
     (sheet,) = laid_out(ROWS, (line, ROWS[line].index(number) + 1))
@@ -145,3 +147,42 @@ def test_columns_of_a_bent_page_are_clear(bend: dict[str, float]) -> None:
     assert sum((row > 0).sum() for row in grid.odds()) == pytest.approx(
         0.8 * LINES * CELLS, rel=0.06
     )
+
+
+def laid(size: tuple[int, int], grey: float, at: tuple[int, int]) -> Any:
+    """A picture in one grey with a page of lines on it, 400 by 500 pixels."""
+    page = np.full((500, 400), 230, np.uint8)
+    page[60:440:16, 40:360] = page[64:440:16, 40:360:9] = 60
+    picture = np.full(size, grey, np.uint8)
+    picture[at[0] : at[0] + 500, at[1] : at[1] + 400] = page
+    return picture
+
+
+@pytest.mark.parametrize(
+    ("size", "desk", "light", "is_laid_flat"),
+    long_but(
+        [
+            ((620, 520), 0.79, 0.2, True),  # however dim the light
+            ((620, 520), 0.81, 1.0, False),  # paper on paper
+            ((620, 520), 0.79, 1.0, True),
+            ((1160, 1010), 0.3, 1.0, True),
+            ((1310, 1160), 0.3, 1.0, False),  # a seventh of the picture
+        ],
+        kept=(0, 1),
+    ),
+)
+def test_a_page_is_laid_flat_where_its_surround_is_dark(
+    size: tuple[int, int], desk: float, light: float, is_laid_flat: bool
+) -> None:
+    picture = laid(size, 230 * desk, (60, 60)) * light
+    (paper,) = papers_of(picture.astype(np.uint8))
+    assert bool(paper.remarks) is is_laid_flat
+
+
+@pytest.mark.parametrize(("place", "count"), long_but([(0.26, 2), (0.24, 1), (0.74, 2), (0.76, 1)]))
+def test_a_gutter_runs_near_the_middle(place: float, count: int) -> None:
+    picture = np.hstack([laid((500, 400), 230, (0, 0))] * 2)
+    middle = round(place * 800)
+    picture[:, middle - 20 : middle + 20] = 230
+    picture[:, middle - 8 : middle + 8] = 40
+    assert len([*papers_of(picture)]) == count

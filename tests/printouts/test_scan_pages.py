@@ -60,6 +60,7 @@ from impact88.printouts.scan.holding import (
     state,
 )
 from impact88.printouts.scan.layout import Piece, Place, Row, Sheet
+from impact88.printouts.scan.residue import Kind, Mark
 from impact88.printouts.scan.rowsfirst import foreign_row
 from impact88.printouts.scan.scenes import (
     MAX_CELL_COST,
@@ -306,10 +307,12 @@ def test_a_picture_larger_than_is_read_has_its_boxes_in_the_pixels_of_its_file(m
 
 @pytest.mark.parametrize(
     ("typed", "shown", "found"),
-    [
-        ("117.2", "137.2", "117.2"),  # 837.2 points the same way, and is as near to the cells
-        ("837.2", "837.2", "837.2"),  # a page that has a turn or more keeps it
-    ],
+    long_but(
+        [
+            ("117.2", "137.2", "117.2"),  # 837.2 points the same way, and is as near to the cells
+            ("837.2", "837.2", "837.2"),  # a page that has a turn or more keeps it
+        ]
+    ),
 )
 def test_of_equal_angles_the_one_within_a_turn_is_taken(typed, shown, found):
     """Where the cells tell no more. TB, of which the results show the sum with PB, is no slip away
@@ -390,8 +393,13 @@ def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, be
     assert bool(leaves[0].judged.reason) is (beside is Verdict.INCOMPLETE)
 
 
-@pytest.mark.parametrize(("clarity", "searched"), [(0.69, 0), (0.71, 2)])
-def test_no_scene_is_searched_for_where_columns_are_not_clear(monkeypatch, clarity, searched):
+@pytest.mark.parametrize(
+    ("clarity", "gain", "searched"),
+    [(0.69, 900, 0), (0.71, 900, 2), (0.71, 601, 2), (0.71, 599, 1)],
+)
+def test_no_scene_is_searched_for_where_columns_or_lines_are_not_clear(
+    monkeypatch, clarity, gain, searched
+):
     """Noise of many lines is one printout that was not read, at once."""
     asked: list[object] = []
     monkeypatch.setattr(
@@ -401,9 +409,9 @@ def test_no_scene_is_searched_for_where_columns_are_not_clear(monkeypatch, clari
     )
     monkeypatch.setattr(sheets, "scene_of", lambda read, seeds, copy: asked.append(read))
     grid = SimpleNamespace(odds=lambda: [np.zeros(8)], clarity=clarity)
-    leaves = sheets._leaves(grid, [Sheet(gain=900.0), Sheet(gain=1000.0)], [])
+    leaves = sheets._leaves(grid, [Sheet(gain=gain), Sheet(gain=1000.0)], [])
     assert len(asked) == searched
-    assert len(leaves) == max(searched, 1)
+    assert len(leaves) == (2 if searched else 1)
     assert {leaf.judged.verdict for leaf in leaves} == {Verdict.INCOMPLETE}
     assert leaves[-1].read.sheet.gain == 1000.0
 
@@ -729,6 +737,8 @@ ON_THE_PAGE: dict[str, str | None] = {
     ("text", "labels"),
     [
         ("VAX SHOULD READ 31.2, KE LOSS 75 %", ["VAX", "KE LOSS"]),
+        ("VAX OF THE FIRST CAR 31.2", ["VAX"]),  # eighteen characters between them
+        ("VAX OF THE SECOND CAR 31.2", []),
         ("VAX= 31.2 VAY= 3.449", ["VAX"]),
         ("CORRECTED: IA= 4000", ["IA"]),
         ("XA= 3", ["XA"]),
@@ -760,6 +770,21 @@ def test_what_typed_text_says_of_the_pages_numbers(text: str, labels: list[str])
 )
 def test_a_whole_line_of_the_program_is_another_printouts(text: str, whole: bool) -> None:
     assert is_of_a_printout(text) is whole
+
+
+@pytest.mark.parametrize(
+    ("count", "expected"),
+    [(sheets.MAX_CLAIMING, Verdict.DIFFERS), (sheets.MAX_CLAIMING + 1, Verdict.IDENTICAL)],
+)
+def test_many_typed_lines_with_other_numbers_are_another_printouts(
+    count: int, expected: Verdict
+) -> None:
+    marks = [Mark(Kind.TYPE, np.zeros((4, 2)), "VAX= 31.2") for _ in range(count)]
+    judged = CellJudgement(Verdict.IDENTICAL)
+    certain = {"VAX": "-13.263"}
+    leaf = SimpleNamespace(judged=judged, marks=marks, certain=certain, repeated_lines=set())
+    sheets._find_claims([leaf])  # type: ignore[list-item]
+    assert judged.verdict is expected
 
 
 def test_text_beside_a_line_leaves_its_numbers_where_they_are() -> None:
@@ -806,7 +831,7 @@ def test_pen_is_left_out_of_the_geometry_and_type_is_not() -> None:
 
 
 @pytest.mark.parametrize(
-    ("fill", "count", "stripped"), [(40, 7, True), (40, 3, False), (None, 7, False)]
+    ("fill", "count", "stripped"), long_but([(40, 7, True), (40, 3, False), (None, 7, False)])
 )
 def test_strips_of_holes_are_left_out_and_a_column_of_rings_is_not(fill, count, stripped) -> None:
     from PIL import ImageDraw

@@ -1,8 +1,8 @@
 """Draws the digits of known typefaces by which a page's first characters are named.
 
 ``python tests/support/digitstyles.py`` writes ``port/impact88/printouts/scan/digits.npz``: for each
-of `STYLES` the twelve of `CHARACTERS`, 24 rows of 16 pixels, 255 for full ink, with the top of a
-capital in row 4 and its foot in row 20. The fonts are files of Debian's packages, in the folder
+of `STYLES` the twelve of `CHARACTERS`, a cell wide, 255 for full ink, with the top of a capital and
+its foot in the rows of `CAPITALS`. The fonts are files of Debian's packages, in the folder
 that IMPACT88_FONTS names or in /usr/share/fonts:
 
     apt-get install fonts-dejavu-core fonts-liberation fonts-freefont-ttf fonts-hack \\
@@ -22,7 +22,10 @@ from typing import Any
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-CHARACTERS = "0123456789.-"
+from impact88.printouts.scan.grid import CELL_WIDTH
+from impact88.printouts.scan.typeface import CAPITALS
+from impact88.printouts.scan.typeface import NUMERIC as CHARACTERS
+
 STYLES = {
     "DejaVu Sans Mono": "truetype/dejavu/DejaVuSansMono.ttf",
     "Liberation Mono": "truetype/liberation/LiberationMono-Regular.ttf",
@@ -49,7 +52,8 @@ PINS = """
 """
 """`CHARACTERS` on five columns and seven rows of pins, the nought with a stroke through it."""
 FILE = Path(__file__).parents[2] / "port/impact88/printouts/scan/digits.npz"
-_WIDTH, _ROWS, _TOP, _BOTTOM = 16, 24, 4, 20
+_TOP, _BOTTOM = CAPITALS
+_WIDTH, _ROWS = CELL_WIDTH, _TOP + _BOTTOM
 _FINE = 16  # pixels to which a pixel is drawn first
 Glyphs = np.ndarray[Any, np.dtype[np.uint8]]
 

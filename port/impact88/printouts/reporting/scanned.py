@@ -45,7 +45,7 @@ def verify_pages(
             unread = 0
             for paper in papers_of(page.picture):
                 scenes = [*seeds, *scenes_in(page.text)]
-                leaves, tried = read_page(paper.grey, scenes, paper.coloured, copy)
+                leaves, tried = read_page(paper, scenes, copy)
                 unread += not leaves
                 causes = causes or ("" if leaves else "; ".join([*paper.remarks, tried]))
                 for leaf in leaves:

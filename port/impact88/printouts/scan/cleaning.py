@@ -38,7 +38,6 @@ _COARSE = 500  # pixels of the longer side
 _TYPE_WIDTH = 0.04  # fraction of that side; strokes and letters are narrower, and are closed over
 _MIN_PAGE = 0.15  # fraction of the picture that a page takes
 _MAX_PAGE = 0.97  # a page that takes more has no surround
-_MIN_CONTRAST = 45.0  # grey levels between page and surround
 _MAX_SURROUND = 0.8  # brightness of a surround, relative to the page's
 _SHADOW_STEP = 0.04
 """Step of the logarithm of brightness between neighbouring pixels below which it is a shadow's: the
@@ -46,8 +45,7 @@ edge of a page on a grey desk has 0.1 and more, the hardest shadow drawn for a t
 _MARGIN = 0.008  # fraction of a side cut off within the page's edges, for their shadows
 _MAX_CURL = 0.06  # fraction of a side by which an edge of a page may bend
 # The gutter between two pages, in fractions of the width.
-_GUTTER_LOW = 0.25  # leftmost place
-_GUTTER_HIGH = 0.75  # rightmost place
+_OFF_CENTRE = 0.25  # largest distance from the middle
 _MAX_GUTTER = 0.12  # width
 # Colour.
 _MIN_CHROMA = 0.2  # difference between the darkest and lightest channel of a coloured ink
@@ -55,7 +53,7 @@ _COLOURED_TYPE = 0.5  # fraction of the ink that is coloured above which the typ
 _HOLE_DARK = 0.7  # largest brightness of a hole, relative to the paper's
 _STRIP = 0.15  # fraction of the width, from a side, within which strips with holes run
 _MAX_OTHER = 1.5  # largest dark area in a strip, relative to that of its holes
-_FINE = 1200  # pixels of the longer side at which holes and slopes are looked for
+_FINE = 1200  # pixels of the longer side at which polarity, holes and slopes are looked for
 
 
 @dataclass
@@ -72,12 +70,15 @@ class Paper:
         Remarks on what was done to get it.
     back : callable, optional
         Map from points of the sheet to points of the page's picture; None for the identity.
+    is_on_side : bool
+        True for a sheet whose lines run down it.
     """
 
     grey: Image
     coloured: Image | None = None
     remarks: list[str] = field(default_factory=list)
     back: Callable[[Floats], Floats] | None = None
+    is_on_side: bool = False
 
     def place(self, points: Floats) -> Floats:
         """Return where points of the sheet, shape (..., 2), are in the page's picture."""
@@ -161,7 +162,7 @@ def _has_colours(picture: Picture) -> bool:
 
 def _is_negative(grey: Image) -> bool:
     """Return True for a picture whose strokes are lighter than their surround."""
-    small = grey[:: max(1, grey.shape[0] // 1200), :: max(1, grey.shape[1] // 1200)]
+    small = grey[:: max(1, grey.shape[0] // _FINE), :: max(1, grey.shape[1] // _FINE)]
     surround = ndimage.uniform_filter(small, 25)
     lighter = float(((small - surround > 40) & (surround < 110)).sum())
     darker = float(((surround - small > 40) & (surround >= 110)).sum())
@@ -214,7 +215,8 @@ def _level(paper: Paper) -> Paper:
     A sheet whose lines rise or fall by less than `STEEP` is returned as it is.
     """
     points = points_of(ink_of(resize(paper.grey, min(1.0, _FINE / max(paper.grey.shape)))))
-    slope, _ = skew(points) if len(points.x) >= FEWEST_POINTS else (0.0, False)
+    slope, is_on_side = skew(points) if len(points.x) >= FEWEST_POINTS else (0.0, False)
+    paper.is_on_side = is_on_side
     if abs(slope) < STEEP:
         return paper
     height, width = paper.grey.shape
@@ -244,7 +246,7 @@ def _level(paper: Paper) -> Paper:
     coloured_ink = None if paper.coloured is None else turn_picture(paper.coloured, 0.0)
     degrees = math.degrees(math.atan(abs(slope)))
     remark = f"the page is askew by {degrees:.1f} degrees: it was set straight"
-    return Paper(grey, coloured_ink, [*paper.remarks, remark], to_picture)
+    return Paper(grey, coloured_ink, [*paper.remarks, remark], to_picture, is_on_side)
 
 
 # --- pages and what surrounds them ----------------------------------------------------------------
@@ -344,7 +346,7 @@ def _page_columns(small: Image) -> list[tuple[int, int]]:
         down, across = box[0].stop - box[0].start, box[1].stop - box[1].start
         middle = (box[1].start + box[1].stop) / 2 / width
         filling = (labels[box] == at).any(axis=1).mean()
-        is_central = _GUTTER_LOW < middle < _GUTTER_HIGH
+        is_central = abs(middle - 0.5) < _OFF_CENTRE
         if is_central and down * filling > 0.9 * height and across < _MAX_GUTTER * width:
             return [(0, max(box[1].start - 1, 1)), (min(box[1].stop + 1, width - 1), width)]
     return [(0, width)]
@@ -362,7 +364,7 @@ def _page_mask(small: Image) -> Mask | None:
     if is_bright.all() or not is_bright.any():
         return None
     page, surround = float(np.median(plain[is_bright])), float(np.median(plain[~is_bright]))
-    if page - surround < _MIN_CONTRAST or surround > _MAX_SURROUND * page:
+    if surround > _MAX_SURROUND * page:
         return None
     labels, count = ndimage.label(ndimage.binary_opening(is_bright, iterations=2))
     if not count:

@@ -14,8 +14,9 @@ from PIL import Image as Pillow
 
 from .holding import DIFFERS, FOREIGN, HOLDS, Cell, state
 from .ink import Floats, Image
+from .residue import Explained
 from .sheets import Leaf
-from .typeface import BLANK, sample_of, typeface_of
+from .typeface import BLANK
 
 _MAX_WIDTH = 1400  # pixels across the page in the report; a digit of 80 columns has 17 of them
 _MAX_STRIPS = 24  # three pages; a printout that got a verdict has at most eight such cells
@@ -104,8 +105,7 @@ def _strips(
     all_cells = [
         cell for neighbour in leaves if neighbour.grid is leaf.grid for cell in neighbour.cells
     ]
-    sample = sample_of(leaf.grid, [cell.place for cell in all_cells])
-    typeface = typeface_of(sample, ["" if cell.cut else cell.predicted for cell in all_cells])
+    typeface = Explained(leaf.grid, all_cells, set(), set()).typeface
 
     def glyph(character: str, count: int) -> dict[str, Any]:
         """Return a mean glyph and the number of cells it was made of."""

@@ -48,10 +48,9 @@ _MIN_NOISE = 0.1
 """Smallest usual distance of a cell from its mean, in units of the root of its energy: that of an
 excellent scan. Pages drawn by a program have 0.01 to 0.04, and there any other typeface is a
 hundred times as far as is usual."""
-_FAR = 10.0
-"""Distance, in usual distances, from which a cell is compared with all known typefaces: digits
-drawn in another font are farther."""
-FOREIGN = 20.0  # distance beyond which a cell is like no character of the page
+FOREIGN = 20.0
+"""Distance, in usual distances, beyond which a cell is like no character of the page: it may be a
+digit in another typeface."""
 _EVEN = 0.8
 """Strength of ink, 1 for the page's usual, that 99 % of the cells exceed on evenly inked paper:
 0.82 and more on seven pages of which a digit was erased, 0.4 to 0.75 on those that lost some."""
@@ -64,7 +63,6 @@ _SMALL = frozenset(".,-:'`*")
 # above 0.7, but points on pages that lost some; no altered digit, letter or sign has one below 7.
 HOLDS = 0.0  # margin of a cell below which it is the predicted character
 DIFFERS = 4.0  # margin of a cell from which it is another character
-_FOREIGN_DIGIT = 2.0  # distance from a known digit at which one in another typeface is assumed
 MAX_DIFFERING = 4
 """Most differing cells of a printout of which anything is said, and most that no character explains
 or that cannot be seen. More suggest a misreading."""
@@ -159,7 +157,7 @@ def predicted_characters(read: Read, candidate: Candidate) -> Iterator[tuple[str
 def _blanks(grid: Grid, sheet: Sheet, inked: set[Place]) -> Iterator[tuple[str, str, Place]]:
     """Yield the cells of a printout's lines in which the program prints nothing."""
     for row in sheet.rows.values():
-        for line in range(row.start, row.start + row.used):
+        for line in row.lines:
             for cell in range(len(grid.corners[line]) - 1):
                 if (place := Place(line, cell)) not in inked:
                     yield "", BLANK, place
@@ -311,7 +309,7 @@ def compare_cells(grid: Grid, known: Sequence[tuple[Read, Candidate]]) -> list[l
             other, fit = measured.nearest_other(at, allowed), 0.0
             beyond = float(measured.to_all[at, other] / unit)
             if digit and not measured.is_alone[at]:
-                beyond = _FOREIGN_DIGIT
+                beyond = 1.0  # as far from that digit as is usual
             margin = min(distance, FOREIGN) - beyond
         name = characters[other]
         if digit and not measured.is_alone[at]:
@@ -407,7 +405,7 @@ def _foreign_digits(
     """
     of_number = np.array([bool(target.name) for target in targets])
     is_alone = measured.is_alone & of_number
-    is_far = of_number & ~measured.is_alone & (measured.relative > _FAR * measured.level)
+    is_far = of_number & ~measured.is_alone & (measured.relative > FOREIGN * measured.level)
     names = [target.character for target in targets]
     return foreign_digits(sample, typeface, names, is_alone, is_far)
 

@@ -29,8 +29,7 @@ WRAP = 40
 
 # Penalties are in units of log odds; a line that is there gains about 3 for each inked cell.
 _MISSING_LINE = 30.0  # for a printed line that is not on the paper
-_STRANGE_LINE = 4.0  # for a line of the paper that is passed over
-_BROKEN_LINE = 2.0  # for two lines of the paper taken for one that was broken
+_STRANGE_LINE = 4.0  # for a line of the paper that is passed over, or taken for the rest of one
 _BREAK_COLUMNS = 7
 """Columns before a line break, one of which is inked: the program prints no longer gap."""
 _MIN_SEPARATION = 3
@@ -87,6 +86,11 @@ class Row(NamedTuple):
     margin: int
     text: str = ""
     pieces: Sequence[Piece] = ()
+
+    @property
+    def lines(self) -> range:
+        """The lines of the grid that it takes."""
+        return range(self.start, self.start + self.used)
 
     def place(self, column: int) -> Place:
         """Return the place of a column of the printed line."""
@@ -194,14 +198,13 @@ def _division_gains(line: str, inked: Floats, blank: Floats) -> tuple[list[Float
         gains.append(best)
         part_sums.append(sums)
     remainder = np.hstack([np.cumsum(blank[:, ::-1], axis=1)[:, ::-1], edge])
-    if cells > _MIN_SEPARATION:
-        text_behind = np.maximum(inked, blank)[:, ::-1].cumsum(axis=1)[:, ::-1]
-        gap = blank_sums[:, _MIN_SEPARATION:] - blank_sums[:, :-_MIN_SEPARATION]
-        half = np.maximum(best[:, : -_MIN_SEPARATION - 1], 0) / 2
-        gap[:, :-1] += np.minimum(text_behind[:, _MIN_SEPARATION:], half)
-        np.maximum(
-            remainder[:, :-_MIN_SEPARATION], gap - _TEXT_BEHIND, out=remainder[:, :-_MIN_SEPARATION]
-        )
+    text_behind = np.maximum(inked, blank)[:, ::-1].cumsum(axis=1)[:, ::-1]
+    gap = blank_sums[:, _MIN_SEPARATION:] - blank_sums[:, :-_MIN_SEPARATION]
+    half = np.maximum(best[:, : -_MIN_SEPARATION - 1], 0) / 2
+    gap[:, :-1] += np.minimum(text_behind[:, _MIN_SEPARATION:], half)
+    np.maximum(
+        remainder[:, :-_MIN_SEPARATION], gap - _TEXT_BEHIND, out=remainder[:, :-_MIN_SEPARATION]
+    )
     gains[-1] = best + remainder
     return gains, part_sums
 
@@ -276,8 +279,8 @@ def layout_of(odds: Sequence[Floats], tops: Floats) -> Layout:
     inked_gains, blank_gains = np.clip(odds_by_trial, -6, 6) / 2, -np.clip(odds_by_trial, 0, 6) / 2
     ink_before = [np.r_[0.0, np.cumsum(np.clip(row, 0, None))] for row in odds]
     penalties = [
-        sum(column[max(row.margin, 0)] for column in ink_before[row.start : row.start + row.used])
-        + _BROKEN_LINE * (row.used == 2)
+        sum(ink_before[line][max(row.margin, 0)] for line in row.lines)
+        + _STRANGE_LINE * (row.used == 2)
         for row, _ in trials
     ]
     fits: dict[int, _Fits] = {row.margin: {} for row, _ in trials}
@@ -356,8 +359,6 @@ def _assign_lines(fits: _Fits, line_ink: Sequence[float]) -> tuple[float, list[_
     best = {(0, 0): (0.0, (0, 0), False)}
     for i in range(count + 1):
         for j in [*range(last + 1), 0]:  # once more from 0: a printout that ended begins another
-            if (i, j) not in best:
-                continue
             gain = best[i, j][0]
             steps = []
             if j == last:

@@ -7,6 +7,7 @@ lines of type that belong to no printout, then whatever ink is left, in connecte
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -104,6 +105,7 @@ class Explained:
     lines: set[int]
     cut_lines: set[int]
 
+    @cached_property
     def typeface(self) -> Typeface:
         """Return the page's typeface under the predicted names."""
         sample = sample_of(self.grid, [cell.place for cell in self.cells])
@@ -204,7 +206,7 @@ def _run_mark(part: Explained, run: Sequence[Cell]) -> Mark:
     names = [first.name] if first.name else []
     mark = Mark(kind, corners, text, first.place, names, True)
     if kind is Kind.TYPE:
-        read = _type_at(part, part.typeface(), first.place.line, [cell.place.cell for cell in run])
+        read = _type_at(part, first.place.line, [cell.place.cell for cell in run])
         mark.sure = read.sure
     return mark
 
@@ -227,8 +229,9 @@ class _Type(NamedTuple):
     alike: Mask
 
 
-def _type_at(part: Explained, typeface: Typeface, line: int, cells: Sequence[int]) -> _Type:
+def _type_at(part: Explained, line: int, cells: Sequence[int]) -> _Type:
     """Read cells of a line by the means of the page's own characters."""
+    typeface = part.typeface
     energy = np.maximum(np.einsum("mp,mp->m", typeface.means, typeface.means), 1e-6)
     sample = sample_of(part.grid, [Place(line, cell) for cell in cells])
     to_means, _ = distances(sample, typeface.means)
@@ -262,9 +265,8 @@ def _typed_lines(part: Explained) -> Iterator[Mark]:
     lines = {line: at for line, at in inked_cells.items() if len(at) >= _MIN_TYPED}
     if not lines or not part.cells:
         return
-    typeface = part.typeface()
     for line, inked in lines.items():
-        read = _type_at(part, typeface, line, inked.tolist())
+        read = _type_at(part, line, inked.tolist())
         if read.alike.mean() < _MIN_ALIKE or read.alike.sum() < _MIN_TYPED:
             continue
         start, stop = (grid.around(line, int(cell)) for cell in inked[[0, -1]])

@@ -88,7 +88,7 @@ def order_lines(grid: Grid, layout: Layout) -> Order | None:
     if not (rows.exchanged or rows.repeated) or len(page.lines) != len(lines):
         return None
     doubled = {at for at, line in enumerate(page.lines) if line.start in rows.doubled}
-    named = [[*_grid_lines(lines[start].row)] for start in sorted(lines)]
+    named = [[*lines[start].row.lines] for start in sorted(lines)]
     taken = {line for group in named for line in group}
     firsts = {group[0] for group in named}
     in_order = iter(rows.order)
@@ -110,11 +110,6 @@ def order_lines(grid: Grid, layout: Layout) -> Order | None:
 def _prints(lines: Mapping[int, LineFit]) -> dict[int, str]:
     """Return the line of print on each line of the grid."""
     return {start: LINES[fit.line] for start, fit in lines.items()}
-
-
-def _grid_lines(row: Row) -> range:
-    """Return the lines of the grid that a row takes."""
-    return range(row.start, row.start + row.used)
 
 
 def _label_cells(row: Row) -> tuple[list[str], list[Place]]:
@@ -155,7 +150,7 @@ def _name_lines(grid: Grid, layout: Layout, lines: Mapping[int, LineFit]) -> dic
         for fit in (fit for used in widths for fit in layout.candidates(start, used)):
             # numbers without labels are the angles' if they stand below their heading
             may_be_line = fit.line != ANGLE_ROW or (before and before.line == HEADING)
-            least = _MIN_SHARE * sum(line_ink[line] for line in _grid_lines(fit.row))
+            least = _MIN_SHARE * sum(line_ink[line] for line in fit.row.lines)
             if start in taken or not may_be_line or fit.gain <= least:
                 continue
             wrong, letters = _wrong_letters(grid, typeface, fit)
@@ -163,7 +158,7 @@ def _name_lines(grid: Grid, layout: Layout, lines: Mapping[int, LineFit]) -> dic
                 scores[fit.gain - _WRONG_LETTER * wrong] = fit
         if scores:
             named[start] = scores[max(scores)]
-            taken.update(_grid_lines(named[start].row))
+            taken.update(named[start].row.lines)
     return named
 
 

@@ -13,6 +13,7 @@ from ...collision.fields import FIELDS, INPUTS
 from ..judging.judgement import Verdict
 from ..reading.alignment import MAY_BE_MISSING
 from .claims import claims, is_of_a_printout
+from .cleaning import Paper
 from .grid import Grid, grids_of
 from .holding import (
     Added,
@@ -32,7 +33,6 @@ from .ink import (
     Points,
     ink_of,
     points_of,
-    skew,
     without_pen,
 )
 from .layout import AS_GOOD, Row, Sheet, layout_of
@@ -41,11 +41,9 @@ from .rowsfirst import Order, foreign_row, order_lines
 from .scenes import Candidate, Copy, Read, confirm_inputs, scene_of, unread_inputs
 from .typeface import BLANK, read_numbers
 
-_UPRIGHT_GAIN = 600.0
-"""Gain from which a printout is the right way up: those of 445 pages have 740 and more, upside down
-the best had 410."""
-_LEGIBLE_GAIN = 300.0
-"""Gain from which a scene is searched for; with less, noise was taken for lines."""
+_LEGIBLE_GAIN = 600.0
+"""Gain from which lines are a printout's, the right way up: those of 400 pages that got a verdict
+have 740 and more, upside down the best had 410."""
 _MIN_CLARITY = 0.7
 """Clarity of the columns from which scenes are searched for: of 1,302 printouts that got a verdict
 the smallest was .85."""
@@ -121,7 +119,7 @@ class Leaf:
     def lines(self) -> set[int]:
         """Lines of the grid that it takes."""
         rows = self.read.sheet.rows.values()
-        return {line for row in rows for line in range(row.start, row.start + row.used)}
+        return {line for row in rows for line in row.lines}
 
     def distance_to(self, corners: Floats) -> float:
         """Return the distance of a region of the sheet from its lines, in pixels."""
@@ -132,38 +130,33 @@ class Leaf:
 
 
 def read_page(
-    grey: Image,
-    seeds: Sequence[dict[str, str]] = (),
-    coloured: Image | None = None,
-    copy: Copy | None = None,
+    paper: Paper, seeds: Sequence[dict[str, str]] = (), copy: Copy | None = None
 ) -> tuple[list[Leaf], str]:
     """Return all printouts of a page, upright or turned by quarters, each with what else is there,
     and what was tried to find them.
 
     Parameters
     ----------
-    grey : ndarray, shape (rows, columns)
-        The page, 0 black to 255 white.
+    paper : Paper
+        The page.
     seeds : sequence of dict
         Scenes that another reader found, tried beside those of the picture.
-    coloured : ndarray, optional
-        Ink of another colour than the type's, which is not in ``grey``.
     copy : Copy, optional
         The program that printed the page, if not the restored listing.
     """
-    if min(grey.shape) < MIN_SIDE:
+    if min(paper.grey.shape) < MIN_SIDE:
         return [], f"it is less than {MIN_SIDE} pixels wide or high"
-    ink = ink_of(grey)
+    ink = ink_of(paper.grey)
     best = _Layout([], "")
     tried: dict[str, None] = {}
-    for layout in _layouts(ink):
+    for layout in _layouts(ink, paper.is_on_side):
         tried[layout.way] = None
         if layout.gain > best.gain:
             best = layout
         if layout.upright:
             break
     leaves = [leaf for on_grid in best.grids for leaf in _ordered_leaves(on_grid, seeds, copy)]
-    _add_marks(ink, coloured, leaves, copy)
+    _add_marks(ink, paper.coloured, leaves, copy)
     return leaves, "tried dark type " + ", ".join(tried) if tried else "it has hardly any ink"
 
 
@@ -195,22 +188,20 @@ class _Layout(NamedTuple):
     @property
     def upright(self) -> bool:
         """True if there is a whole printout, the right way up."""
-        return any(sheet.whole and sheet.gain > _UPRIGHT_GAIN for sheet in self.sheets)
+        return any(sheet.whole and sheet.gain > _LEGIBLE_GAIN for sheet in self.sheets)
 
 
-def _layouts(ink: Image) -> Iterator[_Layout]:
+def _layouts(ink: Image, is_on_side: bool) -> Iterator[_Layout]:
     """Yield the layouts of a page that are tried one after the other.
 
     They are: as it lies, without strokes of a pen, turned by quarters, and then all of these with
     pixels averaged two by two, which removes the grain of bad paper.
     """
-    points = points_of(ink)
-    is_on_side = len(points.x) >= FEWEST_POINTS and skew(points)[1]
     order = [1, 3, 0, 2] if is_on_side else [0, 2, 1, 3]
     right_turn: int | None = None  # a turn in which so much is read that it is the right one
     for fold, turns in product((1, 2), order):
         if turns == order[0]:
-            points = points_of(ink, fold) if fold > 1 else points
+            points = points_of(ink, fold)
             if len(points.x) < FEWEST_POINTS:
                 return
         if right_turn not in (None, turns):
@@ -218,7 +209,7 @@ def _layouts(ink: Image) -> Iterator[_Layout]:
         way = f"turned by {90 * turns} degrees" if turns else "as it lies"
         layout = _lay_out(ink, points, turns, way if fold == 1 else _WITHOUT_GRAIN)
         yield layout
-        if any(sheet.gain > _UPRIGHT_GAIN for sheet in layout.sheets):
+        if any(sheet.gain > _LEGIBLE_GAIN for sheet in layout.sheets):
             right_turn = turns
         if (fold, turns) == (1, order[0]) and layout.grids:
             plain = points_of(without_pen(ink, layout.grids[0].grid.pitch, turns))
@@ -406,7 +397,7 @@ def _read_rows(grid: Grid, leaves: Sequence[Leaf], legible: Sequence[Leaf]) -> R
     """
     for leaf in leaves:
         for row in [*leaf.read.sheet.rows.values()]:
-            if not grid.cut.isdisjoint(range(row.start, row.start + row.used)):
+            if not grid.cut.isdisjoint(row.lines):
                 _drop_cut_row(leaf, row)
     costs = read_numbers(grid, [leaf.read.sheet for leaf in legible])
     for leaf, number_costs in zip(legible, costs, strict=True):
@@ -427,7 +418,7 @@ def _drop_cut_row(leaf: Leaf, row: Row) -> None:
         return
     leaf.read.sheet.rows = {line: other for line, other in rows.items() if other is not row}
     leaf.read.absent.update(names)
-    leaf.cut_lines.update(range(row.start, row.start + row.used))
+    leaf.cut_lines.update(row.lines)
     for name in names:
         leaf.read.costs.pop(name, None)
     if names:
@@ -444,8 +435,7 @@ def _name_foreign_row(leaf: Leaf, row: Row) -> None:
     name = _row_name(leaf.grid, row, names)
     leaf.hurt.append(f"{name} is in another typeface than the rest of the page")
     leaf.judged.overrule(Objection.MORE)
-    lines = range(row.start, row.start + row.used)
-    if all(cell.place.line in lines for cell in leaf.judged.differing):
+    if all(cell.place.line in row.lines for cell in leaf.judged.differing):
         reason = "what differs is in another typeface, and may be another character there"
         leaf.judged.overrule(Objection.MISREAD, reason)
 
@@ -503,7 +493,7 @@ def _drop_wrong_lines(leaf: Leaf) -> bool:
             state(cell)
             for cell in leaf.cells
             if not cell.name and cell.predicted != BLANK
-            if row.start <= cell.place.line < row.start + row.used
+            if cell.place.line in row.lines
         ]
         if states.count("holds") < 0.5 * len(states):
             del sheet.rows[line]

@@ -30,11 +30,11 @@ STRENGTHS = (0.4, 1.3)
 _ROUNDS = 2
 """Iterations of shifting cells onto the means that they form."""
 _SHIFTS = [(y, x) for y in range(2 * SLACK + 1) for x in range(2 * SLACK + 1)]
-_ROWS = 24  # rows of a prototype's picture
-_TOP = 4  # row of a capital's top in it
-_BOTTOM = 20  # row of a capital's foot
+CAPITALS = (4, 20)
+"""Rows of a known digit's picture between which capitals stand; below is as much as above."""
 _READINGS = 2
-"""Iterations of reading the cells of numbers by means of the names they had before."""
+"""Iterations of reading the cells of numbers: the first names are figures alone, and a comma of a
+reply is one of them."""
 _STYLES = 3
 """Number of styles that a page may mix: a printer's type lies between those that are known."""
 _MAX_SPREAD = 1.6
@@ -199,10 +199,11 @@ def _scaled_cells(sample: Sample, typeface: Typeface) -> Vectors:
     inked_rows = np.flatnonzero(profile > 0.25 * profile.max())
     top, foot = float(inked_rows[0]), float(inked_rows[-1] + 1)
     centred = sample.vectors[:, sample.vectors.shape[1] // 2].reshape(-1, height, width)
-    scale = (foot - top) / (_BOTTOM - _TOP)
-    offset = top + (0.5 - _TOP) * scale - 0.5
+    first, last = CAPITALS
+    scale = (foot - top) / (last - first)
+    offset = top + (0.5 - first) * scale - 0.5
     normal: Vectors = ndimage.affine_transform(
-        centred, [1, scale, 1], [0, offset, 0], (len(centred), _ROWS, width),
+        centred, [1, scale, 1], [0, offset, 0], (len(centred), first + last, width),
         order=1, mode="grid-constant",
     )  # fmt: skip
     return normal
@@ -230,12 +231,13 @@ def unlikeness(sample: Sample, typeface: Typeface, styles: int | None = _STYLES)
     cells = ndimage.gaussian_filter(_scaled_cells(sample, typeface), (0, 0.5, 0.5))
     reach = 3
     padded = np.pad(cells, ((0, 0), (reach, reach), (reach, reach)))
-    flat = glyphs.reshape(-1, _ROWS * CELL_WIDTH)
+    rows, width = glyphs.shape[2:]
+    flat = glyphs.reshape(-1, rows * width)
     flat = flat / np.linalg.norm(flat, axis=1, keepdims=True)
     best = np.full((len(cells), len(flat)), -1.0)
     for y in range(0, 2 * reach + 1):
         for x in range(1, 2 * reach):
-            shifted = padded[:, y : y + _ROWS, x : x + CELL_WIDTH].reshape(len(cells), -1)
+            shifted = padded[:, y : y + rows, x : x + width].reshape(len(cells), -1)
             norm = np.maximum(np.linalg.norm(shifted, axis=1, keepdims=True), 1e-3)
             best = np.maximum(best, shifted @ flat.T / norm)
     apart = 1 - best.reshape(len(cells), len(glyphs), len(characters))
@@ -357,12 +359,11 @@ def read_numbers(grid: Grid, sheets: Sequence[Sheet]) -> list[dict[str, Floats]]
     first = _name_clusters(of_numbers, unlike, _MAX_SPREAD * float(usual))
     for cell, k in zip(chosen, first, strict=True):
         names[cell] = NUMERIC[k]
-    costs = np.full((len(chosen), len(READABLE)), np.inf)
     for _ in range(_READINGS):
         typeface = typeface_of(sample, names)
         to_means, strength = distances(of_numbers, typeface.means)
         weak = np.take_along_axis(strength, to_means.argmin(axis=1)[:, None], axis=1) ** 2
-        costs[:] = np.inf
+        costs = np.full((len(chosen), len(READABLE)), np.inf)
         for k, character in enumerate(READABLE):
             if (column := typeface.characters.find(character)) >= 0:
                 costs[:, k] = to_means[:, column]
