@@ -27,7 +27,7 @@ from impact88.printouts.scan.holding import (
 from impact88.printouts.scan.layout import Piece, Place, Row, Sheet
 from impact88.printouts.scan.residue import Explained, Kind, residue_of
 from impact88.printouts.scan.scenes import Candidate, Read
-from impact88.printouts.scan.typeface import prototypes
+from impact88.printouts.scan.typeface import READABLE, prototypes, read_numbers
 
 HEIGHT, COLUMNS, LEADING = 24, 42, 30
 NUMBERS = ["-29.04", "14.52", "25.15", "-13.263", "100904.929", "-.715", "143.5", "3728"]
@@ -46,20 +46,22 @@ def glyph(character: str, style: int = 0) -> Any:
         return known[style, characters.index(character)]
     if character == " ":
         return np.zeros((HEIGHT, CELL_WIDTH))
+    if character == ",":
+        return np.maximum(glyph("."), np.roll(glyph("."), (3, -1), (0, 1)))
     noise = np.random.default_rng(ord(character)).normal(0, 1, (HEIGHT, CELL_WIDTH))
     blot = ndimage.gaussian_filter(noise, 2) > 0.05
     return np.pad(1.0 * blot[4:20, 2:14], ((4, 4), (2, 2)))
 
 
-def compared(
+def drawn_page(
     added: Ink = PLAIN, noise: float = 0.03, typed: str = "", rows_of: Any = ROWS
-) -> tuple[Grid, dict[Place, Cell]]:
-    """The grid of a page of some rows with some ink added, and its cells by place.
+) -> tuple[Grid, Sheet]:
+    """The grid of a page of some rows with some ink added, and the rows on it.
 
     ``typed``: a line below them that is no row.
     """
     random = np.random.default_rng(1988)
-    pictures, rows, fields = [], {}, {}
+    pictures, rows = [], {}
     for line, parts in enumerate([*rows_of, []]):
         text, pieces = "  " + (typed if not parts else ""), []
         for label, number in parts:
@@ -67,7 +69,6 @@ def compared(
                 places = [Place(line, len(text) + k) for k in range(len(part))]
                 pieces.append(Piece(name, part, places))
                 text += part
-            fields[label[:2]] = number
         cells = [
             glyph(character) + added.get(Place(line, at), 0)
             for at, character in enumerate(text.ljust(COLUMNS))
@@ -84,9 +85,28 @@ def compared(
     size = (LEADING * len(pictures), CELL_WIDTH * COLUMNS)
     tops = LEADING / CELL_WIDTH * np.arange(len(pictures))
     grid = Grid(pictures, tops, corners, float(CELL_WIDTH), 1.0, size, 0)
+    return grid, Sheet(rows)
+
+
+def compared(*given: Any, **options: Any) -> tuple[Grid, dict[Place, Cell]]:
+    """The grid of such a page and its cells by place, compared with what was printed."""
+    grid, sheet = drawn_page(*given, **options)
+    fields = {piece.name: piece.text for row in sheet.rows.values() for piece in row.pieces}
     candidate = Candidate({}, SimpleNamespace(fields=fields, ending=None), 0.0)  # type: ignore[arg-type]
-    (cells,) = compare_cells(grid, [(Read(Sheet(rows), {}), candidate)])
+    (cells,) = compare_cells(grid, [(Read(sheet, {}), candidate)])
     return grid, {cell.place: cell for cell in cells}
+
+
+def test_commas_of_a_reply_are_told_from_points() -> None:
+    """Clearly, though the first names are figures alone."""
+    replies = [("A,B,C", "-29.04,0,0"), ("D,E,F", "14.52,25.15,0")]
+    grid, sheet = drawn_page(noise=0.08, rows_of=[*ROWS, *([reply] for reply in replies)])
+    (costs,) = read_numbers(grid, [sheet])
+    for label, reply in replies:
+        read = costs[label[:2]]
+        assert "".join(READABLE[k] for k in read.argmin(axis=1)) == reply
+        commas = [at for at, character in enumerate(reply) if character == ","]
+        assert read[commas, READABLE.index(".")].min() > 2
 
 
 BLANK, LAST = Place(0, 12), Place(0, 11)
