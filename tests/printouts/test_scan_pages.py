@@ -449,7 +449,7 @@ def test_a_digit_pasted_from_elsewhere_on_the_page_differs_and_is_shown() -> Non
     assert result.verdict is Verdict.DIFFERS
     assert EXPLAINED not in "\n".join(lines(result))  # the cells say it
     assert [(one.name, one.same) for one in result.differing] == [(target["field"], False)]
-    assert f"shows {source['predicted']}" in result.findings[0]
+    assert f"shows {source['predicted']!r} where" in result.findings[0]
     shown = report([altered])
     assert "looks like" in shown
     assert "no probability that the page at hand is genuine" in shown
