@@ -14,7 +14,8 @@ from typing import Any
 
 from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES
 from ..reading.differences import Difference, Kind, difference_at, differences_along
-from ..reading.numerals import compare
+from ..reading.glyphs import ILLEGIBLE
+from ..reading.numerals import SPECKS, compare
 from ..reading.printout import Printout, Reading, reading_of
 from ..recovery.recovered import Recovered, reply_candidates, without_mark
 from ..recovery.typedtext import stored_and_printed
@@ -257,6 +258,8 @@ def _fields(paper: Printout, recovered: Recovered) -> list[FieldCheck]:
         elif text is not None:
             path = compare(reading.region, text, reading.cut, reading.sign_free).path
             check.doubts = [*differences_along(paper.page, name, reading.region, text, path)]
+            if not paper.machine_read:
+                check.doubts = _as_typed(check.doubts, reading)
             if name in row and name != ANGLES[0] and not reading.region[0].gap:
                 joint = difference_at(paper.page, Kind.BLANK, name, "", (reading.start,) * 2, "")
                 check.doubts.insert(0, joint)
@@ -269,6 +272,27 @@ def _fields(paper: Printout, recovered: Recovered) -> list[FieldCheck]:
             check.status = Status.CONTRADICTED
         checks.append(check)
     return checks
+
+
+def _as_typed(differences: Sequence[Difference], reading: Reading) -> list[Difference]:
+    """Return a number's differences as they count on a page that no machine read: a character of
+    the keyboard that nobody takes for the printed one, or that stands within the number,
+    contradicts. A look-alike and a speck remain doubts, and so does what stands beside the number,
+    and all of one that has marks for what could not be read."""
+    if any(one.read == ILLEGIBLE for one in differences):
+        return [*differences]
+    other = {at for one in differences for at in range(one.start, one.stop)}
+    own = [glyph.offset for glyph in reading.region if glyph.offset not in other] or [0]
+
+    def is_typed(one: Difference) -> bool:
+        if not one.read.isascii() or one.read in SPECKS:
+            return False
+        is_within = own[0] < one.start < own[-1]
+        return one.kind is Kind.ILLEGIBLE or (one.kind is Kind.LEFT_OVER and is_within)
+
+    return [
+        one._replace(kind=Kind.CONTRADICTS) if is_typed(one) else one for one in differences
+    ]
 
 
 MAX_SHOWN = 30  # characters shown of the text in a number's place
@@ -339,6 +363,8 @@ def _reply(paper: Printout, recovered: Recovered, name: str, reading: Reading) -
     matches = [(part, text, compare(part.region, text)) for part in parts for text in texts]
     part, text, match = min(matches, key=lambda found: found[2].cost)
     differences = [*differences_along(paper.page, name, part.region, text, match.path)]
+    if not paper.machine_read:
+        differences = _as_typed(differences, part)
     check.status, kind = Status.NOT_READ, Kind.ILLEGIBLE
     if any(same_value(text, value) for text, _, _ in reply_candidates(reading)):
         check.status, kind = Status.DOUBTFUL, Kind.LOOK_ALIKE

@@ -57,7 +57,7 @@ _SPECK = COSTS["speck"] / 100  # a mark at the end of a number
 _SLIGHT = COSTS["slight"] / 100  # a blank, or another way to write the number
 LONGEST = 64
 """Glyphs of a number, or of the row of angles, that are read; the rest is left over."""
-_SPECKS = frozenset(".,:;'`|_~-\"“”’‘·•!*°^«»<>=/\\")
+SPECKS = frozenset(".,:;'`|_~-\"“”’‘·•!*°^«»<>=/\\")
 _FULL = frozenset("@©®ØOQDCUZSBGRPYAH$&")
 """Look-alikes of digits that are as large as one."""
 
@@ -184,7 +184,7 @@ def _substitution_cost(region: Glyphs, i: int, printed: str) -> tuple[float, Kin
         return _CONTRADICTION, Kind.CONTRADICTS
     if printed in likely:
         return likely[printed], Kind.LOOK_ALIKE
-    if printed in "-." and char in _SPECKS:
+    if printed in "-." and char in SPECKS:
         return _MARK, Kind.LOOK_ALIKE
     if char in "OQØ©®@IL|!ZSB$&":  # the look-alike of another digit
         return _CONTRADICTION, Kind.CONTRADICTS
@@ -215,7 +215,7 @@ def _extra_cost(
     is_full = char in _FULL and inside and not gap and after and not gap_after
     if char == "-" or is_full or (char == "." and _between_digits(region, i)):
         return _CONTRADICTION - _FOREIGN / 2, Kind.CONTRADICTS
-    is_speck = char == "." or (char in _SPECKS and not inside)
+    is_speck = char == "." or (char in SPECKS and not inside)
     return _SPECK if is_speck else _MARK, Kind.LEFT_OVER
 
 

@@ -574,18 +574,23 @@ def _explanation_lines(result: Verification) -> list[str]:
             entries.append(f"   or, equally well on this page: {cause}")
         last_rank = cause.rank
         entries += [f"   look at {place}" for place in cause.look[:4]]
-    return entries or [*_added_digits(result)] or ["no single slip explains this"]
+    return entries or [*_typed_in(result)] or ["no single slip explains this"]
 
 
-def _added_digits(result: Verification) -> Iterator[str]:
-    """Yield a sentence for each number that has digits after a blank, if nothing else differs."""
+def _typed_in(result: Verification) -> Iterator[str]:
+    """Yield a sentence for each number that has digits after a blank, or that is no number, if
+    nothing else differs."""
     added = []
     for check in result.differing:
         number, blank, digits = (check.printed or "").partition(" ")
-        if not blank or number != check.recomputed or not digits.isdigit():
+        if blank and number == check.recomputed and digits.isdigit():
+            noun = f"a digit {digits} stands" if len(digits) == 1 else f"digits {digits} stand"
+            added.append(f"{noun} after {check.name} {number}, behind a blank")
+        elif check.printed and check.recomputed and value_of(check.printed) is None:
+            program = f"the program prints {check.recomputed}"
+            added.append(f"{check.name} {check.printed} is not a number: {program}")
+        else:
             return
-        noun = f"a digit {digits} stands" if len(digits) == 1 else f"digits {digits} stand"
-        added.append(f"{noun} after {check.name} {number}, behind a blank")
     yield from added
 
 
