@@ -1,19 +1,21 @@
-"""Rows of a page that are exchanged or printed twice, before characters within rows are read.
+"""Rows of a page that are exchanged, printed twice or not the program's, before characters within
+rows are read.
 
 A line whose letters are those of a prompt or of one of the program's labelled rows is that row.
 Where the rows of one page are the program's but for two in each other's place, or one elsewhere,
 they are read in the program's order; a row that is printed a second time, with the same numbers or
 others, is none of the page's. Another printout begins only as the program begins one, or where the
-rows that follow are repeated, too.
+rows that follow are repeated, too. A line of figures without a label is the row of angles, or goes
+on where a full line broke off, or is not the program's.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from decimal import Decimal
 from typing import NamedTuple
 
 from ...collision.fields import ANGLES
-from .alignment import ANGLE_ROW, EXPONENT, HEADING, LINES, PROMPTS
+from .alignment import ANGLE_ROW, EXPONENT, HEADING, LINES, PROMPTS, WORDS
 from .glyphs import Page, letters
 from .numerals import value_of
 
@@ -86,6 +88,8 @@ class Rows(NamedTuple):
         The page's lines in the program's order.
     doubled : set of int
         Glyphs of rows that are printed a second time.
+    foreign : set of int
+        Glyphs of lines of figures that are no rows of the program's.
     repeated : list of Repeated
         Rows that are printed twice.
     exchanged : list of (int, str)
@@ -94,6 +98,7 @@ class Rows(NamedTuple):
 
     order: list[int]
     doubled: set[int]
+    foreign: set[int]
     repeated: list[Repeated]
     exchanged: list[tuple[int, str]]
 
@@ -152,7 +157,43 @@ def find_rows(page: Page) -> Rows:
             exchanged.append((start_of(moved[0]), sentence))
         if moved:
             order = _reordered(order, group)
-    return Rows(order, doubled, repeated, exchanged)
+    foreign = {at for line in _foreign_lines(page, own) for at in page.lines[line]}
+    return Rows(order, doubled, foreign, repeated, exchanged)
+
+
+_WORDS = {word.text for word in WORDS if len(word.text) > 1} | {*re.findall("[A-Z]{2,}", LINES[0])}
+"""Words of labels and of prompts."""
+_REPLY = re.compile("[-+0-9.,E?]+")
+
+
+def _foreign_lines(page: Page, own: Collection[int]) -> Iterator[int]:
+    """Yield the lines of figures without a label that are none of the program's.
+
+    The angles, and what goes on where the line above is full or ends with an equals sign, are.
+    ``own``: lines of the program's.
+    """
+    lines = [line.rstrip() for line in page.text.upper().split("\n")]
+    longest = max(map(len, lines))
+    wanted = 0  # angles that are still to come
+    above = 0
+    for at, line in enumerate(page.lines):
+        place, _ = page.place(page.glyphs[line.start].offset)
+        text, shown = _text(page, line), page.shown(line.start, line.stop).upper()
+        words = {*re.findall("[A-Z]+", EXPONENT.sub("", shown))}
+        figures = [word for word in shown.split() if any(map(str.isdigit, word))]
+        goes_on = lines[above - 1].endswith("=") or (
+            place == above + 1
+            and len(lines[above - 1]) == longest
+            and _REPLY.fullmatch(text) is not None
+        )
+        if "=" in text or not words.isdisjoint(_WORDS):
+            is_heading = len(words.intersection(ANGLES)) > 2
+            wanted = len(ANGLES) - len(figures) if is_heading else 0
+        elif figures and not (wanted > 0 or len(figures) == len(ANGLES) or goes_on or at in own):
+            yield at
+        else:
+            wanted -= len(figures)
+        above = place
 
 
 def _labelled_rows(page: Page) -> Iterator[_Row]:

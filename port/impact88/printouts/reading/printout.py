@@ -768,10 +768,10 @@ def _read_column(text: str) -> tuple[list[Printout], str]:
     read where that is so."""
     page = Page(text)
     rows = find_rows(page)
-    doubled = {page.glyphs[at].offset for at in rows.doubled}
+    left_out = {page.glyphs[at].offset for at in rows.doubled | rows.foreign}
     page.reorder(rows.order)
     budget = Budget()
-    none_of_it = {at for at, glyph in enumerate(page.glyphs) if glyph.offset in doubled}
+    none_of_it = {at for at, glyph in enumerate(page.glyphs) if glyph.offset in left_out}
     printouts, pieces = _printouts(page, budget, none_of_it)
     reason = ""
     if budget.stopped is not None:
