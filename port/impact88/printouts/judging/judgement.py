@@ -13,6 +13,7 @@ from itertools import groupby
 from typing import Any
 
 from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES
+from ..reading.alignment import BEHIND
 from ..reading.differences import Difference, Kind, difference_at, differences_along
 from ..reading.glyphs import ILLEGIBLE
 from ..reading.numerals import SPECKS, compare
@@ -256,7 +257,8 @@ def _fields(paper: Printout, recovered: Recovered) -> list[FieldCheck]:
         if reading is None:
             check.status = Status.NOT_READ
         elif text is not None:
-            path = compare(reading.region, text, reading.cut, reading.sign_free).path
+            is_cut = reading.cut or _is_cut(paper, name, reading)
+            path = compare(reading.region, text, is_cut, reading.sign_free).path
             check.doubts = [*differences_along(paper.page, name, reading.region, text, path)]
             if not paper.machine_read:
                 check.doubts = _as_typed(check.doubts, reading)
@@ -272,6 +274,16 @@ def _fields(paper: Printout, recovered: Recovered) -> list[FieldCheck]:
             check.status = Status.CONTRADICTED
         checks.append(check)
     return checks
+
+
+def _is_cut(paper: Printout, name: str, reading: Reading) -> bool:
+    """Return True for a number at a line's end that lacks the mark that the program prints behind
+    it, too."""
+    ends_line = not paper.page.text[reading.region[-1].offset + 1 :].partition("\n")[0].strip()
+    return ends_line and any(
+        mark.name == name and mark.kind is Kind.MISSING and mark.printed in BEHIND
+        for mark in paper.labels
+    )
 
 
 def _as_typed(differences: Sequence[Difference], reading: Reading) -> list[Difference]:

@@ -227,6 +227,8 @@ def _transitions() -> _Transitions:
         elif state.name == "=" or (state.kind == "letter" and state.name.isalpha()):
             labels_of.setdefault(state.line, []).append(place)
     for line, places in labels_of.items():
+        is_later = [place for place in places if STATES[place - 1].kind != "between"]
+        jumps[Gap.LINE][:, is_later] += COSTS["label goes on a new line"]
         if line in numbers_of:
             jumps[Gap.NONE][np.ix_(numbers_of[line], places)] += COSTS["label without gap"]
     may_end = [place for place, state in enumerate(STATES) if _may_end(state) or not place]

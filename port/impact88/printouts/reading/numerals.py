@@ -201,7 +201,8 @@ def _extra_cost(
         char == "0" and j < 2 and printed[j : j + 1] == "." == after and not gap_after
     ):
         return _SLIGHT, Kind.OTHER_FORM
-    if (char.isdigit() or char == ".") and j == len(printed) and _in_a_note(region, i):
+    is_below = any(glyph_gap is Gap.LINE for _, glyph_gap in region[1 : i + 1])
+    if j == len(printed) and (is_below if char == "." else _in_a_note(region, i)):
         return _SPECK, Kind.LEFT_OVER
     if char.isdigit():
         return _CONTRADICTION, Kind.CONTRADICTS

@@ -10,18 +10,20 @@ on where a full line broke off, or is not the program's.
 """
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from typing import NamedTuple
 
 from ...collision.fields import ANGLES
 from .alignment import ANGLE_ROW, EXPONENT, HEADING, LINES, PROMPTS, WORDS
-from .glyphs import Page, letters
+from .glyphs import Page, label_cost, letters
 from .numerals import value_of
 
 _MIN_ROWS = 6
-"""Rows of a page from which one that is out of order was exchanged; fewer are a fragment, and what
-follows may be another printout."""
+"""Rows of a page from which one that is out of order was exchanged, and a line of figures is none
+of the program's; fewer are a fragment, what follows may be another printout, and the labels may
+have been misread."""
+_LIKE_STAR = 40  # cost below which a glyph may be a misread asterisk
 _STARS = LINES.index("*****")  # the row of asterisks above the results
 _LABELLED_NUMBER = re.compile("=(.*?)(?=[A-Z%()]|$)")
 
@@ -157,20 +159,35 @@ def find_rows(page: Page) -> Rows:
             exchanged.append((start_of(moved[0]), sentence))
         if moved:
             order = _reordered(order, group)
-    foreign = {at for line in _foreign_lines(page, own) for at in page.lines[line]}
+    foreign: set[int] = set()
+    if len({row.number for row in rows}) >= _MIN_ROWS:
+        foreign |= {at for line in _foreign_lines(page) for at in page.lines[line]}
     return Rows(order, doubled, foreign, repeated, exchanged)
 
 
 _WORDS = {word.text for word in WORDS if len(word.text) > 1} | {*re.findall("[A-Z]{2,}", LINES[0])}
 """Words of labels and of prompts."""
-_REPLY = re.compile("[-+0-9.,E?]+")
+_LABELS_AS_READ = _WORDS | {f"{word}S" for word in _WORDS}
+"""The same with the equals sign read as S."""
+_REST_OF_ROW = re.compile("[-+0-9.,E?)%/:]+")
+_REST = 6  # glyphs of a row that a narrow page may have put on a line of its own
 
 
-def _foreign_lines(page: Page, own: Collection[int]) -> Iterator[int]:
+def is_stars(page: Page, line: range) -> bool:
+    """Return True for a line of glyphs that may be a row of asterisks."""
+    return len(line) <= len("*****") + 2 and 2 * _stars(_text(page, line)) > len(line)
+
+
+def _stars(text: str) -> int:
+    """Return the number of glyphs that may be asterisks."""
+    return sum(label_cost("*", char) < _LIKE_STAR for char in text)
+
+
+def _foreign_lines(page: Page) -> Iterator[int]:
     """Yield the lines of figures without a label that are none of the program's.
 
-    The angles, and what goes on where the line above is full or ends with an equals sign, are.
-    ``own``: lines of the program's.
+    The angles, and what goes on where the line above is full or ends with an equals sign or a few
+    figures stand right below it, are.
     """
     lines = [line.rstrip() for line in page.text.upper().split("\n")]
     longest = max(map(len, lines))
@@ -183,13 +200,15 @@ def _foreign_lines(page: Page, own: Collection[int]) -> Iterator[int]:
         figures = [word for word in shown.split() if any(map(str.isdigit, word))]
         goes_on = lines[above - 1].endswith("=") or (
             place == above + 1
-            and len(lines[above - 1]) == longest
-            and _REPLY.fullmatch(text) is not None
+            and (len(lines[above - 1]) == longest or len(text) <= _REST)
+            and _REST_OF_ROW.fullmatch(text) is not None
         )
-        if "=" in text or not words.isdisjoint(_WORDS):
+        if "=" in text or not words.isdisjoint(_LABELS_AS_READ):
             is_heading = len(words.intersection(ANGLES)) > 2
             wanted = len(ANGLES) - len(figures) if is_heading else 0
-        elif figures and not (wanted > 0 or len(figures) == len(ANGLES) or goes_on or at in own):
+        elif figures and not (
+            wanted > 0 or len(figures) == len(ANGLES) or goes_on or 2 * _stars(text) > len(text)
+        ):
             yield at
         else:
             wanted -= len(figures)

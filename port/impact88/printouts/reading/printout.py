@@ -32,7 +32,7 @@ from .alignment import (
     letter_of,
 )
 from .differences import Difference, Kind, difference_at
-from .glyphs import Gap, Page, Region, label_cost, letters, plain_glyphs
+from .glyphs import Gap, Page, Region, letters, plain_glyphs
 from .labels import (
     asterisk_note,
     form_note,
@@ -42,7 +42,7 @@ from .labels import (
     weigh_labels,
     words_before,
 )
-from .pagerows import find_rows
+from .pagerows import find_rows, is_stars
 
 LARGEST_FILE = 2_000_000
 """Bytes of the largest file that is read: some 2,500 printouts."""
@@ -81,8 +81,8 @@ class Reading:
     region : tuple of Glyph
         Its glyphs.
     cut : bool
-        True if it stands at the end of the text, or of a line as wide as the page, so that more of
-        it may be lost.
+        True if it stands at the end of the text, or of a line as wide as the page that does not go
+        on below, so that more of it may be lost.
     sign_free : bool
         True if a minus before it may be the damaged equals sign of the label.
     """
@@ -639,7 +639,8 @@ def reading_of(page: Page, region: Region, sign_free: bool = False) -> Reading |
         return None
     begin, end = region[0].offset, region[-1].offset + 1
     cut = region[-1].offset == page.glyphs[-1].offset and end == len(page.text)
-    cut = cut or page.place(end - 1)[1] == page.width
+    goes_on = re.match(r"\n[^\n]*\S", page.text[end : end + 2 * page.width + 2])
+    cut = cut or (page.place(end - 1)[1] == page.width and not goes_on)
     return Reading(text, *page.place(begin), begin, end, region, cut, sign_free)
 
 
@@ -905,8 +906,7 @@ def _keep_left_over(page: Page, found: Sequence[Printout], apart: set[int]) -> N
     for line in page.lines:
         kinds = [roles.get(index) for index in line]
         numbers = [index for index in line if index in fields]
-        alike = sum(label_cost("*", page.glyphs[index].char) < 40 for index in line)
-        stars = len(line) <= len("*****") + 2 and 2 * alike > len(line)
+        stars = is_stars(page, line)
         is_whole = not (numbers or stars or 2 * kinds.count("exact") >= len(kinds))
         loose = [at for at in line if is_whole or at not in roles]
         for _, pairs in groupby(enumerate(loose), lambda pair: pair[1] - pair[0]):

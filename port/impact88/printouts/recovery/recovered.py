@@ -94,15 +94,13 @@ def recover(shown: Printout, given: Mapping[str, str] | None = None) -> Recovere
     search = Search(_evidence(shown, typed))
     best = search.best(columns)
     unconvincing = len(best.wrong) > MAX_WRONG_RESULTS
-    if unconvincing:
-        # a mark for illegible text may stand for any number of characters, and so may the edge
-        # that a number ends at
-        open_ended = (
-            name
-            for name, field in shown.fields.items()
-            if field.cut or set(letters(field.region)) == {"?"}
+    cut = {scene_name(name) for name in shown.fields if name in INPUTS and shown.fields[name].cut}
+    lost |= cut - set(given) if best.wrong else set()
+    if unconvincing:  # a mark for illegible text may stand for any number of characters
+        marks = (
+            name for name, field in shown.fields.items() if set(letters(field.region)) == {"?"}
         )
-        lost |= {scene_name(name) for name in open_ended if name in INPUTS} - set(given)
+        lost |= {scene_name(name) for name in marks if name in INPUTS} - set(given)
     missing = [name for name in map(scene_name, INPUTS) if name in lost]
     outcome = _independent_of(missing, best.scene, best.outcome) if missing else best.outcome
     m_unknown = not (missing or shown.has_final_spins or shown.ending)
