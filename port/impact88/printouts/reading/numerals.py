@@ -47,7 +47,7 @@ class Match(NamedTuple):
 Glyphs = tuple[tuple[str, Gap], ...]
 """Glyphs and the gaps before them."""
 
-_PRINTABLE = re.compile(r"-?(?:0|[1-9][0-9]*|(?=[.]))(?:[.][0-9]*[1-9])?(?:E[+-][0-9]{2})?")
+_PRINTABLE = re.compile(r"-?(?:0(?![.])|[1-9][0-9]*|(?=[.]))(?:[.][0-9]*[1-9])?(?:E[+-][0-9]{2})?")
 NUMBER = re.compile(r"[+-]?(?=[.]?[0-9])[0-9]*(?:[.][0-9]*)?(?:E[+-]?[0-9]{1,2})?")
 
 _CONTRADICTION = COSTS["contradiction"] / 100  # a figure for another figure, or for none
@@ -57,6 +57,8 @@ _SPECK = COSTS["speck"] / 100  # a mark at the end of a number
 _SLIGHT = COSTS["slight"] / 100  # a blank, or another way to write the number
 LONGEST = 64
 """Glyphs of a number, or of the row of angles, that are read; the rest is left over."""
+POINTS = frozenset(".,")
+"""Decimal points, as people write them."""
 SPECKS = frozenset(".,:;'`|_~-\"“”’‘·•!*°^«»<>=/\\")
 _FULL = frozenset("@©®ØOQDCUZSBGRPYAH$&")
 """Look-alikes of digits that are as large as one."""
@@ -108,11 +110,12 @@ _CLASSIC = frozenset("OQILSZB")
 def note_start(region: Region) -> int:
     """Return where a note typed beside a clean number begins, the region's length if none does.
 
-    A note follows a gap and opens with a bracket or a word: ``-13.263 (WRONG: 31.2)``. A figure
-    right after a blank may be the number's own.
+    A note follows a gap and opens with a bracket or a word, ``-13.263 (WRONG: 31.2)``, or stands
+    below. A figure right after a blank may be the number's own.
     """
     at = next((at for at, glyph in enumerate(region[:LONGEST]) if at and glyph.gap), 0)
-    has_note = at and clean(region[:at]) and _is_note(region[at:])
+    is_below = region[at].gap is Gap.LINE and not NUMERIC.issuperset(letters(region[at:]))
+    has_note = at and clean(region[:at]) and (is_below or _is_note(region[at:]))
     return at if has_note else len(region)
 
 
@@ -198,7 +201,7 @@ def _extra_cost(
     char, gap = region[i]
     after, gap_after = region[i + 1] if i + 1 < len(region) else ("", Gap.NONE)
     if (char == "+" and after and j == 0) or (
-        char == "0" and j < 2 and printed[j : j + 1] == "." == after and not gap_after
+        char == "0" and j < 2 and printed[j : j + 1] == "." and after in POINTS and not gap_after
     ):
         return _SLIGHT, Kind.OTHER_FORM
     is_below = any(glyph_gap is Gap.LINE for _, glyph_gap in region[1 : i + 1])
