@@ -335,17 +335,23 @@ def _compare_mark(
 
 
 def _broken_asterisks(
-    page: Page, places: Mapping[int, int], slots: Container[str]
+    page: Page, places: Mapping[int, int], slots: Mapping[str, tuple[int, int]]
 ) -> Iterator[Difference]:
     """Yield the rows of asterisks of which some are not on the page, or another character stands
-    among them."""
+    among them; and the row that is missing where the other is on the page."""
+    read_at = {
+        row: [places[state] for state in _asterisks(row) if state in places] for row in _STARS
+    }
     for row, (field, _) in _STARS.items():
-        own = _asterisks(row)
-        at = [places[state] for state in own if state in places]
+        printed = "*" * len(_asterisks(row))
+        at = read_at[row]
         read = letters(page.glyphs[index] for index in at)
-        if field in slots and at and read != "*" * len(own):
-            span = page.span(at[0], at[-1] + 1)
-            yield difference_at(page, Kind.LOOK_ALIKE, field, "*" * len(own), span, read)
+        if field not in slots or read == printed or not any(read_at.values()):
+            continue
+        beside = page.span(*slots[field])[row == STARS]
+        span = page.span(at[0], at[-1] + 1) if at else (beside, beside)
+        kind = Kind.LOOK_ALIKE if at else Kind.MISSING
+        yield difference_at(page, kind, field, printed, span, read)
 
 
 def form_note(marks: Sequence[Difference]) -> list[str]:

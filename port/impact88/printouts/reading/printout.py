@@ -444,6 +444,7 @@ class Printout:
         for side, names in REPLIES.items():
             if slot := self._slots.get(f"REPLY_{side}"):
                 self._read_reply(names, slot[0])
+        self._remark_on_prompts()
         if ANGLES_ROW in self._slots:
             start, stop = self._slots[ANGLES_ROW]
             row = self.page.shown(start, stop)
@@ -569,6 +570,17 @@ class Printout:
         line, column = self.page.place(self.page.glyphs[index].offset)
         quoted_text = "" if read is None else repr(read if len(read) <= 30 else read[:27] + "...")
         self.remarks.append(f"line {line}, column {column}: {name}: {quoted_text}{message}")
+
+    def _remark_on_prompts(self) -> None:
+        """Add a remark on a prompt that has no reply, and on one that is missing where the other is
+        on the page."""
+        letters_read = Counter(line for line in self._exact.values() if line in range(PROMPTS))
+        for line, (side, names) in enumerate(REPLIES.items()):
+            if letters_read[line] >= _PROMPT_LETTERS and names[0] not in self.replies:
+                if f"REPLY_{side}" not in self._slots:
+                    self.remarks.append(f"no reply at the prompt of M{side}")
+            elif letters_read.total() >= _PROMPT_LETTERS and not letters_read[line]:
+                self.remarks.append(f"the prompt of M{side} is missing")
 
     def _read_reply(self, names: Sequence[str], start: int) -> None:
         """Read the three numbers typed at a prompt, after any that INPUT refused."""

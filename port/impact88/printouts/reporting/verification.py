@@ -536,6 +536,8 @@ def _by_line(differences: Sequence[Difference]) -> dict[int, list[Difference]]:
 
 
 def _of_number(mark: Difference) -> str:
+    if mark.printed.startswith("*"):
+        return f"row of asterisks beside {mark.name}"
     return f"{mark.printed!r} of {mark.name if mark.name in FIELDS else 'the prompt'}"
 
 
