@@ -10,7 +10,7 @@ import unicodedata
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import groupby, pairwise
+from itertools import groupby, pairwise, zip_longest
 
 from ...apple.applesoft.errorcodes import CODES
 from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, REPLIES, ZERO_DETERMINANT
@@ -64,6 +64,7 @@ The program's labels have three letters a number at most but on the line of the 
 _PROMPT_LETTERS = 25
 """Letters of a prompt, half of all, from which it counts as read."""
 _TYPED = frozenset("0123456789.,-+EOILQ?")
+_REPLY_SLOTS = tuple(f"REPLY_{side}" for side in REPLIES)
 _SLOT_COMMAND = re.compile(r"PR#[0-9]")
 """Output of line 610 where no DOS takes it for a command."""
 
@@ -342,18 +343,26 @@ class Printout:
 
     @property
     def number_starts(self) -> list[int]:
-        """The first glyphs of its numbers; all its glyphs where it has none."""
-        return [start for start, _ in self._slots.values()] or [*self._states]
+        """The first glyphs of its printed numbers; all its glyphs where it has none."""
+        printed = [start for name, (start, _) in self._slots.items() if name not in _REPLY_SLOTS]
+        return printed or [*self._states]
+
+    def is_piece(self, below: "Printout | None") -> bool:
+        """Return True for what is no page of the program's, but a row or two.
+
+        It does not begin as a page does, with the first prompt or a row of masses whose first label
+        is read as printed; or the page that it begins goes on in the printout ``below``.
+        """
+        masses = {self._letter(at) for at, line in self._exact.items() if line == PROMPTS}
+        begins = self._has_first_prompt or masses.issuperset("MA")
+        goes_on = below and len(below.fields) >= _MIN_NUMBERS and not below._has_first_prompt
+        is_whole = begins and not (self._has_first_prompt and goes_on)
+        rows = {STATES[self._states[at]].line for at in self.number_starts} - {*range(PROMPTS)}
+        return not (self.ending or is_whole) and len(rows) < _MIN_ROWS
 
     @property
-    def is_piece(self) -> bool:
-        """True if it is no page of the program's, but a row or two.
-
-        It does not begin as a page does, with the first prompt or the row of masses.
-        """
-        lines = {STATES[state].line for state in self._states.values() if state}
-        rows = {STATES[self._states[at]].line for at in self.number_starts} - {0, 1}
-        return not (self.ending or lines & {0, PROMPTS}) and len(rows) < _MIN_ROWS
+    def _has_first_prompt(self) -> bool:
+        return any(self._line(at) == 0 for at in self._states)
 
     @property
     def signs_of_reader(self) -> int:
@@ -590,9 +599,13 @@ class Printout:
         }  # one may lack its label
         while (
             stop not in other_starts
-            and self._states.get(stop)
+            and (state := self._states.get(stop))
             and (not self._letter(stop) or self._line(stop) == line)
         ):
+            # what the Apple answers begins with a question mark
+            is_below = STATES[state].kind == "between" and glyphs[stop].gap is Gap.LINE
+            if is_below and glyphs[stop].char != "?":
+                break
             stop += 1
         parts, echoed = _reply_parts(glyphs[start:stop])
         # a prompt's end whose mark was not read, before what is printed below
@@ -855,10 +868,10 @@ def _printouts(
         if notes := _note_glyphs(page, start, stop, parts):
             parts = [*align(page.glyphs, start, stop, budget, notes | commands)]
         readable = [printout for part in parts if (printout := Printout(page, part)).read()]
-        apart = [printout for printout in readable if printout.is_piece]
+        apart = [one for one, below in zip_longest(readable, readable[1:]) if one.is_piece(below)]
         if apart and len(apart) < len(readable):
             pieces += apart
-            taken = {at for piece in apart for at in page.lines_of(piece.number_starts)}
+            taken = page.lines_of(at for piece in apart for at in piece.number_starts)
             parts = [*align(page.glyphs, start, stop, budget, notes | commands | taken)]
             readable = [printout for part in parts if (printout := Printout(page, part)).read()]
         if message and readable:
