@@ -135,3 +135,53 @@ def test_nothing_is_said_of_results_that_are_not_there(mass: str) -> None:
             said = "\n".join(lines(result))
             assert "results are those" not in said
             assert "recomputed: no error" not in said
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "verdict"),
+    [
+        ("VAX= -13.263", "VAX= -13A.263", Verdict.DIFFERS),
+        ("VAX= -13.263", "VAX= -1K.263", Verdict.DIFFERS),
+        ("-29.04,0,0", "-2K.04,0,0", Verdict.DIFFERS),
+        ("VAX= -13.263", "VAX= -13.26O", Verdict.DIFFERS),
+        ("KE= 100904.929", "KE= 1O0904.929", Verdict.IDENTICAL_AS_READ),
+        ("KE= 100904.929", "KE= 100,904.929", Verdict.IDENTICAL_AS_READ),
+        ("VAX= -13.263", "VAX= -13.263G", Verdict.IDENTICAL_AS_READ),
+        ("VAX= -13.263", "VAX= -?3.263", Verdict.IDENTICAL_AS_READ),
+    ],
+)
+def test_a_letter_typed_into_a_number_contradicts(old: str, new: str, verdict: Verdict) -> None:
+    """On a page with signs of an optical reader it is a doubt."""
+    (result,) = check(PAGE.replace(old, new))
+    assert result.verdict is verdict
+    read = PAGE.replace("INITIAL KE", "1N1T1AL KE").replace("COMPONENTS", "C0MP0NENT5")
+    (result,) = check(read.replace(old, new))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("?-29.04,0,0", "?", "no reply at the prompt of MA"),
+        ("?14.52,25.15,0", "?", "no reply at the prompt of MB"),
+        ("ENTER THE INITIAL VELOCITY COMPONENTS OF MA :Vax,Vay,Wa ?-29.04,0,0\n", "", "of MA is"),
+        (
+            "ENTER THE INITIAL VELOCITY COMPONENTS OF MB :Vbx,Vby,Wb ?14.52,25.15,0\n",
+            "",
+            "of MB is",
+        ),
+    ],
+)
+def test_a_prompt_or_reply_that_is_missing_is_told(old: str, new: str, told: str) -> None:
+    (result,) = check(PAGE.replace(old, new))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert any(told in remark for remark in result.remarks)
+    (result,) = check(PAGE[PAGE.index("MA= ") :])  # retyped without prompts
+    assert result.verdict is Verdict.IDENTICAL
+
+
+def test_decimal_commas_behind_a_zero_are_points() -> None:
+    page = PAGE[PAGE.index("MA= ") :].replace(" .", " 0.").replace("-.", "-0.").replace(".", ",")
+    (result,) = check(page)
+    assert "MU= 0,911" in page
+    assert result.verdict is Verdict.IDENTICAL_AS_READ

@@ -200,3 +200,50 @@ def test_rows_of_fresh_pages_are_named() -> None:
     for page in dressedpages.fresh_pages(printouts.SWEEP or 2, seed=21):
         result = one(exchanged(page, "VAX=", "VBX="))
         assert [cause.kind for cause in result.explanations] == ["rows exchanged"]
+
+
+NOTES = ("3 April 1989", "FAX 219-555-0142  P.02", "No. 4711", "$ 150.00", "- 12 -")
+
+
+@pytest.mark.parametrize("below", FIRST[:-1])
+def test_a_line_of_figures_between_rows_is_no_part_of_a_number(below: str) -> None:
+    note = NOTES[FIRST.index(below) % len(NOTES)]
+    rows, at = rows_of(PAGE)
+    rows.insert(at[below] + 1 + (below == " PA"), f"\n{note}")
+    result = one("\n".join(rows))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert f"does not belong to the program's page: {' '.join(note.split())}" in "\n".join(
+        lines(result)
+    )
+
+
+def test_an_altered_number_beside_a_line_of_figures_differs() -> None:
+    page = PAGE.replace("DB= 3.44", "DB= 3.45\n\n3 April 1989")
+    assert one(page).verdict is Verdict.DIFFERS
+
+
+@pytest.mark.parametrize("width", [33, 40])
+def test_figures_of_a_narrow_page_go_on_below(width: int) -> None:
+    rows = (re.sub(f"(.{{{width}}})(?=.)", r"\1\n", row) for row in PAGE.split("\n"))
+    assert one("\n".join(rows)).verdict is Verdict.IDENTICAL
+
+
+@pytest.mark.parametrize("added", ["EA= 55", "\n\nVAX= -12.1 VAY= 4.2"])
+def test_numbers_of_something_else_begin_no_other_printout(added: str) -> None:
+    result = one(PAGE.replace("14.52,25.15,0", f"14.52,25.15,0 {added}"))
+    assert result.verdict in (Verdict.IDENTICAL_AS_READ, Verdict.DIFFERS)
+
+
+def test_a_page_cut_at_the_right_accuses_nothing() -> None:
+    """The last angle is cut to -3, and the results that depend on it do not contradict."""
+    angles = next(row for row in PAGE.split("\n") if row.endswith("-30"))
+    cut = "\n".join(row[: len(angles) - 1] for row in PAGE.split("\n"))
+    result = one(cut)
+    assert result.verdict is Verdict.INCOMPLETE
+    assert "GA" in result.missing
+
+
+def test_a_last_digit_that_is_missing_on_one_line_differs() -> None:
+    assert one(PAGE.replace("-30\n", "-3\n")).verdict is Verdict.DIFFERS
+    assert one(PAGE.replace("15.91)", "15.9)")).verdict is Verdict.DIFFERS
+    assert one(PAGE.replace("15.91)", "15.9")).verdict is Verdict.INCOMPLETE

@@ -302,9 +302,7 @@ def _as_typed(differences: Sequence[Difference], reading: Reading) -> list[Diffe
         is_within = own[0] < one.start < own[-1]
         return one.kind is Kind.ILLEGIBLE or (one.kind is Kind.LEFT_OVER and is_within)
 
-    return [
-        one._replace(kind=Kind.CONTRADICTS) if is_typed(one) else one for one in differences
-    ]
+    return [one._replace(kind=Kind.CONTRADICTS) if is_typed(one) else one for one in differences]
 
 
 MAX_SHOWN = 30  # characters shown of the text in a number's place

@@ -186,8 +186,8 @@ def _stars(text: str) -> int:
 def _foreign_lines(page: Page) -> Iterator[int]:
     """Yield the lines of figures without a label that are none of the program's.
 
-    The angles, and what goes on where the line above is full or ends with an equals sign or a few
-    figures stand right below it, are.
+    The angles are, and what INPUT asked again for; and what goes on where the line above is full or
+    ends with an equals sign, or a few figures stand right below it.
     """
     lines = [line.rstrip() for line in page.text.upper().split("\n")]
     longest = max(map(len, lines))
@@ -198,10 +198,14 @@ def _foreign_lines(page: Page) -> Iterator[int]:
         text, shown = _text(page, line), page.shown(line.start, line.stop).upper()
         words = {*re.findall("[A-Z]+", EXPONENT.sub("", shown))}
         figures = [word for word in shown.split() if any(map(str.isdigit, word))]
-        goes_on = lines[above - 1].endswith("=") or (
-            place == above + 1
-            and (len(lines[above - 1]) == longest or len(text) <= _REST)
-            and _REST_OF_ROW.fullmatch(text) is not None
+        goes_on = (
+            text.startswith("?")
+            or lines[above - 1].endswith("=")
+            or (
+                place == above + 1
+                and (len(lines[above - 1]) == longest or len(text) <= _REST)
+                and _REST_OF_ROW.fullmatch(text) is not None
+            )
         )
         if "=" in text or not words.isdisjoint(_LABELS_AS_READ):
             is_heading = len(words.intersection(ANGLES)) > 2
