@@ -297,7 +297,7 @@ def _as_typed(differences: Sequence[Difference], reading: Reading) -> list[Diffe
     own = [glyph.offset for glyph in reading.region if glyph.offset not in other] or [0]
 
     def is_typed(one: Difference) -> bool:
-        if not one.read.isascii() or one.read in SPECKS:
+        if not (one.read.isascii() and one.read.isprintable()) or one.read in SPECKS:
             return False
         is_within = own[0] < one.start < own[-1]
         return one.kind is Kind.ILLEGIBLE or (one.kind is Kind.LEFT_OVER and is_within)
