@@ -351,7 +351,17 @@ class Printout:
         """Return True for what is no page of the program's, but a row or two.
 
         It does not begin as a page does, with the first prompt or a row of masses whose first label
-        is read as printed; or the page that it begins goes on in the printout ``below``.
+        is read as printed; or the page that it begins goes on in the printout below it.
+
+        Parameters
+        ----------
+        below : Printout or None
+            The printout that follows, None for the last.
+
+        Returns
+        -------
+        bool
+            True for a piece.
         """
         masses = {self._letter(at) for at, line in self._exact.items() if line == PROMPTS}
         begins = self._has_first_prompt or masses.issuperset("MA")
