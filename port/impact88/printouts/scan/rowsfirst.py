@@ -38,10 +38,10 @@ _MIN_SHARE = 0.7  # smallest gain of a line of print, relative to that of its in
 
 _SMOOTHING = 1.5
 """Standard deviation of the smoothing of glyphs before their differences are taken, pixels."""
-FOREIGN = 0.01
+_FOREIGN = 0.01
 """Smallest fraction of a row's ink that the page's glyphs leave unexplained in another typeface:
 rows in the same one have up to 0.006 on pages whose other rows have hardly any."""
-FOREIGN_RATIO = 3.0
+_FOREIGN_RATIO = 3.0
 """Smallest ratio of it to that of the row that is next: genuine pages have up to 2.8, those with a
 row in another typeface mostly 6 to 1,000, and up to 2 if the two can hardly be told apart."""
 _OWN_RATIO = 0.5
@@ -337,7 +337,7 @@ def foreign_row(grid: Grid, reads: Sequence[Read]) -> Row | None:
     by_rest = unexplained(is_other[first])
     second = max(fraction for row, fraction in enumerate(by_rest) if row != first)
     is_foreign = (
-        by_all[first] > max(FOREIGN, FOREIGN_RATIO * second)
+        by_all[first] > max(_FOREIGN, _FOREIGN_RATIO * second)
         and abs(cells.rises[first]) <= _MAX_RISE
         and cells.unexplained_within(first) < _OWN_RATIO * by_all[first]
     )
