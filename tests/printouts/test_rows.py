@@ -247,3 +247,11 @@ def test_a_last_digit_that_is_missing_on_one_line_differs() -> None:
     assert one(PAGE.replace("-30\n", "-3\n")).verdict is Verdict.DIFFERS
     assert one(PAGE.replace("15.91)", "15.9)")).verdict is Verdict.DIFFERS
     assert one(PAGE.replace("15.91)", "15.9")).verdict is Verdict.INCOMPLETE
+
+
+@pytest.mark.parametrize(("second", "verdict"), [("60", "IDENTICAL_AS_READ"), ("61", "DIFFERS")])
+def test_a_second_row_of_angles_is_told(second: str, verdict: str) -> None:
+    angles = next(row for row in PAGE.split("\n") if row.endswith("-30"))
+    result = one(PAGE.replace(angles, f"{angles}\n{angles.replace('60', second)}"))
+    assert result.verdict.name == verdict
+    assert "is printed a second time" in "\n".join(lines(result))

@@ -17,7 +17,7 @@ from typing import NamedTuple
 from ...collision.fields import ANGLES
 from .alignment import ANGLE_ROW, EXPONENT, HEADING, LINES, PROMPTS, WORDS
 from .glyphs import Page, label_cost, letters
-from .numerals import value_of
+from .numerals import is_number, value_of
 
 _MIN_ROWS = 6
 """Rows of a page from which one that is out of order was exchanged, and a line of figures is none
@@ -220,15 +220,21 @@ def _foreign_lines(page: Page) -> Iterator[int]:
 
 
 def _labelled_rows(page: Page) -> Iterator[_Row]:
-    for number, line in enumerate(page.lines):
-        text = _text(page, line)
+    texts = [_text(page, line) for line in page.lines]
+    is_angles = [not _letters_of(text) and {*text} != {"*"} for text in texts]
+    end_of_angles = -1  # line below the angles
+    for number, text in enumerate(texts):
         row = _ROWS.get(_letters_of(text))
         if row is not None:
             stop = number + 1
-            if row == HEADING and stop < len(page.lines):
-                angles = _text(page, page.lines[stop])
-                stop += not _letters_of(angles) and {*angles} != {"*"}
+            if row == HEADING and stop < len(texts):
+                stop += is_angles[stop]
+                end_of_angles = stop if is_angles[number + 1] else -1
             yield _Row(row, number, range(number, stop))
+        elif number == end_of_angles and is_angles[number]:
+            figures = page.shown(page.lines[number].start, page.lines[number].stop).split()
+            if len(figures) == len(ANGLES) and all(map(is_number, figures)):
+                yield _Row(HEADING, number, range(number, number + 1))  # the angles once more
 
 
 def _told_otherwise(
@@ -262,7 +268,8 @@ def _numbers(page: Page, row: _Row) -> list[str]:
     if row.number == HEADING:
         return [
             text
-            for at in row.lines[1:]
+            for at in row.lines
+            if not _letters_of(_text(page, page.lines[at]))
             for text in page.shown(page.lines[at].start, page.lines[at].stop).split()
         ]
     text = _text(page, page.lines[row.line])

@@ -318,6 +318,9 @@ def summary(result: Verification) -> list[str]:
             verb = "1 typed line gives" if lines == 1 else f"{lines} typed lines give"
             sentences.append(f"{verb} numbers that are not the page's")
     elif verdict is Verdict.IDENTICAL_AS_READ:
+        if replies := sum(check.same is None for check in result.replies):
+            noun = "reply at a prompt is" if replies == 1 else "replies at prompts are"
+            sentences.append(f"{replies} {noun} not read exactly")
         sentences.append(MEANINGS[verdict])
         sentences += _foreign_lines(result)
     if verdict in (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ):
@@ -484,6 +487,10 @@ def _doubts(check: FieldCheck) -> Iterator[str]:
         if doubt.kind in _DOUBTS:
             words = {**doubt._asdict(), "program": check.recomputed or "", "whole": check.printed}
             sentence = _DOUBTS[doubt.kind].format(**words)
+            if doubt.kind is Kind.ILLEGIBLE and not doubt.read:
+                sentence = "not read where the program prints {printed!r} ({program})".format(
+                    **words
+                )
             yield f"line {doubt.line}, column {doubt.column}: {check.name} {sentence}"
 
 
