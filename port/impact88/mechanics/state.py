@@ -155,8 +155,8 @@ class State:
 
     @property
     def slip_changes(self) -> tuple[Any, Any]:
-        """What the normal and the moment impulse add to the sliding velocity, and what a unit of
-        the tangential impulse adds."""
+        """Changes of the sliding velocity by the normal and the moment impulse, and by a unit of
+        the tangential impulse."""
         here, (pn, _, moment) = self.here, self.impulse
         a, b = here.inverse_ia, here.inverse_ib
         by_normal = here.an * here.at * a + here.bn * here.bt * b

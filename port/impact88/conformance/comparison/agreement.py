@@ -78,9 +78,9 @@ MAX_SLIGHT_DIFFERENCE = 1e-10
 """Relative difference up to which a result agrees but for its last digits: half of what 32 bits of
 mantissa leave, a twentieth of the effect of 3.14159265 for pi."""
 _TRIAL_FRACTION = 1 / 3
-"""Of the bound of trial impulses, in which every operation rounds at its worst. Of 63,000 numbers
-by correct programs that the whole bound let pass, none was beyond 0.22 of it; every 0.03 more are
-four times rarer."""
+"""Fraction of the bound of trial impulses, in which every operation rounds at its worst. Of 63,000
+numbers by correct programs that the whole bound let pass, none was beyond 0.22 of it; every 0.03
+more are four times rarer."""
 _MAX_TRIAL_FACTOR = (
     4.0  # of what elimination loses: what trial impulses may lose beyond nine digits
 )
@@ -89,7 +89,7 @@ _MIN_EQUATION_SLACK = 1e-9  # the same of a row off by more than rounding: of pr
 
 
 class Question(NamedTuple):
-    """What rows of a table answer.
+    """The question that rows of a table answer.
 
     ``scene``: columns of n; ``classes``, ``labels``: of test vectors, where the rows have them;
     ``refusals``: of a kit's vectors, why a row is not compared (its place in `REASONS`, or 0).

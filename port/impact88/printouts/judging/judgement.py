@@ -291,18 +291,24 @@ def _as_typed(differences: Sequence[Difference], reading: Reading) -> list[Diffe
     the keyboard that nobody takes for the printed one, or that stands within the number,
     contradicts. A look-alike and a speck remain doubts, and so does what stands beside the number,
     and all of one that has marks for what could not be read."""
-    if any(one.read == ILLEGIBLE for one in differences):
+    if any(difference.read == ILLEGIBLE for difference in differences):
         return [*differences]
-    other = {at for one in differences for at in range(one.start, one.stop)}
-    own = [glyph.offset for glyph in reading.region if glyph.offset not in other] or [0]
+    spans = [range(difference.start, difference.stop) for difference in differences]
+    offsets = [glyph.offset for glyph in reading.region]
+    as_printed = [at for at in offsets if not any(at in span for span in spans)] or [0]
 
-    def is_typed(one: Difference) -> bool:
-        if not (one.read.isascii() and one.read.isprintable()) or one.read in SPECKS:
+    def is_typed(difference: Difference) -> bool:
+        char = difference.read
+        if not (char.isascii() and char.isprintable()) or char in SPECKS:
             return False
-        is_within = own[0] < one.start < own[-1]
-        return one.kind is Kind.ILLEGIBLE or (one.kind is Kind.LEFT_OVER and is_within)
+        is_within = as_printed[0] < difference.start < as_printed[-1]
+        is_added = difference.kind is Kind.LEFT_OVER and is_within
+        return is_added or difference.kind is Kind.ILLEGIBLE
 
-    return [one._replace(kind=Kind.CONTRADICTS) if is_typed(one) else one for one in differences]
+    return [
+        difference._replace(kind=Kind.CONTRADICTS) if is_typed(difference) else difference
+        for difference in differences
+    ]
 
 
 MAX_SHOWN = 30  # characters shown of the text in a number's place

@@ -343,15 +343,15 @@ def _broken_asterisks(
         row: [places[state] for state in _asterisks(row) if state in places] for row in _STARS
     }
     for row, (field, _) in _STARS.items():
-        printed = "*" * len(_asterisks(row))
+        asterisks = "*" * len(_asterisks(row))
         at = read_at[row]
         read = letters(page.glyphs[index] for index in at)
-        if field not in slots or read == printed or not any(read_at.values()):
+        if field not in slots or read == asterisks or not any(read_at.values()):
             continue
-        beside = page.span(*slots[field])[row == STARS]
-        span = page.span(at[0], at[-1] + 1) if at else (beside, beside)
+        place = page.span(*slots[field])[row == STARS]
+        span = page.span(at[0], at[-1] + 1) if at else (place, place)
         kind = Kind.LOOK_ALIKE if at else Kind.MISSING
-        yield difference_at(page, kind, field, printed, span, read)
+        yield difference_at(page, kind, field, asterisks, span, read)
 
 
 def form_note(marks: Sequence[Difference]) -> list[str]:

@@ -168,7 +168,7 @@ def find_rows(page: Page) -> Rows:
 _WORDS = {word.text for word in WORDS if len(word.text) > 1} | {*re.findall("[A-Z]{2,}", LINES[0])}
 """Words of labels and of prompts."""
 _LABELS_AS_READ = _WORDS | {f"{word}S" for word in _WORDS}
-"""The same with the equals sign read as S."""
+"""Words of labels, and those whose equals sign was read as S."""
 _REST_OF_ROW = re.compile("[-+0-9.,E?)%/:]+")
 _REST = 6  # glyphs of a row that a narrow page may have put on a line of its own
 
@@ -191,13 +191,13 @@ def _foreign_lines(page: Page) -> Iterator[int]:
     """
     lines = [line.rstrip() for line in page.text.upper().split("\n")]
     longest = max(map(len, lines))
-    wanted = 0  # angles that are still to come
+    angles_left = 0  # angles that are still to come
     above = 0
     for at, line in enumerate(page.lines):
         place, _ = page.place(page.glyphs[line.start].offset)
-        text, shown = _text(page, line), page.shown(line.start, line.stop).upper()
-        words = {*re.findall("[A-Z]+", EXPONENT.sub("", shown))}
-        figures = [word for word in shown.split() if any(map(str.isdigit, word))]
+        text, line_text = _text(page, line), page.shown(line.start, line.stop).upper()
+        words = {*re.findall("[A-Z]+", EXPONENT.sub("", line_text))}
+        figures = [word for word in line_text.split() if any(map(str.isdigit, word))]
         goes_on = (
             text.startswith("?")
             or lines[above - 1].endswith("=")
@@ -209,13 +209,16 @@ def _foreign_lines(page: Page) -> Iterator[int]:
         )
         if "=" in text or not words.isdisjoint(_LABELS_AS_READ):
             is_heading = len(words.intersection(ANGLES)) > 2
-            wanted = len(ANGLES) - len(figures) if is_heading else 0
+            angles_left = len(ANGLES) - len(figures) if is_heading else 0
         elif figures and not (
-            wanted > 0 or len(figures) == len(ANGLES) or goes_on or 2 * _stars(text) > len(text)
+            angles_left > 0
+            or len(figures) == len(ANGLES)
+            or goes_on
+            or 2 * _stars(text) > len(text)
         ):
             yield at
         else:
-            wanted -= len(figures)
+            angles_left -= len(figures)
         above = place
 
 

@@ -344,8 +344,8 @@ class Printout:
     @property
     def number_starts(self) -> list[int]:
         """The first glyphs of its printed numbers; all its glyphs where it has none."""
-        printed = [start for name, (start, _) in self._slots.items() if name not in _REPLY_SLOTS]
-        return printed or [*self._states]
+        slots = [slot for name, slot in self._slots.items() if name not in _REPLY_SLOTS]
+        return [start for start, _ in slots] or [*self._states]
 
     def is_piece(self, below: "Printout | None") -> bool:
         """Return True for what is no page of the program's, but a row or two.
@@ -878,7 +878,8 @@ def _printouts(
         if notes := _note_glyphs(page, start, stop, parts):
             parts = [*align(page.glyphs, start, stop, budget, notes | commands)]
         readable = [printout for part in parts if (printout := Printout(page, part)).read()]
-        apart = [one for one, below in zip_longest(readable, readable[1:]) if one.is_piece(below)]
+        pairs = zip_longest(readable, readable[1:])
+        apart = [printout for printout, below in pairs if printout.is_piece(below)]
         if apart and len(apart) < len(readable):
             pieces += apart
             taken = page.lines_of(at for piece in apart for at in piece.number_starts)

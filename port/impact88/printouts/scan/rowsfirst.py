@@ -209,7 +209,7 @@ class _RowCells(NamedTuple):
     may_be: Mask
     rises: list[float]
 
-    def unexplained(self, row: int, other_rows: Mask) -> float:
+    def residue(self, row: int, other_rows: Mask) -> float:
         """Return the median fraction of the ink of a row's cells that the mean glyphs of some other
         rows leave unexplained; 0 where few cells have such a glyph.
 
@@ -224,7 +224,7 @@ class _RowCells(NamedTuple):
         if np.sum(is_compared.any(axis=1)) < _MIN_CELLS:
             return 0.0
         means = np.tensordot(members[used].astype(np.float32), self.glyphs[others], 1)
-        fractions = _unexplained(self.glyphs[at], means) / (1 + 1 / counts)
+        fractions = _residues(self.glyphs[at], means) / (1 + 1 / counts)
         least = np.where(is_compared, fractions, np.inf).min(axis=1)
         return float(np.median(least[is_compared.any(axis=1)]))
 
@@ -237,11 +237,11 @@ class _RowCells(NamedTuple):
             is_like = (names == name) & (np.arange(len(names)) != cell)
             if is_like.any():
                 mean = glyphs[is_like].mean(axis=0, keepdims=True)
-                fractions.append(float(_unexplained(glyphs[[cell]], mean)[0, 0]))
+                fractions.append(float(_residues(glyphs[[cell]], mean)[0, 0]))
         return float(np.median(fractions)) if fractions else np.inf
 
 
-def _unexplained(glyphs: Vectors, means: Vectors) -> Floats:
+def _residues(glyphs: Vectors, means: Vectors) -> Floats:
     """Return the fractions of glyphs' energies that means leave unexplained, whatever the strength
     of the ink and wherever between the pixels a glyph stands: type differs in both from stroke to
     stroke.
@@ -324,17 +324,17 @@ def foreign_row(grid: Grid, reads: Sequence[Read]) -> Row | None:
     cells = _row_cells(grid, rows)
     is_other = ~np.eye(len(rows), dtype=bool)
 
-    def unexplained(allowed: Mask) -> list[float]:
+    def residues(allowed: Mask) -> list[float]:
         """Return what the other rows that are allowed leave unexplained of each with numbers."""
         return [
-            cells.unexplained(row, is_other[row] & allowed) if has_numbers[row] else 0.0
+            cells.residue(row, is_other[row] & allowed) if has_numbers[row] else 0.0
             for row in range(len(rows))
         ]
 
-    by_all = unexplained(np.ones(len(rows), bool))
+    by_all = residues(np.ones(len(rows), bool))
     first = int(np.argmax(by_all))
     # what is said of a row must not be due to the first one's part in the glyphs
-    by_rest = unexplained(is_other[first])
+    by_rest = residues(is_other[first])
     second = max(fraction for row, fraction in enumerate(by_rest) if row != first)
     is_foreign = (
         by_all[first] > max(_FOREIGN, _FOREIGN_RATIO * second)
