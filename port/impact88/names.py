@@ -181,6 +181,9 @@ FINAL_STATE = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")
 IMPULSES = ("PN", "PT", "PM")
 COEFFICIENTS = ("E", "MUP", "EM")
 """The coefficients as results: friction as the signed P_t/P_n."""
+SPINS = ("WA", "WB", "WAF", "WBF")
+UNKNOWNS = (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS)
+"""What an impact is solved for, from other values."""
 
 PIVOT = -10.0  # the MU that makes the contact point a pivot (lines 260, 390 and 510)
 

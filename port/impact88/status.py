@@ -78,7 +78,7 @@ WORDS: dict[Status, str] = {
     ),
 }
 
-_SIDES = Status.A_ON_WRONG_SIDE | Status.B_ON_WRONG_SIDE
+WRONG_SIDES = Status.A_ON_WRONG_SIDE | Status.B_ON_WRONG_SIDE
 _BOTH_SIDES = (
     "each center lies on the other vehicle's side of the contact plane (A belongs on the +n side): "
     "reverse the plane (GA by 180)"
@@ -94,6 +94,8 @@ def sentences(status: int) -> list[str]:
     """Return a sentence for each bit set in ``status``, lowest first.
 
     Both vehicles on the wrong side are one fault, that of the contact plane."""
-    on_both_sides = status & _SIDES == _SIDES
-    lines = [WORDS[bit] for bit in Status if status & bit and not (on_both_sides and bit in _SIDES)]
+    on_both_sides = status & WRONG_SIDES == WRONG_SIDES
+    lines = [
+        WORDS[bit] for bit in Status if status & bit and not (on_both_sides and bit in WRONG_SIDES)
+    ]
     return lines + [_BOTH_SIDES] * on_both_sides

@@ -18,13 +18,12 @@ import sys
 import numpy as np
 
 from impact88.bench.methods import relative_errors
-from impact88.mechanics.accuracy.elimination import ORDER
 from impact88.mechanics.accuracy.errorbound import sensitivity
 from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
 from impact88.mechanics.accuracy.reference import two_doubles
 from impact88.mechanics.closedform.general import quantities
 from impact88.mechanics.closedform.solve import solve
-from impact88.names import SCENE
+from impact88.names import FINAL_VELOCITIES, SCENE
 
 ANGLES = ("GA", "PA", "PB", "TA", "TB")
 POSITIVE = ("MA", "MB", "IA", "IB", "DA", "DB")
@@ -33,8 +32,8 @@ POSITIVE = ("MA", "MB", "IA", "IB", "DA", "DB")
 def fitness(columns):
     """The largest error of each scene, in roundings of all its numbers; 0 where there is none."""
     hi, lo = two_doubles(columns)
-    found = solve(columns, ORDER)
-    error = relative_errors(np.stack([found[name] for name in ORDER], axis=1), hi, lo)
+    found = solve(columns, FINAL_VELOCITIES)
+    error = relative_errors(np.stack([found[name] for name in FINAL_VELOCITIES], axis=1), hi, lo)
     fit = error / (sensitivity(columns) * 2.0**-53)
     speeds = sum(np.abs(columns[name]) for name in ("UX", "UY", "VX", "VY"))
     speeds = speeds + columns["DA"] * np.abs(columns["WA"]) + columns["DB"] * np.abs(columns["WB"])

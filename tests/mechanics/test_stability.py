@@ -24,7 +24,6 @@ from impact88.collision.sinetable import STEP
 from impact88.mechanics.accuracy import reference
 from impact88.mechanics.accuracy.elimination import (
     LISTING_PI,
-    ORDER,
     changes,
     eliminate,
     fill,
@@ -157,16 +156,16 @@ def test_beside_lapack_and_the_listing():
     g = scenes("casework", 60, 1)
     A, b = fill(g)
     mine = errors(g, solve(g, FINAL_VELOCITIES))
-    lapacks = errors(g, dict(zip(ORDER, lapack(A, b).T, strict=True)))
+    lapacks = errors(g, dict(zip(FINAL_VELOCITIES, lapack(A, b).T, strict=True)))
     assert np.median(mine) <= np.median(lapacks)
     g = scenes("heavy", 20, 1)
     A, b = fill(g)
     listing = np.array([listing_in_double(A[i], b[i]) for i in range(20)])
     mine = errors(g, solve(g, FINAL_VELOCITIES))
-    listings = errors(g, dict(zip(ORDER, listing.T, strict=True)))
-    lapacks = errors(g, dict(zip(ORDER, lapack(A, b).T, strict=True)))
+    listings = errors(g, dict(zip(FINAL_VELOCITIES, listing.T, strict=True)))
+    lapacks = errors(g, dict(zip(FINAL_VELOCITIES, lapack(A, b).T, strict=True)))
     right, before = changes(g, A)
-    changed = errors(g, dict(zip(ORDER, (before + lapack(A, right)).T, strict=True)))
+    changed = errors(g, dict(zip(FINAL_VELOCITIES, (before + lapack(A, right)).T, strict=True)))
     assert 1000 * mine.max() <= min(listings.max(), lapacks.max())
     assert 1000 * changed.max() <= lapacks.max()
 
@@ -181,7 +180,7 @@ def test_the_two_references_agree():
             with reference.working(scene):
                 t = reference.Exact(scene)
                 found = reference.velocities(t, reference.impulse(t))
-            three = dict(zip(ORDER, found, strict=True))
+            three = dict(zip(FINAL_VELOCITIES, found, strict=True))
             assert relative_error(six, three) < 1e-38
 
 
@@ -230,7 +229,7 @@ def test_loss_keeps_its_digits_when_little_is_lost():
         for names, weights in (
             (("UX", "UY", "VX", "VY", "WA", "WB"), ("MA", "MA", "MB", "MB", "IA", "IB")),
         ):
-            for name, weight, after in zip(names, weights, ORDER, strict=True):
+            for name, weight, after in zip(names, weights, FINAL_VELOCITIES, strict=True):
                 initial += mpmath.mpf(rolling[weight]) * mpmath.mpf(rolling[name]) ** 2
                 final += mpmath.mpf(rolling[weight]) * true[after] ** 2
         loss = float(100 * (initial - final) / initial)
@@ -302,7 +301,9 @@ class TestWhatTheListingDoes:
         """The solution is the last column of A, stored with the first subscript fastest."""
         rows = result.A["dims"][0]
         stored = result.A["data"][-rows:][1:]
-        return dict(zip(ORDER, (float(Real.from_stored(x)) for x in stored), strict=True))
+        return dict(
+            zip(FINAL_VELOCITIES, (float(Real.from_stored(x)) for x in stored), strict=True)
+        )
 
     def test_zero_determinant_for_a_solvable_scene(self):
         """Tiny units: pivots of 1e-10 are judged by an absolute 1E-9, in any arithmetic."""
@@ -314,7 +315,7 @@ class TestWhatTheListingDoes:
         assert "ZERO DETERMINANT" in self.applesoft(self.BALLS).printout
         found = solve(self.numbers(self.BALLS))
         assert found["COND"] < 100  # nothing is wrong with the scene
-        assert relative_error({n: float(found[n]) for n in ORDER}, true) < 1e-14
+        assert relative_error({n: float(found[n]) for n in FINAL_VELOCITIES}, true) < 1e-14
         assert not found["STATUS"] & Status.SINGULAR
 
     def test_huge_masses_are_zero_determinant_too(self):
@@ -341,11 +342,11 @@ class TestWhatTheListingDoes:
         in_double = listing_in_double(A[0], b[0])
         assert relative_error(in_double, true) > 1.7
         # the elimination's doing, not rounding's (B's spin aside, which is 0 but for rounding)
-        for name, value in list(zip(ORDER, in_double, strict=True))[:4]:
+        for name, value in list(zip(FINAL_VELOCITIES, in_double, strict=True))[:4]:
             assert value == pytest.approx(float(wrong[name]), rel=1e-6, abs=1e-12)
         assert relative_error(lapack(A, b)[0].tolist(), true) < 1e-6
         found = solve(self.numbers(self.STALE))
-        assert relative_error({n: float(found[n]) for n in ORDER}, true) < 1e-14
+        assert relative_error({n: float(found[n]) for n in FINAL_VELOCITIES}, true) < 1e-14
 
     def test_true_singularity_passes_unnoticed(self):
         """Run 1 with MU = 3.19214397: velocities of 1e10 ft/s, percents wrong, and no message."""
@@ -358,7 +359,7 @@ class TestWhatTheListingDoes:
         found = solve(self.numbers(scene))
         assert found["STATUS"] & Status.SINGULAR
         assert found["COND"] > 1e9
-        assert relative_error({n: float(found[n]) for n in ORDER}, true) < 1e-5
+        assert relative_error({n: float(found[n]) for n in FINAL_VELOCITIES}, true) < 1e-5
         assert 0.01 < relative_error(self.velocities(result), true) < 1
         assert max(abs(v) for v in true.values()) > 1e6  # no velocities anybody believes
 
@@ -367,7 +368,9 @@ class TestWhatTheListingDoes:
         rest is rounding to 32 bits."""
         scene = {name: text for name, text in sample(1).items() if name != "title"}
         A, b = fill({name: np.array([x]) for name, x in self.numbers(scene).items()}, pi=LISTING_PI)
-        parts = split(scene, dict(zip(ORDER, listing_in_double(A[0], b[0]), strict=True)))
+        parts = split(
+            scene, dict(zip(FINAL_VELOCITIES, listing_in_double(A[0], b[0]), strict=True))
+        )
         assert parts.elimination < 1e-45
         assert parts.arithmetic < 1e-14
         assert 1e-11 < parts.pi < 1e-8

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import mpmath
 
-from impact88.mechanics.accuracy.elimination import ORDER, eliminate, listing_rows
+from impact88.mechanics.accuracy.elimination import eliminate, listing_rows
 from impact88.mechanics.accuracy.reference import (
     DIGITS,
     GUARD,
@@ -23,6 +23,7 @@ from impact88.mechanics.accuracy.reference import (
     velocities,
     working,
 )
+from impact88.names import FINAL_VELOCITIES
 
 Number = Any
 
@@ -58,7 +59,7 @@ def exact(scene: Mapping[str, Any], pi: Number | None = None) -> dict[str, Numbe
             return None
         if t.point:
             values = [*values[:4], t.g.get("WA", 0), t.g.get("WB", 0)]
-        return dict(zip(ORDER, values, strict=True))
+        return dict(zip(FINAL_VELOCITIES, values, strict=True))
 
 
 def _solve(A: list[list[Number]], b: list[Number]) -> list[Number] | None:
@@ -107,16 +108,20 @@ def listing_elimination(
             return None
         if t.point:
             solution = [*solution, t.g.get("WA", 0), t.g.get("WB", 0)]
-        return dict(zip(ORDER, solution, strict=True))
+        return dict(zip(FINAL_VELOCITIES, solution, strict=True))
 
 
 def relative_error(computed: Mapping[str, Any] | Sequence[Any], true: Mapping[str, Any]) -> float:
     """The largest relative error of the final velocities: errors of the four velocities by the
     largest of these four, errors of the two spins by the larger spin. Infinite if not a number."""
-    values = computed if isinstance(computed, Mapping) else dict(zip(ORDER, computed, strict=True))
+    values = (
+        computed
+        if isinstance(computed, Mapping)
+        else dict(zip(FINAL_VELOCITIES, computed, strict=True))
+    )
     worst = 0.0
     with mpmath.workdps(DIGITS + GUARD):
-        for group in (ORDER[:4], ORDER[4:]):
+        for group in (FINAL_VELOCITIES[:4], FINAL_VELOCITIES[4:]):
             scale = max(abs(true[name]) for name in group)
             for name in group:
                 value = values[name]

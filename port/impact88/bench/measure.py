@@ -31,7 +31,6 @@ from .methods import METHODS, Method, relative_errors
 
 Row = dict[str, Any]
 Floats = NDArray[np.float64]
-ORDER = tuple(FINAL_VELOCITIES)
 ROOF_SCENES = 1_000_000
 """Scenes whose columns are too many for any cache."""
 
@@ -74,7 +73,7 @@ def mover(columns: Mapping[str, Any], results: Mapping[str, Any]) -> Callable[[]
 def memory_roof() -> float:
     """Seconds a scene that memory alone takes: 20 columns read, six written."""
     columns = {name: np.ones(ROOF_SCENES) for name in SCENE if name != "M"}
-    move = mover(columns, {name: np.zeros(ROOF_SCENES) for name in ORDER})
+    move = mover(columns, {name: np.zeros(ROOF_SCENES) for name in FINAL_VELOCITIES})
     return medians([move], 7)[0] / ROOF_SCENES
 
 
@@ -132,7 +131,7 @@ def measure(
         progress(1)
         solutions, sensitive = solve(columns), sensitivity(columns)
         by_name = scales(columns, solutions)
-        sizes = np.stack([by_name[result] for result in ORDER], axis=1)
+        sizes = np.stack([by_name[result] for result in FINAL_VELOCITIES], axis=1)
         works: list[tuple[Method, Any, list[float]]] = []
         mine: list[Row] = []
         for method in METHODS:
@@ -155,7 +154,7 @@ def measure(
             )
             progress(1)
         inputs = next(prepared for method, prepared, _ in works if method.key == "closed-form")
-        room = {result: np.zeros(len(inputs["MA"])) for result in ORDER}
+        room = {result: np.zeros(len(inputs["MA"])) for result in FINAL_VELOCITIES}
         move = mover({key: inputs[key] for key in plainc.COLUMNS}, room)
         memory: list[float] = []
         for _ in range(repeats):

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from ..apple.applesoft.operators import Real
 from ..casework.figures.drawing import BLACK, BLUE, GREY, ORANGE, VERMILION
 from ..mechanics import native
-from ..mechanics.accuracy.elimination import ORDER, changes, eliminate, fill, lapack
+from ..mechanics.accuracy.elimination import changes, eliminate, fill, lapack
 from ..mechanics.accuracy.errorbound import APPLESOFT, DOUBLE
 from ..mechanics.accuracy.populations import Columns, texts
 from ..mechanics.closedform.solve import solve
+from ..names import FINAL_VELOCITIES
 from ..program.run import run
 from ..program.scene import Scene
 from ..program.vectorized import replay
@@ -78,7 +79,7 @@ def _scenes(columns: Columns) -> list[Scene]:
 
 def _replay(columns: dict[str, list[str]]) -> Floats:
     replay_result = replay(columns)
-    return np.stack([replay_result.floats(name) for name in ORDER], axis=1)
+    return np.stack([replay_result.floats(name) for name in FINAL_VELOCITIES], axis=1)
 
 
 def _listing_elimination(matrices: tuple[Floats, Floats]) -> Floats:
@@ -97,7 +98,7 @@ def _changes(columns: Columns) -> tuple[Floats, Floats, Floats]:
 
 
 def _closed_form(columns: Columns) -> dict[str, Floats]:
-    return solve(columns, ORDER, threads=1)
+    return solve(columns, FINAL_VELOCITIES, threads=1)
 
 
 _float64 = _port("float64", float)
@@ -149,7 +150,7 @@ METHODS: Sequence[Method] = (
         "D ",
         BLACK,
         1_000_000,
-        lambda columns: solve(columns, ORDER, threads=2),
+        lambda columns: solve(columns, FINAL_VELOCITIES, threads=2),
         threads=2,
     ),
     Method(

@@ -17,8 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanics.accuracy.elimination import ORDER
-from ..names import SCENE
+from ..names import FINAL_VELOCITIES, SCENE
 
 Floats = NDArray[np.float64]
 COMPILERS = ("cc", "gcc", "clang")
@@ -88,7 +87,7 @@ def prepare(columns: Mapping[str, Floats]) -> list[Floats]:
 
 def solve(read: Sequence[Floats], flags: str) -> dict[str, Floats]:
     """Return the six final velocities for the columns of `prepare`."""
-    results = {name: np.empty(len(read[0])) for name in ORDER}
+    results = {name: np.empty(len(read[0])) for name in FINAL_VELOCITIES}
     _call(library(flags).solve_plainly, read, results.values())
     return results
 

@@ -9,14 +9,13 @@ import numpy as np
 from ..collision.geometry import ARMS, GEOMETRY
 from ..collision.needs import needs_in_words
 from ..collision.uncertain import Uncertain
-from ..names import FINAL_STATE, PIVOT, VELOCITIES
-from ..status import Status
+from ..names import FINAL_STATE, PIVOT, SPINS, VELOCITIES
+from ..status import WRONG_SIDES, Status
 from .closedform.omitted import COMPONENTS, are_parallel, plane_across
 from .state import COURSE_AFTER, COURSE_OF, CRUSH, FORCES, KNOWABLE, QUANTITIES, SPEEDS
 from .uses import inputs_of
 
 _ENERGIES = ("KI", "KF", "EL", "LOSS", "DT", *CRUSH)
-_SPINS = ("WA", "WB", "WAF", "WBF")
 
 
 def pose(
@@ -111,7 +110,7 @@ def absent_results(known: Mapping[str, Any]) -> dict[str, frozenset[str]]:
     result = {}
     for name in QUANTITIES:
         needs = inputs_of(name, point) & absent
-        if name in (*_SPINS, "PM", "EM"):
+        if name in (*SPINS, "PM", "EM"):
             needs = no_turning
         if needs and name not in known:
             result[name] = needs
@@ -136,14 +135,11 @@ def with_headings(values: Mapping[str, float]) -> dict[str, float]:
     return result
 
 
-_WRONG_SIDES = Status.A_ON_WRONG_SIDE | Status.B_ON_WRONG_SIDE
-
-
 def is_wrong_way(status: int, point: bool) -> bool:
     """Return True if an impact has A on the other side of its contact plane than GA says: the
     contact points do not approach, and both centers lie beyond the plane or have no place."""
     broken = status & (Status.SEPARATING | Status.PULLING)
-    return bool(broken) and (point or status & _WRONG_SIDES == _WRONG_SIDES)
+    return bool(broken) and (point or status & WRONG_SIDES == WRONG_SIDES)
 
 
 def is_meant_turned(status: int, turned_status: int, point: bool) -> bool:

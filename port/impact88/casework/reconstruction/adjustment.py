@@ -20,18 +20,17 @@ from ...collision.uncertain import Uncertain, fixed_value
 from ...errors import UserError
 from ...mechanics.closedform.general import opposing, share_typed
 from ...mechanics.closedform.solve import solve
+from ...mechanics.friction import FAULTS
 from ...mechanics.outcome import outcome
 from ...mechanics.posed import is_meant_turned, is_wrong_way, pose, turned, turned_sentence
 from ...mechanics.state import COURSE_OF, CRUSH, KNOWABLE, SPEEDS
-from ...names import PIVOT, SCENE, VELOCITIES, check_names
+from ...names import PIVOT, SCENE, SPINS, VELOCITIES, check_names
 from ...status import Status
 from .impactsearch import MAX_SQUARES_RATIO, Search
 from .nearest import counts
 from .solution import Reconstruction, Searched, invariants
-from .system import SPINS
 from .unknowns import UnsolvableError, check_physical
 
-_FRICTION = Status.FRICTION_ABOVE_CRITICAL | Status.FRICTION_WRONG_DIRECTION
 Floats = NDArray[np.float64]
 Progress = Callable[[int], object]
 
@@ -152,7 +151,7 @@ def _sort_solutions(
         squares = float(f"{max(solution.squares, 1e-9):.6e}")
         broken = solution.impossible
         no_impact = bool(broken & (Status.SEPARATING | Status.PULLING))
-        friction = int(outcome(solution.values)["STATUS"]) & _FRICTION
+        friction = int(outcome(solution.values)["STATUS"]) & FAULTS
         ranks = invariants(solution.values)
         return (
             not is_counted[id(solution)],

@@ -5,12 +5,11 @@ from typing import Any
 from ...collision.geometry import within_doubles
 from ...collision.units import RULES, System, display_values
 from ...messages.plaintable import plain
-from ...names import quantity
+from ...names import UNKNOWNS, quantity
 from ..uncertainty.boundstable import unbounded_sides
 from .answer import QUANTILES, Answer, bounds_without_noise
 from .answerremarks import remarks_on
 from .derived import NOISE, ROUNDING, without_noise
-from .solution import SOUGHT
 from .unknowns import BADLY_CONDITIONED
 
 
@@ -29,7 +28,7 @@ def json_of(answer: Answer, units: System = RULES) -> dict[str, Any]:
     record: dict[str, Any] = plain(
         {
             "known": [*answer.known],
-            "solved_for": [n for n in SOUGHT if n in values and n not in answer.known],
+            "solved_for": [n for n in UNKNOWNS if n in values and n not in answer.known],
             "values": values,
             "units": {n: units.label(quantity(n).unit) for n in values},
             "status": int(answer.values["STATUS"]) if "STATUS" in answer.values else None,

@@ -12,16 +12,25 @@ from ...collision.needs import join_words
 from ...collision.units import RULES, System, display_values
 from ...mechanics.state import CHANGES, COURSE_OF, COURSES, SPEEDS
 from ...messages.plaintable import decimals_for, format_fixed, number, paragraph, table
-from ...names import COEFFICIENTS, FINAL_STATE, NUMBER, PIVOT, VELOCITIES, VELOCITY, quantity
+from ...names import (
+    COEFFICIENTS,
+    FINAL_STATE,
+    NUMBER,
+    PIVOT,
+    SPINS,
+    UNKNOWNS,
+    VELOCITIES,
+    VELOCITY,
+    quantity,
+)
 from .answer import QUANTILES, Answer, bounds_without_noise
 from .answerremarks import remarks_on
 from .derived import NOISE, absent_quantities, without_noise
 from .evidence import AGREE, as_given
-from .solution import SIGMAS, SOUGHT, Adjusted
+from .solution import SIGMAS, Adjusted
 
 _ROAD = {"ft/s": ("mph", 3600 / 5280), "m/s": ("km/h", 3.6)}  # units of speeds on the road
-_SPINS = ("WA", "WB", "WAF", "WBF")
-_ALSO = (*COEFFICIENTS, *_SPINS)  # sought, and in no line on motion
+_ALSO = (*COEFFICIENTS, *SPINS)  # sought, and in no line on motion
 DRIVERS = 3  # values named as the causes of a result's uncertainty
 _MIN_FRACTION = 0.05  # of a result's variance, for a value to be named
 MAX_CORRELATION_COLUMNS = 7  # as many as 96 characters hold
@@ -134,7 +143,7 @@ def _sought(answer: Answer) -> list[str]:
     """Return what is sought: what an impact is solved for and is not given."""
     given = [n for n in answer.given if n != "M"]
     candidates = {*answer.values, *answer.undetermined} - {*answer.known, *answer.absent}
-    sought = [n for n in SOUGHT if n in candidates]
+    sought = [n for n in UNKNOWNS if n in candidates]
     for speed, course in reversed(COURSE_OF.items()):  # one known, the other sought
         if speed in given or course in given:
             missing = [n for n in (speed, course) if n not in given]
@@ -247,8 +256,8 @@ def _missing(answer: Answer) -> str:
     missing = [*(answer.undetermined or missing)]
     if not missing:
         return ""
-    names = [name for name in missing if name not in _SPINS]
-    text = ", ".join(["spins", *names] if {*_SPINS} <= {*missing} else missing)
+    names = [name for name in missing if name not in SPINS]
+    text = ", ".join(["spins", *names] if {*SPINS} <= {*missing} else missing)
     helpful = answer.solution.helpful if answer.undetermined else ()
     if helpful:
         *others, last = *helpful, *answer.solution.alternatives

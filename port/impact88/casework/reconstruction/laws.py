@@ -19,7 +19,7 @@ from ...collision.geometry import GEOMETRY, Geometry, within_doubles
 from ...collision.units import RULES, System
 from ...mechanics.state import CHANGES, CONTACT, COURSES, ENERGIES, SPEEDS, State
 from ...messages.plaintable import number
-from ...names import FINAL_STATE, PIVOT, VELOCITIES, quantity
+from ...names import FINAL_STATE, PIVOT, SPINS, VELOCITIES, quantity
 
 Floats = NDArray[np.float64]
 
@@ -38,7 +38,6 @@ NAMES = {
 }
 # Known values that follow from velocities alone
 QUANTITIES = (*SPEEDS, *CHANGES, *CONTACT, *ENERGIES)
-_SPINS = ("WA", "WB", "WAF", "WBF")
 _MOTION = (*VELOCITIES, *FINAL_STATE)
 # For each law a quantity of the same unit
 _MEASURED_AS = {
@@ -171,7 +170,7 @@ class _KnownLaws:
         geometry = Geometry(dimensions | {"M": mass_model})
         values = {"IA": 1.0, "IB": 1.0, **values}
         if geometry.point:
-            values |= dict.fromkeys(_SPINS, 0.0)
+            values |= dict.fromkeys(SPINS, 0.0)
         rows = _rows(values, geometry)
         if geometry.point:
             rows = {law: row for law, row in rows.items() if law not in ("angular", "EM")}
@@ -181,7 +180,7 @@ class _KnownLaws:
         velocities = np.array([values.get(n, 0.0) for n in _MOTION], float)
         # spins are compared as velocities at the radius of gyration
         gyration = math.sqrt(float(geometry.inverse_mass / geometry.inverse_spin_inertia))
-        units = np.array([1 / gyration if n in _SPINS else 1.0 for n in _MOTION])
+        units = np.array([1 / gyration if n in SPINS else 1.0 for n in _MOTION])
         return cls(
             laws,
             values,

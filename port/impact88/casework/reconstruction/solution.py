@@ -17,12 +17,12 @@ from ...mechanics.closedform.general import opposing
 from ...mechanics.outcome import outcome
 from ...mechanics.posed import absent_results, with_headings
 from ...mechanics.state import COURSES, DIRECTIONS, FORCES, QUANTITIES, SPEEDS, State
-from ...names import COEFFICIENTS, FINAL_STATE, VELOCITIES
+from ...names import COEFFICIENTS, SPINS, UNKNOWNS, VELOCITIES
 from ...status import IMPOSSIBLE, Status
 from .evidence import Evidence, weigh
 from .laws import missed_laws, tested_laws
 from .leastsquares import polish, pseudo_inverse
-from .system import SPINS, System
+from .system import System
 from .unknowns import UnsolvableError, coefficient_to_blame
 
 Floats = NDArray[np.float64]
@@ -36,7 +36,6 @@ FOLD_OFFSET = 1e-2  # scaled distance at which a fold is distinguished from a co
 FOLD_MISFIT = 1e-9  # a sum of squares that is larger by less is as good
 FOLD_TOL = 1e-4  # relative singular value below which two branches nearly meet
 FOLD_GRADIENT_TOL = 1e-3  # relative part of a gradient along the fold that counts as zero
-SOUGHT = (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS)  # what an impact is solved for
 # Unknowns that can be determined best by other evidence
 PREFERRED_MEASUREMENTS = ("WAF", "WBF", "WA", "WB", "E", "MUP", "EM")
 
@@ -328,7 +327,7 @@ class Reconstruction:
         exact.
         """
         exact = self.system
-        names = [n for n in SOUGHT if n in self.values and n not in exact.known]
+        names = [n for n in UNKNOWNS if n in self.values and n not in exact.known]
         system = exact.with_equal_tolerances()
         if exact.observations or not (names and system.observations):
             return {}
@@ -554,7 +553,7 @@ def describe(system: System, x: Floats, assumed: bool) -> Reconstruction:
         squares=float(adjustments @ adjustments),
         assumed=assumed,
     )
-    is_found = any(name in values for name in SOUGHT if name not in system.known)
+    is_found = any(name in values for name in UNKNOWNS if name not in system.known)
     if undetermined and not is_found and not system.observations:
         reason = f": {solution.explanation}" if solution.explanation else ""
         needed = join_words(solution.helpful) if solution.helpful else "more of it"
@@ -607,6 +606,6 @@ def _determined_values(
             # the direction opposite to the axis is 180, whatever rounding makes of it
             is_opposite = name in (*COURSES, *FORCES) and amount < -180 + DIRECTION_TOL
             values[name] = amount + 360 if is_opposite else amount
-        elif name in SOUGHT:
+        elif name in UNKNOWNS:
             undetermined.append(name)
     return values, undetermined

@@ -29,12 +29,11 @@ from ...mechanics.state import (
     SPEEDS,
     State,
 )
-from ...names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, VELOCITIES, quantity
+from ...names import COEFFICIENTS, FINAL_STATE, IMPULSES, PIVOT, SPINS, VELOCITIES, quantity
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
 
-SPINS = ("WA", "WB", "WAF", "WBF")
 # Known values that enter the conditions; all others are quantities computed from a state
 PARAMETERS = (*GEOMETRY, *COEFFICIENTS, *SPEEDS, *DIRECTIONS, *CRUSH)
 MEASURABLE = (*VELOCITIES, *FINAL_STATE, *CHANGES, *ENERGIES, *CONTACT)

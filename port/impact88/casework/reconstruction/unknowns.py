@@ -36,16 +36,16 @@ from ...names import (
     PIVOT,
     RESULTS,
     SCENE,
+    SPINS,
+    UNKNOWNS,
     VELOCITIES,
     check_names,
     missing,
     quantity,
 )
-from .system import COMPLEX_STEP, SPINS, System
+from .system import COMPLEX_STEP, System
 
 Array = NDArray[np.float64]
-
-UNKNOWNS = (*VELOCITIES, *FINAL_STATE, *COEFFICIENTS)
 
 BADLY_CONDITIONED = 10.0  # error amplification at which a solution is flagged
 # at which nothing special happens

@@ -35,7 +35,6 @@ _ROUNDING = 1e-9
 twelve digits, and the published runs amplify errors up to 300 times."""
 _ASKED = ("DVA", "DVB", "PDOFA", "PDOFB", "LOSS")
 """Shown first, and then what was solved for."""
-_SOUGHT = (*VELOCITIES, *FINAL_STATE, "E", "MUP", "EM")
 
 
 def warm() -> None:
@@ -108,8 +107,8 @@ def _solution(
     rounded = without_rounding(exact, _ROUNDING)
     rows = []
     for name, value in found.items():
-        spread = values.get("uncertainty", {}).get(name, {})
-        amplified = values.get("amplification", {}).get(name)
+        spread = values["uncertainty"].get(name, {})
+        amplified = values["amplification"].get(name)
         deviation = spread.get("first_order")
         if deviation is None:  # the draws contradict it
             deviation = spread.get("deviation")
@@ -119,7 +118,7 @@ def _solution(
         row = {**what(name), "value": value, "known": name in values["known"], "numbers": numbers}
         row["said"] = spoken_direction(name, value, system)
         row["text"] = digits(rounded.get(name), _DIGITS)
-        row["solved"] = name in values.get("solved_for", _SOUGHT) and not row["known"]
+        row["solved"] = name in values["solved_for"] and not row["known"]
         row["columns"] = {head: digits(x, _COLUMNS[head][0]) for head, x in numbers.items()}
         rows.append(row)
     shown_digits = {"measured": _DIGITS, "tolerance": _COLUMNS["sd"][0], "adjusted": _DIGITS}
@@ -129,7 +128,7 @@ def _solution(
             **{part: digits(row[part], count) for part, count in shown_digits.items()},
             "moved": f"{round(row['moved'], 2) + 0.0:.2f}",
         }
-        for row in values.get("adjusted", ())
+        for row in values["adjusted"]
         if values["redundancy"]
     ]
     asked = [row for name in _ASKED for row in rows if row["name"] == name]

@@ -19,9 +19,7 @@ Array = NDArray[Any]
 LISTING_PI = 3.14159265
 """The pi of line 300."""
 VELOCITIES_OF_BOTH = ("UX", "UY", "VX", "VY", "WA", "WB")
-"""The velocities before, in the order of the unknowns."""
-ORDER = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")
-"""The unknowns, column by column."""
+"""The velocities before, in the order of the unknowns, `FINAL_VELOCITIES`."""
 
 
 class Terms:
@@ -56,7 +54,7 @@ class Terms:
         return -mu if slip > self.zero else mu
 
     def before(self) -> list[Any]:
-        """The velocities before the impact, in the order of `ORDER`."""
+        """The velocities before the impact, in the order of `FINAL_VELOCITIES`."""
         return [*(self.g[name] for name in VELOCITIES_OF_BOTH[:4]), self.WA, self.WB]
 
 

@@ -27,6 +27,7 @@ from ...names import (
     PIVOT,
     RESULTS,
     SPIN,
+    SPINS,
     TURNING,
     VELOCITY,
 )
@@ -49,7 +50,6 @@ STEP = 2.0**-36
 one twice as large a sensitivity changes by 2e-6, at most by 3e-5; next to singularities by 2 %."""
 
 _SPEEDS = ("UX", "UY", "VX", "VY", "VAX", "VAY", "VBX", "VBY")
-_SPINS = ("WA", "WB", "WAF", "WBF")
 _GROUPS = (FINAL_VELOCITIES[:4], FINAL_VELOCITIES[4:])
 
 
@@ -102,7 +102,7 @@ def scales(scene: Mapping[str, Any], solved: Mapping[str, Any]) -> dict[str, Flo
         value = {**scene, **solved}
         point = np.asarray(scene["M"], float) == 4
         arm = np.where(point, 0.0, np.fmax(np.abs(scene["DA"]), np.abs(scene["DB"])))
-        spin = _largest(value, _SPINS)
+        spin = _largest(value, SPINS)
         speed = np.fmax(_largest(value, _SPEEDS), arm * spin)
         spin = np.fmax(spin, np.where(arm > 0, speed / np.where(arm > 0, arm, 1.0), 0.0))
         mass = np.fmax(_finite(scene["MA"]), _finite(scene["MB"]))
@@ -217,7 +217,7 @@ def result_bounds(columns: Mapping[str, Any]) -> dict[str, Floats]:
                 )
         moving = [("MA", "VAX"), ("MA", "VAY"), ("MB", "VBX"), ("MB", "VBY")]
         for inertia, name in (*moving, ("IA", "WAF"), ("IB", "WBF")):
-            of_body = np.where(np.isinf(g[inertia]) | (point & (name in _SPINS)), 0.0, g[inertia])
+            of_body = np.where(np.isinf(g[inertia]) | (point & (name in SPINS)), 0.0, g[inertia])
             bound["KF"] = bound["KF"] + of_body * bound[name] * (np.abs(f[name]) + bound[name])
         lost = f["LOSS"] / 100 * f["KI"]
         off = bound["ELN"] + bound["ELT"] + bound["ELM"]

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import UserError
-from ...names import DEFAULT_M, PIVOT
-from .elimination import ORDER, Terms
+from ...names import DEFAULT_M, FINAL_VELOCITIES, PIVOT
+from .elimination import Terms
 
 try:
     import mpmath as mpmath  # type: ignore[import-untyped]
@@ -148,7 +148,7 @@ def impulse(t: Exact) -> list[Number] | None:
 
 
 def velocities(t: Exact, P: Sequence[Number]) -> list[Number]:
-    """Return the velocities after an impulse, in the order of `ORDER`."""
+    """Return the velocities after an impulse, in the order of `FINAL_VELOCITIES`."""
     (ma, mb, ia, ib), (an, at, bn, bt) = t.inverses, t.arms
     s, c, (pn, pt, m) = t.s, t.c, P
     changes = [
@@ -195,7 +195,7 @@ def fifty_digits(scene: Mapping[str, str | float]) -> dict[str, Any]:
         if P is None:
             return {}
         after = velocities(t, P)
-        f = dict(zip(ORDER, after, strict=True))
+        f = dict(zip(FINAL_VELOCITIES, after, strict=True))
         f |= _contact_velocities(t, t.before(), "") | _contact_velocities(t, after, "F")
         for name, suffix, sign in (("VC", "", -1), ("VS", "F", 1)):
             x, y = (total(f[f"{axis}A{suffix}"], -f[f"{axis}B{suffix}"]) for axis in "XY")
@@ -256,7 +256,7 @@ def _energies(t: Exact, P: Sequence[Number], after: list[Number]) -> dict[str, N
 
 
 def two_doubles(
-    columns: Mapping[str, NDArray[np.float64]], names: Sequence[str] = ORDER
+    columns: Mapping[str, NDArray[np.float64]], names: Sequence[str] = FINAL_VELOCITIES
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return results to 50 digits, a column for each of ``names``, each number as the sum of two
     doubles (hi, lo); NaN where there is none."""

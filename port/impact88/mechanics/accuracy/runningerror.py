@@ -14,8 +14,8 @@ import math
 from collections.abc import Mapping
 
 from ...apple.applesoft.decimaltext import scan
-from ...names import DEFAULT_M, PIVOT
-from .elimination import LISTING_PI, ORDER, Terms, eliminate, listing_rows
+from ...names import DEFAULT_M, FINAL_VELOCITIES, PIVOT
+from .elimination import LISTING_PI, Terms, eliminate, listing_rows
 
 UNIT = 2.0**-32
 """Unit roundoff of five-byte numbers: the largest relative change by rounding."""
@@ -146,5 +146,8 @@ def listing_errors(
         return None
     if t.point:
         solution = [*solution, t.g["WA"], t.g["WB"]]
-    errors = {name: x.e + abs(x.v - solved[name]) for name, x in zip(ORDER, solution, strict=True)}
+    errors = {
+        name: x.e + abs(x.v - solved[name])
+        for name, x in zip(FINAL_VELOCITIES, solution, strict=True)
+    }
     return errors if all(map(math.isfinite, errors.values())) else None
