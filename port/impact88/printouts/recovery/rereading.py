@@ -10,10 +10,10 @@ from ...collision.fields import INPUTS, scene_name
 from ..reading.numerals import printable
 from .recovered import Recovered
 from .search import Column, Scored, column_of
-from .slips import Change, slips_of
+from .slips import BITS, DIGIT, NOT_ALIKE, UNLIKE_SHAPE_BITS, Change, slip_penalty, slips_of
 
-MAX_TWO_SLIPS_PENALTY = 6.05
-"""Prior penalty of the rarest two slips: two digits misread as those least like them, 3.02 each."""
+MAX_TWO_SLIPS_PENALTY = 2 * slip_penalty(BITS[DIGIT] + NOT_ALIKE * UNLIKE_SHAPE_BITS)
+"""Prior penalty of the rarest two slips: two digits misread as those least like them."""
 MAX_REREADS = 60  # scenes with corrected inputs that are replayed
 
 

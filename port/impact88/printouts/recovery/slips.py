@@ -31,6 +31,8 @@ on a page, and the other kinds are about as likely by their number; chosen so th
 test pages are named first."""
 UNLIKE_SHAPE_BITS = 0.4
 """Bits added for each rank of dissimilarity between two digits' shapes."""
+NOT_ALIKE = 4
+"""Rank of two digits that are not taken for one another."""
 _ALIKE = {
     text[0]: text[1:]
     for text in "0869 1742 2713 3859 4917 5638 6805 7129 83069 94807".split()
@@ -58,13 +60,18 @@ class Change(NamedTuple):
         return bits
 
 
+def slip_penalty(bits: float) -> float:
+    """Return the prior penalty of a slip: one misread digit (2.7) is cheaper than a result that
+    differs (3.0), two are dearer."""
+    return 0.7 + bits / 5
+
+
 def slips_of(name: str, text: str) -> list[tuple[float, Change]]:
     """Return the texts that are a number and one slip away from a field's, each with its prior
-    penalty, smallest first. One slip (2.7) is cheaper than a result that differs (3.0), two are
-    dearer."""
+    penalty, smallest first."""
     changes = (Change(kind, name, text, other) for other, kind in misreadings(text).items())
     possible = [change for change in changes if is_number(change.would_be)]
-    some = [(0.7 + change.bits / 5, change) for change in possible]
+    some = [(slip_penalty(change.bits), change) for change in possible]
     return sorted(some, key=lambda pair: (pair[0], pair[1].would_be))
 
 
@@ -98,10 +105,10 @@ def slip(text: str, other: str) -> str | None:
 
 
 def _unlikeness(text: str, other: str) -> int:
-    """Return the dissimilarity of two texts that differ in one digit: 0 most alike, 4 not alike."""
+    """Return the dissimilarity of two texts that differ in one digit, from 0 to `NOT_ALIKE`."""
     old, new = next(pair for pair in zip(text, other, strict=True) if pair[0] != pair[1])
     place = _ALIKE.get(old, "").find(new)
-    return place if place >= 0 else 4
+    return place if place >= 0 else NOT_ALIKE
 
 
 def _slips_of(text: str) -> Iterator[tuple[str, str]]:
