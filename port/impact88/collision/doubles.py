@@ -70,3 +70,9 @@ def doubles(texts: Sequence[str]) -> list[float]:
 def digits(value: float) -> str:
     """Return the shortest text that INPUT reads back as ``value``."""
     return repr(value).removesuffix(".0").upper()
+
+
+def opposite(text: str) -> str:
+    """Return a number with the other sign; it may be written with a plus sign and blanks."""
+    size = text.strip()
+    return size[1:] if size.startswith("-") else "-" + size.removeprefix("+")

@@ -45,7 +45,7 @@ from ..names import (
     VELOCITY,
     quantity,
 )
-from .doubles import BARE, digits, double, is_number
+from .doubles import BARE, digits, double, is_number, opposite
 
 _FOOT = Fraction("0.3048")
 _POUND = Fraction("0.45359237")
@@ -760,11 +760,6 @@ def _has_digits(text: str) -> bool:
     return any(map(str.isdigit, text))
 
 
-def opposite(text: str) -> str:
-    """Return a number or range in base units with its sign reversed."""
-    return reorient_text("", text, -1, 0)
-
-
 def reorient_text(name: str, text: str, sign: int, offset: int, source: str = "") -> str:
     """Return the text of ``offset + sign * value`` for a number or range. Raises UserError."""
     if name in SHARED and "%" in text:
@@ -796,7 +791,7 @@ def _reorient_number(text: str, sign: int, offset: int) -> str:
     if not double(text):
         return str(offset) if offset else text
     if not offset and sign < 0:
-        return text[1:] if text[0] == "-" else "-" + text.removeprefix("+")
+        return opposite(text)
     return digits(float(offset + sign * _fraction(text)))
 
 

@@ -13,7 +13,7 @@ from ...collision.case import OWN_NAMES, Case, is_range
 from ...collision.doubles import digits, double
 from ...collision.geometry import MOVES, coordinate_names, resolve_contact_point
 from ...collision.uncertain import Uncertain
-from ...collision.units import opposite
+from ...collision.units import reorient_text
 from ...errors import UserError
 from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
 from ...mechanics.state import KNOWABLE
@@ -148,7 +148,7 @@ def _forward_solution(case: Case) -> dict[str, str]:
         scene["MU"] = double(friction)
     solved = solve(scene, AFTER)
     if float(solved["MUP"]) == -scene["MU"]:
-        friction = opposite(friction)
+        friction = reorient_text("", friction, -1, 0)
     result = {name: digits(float(solved[name])) for name in FINAL_VELOCITIES}
     return {**result, "MUP": friction}
 

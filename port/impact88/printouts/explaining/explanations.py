@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from ...collision.doubles import double
+from ...collision.doubles import double, opposite
 from ...collision.fields import ANGLES, FIELDS, INPUTS, scene_name
 from ..judging.judgement import Judged
 from ..reading.differences import Kind, differences_along
@@ -26,7 +26,7 @@ from ..recovery.replays import run_all
 from ..recovery.rereading import Reread, Rereading
 from ..recovery.search import printed_in_doubles
 from ..recovery.slips import Change
-from ..recovery.typedtext import longer_texts, mu_turned, opposite
+from ..recovery.typedtext import longer_texts, mu_turned
 from . import machines
 from .causes import (
     LABEL_WRONG,

@@ -18,14 +18,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ... import status
-from ...collision.doubles import double, doubles_of
+from ...collision.doubles import double, doubles_of, opposite
 from ...collision.fields import ANGLES, FIELDS, INPUTS, scene_name
 from ...mechanics.closedform.solve import solve
 from ...mechanics.friction import admissible_friction
 from ...names import RESULTS
 from ..reading.numerals import printable, value_of
 from ..recovery.replays import run_columns
-from ..recovery.typedtext import mu_turned, opposite
+from ..recovery.typedtext import mu_turned
 from .judgement import FieldCheck
 
 EXACT_DIGITS = 12

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ...collision.doubles import double
+from ...collision.doubles import double, opposite
 from ...collision.fields import ANGLES, INPUTS, ZERO_DETERMINANT, outcome_fields, scene_name
 from ...errors import UserError
 from ...program.emulated import ListingCopy
@@ -25,7 +25,7 @@ from ..reading.numerals import NUMBER, value_of
 from ..reading.printout import Printout, read_printouts
 from ..recovery.recovered import Recovered
 from ..recovery.replays import Outcome
-from ..recovery.typedtext import opposite, texts_that_print, with_opposite_mu
+from ..recovery.typedtext import texts_that_print, with_opposite_mu
 from .judgement import FieldCheck, Judged, Status, judge
 
 MAX_ANGLE_TEXTS = 4

@@ -19,14 +19,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...collision.doubles import double
+from ...collision.doubles import double, opposite
 from ...collision.fields import ANGLES, FIELDS, FINAL_SPINS, INPUTS, scene_name
 from ...mechanics.closedform import energy as closed_form
 from ...mechanics.closedform.general import typed_friction
 from ...mechanics.closedform.solve import solve
 from ...names import VELOCITIES
 from . import replays
-from .typedtext import mu_turned, opposite, texts_that_print
+from .typedtext import mu_turned, texts_that_print
 
 Floats = NDArray[np.float64]
 Picks = NDArray[np.intp]

@@ -13,10 +13,9 @@ from itertools import combinations
 from operator import ne
 from typing import NamedTuple
 
-from ...collision.doubles import double
+from ...collision.doubles import double, opposite
 from ...collision.fields import ANGLES
 from ..reading.numerals import is_number, printable
-from .typedtext import opposite
 
 DIGIT = "digit misread"
 SWAP = "digits swapped"

@@ -14,7 +14,7 @@ from functools import lru_cache
 from ...apple.applesoft import decimaltext
 from ...apple.applesoft.errorcodes import ApplesoftError
 from ...apple.applesoft.real import divide, multiply, rounded, to_stored
-from ...collision.doubles import double
+from ...collision.doubles import double, opposite
 from ..reading.numerals import value_of
 
 _TYPED_ZEROS = 3  # trailing zeros that may have been typed
@@ -75,12 +75,6 @@ def longer_texts(printed: str, angle: bool = False) -> list[str]:
         if seen is not None and seen[1] == printed and seen[0] != own[0]:
             texts.setdefault(seen[0], text)
     return [*texts.values()]
-
-
-def opposite(text: str) -> str:
-    """Return a number with the other sign; it may be written with a plus sign and blanks."""
-    size = text.strip()
-    return size[1:] if size.startswith("-") else "-" + size.removeprefix("+")
 
 
 def mu_turned(typed: str, printed: str) -> bool:
