@@ -18,7 +18,17 @@ from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
 from ...mechanics.friction import status_sentences
 from ...mechanics.state import COURSES, KNOWABLE
 from ...messages.plaintable import format_fixed, number
-from ...names import DEFAULT_M, LENGTH, MASS, SCENE, SPIN, VELOCITY, check_names, quantity
+from ...names import (
+    DEFAULT_M,
+    FINAL_STATE,
+    LENGTH,
+    MASS,
+    SCENE,
+    SPIN,
+    VELOCITY,
+    check_names,
+    quantity,
+)
 from ...status import IMPOSSIBLE
 from ..figures.canvas import svg
 from ..figures.sceneview import scene_drawing
@@ -31,8 +41,10 @@ if TYPE_CHECKING:
 
 DRIVERS = 3
 """Inputs named for each result: they fill a line."""
-FORWARD = ("SAF", "SBF", "VAX", "VAY", "WAF", "VBX", "VBY", "WBF", "DVA", "DVB", "LOSS")
-"""Results of a scene that the answer shows; its ranges are followed to all but the speeds."""
+BOUNDED = (*FINAL_STATE, "DVA", "DVB", "LOSS")
+"""Results of a scene that its ranges are followed to."""
+FORWARD = ("SAF", "SBF", *BOUNDED)
+"""Results of a scene that the answer shows."""
 INVERSE = (
     "SA",
     "HA",
@@ -277,7 +289,7 @@ def _forward(case: Case, source: str, samples: int, seed: int, units: System) ->
         from ..uncertainty.boundstable import quantiles_of
 
         options: dict[str, Any] = {"samples": samples, "seed": seed, "keep_draws": True}
-        wanted = [name for name in FORWARD[2:] if name in results]
+        wanted = [name for name in BOUNDED if name in results]
         bounded = bounds(inputs.values, wanted, correlations=inputs.correlations, **options)
         for vehicle in "AB" if {"VAX", "VAY", "VBX", "VBY"} <= {*wanted} else "":
             speeds = np.hypot(bounded.draws[f"V{vehicle}X"], bounded.draws[f"V{vehicle}Y"])

@@ -190,7 +190,8 @@ def is_alteration(found: Judged, changes: Sequence[int] = (0,)) -> bool:
 
     They are on a page that no machine read, or whose form contradicts. On others they are unless
     too much was misread or is missing, or the likeliest explanation is more than a change or two.
-    ``changes``: number of changes of each explanation, the likeliest first.
+    ``changes``: number of changes of each explanation, the likeliest first. Before there are any,
+    the answer is provisional: DIFFERS has its differences explained, and is then asked again.
     """
     paper = found.paper
     if not paper.machine_read or paper.is_of_another_form:

@@ -66,7 +66,7 @@ class Verification:
     line : int
         The line the printout begins in.
     verdict : Verdict
-        IDENTICAL, AS_FAR_AS_READ, INCOMPLETE or DIFFERS.
+        IDENTICAL, IDENTICAL_AS_READ, INCOMPLETE or DIFFERS.
     scene : dict of str to str or None
         The inputs recovered.
     fields : list of FieldCheck

@@ -155,7 +155,7 @@ def read_page(
             best = layout
         if layout.upright:
             break
-    leaves = [leaf for on_grid in best.grids for leaf in _ordered_leaves(on_grid, seeds, copy)]
+    leaves = [leaf for on_grid in best.grids for leaf in _judge_with_order(on_grid, seeds, copy)]
     _add_marks(ink, paper.coloured, leaves, copy)
     return leaves, "tried dark type " + ", ".join(tried) if tried else "it has hardly any ink"
 
@@ -242,15 +242,15 @@ def _gain(sheets: Sequence[Sheet]) -> float:
     return sum(sheet.gain for sheet in sheets)
 
 
-def _ordered_leaves(
+def _judge_with_order(
     on_grid: _OnGrid, seeds: Sequence[dict[str, str]], copy: Copy | None
 ) -> list[Leaf]:
-    """Return the printouts of a grid with their verdicts, and what is said of their rows.
+    """Return the printouts of a grid with their verdicts, and what the order of their rows says.
 
     A page of the program's form whose rows are out of order differs; one without prompts and rows
     of asterisks was retyped, in an order of its own.
     """
-    leaves = _leaves(on_grid.grid, on_grid.sheets, seeds, copy)
+    leaves = _judge_printouts(on_grid.grid, on_grid.sheets, seeds, copy)
     if not on_grid.order or not leaves:
         return leaves
     for is_exchange, sentences in (
@@ -330,7 +330,7 @@ def _find_claims(leaves: Sequence[Leaf]) -> None:
 _NEXT_STEP = "expected a straight scan at 200 to 300 dpi, or the page typed in as text"
 
 
-def _leaves(
+def _judge_printouts(
     grid: Grid, sheets: list[Sheet], seeds: Sequence[dict[str, str]], copy: Copy | None = None
 ) -> list[Leaf]:
     """Return the printouts of a grid with their verdicts: first their rows and numbers, then their
@@ -354,10 +354,10 @@ def _leaves(
         if not leaf.found:
             leaf.judged = CellJudgement(Verdict.INCOMPLETE, reason=_reason_unread(leaf))
     with_scene = [leaf for leaf in legible if leaf.found]
-    _compare_leaves(grid, with_scene)
+    _set_cells(grid, with_scene)
     for correct in (_drop_wrong_lines, partial(_confirm_scene, copy=copy)):
         if sum(map(correct, with_scene)):
-            _compare_leaves(grid, with_scene)
+            _set_cells(grid, with_scene)
     for leaf in with_scene:
         _judge(leaf)
     for leaf in legible:
@@ -444,7 +444,7 @@ def _row_name(grid: Grid, row: Row, names: Sequence[str]) -> str:
     return f"line {grid.number(row.start)}, the row of {names[0]},"
 
 
-def _compare_leaves(grid: Grid, leaves: Sequence[Leaf]) -> None:
+def _set_cells(grid: Grid, leaves: Sequence[Leaf]) -> None:
     """Set the cells of all printouts, compared with the pages of their scenes."""
     cells = compare_cells(grid, [(leaf.read, leaf.found) for leaf in leaves if leaf.found])
     for leaf, leaf_cells in zip(leaves, cells, strict=True):
