@@ -51,7 +51,10 @@ _FOOT = Fraction("0.3048")
 _POUND = Fraction("0.45359237")
 _GRAVITY = Fraction("9.80665")
 _SLUG = _POUND * _GRAVITY / _FOOT
+_MPH = 5280 * _FOOT / 3600
 _DEGREE = Fraction("0.017453292519943295769236907684886127134")
+GRAVITY = float(_GRAVITY / _FOOT)  # ft/s²: pounds in a slug
+MPH = float(_MPH / _FOOT)  # ft/s
 
 Dimension = tuple[int, ...]
 """Exponents of length, mass, time and angle."""
@@ -90,7 +93,7 @@ UNITS = (
     Unit("cm", _LENGTH, Fraction(1, 100), _SI),
     Unit("mm", _LENGTH, Fraction(1, 1000), _SI),
     Unit("km kilometer kilometers kilometre kilometres", _LENGTH, Fraction(1000), _SI),
-    Unit("mph", _SPEED, 5280 * _FOOT / 3600, _US),
+    Unit("mph", _SPEED, _MPH, _US),
     Unit("fps", _SPEED, _FOOT, _US),
     Unit("kph kmh", _SPEED, Fraction(1000, 3600), _SI),
     Unit("kn kt knot knots", _SPEED, Fraction(1852, 3600), _US),

@@ -11,6 +11,7 @@ from routh import impulse
 
 from impact88.casework.chapter import validation
 from impact88.casework.chapter.validation import IIHS, NHTSA, checks, medians
+from impact88.collision.units import MPH
 from impact88.interface.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
 
@@ -40,7 +41,7 @@ def test_one_rounded_speed_makes_4364_what_is_published() -> None:
         results = solve(validation.nhtsa_scene({**row, **changes}), names)
         sizes = np.abs([float(results[name]) for name in names])
         sizes[[1, 3]] = np.degrees(sizes[[1, 3]])
-        sizes[[2, 4]] /= validation.FEET_PER_SECOND
+        sizes[[2, 4]] /= MPH
         return float(np.max(np.abs(sizes - reported) / halves))
 
     assert worst() > 3
@@ -62,7 +63,7 @@ def test_the_oracle_answers_the_published_tests_with_their_sources(capsys: Any) 
         assert answer["source"] in validation.SOURCES.values()
         (change,) = (n for n in answer["reported"] if n["quantity"] in ("ΔV, A", "ΔV across it"))
         own = answer["results"]["DVA" if change["unit"] == "mph" else "VAY"]["double"]
-        factor = validation.FEET_PER_SECOND if change["unit"] == "mph" else 1.0
+        factor = MPH if change["unit"] == "mph" else 1.0
         assert own / factor == pytest.approx(change["computed"], rel=1e-7)
     assert main(["oracle", "--validation", "--vectors", "3"]) == 2
     assert "expected no vectors" in capsys.readouterr().err

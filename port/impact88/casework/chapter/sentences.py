@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...collision.geometry import resolve_contact_point
+from ...collision.units import GRAVITY, MPH
 from ...mechanics.closedform.general import typed_friction
 from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import forces
@@ -23,12 +24,8 @@ from .staged import Collision, collisions, forward, predict_delta_v
 
 Array = NDArray[np.float64]
 
-GRAVITY = 32.174
-"""ft/s²."""
 CONTACT_TIMES = (0.1, 0.2)
 """Seconds, Section III."""
-MPH = 22 / 15
-"""ft/s."""
 NOT_CHECKED = "not to be checked here"
 
 

@@ -21,15 +21,12 @@ from math import cos, degrees, radians
 from statistics import median
 from typing import NamedTuple
 
+from ...collision.units import GRAVITY, MPH
 from ...files import packaged_text
 from ...mechanics.closedform.solve import solve
 from ...names import PIVOT
 from .barrier import BARRIER, barrier
 
-GRAVITY = 32.174
-"""ft/s²: pounds in a slug."""
-FEET_PER_SECOND = 5280 / 3600
-"""In a mile per hour."""
 GYRATION = 21.03
 """ft²: square of the radius of gyration taken for every car of the small overlap tests."""
 BARRIER_TIMES = 1e9  # a wall's mass over the car's, where it must be finite
@@ -110,13 +107,13 @@ def rows_of(source: str) -> list[dict[str, str]]:
 def nhtsa_scene(row: Mapping[str, str]) -> dict[str, float]:
     """Vehicle 1 is A and travels along -x; no moment impulse, the sliding ends at separation."""
     g = {name: float(text) for name, text in row.items()}
-    heading, speed = radians(g["heading2_deg"]), g["speed2_mph"] * FEET_PER_SECOND
+    heading, speed = radians(g["heading2_deg"]), g["speed2_mph"] * MPH
     scene = {"E": g["restitution"], "MU": PIVOT, "EM": 1.0, "GA": g["normal_deg"]}
     scene |= {"DA": g["d1_ft"], "PA": g["phi1_deg"], "TA": 0.0}
     scene |= {"DB": g["d2_ft"], "PB": g["phi2_deg"], "TB": g["heading2_deg"]}
     scene |= {"MA": g["weight1_lb"] / GRAVITY, "IA": g["yaw_inertia1_lb_ft_s2"]}
     scene |= {"MB": g["weight2_lb"] / GRAVITY, "IB": g["yaw_inertia2_lb_ft_s2"]}
-    scene |= {"UX": -g["speed1_mph"] * FEET_PER_SECOND, "UY": 0.0, "WA": 0.0, "WB": 0.0}
+    scene |= {"UX": -g["speed1_mph"] * MPH, "UY": 0.0, "WA": 0.0, "WB": 0.0}
     return scene | {"VX": speed * cos(heading), "VY": speed * cos(radians(90) - heading)}
 
 
@@ -129,9 +126,9 @@ def _nhtsa() -> list[Check]:
         pairs = (
             ("critical impulse ratio", "1", "critical_impulse_ratio", values["MUC"]),
             ("change of spin, A", "°/s", "delta_omega1_deg_s", abs(degrees(values["WAF"]))),
-            ("ΔV, A", "mph", "delta_v1_mph", values["DVA"] / FEET_PER_SECOND),
+            ("ΔV, A", "mph", "delta_v1_mph", values["DVA"] / MPH),
             ("change of spin, B", "°/s", "delta_omega2_deg_s", abs(degrees(values["WBF"]))),
-            ("ΔV, B", "mph", "delta_v2_mph", values["DVB"] / FEET_PER_SECOND),
+            ("ΔV, B", "mph", "delta_v2_mph", values["DVB"] / MPH),
         )
         for quantity, unit, column, number in pairs:
             fields = NHTSA, row["test"], quantity, unit, PUBLISHED, float(row[column]), number

@@ -9,7 +9,7 @@ from textwrap import wrap
 
 from ...collision.geometry import clock, within_doubles
 from ...collision.needs import join_words
-from ...collision.units import RULES, System, display_values
+from ...collision.units import RULES, SYSTEMS, System, display_values
 from ...mechanics.state import CHANGES, COURSE_OF, COURSES, SPEEDS
 from ...messages.plaintable import decimals_for, format_fixed, number, paragraph, table
 from ...names import (
@@ -29,7 +29,7 @@ from .derived import NOISE, absent_quantities, without_noise
 from .evidence import AGREE, as_given
 from .solution import SIGMAS, Adjusted
 
-_ROAD = {"ft/s": ("mph", 3600 / 5280), "m/s": ("km/h", 3.6)}  # units of speeds on the road
+_ROAD = {"ft/s": SYSTEMS["us"], "m/s": SYSTEMS["metric"]}  # units of speeds on the road
 _ALSO = (*COEFFICIENTS, *SPINS)  # sought, and in no line on motion
 DRIVERS = 3  # values named as the causes of a result's uncertainty
 _MIN_FRACTION = 0.05  # of a result's variance, for a value to be named
@@ -208,9 +208,10 @@ def _size(
 
     text, unit = f"{vehicle} {shown(values[name])}", units.label(VELOCITY)
     if not units.is_bare:
-        road, factor = _ROAD.get(unit, ("", 0.0))
-        speed = units.display_value(VELOCITY, values[name]) * factor
-        text += f" {unit}" + (f" ({number(speed, 3)} {road})" if road else "")
+        text += f" {unit}"
+        if road := _ROAD.get(unit):
+            speed = road.display_value(VELOCITY, units.display_value(VELOCITY, values[name]))
+            text += f" ({number(speed, 3)} {road.label(VELOCITY)})"
     ends = [shown(x) for x in _interval(answer, name)]
     if ends:
         text += direction + f", 90 % {ends[0]} to {ends[1]}"
