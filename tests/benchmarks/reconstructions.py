@@ -21,7 +21,7 @@ import time
 import numpy as np
 from impactsampler import BEFORE, KINDS, problem, quantiles
 
-from impact88.casework.reconstruction import reconstructed
+from impact88.casework.reconstruction import drawsandbounds
 from impact88.casework.reconstruction.adjustment import reconstruct
 from impact88.casework.reconstruction.answer import Answer
 from impact88.casework.reconstruction.posterior import Posterior
@@ -51,7 +51,7 @@ def find_extremes(region, *given):
     return found
 
 
-SEARCH, reconstructed.find_extremes = reconstructed.find_extremes, find_extremes
+SEARCH, drawsandbounds.find_extremes = drawsandbounds.find_extremes, find_extremes
 
 
 def found(given):

@@ -11,7 +11,7 @@ from impact88.casework.reconstruction.adjustment import reconstruct
 from impact88.casework.reconstruction.answer import Answer
 from impact88.casework.reconstruction.answerremarks import remarks_on
 from impact88.casework.reconstruction.answertable import text_of
-from impact88.casework.reconstruction.reconstructed import draws, ranges
+from impact88.casework.reconstruction.drawsandbounds import draws, ranges
 from impact88.collision.geometry import GEOMETRY
 from impact88.collision.uncertain import read
 from impact88.mechanics.closedform.solve import solve

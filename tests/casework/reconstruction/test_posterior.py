@@ -12,7 +12,7 @@ from impact88.casework.chapter.staged import collisions
 from impact88.casework.reconstruction.adjustment import reconstruct
 from impact88.casework.reconstruction.answer import Answer, answers
 from impact88.casework.reconstruction.answerjson import json_of
-from impact88.casework.reconstruction.reconstructed import draws, ranges
+from impact88.casework.reconstruction.drawsandbounds import draws, ranges
 from impact88.collision.geometry import GEOMETRY
 from impact88.collision.uncertain import read
 from impact88.mechanics.closedform.solve import solve

@@ -17,8 +17,8 @@ from impact88.casework.chapter.staged import collisions
 from impact88.casework.reconstruction import adjustment
 from impact88.casework.reconstruction.adjustment import reconstruct
 from impact88.casework.reconstruction.answer import Answer
+from impact88.casework.reconstruction.drawsandbounds import draws, ranges
 from impact88.casework.reconstruction.leastsquares import polish
-from impact88.casework.reconstruction.reconstructed import draws, ranges
 from impact88.casework.reconstruction.system import System
 from impact88.casework.reconstruction.unknowns import solve_for
 from impact88.collision.uncertain import Uncertain, fixed_value, read

@@ -3,7 +3,7 @@
 `adjustment` finds the impacts (entry: `reconstruct`); `answer` has everything that follows from
 each (entry: `answers`), `reconstructions` is `impact88.reconstruct`. Exact values are measurements
 of no tolerance. `unknowns` solves the equations over arrays.
-`reconstructed` has the uncertainty of a reconstruction: draws and bounds (entries: `draws`,
+`drawsandbounds` has the uncertainty of a reconstruction: draws and bounds (entries: `draws`,
 `ranges`).
 
 - `system`: the equations in scaled variables; `quadrics`: all their exact solutions.

@@ -19,8 +19,8 @@ from ...names import FINAL_STATE, VELOCITIES
 from ...status import IMPOSSIBLE, Status, sentences
 from . import adjustment
 from .derived import NOISE, with_derived_values
+from .drawsandbounds import MIN_GAIN, Draws, Range, draws, ranges
 from .nearest import counts, refusal
-from .reconstructed import MIN_GAIN, Draws, Range, draws, ranges
 from .solution import Reconstruction
 
 _RESULTS = (
