@@ -295,6 +295,13 @@ def test_what_has_no_value_is_no_fault(changes: dict[str, str]) -> None:
     assert rows["Speed before"]
 
 
+def test_an_enormous_friction_leaves_the_critical_one_as_it_is() -> None:
+    """Pure numbers have no common size below which one of them is rounding."""
+    told = collision.answer({**sample(1), "MU": "1E15"})
+    texts = {one["name"]: one["text"] for row in told["answer"] for one in row["values"]}
+    assert texts["MUC"] == "0.9316"
+
+
 def test_point_masses_along_a_line_need_neither_spins_nor_a_plane(tmp_path: Path, own: Own) -> None:
     """What the program is typed in their place is said, what faces nowhere has no direction."""
     values = {"M": "4", "MA": "94", "MB": "78", "UX": "29", "VX": "0", "UY": "0", "VY": "0"}

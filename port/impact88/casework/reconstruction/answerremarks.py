@@ -10,12 +10,13 @@ from ...collision.needs import needs_in_words
 from ...collision.units import RULES, System
 from ...mechanics.friction import status_sentences
 from ...mechanics.outcome import broken_laws
-from ...mechanics.state import COURSES, FORCES, SPEEDS
+from ...mechanics.state import FORCES, SPEEDS
 from ...messages.plaintable import number
 from ...names import FINAL_STATE, VELOCITIES
 from ...status import IMPOSSIBLE
 from .admissible import ENDS
 from .answer import Answer
+from .derived import from_the_axis
 from .posterior import MAX_VELOCITY, MIN_SIZE
 from .unknowns import BADLY_CONDITIONED
 
@@ -96,9 +97,7 @@ def _folds(answer: Answer, units: System) -> Iterator[str]:
     for name in folded_names[:MAX_FOLDED_NAMED]:
         value, scale = solution.values[name], solution.system.scale(name)
         value = 0.0 if abs(value) < 1e-6 * scale else value
-        # a direction opposite to the axis is 180, from either side
-        opposite = name in (*COURSES, *FORCES) and value < -179.9995
-        value = 180.0 if opposite else value
+        value = from_the_axis(name, value)
         texts.append(f"{name} about {number(units.display_unwrapped(name, value), 4)}")
     if texts:
         both = ", and draws and bounds have both" if answer.draws else ""

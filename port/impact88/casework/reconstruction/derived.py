@@ -42,6 +42,12 @@ def absent_quantities(values: Mapping[str, float]) -> tuple[str, ...]:
     return (*barrier, *_NOT_OF_POINT_MASSES) if values.get("M") == 4 else barrier
 
 
+def from_the_axis(name: str, value: float) -> float:
+    """Return a value as it is shown: the direction opposite to the axis is 180, from either side,
+    to three decimals."""
+    return 180.0 if name in (*COURSES, *FORCES) and value < -179.9995 else value
+
+
 def without_noise(
     values: Mapping[str, float],
     noise: float = NOISE,
@@ -58,11 +64,12 @@ def without_noise(
             unit = quantity(name).unit
             largest[unit] = max(abs(value), largest.get(unit, 0.0))
     largest["1"] = ROUNDING / noise  # pure numbers have no common size
-    radii = [
-        math.sqrt(values[inertia] / values[mass])
+    squared_radii = [
+        values.get(inertia, math.inf) / values[mass]
         for inertia, mass in (("IA", "MA"), ("IB", "MB"))
-        if math.isfinite(values.get(inertia, math.inf) / values.get(mass, 1.0))
+        if values.get(mass, 0.0) > 0
     ]
+    radii = [math.sqrt(square) for square in squared_radii if 0 <= square < math.inf]
     if radii and min(radii) > 0:
         # where all spins are rounding, their size is that of velocities
         spin_size = largest.get(VELOCITY, 0.0) / min(radii) * ROUNDING / noise
@@ -71,6 +78,5 @@ def without_noise(
     for name, value in values.items():
         small = abs(value) < noise * largest.get(quantity(name).unit, 0.0)
         small |= abs(value) < NOISE * (deviations or {}).get(name, 0.0)
-        opposite = name in (*COURSES, *FORCES) and value < -179.9995  # to three decimals
-        clean[name] = 180.0 if opposite else 0.0 if small else value
+        clean[name] = 0.0 if small else from_the_axis(name, value)
     return clean

@@ -25,7 +25,7 @@ from ...messages.plaintable import number
 from ...messages.schemas import with_schema
 from ...names import FINAL_VELOCITIES, RESULTS, SCENE, quantity
 from ...program.scene import Scene, sample
-from .formview import entries, spoken_direction, units_shown, without_rounding
+from .formview import entries, spoken_direction, units_shown
 
 DRAWS = 20_000
 """Random draws for the bounds' quantiles: half a second at most with every value a range."""
@@ -119,6 +119,7 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     ``units`` as `units_shown`; for a complete scene also ``answer`` (`_answer`), ``oracle``, what
     `impact88 oracle` answers, its ``page``, ``results`` and ``warnings``, and the ``screen`` from
     the emulator's memory."""
+    from ...casework.reconstruction.derived import without_noise
     from ...conformance.comparison.oracle import oracle
     from ...printouts.judging import beside
     from ...program.emulated import load_machine, run_machine
@@ -143,7 +144,7 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
             "answer": _answer(scene, exact, system),
             "page": page(answer_known["printout"]),
             "screen": [screen_runs(row) for row in machine.screen_rows()],
-            "results": _rows(results, without_rounding(exact, _ROUNDING), system),
+            "results": _rows(results, without_noise(exact, _ROUNDING), system),
             "warnings": warnings,
         }
     return document
@@ -183,10 +184,10 @@ def _without(
 def _answer(scene: Scene, exact: Mapping[str, float], system: System) -> list[dict[str, Any]]:
     """Rows of ``words``, a ``unit``, and ``values``: name, text, and a direction as it is ``said``,
     one or one for each vehicle."""
-    from ...casework.reconstruction.derived import with_derived_values
+    from ...casework.reconstruction.derived import with_derived_values, without_noise
 
     columns = _known_numbers(scene)
-    values = without_rounding(with_derived_values({**columns, **exact}, None), _ROUNDING)
+    values = without_noise(with_derived_values({**columns, **exact}, None), _ROUNDING)
     rows = []
     for words, *names in _ANSWER:
         if not values.keys() >= set(names):

@@ -13,7 +13,7 @@ from ...errors import UserError
 from ...files import decode
 from ...mechanics.state import COURSES, FORCES
 from ...messages.plaintable import number
-from ...names import CHAPTER, DEFAULT_M, RESULTS, SCENE, check_names, quantity
+from ...names import CHAPTER, DEFAULT_M, RESULTS, SCENE, check_names
 
 UNITS = "units"
 """The problem that belongs to no single value."""
@@ -72,19 +72,6 @@ def units_shown(system: System) -> dict[str, Any]:
     rules = {row.unit for table in (SCENE, RESULTS, CHAPTER) for row in table.values()}
     labels = {rule: system.label(rule) for rule in sorted(rules)}
     return {"name": system.name, "base": base_of(system), "labels": labels}
-
-
-def without_rounding(values: Mapping[str, float], share: float) -> dict[str, float]:
-    """The values, with 0 for those at or below a share of the largest of their kind."""
-    largest: dict[str, float] = {}
-    for name, value in values.items():
-        rule = quantity(name).unit
-        if math.isfinite(value):
-            largest[rule] = max(largest.get(rule, 0.0), abs(value))
-    return {
-        name: 0.0 if abs(value) <= share * largest.get(quantity(name).unit, 0.0) else value
-        for name, value in values.items()
-    }
 
 
 def filled_in(data: bytes, name: str, allowed: Collection[str]) -> dict[str, Any]:

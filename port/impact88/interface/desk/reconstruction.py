@@ -9,14 +9,14 @@ from ...collision import uncertain
 from ...collision.case import Case, remark_lines
 from ...collision.scenefile import known_template
 from ...collision.uncertain import Uncertain, skid_remarks
-from ...collision.units import RULES
+from ...collision.units import RULES, display_values
 from ...errors import UserError
 from ...mechanics.state import KNOWABLE
 from ...messages.plaintable import number
 from ...messages.schemas import with_schema
 from ...names import FINAL_STATE, SCENE, VELOCITIES, check_names, quantity
 from ...program.scene import sample
-from .formview import digits, entries, spoken_direction, units_shown, without_rounding
+from .formview import digits, entries, spoken_direction, units_shown
 
 DRAWS = 20_000  # random draws for the quantiles, as for a collision's bounds
 _DIGITS = 6  # digits shown of a value, as the command prints
@@ -30,9 +30,6 @@ _COLUMNS = {
     "error amplified": (3, "amplified"),
 }
 """Columns of a table: the digits shown, and the key of the value."""
-_ROUNDING = 1e-9
-"""Fraction of the largest value of its kind below which a value is shown as 0: values go on with
-twelve digits, and the published runs amplify errors up to 300 times."""
 _ASKED = ("DVA", "DVB", "PDOFA", "PDOFB", "LOSS")
 """Shown first, and then what was solved for."""
 
@@ -50,6 +47,7 @@ def answer(values: dict[str, str], units: str = "", draws: int = DRAWS) -> dict[
     from ...casework.reconstruction.answer import answers
     from ...casework.reconstruction.answerjson import json_of
     from ...casework.reconstruction.answertable import first_lines, is_adverse, text_of
+    from ...casework.reconstruction.derived import without_noise
 
     case, problems = entries(values, units)
     system = case.system if case else RULES
@@ -69,6 +67,9 @@ def answer(values: dict[str, str], units: str = "", draws: int = DRAWS) -> dict[
         solutions = [
             (
                 json_of(answer, system),
+                display_values(
+                    without_noise(answer.values, deviations=answer.uncertainties), system
+                ),
                 text_of(answer, system),
                 [(*line, is_adverse(answer, line[0])) for line in first_lines(answer, system)],
             )
@@ -94,6 +95,7 @@ def _solution(
     case: Case,
     known: Mapping[str, Uncertain],
     values: Mapping[str, Any],
+    rounded: Mapping[str, float],
     printed: str,
     lines: Sequence[tuple[str, str, bool]],
 ) -> dict[str, Any]:
@@ -103,8 +105,6 @@ def _solution(
         return {**quantity(name)._asdict(), "unit": system.label(quantity(name).unit)}
 
     found = values["values"]
-    exact = {name: value for name, value in found.items() if value is not None}
-    rounded = without_rounding(exact, _ROUNDING)
     rows = []
     for name, value in found.items():
         spread = values["uncertainty"].get(name, {})
@@ -117,7 +117,7 @@ def _solution(
         numbers = {head: parts.get(part) for head, (_, part) in _COLUMNS.items()}
         row = {**what(name), "value": value, "known": name in values["known"], "numbers": numbers}
         row["said"] = spoken_direction(name, value, system)
-        row["text"] = digits(rounded.get(name), _DIGITS)
+        row["text"] = digits(None if value is None else rounded[name], _DIGITS)
         row["solved"] = name in values["solved_for"] and not row["known"]
         row["columns"] = {head: digits(x, _COLUMNS[head][0]) for head, x in numbers.items()}
         rows.append(row)
