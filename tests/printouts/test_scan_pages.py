@@ -387,7 +387,7 @@ def test_a_printout_differs_only_where_those_beside_it_were_read(monkeypatch, be
     monkeypatch.setattr(sheets, "judge_cells", lambda *given_: next(given))
     monkeypatch.setattr(sheets, "confirm_inputs", lambda one, *_: one)
     grid = SimpleNamespace(odds=lambda: [np.zeros(8)], clarity=0.9)
-    leaves = sheets._leaves(grid, [Sheet(gain=1000.0), Sheet(gain=1000.0)], [])
+    leaves = sheets._judge_printouts(grid, [Sheet(gain=1000.0), Sheet(gain=1000.0)], [])
     expected = Verdict.DIFFERS if beside is Verdict.IDENTICAL else Verdict.INCOMPLETE
     assert leaves[0].judged.verdict is expected
     assert bool(leaves[0].judged.reason) is (beside is Verdict.INCOMPLETE)
@@ -409,7 +409,7 @@ def test_no_scene_is_searched_for_where_columns_or_lines_are_not_clear(
     )
     monkeypatch.setattr(sheets, "scene_of", lambda read, seeds, copy: asked.append(read))
     grid = SimpleNamespace(odds=lambda: [np.zeros(8)], clarity=clarity)
-    leaves = sheets._leaves(grid, [Sheet(gain=gain), Sheet(gain=1000.0)], [])
+    leaves = sheets._judge_printouts(grid, [Sheet(gain=gain), Sheet(gain=1000.0)], [])
     assert len(asked) == searched
     assert len(leaves) == (2 if searched else 1)
     assert {leaf.judged.verdict for leaf in leaves} == {Verdict.INCOMPLETE}
