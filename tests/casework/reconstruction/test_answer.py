@@ -151,7 +151,7 @@ class TestNoImpact:
         assert main(["reconstruct", path, "--set", "E=-.5"]) == 0
         assert "IMPOSSIBLE" in capsys.readouterr().out.rpartition("AFTER")[0]
 
-    @pytest.mark.parametrize(("speed", "status"), [("9 +- .2", 0), ("13 +- .2", 1)])
+    @pytest.mark.parametrize(("speed", "status"), long_but([("9 +- .2", 0), ("13 +- .2", 1)]))
     def test_a_report_leads_with_it_and_has_its_status(self, speed, status, tmp_path, capsys):
         pytest.importorskip("jinja2")
         page = tmp_path / "x.html"

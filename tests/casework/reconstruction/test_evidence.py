@@ -41,6 +41,7 @@ def test_probability_is_that_of_simulated_sums(freedom):
         assert chi_square_tail(squares, freedom) == pytest.approx(share, abs=0.006)
 
 
+@pytest.mark.long
 def test_true_measurements_are_hardly_ever_accused_and_false_ones_are():
     rng = np.random.default_rng(42)
     verdicts = []

@@ -198,6 +198,7 @@ def test_an_infinite_number_is_an_answer_and_a_wrong_one(tmp_path, text: str) ->
 # --- what is wrong ---------------------------------------------------------------------------
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("what", CONVENTIONS if SWEEP else list(CONVENTIONS)[4:5])
 def test_a_mistake_is_named(tmp_path, what: str) -> None:
     done = compared(tmp_path, answered(CONVENTIONS[what], MIXED), MIXED)

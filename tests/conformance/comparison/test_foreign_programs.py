@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pytest
 import wrongprograms
+from longer import long_but
 from wrongprograms import FOREIGN, Wrong
 
 from impact88.conformance.comparison.compare import Comparison, compare
@@ -73,7 +74,7 @@ def accused(done: Comparison) -> list[str]:
     return [row.cause for row in done.differences]
 
 
-@pytest.mark.parametrize("program", FOREIGN)
+@pytest.mark.parametrize("program", long_but(FOREIGN))
 def test_a_correct_program_is_not_accused(program: str) -> None:
     """In any system of units, with all digits or rounded to a few."""
     if not wrongprograms.is_available(program):
@@ -96,7 +97,7 @@ def test_a_correct_program_is_not_accused(program: str) -> None:
         assert done.differing == 0, (digits, done.worst[:3])
 
 
-@pytest.mark.parametrize("arithmetic", ARITHMETICS)
+@pytest.mark.parametrize("arithmetic", long_but(ARITHMETICS))
 def test_a_correct_program_in_another_arithmetic_is_not_accused(arithmetic: str) -> None:
     """Of trial impulses, whose equations lose digits to large velocities, in closed form, and by
     elimination in Fortran's order."""
@@ -109,6 +110,7 @@ def test_a_correct_program_in_another_arithmetic_is_not_accused(arithmetic: str)
         assert done.differing == 0, (program, done.worst[:3])
 
 
+@pytest.mark.long
 def test_single_precision_is_told_and_no_mistake_is_named() -> None:
     if not wrongprograms.is_available("phases.c"):
         pytest.skip("no compiler")
@@ -120,7 +122,7 @@ def test_single_precision_is_told_and_no_mistake_is_named() -> None:
     assert set(accused(done)) <= {"rounding in single precision"}, done.causes
 
 
-@pytest.mark.parametrize("program", [p for p in FOREIGN if p != "shooting.js"])
+@pytest.mark.parametrize("program", long_but(p for p in FOREIGN if p != "shooting.js"))
 def test_a_program_in_any_language_conforms_to_the_frozen_set(program: str) -> None:
     if not wrongprograms.is_available(program):
         pytest.skip("no compiler, or no interpreter")

@@ -204,6 +204,7 @@ def test_captures_are_drawn_without_repeating() -> None:
 # --- the command -----------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_command_and_what_it_saves(tmp_path, played: bytes) -> None:
     path, again = tmp_path / "own.rom", tmp_path / "again"
     path.write_bytes(played)

@@ -509,7 +509,9 @@ def toml(values: Mapping[str, str]) -> str:
 
 
 @pytest.mark.usefixtures("brief_search")
-@pytest.mark.parametrize("changes", [{}, {"VAX": "-13.26 +- 0.5", "UY": "0", "VBY": "20 +- 1"}])
+@pytest.mark.parametrize(
+    "changes", long_but([{}, {"VAX": "-13.26 +- 0.5", "UY": "0", "VBY": "20 +- 1"}])
+)
 def test_a_reconstruction_is_the_commands_own(
     changes: dict[str, str], tmp_path: Path, own: Own
 ) -> None:
