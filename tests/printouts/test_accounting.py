@@ -12,6 +12,8 @@ from longer import long_but
 
 import impact88
 import printouts
+from impact88.printouts.reading.glyphs import Page
+from impact88.printouts.reading.numerals import candidates
 from impact88.printouts.reporting.examination import Verdict
 from impact88.printouts.reporting.verification import DOUBTFUL, NOTES, lines, sections
 
@@ -196,3 +198,4 @@ def test_decimal_commas_behind_a_zero_are_points() -> None:
     (result,) = check(page)
     assert "MU= 0,911" in page
     assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert candidates(Page("0,715").glyphs)[0][0] == ".715"

@@ -255,3 +255,33 @@ def test_a_second_row_of_angles_is_told(second: str, verdict: str) -> None:
     result = one(PAGE.replace(angles, f"{angles}\n{angles.replace('60', second)}"))
     assert result.verdict.name == verdict
     assert "is printed a second time" in "\n".join(lines(result))
+
+
+def test_figures_right_below_a_row_go_on_only_where_they_are_few() -> None:
+    assert one(PAGE.replace("15.91)", "15.\n91)")).verdict is not Verdict.DIFFERS
+    result = one(PAGE.replace("DB= 3.44", "DB= 3.44\n04.03.89"))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    assert any("04.03.89" in piece.read for piece in result.left_over)
+
+
+@pytest.mark.parametrize("width", [31, 32, 33])
+def test_a_label_that_is_cut_off_is_not_looked_for_in_the_next_row(width: int) -> None:
+    result = one("\n".join(row[:width] for row in PAGE.split("\n")))
+    assert result.verdict is Verdict.INCOMPLETE
+    assert not any(label.read == "E" for label in result.labels)
+
+
+def test_an_input_at_the_edge_of_a_narrow_page_is_whole() -> None:
+    width = len("MA= 143.5 MB= 95.8 IA= 3728")
+    page = PAGE[PAGE.index("MA= ") :].replace("-13.263", "-13.268")
+    rows = (re.sub(f"(.{{{width}}})(?=.)", r"\1\n", row) for row in page.split("\n"))
+    assert one("\n".join(rows)).verdict is Verdict.DIFFERS
+
+
+@pytest.mark.parametrize("old", ["IB= 1961", "YA= 0\n", "15.91)"])
+def test_a_named_number_below_a_row_is_no_part_of_its_last(old: str) -> None:
+    assert PAGE.count(old) == 1
+    result = one(PAGE.replace(old, f"{old}\n\n# VAX 12.3\n"))
+    assert result.verdict is Verdict.IDENTICAL_AS_READ
+    beside = one(PAGE.replace("VAX= -13.263", "VAX= -13.263 OR -14.263"))
+    assert beside.verdict is Verdict.DIFFERS

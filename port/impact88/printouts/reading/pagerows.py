@@ -192,7 +192,7 @@ def _foreign_lines(page: Page) -> Iterator[int]:
     lines = [line.rstrip() for line in page.text.upper().split("\n")]
     longest = max(map(len, lines))
     angles_left = 0  # angles that are still to come
-    above = 0
+    above, line_above = 0, ""
     for at, line in enumerate(page.lines):
         place, _ = page.place(page.glyphs[line.start].offset)
         text, line_text = _text(page, line), page.shown(line.start, line.stop).upper()
@@ -200,10 +200,10 @@ def _foreign_lines(page: Page) -> Iterator[int]:
         figures = [word for word in line_text.split() if any(map(str.isdigit, word))]
         goes_on = (
             text.startswith("?")
-            or lines[above - 1].endswith("=")
+            or line_above.endswith("=")
             or (
                 place == above + 1
-                and (len(lines[above - 1]) == longest or len(text) <= _REST)
+                and (len(line_above) == longest or len(text) <= _REST)
                 and _REST_OF_ROW.fullmatch(text) is not None
             )
         )
@@ -219,7 +219,7 @@ def _foreign_lines(page: Page) -> Iterator[int]:
             yield at
         else:
             angles_left -= len(figures)
-        above = place
+        above, line_above = place, lines[place - 1]
 
 
 def _labelled_rows(page: Page) -> Iterator[_Row]:
