@@ -204,11 +204,9 @@ def _extra_cost(
         char == "0" and j < 2 and printed[j : j + 1] == "." and after in POINTS and not gap_after
     ):
         return _SLIGHT, Kind.OTHER_FORM
-    is_below = any(glyph_gap is Gap.LINE for _, glyph_gap in region[1 : i + 1])
-    if j == len(printed) and (is_below if char == "." else _in_a_note(region, i)):
-        return _SPECK, Kind.LEFT_OVER
     if char.isdigit():
-        return _CONTRADICTION, Kind.CONTRADICTS
+        is_note = j == len(printed) and _in_a_note(region, i)
+        return (_SPECK, Kind.LEFT_OVER) if is_note else (_CONTRADICTION, Kind.CONTRADICTS)
     if char == "-":
         if i == j == 0 and sign_free:
             return _SLIGHT, Kind.LEFT_OVER
@@ -244,7 +242,7 @@ def _between_digits(region: Glyphs, i: int) -> bool:
 
 
 def _in_a_note(region: Glyphs, i: int) -> bool:
-    """Return True for a figure or point that is separated from the number before it.
+    """Return True for a digit that is separated from the number before it.
 
     A wide gap, a line's end, or a word that is not a number stands between.
     """
