@@ -20,6 +20,7 @@ Old printouts and other programs
 Today's work, in double precision
     solve               final velocities and the rest, over arrays
     prepared, Prepared      the same for many short calls: root finders, samplers
+    evaluate            what follows from any quantities that are known of an impact
     solve_frame         the same for pandas, polars, pyarrow, records, lists of dicts
     bounds, Bounds, Uncertain   results of values known within limits
     solve_for, Solution     Equations 13-18 for any unknowns, over arrays
@@ -68,6 +69,7 @@ if TYPE_CHECKING:
     from .mechanics.closedform.prepared import prepared as prepared
     from .mechanics.closedform.solve import solve as solve
     from .mechanics.native import accelerated as accelerated
+    from .mechanics.solve import evaluate as evaluate
     from .printouts.reading.printout import Printout as Printout
     from .printouts.reading.printout import read_printouts as read_printouts
     from .printouts.reporting.examination import Verification as Verification
@@ -97,6 +99,7 @@ _LAZY = {
         "casework.figures.canvas": "Svg",
         "casework.figures.sceneview": "scene_svg",
         "mechanics.native": "accelerated",
+        "mechanics.solve": "evaluate",
         "program.run": "Run run",
         "printouts.reading.printout": "Printout read_printouts",
         "casework.reconstruction.solution": "Reconstruction",

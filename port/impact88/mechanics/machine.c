@@ -1,0 +1,84 @@
+/* The impact, strip by strip: the functions of formulas.h run over a strip of scenes in turn. */
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#define STRIP 128 /* scenes whose rows stay in the nearest caches */
+typedef double ROW[STRIP + 8] __attribute__((aligned(64)));
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("tree-vectorize", "vect-cost-model=dynamic")
+#define EACH _Pragma("GCC ivdep") for (int i = 0; i < STRIP; i++)
+#else
+#define EACH for (int i = 0; i < STRIP; i++)
+#endif
+#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__)
+#define CLONES static __attribute__((target_clones("default", "avx2", "arch=x86-64-v4")))
+#else
+#define CLONES static
+#endif
+#include "formulas.h"
+
+/* What is not finite, and everything of a scene that cannot be used, is NaN; no zero is negative. */
+CLONES void finish(const double *x, const double *fit, double *to, double most)
+{
+    EACH to[i] = (fit[i] == 1.0) & (fabs(x[i]) <= most) ? x[i] + 0.0 : NAN;
+}
+
+CLONES void finish_bits(const double *x, const double *fit, uint16_t *to)
+{
+    EACH to[i] = (uint16_t)(int32_t)(fit[i] == 1.0 ? x[i] : 64.0);
+}
+
+const char *mechanics_formulas(void) { return FORMULAS; }
+
+const char *instructions(void)
+{
+#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__)
+    __builtin_cpu_init();
+    if (__builtin_cpu_supports("x86-64-v4")) return "x86-64-v4";
+    if (__builtin_cpu_supports("avx2")) return "avx2";
+#endif
+    return "baseline";
+}
+
+/* ``plan``: the numbers of inputs, of functions that run once, of functions, of results, and the row
+   of `fit`; then number and step of each input (step 0: one number for all scenes), function and
+   guard (1: where pivots are, 2: where others are) in order, row and kind of each result (0: finite,
+   1: may be infinite, 2: STATUS, 3: as computed). ``places``: the addresses of the inputs, then of
+   the results. */
+void solve(const int64_t *plan, void *const *places, int64_t begin, int64_t end)
+{
+    ROW row[ROWS], near[COLUMNS];
+    const int64_t *input = plan + 5, *step = input + 2 * plan[0], *result = step + 2 * plan[2];
+    const double *in[COLUMNS] = {0};
+    for (int64_t at = begin; at < end; at += STRIP) {
+        int64_t count = end - at < STRIP ? end - at : STRIP, pivots = 0;
+        for (int64_t k = 0; k < plan[0]; k++) {
+            const double *from = places[k];
+            int64_t n = input[2 * k], varies = input[2 * k + 1];
+            double *copy = n < COLUMNS ? near[n] : row[n - COLUMNS]; /* a known quantity has a row */
+            if (n < COLUMNS) in[n] = varies && count == STRIP ? from + at : copy;
+            if (n < COLUMNS && in[n] != copy) continue;
+            if (varies) memcpy(copy, from + at, (size_t)count * sizeof *from);
+            else if (at == begin) copy[0] = *from;
+            for (int64_t i = varies ? count : 1; i < STRIP; i++) copy[i] = copy[0];
+        }
+        if (in[AT_MU]) EACH pivots += in[AT_MU][i] == -10.0;
+        for (int64_t k = at == begin ? 0 : plan[1]; k < plan[2]; k++) {
+            int64_t guard = step[2 * k + 1];
+            if (guard == 1 ? !pivots : guard == 2 && pivots == STRIP) continue;
+            functions[step[2 * k]](in, row);
+        }
+        for (int64_t k = 0; k < plan[3]; k++) {
+            int64_t kind = result[2 * k + 1], size = kind == 2 ? 2 : 8;
+            const double *x = row[result[2 * k]], *fit = row[plan[4]];
+            char *there = (char *)places[plan[0] + k] + at * size;
+            double last[STRIP];
+            void *to = count == STRIP && kind < 3 ? (void *)there : last;
+            if (kind == 2) finish_bits(x, fit, to);
+            else if (kind < 2) finish(x, fit, to, kind ? INFINITY : 1.7976931348623157e308);
+            if (to == last) memcpy(there, kind < 3 ? to : x, (size_t)(count * size));
+        }
+    }
+}

@@ -1,0 +1,455 @@
+"""`impact88.solve`, `prepared` and `evaluate`: the impact in double precision over any scenes."""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..collision.doubles import double as to_double
+from ..errors import UserError, quoted
+from ..names import RESULTS, SCENE, check_names, missing, split_names
+from .kernel import Kernel, address, check_output
+from .plan import ROWS, plan
+
+Array = NDArray[Any]
+Floats = NDArray[np.float64]
+
+POINT = 4.0  # M of point masses
+UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
+"""Columns that a point mass does not use."""
+_ALL = tuple(RESULTS)
+_BODIES = np.array(6.0)
+_ZERO = np.array(0.0)
+
+
+def solve(
+    columns: Any,
+    results: Sequence[str] | str | None = None,
+    *,
+    out: Mapping[str, Array] | None = None,
+    threads: int | None = None,
+) -> dict[str, Any]:
+    """Solve the impact of every scene.
+
+    Parameters
+    ----------
+    columns : mapping of str to float or array_like, or a data frame
+        Scene name -> number or array (see `impact88.names.SCENE`); all broadcast together. Any
+        mapping serves, and a frame of pandas, polars or pyarrow; what else it holds is ignored.
+        Angles in degrees, spins in radians per unit of time. ``MU`` = -10 is the pivot; any other
+        MU takes the sign that line 400 gives it: changed where the contact points slide along +t,
+        kept on a tie. ``M`` is 6 (the default) or 4, point masses. Infinite MA and IA, or MB and
+        IB, make a rigid barrier. Decimal texts are read as the 1988 program reads them.
+    results : sequence of str, or str, optional
+        The results wanted (see `impact88.names.RESULTS`), all of them by default. Only what they
+        need is computed, and has to be given.
+    out : mapping of str to ndarray, optional
+        Result name -> array to write it into: of the broadcast shape, contiguous, float64 (STATUS:
+        uint16), apart from all columns. Without ``results`` its names are the results wanted.
+    threads : int, optional
+        The number of threads; by default as many as there are processors and work.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Arrays of the broadcast shape, float64 (STATUS: uint16), in the order asked; numbers where
+        all columns are numbers.
+
+    Raises
+    ------
+    UserError
+        For unknown names, missing columns, values that are no numbers, shapes that do not
+        broadcast, and arrays in ``out`` that cannot take the results.
+
+    Notes
+    -----
+    Equations 13 to 18 of the chapter with the impulse as unknown (see `mechanics.formulas`).
+
+    *Accuracy.* The six final velocities are backward stable: for cars and other ordinary scenes
+    their error is at most 3 times what rounding each number of the scene to a double does to them
+    (extreme masses, arms or pivots: 6). It is measured by the largest velocity, or spin, of the
+    scene: a small velocity left of a light body is accurate to the largest velocity, not to its own
+    last digit. Energies and works follow from the impulses, so a small loss keeps its digits.
+
+    *Point masses* (M = 4) do not use DA, DB, PA, PB, TA, TB, IA, IB and EM, which need not be
+    given; their spins pass through and stay out of the energies.
+
+    *Unusable scenes* (a number that is missing, not finite or not allowed: M neither 4 nor 6,
+    masses or inertias not above 0, two barriers, a barrier that moves) are NaN in every result and
+    have NOT_FINITE alone in STATUS. A scene without a solution is NaN in what depends on it, and so
+    are ratios of zeros. Every scene has the bits that it has alone. No zero is negative.
+
+    *STATUS* never changes a number. SINGULAR means COND >= 2**26, ENERGY_GAINED more than 1e-12 of
+    KI; `impact88.status` explains every bit.
+
+    Examples
+    --------
+    >>> scene = impact88.sample(1).numbers()
+    >>> impact88.solve({**scene, "MU": [0.5, 0.911, -10]}, ["LOSS"])["LOSS"].round(2)
+    array([44.43, 57.47, 57.56])
+    """
+    if results is None:
+        results = _ALL if out is None else tuple(out)
+    wanted, needed = _needed_columns(results if isinstance(results, str) else tuple(results))
+    given = _read_columns(columns, needed)
+    shape = _common_shape(given)
+    varying = frozenset([name for name, array in given.items() if array.size != 1])
+    kernel = _kernel(wanted, varying, _is_armless(given, varying))
+    inputs = [_flatten(given[name], shape) for name in kernel.inputs]
+    if out is None:
+        arrays = _new_arrays(wanted, shape)
+    else:
+        arrays = {name: out[name] for name in wanted}
+        if problem := check_output(arrays, shape, inputs):
+            raise UserError(problem)
+    kernel.run(inputs, [array.reshape(-1) for array in arrays.values()], threads)
+    if shape == () and out is None:
+        return {name: array[()] for name, array in arrays.items()}
+    return arrays
+
+
+def evaluate(
+    known: Mapping[str, ArrayLike], wanted: Sequence[str] | str
+) -> tuple[dict[str, Array], dict[str, tuple[str, ...]]]:
+    """Return the quantities of impacts that follow from what is known of them.
+
+    Parameters
+    ----------
+    known : mapping of str to float or array_like
+        Scene names, results and other quantities of `mechanics.formulas` -> numbers or arrays,
+        which broadcast together. A quantity that is known is not computed: of an impact whose
+        velocities and impulses are known, before and after, the rest follows from these. M is 6
+        where it is not given.
+    wanted : sequence of str, or str
+        Names of results or of other quantities.
+
+    Returns
+    -------
+    values : dict of str to ndarray
+        The quantities that follow, in the order asked, as float64 (STATUS, too) of the broadcast
+        shape. Nothing is checked: what is not finite stays as it is.
+    missing : dict of str to tuple of str
+        The quantities that do not follow -> the scene's names that they lack.
+
+    Raises
+    ------
+    UserError
+        For names in ``wanted`` that are no quantity, and for shapes that do not broadcast.
+
+    Notes
+    -----
+    Plans are kept: a call with the same names and shapes costs some microseconds and the computing
+    itself. `prepared` is for calls that leave most of a scene as it is.
+
+    Examples
+    --------
+    >>> scene = impact88.sample(1).numbers()
+    >>> values, missing = impact88.evaluate({"MA": 94, "UX": 60, "UY": 0, "E": 0.2}, "DVA VS KI")
+    >>> missing["KI"]
+    ('MB', 'IA', 'IB', 'WA', 'VX', 'VY', 'WB')
+    >>> print(impact88.evaluate(scene, ["MUC"])[0]["MUC"].round(3))
+    0.932
+    """
+    names = tuple(split_names(wanted)) if isinstance(wanted, str) else tuple(wanted)
+    given = {name: _as_doubles(name, value) for name, value in known.items() if name in ROWS}
+    _complete(given)
+    shape = _common_shape(given)
+    varying = frozenset([name for name, array in given.items() if array.size != 1])
+    lacking, kernel = _evaluation(names, frozenset(given), varying)
+    values: dict[str, Array] = {}
+    if kernel is not None:
+        inputs = [_flatten(given[name], shape) for name in kernel.inputs]
+        block = np.empty((len(kernel.wanted), *shape))
+        kernel.run(inputs, list(block.reshape(len(block), -1)), 1)
+        values = dict(zip(kernel.wanted, block, strict=True))
+    return {
+        name: values[name] if name in values else np.broadcast_to(given[name], shape)
+        for name in names
+        if name not in lacking
+    }, lacking
+
+
+def prepared(
+    names: Sequence[str] | str,
+    results: Sequence[str] | str | None = None,
+    scene: Mapping[str, object] | None = None,
+) -> "Prepared":
+    """Return a function of some of a scene's numbers, for many short calls.
+
+    Names are checked, the scene is read and the computation is planned once. A call then costs some
+    microseconds and the computing itself: for root finders, samplers and optimizers.
+
+    Parameters
+    ----------
+    names : sequence of str, or str
+        The columns given at each call, in the order of their rows (`impact88.names.SCENE`).
+    results : sequence of str, or str, optional
+        Result names; all of them by default.
+    scene : mapping of str to float, optional
+        The columns that stay, one number each, as `solve` reads them. What it holds of ``names``
+        is ignored. M is 6 where it is not given.
+
+    Returns
+    -------
+    Prepared
+        Called with an array whose rows are the columns, ``names`` by n, or with a number or an
+        array for each name: the results by name. It can be called by several threads at a time, and
+        be sent to other processes.
+
+    Raises
+    ------
+    UserError
+        For unknown, repeated and missing names, and for values that are no numbers; when called,
+        for rows that do not fit ``names``.
+
+    Examples
+    --------
+    >>> loss = impact88.prepared(["MU"], ["LOSS"], impact88.sample(1))
+    >>> print(loss([0.5])["LOSS"].round(2))
+    44.43
+    >>> loss([[0.5, 0.911, -10]])["LOSS"].round(2)
+    array([44.43, 57.47, 57.56])
+    """
+    columns = tuple(split_names(names))
+    check_names(columns, SCENE, "scene name")
+    if not columns:
+        raise UserError(f"no scene name is given; expected some of {' '.join(SCENE)}")
+    if len(set(columns)) < len(columns):
+        raise UserError(f"a name appears twice in {' '.join(columns)}; expected each once")
+    wanted, _ = _needed_columns(_ALL if results is None else tuple(split_names(results)))
+    return Prepared(columns, wanted, {} if scene is None else scene)
+
+
+class Prepared:
+    """Results of scenes that share all but some numbers: see `prepared`.
+
+    Parameters
+    ----------
+    names : tuple of str
+        The columns given at each call, in the order of their rows.
+    results : tuple of str
+        Names of the results.
+    scene : mapping of str to float
+        The columns that stay.
+
+    Examples
+    --------
+    >>> loss = impact88.prepared(["MU", "E"], ["LOSS"], impact88.sample(1))
+    >>> loss.names, loss.results
+    (('MU', 'E'), ('LOSS',))
+    """
+
+    def __init__(
+        self, names: tuple[str, ...], results: tuple[str, ...], scene: Mapping[str, object]
+    ) -> None:
+        self.names = names
+        self.results, needed = _needed_columns(results)
+        stays = tuple(name for name in needed if name not in names)
+        self._scene = {}
+        for name, array in _read_columns(scene, stays).items():
+            if array.size != 1:
+                raise UserError(f"{name} has {array.size} numbers; expected one number that stays")
+            self._scene[name] = float(array.reshape(()))
+        self._prepare()
+
+    def _prepare(self) -> None:
+        """Plan the computation, and find the addresses of what stays."""
+        used = frozenset(self.names) & frozenset(_needed_columns(self.results)[1])
+        self._kernel = Kernel(plan((*self.results, "fit")), self.results, used, True)
+        inputs = self._kernel.inputs
+        self._fixed = np.array([self._scene.get(name, 0.0) for name in inputs])
+        start = address(self._fixed)
+        # of each input the row of a call, or where its number is
+        self._rows = [self.names.index(name) if name in used else -1 for name in inputs]
+        self._starts = [start + 8 * k for k in range(len(inputs))]
+
+    def __call__(self, values: ArrayLike) -> dict[str, Any]:
+        """Return the results of scenes.
+
+        Parameters
+        ----------
+        values : array_like
+            A row for each of ``names``: numbers, or arrays of any one shape.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Result name -> array of the rows' shape; numbers where the rows are numbers.
+
+        Raises
+        ------
+        UserError
+            For rows that do not fit ``names``.
+        """
+        block = self._block(values)
+        shape = block.shape[1:]
+        count = math.prod(shape)
+        if self._kernel.is_compiled:
+            arrays = _new_arrays(self.results, shape)
+            first, row = address(block), 8 * count
+            starts = [
+                start if k < 0 else first + row * k
+                for start, k in zip(self._starts, self._rows, strict=True)
+            ]
+            places = np.array([*starts, *map(address, arrays.values())], np.int64)
+            self._kernel.run_at(places, count, 1)
+        else:
+            rows = dict(zip(self.names, block, strict=True))
+            arrays = solve({**self._scene, **rows}, self.results)
+        return {name: array[()] for name, array in arrays.items()} if shape == () else arrays
+
+    def _block(self, values: Any) -> Floats:
+        """Return the rows of a call as one array. Raises UserError."""
+        try:
+            block = np.ascontiguousarray(values, np.float64)
+        except (TypeError, ValueError):
+            block = None
+        if block is None and len(values) == len(self.names):  # numbers and arrays mixed
+            arrays = [_as_doubles(n, x) for n, x in zip(self.names, values, strict=True)]
+            _common_shape(dict(zip(self.names, arrays, strict=True)))
+            block = np.array(np.broadcast_arrays(*arrays))
+        if block is None or len(block) != len(self.names) or np.ndim(values) == 0:
+            raise UserError(f"expected {len(self.names)} rows: {' '.join(self.names)}")
+        return block
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what another process needs: no addresses."""
+        return {"names": self.names, "results": self.results, "_scene": self._scene}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Restore what `__getstate__` returned."""
+        self.__dict__.update(state)
+        self._prepare()
+
+
+@lru_cache(maxsize=512)
+def _kernel(wanted: tuple[str, ...], varying: frozenset[str], armless: bool) -> Kernel:
+    """Return the computation of checked results."""
+    return Kernel(plan((*wanted, "fit")), wanted, varying, True, armless)
+
+
+@lru_cache(maxsize=512)
+def _evaluation(
+    wanted: tuple[str, ...], known: frozenset[str], varying: frozenset[str]
+) -> tuple[dict[str, tuple[str, ...]], Kernel | None]:
+    """Return what quantities lack, and the computation of those that have to be computed."""
+    check_names(wanted, ROWS, "quantity of an impact")
+    steps = plan(wanted, known)
+    computed = tuple(
+        name for name in dict.fromkeys(wanted) if name not in known and name not in steps.missing
+    )
+    kernel = Kernel(steps, computed, varying, False) if computed else None
+    return steps.missing, kernel
+
+
+@lru_cache(maxsize=512)
+def _needed_columns(results: str | tuple[str, ...]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return result names, each once, and the columns that they need. Raises UserError."""
+    names = tuple(split_names(results))
+    check_names(names, RESULTS, "result")
+    if not names:
+        raise UserError(f"no result is asked for; expected some of {' '.join(RESULTS)}")
+    wanted = tuple(dict.fromkeys(names))
+    return wanted, plan((*wanted, "fit")).inputs
+
+
+def _read_columns(columns: Any, needed: Iterable[str]) -> dict[str, Floats]:
+    """Return the needed columns of a mapping or frame as doubles. Raises UserError."""
+    names = columns if isinstance(columns, Mapping) else _frame_names(columns)
+    given = {name: _as_doubles(name, columns[name]) for name in needed if name in names}
+    _complete(given)
+    if lacking := [name for name in needed if name not in given]:
+        raise UserError(missing(lacking))
+    return given
+
+
+def _complete(given: dict[str, Floats]) -> None:
+    """Add M where it is not given, and 0 for what point masses do not use."""
+    m = given.setdefault("M", _BODIES)
+    if m.size and (m == POINT).all():
+        given.update(dict.fromkeys(UNUSED_BY_POINTS, _ZERO))
+
+
+def _frame_names(frame: Any) -> frozenset[object]:
+    """Return the names of a frame's columns. Raises UserError for what is no frame."""
+    names = getattr(frame, "column_names", None)  # pyarrow
+    if names is None:
+        names = getattr(frame, "columns", None)  # pandas, polars
+    if names is None or callable(names):
+        kind = type(frame).__name__
+        raise UserError(f"a {kind} has no columns; expected a mapping or a data frame")
+    return frozenset(names)
+
+
+def _as_doubles(name: str, value: Any) -> Floats:
+    """Return a column's numbers. Raises UserError for what is no number."""
+    if type(value) is np.ndarray and value.dtype == np.float64:
+        return value
+    if isinstance(value, np.ma.MaskedArray):
+        masked: Any = value.astype(np.float64)
+        value = masked.filled(np.nan)
+    try:
+        array = np.asarray(value)
+    except ValueError:
+        raise UserError(f"{name} is {quoted(value)}; expected a number or an array") from None
+    if array.dtype.kind in "fiub":
+        return array.astype(np.float64, copy=False)
+    numbers = np.array([_number(name, at, cell) for at, cell in enumerate(array.flat)], np.float64)
+    return numbers.reshape(array.shape)
+
+
+def _number(name: str, at: int, cell: Any) -> float:
+    """Return the number of a cell, NaN for one that is missing. Raises UserError."""
+    if isinstance(cell, str):
+        try:
+            return to_double(cell)
+        except ValueError:
+            pass
+    elif cell is None or type(cell).__name__ in ("NAType", "NaTType"):  # of pandas
+        return math.nan
+    else:
+        try:
+            return float(cell)
+        except (TypeError, ValueError):
+            pass
+    raise UserError(f"{name} = {quoted(cell)} at position {at} is no number; expected a number")
+
+
+def _common_shape(given: Mapping[str, Array]) -> tuple[int, ...]:
+    """Return the shape that columns broadcast to. Raises UserError where they do not."""
+    shapes = {array.shape for array in given.values()}
+    if len(shapes) == 1:
+        return shapes.pop()
+    shapes.discard(())
+    if len(shapes) == 1:
+        return shapes.pop()
+    try:
+        return np.broadcast_shapes(*shapes)
+    except ValueError:
+        sizes = ", ".join(f"{n} {x.shape}" for n, x in given.items() if x.shape)
+        raise UserError(f"columns do not broadcast together: {sizes}") from None
+
+
+def _is_armless(given: Mapping[str, Floats], varying: frozenset[str]) -> bool:
+    """Return whether DA and DB are the number 0."""
+    for name in ("DA", "DB"):
+        if name in varying or (name in given and given[name].flat[0] != 0.0):
+            return False
+    return True
+
+
+def _flatten(array: Array, shape: tuple[int, ...]) -> Array:
+    """Return a column contiguous and flat, of length 1 where it is one number."""
+    if array.ndim == 1 and array.shape == shape and array.flags.c_contiguous:
+        return array
+    if array.size != 1 and array.shape != shape:
+        array = np.broadcast_to(array, shape)
+    return np.ascontiguousarray(array).reshape(-1)
+
+
+def _new_arrays(names: tuple[str, ...], shape: tuple[int, ...]) -> dict[str, Array]:
+    """Return empty arrays for results."""
+    return {name: np.empty(shape, np.uint16 if name == "STATUS" else float) for name in names}
