@@ -70,10 +70,6 @@ def test_every_package_folder_is_listed(project: dict[str, Any]) -> None:
     assert listed == folders | set(elsewhere)
     for folder in [ROOT / "port" / f.replace(".", "/") for f in folders]:
         assert (folder / "__init__.py").is_file(), f"next step: {folder / '__init__.py'}"
-    guide = (ROOT / "port" / "README.md").read_text(encoding="utf-8")
-    for name in sorted(folders - {"impact88"}):
-        room = name.removeprefix("impact88.").replace(".", "/")
-        assert f"`{room}/" in guide, f"next step: a row for `{room}/` in port/README.md's rooms"
     for folder in elsewhere.values():
         assert (ROOT / folder / "__init__.py").is_file()
 

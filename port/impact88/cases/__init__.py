@@ -1,0 +1,1 @@
+"""One collision as a file, a form or a mapping describes it: units, tolerances, axes, headings."""

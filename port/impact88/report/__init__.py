@@ -1,0 +1,1 @@
+"""Answers to a case, its drawing and its printable report."""
