@@ -1,0 +1,102 @@
+"""Print the steps of the 1988 listing as C.
+
+    python -m impact88.program.generate impact.bas listing.h
+
+The package is built with this header, which `applesoft.c` includes. What each step does is a macro
+there, which the interpreter of steps uses, too, so that both give the same bits. Runs without
+numpy, from a source tree.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from zlib import crc32
+
+from ..apple.applesoft import decimaltext
+from ..names import SCENE
+from .compiler import JUMPS, OPERATIONS, Steps, compile_program, program_lines
+
+BEFORE = ("XA", "YA", "XB", "YB")
+"""Variables of line 340 that lines 700 and 710 use again."""
+KEPT = {350: BEFORE}
+
+_JUMPS = {
+    "UNLESS": "if (!t[0].e) goto at{a};",
+    "GOTO": "goto at{a};",
+    "GOSUB": "call(its, {k}); goto at{a}; after{k}:;",
+    "RETURN": "switch (returned(its)) {{ {calls} }} return;",
+    "FOR": "loop(its, {a}, {k}, t[0]); after{k}:;",
+    "NEXT": "switch (next(its, {a})) {{ {loops} }}",
+    "END": "return;",
+}
+
+
+def compile_listing(text: str) -> Steps:
+    """Return the steps of the 1988 listing from the text of ``impact.bas``."""
+    return compile_program(program_lines(text), SCENE, KEPT)
+
+
+def checksum(program: Steps) -> int:
+    """Return the number that tells for which steps `applesoft.c` was compiled."""
+    return crc32(repr((program, OPERATIONS)).encode())
+
+
+def print_c(program: Steps) -> str:
+    """Return the header of `applesoft.c` for a program."""
+    plain = " ".join(f"DO({name})" for name in OPERATIONS if name not in JUMPS)
+    columns = zip(*OPERATIONS.values(), strict=True)
+    taken, left = (", ".join(map(str, column)) for column in columns)
+    constants = (decimaltext.read(text)[0] for text in program.constants)
+    reals = ", ".join(f"{{0x{m:X}, {e}, {s}}}" for e, m, s in constants)
+    rows = (
+        f"#define LISTING {checksum(program)}u",
+        f"enum operation {{ {', '.join(OPERATIONS)} }};",
+        f"#define EACH_PLAIN_STEP(DO) {plain}",
+        f"static const int8_t TAKEN[] = {{{taken}}};",
+        f"static const int8_t LEFT[] = {{{left}}};",
+        "CALLED void listing(run *its, const program *p, const char *const *input)",
+        "{",
+        f"static const real constants[] = {{{reals}}};",
+        "real stack[STACK];",
+        "#undef OP\n#define OP(f) called_##f",
+        *_statements(program.steps),
+        "#undef OP\n#define OP(f) f",
+        "}",
+    )
+    return "\n".join(rows) + "\n"
+
+
+def _statements(steps: list[tuple[str, int]]) -> Iterator[str]:
+    """Yield the C of each step. Operations inside loops are inlined, others called."""
+    targets = {number for name, number in steps if name in ("GOTO", "GOSUB", "UNLESS")}
+
+    def cases(operation: str) -> str:
+        places = (k for k, (name, _) in enumerate(steps) if name == operation)
+        return " ".join(f"case {k}: goto after{k};" for k in places)
+
+    calls, loops = cases("GOSUB"), cases("FOR")
+    depth = 0
+    open_loops = 0
+    for k, (name, number) in enumerate(steps):
+        if name in ("FOR", "NEXT"):
+            was_open, open_loops = open_loops, open_loops + (1 if name == "FOR" else -1)
+            if not (was_open and open_loops):
+                yield f"#undef OP\n#define OP(f) {'f' if open_loops else 'called_##f'}"
+        taken, left = OPERATIONS[name]
+        depth -= taken
+        step = _JUMPS.get(name, f"DO_{name};").format(a=number, k=k, calls=calls, loops=loops)
+        label = f"at{k}:;" if k in targets else ""
+        place = f"real *const t = stack + {depth}; " if taken or left else ""
+        yield f"{label} {{ enum {{ a = {number} }}; {place}{step} }}"
+        depth += left
+
+
+def main(source: str, target: str) -> None:
+    """Write the header of a listing."""
+    Path(target).write_text(print_c(compile_listing(Path(source).read_text("ascii"))), "ascii")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

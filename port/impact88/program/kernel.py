@@ -1,0 +1,164 @@
+"""Run compiled programs on many scenes at once, in `applesoft.c`."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from itertools import starmap
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ..apple.applesoft import decimaltext
+from .compiler import CODES, Steps
+
+FIELD = 16  # bytes of a printed number, as in applesoft.c
+PAGE = 2048  # characters of a page, as there
+BLOCK = 4096
+"""Scenes of one call: enough for its overhead to vanish, few enough for the processor's cache."""
+OUTSIDE = 0x200
+"""The code of a run that needs something applesoft.c does not have, or has a text as a number."""
+ENDLESS = 0x201
+"""The code of a run that takes too many steps."""
+
+
+class Real(ctypes.Structure):
+    """A number as applesoft.c has it."""
+
+    _fields_ = (("m", ctypes.c_uint64), ("e", ctypes.c_int32), ("s", ctypes.c_int32))
+
+
+class Source(ctypes.Structure):
+    """A program as applesoft.c has it."""
+
+    _fields_ = (
+        ("steps", ctypes.c_void_p),
+        ("constants", ctypes.c_void_p),
+        ("texts", ctypes.c_char_p),
+        ("starts", ctypes.c_void_p),
+    )
+
+
+class Results(NamedTuple):
+    """What runs leave, a row for each.
+
+    ``ending``: the error's code, 0 for none, its line, the size of the page, rows of the array;
+    ``assigned``: a bit for each variable; ``reals``: variables as stored bytes; ``array``: its
+    elements, first subscript fastest; ``fields``: the numbers printed, in order; ``pages``: all
+    that was printed, None if not wanted."""
+
+    ending: npt.NDArray[np.int32]
+    assigned: npt.NDArray[np.uint64]
+    reals: npt.NDArray[np.uint64]
+    array: npt.NDArray[np.uint64]
+    fields: npt.NDArray[np.bytes_]
+    pages: npt.NDArray[np.bytes_] | None
+
+    @classmethod
+    def empty(cls, count: int, variables: int, fields: int) -> Results:
+        """Return results of ``count`` runs, to be filled, without array and pages."""
+        return cls(
+            np.zeros((count, 4), np.int32),
+            np.zeros(count, np.uint64),
+            np.zeros((count, variables), np.uint64),
+            np.zeros((count, 0), np.uint64),
+            np.zeros((count, fields), f"S{FIELD}"),
+            None,
+        )
+
+    def part(self, start: int, stop: int, elements: int, pages: bool) -> Results:
+        """Return the results of runs ``start`` to ``stop``, with room for their elements of the
+        array and their pages."""
+        return Results(
+            self.ending[start:stop],
+            self.assigned[start:stop],
+            self.reals[start:stop],
+            np.zeros((stop - start, elements), np.uint64),
+            self.fields[start:stop],
+            np.empty((stop - start, PAGE), "S1") if pages else None,
+        )
+
+
+class Program:
+    """A compiled program, ready to run.
+
+    ``in_library``: the library was compiled with these steps, as those of the listing, and runs
+    them twice as fast."""
+
+    def __init__(self, steps: Steps, in_library: bool = False) -> None:
+        self.steps = steps
+        codes = [(CODES[operation], number) for operation, number in steps.steps]
+        self._arrays = (
+            np.array(codes, np.int32),
+            real_array(*(decimaltext.read(text)[0] for text in steps.constants)),
+            "".join(steps.texts).encode("ascii"),
+            np.cumsum([0, *map(len, steps.texts)], dtype=np.int32),
+        )
+        code, constants, texts, starts = self._arrays
+        self.source = Source(
+            None if in_library else code.ctypes.data,
+            ctypes.addressof(constants),
+            texts,
+            starts.ctypes.data,
+        )
+
+    def run(self, columns: Sequence[Sequence[str]], results: Results) -> None:
+        """Run the program on at most `BLOCK` scenes, and fill their results.
+
+        ``columns``: for each input the texts of all scenes, or one for all. Raises TypeError and
+        ValueError for what is no text of one line in ASCII."""
+        assert library is not None
+        texts = ["\n".join(column).upper().encode("ascii") + b"\n" for column in columns]
+        if any(t.count(b"\n") != len(c) for t, c in zip(texts, columns, strict=True)):
+            raise ValueError("a text of two lines")
+        arrays = (results.ending, results.assigned, results.reals, results.array)
+        library.applesoft_run(
+            ctypes.byref(self.source),
+            (ctypes.c_char_p * len(texts))(*texts),
+            bytes(len(column) == 1 for column in columns),
+            ctypes.c_int64(len(results.ending)),
+            len(columns),
+            results.reals.shape[1],
+            results.array.shape[1],
+            results.fields.shape[1],
+            *map(_address, (*arrays, results.pages, results.fields)),
+        )
+
+
+def real_array(*numbers: tuple[int, int, int]) -> Any:
+    """Return numbers, as exponent, mantissa and sign, as an array for applesoft.c."""
+    return (Real * len(numbers))(*(Real(m, e, s) for e, m, s in numbers))
+
+
+def _address(array: npt.NDArray[Any] | None) -> ctypes.c_void_p | None:
+    return None if array is None else ctypes.c_void_p(array.ctypes.data)
+
+
+def run_blocks(work: Callable[[int, int], object], count: int, threads: int | None) -> None:
+    """Call ``work(start, stop)`` for blocks of ``count`` scenes, on several threads where several
+    blocks are to be done. The library releases Python's lock."""
+    blocks = [(start, min(start + BLOCK, count)) for start in range(0, count, BLOCK)]
+    workers = min(len(blocks), threads or os.cpu_count() or 1)
+    if workers < 2:
+        list(starmap(work, blocks))
+        return
+    with ThreadPoolExecutor(workers) as pool:
+        list(pool.map(lambda block: work(*block), blocks))
+
+
+def _load() -> ctypes.CDLL | None:
+    """Return the library; None where it was not built, or is switched off."""
+    from pathlib import Path
+
+    path = Path(__file__).with_name("_applesoft.so")
+    if not path.exists() or os.environ.get("IMPACT88_ACCELERATED") == "0":
+        return None
+    library = ctypes.CDLL(str(path))
+    library.applesoft_listing.restype = ctypes.c_uint64
+    return library
+
+
+library = _load()

@@ -1,0 +1,470 @@
+"""Many scenes through the 1988 listing at once: columns in; pages, fields, reals and errors out.
+
+The listing is compiled from ``impact.bas`` (`compiler`) and executed by `applesoft.c`; without the
+library the port runs each scene. Both give the Apple's own bits.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from itertools import chain
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..apple.applesoft import decimaltext
+from ..apple.applesoft.errorcodes import CODES, ApplesoftError
+from ..apple.applesoft.operators import Real
+from ..errors import UserError
+from ..files import packaged_text
+from ..names import DEFAULT_M, FINAL_VELOCITIES, SCENE, check_names, missing
+from . import kernel
+from .arithmetics import APPLESOFT, Arithmetic
+from .generate import BEFORE, checksum, compile_listing
+from .kernel import OUTSIDE, Program, Results
+from .run import BELL, Run, run
+from .scene import LISTING, Scene
+
+PRINTED = {
+    name: line
+    for line, names in (
+        (620, "MA MB IA IB"),
+        (630, "DA DB"),
+        (650, "PA PB TA TB GA"),
+        (660, "UX UY WA XA YA"),
+        (670, "VX VY WB XB YB"),
+        (680, "E MUP EM"),
+        (690, "KI LOSS"),
+        (730, "VAX VAY XAF YAF"),
+        (740, "VBX VBY XBF YBF"),
+        (760, "WAF WBF"),
+    )
+    for name in names.split()
+}
+"""The numbers of a page in printing order, and the line that prints each."""
+
+COMPUTED = {
+    name: line
+    for line, names in (
+        (320, "KI"),
+        (340, "XA YA XB YB"),
+        (400, "MUP"),
+        (570, "VAX VAY VBX VBY WAF WBF"),
+        (590, "KF"),
+        (690, "LOSS"),
+        (700, "XAF YAF"),
+        (710, "XBF YBF"),
+    )
+    for name in names.split()
+}
+"""The results, and the line after which the program has each."""
+
+ROWS, COLUMNS = 7, 8  # of the array A
+ZERO_DETERMINANT_LINE = 1160
+FIRST_FORMULA = 320
+"""Line from which on the program computes; before, it reads."""
+FIRST_SUBROUTINE = 1000
+"""Line from which on the program is in a subroutine that line 570 calls."""
+FINAL_SPINS = ("WAF", "WBF")
+"""Results that line 750 passes over unless M is N."""
+_VARIABLES = (
+    {"MUP": "MU"} | {name: f"{name}'" for name in BEFORE} | {f"{name}F": name for name in BEFORE}
+)
+"""Results that are another variable of the listing."""
+_KINDS = {code: kind for kind, code in CODES.items()}
+_DISK_COMMAND = re.compile(r"^\x04.*\n", re.M)
+
+
+class Replay:
+    """The results of `replay`, a value for each scene; names as in `impact88.names`.
+
+    A scene that ended with an error has the results of the lines before. Later ones are NaN as
+    floats, 0 as stored reals and "" as printed fields (see `present`).
+
+    Attributes
+    ----------
+    count : int
+        The number of scenes.
+    error : ndarray of str
+        The message that ended each scene, "" without one. ZERO DETERMINANT is a normal end.
+    line : ndarray of int
+        The line at which the scene ended early (1160 for ZERO DETERMINANT), else 0.
+    zero_determinant : ndarray of bool
+        True for each scene that ended with ZERO DETERMINANT.
+    fields : ndarray of bytes
+        The printed numbers, a row for each scene and a column for each name of `PRINTED`.
+    pages : list of str or None
+        All that each scene printed, if that was asked for, as `Run.printout`.
+
+    Examples
+    --------
+    >>> results = impact88.replay({**impact88.sample(1), "MU": [".5", ".911"]})
+    >>> results.printed("LOSS").tolist()
+    ['44.43', '57.47']
+    """
+
+    def __init__(
+        self,
+        results: Results,
+        variables: Sequence[str],
+        solution: npt.NDArray[np.uint64],
+        pages: list[str] | None,
+    ) -> None:
+        code, line = results.ending[:, 0], results.ending[:, 1]
+        self.count = len(code)
+        self.zero_determinant = (code == 0) & (line == ZERO_DETERMINANT_LINE)
+        self.line = np.where((code != 0) | self.zero_determinant, line, 0)
+        self.error = np.full(self.count, "", "<U48")
+        for at in np.flatnonzero(code).tolist():
+            self.error[at] = _message(int(code[at]), int(line[at]))
+        self.fields = results.fields
+        self.pages = pages
+        self._variables = list(variables)
+        self._reals = results.reals
+        self._solution = solution
+        self._six = self.reals("N") == self.reals("M")
+        # while a subroutine runs, the main program is in line 570
+        in_main = np.where(self.line >= FIRST_SUBROUTINE, 570, self.line)
+        self._reached = np.where(self.line == 0, FIRST_SUBROUTINE, in_main)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the results."""
+        return tuple(COMPUTED)
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __repr__(self) -> str:
+        errors = int(np.count_nonzero(self.error != ""))
+        return (
+            f"<Replay of {self.count:,} scenes: {errors:,} ended by an error, "
+            f"{int(self.zero_determinant.sum()):,} by a zero determinant>"
+        )
+
+    def present(self, name: str) -> npt.NDArray[np.bool_]:
+        """Return a mask of the scenes that have a result.
+
+        Parameters
+        ----------
+        name : str
+            A name of `COMPUTED`.
+
+        Returns
+        -------
+        ndarray of bool
+            True for each scene that got past the line of the result.
+        """
+        check_names([name], COMPUTED, "result of a replay")
+        present = self._reached > COMPUTED[name]
+        return present & self._six if name in FINAL_SPINS else present
+
+    def printed(self, name: str) -> npt.NDArray[np.str_]:
+        """Return a field of the printout, character for character.
+
+        Parameters
+        ----------
+        name : str
+            A name of `PRINTED`; MU is the MUP that line 680 prints.
+
+        Returns
+        -------
+        ndarray of str
+            The field of each scene, such as "-8.78" or "5E-03", "" for a scene that ended before
+            it.
+        """
+        check_names([name], [*PRINTED, "MU"], "printed field")
+        column = list(PRINTED).index("MUP" if name == "MU" else name)
+        return self.fields[:, column].astype(str)
+
+    def reals(self, name: str) -> npt.NDArray[np.uint64]:
+        """Return a variable or result as the five bytes that the Apple stored.
+
+        Parameters
+        ----------
+        name : str
+            A variable of the listing, whose last value counts, or a result; LOSS is none, because
+            the program prints it without storing it.
+
+        Returns
+        -------
+        ndarray of uint64
+            The bytes of each scene as one number, which ``f"{x:010x}"`` writes in hexadecimal; 0
+            for a zero, and for a scene without the result.
+        """
+        if name in FINAL_VELOCITIES:
+            values = self._solution[:, FINAL_VELOCITIES.index(name)]
+        else:
+            variable = _VARIABLES.get(name, name)
+            check_names([variable], self._variables, "variable of the listing")
+            values = self._reals[:, self._variables.index(variable)]
+        return values * self.present(name) if name in COMPUTED else values
+
+    def floats(self, name: str) -> npt.NDArray[np.float64]:
+        """Return a result as floats: stored reals exactly, LOSS as the printed number.
+
+        Parameters
+        ----------
+        name : str
+            A variable of the listing, or a result.
+
+        Returns
+        -------
+        ndarray of float
+            The result of each scene, NaN for a scene without it.
+        """
+        if name == "LOSS":
+            texts = self.printed(name)
+            return np.where(texts == "", "nan", texts).astype(float)
+        values = unpack(self.reals(name))
+        return np.where(self.present(name), values, np.nan) if name in COMPUTED else values
+
+    def to_dict(self) -> dict[str, npt.NDArray[Any]]:
+        """Return all results as columns of one length, which a DataFrame of any library takes.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Every result as floats, and of each scene ERROR, the message that ended it, and LINE.
+        """
+        ending = np.where(self.zero_determinant, "ZERO DETERMINANT", self.error)
+        results = {name: self.floats(name) for name in self.names}
+        return {**results, "ERROR": ending, "LINE": self.line}
+
+
+def _message(code: int, line: int) -> str:
+    return ApplesoftError(_KINDS[code & 0xFF], line).message
+
+
+def unpack(stored: npt.NDArray[np.uint64]) -> npt.NDArray[np.float64]:
+    """Return stored reals as floats, exactly."""
+    words = stored.astype(np.int64)
+    exponent = words >> 32
+    sizes = np.ldexp((words & 0x7FFFFFFF | 0x80000000).astype(float), exponent - 160)
+    return np.where(exponent == 0, 0.0, np.where(words >> 31 & 1, -sizes, sizes))
+
+
+def replay(
+    columns: Mapping[str, Any], *, pages: bool = False, threads: int | None = None
+) -> Replay:
+    """Run the 1988 listing's own arithmetic on many scenes at once.
+
+    Every bit is that of an Apple II Plus. A scene that ends with an error there ends with the same
+    error here, without affecting the others.
+
+    Parameters
+    ----------
+    columns : mapping of str to str, int, or sequence of them
+        Values by the scene's names (`impact88.names.SCENE`; M defaults to 6), each one value for
+        all scenes or a column of n. A value is decimal text, which Applesoft reads digit by digit
+        (so "90315.8817" and "90315.88170" differ in the last bit), or a whole number, which means
+        its digits. Floats are refused, because the digits typed matter.
+    pages : bool, default False
+        Keep all that each scene prints.
+    threads : int, optional
+        Maximum number of threads; by default one for each processor.
+
+    Returns
+    -------
+    Replay
+        The results as printed, as stored reals and as floats; each scene's error and its line.
+
+    Raises
+    ------
+    UserError
+        For columns that cannot be used.
+
+    Notes
+    -----
+    All lines of the listing, from its first prompt to END. Some 10 microseconds a scene; without
+    the compiled library, as long as `run` takes for each.
+
+    Examples
+    --------
+    >>> impact88.replay(impact88.sample(1)).printed("XB").tolist()
+    ['14.51']
+    """
+    cells = _read_columns(columns)
+    count = next((len(column) for column in cells.values() if len(column) != 1), 1)
+    program = listing_program()
+    variables = program.steps.variables
+    results = Results.empty(count, len(variables), len(PRINTED))
+    solution = np.zeros((count, len(FINAL_VELOCITIES)), np.uint64)
+    texts: list[list[str]] = [[] for _ in range(0, count, kernel.BLOCK)]
+
+    def work(start: int, stop: int) -> None:
+        part = results.part(start, stop, ROWS * COLUMNS, pages)
+        columns = {name: c if len(c) == 1 else c[start:stop] for name, c in cells.items()}
+        printouts = _run_block(program, columns, part, start)
+        solution[start:stop] = _solution(part, variables)
+        if pages:
+            texts[start // kernel.BLOCK] = _pages(part, printouts)
+
+    kernel.run_blocks(work, count, threads)
+    return Replay(results, variables, solution, list(chain.from_iterable(texts)) if pages else None)
+
+
+@lru_cache(maxsize=1)
+def listing_program() -> Program:
+    """Return the 1988 listing, compiled."""
+    steps = compile_listing(packaged_text("impact88.legacy", LISTING))
+    library = kernel.library
+    return Program(steps, library is not None and library.applesoft_listing() == checksum(steps))
+
+
+def _read_columns(columns: Mapping[str, Any]) -> dict[str, list[Any]]:
+    """Return the texts of each input. Raises UserError."""
+    if not isinstance(columns, Mapping):
+        raise UserError(f"{columns!r:.60} is not a mapping of names to columns")
+    check_names(columns, SCENE, "value of a scene")
+    if names := [name for name in SCENE if name not in columns and name != "M"]:
+        raise UserError(missing(names))
+    cells = {name: _texts(name, columns.get(name, DEFAULT_M)) for name in SCENE}
+    lengths = {len(column) for column in cells.values()} - {1}
+    if len(lengths) > 1:
+        sizes = ", ".join(f"{name} {len(c)}" for name, c in cells.items() if len(c) != 1)
+        raise UserError(f"columns of different lengths: {sizes}")
+    return cells
+
+
+def _texts(name: str, column: Any) -> list[Any]:
+    """Return a column as a list of texts. Raises UserError for what is neither text nor a whole
+    number."""
+    if isinstance(column, (str, int, np.integer)):
+        column = [column]
+    try:
+        cells = column if isinstance(column, list) else list(column)
+    except TypeError:
+        raise UserError(f"{column!r:.60} is no text and no column of texts", name) from None
+    if set(map(type, cells)) <= {str}:
+        return cells
+    for row, cell in enumerate(cells):
+        if isinstance(cell, bool) or not isinstance(cell, (str, int, np.integer)):
+            raise UserError(
+                f"{cell!r:.60} is not a number as typed; expected a text or a whole number",
+                f"{name}, row {row + 1}",
+            )
+    return [str(cell) for cell in cells]
+
+
+def _run_block(
+    program: Program, columns: Mapping[str, list[str]], part: Results, start: int
+) -> dict[int, str]:
+    """Run scenes and fill their results; return the printouts of those that the port ran. Raises
+    UserError for a text that is not a number."""
+    rows: Sequence[int] = range(len(part.ending))
+    if kernel.library is not None:
+        try:
+            program.run(list(columns.values()), part)
+        except ValueError:  # other characters than ASCII's, or several lines
+            _check_texts(columns, start)
+            raise
+        code, line = part.ending[:, 0], part.ending[:, 1]
+        rows = np.flatnonzero(code == OUTSIDE).tolist()
+        for row in np.flatnonzero((code == CODES["OVERFLOW"]) & (line < FIRST_FORMULA)).tolist():
+            _scene(columns, row, start)  # raises if the number that is too large is no number
+    printouts = {}
+    for row in rows:
+        fields: list[str] = []
+        record = run(_scene(columns, row, start), recording(fields))
+        printouts[row] = record.printout
+        _fill(part, row, record, fields, program.steps.variables)
+    return printouts
+
+
+def _scene(columns: Mapping[str, Sequence[str]], row: int, start: int) -> Scene:
+    """Return the scene of a row. Raises UserError if its texts cannot be typed."""
+    texts = {name: column[row : row + 1] or column for name, column in columns.items()}
+    _check_texts(texts, start + row)
+    scene = Scene(
+        {name: column[0] for name, column in texts.items()}, source=f"row {start + row + 1}"
+    )
+    scene.check_typed()
+    return scene
+
+
+def _check_texts(columns: Mapping[str, Sequence[str]], start: int) -> None:
+    """Raise UserError for a text that is not a number. ``start``: scenes before these."""
+    for name, column in columns.items():
+        for row, text in enumerate(column):
+            if not (text.isascii() and decimaltext.is_number(text.upper())):
+                raise UserError(
+                    f"{text!r:.60} is not a number; expected one such as 1.5",
+                    f"{name}, row {start + row + 1}",
+                )
+
+
+def recording(fields: list[str]) -> Arithmetic:
+    """Return the Applesoft arithmetic, appending each number that it writes to ``fields``."""
+
+    def write(x: Real) -> str:
+        fields.append(APPLESOFT.write(x))
+        return fields[-1]
+
+    return Arithmetic(**{**vars(APPLESOFT), "write": write})
+
+
+def _fill(
+    part: Results, row: int, record: Run, fields: Sequence[str], variables: Sequence[str]
+) -> None:
+    """Set a row of results from a run of the port."""
+    stored = {name: int(value, 16) for name, value in record.reals.items()}
+    if record.A:
+        part.array[row] = [_without_mantissa(int(value, 16)) for value in record.A["data"]]
+    code, line = 0, ZERO_DETERMINANT_LINE if record.zero_determinant else 780
+    if record.error:
+        kind = record.error.removeprefix("?").partition(" ERROR")[0]
+        code, line = CODES[kind], record.line or 0
+    part.ending[row] = code, line, 0, ROWS
+    part.fields[row] = [*fields, *[""] * (len(PRINTED) - len(fields))]
+    for k, name in enumerate(variables):
+        if name in stored:
+            part.reals[row, k] = _without_mantissa(stored[name])
+            part.assigned[row] |= np.uint64(1 << k)
+    before = _contact_velocities(record.reals) if line > COMPUTED["XA"] else {}
+    for name, value in before.items():
+        part.reals[row, variables.index(f"{name}'")] = value
+
+
+def _without_mantissa(stored: int) -> int:
+    """Return stored bytes, with those of a zero all 0."""
+    return stored if stored >> 32 else 0
+
+
+def _contact_velocities(reals: Mapping[str, str]) -> dict[str, int]:
+    """Return the variables of line 340, which lines 700 and 710 use again."""
+    x = {name: Real.from_stored(value) for name, value in reals.items()}
+    values = (
+        x["UX"] + x["D3"] * x["WA"],
+        x["UY"] - x["D4"] * x["WA"],
+        x["VX"] - x["D1"] * x["WB"],
+        x["VY"] + x["D2"] * x["WB"],
+    )
+    stored = (int.from_bytes(value.to_bytes(), "big") for value in values)
+    return dict(zip(BEFORE, map(_without_mantissa, stored), strict=True))
+
+
+def _solution(part: Results, variables: Sequence[str]) -> npt.NDArray[np.uint64]:
+    """Return the final velocities, column M + 1 of the array A."""
+    equations = unpack(part.reals[:, variables.index("M")])
+    column = np.clip(equations, 0, COLUMNS - 2).astype(int) + 1
+    places = np.arange(1, len(FINAL_VELOCITIES) + 1) + ROWS * column[:, None]
+    return np.take_along_axis(part.array, places, 1)
+
+
+def _pages(part: Results, printouts: Mapping[int, str]) -> list[str]:
+    """Return the pages of a block: those that the library wrote, others from ``printouts``."""
+    assert part.pages is not None
+    texts = []
+    for row, (code, line, size, _) in enumerate(part.ending.tolist()):
+        if row in printouts:
+            texts.append(printouts[row])
+            continue
+        text = _DISK_COMMAND.sub("", part.pages[row, :size].tobytes().decode("ascii"))
+        texts.append(
+            f"{text}\n{_message(code, line).replace(' IN', BELL + ' IN')}" if code else text
+        )
+    return texts
