@@ -7,6 +7,7 @@ is .ci/manifest, because the top level holds no such file.
 import gzip
 import os
 import subprocess
+import sys
 import tarfile
 import zipfile
 from contextlib import contextmanager
@@ -55,6 +56,24 @@ def commit_recorded():
         COMMIT_FILE.unlink()
 
 
+HEADERS = {
+    "port/impact88/mechanics/formulas.h": "impact88.mechanics.translate",
+}
+"""Generated C header -> the module that prints it, from sources read as text: numpy and other
+dependencies are not there when the package is built."""
+
+
+def print_headers():
+    """Write the generated headers; one that has not changed keeps its time."""
+    for header, module in HEADERS.items():
+        command = [sys.executable, "-m", module]
+        environment = {**os.environ, "PYTHONPATH": "port", "PYTHONDONTWRITEBYTECODE": "1"}
+        text = subprocess.run(command, env=environment, stdout=subprocess.PIPE, check=True).stdout
+        path = Path(header)
+        if not path.exists() or path.read_bytes() != text:
+            path.write_bytes(text)
+
+
 PROGRAMS = Path("golden/programs")
 
 
@@ -91,8 +110,15 @@ bdist_wheel.get_tag = _tag
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     """A wheel whose entries have the time of the commit and usual modes."""
     os.environ["SOURCE_DATE_EPOCH"] = str(epoch())
+    print_headers()
     with commit_recorded(), programs_archived():
         return build_meta.build_wheel(wheel_directory, config_settings, metadata_directory)
+
+
+def build_editable(wheel_directory, config_settings=None, metadata_directory=None):
+    """An editable install, with the compiled part in the checkout."""
+    print_headers()
+    return build_meta.build_editable(wheel_directory, config_settings, metadata_directory)
 
 
 def build_sdist(sdist_directory, config_settings=None):
