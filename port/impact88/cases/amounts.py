@@ -1,14 +1,43 @@
-"""Amounts: a number with its tolerance, and the affine maps that convert it."""
+"""Amounts: a number with its unit and its tolerance, as written and as computed.
+
+    25    -25 mph    3,091 lb    6 ft 6 in            one value
+    28 .. 32 mph     uniform 28 32 mph                between two values
+    30 +- 2 mph      30 mph +- 5 %                    a middle and its half width (± is +-)
+    triangular 28 30 33                               lower limit, most likely value, upper limit
+    normal 30 1.5                                     mean and standard deviation
+    85 %                                              of MU: a share of the critical friction
+    skid 62 ft at 0.7 +- 0.05                         of a speed: a skid to rest
+
+A unit beside one of the numbers is the unit of all. Every number is an exact fraction until it is
+in base units (`units`), so that the digits of a bare number reach the 1988 program as typed.
+"""
 
 from __future__ import annotations
 
+import math
+import re
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from fractions import Fraction
-from typing import Any, Literal
+from itertools import pairwise
+from typing import Any, Literal, NamedTuple
 
-from ..decimals import exact, negated
+from ..decimals import exact, is_number, negated, to_double, to_text
+from ..errors import UserError, quoted
+from ..names import INERTIA, LENGTH, MASS, NUMBER, PERCENT, PIVOT, quantity
+from .units import GRAVITY, PLAIN, View, system_using, unit_of
 
 Kind = Literal["exact", "uniform", "triangular", "normal"]
+Ends = tuple[Fraction | float, Fraction | float]
+
+TOLERANCE = "+-"
+"""Mark of a half width; ± and +/- are read as this."""
+SKIDDING = ("SA", "SB", "SAF", "SBF")
+MAX_LENGTH = 200  # characters of an entry; bounds the time to read it
+EXPECTED = (
+    "expected such as 25, -25 mph, 6 ft 6 in, 28 .. 32 mph, 30 +- 2 mph, 30 +- 5 %, "
+    "normal 30 1.5, triangular 28 30 33"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,18 +47,26 @@ class Amount:
     Parameters
     ----------
     value : float
-        Nominal value.
+        Nominal value: the only one, the middle, the mode or the mean.
     low, high : float
-        Limits; equal to ``value`` if exact, infinite if normal.
+        Limits; equal to ``value`` if exact, infinite for a normal.
     kind : {"exact", "uniform", "triangular", "normal"}, default "exact"
         Distribution between the limits.
     sd : float, default 0
         Standard deviation of a normal.
     text : str, default ""
-        Digits of an exact number as typed, where nothing has converted them.
+        Digits of ``value`` as typed, where no conversion has changed them.
+    share : bool, default False
+        True if the numbers are shares of the critical friction (``MU = "85 %"`` is 0.85).
+
+    Raises
+    ------
+    UserError
+        For an unknown kind, limits in the wrong order, or a negative standard deviation.
 
     Examples
     --------
+    >>> from fractions import Fraction
     >>> Amount(30.0, 28.0, 32.0, "uniform").mapped(Fraction(-2), Fraction(90)).low
     26.0
     """
@@ -40,21 +77,360 @@ class Amount:
     kind: Kind = "exact"
     sd: float = 0.0
     text: str = ""
+    share: bool = False
+
+    def __post_init__(self) -> None:
+        if self.kind not in ("exact", "uniform", "triangular", "normal"):
+            raise UserError(
+                f"kind is {quoted(self.kind)}; expected exact, uniform, triangular or normal"
+            )
+        if self.low > self.high or not (math.isnan(self.value) or self.low <= self.value):
+            raise UserError(
+                f"limits {self.low:g} and {self.high:g} around {self.value:g}; "
+                "expected low <= value <= high"
+            )
+        if not self.sd >= 0:
+            raise UserError(f"the standard deviation is {self.sd:g}; expected 0 or more")
+
+    @classmethod
+    def exactly(cls, value: float, text: str = "") -> Amount:
+        """Return an exact amount.
+
+        Parameters
+        ----------
+        value : float
+            The value.
+        text : str, optional
+            Its digits as typed.
+        """
+        return cls(value, value, value, text=text)
+
+    @property
+    def varies(self) -> bool:
+        """True if the value is known within limits only."""
+        return self.kind != "exact"
+
+    @property
+    def typed(self) -> str:
+        """The digits of the nominal value for the 1988 program."""
+        return self.text.upper() or to_text(self.value)
+
+    @property
+    def standard_deviation(self) -> float:
+        """Standard deviation of the distribution, 0 if exact."""
+        a, c, b = self.low, self.value, self.high
+        if self.kind == "uniform":
+            return (b - a) / math.sqrt(12)
+        if self.kind == "triangular":
+            return math.sqrt((a * a + b * b + c * c - a * b - a * c - b * c) / 18)
+        return self.sd
+
+    def limits(self, reach: float = 3.0) -> tuple[float, float]:
+        """Return lower and upper limit.
+
+        Parameters
+        ----------
+        reach : float, default 3
+            Where a normal ends, in standard deviations.
+        """
+        if self.kind != "normal":
+            return self.low, self.high
+        width = reach * self.sd
+        return max(self.low, self.value - width), min(self.high, self.value + width)
 
     def mapped(self, factor: Fraction, offset: Fraction = Fraction(0)) -> Amount:
-        """Return ``offset + factor * self``.
+        """Return ``offset + factor * self``, each number correctly rounded.
 
-        Digits as typed are mapped exactly; a change of sign alone keeps them."""
-        if factor == 1 and offset == 0:
+        Digits as typed are mapped exactly, and kept where only the sign changes.
+
+        Parameters
+        ----------
+        factor, offset : Fraction
+            The map.
+
+        Examples
+        --------
+        >>> from fractions import Fraction
+        >>> Amount.exactly(2.5, "2.50").mapped(Fraction(-1)).text
+        '-2.50'
+        """
+        if factor == 1 and not offset:
             return self
-        if self.text:
-            value = float(offset + factor * exact(self.text))
-            keeps_digits = factor == -1 and offset == 0 and value != 0
-            return Amount(value, value, value, text=negated(self.text) if keeps_digits else "")
-        scale, shift = float(factor), float(offset)
-        value, *limits = (shift + scale * x for x in (self.value, self.low, self.high))
-        return Amount(value, min(limits), max(limits), self.kind, abs(scale) * self.sd)
+        value = exact(self.text) if self.text else self.value
+        return _image(self, value, (self.low, self.high), self.sd, factor, offset)
 
     def as_json(self) -> dict[str, Any]:
         """Return the amount as an object for JSON."""
         return asdict(self)
+
+
+def _image(
+    like: Amount,
+    value: Fraction | float,
+    ends: Ends,
+    sd: Fraction | float,
+    factor: Fraction,
+    offset: Fraction,
+) -> Amount:
+    """Return the amount of the kind and digits of ``like`` whose numbers are the images of these.
+
+    Raises OverflowError beyond the range of doubles."""
+
+    def image(x: Fraction | float) -> float:
+        if isinstance(x, float) and not math.isfinite(x):
+            return x * (1 if factor > 0 else -1)
+        return float(offset + factor * Fraction(x))
+
+    low, high = ends if factor > 0 else ends[::-1]
+    nominal, text = image(value), ""
+    if offset == 0 and abs(factor) == 1 and like.text:
+        text = negated(like.text) if factor < 0 and nominal else like.text
+    spread = float(abs(factor) * Fraction(sd))
+    return Amount(nominal, image(low), image(high), like.kind, spread, text, like.share)
+
+
+# -- the notation
+
+_DIGITS = r"(?:\d{1,3}(?:,\d{3})+(?!\d)(?:\.\d*)?|\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_UNIT = r"[a-zA-Z°%](?:[a-zA-Z°/·*.^²-]|[23](?!\d)| (?=[a-zA-Z/·*]))*"
+_PART = re.compile(rf"([-+]?) ?({_DIGITS}) ?({_UNIT})? ?")
+_SKID = re.compile(r"skid (.+) at (.+)")
+_SPELLINGS = str.maketrans({"−": "-", "–": "-", "⋅": "·", "×": "*", "º": "°", "±": TOLERANCE})
+_DECIMAL_COMMA = re.compile(r"\d{1,3},\d{3}")
+_COUNTS = {"uniform": 2, "triangular": 3, "normal": 2}
+"""Kinds that are named, with how many numbers follow."""
+
+
+class Part(NamedTuple):
+    """A number as written: its exact value, the symbol of its unit ("" without), its digits."""
+
+    number: Fraction
+    unit: str
+    digits: str
+
+
+class Notation(NamedTuple):
+    """An amount as written, with exact numbers in one ``unit`` ("" without); otherwise as
+    `Amount`."""
+
+    unit: str
+    kind: Kind
+    value: Fraction | float
+    ends: Ends
+    sd: Fraction = Fraction(0)
+    text: str = ""
+
+
+def read(name: str, text: str, view: View = PLAIN) -> Amount:
+    """Return the amount that a text gives a quantity, in base units along the listing's axes.
+
+    Parameters
+    ----------
+    name : str
+        The quantity, a name of `names`.
+    text : str
+        As in a file, in the notation at the head of this module.
+    view : View, optional
+        Units, axes and headings of the file.
+
+    Raises
+    ------
+    UserError
+        For any other text, a unit that does not measure the quantity, a comma that may be a decimal
+        one, limits in the wrong order, and numbers beyond the range of doubles.
+
+    Examples
+    --------
+    >>> read("UX", "30 +- 5 %", View("us")).high
+    46.2
+    >>> read("TB", "271 +- 1 %", View(headings="compass")).low
+    -183.71
+    """
+    words = normalized(text)
+    if match := _SKID.fullmatch(words):
+        return _skid(name, match[1], match[2], view)
+    if words.lower() == "inf" and quantity(name).unit in (MASS, INERTIA):
+        return Amount.exactly(math.inf)  # a barrier
+    notation = parse(name, words, view)
+    factor, offset = view.map(name, notation.unit)
+    if name == "MUP" and notation.value == PIVOT:
+        factor = abs(factor)  # the pivot's mark has no direction
+    share = name == "MU" and notation.unit == "%"
+    like = Amount(0.0, 0.0, 0.0, notation.kind, text=notation.text, share=share)
+    try:
+        return _image(like, notation.value, notation.ends, notation.sd, factor, offset)
+    except OverflowError:
+        raise UserError(f"{name} = {quoted(text)} is beyond the range of doubles") from None
+
+
+def normalized(text: str) -> str:
+    """Return a text with one spelling of signs and blanks."""
+    return " ".join(text[: MAX_LENGTH + 1].translate(_SPELLINGS).replace("+/-", TOLERANCE).split())
+
+
+def units_in(name: str, text: str) -> list[tuple[str, str]]:
+    """Return rule and symbol of the unit of an amount, none if it is a bare number. Raises
+    UserError for a text that is no amount."""
+    words = normalized(text)
+    if match := _SKID.fullmatch(words):
+        return units_in("DA", match[1])
+    unit = parse(name, words, None).unit
+    return [(quantity(name).unit, unit)] if unit else []
+
+
+def parse(name: str, words: str, view: View | None) -> Notation:
+    """Return the notation of a `normalized` text.
+
+    ``view`` has the unit of a bare number, which decides what its comma means; None takes any
+    comma. Raises UserError."""
+    entry = f"{name} = {quoted(words)}"
+    if len(words) > MAX_LENGTH:
+        raise UserError(f"{entry} is longer than {MAX_LENGTH} characters; expected an amount")
+    rule = quantity(name).unit
+    try:
+        kind, groups = _groups(rule, words)
+        unit, numbers = _in_one_unit(rule, groups)
+        if view:
+            _check_commas(rule, groups, unit or view.unit(name))
+    except UserError as error:
+        raise UserError(f"{entry}: {error}") from None
+    except ValueError:
+        raise UserError(f"{entry} is not an amount; {EXPECTED}") from None
+    if name in ("MUP", "RR0") and unit:
+        raise UserError(f"{entry}: expected a number without %; MU takes shares of the critical")
+    nominal = groups[1 if kind == "triangular" else 0]
+    text = nominal[0].digits.replace(",", "") if len(nominal) == 1 and kind != "uniform" else ""
+    notation = _notation(kind, numbers, unit, text)
+    low, high = notation.ends
+    if not low <= notation.value <= high or notation.sd < 0:
+        raise UserError(f"{entry}: expected the lower limit first, and no negative tolerance")
+    return notation._replace(kind="exact") if low == high else notation
+
+
+def _notation(kind: str, numbers: Sequence[Any], unit: str, text: str) -> Notation:
+    """Return the notation of numbers of a kind of `_groups`."""
+    first, last = numbers[0], numbers[-1]
+    if kind == "exact":
+        return Notation(unit, "exact", first, (first, first), text=text)
+    if kind == "triangular":
+        return Notation(unit, "triangular", numbers[1], (first, last), text=text)
+    if kind == "normal":
+        ends = (-math.inf, math.inf) if last else (first, first)
+        return Notation(unit, "normal", first, ends, last, text)
+    if kind == "uniform":
+        return Notation(unit, "uniform", (first + last) / 2, (first, last))
+    half = last * abs(first) / 100 if kind == "relative" else last
+    return Notation(unit, "uniform", first, (first - half, first + half), text=text)
+
+
+def _groups(rule: str, words: str) -> tuple[str, list[list[Part]]]:
+    """Return the kind of an amount, and of each of its numbers the parts.
+
+    The kind is one of `Amount`, "around" for a half width or "relative" for one in percent. Raises
+    ValueError for a text that is no amount, UserError for one refused for another reason."""
+    kind, _, remainder = words.partition(" ")
+    if kind in _COUNTS:
+        parts = _parts(rule, remainder)
+        if len(parts) != _COUNTS[kind]:
+            raise ValueError(words)
+        return kind, [[part] for part in parts]
+    first, mark, second = (part.strip() for part in words.partition(TOLERANCE))
+    if mark and second.endswith("%"):
+        if rule == PERCENT or "%" in first:
+            raise UserError("a percentage of a percentage; expected such as '37 +- 2'")
+        return "relative", [_parts(rule, first), _parts(NUMBER, second.rstrip("% "))]
+    if mark:
+        return "around", [_parts(rule, first), _parts(rule, second)]
+    first, mark, second = (part.strip() for part in words.partition(".."))
+    if mark and "..." not in words:
+        return "uniform", [_parts(rule, first), _parts(rule, second)]
+    if is_number(words) and not re.search(r"\d \d", words):  # as INPUT takes it: "." is 0
+        return "exact", [[Part(_fraction(words), "", words.replace(" ", ""))]]
+    return "exact", [_parts(rule, words)]
+
+
+def _parts(rule: str, words: str) -> list[Part]:
+    """Return the parts of a text: one number, or several such as feet and inches. Raises
+    ValueError."""
+    parts: list[Part] = []
+    place = 0
+    while place < len(words) or not parts:
+        match = _PART.match(words, place)
+        if match is None:
+            raise ValueError(words)
+        sign, digits, symbol = match.groups(default="")
+        unit = unit_of(rule, symbol).symbol if symbol else ""
+        parts.append(Part(_fraction(sign + digits), unit, sign + digits))
+        place = match.end()
+    return parts
+
+
+def _in_one_unit(rule: str, groups: Sequence[Sequence[Part]]) -> tuple[str, list[Fraction]]:
+    """Return the unit of the first part that has one, and the numbers in it. Raises ValueError
+    unless the parts of each number have smaller and smaller units, and none but the first a
+    sign."""
+    units = [part.unit for parts in groups for part in parts]
+    common = next((unit for unit in units if unit), "")
+    if len({*units} - {""}) > 1 and "" in units:
+        raise UserError("expected a unit beside each number")
+    size = {unit: unit_of(rule, unit).size for unit in units if unit}
+    numbers = []
+    for parts in groups:
+        first, *smaller = parts
+        sizes = [size.get(part.unit, Fraction(0)) for part in parts]
+        is_descending = all(a > b > 0 for a, b in pairwise(sizes))
+        if not is_descending or any(part.digits[0] in "+-" for part in smaller):
+            raise ValueError(parts)
+        sign = -1 if first.number < 0 else 1
+        scaled = [p.number * (size[p.unit] / size[common] if p.unit else 1) for p in parts]
+        numbers.append(scaled[0] + sign * sum(scaled[1:]))
+    return common, numbers
+
+
+def _check_commas(rule: str, groups: Sequence[Sequence[Part]], unit: str) -> None:
+    """Raise UserError for a comma that may be a decimal one: 1,234 is a thousand only with an
+    American unit."""
+    is_american = bool(unit) and unit_of(rule, unit).side == "us"
+    for part in (part for parts in groups for part in parts):
+        digits = part.digits.lstrip("+-")
+        if _DECIMAL_COMMA.fullmatch(digits) and (digits[0] == "0" or not is_american):
+            choices = f"{digits.replace(',', '')} or {digits.replace(',', '.')}"
+            raise UserError(f"the comma of {digits} may be a decimal one; expected {choices}")
+
+
+def _fraction(digits: str) -> Fraction:
+    """Return a number as written, exactly; 0 where it is 0 as a double. Raises UserError beyond the
+    range of doubles."""
+    plain = digits.replace(",", "")
+    value = to_double(plain)
+    if math.isinf(value):
+        raise UserError(f"{digits} is beyond the range of doubles")
+    return exact(plain) if value else Fraction(0)
+
+
+def _skid(name: str, distance: str, friction: str, view: View) -> Amount:
+    """Return the speed at the start of a skid to rest, v = sqrt(2 mu g d).
+
+    Distance and friction are independent. One that varies gives the speed its distribution; two
+    give a normal within the limits of both, its standard deviation to first order."""
+    entry = f"{name} = skid {distance} at {friction}"
+    if name not in SKIDDING:
+        raise UserError(f"{entry}: a skid is a speed; expected {', '.join(SKIDDING)}")
+    system = view.units or system_using(units_in("DA", distance))
+    if not system:
+        raise UserError(f"{entry} needs units; expected such as 'skid 62 ft at 0.7'")
+    parts = [read("DA", distance, View(system)), read("E", friction)]
+    low, high = zip(*(part.limits() for part in parts), strict=True)
+    if min(low) <= 0:
+        raise UserError(f"{entry}: expected a distance and a friction above 0")
+    gravity = float(GRAVITY / View(system).base_size(LENGTH))
+    slow, value, fast = (
+        math.sqrt(2 * gravity * d * mu) for d, mu in (low, [part.value for part in parts], high)
+    )
+    varying = [part for part in parts if part.varies]
+    if not varying:
+        return Amount.exactly(value)
+    if len(varying) == 1 and varying[0].kind != "normal":
+        return Amount(value, slow, fast, varying[0].kind)
+    spread = math.hypot(*(part.standard_deviation / part.value for part in varying))
+    return Amount(value, slow, fast, "normal", value / 2 * spread)

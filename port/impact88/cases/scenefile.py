@@ -1,0 +1,223 @@
+"""Scene files: flat TOML, keyed by the listing's names, read and written.
+
+The digits of a value stay as they are in the file; TOML's binary numbers are never used."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+from ..errors import UserError, quoted
+from ..names import CHAPTER, DEFAULT_M, RESULTS, SCENE
+from .motion import OWN_AXES
+from .units import PLAIN, View
+
+ABOUT = ("title", "case", "examiner", "date", "units", "axes", "headings", "correlations")
+"""Entries about the whole file."""
+INPUTS = {**SCENE, **RESULTS, **CHAPTER}
+"""Quantities that a file may give."""
+SOURCE = "_source"
+"""Suffix of an entry that says where a value comes from: UX_source = "event data recorder"."""
+MAX_BYTES = 100_000  # bounds the time to read; a complete scene has 2,000
+MAX_LINE = 2_000  # characters; tomllib is slow with long keys
+_KEY = re.compile(r"""[ \t]*\[?[ \t]*["']?([A-Za-z0-9_-]+)["']?[ \t]*[=\]]""")
+
+SIGNS = """\
+   y ^                 ^ t          GA = 0: the contact plane, C its point, along y; n along x
+     |                 |            n = (cos GA, sin GA), t = (-sin GA, cos GA)
+     +---> x    [ B >] C [< A ]     A lies on the +n side of the plane, B on the other
+                       |            TA = TB = 0: B faces TB, A faces TA + 180
+                       +---> n      PA, PB: from the vehicle's front to C, seen from its center
+
+Angles and spins are positive counterclockwise. An approach has A moving against n, towards B.
+The impulse P_n n + P_t t acts on A, its opposite on B; friction (MU above 0) opposes the sliding.
+"""
+"""Sides, axes and signs."""
+
+
+def read_toml(text: str, source: str) -> tuple[dict[str, str], dict[str, int]]:
+    """Return the entries of a flat TOML document as texts, and their lines.
+
+    ``NAME = {value = ..., source = ...}`` gives NAME and NAME_source.
+
+    Raises
+    ------
+    UserError
+        For text that is not TOML and for values that are neither numbers nor texts.
+    """
+    lines = text.split("\n")
+    for number, line in enumerate(lines, 1):
+        if len(line) > MAX_LINE:
+            place = f"{source}, line {number}"
+            raise UserError(f"is longer than {MAX_LINE:,} characters; expected NAME = VALUE", place)
+    places: dict[str, int] = {}
+    repeated: list[str] = []
+    for number, line in enumerate(lines, 1):
+        if (match := _KEY.match(line)) and places.setdefault(match[1], number) != number:
+            repeated.append(f"; line {number} has {match[1]} again")
+    try:
+        values = tomllib.loads(text, parse_float=str)
+    except tomllib.TOMLDecodeError as error:
+        advice = "; expected NAME = VALUE, a number with a digit first (0.9) or a text in quotes"
+        reason = f"{error}{repeated[0]}" if repeated and "overwrite" in str(error) else error
+        raise UserError(f"is not TOML: {reason}{advice}", source) from None
+    except (RecursionError, ValueError):  # nested deeply; a whole number of 4,300 digits
+        raise UserError("is not a scene; expected one NAME = VALUE a line", source) from None
+    texts: dict[str, str] = {}
+    for name, value in values.items():
+        place = f"{source}, line {places[name]}" if name in places else source
+        if isinstance(value, dict) and "value" in value and {*value} <= {"value", "source"}:
+            if "source" in value:
+                texts[name + SOURCE] = str(value["source"])
+            value = value["value"]
+        if isinstance(value, bool) or not isinstance(value, str | int):
+            kinds = {bool: "a truth value", list: "a list", dict: "a table"}
+            kind = kinds.get(type(value), "a date")
+            raise UserError(f"{name} is {kind}; expected a number or a text", place)
+        texts[name] = str(value)
+    return texts, places
+
+
+def write_toml(
+    texts: Mapping[str, str], names: Iterable[str] = SCENE, heading: str = "", view: View = PLAIN
+) -> str:
+    """Return a commented scene file.
+
+    Parameters
+    ----------
+    texts : mapping of str to str
+        Entries as written; those about the file come first.
+    names : iterable of str, optional
+        Entries to have in any case, empty where ``texts`` lacks them.
+    heading : str, optional
+        Lines of comment for the top.
+    view : View, optional
+        Its units are those of the comments.
+
+    Returns
+    -------
+    str
+        The file; `read_toml` gives the texts back.
+    """
+    lines = [f"# {line}".rstrip() for line in heading.splitlines()]
+    lines += [""] if lines else []
+    lines += [f"{n} = {_toml_text(texts[n])}" for n in ABOUT if texts.get(n)]
+    others = [n for n in texts if n not in ABOUT and not n.endswith(SOURCE)]
+    for name in dict.fromkeys((*names, *others)):
+        if name not in texts and (name in SCENE and _is_replaced(name, texts)):
+            continue
+        text = texts.get(name, DEFAULT_M if name == "M" else "")
+        entry = f"{name} = {text if _PLAIN_TOML.fullmatch(text) else _toml_text(text)}"
+        row = INPUTS.get(name)
+        label = f" [{view.label(name)}]" if row else ""
+        lines.append(f"{entry:<20} # {row.meaning}{label}" if row else entry)
+        if name + SOURCE in texts:
+            lines.append(f"{name}{SOURCE} = {_toml_text(texts[name + SOURCE])}")
+    return "\n".join(lines) + "\n"
+
+
+_PLAIN_TOML = re.compile(r"[+-]?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?")
+"""Numbers that TOML takes without quotes."""
+
+
+def _toml_text(text: str) -> str:
+    """Return a text as a one-line TOML string."""
+    line = "".join(c if c.isprintable() else " " for c in text)
+    return '"{}"'.format(line.replace("\\", "\\\\").replace('"', '\\"'))
+
+
+def _is_replaced(name: str, texts: Mapping[str, str]) -> bool:
+    """Return True for DA PA (DB PB) where the contact point is given in the vehicle's own axes."""
+    return name[0] in "DP" and any(n in texts for n in OWN_AXES.get(name[1:], ()))
+
+
+class Template(NamedTuple):
+    """A kind of collision: its title, the command that takes its file, advice, and its entries with
+    the text each begins with."""
+
+    title: str
+    command: str
+    advice: str
+    entries: dict[str, str]
+
+
+_FACING = {"TA": "course", "TB": "course"}
+TEMPLATES = {
+    "intersection": Template(
+        "Intersection: speeds before from skids and departure angles",
+        "solve",
+        "Momentum alone: masses, courses before and after, and speeds after. A skid to rest is a\n"
+        'speed: SAF = "skid 62 ft at 0.7 +- .05". Courses are counterclockwise from x. Leave SAF\n'
+        "and SBF empty and give SA and SB for the converse.",
+        {"M": "4", **dict.fromkeys("MA MB HA HB SAF HAF SBF HBF".split(), ""), **_FACING},
+    ),
+    "rear-end": Template(
+        "Rear end: delta-V from closing speed and restitution",
+        "solve",
+        "Both along x, A into B. SB is 0 for a standing car; E is .1 to .4 at low speeds.",
+        {"M": "4", "MA": "", "MB": "", "SA": "", "HA": "0", "SB": "0", "HB": "0", "E": ""}
+        | _FACING,
+    ),
+    "head-on": Template(
+        "Head-on: speeds after and delta-V",
+        "solve",
+        "Along one line: A along x, B against it. E = 0 leaves them locked together.",
+        {"M": "4", "MA": "", "MB": "", "SA": "", "HA": "0", "SB": "", "HB": "180", "E": "0"}
+        | _FACING,
+    ),
+    "barrier": Template(
+        "Barrier: one vehicle against a rigid barrier",
+        "chapter barrier",
+        "The barrier is along y where GA = 0; A drives against n, and faces it where TA = 0.",
+        dict.fromkeys(("MA", "IA", "DA", "PA"), "")
+        | {"TA": "0", "GA": "0", "E": "", "MU": "", "EM": "1", "UX": "", "UY": "0", "WA": "0"},
+    ),
+    "planar": Template(
+        "Planar impact: velocities after from those before",
+        "solve",
+        f'{SIGNS}\nMU = "locked" ends the sliding; EM = 1 is no moment.',
+        {**dict.fromkeys(SCENE, ""), "WA": "0", "WB": "0", "EM": "1", "M": "6"},
+    ),
+    "crush": Template(
+        "Crush energy to delta-V (Equation 19)",
+        "chapter delta-v",
+        "An estimate from the energy lost, fitted to eleven staged collisions.",
+        dict.fromkeys(("MA", "MB", "SA", "SB", "EL"), ""),
+    ),
+}
+"""The kinds of collision that `template` offers."""
+
+
+def template(kind: str = "planar", units: str = "us") -> str:
+    """Return a scene file to fill in, with what a kind of collision needs and no more.
+
+    Parameters
+    ----------
+    kind : str, default "planar"
+        A name of `TEMPLATES`.
+    units : {"us", "chapter", "metric", "si"}, default "us"
+        System of the file's bare numbers.
+
+    Returns
+    -------
+    str
+        A TOML document.
+
+    Raises
+    ------
+    UserError
+        For another kind or system.
+
+    Examples
+    --------
+    >>> print(template("crush", "metric").splitlines()[-5])
+    MA = ""              # mass of A [kg]
+    """
+    if kind not in TEMPLATES:
+        raise UserError(f"{quoted(kind)} is not a template; expected {', '.join(TEMPLATES)}")
+    title, command, advice, entries = TEMPLATES[kind]
+    view = View.of(units=units)
+    heading = f"{title}\n\n{advice}\nFilled in, it goes to: impact88 {command} FILE"
+    return write_toml({**view.words(), **entries}, (), heading, view)

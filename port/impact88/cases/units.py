@@ -1,0 +1,353 @@
+"""Units, axes and headings: for each name one affine map between what is shown and computed.
+
+A scene is computed in base units (ft, slug, s or m, kg, s; degrees; rad/s) along the listing's
+axes. Whatever a file shows instead is ``base = offset + factor * shown``, with exact fractions:
+a unit is the factor, SAE axes its sign, compass headings the offset. Results use the inverse.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from math import isfinite
+from typing import Any, NamedTuple
+
+from ..decimals import to_text
+from ..errors import UserError, quoted
+from ..names import (
+    ANGLE,
+    ENERGY,
+    FORCE,
+    IMPULSE,
+    INERTIA,
+    LENGTH,
+    MASS,
+    NUMBER,
+    PIVOT,
+    SPIN,
+    TIME,
+    TURNING,
+    VELOCITY,
+    quantity,
+)
+
+_TABLE = """
+length              | us     | 0.3048            | ft foot feet
+length              | us     | 0.0254            | in inch inches
+length              | us     | 0.9144            | yd yard yards
+length              | us     | 1609.344          | mi mile miles
+length              | metric | 1                 | m meter meters metre metres
+length              | metric | 0.01              | cm
+length              | metric | 0.001             | mm
+length              | metric | 1000              | km
+length/time         | us     | 0.44704           | mph mi/h
+length/time         | us     | 0.3048            | ft/s fps ft/sec
+length/time         | us     | 1852 / 3600       | kn kt knot knots
+length/time         | metric | 1000 / 3600       | km/h kph kmh
+length/time         | metric | 1                 | m/s m/sec
+mass                | us     | lb                | lb lbs pound pounds lbm lbf
+mass                | us     | lb * g / 0.3048   | slug slugs
+mass                | metric | 1                 | kg kgs kilogram kilograms
+mass                | metric | 1000              | t tonne tonnes
+mass                | metric | 1 / g             | N
+mass                | metric | 1000 / g          | kN
+mass·length²        | us     | lb * g * 0.3048   | lb-ft-s2 ft-lb-s2 lbf-ft-s2 ft-lbf-s2 slug-ft2
+mass·length²        | us     | lb * g * 0.0254   | lb-in-s2 in-lb-s2
+mass·length²        | us     | lb * 0.3048 * 0.3048 | lb-ft2 lbm-ft2
+mass·length²        | metric | 1                 | kg-m2 N-m-s2
+mass·length²/time²  | us     | lb * g * 0.3048   | ft-lb lb-ft ft-lbf lbf-ft
+mass·length²/time²  | metric | 1                 | J N-m
+mass·length²/time²  | metric | 1000              | kJ kN-m
+mass·length/time²   | us     | lb * g            | lb lbs pound pounds lbf
+mass·length/time²   | metric | 1                 | N
+mass·length/time²   | metric | 1000              | kN
+mass·length/time    | us     | lb * g            | lb-s lbf-s slug-ft/s
+mass·length/time    | metric | 1                 | N-s kg-m/s
+mass·length/time    | metric | 1000              | kN-s
+mass·length²/time   | us     | lb * g * 0.3048   | ft-lb-s lb-ft-s ft-lbf-s lbf-ft-s
+mass·length²/time   | metric | 1                 | N-m-s kg-m2/s
+time                |        | 1                 | s sec second seconds
+time                |        | 0.001             | ms
+rad/time            |        | 1                 | rad/s rad/sec
+rad/time            |        | pi / 180          | deg/s °/s degree/s degrees/s deg/sec
+rad/time            |        | pi / 30           | rpm
+degree              |        | 1                 | deg ° degree degrees
+degree              |        | 180 / pi          | rad radian radians
+percent             |        | 1                 | % percent
+1                   |        | 0.01              | % percent
+"""
+"""The units that an amount may have: rule of the quantity (`names`), side, size in m, kg, s,
+degrees and rad/s, and spellings, the first of which is shown. A mass may be given as its weight."""
+_CONSTANTS = {
+    "lb": Fraction("0.45359237"),  # kg
+    "g": Fraction("9.80665"),  # m/s²
+    "pi": Fraction("3.14159265358979323846264338327950288419716939937510"),
+}
+FOOT = Fraction("0.3048")  # m
+POUND = _CONSTANTS["lb"]
+GRAVITY = _CONSTANTS["g"]
+SLUG = POUND * GRAVITY / FOOT  # kg
+
+
+class Unit(NamedTuple):
+    """A unit: the symbol shown, its size, and its side, "us", "metric" or "" for both."""
+
+    symbol: str
+    size: Fraction
+    side: str
+
+
+def _size(words: str) -> Fraction:
+    """Return the value of a product in `_TABLE`."""
+    top, _, bottom = words.partition(" / ")
+    factors = [_CONSTANTS.get(word) or Fraction(word) for word in top.split(" * ")]
+    divisor = _CONSTANTS.get(bottom) or Fraction(bottom or 1)
+    return math.prod(factors, start=Fraction(1)) / divisor
+
+
+@lru_cache(maxsize=1)
+def _units() -> dict[tuple[str, str], Unit]:
+    """Return the units of `_TABLE` by rule and normalized spelling."""
+    units: dict[tuple[str, str], Unit] = {}
+    for row in _TABLE.strip().splitlines():
+        rule, side, size, spellings = (cell.strip() for cell in row.split("|"))
+        symbols = spellings.split()
+        unit = Unit(symbols[0], _size(size), side)
+        units |= {(rule, _normalized(symbol)): unit for symbol in symbols}
+    return units
+
+
+def _normalized(symbol: str) -> str:
+    """Return a spelling of a unit without blanks, marks of products and powers, and capitals."""
+    return re.sub(r"[\s·*.^-]", "", symbol.replace("²", "2").replace(" per ", "/")).lower()
+
+
+def unit_of(rule: str, symbol: str) -> Unit:
+    """Return the unit of a rule that a text spells. Raises UserError if it does not measure the
+    quantity."""
+    unit = _units().get((rule, _normalized(symbol)))
+    if unit is None:
+        choices = dict.fromkeys(u.symbol for (r, _), u in _units().items() if r == rule)
+        kind = "a ratio" if rule == NUMBER else rule.replace("·", " ")
+        raise UserError(f"{symbol} is not a unit of {kind}; expected {', '.join(choices)}")
+    return unit
+
+
+DIMENSIONS = {
+    LENGTH: (1, 0),
+    VELOCITY: (1, 0),
+    MASS: (0, 1),
+    INERTIA: (2, 1),
+    ENERGY: (2, 1),
+    FORCE: (1, 1),
+    IMPULSE: (1, 1),
+    TURNING: (2, 1),
+}
+"""Powers of length and mass, of the rules whose base unit depends on the system."""
+
+
+class System(NamedTuple):
+    """A system of units: its base units of length and mass in m and kg, its side, and the unit in
+    which values of each rule are shown."""
+
+    length: Fraction
+    mass: Fraction
+    side: str
+    shown: dict[str, str]
+
+
+_FEET = {LENGTH: "ft", INERTIA: "lb-ft-s2", ENERGY: "ft-lb", FORCE: "lb", IMPULSE: "lb-s"}
+_FEET |= {TURNING: "ft-lb-s", TIME: "s", SPIN: "rad/s", ANGLE: "deg"}
+_METERS = {LENGTH: "m", INERTIA: "kg-m2", ENERGY: "J", FORCE: "N", IMPULSE: "N-s"}
+_METERS |= {TURNING: "N-m-s", MASS: "kg", TIME: "s", SPIN: "rad/s", ANGLE: "deg"}
+SYSTEMS = {
+    "us": System(FOOT, SLUG, "us", {**_FEET, VELOCITY: "mph", MASS: "lb"}),
+    "chapter": System(FOOT, SLUG, "us", {**_FEET, VELOCITY: "ft/s", MASS: "slug"}),
+    "metric": System(Fraction(1), Fraction(1), "metric", {**_METERS, VELOCITY: "km/h"}),
+    "si": System(Fraction(1), Fraction(1), "metric", {**_METERS, VELOCITY: "m/s"}),
+}
+"""Choices of ``units``."""
+_CHOICES = {
+    "units": tuple(SYSTEMS),
+    "axes": ("listing", "sae"),
+    "headings": ("listing", "compass"),
+}
+
+FROM_NORTH = frozenset("TA TB HA HB HAF HBF".split())
+"""Directions of vehicles and velocities, clockwise from north with compass headings."""
+MIRRORED = FROM_NORTH | frozenset(
+    "UY WA VY WB VAY WAF VBY WBF YA YB YAF YBF GA PA PB PT PM MUP MUC CAY CBY CY "
+    "UT VT VAT VBT".split()
+)
+"""Names whose sign changes with SAE axes (y to the right of x, angles and spins clockwise). Left,
+right, forward and PDOF are a vehicle's own and do not change."""
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """How a file shows its numbers, and how results are shown to its reader.
+
+    Parameters
+    ----------
+    units : {"", "us", "chapter", "metric", "si"}, default ""
+        System of units; "" for any consistent units, whose names are not known.
+    axes : {"", "sae"}, default ""
+        Axes; "" is the listing's.
+    headings : {"", "compass"}, default ""
+        Directions of TA TB HA HB HAF HBF; "" is counterclockwise from x.
+
+    Examples
+    --------
+    >>> View("us").shown("UX", 44.0), View("us").unit("UX")
+    (30.0, 'mph')
+    >>> View(headings="compass").shown("TB", 0.0)
+    90.0
+    """
+
+    units: str = ""
+    axes: str = ""
+    headings: str = ""
+
+    @classmethod
+    def of(cls, where: str | None = None, **words: str | None) -> View:
+        """Return the view of the words of a file or of options.
+
+        Parameters
+        ----------
+        where : str, optional
+            Place of the words for messages.
+        **words : str or None
+            ``units``, ``axes``, ``headings``; None or "" for the default.
+
+        Raises
+        ------
+        UserError
+            For a word that is not among the choices.
+        """
+        chosen = {name: (word or "").strip().lower() for name, word in words.items()}
+        for name, word in chosen.items():
+            if word and word not in _CHOICES[name]:
+                choices = ", ".join(_CHOICES[name])
+                raise UserError(f"{name} = {quoted(words[name])}; expected {choices}", where)
+        return cls(**{n: word for n, word in chosen.items() if word != "listing"})
+
+    def words(self) -> dict[str, str]:
+        """Return the entries of a file with this view, without defaults."""
+        words = {"units": self.units, "axes": self.axes, "headings": self.headings}
+        return {name: word for name, word in words.items() if word}
+
+    def base_size(self, rule: str) -> Fraction:
+        """Return the size of the base unit of a rule in m, kg, s."""
+        if rule not in DIMENSIONS or not self.units:
+            return Fraction(1)
+        system, (length, mass) = SYSTEMS[self.units], DIMENSIONS[rule]
+        return system.length**length * system.mass**mass
+
+    def unit(self, name: str) -> str:
+        """Return the unit a quantity is shown in; "" for a pure number and without units."""
+        return SYSTEMS[self.units].shown.get(quantity(name).unit, "") if self.units else ""
+
+    def label(self, name: str) -> str:
+        """Return the unit of a quantity, or without units its rule, such as "length/time"."""
+        return self.unit(name) or quantity(name).unit
+
+    def heading(self, name: str) -> str:
+        """Return the heading of a column, such as ``DVA [mph]``."""
+        unit = self.unit(name)
+        return f"{name} [{unit}]" if unit else name
+
+    def map(self, name: str, unit: str = "") -> tuple[Fraction, Fraction]:
+        """Return factor and offset of ``base = offset + factor * shown``.
+
+        Parameters
+        ----------
+        name : str
+            The quantity.
+        unit : str, optional
+            Symbol of the unit of the shown number, by default that of `unit`.
+        """
+        return _affine_map(self, name, unit)
+
+    def shown(self, name: str, value: Any) -> Any:
+        """Return a base value, a number or an array, as the file shows it.
+
+        A single number has the fewest digits that are read as the same base value. Headings are
+        reduced to one turn."""
+        if isinstance(value, int | float):
+            return float(self.shown_text(name, float(value)))
+        factor, offset = self.map(name)
+        if factor == 1 and not offset:
+            return value
+        scaled = (value - float(offset)) * float(1 / factor) + 0.0  # no -0
+        if name == "MUP":  # the pivot's mark keeps its sign
+            scaled = scaled + (value == PIVOT) * (PIVOT - PIVOT * float(1 / factor))
+        return scaled % 360.0 if self._turns(name) else scaled
+
+    def shown_text(self, name: str, value: float) -> str:
+        """Return a single number as `shown`, as decimal text."""
+        factor, offset = self.map(name)
+        if (factor == 1 and not offset) or not isfinite(value) or (name, value) == ("MUP", PIVOT):
+            return to_text(value)
+        shown = (Fraction(value) - offset) / factor
+        if self._turns(name):
+            shown %= 360
+        for places in (15, 16, 17):
+            text = to_text(float(f"{float(shown):.{places}g}"))
+            difference = offset + factor * Fraction(text) - Fraction(value)
+            turns = 360 * round(difference / 360) if self._turns(name) else 0
+            if float(Fraction(value) + difference - turns) == value:
+                break
+        return text
+
+    def shown_ends(self, name: str, low: Any, high: Any) -> tuple[Any, Any]:
+        """Return two limits as shown, the lower first; directions are not reduced to one turn."""
+        factor, offset = (float(x) for x in self.map(name))
+        ends = (low - offset) / factor, (high - offset) / factor
+        return ends if factor > 0 else ends[::-1]
+
+    def _turns(self, name: str) -> bool:
+        """Return True for directions that are shown from 0 to 360 degrees."""
+        return bool(self.headings) and name in FROM_NORTH
+
+
+PLAIN = View()
+"""Base units, whatever they are, along the listing's axes."""
+
+
+@lru_cache(maxsize=1024)
+def _affine_map(view: View, name: str, unit: str) -> tuple[Fraction, Fraction]:
+    """Return `View.map`."""
+    rule = quantity(name).unit
+    symbol = unit or view.unit(name)
+    factor = unit_of(rule, symbol).size / view.base_size(rule) if symbol else Fraction(1)
+    if view.headings and name in FROM_NORTH:
+        north = 0 if view.axes else 90  # north is y, of SAE axes x
+        return -factor, Fraction(north + 180 * (name == "TA"))  # A faces TA + 180
+    return (-factor if view.axes and name in MIRRORED else factor), Fraction(0)
+
+
+def system_using(units: list[tuple[str, str]]) -> str:
+    """Return the system in which to show values written with units, "" if the units name none.
+
+    Parameters
+    ----------
+    units : list of (str, str)
+        Rule and symbol of each unit.
+
+    Raises
+    ------
+    UserError
+        For units of two systems.
+    """
+    sides = {unit_of(rule, symbol).side for rule, symbol in units} - {""}
+    if len(sides) > 1:
+        raise UserError('units of two systems; expected units = "us" or "metric" in the file')
+    counts = {
+        name: sum(system.shown.get(rule) == symbol for rule, symbol in units)
+        for name, system in SYSTEMS.items()
+        if system.side in sides
+    }
+    return max(counts, key=lambda name: counts[name], default="")

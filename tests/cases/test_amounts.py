@@ -1,0 +1,131 @@
+"""Texts that are amounts, and texts that are refused."""
+
+import math
+
+import pytest
+
+from impact88.cases import PLAIN, Amount, View
+from impact88.cases.amounts import read
+from impact88.errors import UserError
+
+US = View("us")
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "value", "low", "high"),
+    [
+        ("MA", "1,234 lb", 38.35389251171399, 38.35389251171399, 38.35389251171399),
+        ("UX", "3 .. 5", 5.866666666666666, 4.4, 7.333333333333333),
+        ("UX", "-31..-29 mph", -44, -45.46666666666667, -42.53333333333333),
+        ("DA", "6 ft 6 in", 6.5, 6.5, 6.5),
+        ("DA", "-6 ft 6 in", -6.5, -6.5, -6.5),
+        ("DA", "1 ft +- 6 in", 1, 0.5, 1.5),
+        ("UX", "30 +- 2 mph", 44, 41.06666666666667, 46.93333333333333),
+        ("UX", "1,234.5 mph", 1810.6, 1810.6, 1810.6),
+        ("UX", "−30 mph", -44, -44, -44),
+        ("GA", "8°", 8, 8, 8),
+        ("E", "20 %", 0.2, 0.2, 0.2),
+        ("E", "0.2 +- 50 %", 0.2, 0.1, 0.3),
+        ("MU", "0.7 +- 10 %", 0.7, 0.63, 0.77),
+        ("MU", "80 .. 90 %", 0.85, 0.8, 0.9),
+        ("LOSS", "37 % +- 2", 37, 35, 39),
+        ("UX", ".", 0, 0, 0),
+        ("UX", "1E-999999999", 0, 0, 0),
+        ("MB", "inf", math.inf, math.inf, math.inf),
+        ("MA", "4000 N", 27.949102234419197, 27.949102234419197, 27.949102234419197),
+        ("UX", "5 +- 0", 7.333333333333333, 7.333333333333333, 7.333333333333333),
+    ],
+)
+def test_accepted(name: str, text: str, value: float, low: float, high: float) -> None:
+    amount = read(name, text, US)
+    assert (amount.value, amount.low, amount.high) == (value, low, high)
+    assert amount.varies == (low < high)
+    assert amount.share == (name == "MU" and "10" not in text)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "reason"),
+    [
+        ("UX", "1,234 km/h", "comma of 1,234 may be a decimal one; expected 1234 or 1.234"),
+        ("UX", "5 .. 3", "lower limit first"),
+        ("UX", "triangular 3 5 4", "lower limit first"),
+        ("UX", "30 +- -2", "no negative tolerance"),
+        ("UX", "normal 30 -2", "no negative tolerance"),
+        ("UX", "normal 30 2 within 25 .. 35", "within is not a unit"),
+        ("UX", "0,5", "is not an amount"),
+        ("UX", "3...5", "is not an amount"),
+        ("UX", "+- 2", "is not an amount"),
+        ("UX", "1 0", "is not an amount"),
+        ("DA", "5 1/2 ft", "is not an amount"),
+        ("DA", "6'6\"", "is not an amount"),
+        ("DA", "6 in 6 ft", "is not an amount"),
+        ("DA", "6 ft -6 in", "is not an amount"),
+        ("UX", "inf", "is not an amount"),
+        ("UX", "nan", "is not an amount"),
+        ("UX", "1e999", "beyond the range of doubles"),
+        ("UX", "9" * 300, "longer than 200 characters"),
+        ("UX", "25 lb", "lb is not a unit of length/time; expected mph"),
+        ("IA", "2000 lb", "expected lb-ft-s2, lb-in-s2, lb-ft2, kg-m2"),
+        ("LOSS", "37 +- 5 %", "a percentage of a percentage"),
+        ("MU", "85 % +- 5 %", "a percentage of a percentage"),
+        ("MUP", "85 %", "MU takes shares"),
+        ("UX", "skid 62 ft at 0.7", "expected SA, SB, SAF, SBF"),
+        ("SAF", "skid -62 ft at 0.7", "above 0"),
+        ("DA", "6 ft 6 in +- 2", "a unit beside each number"),
+    ],
+)
+def test_refused(name: str, text: str, reason: str) -> None:
+    with pytest.raises(UserError, match=f"^{name} = ") as error:
+        read(name, text, US)
+    assert reason in str(error.value)
+
+
+def test_comma_depends_on_the_unit_shown() -> None:
+    assert read("UX", "1,234", US).value == pytest.approx(1234 * 22 / 15)
+    for view in (View("metric"), PLAIN):
+        with pytest.raises(UserError, match="decimal"):
+            read("UX", "1,234", view)
+
+
+def test_percentage_of_a_compass_heading_is_of_the_heading() -> None:
+    amount = read("TA", "271 +- 1 %", View(headings="compass"))
+    view = View(headings="compass")
+    assert view.shown_ends("TA", amount.low, amount.high) == pytest.approx((268.29, 273.71))
+
+
+def test_digits_are_kept_where_nothing_converts_them() -> None:
+    assert read("MA", "143.50", PLAIN).typed == "143.50"
+    assert read("MA", "143.50 slug", US).typed == "143.50"
+    assert read("UY", "2.50", View(axes="sae")).typed == "-2.50"
+    assert read("UY", "0.0", View(axes="sae")).typed == "0.0"
+    assert read("UX", "0", US).typed == "0"
+    assert read("UX", "1e1", PLAIN).typed == "1E1"
+    assert read("UX", "triangular 1.0 2.50 3", PLAIN).typed == "2.50"
+    assert read("TA", "0.1", View(headings="compass")).typed == "269.9"
+
+
+def test_skid_is_a_speed() -> None:
+    amount = read("SAF", "skid 62 ft at 0.7 +- 0.05", US)
+    speed = math.sqrt(2 * 9.80665 / 0.3048 * 62 * 0.7)
+    assert amount.value == pytest.approx(speed, rel=1e-15)
+    assert amount.high == pytest.approx(speed * math.sqrt(0.75 / 0.7), rel=1e-15)
+    assert amount.kind == "uniform"
+    both = read("SAF", "skid 60 .. 64 ft at 0.7 +- 0.05", US)
+    assert both.kind == "normal"
+    assert both.low < both.value - both.sd < both.value + both.sd < both.high
+
+
+def test_pivot_keeps_its_sign() -> None:
+    sae = View(axes="sae")
+    assert read("MUP", "-10", sae).value == -10
+    assert read("MUP", "0.5", sae).value == -0.5
+    assert (sae.shown("MUP", -10.0), sae.shown("MUP", -0.5)) == (-10, 0.5)
+
+
+def test_amounts_are_checked() -> None:
+    with pytest.raises(UserError, match="low <= value <= high"):
+        Amount(1, 2, 0)
+    with pytest.raises(UserError, match="kind is 'even'"):
+        Amount(1, 0, 2, "even")  # type: ignore[arg-type]
+    with pytest.raises(UserError, match="standard deviation is -1"):
+        Amount(1, -math.inf, math.inf, "normal", -1)

@@ -1,0 +1,228 @@
+"""Files and mappings as cases: what is read, assumed, remarked and refused."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+import impact88
+from impact88.cases import TEMPLATES, Amount, Case, View, template
+from impact88.errors import UserError
+from impact88.names import SCENE
+
+REAR_END = """
+units = "us"
+M = 4
+MA = 3000
+MB = 2000
+UX = -30
+UY = 0
+VX = 10
+VY = 0
+E = 0.2
+"""
+
+
+def refusal(text: str) -> str:
+    with pytest.raises(UserError) as error:
+        Case.loads(text, "crash.toml")
+    assert "\n" not in str(error.value)
+    return str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "MA = 1\nMUU = 3",
+            "crash.toml, line 2: 'MUU' is not an entry of a scene; did you mean MU?",
+        ),
+        ('MA = 1\n\nUX = "25 lb"', "crash.toml, line 3: UX = '25 lb': lb is not a unit"),
+        ("MA = .9", "a number with a digit first (0.9)"),
+        ("MA = 1\nMA = 2", "line 2 has MA again"),
+        ("MA = true", "crash.toml, line 1: MA is a truth value; expected a number or a text"),
+        ("MA = [1]", "a list"),
+        ("[MA]\nvalues = 1", "crash.toml, line 1: MA is a table"),
+        ("x=" + "[" * 1500, "one NAME = VALUE a line"),
+        ("x=" + "9" * 3000, "line 1: is longer than 2,000 characters"),
+        ('units = "imperial"', "units = 'imperial'; expected us, chapter, metric, si"),
+        ('MA = "3 lb"\nMB = 4', "line 2: MB = 4 has no unit, and other values have"),
+        ('MA = "3 lb"\nMB = "4 kg"', "units of two systems"),
+        ("CAF = 3", "CAF is given alone; expected CAF and CAL"),
+        ("CAF = 3\nCAL = 4\nPA = 3", "PA and CAF are both given"),
+        ('UX_source = "EDR"', "UX_source is given, and UX is not"),
+        ('IA = "estimate"', "IA = estimate needs MA"),
+        ("LA = 15", "LA is given alone; expected LA and BA"),
+        ('MA = 90\nIA = "estimate"', 'needs units = "us"'),
+    ],
+)
+def test_refused(text: str, message: str) -> None:
+    assert message in refusal(text)
+
+
+def test_files(tmp_path: Path) -> None:
+    path = tmp_path / "crash.toml"
+    path.write_bytes("\ufefftitle = 'é'\r\nMU = 0.911\r\n".encode())
+    case = Case.load(str(path))
+    assert (case.title, case.texts) == ("é", {"MU": "0.911", "M": "6"})
+    with pytest.raises(UserError, match=r"missing\.toml: cannot be read"):
+        Case.load(str(tmp_path / "missing.toml"))
+    path.write_bytes(b"\xff\xfe\xff")
+    with pytest.raises(UserError, match=r"crash\.toml"):
+        Case.load(str(path))
+
+
+def test_options_name_the_view_of_a_file_that_names_none() -> None:
+    text = "UX = 30\nUY = 1"
+    assert Case.loads(text, units="us", axes="sae").view == View("us", "sae")
+    assert Case.loads('units = "si"\n' + text, units="us").view == View("si")
+    assert Case.loads('UX = "30 km/h"\nUY = "1 m/s"\nMA = "900 kg"').view == View("metric")
+    assert Case.loads('UX = "30 ft/s"\nMA = "90 slug"').view == View("chapter")
+    assert Case.loads('TA = "0.5 rad"').view == View()
+
+
+def test_with_is_the_edited_file() -> None:
+    case = Case.loads('units = "us"\nUX = 30\nDA = "5 ft"\nUX_source = "EDR"')
+    edited = Case.of({"units": "us", "UX": "30 +- 2", "DA": "5 ft"})
+    assert case.with_(UX="+- 2") == edited
+    assert case.with_(UX="+- 2").entries["UX"].high == pytest.approx(32 * 22 / 15)
+    in_feet = Case.of({"units": "chapter", "UX": 44}).with_(UX="+- 2 mph")
+    assert in_feet.entries["UX"].low == pytest.approx(44 - 2 * 22 / 15)
+    assert case.with_(DA="+- 10 %").entries["DA"].low == 4.5
+    assert case.with_(UX="28 .. 36").with_(UX="+- 1").entries["UX"].value == pytest.approx(
+        32 * 22 / 15
+    )
+    assert "UX" not in case.with_(UX="").entries
+    assert case.sources == {"UX": "EDR"}
+    assert not case.with_(UX="3").sources
+    with pytest.raises(UserError, match=r"^--set: UX = 'much' is not an amount"):
+        case.with_({"UX": "much"}, "--set")
+    with pytest.raises(UserError, match="MB has no value"):
+        case.with_(MB="+- 2")
+    assert Case.of({"MA": 3}).with_(MA=Amount(5, 4, 6, "uniform")).entries["MA"].low == 4
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_published_scenes_reach_the_program_as_typed(number: int) -> None:
+    scene = impact88.sample(number)
+    case = Case.of(dict(scene))
+    assert dict(case.texts) == dict(scene)
+    assert Case.loads(case.toml()).texts == case.texts
+    in_chapter = Case.of({**scene, "units": "chapter"})
+    assert dict(in_chapter.texts) == dict(scene)
+
+
+def test_estimate_is_for_passenger_cars() -> None:
+    def of(weight: str, **more: str) -> Case:
+        return Case.of({"units": "us", "MA": weight, "IA": "estimate", **more})
+
+    assert of("1,500 lb").entries["IA"].value == 339
+    assert of("6000").entries["IA"].value == 4974
+    for weight in ("1,499 lb", "6001"):
+        with pytest.raises(UserError, match="passenger cars of 1,500 to 6,000 lb"):
+            of(weight)
+    case = of("800", LA="10", BA="5")
+    assert case.entries["IA"].value == float(f"{800 / 32.17405 * 125 / 12:.4g}")
+    assert case.estimated == ("IA",)
+    assert "a uniform rectangle" in case.remarks[0]
+    amount = of("3000").with_(IA="+- 20 %").entries["IA"]
+    assert (amount.low, amount.high) == (1507.2, 2260.8)
+
+
+def test_course_and_contact_point() -> None:
+    case = Case.of({"UX": 3, "UY": 3, "TA": "course", "TB": "course", "VX": 0, "VY": 0})
+    assert case.entries["TA"].value == -135
+    assert math.isnan(case.entries["TB"].value)
+    assert "TB" not in case.texts
+    ranged = Case.of({"UX": "3 +- 1", "UY": 3, "TA": "course"})
+    assert math.isnan(ranged.entries["TA"].value)
+    assert ranged.texts["TA"] == "-135"
+    polar = Case.of({"CAF": 3, "CAL": -4})
+    assert (polar.entries["DA"].value, polar.texts["PA"]) == (5, "-53.13010235415598")
+    assert Case.of({"CAF": "3 +- 1", "CAL": 4}).entries["CAF"].low == 2
+    assert Case.of({"CAF": "3 +- 1", "CAL": 4}).texts["DA"] == "5"
+
+
+def test_locked_is_the_pivot() -> None:
+    assert Case.of({"MU": "locked"}).texts["MU"] == "-10"
+    assert Case.of({"MU": "locked"}).with_(MU="0.5").texts["MU"] == "0.5"
+
+
+def test_point_masses_along_one_line_need_no_plane() -> None:
+    case = Case.loads(REAR_END)
+    assert (case.texts["GA"], case.texts["MU"]) == ("0", "0")
+    assert "the motion is along one line" in case.remarks[0]
+    assert "DA" in case.omitted
+    assert (case.texts["DA"], case.texts["IA"]) == ("0", "1")
+    other_way = case.with_(UX="5", VX="20")
+    assert other_way.texts["GA"] == "0"
+    assert case.with_(UX="20", VX="5").texts["GA"] == "180"
+    assert "MU is not used" in case.with_(MU="0.5").remarks[1]
+    locked = case.with_(MU="locked")
+    assert (locked.texts["MU"], locked.texts["GA"]) == ("-10", "0")
+    for changes in ({"M": "6"}, {"UY": "1"}, {"UY": "0 +- 1"}, {"GA": "5"}, {"PDOFA": "5"}):
+        assert not any("along one line" in remark for remark in case.with_(changes).remarks)
+
+
+def test_friction_as_a_share_of_the_critical() -> None:
+    scene = dict(impact88.sample(1))
+    critical = float(impact88.solve({n: float(t) for n, t in scene.items()}, "MUC")["MUC"])
+    case = Case.of({**scene, "MU": "85 %"})
+    assert case.entries["MU"].share
+    assert float(case.texts["MU"]) == pytest.approx(0.85 * abs(critical), rel=1e-12)
+    assert any("85 % of the critical friction" in remark for remark in case.remarks)
+    del scene["GA"]
+    without = Case.of({**scene, "MU": "85 %"})
+    assert "MU" not in without.texts
+    assert any("MU = 85 % needs GA" in remark for remark in without.remarks)
+
+
+@pytest.mark.parametrize(
+    ("changes", "remark"),
+    [
+        ({"MA": "199 kg"}, "no vehicle has that mass"),
+        ({"MA": "61 t"}, "no vehicle has that mass"),
+        ({"UX": "501 km/h"}, "no vehicle is as fast"),
+        ({"DA": "15.1 m"}, "more than 15 m"),
+        ({"EM": "0"}, "no moment is EM = 1"),
+        ({"TB": "46"}, "B moves 46° off the way it faces"),
+        ({"IA": "100"}, "times what IA"),
+    ],
+)
+def test_plausibility(changes: dict[str, str], remark: str) -> None:
+    plain = {"MA": "1500 kg", "UX": "499 km/h", "UY": "0", "DA": "14.9 m", "EM": "1"}
+    angles = {"VX": "9", "VY": "0", "TB": "45", "TA": "180"}
+    case = Case.of({"units": "metric", **plain, **angles, "IA": "2000"})
+    assert not case.remarks
+    assert any(remark in text for text in case.with_(changes).remarks)
+
+
+def test_correlations() -> None:
+    case = Case.of({"correlations": "UX,VX 0.5; MA,IA 0.9"})
+    assert case.correlations == {("UX", "VX"): 0.5, ("MA", "IA"): 0.9}
+    with pytest.raises(UserError, match='expected such as "UX,VX 0'):
+        _ = Case.of({"correlations": "UX 0.5"}).correlations
+
+
+@pytest.mark.parametrize("kind", TEMPLATES)
+def test_templates_are_read(kind: str) -> None:
+    case = Case.loads(template(kind, "metric"))
+    assert case.view.units == "metric"
+    assert {*case.written} <= {*TEMPLATES[kind].entries, "units"}
+
+
+def test_files_are_written_back() -> None:
+    text = 'title = "a \\"b\\" \\\\ c"\nunits = "us"\nUX = "30 +- 2"\nUX_source = "EDR"\nSA = 31'
+    case = Case.loads(text)
+    assert Case.loads(case.toml()) == case
+    amounts = Case.of({"UX": Amount(5, 4, 6, "uniform"), "MA": 3.25})
+    assert Case.loads(amounts.toml()).entries == amounts.entries
+
+
+def test_cases_are_immutable() -> None:
+    case = Case.loads(REAR_END)
+    with pytest.raises(AttributeError):
+        case.title = "x"  # type: ignore[misc]
+    with pytest.raises(TypeError):
+        case.entries["UX"] = case.entries["UY"]  # type: ignore[index]
+    assert [name for name in SCENE if name in case.texts] == [*case.texts]

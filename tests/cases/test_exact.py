@@ -1,0 +1,42 @@
+"""Every number of a file is what exact arithmetic gives, and is shown as it was written."""
+
+import math
+from fractions import Fraction
+
+import exactcases
+import numpy as np
+import pytest
+
+from impact88.cases import Case
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_entries_are_exact(seed: int) -> None:
+    text, _, exact = exactcases.scene_file(seed)
+    case = Case.loads(text)
+    for name, numbers in exact.items():
+        amount = case.entries[name]
+        read = amount.value, amount.low, amount.high, amount.sd
+        for is_, wanted in zip(read, numbers, strict=True):
+            assert math.isclose(is_, wanted, rel_tol=1e-12, abs_tol=1e-300), (name, text)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_there_and_back(seed: int) -> None:
+    text, _, exact = exactcases.scene_file(seed)
+    view = Case.loads(text).view
+    for name, (value, *_) in exact.items():
+        base = float(value)
+        factor, offset = view.map(name)
+        shown = (Fraction(base) - offset) / factor
+        turn = 360 if view.headings and name in ("TA", "TB") else math.inf
+        largest = max(abs(base), abs(offset)) if offset else 0
+        error = math.remainder(float(Fraction(view.shown(name, base)) - shown), turn)
+        assert abs(error) <= 2 * math.ulp(float(max(abs(shown), largest)))
+        again = Case.of({**view.words(), name: view.shown_text(name, base)}).entries[name].value
+        assert abs(math.remainder(again - base, turn)) <= 2 * math.ulp(
+            float(max(abs(base), largest))
+        )
+        array = view.shown(name, np.array([base, base]))
+        error = math.remainder(float(Fraction(float(array[1])) - shown), turn)
+        assert abs(error) <= 2 * math.ulp(float(max(abs(shown), largest)))
