@@ -37,6 +37,12 @@ PER_QUARTER = 1 / 90
 ROUND = 6755399441055744.0  # 1.5 * 2**52: adding it rounds to an integer
 LARGEST_ANGLE = 1e12
 
+E_MIN = 0.0
+E_MAX = 1.0
+EM_MIN = -1.0
+EM_MAX = 0.0
+NO_MOMENT = 1.0  # the EM that stands for no moment impulse
+
 # tolerances of STATUS
 SINGULAR_FROM = 2.0**26
 ENERGY_TOLERANCE = 2e-12
@@ -359,14 +365,14 @@ def moment_loss(wa, wb, waf, wbf, PM):
 
 def energy_loss(ELN, ELT, ELM, KI):
     """KI - KF would lose its digits where little is lost."""
-    lost = ELN + ELT + ELM
-    LOSS = 100.0 * lost / KI
-    return lost, LOSS
+    EL = ELN + ELT + ELM
+    LOSS = 100.0 * EL / KI
+    return EL, LOSS
 
 
-def equivalent_speeds(lost, MA, MB, ma, mb):
+def equivalent_speeds(EL, MA, MB, ma, mb):
     """Half of the loss in each body, all of it before a rigid barrier."""
-    twice = where(lost < 0.0, 0.0, lost + lost)
+    twice = where(EL < 0.0, 0.0, EL + EL)
     EESA = sqrt(where(MB == INF, twice, 0.5 * twice)) * sqrt(ma)
     EESB = sqrt(where(MA == INF, twice, 0.5 * twice)) * sqrt(mb)
     return EESA, EESB
@@ -409,7 +415,7 @@ def usability(M, E, MU, EM, DA, DB, GA, PA, PB, TA, TB, MA, MB, IA, IB, UX, UY, 
 
 
 def status_bits(E, MU, mu, em, an, at, bn, bt, da, db, ia, ib, kt, R, gn, gt, PN, PM, D_p, Nn, Nt, KI,
-           lost, COND, VAX, VAY, VBX, VBY, WAF, WBF):  # fmt: skip
+           EL, COND, VAX, VAY, VBX, VBY, WAF, WBF):  # fmt: skip
     """The bits of `impact88.status.Status`. A comparison with NaN is false."""
     size, f = fabs(Nt), where(MU == PIVOT, 0.0, mu)
     sign = where(D_p < 0.0, -1.0, 1.0)
@@ -427,15 +433,17 @@ def status_bits(E, MU, mu, em, an, at, bn, bt, da, db, ia, ib, kt, R, gn, gt, PN
     forth = forth | (excess >= 3.0 * fabs(turned)) | (gap < 0.0)
     forth = forth | (gap * gap < 4.0 * (fabs(turned) * back))
     total = VAX + VAY + VBX + VBY + WAF + WBF
-    finite = (fabs(total) < INF) & (fabs(KI - lost) < INF) & (fabs(lost / KI) < INF)
+    finite = (fabs(total) < INF) & (fabs(KI - EL) < INF) & (fabs(EL / KI) < INF)
     STATUS = where(gn >= 0.0, 1.0, 0.0) + where(PN < 0.0, 2.0, 0.0)
-    STATUS = STATUS + where(-(lost + lost) > ENERGY_TOLERANCE * KI, 8.0, 0.0)
-    STATUS = STATUS + where((E < 0.0) | (E > 1.0), 16.0, 0.0)
+    STATUS = STATUS + where(-(EL + EL) > ENERGY_TOLERANCE * KI, 8.0, 0.0)
+    STATUS = STATUS + where((E < E_MIN) | (E > E_MAX), 16.0, 0.0)
     STATUS = STATUS + where(COND < SINGULAR_FROM, 0.0, 32.0)
     STATUS = STATUS + where(finite & (COND <= INF), 0.0, 64.0)
     STATUS = STATUS + where(at > SIDE_TOLERANCE * fabs(da), 256.0, 0.0)
     STATUS = STATUS + where(bt > SIDE_TOLERANCE * fabs(db), 512.0, 0.0)
-    STATUS = STATUS + where((em < -1.0) | (em > 0.0) & ((em < 1.0) | (em > 1.0)), 1024.0, 0.0)
+    STATUS = STATUS + where(
+        (em < EM_MIN) | (em > EM_MAX) & ((em < NO_MOMENT) | (em > NO_MOMENT)), 1024.0, 0.0
+    )
     STATUS = STATUS + where(f <= PIVOT, 2048.0, 0.0)
     STATUS = STATUS + where((above | backward & none) & forth, 4096.0, 0.0)
     STATUS = STATUS + where(backward & ~none & (size > 0.0) & forth, 8192.0, 0.0)

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from .. import library
 from ..names import PIVOT
-from . import formulas
-from .plan import COLUMNS, FORMULAS, NUMBERS, OTHERS, PIVOTS, ROWS, Plan
+from . import consequences, formulas
+from .plan import COLUMNS, COMPILED, FORMULAS, NUMBERS, OTHERS, PIVOTS, ROWS, Plan
 from .translate import digest
 
 Array = NDArray[Any]
@@ -28,8 +28,8 @@ ARMS = ("arm_direction_a", "arm_direction_b", "lever_arm_a", "lever_arm_b", "con
 NOT_FINITE = 64.0
 FINITE, ANY_SIZE, BITS, RAW = range(4)  # kinds of results in `machine.c`
 _ONE = np.float64(1.0)
-_FUNCTIONS: dict[str, Callable[..., tuple[Any, ...]]] = {
-    name: getattr(formulas, name) for name in FORMULAS
+FUNCTIONS: dict[str, Callable[..., tuple[Any, ...]]] = {
+    name: getattr(formulas if name in COMPILED else consequences, name) for name in FORMULAS
 }
 
 
@@ -148,7 +148,7 @@ class Kernel:
             if (guard == PIVOTS and not is_pivot.any()) or (guard == OTHERS and is_pivot.all()):
                 value.update(dict.fromkeys(formula.gives, _ONE))
                 continue
-            computed = _FUNCTIONS[name](*[value[operand] for operand in formula.takes])
+            computed = FUNCTIONS[name](*[value[operand] for operand in formula.takes])
             for quantity, array in zip(formula.gives, computed, strict=True):
                 if quantity not in known:
                     value[quantity] = array

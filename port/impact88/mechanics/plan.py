@@ -1,16 +1,15 @@
-"""Which formulas lead to a result: the data flow of `formulas`, read from its text.
+"""Which formulas lead to a result: the data flow of `formulas` and `consequences`, from their text.
 
 A formula's parameters name the quantities it takes, its last line those it returns. Nothing here
 imports numpy: the build step that prints the formulas as C reads them through this module.
 """
 
 import ast
-from collections.abc import Iterable
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from ..names import RESULTS, SCENE
+from ..names import SCENE
 
 COLUMNS = tuple(SCENE)
 """Names of a scene's columns, in the order of the compiled library."""
@@ -31,7 +30,7 @@ GUARDED_USERS = frozenset(("impulse", "final_spins", *GUARDS))
 
 
 class Formula(NamedTuple):
-    """A function of `formulas`.
+    """A function of `formulas` or `consequences`.
 
     Parameters
     ----------
@@ -50,14 +49,14 @@ class Formula(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """What has to be computed for some results.
+    """What has to be computed for some quantities.
 
     Parameters
     ----------
     steps : tuple of (str, int)
         Formulas in an order in which each finds what it takes, with their guards (0: none).
     inputs : tuple of str
-        Columns and known quantities that the steps read, and wanted ones that are known.
+        Columns and known quantities that the steps take.
     missing : dict of str to tuple of str
         Wanted quantities that do not follow from what is known -> the columns that they lack.
     """
@@ -67,15 +66,16 @@ class Plan(NamedTuple):
     missing: dict[str, tuple[str, ...]]
 
 
-SOURCE = ast.parse(Path(__file__).with_name("formulas.py").read_text(encoding="utf-8"))
-"""The text of `formulas`."""
+def _parse(module: str) -> ast.Module:
+    """Return the text of a module beside this one as a tree."""
+    return ast.parse(Path(__file__).with_name(module).read_text(encoding="utf-8"))
 
 
 def _read_formulas(module: ast.Module) -> dict[str, Formula]:
-    """Return the functions of a module by name."""
+    """Return the public functions of a module by name."""
     formulas = {}
     for tree in module.body:
-        if isinstance(tree, ast.FunctionDef):
+        if isinstance(tree, ast.FunctionDef) and not tree.name.startswith("_"):
             last = tree.body[-1]
             if not (isinstance(last, ast.Return) and isinstance(last.value, ast.Tuple)):
                 raise TypeError(f"{tree.name} does not end with the names that it returns")
@@ -85,24 +85,33 @@ def _read_formulas(module: ast.Module) -> dict[str, Formula]:
     return formulas
 
 
+SOURCE = _parse("formulas.py")
+"""The text of `formulas`."""
 FUNCTIONS = _read_formulas(SOURCE)
-FORMULAS = {name: f for name, f in FUNCTIONS.items() if name not in HELPERS}
-SOURCE_OF = {quantity: f.name for f in FORMULAS.values() for quantity in f.gives}
-"""Quantity -> the formula that gives it."""
-ROWS = {name: row for row, name in enumerate((*COLUMNS, *SOURCE_OF))}
+COMPILED = {name: formula for name, formula in FUNCTIONS.items() if name not in HELPERS}
+"""Formulas that the compiled library has, too."""
+FORMULAS = COMPILED | _read_formulas(_parse("consequences.py"))
+PRINCIPAL = {quantity: f.name for f in COMPILED.values() for quantity in f.gives}
+"""Quantity -> the formula of `formulas` that gives it."""
+ROWS = {name: row for row, name in enumerate((*COLUMNS, *PRINCIPAL))}
 """Name -> number of the column or quantity in the compiled library."""
-NUMBERS = {name: number for number, name in enumerate(FORMULAS)}
+NUMBERS = {name: number for number, name in enumerate(COMPILED)}
 """Formula -> its number in the compiled library."""
+QUANTITIES = tuple(dict.fromkeys((*ROWS, *(x for f in FORMULAS.values() for x in f.gives))))
+"""Names of everything that can be known or asked for."""
 
 
 @lru_cache(maxsize=1024)
 def plan(wanted: tuple[str, ...], known: frozenset[str] = frozenset(COLUMNS)) -> Plan:
     """Return what has to be computed for the quantities ``wanted`` from those that are known.
 
+    A quantity comes from its formula in `formulas`, and only where that needs what is not known,
+    from `consequences`.
+
     Parameters
     ----------
     wanted : tuple of str
-        Names of results or of any other quantities of `formulas`.
+        Names of results or of other quantities.
     known : frozenset of str, default all columns
         Names of the columns and quantities that are given. A quantity among them is not computed.
 
@@ -118,60 +127,71 @@ def plan(wanted: tuple[str, ...], known: frozenset[str] = frozenset(COLUMNS)) ->
     >>> plan(("KI",), frozenset({"MA", "MB", "UX", "UY", "VX", "VY", "WA", "WB", "M"})).missing
     {'KI': ('IA', 'IB')}
     """
+    sources = _sources(known)
     missing = {}
     order: dict[str, None] = {}
     inputs: set[str] = set()
     users: dict[str, set[str]] = {}
+
+    def add(quantity: str, user: str) -> None:
+        """Add the formulas that lead to a quantity, which ``user`` takes."""
+        if quantity in known:
+            if user:
+                inputs.add(quantity)
+            return
+        name = sources[quantity]
+        users.setdefault(name, set()).add(user)
+        if name not in order:
+            for operand in FORMULAS[name].takes:
+                add(operand, name)
+            order[name] = None
+
     for quantity in wanted:
-        lacking = _columns_lacking(quantity, known)
-        if lacking:
-            missing[quantity] = tuple(name for name in ROWS if name in lacking)
+        if quantity in known or quantity in sources:
+            add(quantity, "")
         else:
-            _add_steps(quantity, "", known, order, inputs, users)
+            missing[quantity] = _lacking_columns(quantity, known)
     steps = tuple(
         (name, GUARDS.get(name, 0) if users[name] <= GUARDED_USERS else 0) for name in order
     )
-    return Plan(steps, tuple(name for name in ROWS if name in inputs), missing)
+    return Plan(steps, tuple(name for name in QUANTITIES if name in inputs), missing)
 
 
-def _columns_lacking(quantity: str, known: frozenset[str]) -> set[str]:
-    """Return the columns that a quantity needs and that are not known."""
+def _sources(known: frozenset[str]) -> dict[str, str]:
+    """Return the formula to take for each quantity that follows from what is known.
+
+    A formula is taken once all that it takes is there, so that no quantity leads to itself; one of
+    `consequences` is taken when no further one of `formulas` can be."""
+    sources: dict[str, str] = {}
+    pending = list(FORMULAS.values())
+    while True:
+        ready = next(
+            (f for f in pending if all(name in known or name in sources for name in f.takes)), None
+        )
+        if ready is None:
+            return sources
+        pending.remove(ready)
+        for quantity in ready.gives:
+            if quantity not in known:
+                sources.setdefault(quantity, ready.name)
+
+
+def _lacking_columns(quantity: str, known: frozenset[str]) -> tuple[str, ...]:
+    """Return the columns that a quantity needs by `formulas`, or what else gives it, and that are
+    not known."""
     lacking: set[str] = set()
     examined: set[str] = set()
     pending = [quantity]
+    consequences = {x: f.takes for f in reversed(FORMULAS.values()) for x in f.gives}
     while pending:
         name = pending.pop()
         if name in known or name in examined:
             continue
         examined.add(name)
-        if name in SOURCE_OF:
-            pending.extend(FORMULAS[SOURCE_OF[name]].takes)
-        else:
+        if name in PRINCIPAL:
+            pending.extend(COMPILED[PRINCIPAL[name]].takes)
+        elif name in COLUMNS or name not in consequences:
             lacking.add(name)
-    return lacking
-
-
-def _add_steps(
-    quantity: str,
-    user: str,
-    known: frozenset[str],
-    order: dict[str, None],
-    inputs: set[str],
-    users: dict[str, set[str]],
-) -> None:
-    """Add the formulas that lead to a quantity to ``order``, and their ``users``."""
-    if quantity in known:
-        inputs.add(quantity)
-        return
-    name = SOURCE_OF[quantity]
-    users.setdefault(name, set()).add(user)
-    if name not in order:
-        for operand in FORMULAS[name].takes:
-            _add_steps(operand, name, known, order, inputs, users)
-        order[name] = None
-
-
-def results_in_order(names: Iterable[str]) -> tuple[str, ...]:
-    """Return result names in the order of `names.RESULTS`."""
-    chosen = set(names)
-    return tuple(name for name in RESULTS if name in chosen)
+        else:
+            pending.extend(consequences[name])
+    return tuple(name for name in QUANTITIES if name in lacking)

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..collision.doubles import double as to_double
+from ..decimals import to_double
 from ..errors import UserError, quoted
 from ..names import RESULTS, SCENE, check_names, missing, split_names
-from .kernel import Kernel, address, check_output
-from .plan import ROWS, plan
+from .kernel import FUNCTIONS, Kernel, address, check_output
+from .plan import COMPILED, FORMULAS, QUANTITIES, Plan, plan
 
 Array = NDArray[Any]
 Floats = NDArray[np.float64]
@@ -21,6 +21,7 @@ POINT = 4.0  # M of point masses
 UNUSED_BY_POINTS = ("DA", "DB", "PA", "PB", "TA", "TB", "IA", "IB", "EM")
 """Columns that a point mass does not use."""
 _ALL = tuple(RESULTS)
+_NAMES = frozenset(QUANTITIES)
 _BODIES = np.array(6.0)
 _ZERO = np.array(0.0)
 
@@ -119,12 +120,16 @@ def evaluate(
     Parameters
     ----------
     known : mapping of str to float or array_like
-        Scene names, results and other quantities of `mechanics.formulas` -> numbers or arrays,
-        which broadcast together. A quantity that is known is not computed: of an impact whose
-        velocities and impulses are known, before and after, the rest follows from these. M is 6
-        where it is not given.
+        Names of the scene, of results and of other quantities -> numbers or arrays, which
+        broadcast together. A quantity that is known is not computed: of an impact whose velocities
+        and impulses are known, before and after, the rest follows from these. M is 6 where it is
+        not given.
     wanted : sequence of str, or str
-        Names of results or of other quantities.
+        Results and other quantities: speeds and courses (SA, HAF ...), direction and size of the
+        force (PDOFA, P), velocity changes along the vehicles (DVAF ...), EL, DT, the contact point
+        (CAX ...), coefficients and impulses where they follow from velocities, and the quantities
+        of `mechanics.formulas` by their names there (gn and gt: relative velocity of the contact
+        points before; s, c, an, at, bn, bt: the geometry).
 
     Returns
     -------
@@ -154,22 +159,28 @@ def evaluate(
     0.932
     """
     names = tuple(split_names(wanted)) if isinstance(wanted, str) else tuple(wanted)
-    given = {name: _as_doubles(name, value) for name, value in known.items() if name in ROWS}
+    given = {name: _as_doubles(name, value) for name, value in known.items() if name in _NAMES}
     _complete(given)
     shape = _common_shape(given)
     varying = frozenset([name for name, array in given.items() if array.size != 1])
-    lacking, kernel = _evaluation(names, frozenset(given), varying)
-    values: dict[str, Array] = {}
+    lacking, kernel, following = _evaluation(names, frozenset(given), varying)
+    values: dict[str, Any] = dict(given)
     if kernel is not None:
         inputs = [_flatten(given[name], shape) for name in kernel.inputs]
         block = np.empty((len(kernel.wanted), *shape))
         kernel.run(inputs, list(block.reshape(len(block), -1)), 1)
-        values = dict(zip(kernel.wanted, block, strict=True))
-    return {
-        name: values[name] if name in values else np.broadcast_to(given[name], shape)
-        for name in names
-        if name not in lacking
-    }, lacking
+        values.update(zip(kernel.wanted, block, strict=True))
+    with np.errstate(all="ignore"):
+        for name in following:
+            formula = FORMULAS[name]
+            computed = FUNCTIONS[name](*[values[operand] for operand in formula.takes])
+            for quantity, array in zip(formula.gives, computed, strict=True):
+                values.setdefault(quantity, array)
+    results = {name: values[name] for name in names if name not in lacking}
+    for name, array in results.items():
+        if array.shape != shape:
+            results[name] = np.broadcast_to(array, shape)
+    return results, lacking
 
 
 def prepared(
@@ -334,15 +345,28 @@ def _kernel(wanted: tuple[str, ...], varying: frozenset[str], armless: bool) -> 
 @lru_cache(maxsize=512)
 def _evaluation(
     wanted: tuple[str, ...], known: frozenset[str], varying: frozenset[str]
-) -> tuple[dict[str, tuple[str, ...]], Kernel | None]:
-    """Return what quantities lack, and the computation of those that have to be computed."""
-    check_names(wanted, ROWS, "quantity of an impact")
-    steps = plan(wanted, known)
-    computed = tuple(
-        name for name in dict.fromkeys(wanted) if name not in known and name not in steps.missing
-    )
-    kernel = Kernel(steps, computed, varying, False) if computed else None
-    return steps.missing, kernel
+) -> tuple[dict[str, tuple[str, ...]], Kernel | None, tuple[str, ...]]:
+    """Return what quantities lack, the computation by the library, and the formulas to run after
+    it: those of `consequences`, and what they lead to."""
+    check_names(wanted, QUANTITIES, "quantity of an impact")
+    steps, _, lacking = plan(wanted, known)
+    following: list[str] = []
+    needed: set[str] = set(wanted)
+    later: set[str] = set()
+    for name, _ in steps:
+        formula = FORMULAS[name]
+        if name not in COMPILED or not later.isdisjoint(formula.takes):
+            following.append(name)
+            later.update(formula.gives)
+            needed.update(formula.takes)
+    first = [step for step in steps if step[0] not in following]
+    given = {name for step, _ in first for name in COMPILED[step].gives}
+    results = tuple(name for name in QUANTITIES if name in needed & given and name not in known)
+    if not results:
+        return lacking, None, tuple(following)
+    inputs = {name for step, _ in first for name in COMPILED[step].takes} & known
+    part = Plan(tuple(first), tuple(name for name in QUANTITIES if name in inputs), {})
+    return lacking, Kernel(part, results, varying, False), tuple(following)
 
 
 @lru_cache(maxsize=512)

@@ -8,7 +8,7 @@ brackets, so that the compiled library has numpy's bits.
 import ast
 import hashlib
 
-from .plan import COLUMNS, FORMULAS, FUNCTIONS, HELPERS, ROWS, SOURCE, Formula
+from .plan import COLUMNS, COMPILED, FUNCTIONS, HELPERS, ROWS, SOURCE, Formula
 
 SYMBOLS: dict[type[ast.AST], str] = {
     ast.Add: "+",
@@ -141,8 +141,8 @@ def header() -> str:
         "\n".join(f"#define {name} {size}" for name, size in sizes.items()),
         f'#define FORMULAS "{digest()}"',
         *(helper_text(FUNCTIONS[name]) for name in HELPERS),
-        *map(formula_text, FORMULAS.values()),
-        f"{table} = {{{', '.join(FORMULAS)}}};",
+        *map(formula_text, COMPILED.values()),
+        f"{table} = {{{', '.join(COMPILED)}}};",
     ]
     return "\n\n".join(parts) + "\n"
 
