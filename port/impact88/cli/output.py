@@ -1,0 +1,126 @@
+"""What commands print: JSON with the version of its form, aligned tables, progress."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+import time
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+from ..errors import note
+from ..version import __version__
+
+FORMS = {
+    "run": 1,
+    "answer": 1,
+    "verify": 4,
+    "compare": 2,
+    "oracle": 1,
+    "selfcheck": 2,
+    "chapter": 1,
+    "bench": 1,
+}
+"""Version of each form of JSON. It rises where a field is removed, renamed or changes meaning."""
+PROGRESS_INTERVAL = 0.2  # seconds between updates on a terminal
+WIDTH = 96  # columns of a paragraph
+
+
+def print_json(form: str, record: Mapping[str, Any], indent: int | None = None) -> None:
+    """Print one object with the name and version of its form; numbers that are not finite become
+    null, and characters that do not print are escaped."""
+    head = {"schema": f"impact88/{form}/{FORMS[form]}", "version": __version__}
+    text = json.dumps(plain({**head, **record}), ensure_ascii=False, indent=indent)
+    print(_escaped(text), flush=True)
+
+
+def _escaped(text: str) -> str:
+    """Return JSON text with escapes for characters that do not print."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() or c == "\n" else json.dumps(c)[1:-1] for c in text)
+
+
+def plain(value: Any) -> Any:
+    """Return a value for JSON: numpy's numbers and arrays as Python's, non-finite ones as None."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def paragraph(text: str, label: str = "", indent: int = 0) -> list[str]:
+    """Return a text behind a label in lines of at most `WIDTH` columns; the second line and those
+    behind it are indented."""
+    from textwrap import wrap
+
+    hanging = " " * indent
+    return wrap(
+        text, WIDTH, initial_indent=f"{label:<{indent}}", subsequent_indent=hanging
+    ) or [label.rstrip()]
+
+
+def table(rows: Iterable[Sequence[str]], left: Sequence[int] = (0,)) -> list[str]:
+    """Return lines of aligned columns, two blanks between; those in ``left`` are left-aligned, and
+    columns without text are left out."""
+    cells = [list(row) for row in rows]
+    columns = [
+        (number, column)
+        for number, column in enumerate(zip(*cells, strict=True))
+        if any(column)
+    ]
+    aligned = []
+    for number, column in columns:
+        width = max(map(len, column))
+        align = str.ljust if number in left else str.rjust
+        aligned.append([align(cell, width) for cell in column])
+    return ["  ".join(row).rstrip() for row in zip(*aligned, strict=True)]
+
+
+class Progress:
+    """Progress of a number of steps: on a terminal one line of stderr, elsewhere nothing."""
+
+    def __init__(self, total: int | None, what: str) -> None:
+        self.total, self.what, self.done = total, what, 0
+        self._shown, self._last = sys.stderr.isatty(), time.monotonic()
+        self._width = 0
+
+    def update(self, steps: int = 1) -> None:
+        """Add finished steps, and show the progress if it is time."""
+        self.done += steps
+        now = time.monotonic()
+        if not self._shown or now - self._last < PROGRESS_INTERVAL:
+            return
+        self._last = now
+        share = f"{100 * self.done // self.total} %" if self.total else f"{self.done:,}"
+        text = f"{self.what}: {share}"
+        print(f"\r{text:<{self._width}}", end="", file=sys.stderr, flush=True)
+        self._width = len(text)
+
+    def clear(self) -> None:
+        """Clear the line."""
+        if self._width:
+            print(f"\r{'':<{self._width}}\r", end="", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def progress(total: int | None, what: str) -> Iterator[Progress]:
+    """Context of a progress meter for ``total`` steps (None: unknown)."""
+    meter = Progress(total, what)
+    try:
+        yield meter
+    finally:
+        meter.clear()
+
+
+def say(command: str, remarks: Iterable[str]) -> None:
+    """Print remarks on stderr."""
+    for remark in remarks:
+        note(command, remark)
