@@ -110,6 +110,13 @@ def whole_number(least: int, most: int) -> type[int]:
     return read  # type: ignore[return-value]
 
 
+def add_seed(parser: Parser) -> None:
+    """Add ``--seed``."""
+    parser.add_argument(
+        "--seed", type=whole_number(0, 2**63), default=0, metavar="S", help="random seed"
+    )
+
+
 def names_of(texts: Sequence[str], allowed: Collection[str], option: str) -> tuple[str, ...]:
     """Return the names that an option gives, each once. Raises UserError for another name."""
     words = [word.upper() for text in texts for word in text.replace(",", " ").split()]

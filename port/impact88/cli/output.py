@@ -62,9 +62,9 @@ def paragraph(text: str, label: str = "", indent: int = 0) -> list[str]:
     from textwrap import wrap
 
     hanging = " " * indent
-    return wrap(
-        text, WIDTH, initial_indent=f"{label:<{indent}}", subsequent_indent=hanging
-    ) or [label.rstrip()]
+    return wrap(text, WIDTH, initial_indent=f"{label:<{indent}}", subsequent_indent=hanging) or [
+        label.rstrip()
+    ]
 
 
 def table(rows: Iterable[Sequence[str]], left: Sequence[int] = (0,)) -> list[str]:
@@ -72,9 +72,7 @@ def table(rows: Iterable[Sequence[str]], left: Sequence[int] = (0,)) -> list[str
     columns without text are left out."""
     cells = [list(row) for row in rows]
     columns = [
-        (number, column)
-        for number, column in enumerate(zip(*cells, strict=True))
-        if any(column)
+        (number, column) for number, column in enumerate(zip(*cells, strict=True)) if any(column)
     ]
     aligned = []
     for number, column in columns:

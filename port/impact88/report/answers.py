@@ -5,14 +5,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+from .. import status
+from ..cases.amounts import Amount
 from ..cases.case import Case
+from ..errors import UserError
+from ..mechanics.solve import evaluate
+from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, missing, quantity
+from .rounding import decimals_of, decimals_with, own_decimals, rounded
 
-FORM = "impact88 answer 1"
-"""Name and version of the form that `Answer.as_json` returns."""
+SPEEDS = ("SA", "HA", "SB", "HB", "SAF", "HAF", "SBF", "HBF")
+CHANGES = ("DVA", "PDOFA", "DVB", "PDOFB")
+FORWARD = (*CHANGES, *FINAL_VELOCITIES, "SAF", "HAF", "SBF", "HBF", "LOSS", "VC", "MUC")
+"""Results of a forward question, the most asked first."""
+BACKWARD = (*SPEEDS, *CHANGES, "E", "MUP", "EM", "WA", "WB", "WAF", "WBF", "LOSS")
+"""Results of a reconstruction, the most asked first."""
+ALL = tuple(
+    dict.fromkeys(
+        (
+            *(*FORWARD, *BACKWARD, *RESULTS),
+            *("DVAF", "DVAR", "DVBF", "DVBR", "P", "RR0", "EL", "DT", "CAX", "CAY", "CBX", "CBY"),
+        )
+    )
+)
+"""Every result."""
+CLOCK_HOUR = 30.0  # degrees
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +183,7 @@ class Answer:
         }
 
     def as_json(self) -> dict[str, Any]:
-        """Return the answer as an object for JSON, see `FORM`."""
+        """Return the answer as an object for JSON."""
         record = {
             "asked": self.asked,
             "question": self.question,
@@ -178,13 +199,19 @@ class Answer:
         return record
 
 
-def ask(case: Case) -> Answer:
+def ask(case: Case, wanted: Sequence[str] = (), *, full: bool = False, seed: int = 0) -> Answer:
     """Return the answer to a case: forward, bounds or reconstruction.
 
     Parameters
     ----------
     case : Case
         The case.
+    wanted : sequence of str, optional
+        The results wanted; by default those most asked.
+    full : bool, default False
+        True for every result.
+    seed : int, default 0
+        Random seed.
 
     Returns
     -------
@@ -195,6 +222,141 @@ def ask(case: Case) -> Answer:
     Raises
     ------
     UserError
-        For a case that gives too little, or values that no impact has.
+        For a case that gives too little, and for values that no impact has.
     """
+    if is_forward(case):
+        names = tuple(wanted) or (ALL if full else FORWARD)
+        return _forward(case, names, seed)
+    names = tuple(wanted) or (ALL if full else BACKWARD)
+    return _reconstructed(case, names, seed)
+
+
+def is_forward(case: Case) -> bool:
+    """Return True if a case gives a scene from which the final velocities follow, and no more."""
+    if not set(case.entries) <= {*SCENE, "CAF", "CAL", "CBF", "CBL"}:
+        return False
+    lacking = evaluate(case.numbers, ("VAX", "VAY", "VBX", "VBY"))[1]
+    return not lacking
+
+
+def _forward(case: Case, names: tuple[str, ...], seed: int) -> Answer:
+    """Return the answer to a complete scene."""
+    values, lacking = evaluate(case.numbers, (*names, *FINAL_VELOCITIES, "STATUS"))
+    numbers = {name: float(value) for name, value in values.items()}
+    bits = int(numbers.pop("STATUS", 0.0))
+    if bits & status.Status.NOT_FINITE:
+        raise UserError(f"has no answer: {status.WORDS[status.Status.NOT_FINITE]}", case.source)
+    warnings = [f"{sentence}." for sentence in status.sentences(bits)]
+    remarks = [*case.remarks, *_lacking_remarks(lacking)]
+    undefined = [name for name in names if math.isnan(numbers.get(name, 0.0))]
+    if undefined:
+        remarks.append(f"{' '.join(undefined)}: not defined for this impact")
+    shown = {name: numbers[name] for name in names if name in numbers and name not in undefined}
+    return Answer(
+        "forward",
+        "velocities after the impact, from a complete scene",
+        given_of(case),
+        numbers_of(case, shown, {}, {}),
+        case,
+        possible=not bits & status.IMPOSSIBLE,
+        remarks=tuple(remarks),
+        warnings=tuple(warnings),
+        scene={**case.numbers, **numbers},
+    )
+
+
+def _lacking_remarks(lacking: Mapping[str, tuple[str, ...]]) -> list[str]:
+    """Return a sentence for the results that need an input that is not given."""
+    by_inputs: dict[tuple[str, ...], list[str]] = {}
+    for name, inputs in lacking.items():
+        if name != "STATUS":
+            by_inputs.setdefault(inputs, []).append(name)
+    return [f"{' '.join(names)} left out: {missing(inputs)}" for inputs, names in by_inputs.items()]
+
+
+def given_of(case: Case) -> tuple[Given, ...]:
+    """Return the entries of a case, in the order of its file."""
+    rows = []
+    for name, amount in {**case.entries, **case.sizes}.items():
+        written = case.written.get(name, "")
+        text = written if isinstance(written, str) and written else _amount_text(case, name, amount)
+        has_unit = any(c.isalpha() or c == "%" for c in text)
+        unit = "" if has_unit else case.view.unit(name)
+        meaning = quantity(name).meaning
+        rows.append(Given(name, meaning, unit, text, case.sources.get(name, "")))
+    return tuple(rows)
+
+
+def _amount_text(case: Case, name: str, amount: Amount) -> str:
+    """Return an amount that no entry wrote, as text."""
+    if math.isnan(amount.value):
+        return amount.text
+    low, high = case.view.shown_ends(name, *amount.limits())
+    middle = case.view.shown_text(name, amount.value)
+    return f"{low:.6g} .. {high:.6g}" if amount.varies else middle
+
+
+def numbers_of(
+    case: Case,
+    values: Mapping[str, float],
+    intervals: Mapping[str, tuple[float, float]],
+    drivers: Mapping[str, str],
+) -> dict[str, Number]:
+    """Return values in base units as numbers of an answer.
+
+    Parameters
+    ----------
+    case : Case
+        The case, in whose units they are shown.
+    values : mapping of str to float
+        Values by name, finite or infinite.
+    intervals : mapping of str to (float, float)
+        90 % intervals of some of them, in base units.
+    drivers : mapping of str to str
+        What makes some of them uncertain.
+    """
+    shown = {name: float(case.view.shown(name, value)) for name, value in values.items()}
+    groups: dict[str, list[float]] = {}
+    for name, value in shown.items():
+        groups.setdefault(quantity(name).unit, []).append(value)
+    group_decimals = {rule: decimals_of(members) for rule, members in groups.items()}
+    numbers = {}
+    for name, value in shown.items():
+        row = quantity(name)
+        decimals = own_decimals(row.unit, value)
+        decimals = group_decimals[row.unit] if decimals is None else decimals
+        note, driver = _note(name, value), drivers.get(name, "")
+        ends: tuple[float | None, float | None, str, str] = (None, None, "", "")
+        if name in intervals:
+            low, high = (float(x) for x in case.view.shown_ends(name, *intervals[name]))
+            decimals = decimals_with((low, high), decimals)
+            ends = low, high, rounded(low, decimals), rounded(high, decimals)
+        text = rounded(value, decimals)
+        numbers[name] = Number(
+            name, row.meaning, case.view.unit(name), value, text, *ends, note, driver
+        )
+    return numbers
+
+
+def _note(name: str, shown: float) -> str:
+    """Return a number in other words: the hour of a direction of force, what -10 stands for."""
+    if name in ("PDOFA", "PDOFB") and math.isfinite(shown):
+        return clock(shown)
+    return "pivot" if name == "MUP" and shown == PIVOT else ""
+
+
+def clock(degrees: float) -> str:
+    """Return a direction clockwise from a vehicle's front as an hour.
+
+    Examples
+    --------
+    >>> clock(0.0), clock(-62.0), clock(174.9)
+    ("12 o'clock", "10 o'clock", "6 o'clock")
+    """
+    hour = math.floor(degrees / CLOCK_HOUR + 0.5) % 12
+    return f"{hour or 12} o'clock"
+
+
+def _reconstructed(case: Case, names: tuple[str, ...], seed: int) -> Answer:
+    """Return the impact that agrees best with what is known, and the others."""
     raise NotImplementedError

@@ -1,0 +1,71 @@
+"""An answer as text for the terminal. Numbers are those of the answer; nothing is rounded here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..report.answers import Answer, Number
+from .output import paragraph, table
+
+LABEL = 10  # columns of the words at the left
+
+
+def answer_lines(answer: Answer) -> Iterator[str]:
+    """Yield the lines of an answer: the question, what was found, how sure it is, remarks."""
+    impacts = [answer, *(other for other in answer.alternatives if other.possible)]
+    yield from paragraph(answer.question, "ASKED", LABEL)
+    if answer.evidence:
+        yield from paragraph(answer.evidence, "EVIDENCE", LABEL)
+    for number, impact in enumerate(impacts, 1):
+        yield ""
+        if len(impacts) > 1:
+            yield f"IMPACT {number} OF {len(impacts)}"
+        yield from _found_lines(impact)
+        if impact.checks:
+            yield from ("", *_check_lines(impact))
+    yield ""
+    for text in answer.assumed:
+        yield from paragraph(text, "ASSUMED", LABEL)
+    for text in answer.advice:
+        yield from paragraph(text, "HELPS", LABEL)
+    for other in answer.alternatives:
+        if not other.possible:
+            yield from paragraph(other.evidence or other.question, "REJECTED", LABEL)
+    for text in answer.warnings:
+        yield from paragraph(text, "!", 2)
+    for text in answer.remarks:
+        yield from paragraph(text, "-", 2)
+
+
+def _found_lines(answer: Answer) -> list[str]:
+    """Return the table of results."""
+    numbers = list(answer.found.values())
+    head = ["", "value", "90 % interval", "unit", "", "depends on"]
+    if not any(number.interval for number in numbers):
+        head[2] = ""
+    if not any(number.drivers for number in numbers):
+        head[5] = ""
+    return table([head, *map(_cells, numbers)], left=(0, 3, 4, 5))
+
+
+def _cells(number: Number) -> list[str]:
+    """Return the row of one number."""
+    meaning = f"{number.meaning} ({number.note})" if number.note else number.meaning
+    return [number.name, number.text, number.interval, number.unit, meaning, number.drivers]
+
+
+def _check_lines(answer: Answer) -> list[str]:
+    """Return the table of values known with tolerances, beside the others."""
+    head = ["CHECKED", "given", "adjusted", "by the others", "unit", "residual"]
+    rows = [
+        [
+            check.name,
+            check.measured,
+            check.adjusted,
+            check.by_others,
+            check.unit,
+            f"{check.residual}{' !' if check.is_odd else ''}",
+        ]
+        for check in answer.checks
+    ]
+    return table([head, *rows], left=(0, 4))

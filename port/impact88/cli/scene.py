@@ -1,0 +1,42 @@
+"""impact88 scene -o crash.toml                  a file to fill in
+impact88 scene rear-end --units metric        the entries of a kind of collision
+impact88 scene --sample 2                     the second sample run as a file
+impact88 scene crash.toml --set MU=.5         a file with its entries changed
+
+Kinds of collision:
+{kinds}
+
+Axes, sides and signs:
+
+{signs}
+A value may have a unit ("-25 mph", "3091 lb", "6 ft 6 in") and a tolerance ("30 +- 2 mph",
+"28 .. 32 mph", "normal 30 1.5"). units = "us", "metric", "si" or "chapter" is for those without.
+IA = "estimate" estimates a yaw inertia from LA BA (length, width), or for a car from its weight.
+CAF CAL (forward, left) may replace DA PA, CBF CBL replace DB PB. UX_source = "event data recorder"
+says where a value comes from. axes = "sae" and headings = "compass" change directions."""
+
+from __future__ import annotations
+
+from ..cases.scenefile import SIGNS, TEMPLATES, template
+from ..errors import UserError
+from . import options
+
+__doc__ = (__doc__ or "").format(
+    kinds="\n".join(f"  {name:<14}{kind.title}" for name, kind in TEMPLATES.items()), signs=SIGNS
+)
+
+
+def declare(parser: options.Parser) -> None:
+    """Add the arguments."""
+    options.add_case(parser, "KIND or FILE.toml")
+    options.add_output(parser)
+
+
+def main(args: options.Args) -> None:
+    """Print a scene file."""
+    if args.file in TEMPLATES or not (args.file or args.sample):
+        if args.sample or args.set:
+            raise UserError("a template takes neither --sample nor --set; expected a FILE.toml")
+        print(template(args.file or "planar", args.units or "us"), end="")
+    else:
+        print(options.case_of(args).toml(), end="")
