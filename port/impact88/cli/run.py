@@ -22,13 +22,9 @@ from ..errors import UserError, note
 from ..files import replacing, typed_line
 from ..names import VELOCITIES
 from ..program.run import Run, page, start
-from ..program.scene import Scene, published_data
+from ..program.scene import Scene, published_data, sample
 from . import options
 from .output import print_json, say
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from ..cases.case import Case
 
 MAX_REPLIES = 10_000  # the program asks twice, and again for each reply it refuses
 ARITHMETICS = {"applesoft": "applesoft", "float64": "double"}
@@ -90,20 +86,18 @@ def check_slot(args: options.Args) -> None:
 def main(args: options.Args) -> int:
     """Run the program."""
     check_slot(args)
-    case = _case(args)
-    data = dict(case.texts) if case else published_data()
+    data, source = _data(args)
     velocities = [name for name in VELOCITIES if name in data]
-    if not args.file and 0 < len(velocities) < len(VELOCITIES):
+    is_complete = bool(args.file or args.sample or velocities)
+    if is_complete and not args.file and len(velocities) < len(VELOCITIES):
         absent = " ".join(name for name in VELOCITIES if name not in data)
         raise UserError(f"{absent} not given; expected all six velocities, or none to be asked for")
-    asks = not velocities and not (args.file or args.sample)
-    complete = {**dict.fromkeys(VELOCITIES, "0"), **data} if asks else data
-    scene = Scene(complete, source=case.source if case else "the listing")
+    scene = Scene(data if is_complete else {**dict.fromkeys(VELOCITIES, "0"), **data}, None, source)
     scene.check_typed()
     if args.listing:
-        record = _run_copy(args, None if asks else scene)
+        record = _run_copy(args, scene if is_complete else None)
     else:
-        record = _run_port(args, scene, None if asks else scene.keyboard())
+        record = _run_port(args, scene, scene.keyboard() if is_complete else None)
     if args.json:
         print_json("run", {**record._asdict(), "floats": record.floats})
     elif args.listing:
@@ -113,20 +107,21 @@ def main(args: options.Args) -> int:
     return int(bool(record.error))
 
 
-def _case(args: options.Args) -> Case | None:
-    """Return the case to run, None for the listing's own data."""
+def _data(args: options.Args) -> tuple[Mapping[str, str], str]:
+    """Return the values to type, and the name of their source in messages."""
+    if not (args.file or args.set or args.units or args.axes or args.headings):
+        if args.sample:  # the published texts: no case need be read
+            return sample(args.sample), f"sample {args.sample}"
+        return published_data(), "the listing"
     if args.file or args.sample:
         case = options.case_of(args)
-    elif args.set or args.units:
-        listing = options.published_case(published_data(), "the listing", args)
-        case = options.changed(listing, args)
     else:
-        return None
+        case = options.changed(options.published_case(published_data(), "the listing", args), args)
     say("run", case.remarks)
     if case.omitted:
         typed = [n if case.texts[n] == "0" else f"{n} (1: it divides)" for n in case.omitted]
         note("run", f"0 is typed for what is not given: {' '.join(typed)}")
-    return case
+    return case.texts, case.source
 
 
 def _run_port(args: options.Args, data: Mapping[str, str], typed: Sequence[str] | None) -> Run:

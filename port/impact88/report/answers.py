@@ -15,7 +15,7 @@ from ..cases.amounts import Amount
 from ..cases.case import Case
 from ..errors import UserError
 from ..mechanics.solve import evaluate
-from ..names import FINAL_VELOCITIES, PIVOT, RESULTS, SCENE, missing, quantity
+from ..names import ANGLE, FINAL_VELOCITIES, PERCENT, PIVOT, RESULTS, SCENE, missing, quantity
 from .rounding import decimals_of, decimals_with, own_decimals, rounded
 
 SPEEDS = ("SA", "HA", "SB", "HB", "SAF", "HAF", "SBF", "HBF")
@@ -281,10 +281,15 @@ def given_of(case: Case) -> tuple[Given, ...]:
         written = case.written.get(name, "")
         text = written if isinstance(written, str) and written else _amount_text(case, name, amount)
         has_unit = any(c.isalpha() or c == "%" for c in text)
-        unit = "" if has_unit else case.view.unit(name)
+        unit = "" if has_unit else unit_of(case, name)
         meaning = quantity(name).meaning
         rows.append(Given(name, meaning, unit, text, case.sources.get(name, "")))
     return tuple(rows)
+
+
+def unit_of(case: Case, name: str) -> str:
+    """Return the unit in which a case shows a quantity; "" for ratios and without named units."""
+    return case.view.unit(name) or {PERCENT: "%", ANGLE: "deg"}.get(quantity(name).unit, "")
 
 
 def _amount_text(case: Case, name: str, amount: Amount) -> str:
@@ -333,7 +338,7 @@ def numbers_of(
             ends = low, high, rounded(low, decimals), rounded(high, decimals)
         text = rounded(value, decimals)
         numbers[name] = Number(
-            name, row.meaning, case.view.unit(name), value, text, *ends, note, driver
+            name, row.meaning, unit_of(case, name), value, text, *ends, note, driver
         )
     return numbers
 

@@ -1,0 +1,139 @@
+"""Command lines that cannot be used end with status 2 and one line, whatever is wrong."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from commands import command
+
+SCENE = 'units = "us"\nMA = 3091\nMB = 4669\n'
+FILES = {
+    "empty.toml": b"",
+    "few.toml": SCENE.encode(),
+    "binary.toml": bytes(range(256)),
+    "latin.toml": "title = 'Köln'".encode("latin-1"),
+    "list.toml": b"MA = [1, 2]",
+    "nested.toml": b"a = " + b"[" * 5000,
+    "unknown.toml": b"MASS = 3",
+    "units.toml": b'units = "furlongs"\nMA = 1',
+    "mixed.toml": b'MA = "3 kg"\nMB = "3 lb"',
+    "word.toml": b'MA = "heavy"',
+    "huge.toml": b'MA = "1E-999999999"',
+    "long.toml": b'MA = "' + b"9" * 100_000 + b'"',
+    "reversed.toml": b'units = "us"\nMA = "5 .. 3"',
+    "control.toml": b'MA = "\\u001b[2J"',
+    "table.csv": b"MA,MB\n1,2\n",
+    "ragged.csv": b"MA,MB\n1\n1,2,3\n",
+    "twice.csv": b"MA,MA\n1,2\n",
+    "empty.csv": b"",
+    "lines.jsonl": b'{"MA": 1\nnot json\n',
+    "broken.parquet": b"PAR1 and no more",
+    "broken.xlsx": b"PK\x03\x04 and no more",
+    "picture.gif": b"GIF89a",
+    "text.bas": b"no line number",
+    "page.html": b"x",
+}
+LINES = """
+nonsense
+run nonsense.toml
+run --sample 4
+run --sample 1 few.toml
+run --sample
+run few.toml
+run empty.toml
+run binary.toml
+run latin.toml
+run .
+run --sample 1 --set MU
+run --sample 1 --set MU=much
+run --sample 1 --set XX=1
+run --sample 1 --set MU=1 --set MU=2
+run --sample 1 --set MU=1e999
+run --sample 1 --slot 3
+run --sample 1 --slot 9
+run --sample 1 --listing text.bas
+run --sample 1 --listing nothing.bas
+run --sample 1 --arithmetic decimal
+run --sample 1 -o .
+run --sample 1 -o missing/folder/page.txt
+run --units furlongs
+solve
+solve few.toml -o few.toml
+solve empty.toml
+solve list.toml
+solve nested.toml
+solve unknown.toml
+solve units.toml
+solve mixed.toml
+solve word.toml
+solve huge.toml
+solve long.toml
+solve reversed.toml
+solve control.toml
+solve --sample 1 --outputs NOTHING
+solve --sample 1 --set MA=-5
+solve --sample 1 --set M=5
+solve --sample 1 --sweep MU=0:1
+solve --sample 1 --sweep MU=0:1:99999999999
+solve --sample 1 --seed x
+solve table.csv
+solve table.csv --sweep MU=0:1:3
+solve empty.csv
+solve ragged.csv
+solve twice.csv
+solve lines.jsonl
+solve broken.parquet
+solve broken.xlsx
+solve picture.gif
+report --sample 1
+report --sample 1 -o page.pdf
+report empty.toml -o page.html
+scene nothing.toml
+scene barrier --sample 1
+verify
+verify nothing.txt
+verify picture.gif
+verify page.html --report page.html
+oracle nothing.jsonl
+oracle lines.jsonl
+compare
+compare nothing.csv
+compare empty.csv
+compare table.csv --rtol 5
+basic text.bas
+basic --prompt
+basic --max-statements 0
+selfcheck --rom nothing.rom
+chapter
+chapter nonsense
+chapter colinear
+bench --scenes 0
+web --port 99999999
+bounds few.toml
+reconstruct few.toml
+figure scene
+desk
+schema run
+help nonsense
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("hostile")
+    for name, data in FILES.items():
+        (folder / name).write_bytes(data)
+    return folder
+
+
+@pytest.mark.parametrize("line", LINES.strip().splitlines())
+def test_unusable_input_is_one_line(line: str, folder: Path) -> None:
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    outcome = command(*line.split(), folder=folder)
+    assert outcome.status == 2, outcome
+    assert outcome.out == ""
+    *_, last = outcome.err.splitlines()
+    assert last.startswith("impact88")
+    assert "Traceback" not in outcome.err
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
