@@ -6,9 +6,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .. import status
 from ..cases.amounts import Amount
@@ -17,6 +17,9 @@ from ..errors import UserError
 from ..mechanics.solve import evaluate
 from ..names import ANGLE, FINAL_VELOCITIES, PERCENT, PIVOT, RESULTS, SCENE, missing, quantity
 from .rounding import decimals_of, decimals_with, own_decimals, rounded
+
+if TYPE_CHECKING:
+    from ..reconstruction.bounds import Bounds
 
 SPEEDS = ("SA", "HA", "SB", "HB", "SAF", "HAF", "SBF", "HBF")
 CHANGES = ("DVA", "PDOFA", "DVB", "PDOFB")
@@ -34,6 +37,9 @@ ALL = tuple(
 )
 """Every result."""
 CLOCK_HOUR = 30.0  # degrees
+DRAWS = 20_000  # random draws: the standard error of a 5 % quantile is 2 % of the width
+MAX_DRIVERS = 3  # values named as those that make a result uncertain
+MIN_SHARE = 0.05  # of a result's variance, from which a value is named
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,29 +246,82 @@ def is_forward(case: Case) -> bool:
 
 
 def _forward(case: Case, names: tuple[str, ...], seed: int) -> Answer:
-    """Return the answer to a complete scene."""
+    """Return the answer to a complete scene, with intervals where it has tolerances."""
     values, lacking = evaluate(case.numbers, (*names, *FINAL_VELOCITIES, "STATUS"))
     numbers = {name: float(value) for name, value in values.items()}
     bits = int(numbers.pop("STATUS", 0.0))
     if bits & status.Status.NOT_FINITE:
         raise UserError(f"has no answer: {status.WORDS[status.Status.NOT_FINITE]}", case.source)
-    warnings = [f"{sentence}." for sentence in status.sentences(bits)]
+    warnings = status.sentences(bits)
     remarks = [*case.remarks, *_lacking_remarks(lacking)]
     undefined = [name for name in names if math.isnan(numbers.get(name, 0.0))]
     if undefined:
         remarks.append(f"{' '.join(undefined)}: not defined for this impact")
     shown = {name: numbers[name] for name in names if name in numbers and name not in undefined}
+    intervals: dict[str, tuple[float, float]] = {}
+    drivers: dict[str, str] = {}
+    question = "velocities after the impact, from a complete scene"
+    if case.ranges:
+        found = _bounds(case, shown, seed)
+        intervals = {name: bound.interval for name, bound in found.outputs.items()}
+        drivers = {name: _effects(bound.drivers) for name, bound in found.outputs.items()}
+        warnings += _drawn_warnings(found.warnings, bits)
+        question += f" in which {_listed(case.ranges)} {_verb(case.ranges)} known within limits"
     return Answer(
-        "forward",
-        "velocities after the impact, from a complete scene",
+        "bounds" if case.ranges else "forward",
+        question,
         given_of(case),
-        numbers_of(case, shown, {}, {}),
+        numbers_of(case, shown, intervals, drivers),
         case,
         possible=not bits & status.IMPOSSIBLE,
         remarks=tuple(remarks),
         warnings=tuple(warnings),
         scene={**case.numbers, **numbers},
     )
+
+
+def _bounds(case: Case, names: Iterable[str], seed: int) -> Bounds:
+    """Return quantiles and drivers of the results of a scene within its limits."""
+    from ..reconstruction.bounds import bounds
+
+    values = {
+        name: case.numbers.get(name) if math.isnan(amount.value) else amount
+        for name, amount in case.entries.items()
+    }
+    wanted = [name for name in names if name in RESULTS]
+    return bounds(values, wanted, samples=DRAWS, seed=seed, correlations=case.correlations)
+
+
+def _effects(drivers: Mapping[str, tuple[float, float]]) -> str:
+    """Return the inputs that make a result uncertain, by squares of what each does alone."""
+    squares = {name: effect * effect for name, (_, effect) in drivers.items()}
+    total = sum(squares.values())
+    return _shares({name: square / total for name, square in squares.items()} if total else {})
+
+
+def _shares(shares: Mapping[str, float]) -> str:
+    """Return the largest shares of a variance in words: "UX 62 %, MU 20 %"."""
+    ranked = sorted(shares.items(), key=lambda pair: -pair[1])[:MAX_DRIVERS]
+    return ", ".join(f"{name} {100 * share:.0f} %" for name, share in ranked if share >= MIN_SHARE)
+
+
+def _drawn_warnings(fractions: Mapping[str, float], bits: int) -> list[str]:
+    """Return a sentence for each warning that only some of the draws have."""
+    return [
+        f"in {100 * fraction:.2g} % of the draws {status.WORDS[status.Status[name]]}"
+        for name, fraction in fractions.items()
+        if not bits & status.Status[name]
+    ]
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Return names as "UX, VY and E"."""
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def _verb(names: Sequence[str]) -> str:
+    return "is" if len(names) == 1 else "are"
 
 
 def _lacking_remarks(lacking: Mapping[str, tuple[str, ...]]) -> list[str]:
@@ -314,7 +373,7 @@ def numbers_of(
     case : Case
         The case, in whose units they are shown.
     values : mapping of str to float
-        Values by name, finite or infinite.
+        Values by name; NaN where only an interval is known.
     intervals : mapping of str to (float, float)
         90 % intervals of some of them, in base units.
     drivers : mapping of str to str
@@ -323,13 +382,14 @@ def numbers_of(
     shown = {name: float(case.view.shown(name, value)) for name, value in values.items()}
     groups: dict[str, list[float]] = {}
     for name, value in shown.items():
-        groups.setdefault(quantity(name).unit, []).append(value)
+        if math.isfinite(value):
+            groups.setdefault(quantity(name).unit, []).append(value)
     group_decimals = {rule: decimals_of(members) for rule, members in groups.items()}
     numbers = {}
     for name, value in shown.items():
         row = quantity(name)
         decimals = own_decimals(row.unit, value)
-        decimals = group_decimals[row.unit] if decimals is None else decimals
+        decimals = group_decimals.get(row.unit, 0) if decimals is None else decimals
         note, driver = _note(name, value), drivers.get(name, "")
         ends: tuple[float | None, float | None, str, str] = (None, None, "", "")
         if name in intervals:
