@@ -18,8 +18,20 @@ folder = Path(sys.argv[1]).resolve()
 here = Path(__file__).resolve().parent
 pyinstaller = [sys.executable, "-m", "PyInstaller", "--noconfirm", "--log-level", "ERROR"]
 places = ["--distpath", folder, "--workpath", folder / "work", "--specpath", folder / "work"]
+# the port finds its BASIC line in the comments of its source
+listing = here.parent / "port" / "impact88" / "program" / "listing.py"
+source = ["--add-data", f"{listing}{os.pathsep}impact88/program"]
 subprocess.run(
-    [*pyinstaller, "--name", "impact88", "--collect-all", "impact88", *places, here / "start.py"],
+    [
+        *pyinstaller,
+        "--name",
+        "impact88",
+        "--collect-all",
+        "impact88",
+        *source,
+        *places,
+        here / "start.py",
+    ],
     check=True,
     cwd=here,  # not the checkout: the installed package is what is packed
 )

@@ -59,6 +59,8 @@ if TYPE_CHECKING:
     from .casework.reconstruction.unknowns import solve_for as solve_for
     from .casework.uncertainty.bounds import bounds as bounds
     from .casework.uncertainty.boundstable import Bounds as Bounds
+    from .collision.casescene import Scene as Scene
+    from .collision.casescene import sample as sample
     from .collision.uncertain import Uncertain as Uncertain
     from .conformance.comparison.compare import Comparison as Comparison
     from .conformance.comparison.compare import compare as compare
@@ -75,12 +77,10 @@ if TYPE_CHECKING:
     from .printouts.reporting.examination import Verification as Verification
     from .printouts.reporting.examination import Verifications as Verifications
     from .printouts.reporting.examination import verify as verify
+    from .program.replay import Replay as Replay
+    from .program.replay import replay as replay
     from .program.run import Run as Run
     from .program.run import run as run
-    from .program.scene import Scene as Scene
-    from .program.scene import sample as sample
-    from .program.vectorized import Replay as Replay
-    from .program.vectorized import replay as replay
     from .tables.frames import solve_frame as solve_frame
 
 _LAZY = {
@@ -104,9 +104,9 @@ _LAZY = {
         "printouts.reading.printout": "Printout read_printouts",
         "casework.reconstruction.solution": "Reconstruction",
         "casework.reconstruction.unknowns": "Solution solve_for",
-        "program.vectorized": "Replay replay",
+        "program.replay": "Replay replay",
         "printouts.reporting.examination": "Verification Verifications verify",
-        "program.scene": "Scene sample",
+        "collision.casescene": "Scene sample",
         "tables.frames": "solve_frame",
         "casework.uncertainty.bounds": "bounds",
         "casework.uncertainty.boundstable": "Bounds",

@@ -8,10 +8,10 @@ import pytest
 
 from impact88.casework.chapter.staged import collisions
 from impact88.collision.case import Case, remark_lines
+from impact88.collision.casescene import Scene, sample
 from impact88.collision.estimates import CARS, with_estimates
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
-from impact88.program.scene import Scene, sample
 
 G = 9.80665 / 0.3048
 """ft/s²"""

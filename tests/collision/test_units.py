@@ -11,6 +11,7 @@ import pytest
 
 from impact88 import solve
 from impact88.casework.uncertainty.bounds import bounds
+from impact88.collision.casescene import Scene, sample
 from impact88.collision.uncertain import correlation_root, read
 from impact88.collision.units import (
     SYSTEMS,
@@ -23,7 +24,6 @@ from impact88.collision.units import (
 )
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
-from impact88.program.scene import Scene, sample
 
 G = 9.80665 / 0.3048
 """ft/s²"""

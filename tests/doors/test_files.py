@@ -15,11 +15,11 @@ import pytest
 from installed import COMMAND, impact88
 from longer import long_but
 
+from impact88.collision.casescene import sample
 from impact88.errors import LONGEST_MESSAGE, UserError, one_line, quoted
 from impact88.files import check_apart, packaged_text, read_bytes, replacing
 from impact88.interface.commands.cli import main
 from impact88.names import SCENE
-from impact88.program.scene import sample
 
 ROWS = ",".join(SCENE) + "\n" + ",".join(sample(1)[name] for name in SCENE) + "\n"
 

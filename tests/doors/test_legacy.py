@@ -14,8 +14,8 @@ from typing import NamedTuple
 import pytest
 from installed import impact88
 
+from impact88.collision.casescene import sample
 from impact88.program.run import run
-from impact88.program.scene import sample
 
 LEGACY = files("impact88.legacy")
 RUNS = ("run1", "run2", "table3")

@@ -55,7 +55,7 @@ def test_completion_lists_no_plumbing() -> None:
 
 def test_functions_stay_functions_once_their_rooms_are_imported() -> None:
     script = (
-        "import impact88, impact88.program.vectorized.result\n"
+        "import impact88, impact88.program.replay\n"
         "import impact88.casework.uncertainty.bounds\n"
         "print(callable(impact88.replay), callable(impact88.bounds), callable(impact88.run))"
     )

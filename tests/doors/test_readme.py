@@ -25,9 +25,9 @@ from guide import guide
 from installed import COMMAND, impact88
 from longer import long_but
 
+from impact88.collision.casescene import sample
 from impact88.interface.commands.cli import COMMANDS
 from impact88.names import SCENE
-from impact88.program.scene import sample
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 GUIDE = guide()

@@ -14,11 +14,11 @@ import pytest
 from installed import impact88
 from unitscenes import SCENE, texts
 
+from impact88.collision.casescene import sample
 from impact88.collision.units import SYSTEMS, size_of
 from impact88.interface.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import quantity
-from impact88.program.scene import sample
 
 Amounts = dict[str, float]
 """By what it is called: values in m, kg, s, degrees and rad/s."""

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 
 from impact88 import solve
+from impact88.collision.casescene import sample
 from impact88.mechanics.accuracy.errorbound import (
     DOUBLE,
     movements,
@@ -28,7 +29,6 @@ from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
 from impact88.mechanics.accuracy.reference import fifty_digits, two_doubles
 from impact88.mechanics.closedform.impactprograms import program_for
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
-from impact88.program.scene import sample
 
 NAMES = tuple(name for name in RESULTS if name not in ("COND", "STATUS"))
 with Path(__file__).with_name("evolved_for_each_result.csv").open(newline="") as rows:

@@ -14,9 +14,9 @@ from impact88 import solve
 from impact88.casework.reconstruction.answer import Answer
 from impact88.casework.uncertainty.bounds import bounds
 from impact88.casework.uncertainty.ranges import read_inputs
+from impact88.collision.casescene import Scene, sample
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
-from impact88.program.scene import Scene, sample
 
 CF11002 = {
     **{"DA": "4.14", "PA": "29", "TA": "0", "GA": "74.6", "MA": "3574.2", "IA": "2336.3"},

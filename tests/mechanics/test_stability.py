@@ -19,6 +19,7 @@ from worked_cases import RUN_1
 
 from impact88 import solve
 from impact88.apple.applesoft.operators import Real
+from impact88.collision.casescene import Scene, sample
 from impact88.collision.degrees import sin_cos
 from impact88.collision.sinetable import STEP
 from impact88.mechanics.accuracy import reference
@@ -35,7 +36,6 @@ from impact88.mechanics.accuracy.reference import fifty_digits
 from impact88.mechanics.closedform.columns import ANGLES
 from impact88.names import FINAL_VELOCITIES, SCENE
 from impact88.program.run import run
-from impact88.program.scene import Scene, sample
 from impact88.status import Status
 
 ROUNDOFF = 2.0**-53

@@ -14,12 +14,12 @@ from impact88.casework.chapter.colinear import colinear
 from impact88.casework.chapter.staged import collisions, forward
 from impact88.casework.reconstruction.unknowns import solve_for
 from impact88.casework.uncertainty.bounds import bounds
+from impact88.collision.casescene import sample
 from impact88.collision.uncertain import fixed_value
 from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
 from impact88.mechanics.closedform.solve import solve
 from impact88.mechanics.friction import admissible_friction
 from impact88.mechanics.outcome import outcome
-from impact88.program.scene import sample
 from impact88.status import Status
 
 pytestmark = pytest.mark.usefixtures("both_machines")

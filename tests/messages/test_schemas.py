@@ -18,6 +18,7 @@ from installed import impact88 as command
 from tinyrom import rom
 
 import impact88
+from impact88.collision.casescene import sample
 from impact88.conformance.comparison.vectors import FROZEN_ID, frozen
 from impact88.conformance.qualification.selfcheck import checks
 from impact88.errors import UserError
@@ -25,7 +26,6 @@ from impact88.interface.commands.cli import main
 from impact88.messages import schemas
 from impact88.names import FINAL_VELOCITIES
 from impact88.program.run import run
-from impact88.program.scene import sample
 
 PRINTOUT = str(ROOT / "legacy" / "table3-as-printed.txt")
 SCENE = dict(sample(1))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import printouts
+from impact88.collision.casescene import Scene, sample
 from impact88.collision.doubles import double, opposite
 from impact88.printouts.explaining.causes import Cause
 from impact88.printouts.explaining.explanations import MORE_DIGITS
@@ -21,9 +22,8 @@ from impact88.printouts.recovery.rereading import Rereading
 from impact88.printouts.recovery.search import Expected, printed_in_doubles
 from impact88.printouts.recovery.slips import BITS, Change, slip
 from impact88.printouts.reporting.examination import Verdict, verify
+from impact88.program.replay import replay
 from impact88.program.run import run
-from impact88.program.scene import Scene, sample
-from impact88.program.vectorized import replay
 from printouts import SAMPLE
 
 

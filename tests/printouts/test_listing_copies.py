@@ -16,6 +16,7 @@ from longer import long_but
 
 import printouts
 from impact88.apple.emulator.emulator import Applesoft
+from impact88.collision.casescene import sample
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
 from impact88.printouts.explaining import explanations
@@ -23,10 +24,9 @@ from impact88.printouts.judging import beside
 from impact88.printouts.judging.copies import CopyPages
 from impact88.printouts.reporting.examination import Verdict, examine
 from impact88.printouts.reporting.verification import summary
-from impact88.program.emulated import ListingCopy
+from impact88.program.copies import ListingCopy
 from impact88.program.run import page as on_paper
 from impact88.program.run import run
-from impact88.program.scene import sample
 
 LISTING = (ROOT / "legacy" / "impact.bas").read_text(encoding="utf-8")
 INT = re.compile(r"INT \(((?:[^()]|\([^()]*\))*)\)")

@@ -10,13 +10,13 @@ import pytest
 from installed import impact88
 from longer import long_but
 
+from impact88.collision.casescene import sample
 from impact88.collision.doubles import double
 from impact88.printouts.judging.judgement import FieldCheck, Status
 from impact88.printouts.reading.printout import read_printouts
 from impact88.printouts.reporting.examination import Verdict, Verification, verify
 from impact88.printouts.reporting.verification import summary
 from impact88.program.run import run
-from impact88.program.scene import sample
 from printouts import SAMPLE, SWEEP
 
 ROW = " PA PB TA TB GA\n -19.8      -38.7      0      60      -30"

@@ -14,6 +14,7 @@ from captures import ROOT
 from longer import long_but
 
 import printouts
+from impact88.collision.casescene import sample
 from impact88.collision.fields import INPUTS, outcome_fields
 from impact88.errors import UserError
 from impact88.printouts.judging import beside
@@ -25,7 +26,6 @@ from impact88.printouts.reading.printout import Printout, read_printouts
 from impact88.printouts.reporting.examination import Verdict, Verification, verify
 from impact88.printouts.reporting.verification import EXPLAINED, sections, summary
 from impact88.program.run import run
-from impact88.program.scene import sample
 from printouts import SAMPLE, SWEEP, doubtful
 
 SETTLED = (Verdict.IDENTICAL, Verdict.IDENTICAL_AS_READ)

@@ -22,6 +22,7 @@ from captures import ROOT
 from longer import long_but
 from worked_cases import RUN_1
 
+from impact88.collision.casescene import sample
 from impact88.printouts.judging import beside
 from impact88.printouts.judging.judgement import FieldCheck, Status, Verdict
 from impact88.printouts.recovery.replays import run_all
@@ -71,7 +72,6 @@ from impact88.printouts.scan.scenes import (
 )
 from impact88.printouts.scan.typeface import READABLE
 from impact88.program.run import run
-from impact88.program.scene import sample
 
 pytest.importorskip("scipy", reason="the extra scan is not installed")
 Pillow = pytest.importorskip("PIL.Image", reason="the extra scan is not installed")
@@ -1237,7 +1237,7 @@ def test_another_letter_is_one_that_the_page_has_elsewhere(count: int, expected:
 @pytest.mark.long
 def test_a_copy_that_prints_a_scanned_page_is_named(tmp_path) -> None:
     from impact88.files import packaged_text
-    from impact88.program.emulated import LISTING, ListingCopy
+    from impact88.program.copies import LISTING, ListingCopy
 
     path = str(ROOT / "golden" / "scans" / FEW[0])
     listing = tmp_path / "office.bas"

@@ -6,6 +6,7 @@ from random import Random
 import numpy as np
 import pytest
 
+from impact88.collision.casescene import sample
 from impact88.collision.fields import FIELDS, INPUTS, outcome_fields
 from impact88.names import SCENE
 from impact88.printouts.recovery.search import (
@@ -19,9 +20,8 @@ from impact88.printouts.recovery.search import (
     column_of,
     kinetic_energy,
 )
+from impact88.program.replay import replay
 from impact88.program.run import run
-from impact88.program.scene import sample
-from impact88.program.vectorized import replay
 
 RESULTS = [name for name in FIELDS if name not in INPUTS]
 

@@ -13,6 +13,7 @@ import pytest
 from installed import impact88
 
 import printouts
+from impact88.collision.casescene import sample
 from impact88.collision.fields import ANGLES, INPUTS, outcome_fields
 from impact88.names import SCENE
 from impact88.printouts.judging.judgement import Status
@@ -22,7 +23,6 @@ from impact88.printouts.recovery.typedtext import stored_and_printed, texts_that
 from impact88.printouts.reporting.examination import Verdict, Verification, verify
 from impact88.printouts.reporting.verification import lines
 from impact88.program.run import run
-from impact88.program.scene import sample
 from printouts import SAMPLE, doubtful
 
 pytestmark = pytest.mark.usefixtures("verdicts_alone")

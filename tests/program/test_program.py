@@ -10,7 +10,7 @@ from importlib.resources import as_file, files
 import pytest
 
 from impact88.apple.captured import session
-from impact88.program.emulated import ListingCopy
+from impact88.program.copies import ListingCopy
 from impact88.program.run import run
 from impact88.program.scene import sample
 

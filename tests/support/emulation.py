@@ -7,7 +7,7 @@ from typing import Any
 import captures
 
 from impact88.apple.captured import memory_contents, normalize_zero
-from impact88.program import emulated
+from impact88.program import copies
 from impact88.program.run import run as run_port
 from impact88.program.scene import Scene
 
@@ -65,7 +65,7 @@ def emulator_reports(scene: Scene, text: str | None = None) -> tuple[list[Report
     """The emulator's variables after every line of the listing, and its run."""
     reports: list[Report] = []
 
-    machine = emulated.load_machine(scene, dos=False, text=text)
+    machine = copies.load_machine(scene, dos=False, text=text)
 
     def after(line: int) -> None:
         a = machine.array("A")
@@ -73,7 +73,7 @@ def emulator_reports(scene: Scene, text: str | None = None) -> tuple[list[Report
         reports.append((line, reals, a and [normalize_zero(value) for value in a["data"]]))
 
     machine.machine.after_line = after
-    return reports, emulated.run_machine(machine)
+    return reports, copies.run_machine(machine)
 
 
 def first_difference(scene: Scene, text: str | None = None) -> Any:

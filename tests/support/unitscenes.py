@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from impact88.collision.casescene import sample
 from impact88.collision.units import SYSTEMS, shown_text
 from impact88.names import quantity
-from impact88.program.scene import sample
 
 METRES = {"MA": "1500", "MB": "1100", "IA": "2500", "IB": "1500", "DA": "1.9", "DB": "1.4"}
 SPEEDS = {"UX": "-12", "UY": "1", "WA": "0.2", "VX": "6", "VY": "9", "WB": "-0.1"}

@@ -23,10 +23,10 @@ import numpy as np
 import pytest
 from longer import long_but
 
+from impact88.collision.casescene import sample
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
 from impact88.names import SCENE
-from impact88.program.scene import sample
 from impact88.tables.budget import MAX_DECODED, Budget
 from impact88.tables.lines import Lines
 

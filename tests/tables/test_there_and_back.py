@@ -17,9 +17,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from longer import long_but
 
+from impact88.collision.casescene import sample
 from impact88.interface.commands.cli import main
 from impact88.names import SCENE
-from impact88.program.scene import sample
 from impact88.tables import csvtable
 from impact88.tables.formats import FORMATS
 

@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from ..apple.applesoft.operators import Real
 from ..casework.figures.drawing import BLACK, BLUE, GREY, ORANGE, VERMILION
+from ..collision.casescene import Scene
 from ..mechanics import native
 from ..mechanics.accuracy.elimination import changes, eliminate, fill, lapack
 from ..mechanics.accuracy.errorbound import APPLESOFT, DOUBLE
 from ..mechanics.accuracy.populations import Columns, texts
 from ..mechanics.closedform.solve import solve
 from ..names import FINAL_VELOCITIES
+from ..program.replay import replay
 from ..program.run import run
-from ..program.scene import Scene
-from ..program.vectorized import replay
 from . import plainc
 
 Floats = NDArray[np.float64]

@@ -38,7 +38,7 @@ static __forceinline int leading_zeros(uint64_t x)
 #endif
 
 /* Codes of errors, as ONERR stores them; NEXT WITHOUT FOR has 0 there. OUTSIDE: the run needs
-   something that is not here, or a text is no number. ENDLESS: it takes too many steps. */
+   something that is not here, a text is no number, or there is no end within BUDGET. */
 enum {
     NEXT_WITHOUT_FOR = 0x100,
     RETURN_WITHOUT_GOSUB = 22,
@@ -46,8 +46,7 @@ enum {
     OVERFLOW = 69,
     BAD_SUBSCRIPT = 107,
     DIVISION_BY_ZERO = 133,
-    OUTSIDE = 0x200,
-    ENDLESS = 0x201
+    OUTSIDE = 0x200
 };
 
 /* (-1)^s m 2^(e - 168), m with 32 bits and the extension's 8; zero is {0, 0, 0}. */
@@ -586,7 +585,7 @@ CALLED void walk(run *its, const program *p, const char *const *input)
         }
         t += LEFT[s->operation];
     }
-    fail(its, ENDLESS);
+    fail(its, OUTSIDE);
 }
 
 /* A function of its own: a jump to setjmp loses what is local to its caller. */
@@ -603,8 +602,8 @@ static uint64_t packed(real x)
     return x.e ? (uint64_t)x.e << 32 | (x.m >> 8 & 0x7FFFFFFF) | (uint64_t)x.s << 31 : 0;
 }
 
-/* The number that tells for which listing this file was compiled. */
-EXPORT uint64_t applesoft_listing(void) { return LISTING; }
+/* Return the digest of the listing's steps for which this file was compiled. */
+EXPORT const char *applesoft_listing(void) { return LISTING; }
 
 /* Run a program on `count` scenes. text: for each input the texts of all scenes, each ended by a
    newline, or one text for all where `single`. ending: code, line, size of the page, rows of the
@@ -633,12 +632,14 @@ EXPORT void applesoft_run(const program *p, const char *const *text, const uint8
     }
 }
 
-/* Run steps on a stack of STACK numbers, for tests of one operation; return the error's code. */
-EXPORT int applesoft_steps(const program *p, real *stack)
+/* Run one program for tests: of its numbers it leaves the stack and the first one printed. */
+EXPORT int applesoft_steps(const program *p, const char *const *input, real *stack, char (*field)[FIELD])
 {
     run its;
     memset(&its, 0, sizeof its);
-    int code = run_once(&its, p, 0);
+    its.field = field;
+    its.most = 1;
+    int code = run_once(&its, p, input);
     memcpy(stack, its.stack, sizeof its.stack);
     return code;
 }

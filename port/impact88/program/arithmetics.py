@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
+from .. import decimals
 from ..apple.applesoft import decimaltext, functions
 from ..apple.applesoft.errorcodes import (
     ApplesoftError,
@@ -16,7 +17,6 @@ from ..apple.applesoft.errorcodes import (
 )
 from ..apple.applesoft.operators import Real
 from ..apple.applesoft.real import ZERO, Number, absolute, floor
-from ..collision import doubles
 from ..errors import UserError
 
 TYPE_CHECKING = False
@@ -86,8 +86,8 @@ def _finite(x: float) -> float:
 
 
 def _read_float(text: str, start: int) -> tuple[float, int]:
-    value, end = doubles.read(text, start)
-    return _finite(value), end
+    end = decimaltext.scan(text, start)[-1]
+    return _finite(decimals.to_double(text[start:end] or "0")), end
 
 
 def _write_float(x: float) -> str:

@@ -1,6 +1,4 @@
-"""Print the steps of the 1988 listing as C.
-
-    python -m impact88.program.generate impact.bas listing.h
+"""Print the steps of the 1988 listing as C: python -m impact88.program.generate
 
 The package is built with this header, which `applesoft.c` includes. What each step does is a macro
 there, which the interpreter of steps uses, too, so that both give the same bits. Runs without
@@ -9,10 +7,9 @@ numpy, from a source tree.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
+from hashlib import sha256
 from pathlib import Path
-from zlib import crc32
 
 from ..apple.applesoft import decimaltext
 from ..names import SCENE
@@ -38,9 +35,9 @@ def compile_listing(text: str) -> Steps:
     return compile_program(program_lines(text), SCENE, KEPT)
 
 
-def checksum(program: Steps) -> int:
-    """Return the number that tells for which steps `applesoft.c` was compiled."""
-    return crc32(repr((program, OPERATIONS)).encode())
+def digest(program: Steps) -> str:
+    """Return the text that tells for which steps `applesoft.c` was compiled."""
+    return sha256(repr((program, OPERATIONS)).encode()).hexdigest()[:16]
 
 
 def print_c(program: Steps) -> str:
@@ -51,7 +48,7 @@ def print_c(program: Steps) -> str:
     constants = (decimaltext.read(text)[0] for text in program.constants)
     reals = ", ".join(f"{{0x{m:X}, {e}, {s}}}" for e, m, s in constants)
     rows = (
-        f"#define LISTING {checksum(program)}u",
+        f'#define LISTING "{digest(program)}"',
         f"enum operation {{ {', '.join(OPERATIONS)} }};",
         f"#define EACH_PLAIN_STEP(DO) {plain}",
         f"static const int8_t TAKEN[] = {{{taken}}};",
@@ -93,10 +90,6 @@ def _statements(steps: list[tuple[str, int]]) -> Iterator[str]:
         depth += left
 
 
-def main(source: str, target: str) -> None:
-    """Write the header of a listing."""
-    Path(target).write_text(print_c(compile_listing(Path(source).read_text("ascii"))), "ascii")
-
-
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    source = Path(__file__).parents[3] / "legacy" / "impact.bas"
+    print(print_c(compile_listing(source.read_text("ascii"))), end="")

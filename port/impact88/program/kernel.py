@@ -6,6 +6,7 @@ import ctypes
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from itertools import starmap
 from typing import Any, NamedTuple
 
@@ -13,16 +14,18 @@ import numpy as np
 import numpy.typing as npt
 
 from ..apple.applesoft import decimaltext
+from ..files import packaged_text
 from .compiler import CODES, Steps
+from .generate import compile_listing, digest
+from .scene import LISTING
 
 FIELD = 16  # bytes of a printed number, as in applesoft.c
 PAGE = 2048  # characters of a page, as there
 BLOCK = 4096
 """Scenes of one call: enough for its overhead to vanish, few enough for the processor's cache."""
 OUTSIDE = 0x200
-"""The code of a run that needs something applesoft.c does not have, or has a text as a number."""
-ENDLESS = 0x201
-"""The code of a run that takes too many steps."""
+"""The code of a run that applesoft.c leaves to the port or the emulator: it needs something else,
+does not end, or has a text that is no number."""
 
 
 class Real(ctypes.Structure):
@@ -110,12 +113,11 @@ class Program:
 
         ``columns``: for each input the texts of all scenes, or one for all. Raises TypeError and
         ValueError for what is no text of one line in ASCII."""
-        assert library is not None
         texts = ["\n".join(column).upper().encode("ascii") + b"\n" for column in columns]
         if any(t.count(b"\n") != len(c) for t, c in zip(texts, columns, strict=True)):
             raise ValueError("a text of two lines")
         arrays = (results.ending, results.assigned, results.reals, results.array)
-        library.applesoft_run(
+        library().applesoft_run(
             ctypes.byref(self.source),
             (ctypes.c_char_p * len(texts))(*texts),
             bytes(len(column) == 1 for column in columns),
@@ -149,16 +151,25 @@ def run_blocks(work: Callable[[int, int], object], count: int, threads: int | No
         list(pool.map(lambda block: work(*block), blocks))
 
 
-def _load() -> ctypes.CDLL | None:
-    """Return the library; None where it was not built, or is switched off."""
+@cache
+def listing() -> Program:
+    """Return the 1988 listing, compiled."""
+    return Program(compile_listing(packaged_text("impact88.legacy", LISTING)), in_library=True)
+
+
+@cache
+def _load() -> Any:
     from pathlib import Path
 
     path = Path(__file__).with_name("_applesoft.so")
     if not path.exists() or os.environ.get("IMPACT88_ACCELERATED") == "0":
         return None
     library = ctypes.CDLL(str(path))
-    library.applesoft_listing.restype = ctypes.c_uint64
-    return library
+    library.applesoft_listing.restype = ctypes.c_char_p
+    return library if library.applesoft_listing().decode() == digest(listing().steps) else None
 
 
-library = _load()
+def library() -> Any:
+    """Return the compiled library; None where it was not built from this listing, or is switched
+    off."""
+    return _load()

@@ -11,7 +11,7 @@ runs at least once and its variable ends one past the limit. NL ends a PRINT tha
 subroutines at 1000 and 1070 are functions that share the variables.
 
 The port keeps no books: the BASIC line being executed is found from the comment above the Python
-line being executed (`stepping.basic_line`), for the line of an error and for stopping after every line.
+line being executed (`run.basic_line`), for the line of an error and for stopping after every line.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def impact(
 
     ``data`` holds the texts of lines 280, 290, 310 and of M in 350 under the listing's names;
     ``slot`` is line 190's digit. Returns the local names, the variables among them
-    (`stepping.variables` sorts them out). Raises the arithmetic's errors, `End` after ZERO
+    (`run` sorts them out). Raises the arithmetic's errors, `End` after ZERO
     DETERMINANT, and `console.EndOfInput`; the variables are then in the traceback's frame.
     """
     LET, NEXT, INT, ABS, SIN, COS = (

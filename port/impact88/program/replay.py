@@ -7,26 +7,29 @@ library the port runs each scene. Both give the Apple's own bits.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from functools import lru_cache
-from itertools import chain
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ..apple.applesoft import decimaltext
 from ..apple.applesoft.errorcodes import CODES, ApplesoftError
 from ..apple.applesoft.operators import Real
 from ..errors import UserError
-from ..files import packaged_text
 from ..names import DEFAULT_M, FINAL_VELOCITIES, SCENE, check_names, missing
 from . import kernel
 from .arithmetics import APPLESOFT, Arithmetic
-from .generate import BEFORE, checksum, compile_listing
+from .copies import ListingCopy
+from .generate import BEFORE
 from .kernel import OUTSIDE, Program, Results
 from .run import BELL, Run, run
-from .scene import LISTING, Scene
+from .scene import Scene, check_number
+
+Mask = npt.NDArray[np.bool_]
+Texts = npt.NDArray[np.str_]
+Stored = npt.NDArray[np.uint64]
+Floats = npt.NDArray[np.float64]
+Cells = Mapping[str, list[Any]]
 
 PRINTED = {
     name: line
@@ -64,8 +67,6 @@ COMPUTED = {
 
 ROWS, COLUMNS = 7, 8  # of the array A
 ZERO_DETERMINANT_LINE = 1160
-FIRST_FORMULA = 320
-"""Line from which on the program computes; before, it reads."""
 FIRST_SUBROUTINE = 1000
 """Line from which on the program is in a subroutine that line 570 calls."""
 FINAL_SPINS = ("WAF", "WBF")
@@ -110,7 +111,7 @@ class Replay:
         self,
         results: Results,
         variables: Sequence[str],
-        solution: npt.NDArray[np.uint64],
+        solution: Stored,
         pages: list[str] | None,
     ) -> None:
         code, line = results.ending[:, 0], results.ending[:, 1]
@@ -119,7 +120,7 @@ class Replay:
         self.line = np.where((code != 0) | self.zero_determinant, line, 0)
         self.error = np.full(self.count, "", "<U48")
         for at in np.flatnonzero(code).tolist():
-            self.error[at] = _message(int(code[at]), int(line[at]))
+            self.error[at] = _error(int(code[at]), int(line[at])).message
         self.fields = results.fields
         self.pages = pages
         self._variables = list(variables)
@@ -145,7 +146,7 @@ class Replay:
             f"{int(self.zero_determinant.sum()):,} by a zero determinant>"
         )
 
-    def present(self, name: str) -> npt.NDArray[np.bool_]:
+    def present(self, name: str) -> Mask:
         """Return a mask of the scenes that have a result.
 
         Parameters
@@ -162,7 +163,7 @@ class Replay:
         present = self._reached > COMPUTED[name]
         return present & self._six if name in FINAL_SPINS else present
 
-    def printed(self, name: str) -> npt.NDArray[np.str_]:
+    def printed(self, name: str) -> Texts:
         """Return a field of the printout, character for character.
 
         Parameters
@@ -180,7 +181,7 @@ class Replay:
         column = list(PRINTED).index("MUP" if name == "MU" else name)
         return self.fields[:, column].astype(str)
 
-    def reals(self, name: str) -> npt.NDArray[np.uint64]:
+    def reals(self, name: str) -> Stored:
         """Return a variable or result as the five bytes that the Apple stored.
 
         Parameters
@@ -203,7 +204,7 @@ class Replay:
             values = self._reals[:, self._variables.index(variable)]
         return values * self.present(name) if name in COMPUTED else values
 
-    def floats(self, name: str) -> npt.NDArray[np.float64]:
+    def floats(self, name: str) -> Floats:
         """Return a result as floats: stored reals exactly, LOSS as the printed number.
 
         Parameters
@@ -235,11 +236,11 @@ class Replay:
         return {**results, "ERROR": ending, "LINE": self.line}
 
 
-def _message(code: int, line: int) -> str:
-    return ApplesoftError(_KINDS[code & 0xFF], line).message
+def _error(code: int, line: int) -> ApplesoftError:
+    return ApplesoftError(_KINDS[code & 0xFF], line)
 
 
-def unpack(stored: npt.NDArray[np.uint64]) -> npt.NDArray[np.float64]:
+def unpack(stored: Stored) -> Floats:
     """Return stored reals as floats, exactly."""
     words = stored.astype(np.int64)
     exponent = words >> 32
@@ -288,34 +289,50 @@ def replay(
     ['14.51']
     """
     cells = _read_columns(columns)
-    count = next((len(column) for column in cells.values() if len(column) != 1), 1)
-    program = listing_program()
-    variables = program.steps.variables
+    count = _count(cells)
+    variables = kernel.listing().steps.variables
     results = Results.empty(count, len(variables), len(PRINTED))
     solution = np.zeros((count, len(FINAL_VELOCITIES)), np.uint64)
-    texts: list[list[str]] = [[] for _ in range(0, count, kernel.BLOCK)]
+    printouts: dict[int, list[str]] = {}
+
+    def run_singly(part: Results, row: int, scene: Scene) -> str:
+        fields: list[str] = []
+        record = run(scene, _recording(fields))
+        _fill(part, row, record, fields)
+        return record.printout
 
     def work(start: int, stop: int) -> None:
         part = results.part(start, stop, ROWS * COLUMNS, pages)
-        columns = {name: c if len(c) == 1 else c[start:stop] for name, c in cells.items()}
-        printouts = _run_block(program, columns, part, start)
-        solution[start:stop] = _solution(part, variables)
-        if pages:
-            texts[start // kernel.BLOCK] = _pages(part, printouts)
+        block = _block(cells, start, stop)
+        printouts[start] = list(_run_block(kernel.listing(), block, part, start, run_singly))
+        solution[start:stop] = _solution(part)
 
     kernel.run_blocks(work, count, threads)
-    return Replay(results, variables, solution, list(chain.from_iterable(texts)) if pages else None)
+    texts = [text for _, block in sorted(printouts.items()) for text in block] if pages else None
+    return Replay(results, variables, solution, texts)
 
 
-@lru_cache(maxsize=1)
-def listing_program() -> Program:
-    """Return the 1988 listing, compiled."""
-    steps = compile_listing(packaged_text("impact88.legacy", LISTING))
-    library = kernel.library
-    return Program(steps, library is not None and library.applesoft_listing() == checksum(steps))
+def copy_pages(copy: ListingCopy, columns: Mapping[str, Any]) -> list[str]:
+    """Return what a copy of the listing prints for many scenes (`ListingCopy.pages`)."""
+    cells = _read_columns(columns)
+    program = Program(copy.steps) if copy.steps else None
+    used = [name for name in copy.names() if name in cells]
+    printouts: dict[int, list[str]] = {}
+
+    def run_singly(part: Results, row: int, scene: Scene) -> str:
+        return copy.run(scene).printout
+
+    def work(start: int, stop: int) -> None:
+        variables = len(copy.steps.variables) if copy.steps else 0
+        part = Results.empty(stop - start, variables, 0).part(0, stop - start, 0, True)
+        block = _block(cells, start, stop)
+        printouts[start] = list(_run_block(program, block, part, start, run_singly, used))
+
+    kernel.run_blocks(work, _count(cells), None)
+    return [text for _, block in sorted(printouts.items()) for text in block]
 
 
-def _read_columns(columns: Mapping[str, Any]) -> dict[str, list[Any]]:
+def _read_columns(columns: Mapping[str, Any]) -> Cells:
     """Return the texts of each input. Raises UserError."""
     if not isinstance(columns, Mapping):
         raise UserError(f"{columns!r:.60} is not a mapping of names to columns")
@@ -323,8 +340,7 @@ def _read_columns(columns: Mapping[str, Any]) -> dict[str, list[Any]]:
     if names := [name for name in SCENE if name not in columns and name != "M"]:
         raise UserError(missing(names))
     cells = {name: _texts(name, columns.get(name, DEFAULT_M)) for name in SCENE}
-    lengths = {len(column) for column in cells.values()} - {1}
-    if len(lengths) > 1:
+    if len({len(column) for column in cells.values()} - {1}) > 1:
         sizes = ", ".join(f"{name} {len(c)}" for name, c in cells.items() if len(c) != 1)
         raise UserError(f"columns of different lengths: {sizes}")
     return cells
@@ -347,57 +363,88 @@ def _texts(name: str, column: Any) -> list[Any]:
                 f"{cell!r:.60} is not a number as typed; expected a text or a whole number",
                 f"{name}, row {row + 1}",
             )
-    return [str(cell) for cell in cells]
+    return list(map(str, cells))
+
+
+def _count(cells: Cells) -> int:
+    """Return the number of scenes: 1 where no column has another length."""
+    return next((len(column) for column in cells.values() if len(column) != 1), 1)
+
+
+def _block(cells: Cells, start: int, stop: int) -> Cells:
+    """Return the columns of some scenes."""
+    return {n: column if len(column) == 1 else column[start:stop] for n, column in cells.items()}
 
 
 def _run_block(
-    program: Program, columns: Mapping[str, list[str]], part: Results, start: int
-) -> dict[int, str]:
-    """Run scenes and fill their results; return the printouts of those that the port ran. Raises
-    UserError for a text that is not a number."""
-    rows: Sequence[int] = range(len(part.ending))
-    if kernel.library is not None:
+    program: Program | None,
+    columns: Cells,
+    part: Results,
+    start: int,
+    run_singly: Callable[[Results, int, Scene], str],
+    used: Sequence[str] = tuple(SCENE),
+) -> Iterator[str]:
+    """Run scenes and fill their results; yield their printouts if ``part`` has pages.
+
+    ``start``: the number of the first scene; ``run_singly``: runs one of those that the library
+    leaves; ``used``: the columns in the order of the program's inputs. Raises UserError for a text
+    that is not a number."""
+    count = len(part.ending)
+    code = np.full(count, OUTSIDE)
+    if program and kernel.library():
         try:
-            program.run(list(columns.values()), part)
+            program.run([columns[name] for name in used], part)
         except ValueError:  # other characters than ASCII's, or several lines
-            _check_texts(columns, start)
+            _check(columns, start)
             raise
-        code, line = part.ending[:, 0], part.ending[:, 1]
-        rows = np.flatnonzero(code == OUTSIDE).tolist()
-        for row in np.flatnonzero((code == CODES["OVERFLOW"]) & (line < FIRST_FORMULA)).tolist():
-            _scene(columns, row, start)  # raises if the number that is too large is no number
-    printouts = {}
-    for row in rows:
-        fields: list[str] = []
-        record = run(_scene(columns, row, start), recording(fields))
-        printouts[row] = record.printout
-        _fill(part, row, record, fields, program.steps.variables)
-    return printouts
+        code = part.ending[:, 0].copy()
+        # a text that is too large a number may be none
+        for row in np.flatnonzero(code == CODES["OVERFLOW"]).tolist():
+            _scene(columns, row, start)
+    if part.pages is None and not code.any():
+        return
+    for row in range(count):
+        if code[row] >= OUTSIDE:
+            scene = _scene(columns, row, start)
+            yield run_singly(part, row, scene)
+        elif part.pages is not None:
+            yield _page(part, row)
 
 
-def _scene(columns: Mapping[str, Sequence[str]], row: int, start: int) -> Scene:
+def _row(columns: Cells, row: int) -> Cells:
+    """Return one scene's columns."""
+    return {name: column[row : row + 1] or column for name, column in columns.items()}
+
+
+def _scene(columns: Cells, row: int, start: int) -> Scene:
     """Return the scene of a row. Raises UserError if its texts cannot be typed."""
-    texts = {name: column[row : row + 1] or column for name, column in columns.items()}
-    _check_texts(texts, start + row)
-    scene = Scene(
-        {name: column[0] for name, column in texts.items()}, source=f"row {start + row + 1}"
-    )
+    cells = _row(columns, row)
+    _check(cells, start + row)
+    source = f"row {start + row + 1}"
+    scene = Scene({name: column[0] for name, column in cells.items()}, source=source)
     scene.check_typed()
     return scene
 
 
-def _check_texts(columns: Mapping[str, Sequence[str]], start: int) -> None:
+def _check(columns: Cells, start: int) -> None:
     """Raise UserError for a text that is not a number. ``start``: scenes before these."""
     for name, column in columns.items():
         for row, text in enumerate(column):
-            if not (text.isascii() and decimaltext.is_number(text.upper())):
-                raise UserError(
-                    f"{text!r:.60} is not a number; expected one such as 1.5",
-                    f"{name}, row {start + row + 1}",
-                )
+            check_number(name, text, f"row {start + row + 1}")
 
 
-def recording(fields: list[str]) -> Arithmetic:
+def _page(part: Results, row: int) -> str:
+    """Return the printout that the library wrote, as a disk system lets it pass."""
+    assert part.pages is not None
+    code, line, size, _ = part.ending[row].tolist()
+    text = _DISK_COMMAND.sub("", part.pages[row, :size].tobytes().decode("ascii"))
+    return f"{text}\n{_error(code, line).message.replace(' IN', BELL + ' IN')}" if code else text
+
+
+# --- one scene by the port ---
+
+
+def _recording(fields: list[str]) -> Arithmetic:
     """Return the Applesoft arithmetic, appending each number that it writes to ``fields``."""
 
     def write(x: Real) -> str:
@@ -407,34 +454,29 @@ def recording(fields: list[str]) -> Arithmetic:
     return Arithmetic(**{**vars(APPLESOFT), "write": write})
 
 
-def _fill(
-    part: Results, row: int, record: Run, fields: Sequence[str], variables: Sequence[str]
-) -> None:
+def _fill(part: Results, row: int, record: Run, fields: Sequence[str]) -> None:
     """Set a row of results from a run of the port."""
-    stored = {name: int(value, 16) for name, value in record.reals.items()}
-    if record.A:
-        part.array[row] = [_without_mantissa(int(value, 16)) for value in record.A["data"]]
-    code, line = 0, ZERO_DETERMINANT_LINE if record.zero_determinant else 780
+    code, line = 0, ZERO_DETERMINANT_LINE if record.zero_determinant else 0
     if record.error:
         kind = record.error.removeprefix("?").partition(" ERROR")[0]
         code, line = CODES[kind], record.line or 0
-    part.ending[row] = code, line, 0, ROWS
+    part.ending[row] = code, line, 0, 0
     part.fields[row] = [*fields, *[""] * (len(PRINTED) - len(fields))]
-    for k, name in enumerate(variables):
-        if name in stored:
-            part.reals[row, k] = _without_mantissa(stored[name])
-            part.assigned[row] |= np.uint64(1 << k)
-    before = _contact_velocities(record.reals) if line > COMPUTED["XA"] else {}
-    for name, value in before.items():
-        part.reals[row, variables.index(f"{name}'")] = value
+    if record.A:
+        part.array[row] = [_stored(value) for value in record.A["data"]]
+    values = dict(record.reals)
+    if not code or line > COMPUTED["XA"]:
+        values |= _contact_velocities(record.reals)
+    for k, name in enumerate(kernel.listing().steps.variables):
+        part.reals[row, k] = _stored(values.get(name, "0" * 10))
 
 
-def _without_mantissa(stored: int) -> int:
-    """Return stored bytes, with those of a zero all 0."""
-    return stored if stored >> 32 else 0
+def _stored(text: str) -> int:
+    """Return stored bytes as a number; of a zero all are 0."""
+    return 0 if text.startswith("00") else int(text, 16)
 
 
-def _contact_velocities(reals: Mapping[str, str]) -> dict[str, int]:
+def _contact_velocities(reals: Mapping[str, str]) -> dict[str, str]:
     """Return the variables of line 340, which lines 700 and 710 use again."""
     x = {name: Real.from_stored(value) for name, value in reals.items()}
     values = (
@@ -443,28 +485,12 @@ def _contact_velocities(reals: Mapping[str, str]) -> dict[str, int]:
         x["VX"] - x["D1"] * x["WB"],
         x["VY"] + x["D2"] * x["WB"],
     )
-    stored = (int.from_bytes(value.to_bytes(), "big") for value in values)
-    return dict(zip(BEFORE, map(_without_mantissa, stored), strict=True))
+    return {f"{n}'": v.to_bytes().hex() for n, v in zip(BEFORE, values, strict=True)}
 
 
-def _solution(part: Results, variables: Sequence[str]) -> npt.NDArray[np.uint64]:
+def _solution(part: Results) -> Stored:
     """Return the final velocities, column M + 1 of the array A."""
-    equations = unpack(part.reals[:, variables.index("M")])
+    equations = unpack(part.reals[:, kernel.listing().steps.variables.index("M")])
     column = np.clip(equations, 0, COLUMNS - 2).astype(int) + 1
     places = np.arange(1, len(FINAL_VELOCITIES) + 1) + ROWS * column[:, None]
     return np.take_along_axis(part.array, places, 1)
-
-
-def _pages(part: Results, printouts: Mapping[int, str]) -> list[str]:
-    """Return the pages of a block: those that the library wrote, others from ``printouts``."""
-    assert part.pages is not None
-    texts = []
-    for row, (code, line, size, _) in enumerate(part.ending.tolist()):
-        if row in printouts:
-            texts.append(printouts[row])
-            continue
-        text = _DISK_COMMAND.sub("", part.pages[row, :size].tobytes().decode("ascii"))
-        texts.append(
-            f"{text}\n{_message(code, line).replace(' IN', BELL + ' IN')}" if code else text
-        )
-    return texts

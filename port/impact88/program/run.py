@@ -1,21 +1,29 @@
-"""Run the 1988 program on a scene, as if typed in and started with RUN.
+"""Run the port on a scene, as if the 1988 program were typed in and started with RUN.
 
-The port reads the scene's data lines, and its velocities from the keyboard."""
+The port reads the scene's data lines, and its velocities from the keyboard. Which line of BASIC it
+executes, and which variables that line assigns, is read from the comments of `listing`: the line of
+a statement in Python is the one in the last comment above it.
+"""
 
 from __future__ import annotations
 
 import math
+import re
+import sys
+from bisect import bisect
 from collections import namedtuple
-from collections.abc import Mapping
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, nullcontext
+from functools import cache
+from types import CodeType, FrameType, TracebackType
 
 from ..apple.applesoft.console import Console
 from ..apple.applesoft.operators import Real
-from ..messages import notebook
-from ..messages.arguments import explains_arguments
-from . import arithmetics, listing, stepping
+from ..errors import UserError
+from ..files import packaged_text
+from . import arithmetics, listing
 from .arithmetics import Arithmetic
-from .scene import Scene
+from .scene import REPLY_LINES, Scene
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -25,6 +33,18 @@ BELL = "\a"
 _UNPRINTED = {code: None for code in range(32) if chr(code) not in "\n\b"}
 """Control characters that are not shown. Control-H stays, so that a deleted character is
 visible."""
+_LISTING = listing.impact.__code__
+_CODES = {code.co_name: code for code in _LISTING.co_consts if isinstance(code, CodeType)}
+_TRANSLATIONS = {_CODES[name] for name in ("main", "gosub_1000", "gosub_1070")}
+"""The functions inside `listing.impact` that contain BASIC lines: main program, subroutines."""
+_ASSIGNED = re.compile(
+    r"(?:^|:|THEN )([A-Z][A-Z0-9]?) =|FOR ([A-Z]+) =|(?:INPUT |,)([A-Z]{2})(?=,|$)"
+)
+"""A variable that a line of BASIC assigns."""
+
+Variables = namedtuple("Variables", "reals A")
+"""The listing's variables at one time: assigned reals by name, and the array A."""
+AfterLine = Callable[[int, Variables], object]
 
 
 class Run(namedtuple("Run", "printout error line reals A zero_determinant")):
@@ -70,8 +90,7 @@ class Run(namedtuple("Run", "printout error line reals A zero_determinant")):
     def floats(self) -> dict[str, float]:
         """The real variables as floats, equal to their five stored bytes."""
         values = self.reals.items()
-        real_names = {name for name, value in values if isinstance(value, str) and len(value) == 10}
-        return {n: float(Real.from_stored(x) if n in real_names else x) for n, x in values}
+        return {n: float(Real.from_stored(x) if isinstance(x, str) else x) for n, x in values}
 
     def __repr__(self) -> str:
         ending = self.error or ("ZERO DETERMINANT" if self.zero_determinant else "END")
@@ -79,12 +98,14 @@ class Run(namedtuple("Run", "printout error line reals A zero_determinant")):
 
     def _repr_html_(self) -> str:
         """Return the printout as HTML for a notebook."""
-        return notebook.preformatted_html(self.page)
+        from html import escape
+
+        return f"<pre>{escape(self.page)}</pre>"
 
 
 def page(text: str) -> str:
-    """Return a printout without characters that only a machine acts on: the form feed of line 200,
-    bells, the NULs that INPUT shows for a prompt, control-D."""
+    """Return a printout without the characters that only a terminal acts on: the form feed of line
+    200, bells, the NULs that INPUT shows for a prompt, control-D."""
     return text.translate(_UNPRINTED)
 
 
@@ -93,7 +114,7 @@ def start(
     console: Console,
     arithmetic: str | Arithmetic = "applesoft",
     slot: str = "0",
-    after_line: stepping.AfterLine | None = None,
+    after_line: AfterLine | None = None,
 ) -> Run:
     """Run the port on a console until the program ends.
 
@@ -102,25 +123,23 @@ def start(
     """
     chosen = arithmetics.get_arithmetic(arithmetic)
     error, zero_determinant = None, False
-    tracing = stepping.after_every_line(after_line, chosen.unset) if after_line else nullcontext()
+    names: Mapping[str, Any]
     try:
-        names: Mapping[str, Any]
-        with tracing:
+        with _stopping(after_line, chosen) if after_line else nullcontext():
             names = listing.impact(data, chosen, console, slot)
     except listing.End as end:
         zero_determinant = True
-        _, names = stepping.failure_state(end.__traceback__)
+        names = _failure(end.__traceback__)[1]
     except Exception as exception:
         error = chosen.error(exception)
         if error is None:
             raise
-        error.line, names = stepping.failure_state(exception.__traceback__)
-    reals, array = stepping.variables(names, chosen.unset)
-    if error is not None and error.line is not None:
-        replies_read = console.reply.begun if console.reply else None
-        if variable := stepping.unfinished_assignment(error.line, reals, replies_read):
-            reals[variable] = chosen.zero
+        error.line, names = _failure(exception.__traceback__)
+        replies_read = console.reply.begun if console.reply else 0
+        if variable := _unfinished(error.line, names, chosen.unset, replies_read):
+            names = {**names, variable: chosen.zero}
         console.put(f"\n?{error.kind} ERROR{BELL} IN {error.line}")
+    reals, array = _variables(names, chosen.unset)
     return Run(
         "",
         error.message if error else None,
@@ -131,14 +150,13 @@ def start(
     )
 
 
-@explains_arguments
 def run(
     scene: Mapping[str, str],
     arithmetic: str | Arithmetic = "applesoft",
     *,
     dos: bool = True,
     slot: int = 0,
-    after_line: stepping.AfterLine | None = None,
+    after_line: AfterLine | None = None,
 ) -> Run:
     """Run the 1988 program on a scene and return its printout, variables and error.
 
@@ -146,7 +164,7 @@ def run(
     ----------
     scene : mapping of str to str
         The scene, as texts: the digits typed matter.
-    arithmetic : {"applesoft", "double"} or Arithmetic, default "applesoft"
+    arithmetic : {"applesoft", "float64"} or Arithmetic, default "applesoft"
         The arithmetic that computes and writes numbers.
     dos : bool, default True
         True if a disk system handles lines that begin with control-D.
@@ -163,7 +181,7 @@ def run(
     Raises
     ------
     UserError
-        For an unknown arithmetic, or a scene that cannot be typed into the program
+        For an unknown arithmetic, a wrong slot, or a scene that cannot be typed into the program
         (`Scene.check_typed`).
 
     Examples
@@ -171,7 +189,9 @@ def run(
     >>> impact88.run(impact88.sample(1)).page.splitlines()[-3]
     ' WA= -1.745 WB= -.8202'
     """
-    scene = scene if isinstance(scene, Scene) else Scene.from_mapping(scene)
+    if slot not in range(8):
+        raise UserError(f"slot {slot!r} is none of an Apple's; expected 0 to 7")
+    scene = scene if isinstance(scene, Scene) else Scene(scene)
     scene.check_typed()
     characters: list[str] = []
     replies = iter(scene.keyboard())
@@ -185,3 +205,84 @@ def _record_value(value: Any) -> Any:
     if isinstance(value, Real):
         return value.to_bytes().hex()
     return value if math.isfinite(value) else str(value)
+
+
+# --- lines and variables of the port ---
+
+
+@cache
+def _comments() -> list[tuple[int, int, str]]:
+    """Return line of `listing`, line of BASIC and its statements, for each comment with one."""
+    rows = enumerate(packaged_text("impact88.program", "listing.py").splitlines(), 1)
+    matches = ((n, re.match(r" +# (\d+) (.*)", row)) for n, row in rows)
+    return [(n, int(match[1]), match[2]) for n, match in matches if match]
+
+
+def basic_line(python_line: int) -> int:
+    """Return the BASIC line that a line of ``listing.py`` translates, 0 above the first."""
+    comments = _comments()
+    index = bisect([n for n, _, _ in comments], python_line)
+    return comments[index - 1][1] if index else 0
+
+
+def _unfinished(line: int, names: Mapping[str, Any], unset: object, replies_read: int) -> str:
+    """Return the variable that an error left as a new zero, "" without one.
+
+    Applesoft creates a variable before it evaluates the formula, so it is the first one assigned in
+    the line that has no value yet. ``replies_read``: the variables that INPUT had reached."""
+    statements = next(text for _, number, text in _comments() if number == line)
+    assigned = [next(filter(None, m)) for m in _ASSIGNED.findall(statements.partition(" REM")[0])]
+    if line in REPLY_LINES:
+        assigned = assigned[:replies_read]
+    return next((name for name in assigned if names[name] is unset), "")
+
+
+def _failure(traceback: TracebackType | None) -> tuple[int, Mapping[str, Any]]:
+    """Return the innermost BASIC line that raised an exception in the port, and its names."""
+    line, names = 0, {}
+    while traceback is not None:
+        frame = traceback.tb_frame
+        if frame.f_code is _LISTING:
+            names = frame.f_locals
+        elif frame.f_code in _TRANSLATIONS:
+            line = basic_line(traceback.tb_lineno) or line
+        traceback = traceback.tb_next
+    return line, names
+
+
+def _variables(names: Mapping[str, Any], unset: Any) -> Variables:
+    """Return the variables among the local names of `listing.impact`: those of one or two letters
+    that are numbers. ``unset``: the value of those not assigned."""
+    kind = type(unset)
+    reals = {n: x for n, x in names.items() if len(n) < 3 and type(x) is kind and x is not unset}
+    return Variables(reals, names["A"])
+
+
+@contextmanager
+def _stopping(after_line: AfterLine, arithmetic: Arithmetic) -> Iterator[None]:
+    """Context in which ``after_line(number, variables)`` is called each time the port leaves a
+    BASIC line, because another one begins or the program ends. Lines without effect (REM, line
+    420's GOTO) are skipped."""
+    current = 0
+
+    def trace(frame: FrameType, event: str, _: object) -> Any:
+        nonlocal current
+        if frame.f_code not in _TRANSLATIONS:
+            return None
+        is_end = event == "return" and frame.f_code is _CODES["main"]
+        line = basic_line(frame.f_lineno) if event == "line" else 0 if is_end else current
+        if line != current:
+            finished_line, current = current, line
+            outer: FrameType | None = frame
+            while outer is not None and outer.f_code is not _LISTING:
+                outer = outer.f_back
+            if finished_line and outer is not None:
+                after_line(finished_line, _variables(outer.f_locals, arithmetic.unset))
+        return trace
+
+    before = sys.gettrace()
+    sys.settrace(trace)
+    try:
+        yield
+    finally:
+        sys.settrace(before)

@@ -174,7 +174,7 @@ class RowSolver:
 
     def _applesoft(self, rows: Rows) -> Results:
         """The listing's own arithmetic, `impact88.replay`."""
-        from ..program.vectorized import replay
+        from ..program.replay import replay
 
         points = point_masses(rows)
         columns = {n: _texts(n, column, self._units) for n, column in rows.scene().items()}

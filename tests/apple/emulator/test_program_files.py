@@ -21,7 +21,7 @@ from impact88.apple.emulator.emulator import Applesoft
 from impact88.apple.emulator.programfile import SCREEN_WIDTH, read_program
 from impact88.apple.emulator.tokens import KEYWORDS
 from impact88.errors import UserError
-from impact88.program.emulated import ListingCopy
+from impact88.program.copies import ListingCopy
 
 LISTING = (captures.ROOT / "legacy" / "impact.bas").read_text(encoding="ascii")
 TEXTS = {path.stem: captures.printed(path.read_bytes()) for path in PROGRAMS}

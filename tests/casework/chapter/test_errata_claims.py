@@ -8,11 +8,11 @@ import pytest
 
 from impact88.casework.chapter.staged import collisions, forward
 from impact88.casework.reconstruction.unknowns import solve_for
+from impact88.collision.casescene import sample
 from impact88.errors import UserError
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_STATE, VELOCITIES
 from impact88.program.run import Run, run
-from impact88.program.scene import sample
 
 
 def run1(**changes: str) -> Run:

@@ -33,13 +33,13 @@ from impact88.casework.figures.drawing import (
 from impact88.casework.figures.scenegeometry import plan
 from impact88.casework.figures.sceneview import scene_drawing, scene_svg
 from impact88.casework.figures.views import configurations
+from impact88.collision.casescene import Scene, sample
 from impact88.errors import UserError
 from impact88.interface.commands import figure_command as command
 from impact88.interface.commands.cli import main
 from impact88.interface.commands.figure_command import solve_scene
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import RESULTS, SCENE, quantity
-from impact88.program.scene import Scene, sample
 
 POINT = 25.4 / 72
 
@@ -374,7 +374,7 @@ class TestSvg:
         code = (
             "import sys\nsys.modules['matplotlib'] = None\n"
             "from impact88.casework.figures.sceneview import scene_drawing, scene_svg\n"
-            "from impact88.program.scene import sample\n"
+            "from impact88.collision.casescene import sample\n"
             "assert '<svg' in scene_svg(sample(1), {'VAX': -13, 'VAY': 3, 'VBX': -9, 'VBY': 20})\n"
         )
         subprocess.run([sys.executable, "-c", code], check=True)

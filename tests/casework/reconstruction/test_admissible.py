@@ -6,10 +6,10 @@ import pytest
 from impact88 import solve
 from impact88.casework.chapter.staged import collisions
 from impact88.casework.reconstruction.admissible import friction_limits
+from impact88.collision.casescene import sample
 from impact88.collision.geometry import Geometry
 from impact88.mechanics.state import State
 from impact88.names import IMPULSES
-from impact88.program.scene import sample
 
 
 def state_of(numbers):

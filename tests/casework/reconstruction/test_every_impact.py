@@ -12,11 +12,11 @@ from impact88.casework.reconstruction.answer import Answer
 from impact88.casework.reconstruction.answerremarks import remarks_on
 from impact88.casework.reconstruction.answertable import text_of
 from impact88.casework.reconstruction.drawsandbounds import draws, ranges
+from impact88.collision.casescene import sample
 from impact88.collision.geometry import GEOMETRY
 from impact88.collision.uncertain import read
 from impact88.mechanics.closedform.solve import solve
 from impact88.mechanics.state import State
-from impact88.program.scene import sample
 
 SCENE = {name: float(text) for name, text in sample(1).items()}
 FINAL = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")

@@ -11,10 +11,10 @@ from impact88.casework.reconstruction.adjustment import reconstruct
 from impact88.casework.reconstruction.answer import Answer
 from impact88.casework.reconstruction.answerremarks import remarks_on
 from impact88.casework.reconstruction.evidence import ROUNDED, chi_square_tail, weigh
+from impact88.collision.casescene import sample
 from impact88.collision.uncertain import Uncertain, fixed_value
 from impact88.interface.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
-from impact88.program.scene import sample
 
 SCENE = {name: float(text) for name, text in sample(1).items()}
 MEASURED = ("VAX", "VAY", "VBX", "VBY", "WAF", "WBF")

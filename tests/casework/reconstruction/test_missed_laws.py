@@ -8,12 +8,12 @@ import pytest
 
 from impact88.casework.reconstruction.laws import missed_laws
 from impact88.casework.reconstruction.unknowns import solve_for
+from impact88.collision.casescene import sample
 from impact88.collision.units import SYSTEMS
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_STATE
-from impact88.program.scene import sample
 
 SCENE = {name: float(text) for name, text in sample(1).items()}
 FINAL = ("VAX", "VAY", "WAF", "VBX", "VBY", "WBF")

@@ -10,10 +10,10 @@ from impact88.casework.reconstruction.adjustment import reconstruct
 from impact88.casework.reconstruction.leastsquares import descend
 from impact88.casework.reconstruction.quadrics import Quadrics, follow_paths, quadratic_equations
 from impact88.casework.reconstruction.system import System
+from impact88.collision.casescene import sample
 from impact88.collision.uncertain import fixed_value
 from impact88.mechanics.closedform.solve import solve
 from impact88.mechanics.state import State
-from impact88.program.scene import sample
 
 
 def pairs_of_planes(size, rng, parallel=0):

@@ -21,12 +21,12 @@ from impact88.casework.reconstruction.drawsandbounds import draws, ranges
 from impact88.casework.reconstruction.leastsquares import polish
 from impact88.casework.reconstruction.system import System
 from impact88.casework.reconstruction.unknowns import solve_for
+from impact88.collision.casescene import Scene, sample
 from impact88.collision.uncertain import Uncertain, fixed_value, read
 from impact88.errors import UserError
 from impact88.interface.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
 from impact88.mechanics.state import State
-from impact88.program.scene import Scene, sample
 from impact88.status import IMPOSSIBLE
 
 GEOMETRY = ("DA", "DB", "GA", "PA", "PB", "TA", "TB", "MA", "MB", "IA", "IB")

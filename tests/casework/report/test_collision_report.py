@@ -19,9 +19,9 @@ from longer import long_but
 
 from impact88 import solve
 from impact88.casework.reconstruction import adjustment
+from impact88.collision.casescene import sample
 from impact88.interface.commands.cli import main
 from impact88.names import quantity
-from impact88.program.scene import sample
 
 pytest.importorskip("jinja2")
 

@@ -14,6 +14,7 @@ from impact88.casework.uncertainty.bounds import RECONSTRUCTED, _ranks, bounds
 from impact88.casework.uncertainty.boundstable import as_json, table
 from impact88.casework.uncertainty.ranges import input_names, read_correlations, read_inputs
 from impact88.collision import uncertain
+from impact88.collision.casescene import sample
 from impact88.collision.uncertain import Uncertain, fixed_value, read
 from impact88.errors import UserError
 from impact88.mechanics.accuracy.populations import scenes
@@ -21,7 +22,6 @@ from impact88.mechanics.closedform.general import quantities
 from impact88.mechanics.closedform.solve import solve
 from impact88.mechanics.outcome import forward_model, reconstruction_model
 from impact88.names import FINAL_VELOCITIES, SCENE, VELOCITIES, quantity
-from impact88.program.scene import sample
 from impact88.status import Status
 
 

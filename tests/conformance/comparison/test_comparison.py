@@ -44,7 +44,7 @@ from impact88.errors import UserError
 from impact88.mechanics.accuracy import errorbound
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_VELOCITIES, SCENE
-from impact88.program.vectorized import replay
+from impact88.program.replay import replay
 from impact88.tables.cells import TableUnits
 from impact88.tables.rows import Rows
 

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from installed import COMMAND, impact88
 
+from impact88.collision.casescene import sample
 from impact88.collision.doubles import doubles
 from impact88.conformance.comparison.oracle import answer, exact_decimal, oracle
 from impact88.conformance.comparison.vectors import (
@@ -36,9 +37,8 @@ from impact88.mechanics.accuracy.errorbound import oracle_bounds, scales
 from impact88.mechanics.accuracy.populations import POPULATIONS, texts
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
+from impact88.program.replay import replay
 from impact88.program.run import run
-from impact88.program.scene import sample
-from impact88.program.vectorized import replay
 
 SCENE1 = dict(sample(1))
 

@@ -15,6 +15,7 @@ import pytest
 import wrongprograms
 from longer import long_but
 
+from impact88.collision.casescene import sample
 from impact88.conformance.comparison import agreement, tolerance
 from impact88.conformance.comparison.agreement import DIFFER, LOST
 from impact88.conformance.comparison.vectors import CASEWORK, CLASSES, casework, scenes
@@ -25,7 +26,6 @@ from impact88.mechanics.accuracy.errorbound import scales
 from impact88.mechanics.accuracy.reference import thirty_digits
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
-from impact88.program.scene import sample
 
 SWEEP = os.environ.get("IMPACT88_SWEEP")
 COUNT = 80 if SWEEP else 4

@@ -16,6 +16,7 @@ from installed import impact88
 from tinyrom import CODE, START, rom
 
 from impact88.apple.captured import result
+from impact88.collision.casescene import sample
 from impact88.conformance.qualification.witness.apple import APPLE_II_PLUS, Apple, Lost, read_image
 from impact88.conformance.qualification.witness.hearing import (
     WitnessCase,
@@ -27,9 +28,8 @@ from impact88.conformance.qualification.witness.hearing import (
 )
 from impact88.conformance.qualification.witness.session import Session, small_letters
 from impact88.errors import UserError
-from impact88.program.emulated import LISTING
+from impact88.program.copies import LISTING
 from impact88.program.run import run
-from impact88.program.scene import sample
 
 pytest.importorskip("py65")
 

@@ -13,9 +13,9 @@ from contextlib import suppress
 import pytest
 from installed import COMMAND, impact88
 
+from impact88.collision.casescene import sample
 from impact88.files import packaged_text
 from impact88.program.run import run
-from impact88.program.scene import sample
 
 REPLIES = "-29.04,0,0\n14.52,25.15,0\n"
 

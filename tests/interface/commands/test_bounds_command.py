@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 from installed import impact88
 
+from impact88.collision.casescene import sample
 from impact88.interface.commands import bounds_command as command
 from impact88.interface.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
-from impact88.program.scene import sample
 
 RANGES = ["--range", "MU=0.7 .. 1", "--range", "UX=+- 10%"]
 DVA = ["--outputs", "DVA"]

@@ -20,9 +20,9 @@ from installed import COMMAND, process
 from installed import impact88 as command
 
 import impact88
+from impact88.collision.casescene import Scene, sample
 from impact88.interface.commands import CHAPTER, CHAPTER_MEANING, GROUPS, module_of
 from impact88.interface.commands.cli import COMMANDS, main
-from impact88.program.scene import Scene, sample
 
 needs_full_device = pytest.mark.skipif(
     not os.path.exists("/dev/full"), reason="this system has no /dev/full"

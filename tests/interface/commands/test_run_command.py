@@ -8,11 +8,11 @@ import pytest
 from installed import impact88
 
 from impact88.apple.applesoft.console import Console, keyboard_codes
+from impact88.collision.casescene import sample
 from impact88.errors import UserError
-from impact88.program import emulated
+from impact88.program import copies
 from impact88.program.arithmetics import APPLESOFT
 from impact88.program.run import run, start
-from impact88.program.scene import sample
 
 REPLIES = "-29.04,0,0\n14.52,25.15,0\n"
 ASK_A = "ENTER THE INITIAL VELOCITY COMPONENTS OF MA :Vax,Vay,Wa ?\0"
@@ -191,7 +191,7 @@ def test_values_that_cannot_be_typed_into_the_program(changes, words):
     with pytest.raises(UserError):
         run(sample(1).replaced(changes))
     with pytest.raises(UserError):
-        emulated.run(sample(1).replaced(changes))
+        copies.run_emulated(sample(1).replaced(changes))
 
 
 def test_an_empty_reply_is_asked_again():

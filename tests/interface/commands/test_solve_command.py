@@ -11,10 +11,10 @@ import pytest
 from installed import impact88
 
 from impact88 import replay, solve
+from impact88.collision.casescene import sample
 from impact88.interface.commands.cli import main
 from impact88.mechanics.accuracy.populations import scenes, texts
 from impact88.names import RESULTS, SCENE
-from impact88.program.scene import sample
 from impact88.tables import csvtable
 
 NAMES = list(SCENE)

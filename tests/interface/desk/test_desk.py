@@ -33,15 +33,15 @@ from installed import impact88 as command
 from longer import long_but
 
 from impact88.collision import units
+from impact88.collision.casescene import Scene, sample
 from impact88.collision.scenefile import CASES, case_template, toml_texts
 from impact88.errors import UserError
 from impact88.interface.commands import options, reconstruct_command
 from impact88.interface.commands.cli import main
 from impact88.messages import schemas
 from impact88.names import CHAPTER, RESULTS, SCENE, VELOCITIES
-from impact88.program.emulated import load_machine, run_machine
+from impact88.program.copies import load_machine, run_machine
 from impact88.program.run import run
-from impact88.program.scene import Scene, sample
 
 pytest.importorskip("flask", reason="the desk's extra is not installed")
 pytest.importorskip("waitress", reason="the desk's extra is not installed")

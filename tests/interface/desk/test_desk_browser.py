@@ -17,10 +17,10 @@ from captures import ROOT
 from desk_browser import Page, until
 from installed import impact88 as command
 
+from impact88.collision.casescene import sample
 from impact88.interface.desk import collision as desk_collision
-from impact88.program.emulated import load_machine, run_machine
+from impact88.program.copies import load_machine, run_machine
 from impact88.program.run import run
-from impact88.program.scene import sample
 
 pytestmark = [
     pytest.mark.long,

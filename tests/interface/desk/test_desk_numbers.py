@@ -21,11 +21,11 @@ import pytest
 from desk_browser import until
 from unitscenes import texts
 
+from impact88.collision.casescene import sample
 from impact88.conformance.comparison.vectors import scenes
 from impact88.interface.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_STATE, VELOCITIES
-from impact88.program.scene import sample
 
 SWEEP = bool(os.environ.get("IMPACT88_SWEEP"))
 pytestmark = pytest.mark.browser

@@ -19,11 +19,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
 
+from impact88.collision.casescene import Scene
 from impact88.errors import UserError
 from impact88.interface.commands import cli
 from impact88.interface.commands.cli import INTERRUPTED
 from impact88.program.run import run
-from impact88.program.scene import Scene
 
 from .case import Case
 
@@ -201,7 +201,7 @@ def _no_longer_than(seconds: float, still_seconds: float) -> Iterator[None]:
 
 def _replay_faults(case: Case) -> list[str]:
     """Where `impact88.replay` over all scenes of a case differs from `impact88.run` on each."""
-    from impact88.program.vectorized import replay
+    from impact88.program.replay import replay
 
     rows = [line.split(",") for line in case.stdin.decode().splitlines()]
     names, scenes = rows[0], [dict(zip(rows[0], row, strict=True)) for row in rows[1:]]

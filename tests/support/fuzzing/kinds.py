@@ -21,11 +21,11 @@ import numpy as np
 from impact88.apple.applesoft.decimaltext import is_number
 from impact88.collision.case import VALUE_LIMIT
 from impact88.collision.case import Case as SceneCase
+from impact88.collision.casescene import sample
 from impact88.collision.scenefile import template
 from impact88.errors import UserError
 from impact88.interface.commands.cli import COMMANDS
 from impact88.names import CHAPTER, RESULTS, SCENE
-from impact88.program.scene import sample
 
 from .case import Case
 

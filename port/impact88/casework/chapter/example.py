@@ -10,13 +10,13 @@ from dataclasses import dataclass
 from functools import cache
 from math import hypot
 
+from ...collision.casescene import sample
 from ...collision.uncertain import Uncertain
 from ...mechanics.closedform.solve import solve
 from ...mechanics.outcome import moment_ratio
 from ...mechanics.state import State
 from ...names import FINAL_VELOCITIES
 from ...program.arithmetics import FLOAT64
-from ...program.scene import sample
 from ..reconstruction.adjustment import reconstruct
 from ..reconstruction.unknowns import solve_for
 from .deltav import AS_PRINTED, AS_USED, delta_v, initial_velocity

@@ -19,6 +19,7 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
+from ...collision.casescene import numbers_of
 from ...collision.doubles import double
 from ...collision.units import RULES, System
 from ...errors import UserError
@@ -26,7 +27,6 @@ from ...mechanics.closedform.omitted import COMPONENTS, plane_across
 from ...mechanics.friction import status_sentences
 from ...mechanics.state import pdof
 from ...names import FINAL_VELOCITIES, SCENE, missing
-from ...program.scene import numbers_of
 from .drawing import check_drawable, degrees, unit
 
 PROPORTION = 2.6  # length over width of a vehicle

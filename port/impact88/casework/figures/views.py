@@ -4,8 +4,8 @@ normal: each shows the impulses on it."""
 import math
 from typing import Any
 
+from ...collision.casescene import sample
 from ...collision.units import SYSTEMS
-from ...program.scene import sample
 from . import drawing as d
 from . import sceneview as view
 from .drawing import Box, Drawing, Label, Path, Text, View, place

@@ -16,6 +16,7 @@ from ...apple.applesoft.operators import Real
 from ...casework.chapter import validation
 from ...collision import doubles
 from ...collision.case import check_mapping
+from ...collision.casescene import Scene
 from ...collision.mappings import shortest_text
 from ...collision.units import base_of, system_of
 from ...errors import UserError
@@ -25,9 +26,8 @@ from ...messages.arguments import explains_arguments
 from ...messages.plaintable import plain
 from ...messages.schemas import with_schema
 from ...names import DEFAULT_M, RESULTS, SCENE
+from ...program.replay import replay
 from ...program.run import run
-from ...program.scene import Scene
-from ...program.vectorized import replay
 
 BATCH = 256  # scenes computed together, enough to make the overhead per scene small
 

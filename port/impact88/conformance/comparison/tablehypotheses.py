@@ -17,7 +17,7 @@ from ...equations.edits import readings, variants
 from ...errors import UserError
 from ...mechanics.accuracy import errorbound
 from ...names import SCENE
-from ...program.vectorized import replay
+from ...program.replay import replay
 from .agreement import HALF, MAX_SLIGHT_DIFFERENCE, Bools, ComparedRows, Floats
 from .predicates import Predicate
 from .trials import MIN_FIT, Judge, Program, try_program

@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 
 from ...apple import captured
 from ...casework.report import frame
+from ...collision.casescene import sample
 from ...collision.fields import FIELDS, outcome_fields
 from ...names import FINAL_VELOCITIES, SCENE
 from ...program.run import run
-from ...program.scene import sample
 
 GOLDEN_RUNS = {1: "run1", 2: "run2", 3: "table3"}
 
@@ -83,7 +83,7 @@ def _port(golden: Any) -> Counted:
 
 
 def _replay(golden: Any) -> Counted:
-    from ...program.vectorized import replay
+    from ...program.replay import replay
 
     rows = captured.rows(golden, captured.SCENES)
     replay_result = replay({name: [row["scene"][name] for row in rows] for name in SCENE})

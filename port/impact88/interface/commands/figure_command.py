@@ -23,13 +23,13 @@ from typing import Any
 from ...casework.figures.canvas import check_ending, save
 from ...casework.figures.drawing import Drawing
 from ...casework.figures.sceneview import scene_drawing
+from ...collision.casescene import Scene
 from ...collision.doubles import double
 from ...collision.needs import needs_sentences
 from ...errors import UserError, note
 from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
 from ...mechanics.closedform.solve import solve
 from ...names import FINAL_VELOCITIES, missing
-from ...program.scene import Scene
 from . import options
 
 OF_NOTHING = ("staged", "force", "colinear", "configurations")

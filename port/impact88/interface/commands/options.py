@@ -20,12 +20,12 @@ from ...collision.case import (
     remark_lines,
     share_of,
 )
+from ...collision.casescene import SAMPLES, Scene, sample
 from ...collision.doubles import double
 from ...collision.scenefile import case_in
 from ...errors import UserError, note, quoted
 from ...files import check_apart, display_name
 from ...names import SCENE, check_names
-from ...program.scene import SAMPLES, Scene, sample
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -25,10 +25,10 @@ one another, or no velocity before the impact was found; 2 bad input
 """
 
 from ...collision.case import Case
+from ...collision.casescene import sample
 from ...collision.scenefile import MAX_TOML_BYTES, template, toml_texts
 from ...errors import UserError
 from ...files import decode, read_bytes, replacing
-from ...program.scene import sample
 from . import options
 
 ARGUMENTS = (

@@ -20,12 +20,12 @@ from itertools import chain, repeat
 
 from ...apple.applesoft.console import PRINTER_SLOT, Console, EndOfInput
 from ...collision.case import OWN_NAMES, Case, check_value
+from ...collision.casescene import Scene, published_data
 from ...errors import UserError, note
 from ...files import replacing, typed_line
 from ...names import SCENE, VELOCITIES
 from ...program.arithmetics import ARITHMETICS
 from ...program.run import Run, page, start
-from ...program.scene import Scene, published_data
 from . import options
 
 MOST_REPLIES = 10_000
@@ -145,7 +145,7 @@ def _run(args: options.Args, data: Mapping[str, str], typed: Sequence[str] | Non
 
 def _run_of_copy(args: options.Args, scene: Scene | None) -> Run:
     """Run a copy of the listing on a scene."""
-    from ...program.emulated import ListingCopy
+    from ...program.copies import ListingCopy
 
     if scene is None:
         raise UserError("--listing runs on a scene; expected a scene file or --sample")

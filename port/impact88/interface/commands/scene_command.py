@@ -19,10 +19,10 @@ examples:
   impact88 scene --sample 2         the scene of the Appendix's second sample run
 """
 
+from ...collision.casescene import sample
 from ...collision.scenefile import CASES, SIGNS, case_template, template
 from ...collision.units import system_named
 from ...errors import UserError
-from ...program.scene import sample
 from . import options
 
 __doc__ = (__doc__ or "").format(signs=SIGNS)

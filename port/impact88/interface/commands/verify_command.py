@@ -73,7 +73,7 @@ def main(args: options.Args) -> int:
     inputs = dict(options.one_scene(args)) if has_inputs else None
     copy = None
     if args.listing:
-        from ...program.emulated import ListingCopy
+        from ...program.copies import ListingCopy
 
         copy = ListingCopy(args.listing)
     status = 0

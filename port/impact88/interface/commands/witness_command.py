@@ -20,6 +20,7 @@ from functools import partial
 from typing import Any
 
 from ...collision.case import OWN_NAMES
+from ...collision.casescene import SAMPLES, Scene, sample
 from ...conformance.comparison.vectors import scenes
 from ...conformance.qualification.witness import hearing
 from ...conformance.qualification.witness.apple import Image, read_image
@@ -27,7 +28,6 @@ from ...conformance.qualification.witness.session import Session
 from ...errors import UserError
 from ...messages.progress import progress
 from ...names import SCENE
-from ...program.scene import SAMPLES, Scene, sample
 from . import options
 
 Job = Callable[[Session], hearing.Outcome]

@@ -21,13 +21,13 @@ from jinja2 import ChoiceLoader, PackageLoader
 from markupsafe import Markup, escape
 from werkzeug.exceptions import HTTPException
 
+from ...collision.casescene import SAMPLES, sample
 from ...collision.scenefile import CASES, SIGNS
 from ...errors import UserError
 from ...files import packaged_text
 from ...mechanics.state import KNOWABLE
 from ...messages.plaintable import number
 from ...names import DEFAULT_M, SCENE, quantity
-from ...program.scene import SAMPLES, sample
 from ...version import __version__
 from . import collision, reconstruction
 from .formview import convert_values, digits, filled_in, to_fill_in

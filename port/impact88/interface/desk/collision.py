@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from ...apple.emulator.screen import shown_character
 from ...collision import uncertain
 from ...collision.case import FACING_COURSE, Case, check_value, remark_lines
+from ...collision.casescene import Scene, sample
 from ...collision.doubles import double_or_none, doubles_of, is_number
 from ...collision.fields import FINAL_SPINS
 from ...collision.geometry import coordinate_names
@@ -24,7 +25,6 @@ from ...mechanics.closedform.columns import OPTIONAL_OF_POINTS
 from ...messages.plaintable import number
 from ...messages.schemas import with_schema
 from ...names import FINAL_VELOCITIES, RESULTS, SCENE, quantity
-from ...program.scene import Scene, sample
 from .formview import entries, spoken_direction, units_shown
 
 DRAWS = 20_000
@@ -122,7 +122,7 @@ def answer(values: Mapping[str, str], units: str = "") -> dict[str, Any]:
     from ...casework.reconstruction.derived import without_noise
     from ...conformance.comparison.oracle import oracle
     from ...printouts.judging import beside
-    from ...program.emulated import load_machine, run_machine
+    from ...program.copies import load_machine, run_machine
     from ...program.run import page
 
     form = read(values, units)

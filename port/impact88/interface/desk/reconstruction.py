@@ -7,6 +7,7 @@ from typing import Any
 
 from ...collision import uncertain
 from ...collision.case import Case, remark_lines
+from ...collision.casescene import sample
 from ...collision.scenefile import known_template
 from ...collision.uncertain import Uncertain, skid_remarks
 from ...collision.units import RULES, display_values
@@ -15,7 +16,6 @@ from ...mechanics.state import KNOWABLE
 from ...messages.plaintable import number
 from ...messages.schemas import with_schema
 from ...names import FINAL_STATE, SCENE, VELOCITIES, check_names, quantity
-from ...program.scene import sample
 from .formview import digits, entries, spoken_direction, units_shown
 
 DRAWS = 20_000  # random draws for the quantiles, as for a collision's bounds

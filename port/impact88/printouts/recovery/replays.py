@@ -73,11 +73,10 @@ def run_columns(
 ) -> tuple[list[str], dict[str, Any]]:
     """Replay scenes. Return their endings ("" for a normal one), and for each of ``names`` the
     printed field as an array of texts ("" where the run does not get as far)."""
-    from ...program.vectorized import replay
+    from ...program.replay import replay
 
     # columns throughout: one program serves all batches
     replayed = replay({name: [scene[name] for scene in scenes] for name in SCENE})
-    replayed.write_fields(names)
     endings = replayed.error.tolist()
     for index in replayed.zero_determinant.nonzero()[0].tolist():
         endings[index] = ZERO_DETERMINANT

@@ -29,7 +29,7 @@ from . import verification
 from .verification import Examined, Verification, Verifications
 
 if TYPE_CHECKING:
-    from ...program.emulated import ListingCopy
+    from ...program.copies import ListingCopy
     from ..judging.copies import CopyPages
 
 PICTURE_STARTS = (b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff", b"II*\x00", b"MM\x00*", b"%PDF-")

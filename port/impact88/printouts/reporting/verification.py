@@ -24,7 +24,7 @@ from ..recovery.replays import run_once
 from ..recovery.typedtext import stored_and_printed
 
 if TYPE_CHECKING:
-    from ...program.emulated import ListingCopy
+    from ...program.copies import ListingCopy
     from ..explaining.causes import Cause
 
 TITLES = {

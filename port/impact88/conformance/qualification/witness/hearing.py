@@ -21,13 +21,13 @@ from ....apple.applesoft.console import Console
 from ....apple.captured import ARITHMETIC, ENDINGS, FUZZ, PROGRAMS, SCENES
 from ....apple.emulator.faults import TooManyStatements
 from ....casework.report import frame
+from ....collision.casescene import Scene, sample
 from ....collision.fields import FIELDS, outcome_fields
 from ....errors import UserError
 from ....files import files_of, packaged_bytes, read_bytes, write_folder
 from ....names import SCENE
-from ....program import emulated
+from ....program import copies
 from ....program.run import run
-from ....program.scene import Scene, sample
 from ..selfcheck import GOLDEN_RUNS
 from .apple import Image, Lost
 from .session import LONGEST_TYPED, Session
@@ -191,7 +191,7 @@ def hear_scene(
     The Apple here has no disk system, which takes some lines of a printout as commands; the one of
     1988 had, so those lines are taken out before comparing with what was published.
     """
-    from ....program.vectorized import replay
+    from ....program.replay import replay
 
     rom = session.run_scene(scene)
     mine = _contents(rom)
@@ -199,7 +199,7 @@ def hear_scene(
     if capture:
         sides[CAPTURE] = mine, _contents(capture)
     sides[PORT] = mine, _contents(run(scene, dos=False)._asdict())
-    sides[EMULATOR] = mine, _contents(emulated.run(scene, dos=False)._asdict())
+    sides[EMULATOR] = mine, _contents(copies.run_emulated(scene, dos=False)._asdict())
     replay_result = replay({column: [scene[column]] for column in SCENE})
     fields = {name: text for name in FIELDS if (text := replay_result.printed(name).tolist()[0])}
     sides[REPLAY] = outcome_fields(rom["printout"]), fields

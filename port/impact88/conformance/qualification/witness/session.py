@@ -11,11 +11,11 @@ import re
 from functools import cached_property
 from typing import Any
 
+from ....collision.casescene import Scene
 from ....errors import UserError
 from ....files import packaged_text
 from ....messages.progress import progress
-from ....program.emulated import LISTING
-from ....program.scene import Scene
+from ....program.copies import LISTING
 from .apple import Apple, Lost, State
 
 PROMPT = "]"

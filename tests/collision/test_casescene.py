@@ -11,7 +11,7 @@ from impact88.errors import UserError
 from impact88.interface.commands.cli import main
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import SCENE
-from impact88.program.scene import Scene, published_data, sample
+from impact88.collision.casescene import Scene, published_data, sample
 
 COMPLETE = sample(1).to_toml()
 
