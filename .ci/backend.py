@@ -58,6 +58,7 @@ def commit_recorded():
 
 HEADERS = {
     "port/impact88/mechanics/formulas.h": "impact88.mechanics.translate",
+    "port/impact88/program/listing.h": "impact88.program.generate",
 }
 """Generated C header -> the module that prints it, from sources read as text: numpy and other
 dependencies are not there when the package is built."""

@@ -1237,7 +1237,8 @@ def test_another_letter_is_one_that_the_page_has_elsewhere(count: int, expected:
 @pytest.mark.long
 def test_a_copy_that_prints_a_scanned_page_is_named(tmp_path) -> None:
     from impact88.files import packaged_text
-    from impact88.program.copies import LISTING, ListingCopy
+    from impact88.program.copies import ListingCopy
+    from impact88.program.scene import LISTING
 
     path = str(ROOT / "golden" / "scans" / FEW[0])
     listing = tmp_path / "office.bas"

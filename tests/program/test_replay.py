@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import romcalls
 
+from impact88 import library
 from impact88.apple.captured import memory_contents, result
 from impact88.errors import UserError
 from impact88.names import SCENE
@@ -17,14 +18,14 @@ from impact88.program.copies import load_machine
 from impact88.program.kernel import Program, Results
 from impact88.program.replay import COMPUTED, PRINTED, replay
 from impact88.program.run import run
-from impact88.program.scene import Scene, sample
+from impact88.program.scene import sample
 
 CASES = captures.scenes()
 COLUMNS = {name: [case["scene"][name] for case in CASES] for name in SCENE}
 ELEMENTS = 56
 CALLS_STEP = 25  # of the captured calls, one in so many
 
-needs_library = pytest.mark.skipif(kernel.library() is None, reason="no compiled library")
+needs_library = pytest.mark.skipif(kernel.compiled_library() is None, reason="no compiled library")
 
 
 def without_disk_commands(page: str) -> str:
@@ -36,9 +37,9 @@ def without_disk_commands(page: str) -> str:
 def step(request, monkeypatch):
     """The step through the captures by each way; the port is three hundred times slower."""
     if request.param == "port":
-        monkeypatch.setattr(kernel, "library", lambda: None)
+        monkeypatch.setattr(kernel, "compiled_library", lambda: None)
         return 12
-    if kernel.library() is None:
+    if kernel.compiled_library() is None:
         pytest.skip("no compiled library")
     return 1
 
@@ -114,7 +115,7 @@ def test_results_with_and_without_the_library(monkeypatch):
     scenes = [*CASES[:20], *({"scene": extreme_scene(rng)} for _ in range(30))]
     columns = {name: [scene["scene"][name] for scene in scenes] for name in SCENE}
     by_library = replay(columns)
-    monkeypatch.setattr(kernel, "library", lambda: None)
+    monkeypatch.setattr(kernel, "compiled_library", lambda: None)
     by_port = replay(columns)
     for name in COMPUTED:
         np.testing.assert_array_equal(by_library.floats(name), by_port.floats(name))
@@ -216,13 +217,16 @@ def test_a_name_that_is_no_result():
 
 
 @needs_library
-def test_another_listing_than_the_library_was_built_from_is_not_run_by_it(monkeypatch):
+def test_a_library_of_another_listing_is_not_used(monkeypatch):
+    kernel._loaded.cache_clear()
     monkeypatch.setattr(kernel, "digest", lambda steps: "another")
-    kernel.library.cache_clear() if hasattr(kernel.library, "cache_clear") else None
-    kernel._load.cache_clear()
-    try:
-        assert kernel.library() is None
-        assert replay(Scene(sample(1))).printed("XB").tolist() == ["14.51"]
-    finally:
-        monkeypatch.undo()
-        kernel._load.cache_clear()
+    assert kernel.compiled_library() is None
+    assert replay(sample(1)).printed("XB").tolist() == ["14.51"]
+    kernel._loaded.cache_clear()
+
+
+@needs_library
+def test_the_library_can_be_switched_off():
+    with library.switched_off():
+        assert kernel.compiled_library() is None
+    assert kernel.compiled_library() is not None

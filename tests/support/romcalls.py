@@ -60,7 +60,7 @@ def _run(steps: list[tuple[str, int]], operands: list[real.Number], text: str = 
     stack = (kernel.Real * 16)()
     field = ctypes.create_string_buffer(kernel.FIELD)
     texts = (ctypes.c_char_p * 1)(text.encode("ascii") + b"\n")
-    error = kernel.library().applesoft_steps(ctypes.byref(source), texts, stack, field)
+    error = kernel.compiled_library().applesoft_steps(ctypes.byref(source), texts, stack, field)
     if error:
         return f"E{error}"
     if steps[-1][0] == "PRINT":

@@ -156,7 +156,7 @@ def _run_port(args: options.Args, data: Mapping[str, str], typed: Sequence[str] 
 
 def _run_copy(args: options.Args, scene: Scene | None) -> Run:
     """Run a copy of the listing on a scene, in the emulator."""
-    from ..program.emulated import ListingCopy
+    from ..program.copies import ListingCopy
 
     if scene is None:
         raise UserError("--listing runs on a scene; expected a FILE.toml or --sample")

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .. import library
 from ..apple.applesoft import decimaltext
 from ..files import packaged_text
 from .compiler import CODES, Steps
@@ -117,7 +118,7 @@ class Program:
         if any(t.count(b"\n") != len(c) for t, c in zip(texts, columns, strict=True)):
             raise ValueError("a text of two lines")
         arrays = (results.ending, results.assigned, results.reals, results.array)
-        library().applesoft_run(
+        compiled_library().applesoft_run(
             ctypes.byref(self.source),
             (ctypes.c_char_p * len(texts))(*texts),
             bytes(len(column) == 1 for column in columns),
@@ -158,18 +159,11 @@ def listing() -> Program:
 
 
 @cache
-def _load() -> Any:
-    from pathlib import Path
-
-    path = Path(__file__).with_name("_applesoft.so")
-    if not path.exists() or os.environ.get("IMPACT88_ACCELERATED") == "0":
-        return None
-    library = ctypes.CDLL(str(path))
-    library.applesoft_listing.restype = ctypes.c_char_p
-    return library if library.applesoft_listing().decode() == digest(listing().steps) else None
+def _loaded() -> Any:
+    return library.loaded("applesoft_listing", digest(listing().steps))
 
 
-def library() -> Any:
+def compiled_library() -> Any:
     """Return the compiled library; None where it was not built from this listing, or is switched
     off."""
-    return _load()
+    return None if library.is_switched_off() else _loaded()

@@ -391,7 +391,7 @@ def _run_block(
     that is not a number."""
     count = len(part.ending)
     code = np.full(count, OUTSIDE)
-    if program and kernel.library():
+    if program and kernel.compiled_library():
         try:
             program.run([columns[name] for name in used], part)
         except ValueError:  # other characters than ASCII's, or several lines

@@ -28,7 +28,7 @@ from impact88.conformance.qualification.witness.hearing import (
 )
 from impact88.conformance.qualification.witness.session import Session, small_letters
 from impact88.errors import UserError
-from impact88.program.copies import LISTING
+from impact88.program.scene import LISTING
 from impact88.program.run import run
 
 pytest.importorskip("py65")

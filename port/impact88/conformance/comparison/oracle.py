@@ -165,7 +165,7 @@ def oracle(
         name: (
             replay_result.present(name).tolist(),
             replay_result.printed(name).tolist() if name != "KF" else [None] * len(scenes),
-            replay_result.reals(name).tolist(),
+            replay_result.reals("KI" if name == "LOSS" else name).tolist(),
         )
         for name in RESULTS
         if name in replay_result.names

@@ -15,7 +15,7 @@ from ....collision.casescene import Scene
 from ....errors import UserError
 from ....files import packaged_text
 from ....messages.progress import progress
-from ....program.copies import LISTING
+from ....program.scene import LISTING
 from .apple import Apple, Lost, State
 
 PROMPT = "]"
