@@ -1,0 +1,103 @@
+"""Probability densities of amounts: random draws, log densities, Gaussian copula."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import lru_cache
+from statistics import NormalDist
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cases.amounts import Amount
+from ..errors import UserError
+
+Array = NDArray[np.float64]
+
+TABLE_END = 8.3  # standard normal variates beyond occur once in 1e16
+
+
+def uniform(low: float, high: float) -> Amount:
+    """Return an amount between two values, none preferred."""
+    return Amount((low + high) / 2, low, high, "uniform")
+
+
+def log_density(amount: Amount, values: Array) -> Array:
+    """Return the log density at values within the limits, up to a constant."""
+    off = values - amount.value
+    if amount.kind == "normal":
+        return -0.5 * np.square(off / amount.sd)
+    if amount.kind != "triangular":
+        return np.zeros(np.shape(values))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        side = np.where(off > 0, amount.high - amount.value, amount.value - amount.low)
+        return np.log(np.clip(1.0 - np.abs(off) / np.where(off == 0, 1.0, side), 0.0, 1.0))
+
+
+def draw(amount: Amount, count: int, rng: np.random.Generator) -> Array:
+    """Return independent random values."""
+    if amount.kind == "uniform":
+        return rng.uniform(amount.low, amount.high, count)
+    return from_normal(amount, rng.standard_normal(count))
+
+
+def from_normal(amount: Amount, variates: Array) -> Array:
+    """Return the values at the quantiles of standard normal variates (interpolated in a table)."""
+    if amount.kind == "exact":
+        return np.full(np.shape(variates), amount.value)
+    if amount.kind == "normal" and math.isinf(amount.low) and math.isinf(amount.high):
+        return amount.value + amount.sd * variates
+    return np.clip(np.interp(variates, *_quantile_table(amount)), amount.low, amount.high)
+
+
+@lru_cache(maxsize=64)
+def _quantile_table(amount: Amount) -> tuple[Array, Array]:
+    """Return standard normal variates and the values at the same quantiles."""
+    places, standard = np.linspace(-TABLE_END, TABLE_END, 8193), NormalDist()
+    shares = np.array([standard.cdf(place) for place in places.tolist()])
+    low, high, mode = amount.low, amount.high, amount.value
+    if amount.kind == "uniform":
+        return places, low + shares * (high - low)
+    if amount.kind == "triangular":
+        width, rise = high - low, mode - low
+        left = low + np.sqrt(shares * width * rise)
+        right = high - np.sqrt((1.0 - shares) * width * (width - rise))
+        return places, np.where(shares * width <= rise, left, right)
+    normal = NormalDist(mode, amount.sd)
+    below, above = normal.cdf(low), normal.cdf(high)
+    targets = np.clip(below + shares * (above - below), 1e-300, 1.0 - 1e-16)
+    return places, np.array([normal.inv_cdf(target) for target in targets.tolist()])
+
+
+def correlated(
+    amounts: Mapping[str, Amount],
+    count: int,
+    rng: np.random.Generator,
+    correlations: Mapping[tuple[str, str], float],
+) -> Array:
+    """Return random values (rows), correlated through a Gaussian copula.
+
+    Raises
+    ------
+    UserError
+        For an unknown name, and correlations that contradict one another.
+    """
+    index = {name: k for k, name in enumerate(amounts)}
+    matrix = np.eye(len(amounts))
+    for (first, second), value in correlations.items():
+        if first not in index or second not in index or first == second:
+            raise UserError(
+                f"correlation of {first} and {second}: expected two of the values known within "
+                f"limits, {' '.join(index)}"
+            )
+        if not -1.0 <= value <= 1.0:
+            raise UserError(f"correlation of {first} and {second} is {value}; expected -1 to 1")
+        matrix[index[first], index[second]] = matrix[index[second], index[first]] = value
+    sizes, vectors = np.linalg.eigh(matrix)
+    if sizes.min(initial=0.0) < -1e-9:
+        raise UserError("these correlations contradict one another")
+    root = vectors * np.sqrt(np.clip(sizes, 0.0, None))
+    normal = rng.standard_normal((count, len(amounts))) @ root.T
+    columns = [from_normal(item, z) for item, z in zip(amounts.values(), normal.T, strict=True)]
+    return np.stack(columns, 1)

@@ -1,0 +1,284 @@
+"""Random draws of all impacts that physics allows, weighted by what is known.
+
+The method is sequential Monte Carlo (Del Moral, Doucet and Jasra 2006). The prior is flat over
+velocities before the impact, e, e_m and P_t/P_n; each known value multiplies it by its density.
+Particles start from the coordinates' own densities; the observations' are raised to powers that
+grow from 0 to 1; between, particles move by differences of others (ter Braak 2006), which suits any
+affine shape.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .densities import draw, log_density
+from .extremes import extremes
+from .impacts import COURSES, Array, Impacts
+from .problem import WIDEST, Known, Problem
+
+PARTICLES = 8000  # 2,000 left 45 to 80 independent families in hard problems
+KEPT_PROPORTION = 0.5  # of the effective sample size, at each power (Del Moral et al. 2006)
+FIRST_BATCHES = 60  # of points from the prior, in search of impacts that physics allows
+MIN_FIRST = 20  # impacts that physics allows, to start from
+EXACT_WIDTH = 5e-4  # standard deviation of exact observations, in typical sizes
+SOFT_LIMIT = 0.02  # softness of a limit while particles move, in half widths
+ACCEPTANCE = 0.25  # proportion of proposals accepted, aimed at (ter Braak 2006)
+JUMP = 2.38  # scale of a differential-evolution move, over sqrt(2 d) (ter Braak 2006)
+MODE_JUMPS = 0.05  # proportion of moves by a whole difference, between modes
+MAX_ROUNDS = 40  # of moves, at each power
+MAX_FRICTION_ANGLE = 1.47  # radians: |P_t/P_n| of 10
+
+
+class State(NamedTuple):
+    """Particles: points, log densities of prior and observations, and whether these hold."""
+
+    points: Array
+    prior: Array
+    likelihood: Array
+    holds: NDArray[np.bool_]
+
+    def chosen(self, rows: NDArray[np.int64]) -> State:
+        """Return some of the particles."""
+        return State(*(column[rows] for column in self))
+
+
+@dataclass
+class Sample:
+    """Draws: ``points`` (rows) over ``names``.
+
+    ``families``: number of independent particles that the draws descend from."""
+
+    problem: Problem
+    names: list[str]
+    points: Array
+    families: float
+
+    def __post_init__(self) -> None:
+        with np.errstate(all="ignore"):
+            self._impacts = self.problem.impacts(self.names, self.points)
+
+    def __getitem__(self, name: str) -> Array:
+        """Return the values of a quantity."""
+        with np.errstate(all="ignore"):
+            values = self.problem.quantity(self._impacts, name)
+        return np.broadcast_to(values, len(self.points))
+
+    def bounds(self, names: Sequence[str], seed: int = 0) -> dict[str, tuple[float, float]]:
+        """Return the least and the greatest values found within all limits."""
+        target, rng = Target(self.problem), np.random.default_rng([seed, 2])
+        ends = np.array([item.amount.limits() for item in target.items]).T
+
+        def table(points: Array) -> Array:
+            impacts = self.problem.impacts(self.names, points)
+            state = target(points, impacts)
+            counts = np.isfinite(state.prior) & state.holds
+            with np.errstate(all="ignore"):
+                columns = [self.problem.quantity(impacts, name) + 0.0 * points[:, 0] for name in names]
+            return np.where(counts[:, None], np.stack(columns, 1), np.nan)
+
+        values, _ = extremes(table, self.points, (ends[0], ends[1]), rng)
+        return {name: (float(low), float(high)) for name, low, high in zip(names, *values, strict=True)}
+
+
+class Target:
+    """The density of one problem over its coordinates."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem, self.items = problem, problem.coordinates
+        self.names = [item.name for item in self.items]
+        self.circular = np.array(
+            [
+                item.name in ("GA", *COURSES) and item.amount.high - item.amount.low >= 360
+                for item in self.items
+            ],
+            bool,
+        )
+
+    def start(self, count: int, rng: np.random.Generator) -> tuple[Array, Array]:
+        """Return points, and the log of their weights under the prior."""
+        columns, weights = [], np.zeros(count)
+        for item in self.items:
+            if item.name == "MUP" and item.name not in self.problem.known:
+                column = np.tan(rng.uniform(-MAX_FRICTION_ANGLE, MAX_FRICTION_ANGLE, count))
+                weights += np.log1p(column**2)
+            else:
+                column = draw(item.amount, count, rng)
+            columns.append(column)
+        return np.stack(columns, 1), weights
+
+    def log_prior(self, points: Array) -> Array:
+        """Return the log densities of known coordinates; -inf beyond their limits."""
+        total = np.zeros(len(points))
+        for item, column in zip(self.items, points.T, strict=True):
+            low, high = item.amount.limits()
+            inside = (column >= low) & (column <= high)
+            if item.amount.kind != "uniform":
+                total += log_density(item.amount, np.clip(column, low, high))
+            total[~inside] = -np.inf
+        return total
+
+    def __call__(self, points: Array, impacts: Impacts | None = None) -> State:
+        """Return points with the log densities of the prior and of the observations."""
+        problem = self.problem
+        impacts = impacts or problem.impacts(self.names, points)
+        with np.errstate(all="ignore"):
+            prior = self.log_prior(points)
+            prior = prior + impacts.log_volume() + problem.log_polar(self.names, points)
+            allowed = np.isfinite(prior)
+            for _, margin in problem.margins(impacts):
+                allowed = allowed & (margin >= 0)
+            for k in (0, 1, 3, 4):
+                allowed = allowed & (np.abs(impacts.before[k]) <= WIDEST * problem.speed)
+            prior = np.where(allowed, prior, -np.inf)
+            likelihood, holds = np.zeros(len(points)), np.ones(len(points), bool)
+            for item in problem.observed:
+                part, within = observation(item, problem.misses(impacts, item))
+                likelihood, holds = likelihood + part, holds & within
+        return State(points, prior, np.nan_to_num(likelihood, nan=-1e300, neginf=-1e300), holds)
+
+
+def observation(item: Known, off: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Return log densities of an observation, softened at limits, and whether it is within them."""
+    amount = item.amount
+    if not amount.varies:
+        width = EXACT_WIDTH * item.size
+        return -0.5 * (off / width) ** 2, np.abs(off) <= 4 * width
+    low, high = (limit - amount.value for limit in amount.limits())
+    beyond = np.maximum(np.maximum(off - high, low - off), 0.0)
+    density = -0.5 * (beyond / (SOFT_LIMIT * (high - low) / 2)) ** 2
+    if amount.kind != "uniform":
+        density = density + log_density(amount, np.clip(off, low, high) + amount.value)
+    return density, beyond <= 0
+
+
+def sample(
+    problem: Problem,
+    count: int = 20_000,
+    seed: int = 0,
+    particles: int = PARTICLES,
+    progress: Callable[[float], object] | None = None,
+) -> Sample | None:
+    """Return draws, or None if no admissible impact is found within all limits.
+
+    Parameters
+    ----------
+    problem : Problem
+        The problem, with at least one coordinate.
+    count : int, default 20000
+        Number of draws.
+    seed : int, default 0
+        Random seed.
+    particles : int
+        Number of particles.
+    progress : callable, optional
+        Called with the power reached, from 0 to 1.
+    """
+    rng = np.random.default_rng([seed, 1])
+    target = Target(problem)
+    first = _first(target, particles, rng)
+    if first is None:
+        return None
+    state, log_weights = first
+    family, power, scale = np.arange(len(state.points)), 0.0, 1.0
+    while power < 1.0:
+        step = _next_power(log_weights, state.likelihood, power, particles)
+        rows = _resample(log_weights + (step - power) * state.likelihood, particles, rng)
+        state, family, power = state.chosen(rows), family[rows], step
+        log_weights = np.zeros(particles)
+        state, scale = _move(target, state, power, scale, 2.0 if power < 1.0 else 5.0, rng)
+        if progress is not None:
+            progress(power)
+    kept = [state.points[state.holds]]
+    while sum(map(len, kept)) < count and len(kept[0]):
+        state, scale = _move(target, state, power, scale, 0.5, rng)
+        kept.append(state.points[state.holds])
+    drawn = np.concatenate(kept)[:count]
+    if not len(drawn):
+        return None
+    sizes = np.bincount(family)
+    return Sample(problem, target.names, drawn, float(sizes.sum() ** 2 / (sizes**2).sum()))
+
+
+def _first(
+    target: Target, particles: int, rng: np.random.Generator
+) -> tuple[State, Array] | None:
+    """Return particles of the prior that physics allows, and the log of their weights."""
+    parts, number = [], 0
+    for _ in range(FIRST_BATCHES):
+        points, weights = target.start(5 * particles, rng)
+        state = target(points)
+        rows = np.flatnonzero(np.isfinite(state.prior))
+        weights = weights + state.prior - target.log_prior(points)
+        parts.append((state.chosen(rows), weights[rows]))
+        number += len(rows)
+        if number >= 2 * particles:
+            break
+    if number < MIN_FIRST:
+        return None
+    states, columns = zip(*parts, strict=True)
+    state = State(*(np.concatenate(column) for column in zip(*states, strict=True)))
+    return state, np.concatenate(columns)
+
+
+def _next_power(log_weights: Array, likelihood: Array, power: float, particles: int) -> float:
+    """Return the power at which half of the effective sample size is left (bisection)."""
+
+    def effective(step: float) -> float:
+        logs = log_weights + (step - power) * likelihood
+        weights = np.exp(logs - logs.max())
+        return float(weights.sum() ** 2 / (weights**2).sum())
+
+    least = KEPT_PROPORTION * min(effective(power), 2 * particles)
+    if effective(1.0) >= least:
+        return 1.0
+    low, high = np.log(max(power, 1e-12) * (1 + 1e-9)), 0.0
+    for _ in range(40):
+        middle = (low + high) / 2
+        low, high = (middle, high) if effective(np.exp(middle)) >= least else (low, middle)
+    return float(np.exp(low))
+
+
+def _resample(log_weights: Array, count: int, rng: np.random.Generator) -> NDArray[np.int64]:
+    """Return systematic choices in proportion to weights."""
+    total = np.cumsum(np.exp(log_weights - log_weights.max()))
+    places = (rng.random() + np.arange(count)) / count * total[-1]
+    return np.minimum(np.searchsorted(total, places), len(total) - 1)
+
+
+def _move(
+    target: Target,
+    state: State,
+    power: float,
+    scale: float,
+    distance: float,
+    rng: np.random.Generator,
+) -> tuple[State, float]:
+    """Move particles until each was accepted ``distance`` times on average; return them and the
+    adapted scale of moves."""
+    points, prior, likelihood, holds = (column.copy() for column in state)
+    count, d = points.shape
+    moved = 0.0
+    for rounds in range(MAX_ROUNDS):
+        first, second = rng.integers(0, count, (2, count))
+        jump = JUMP / np.sqrt(2 * d) * scale * np.exp(rng.normal(0, 0.5, (count, 1)))
+        jump[rng.random(count) < MODE_JUMPS] = 1.0
+        proposal = points + jump * (points[first] - points[second])
+        proposal += 1e-6 * (points[first] - points[rng.permutation(count)])
+        turned = (proposal[:, target.circular] + 180) % 360 - 180
+        proposal[:, target.circular] = turned
+        new = target(proposal)
+        gain = new.prior - prior + power * (new.likelihood - likelihood)
+        accepted = np.log(rng.random(count)) < gain
+        for old, fresh in zip((points, prior, likelihood, holds), new, strict=True):
+            old[accepted] = fresh[accepted]
+        rate = float(accepted.mean())
+        scale = float(np.clip(scale * np.exp(rate - ACCEPTANCE), 0.02, 2.0))
+        moved += rate
+        if moved >= distance and rounds >= 1:
+            break
+    return State(points, prior, likelihood, holds), scale

@@ -1,0 +1,362 @@
+"""Every impact that agrees with what is known: weighted least squares from many starts.
+
+The Levenberg-Marquardt method (Moré 1978) goes from random starts, many at a time, to minima of
+the sum of squared misfits in standard deviations. Exact values are observations with a tolerance
+that shrinks, and hold exactly at the end (Gauss-Newton in their null space). Starts go on until the
+expected number of minima not yet seen is below 0.05 (Boender and Rinnooy Kan 1987).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .densities import draw
+from .impacts import COEFFICIENTS, COURSES, IMPULSES, Array
+from .problem import Known, Problem
+
+BATCH = 120  # starts at a time
+MAX_STARTS = 960
+MAX_UNSEEN = 0.05  # expected number of minima not seen, at which starts end
+MAX_IMPACTS = 24
+RIDGE = 0.1  # sum of squares that separates two minima
+STAGES = ((1e-2, 12), (1e-4, 12), (1e-6, 16))  # tolerance of exact values, in sizes; iterations
+LAST_STAGE = ((1e-6, 30),)  # where all values are exact, or none
+EXACT_TOL = 1e-9  # misfit of exact values that is rounding of doubles, in sizes
+TYPED_TOL = 1e-3  # misfit of exact values that is rounding of what was typed: three digits
+CANDIDATE_TOL = 1e-4  # misfit at which iterations end near an impact
+DIFFERENCE_STEP = 1e-7
+RANK_TOL = 1e-7  # singular values below, relative to the largest, are 0
+INSIDE_TOL = 1e-7  # beyond a limit of physics by less, it holds
+
+
+class Minimum(NamedTuple):
+    """A minimum: the ``point`` over scaled coordinates, the sum of ``squares`` of what has
+    tolerances, and the largest misfit of exact values."""
+
+    point: Array
+    squares: float
+    missed: float
+
+
+@dataclass
+class Fit:
+    """One impact that agrees with what is known, or comes nearest.
+
+    ``sensitivity``: change of the coordinates by one standard deviation of each measured value;
+    ``measured``: those values; ``open_directions``: changes that no known value resists."""
+
+    problem: Problem
+    names: list[str]
+    point: Array
+    squares: float
+    missed: float
+    open_directions: Array
+    sensitivity: Array
+    measured: list[Known]
+    key: Array = field(default_factory=lambda: np.empty(0))
+    settled: NDArray[np.bool_] = field(default_factory=lambda: np.empty(0, bool))
+    reached: int = 1
+    rank: int = 0  # directions that measured values determine
+
+    @property
+    def redundancy(self) -> int:
+        """Number of measured values more than needed."""
+        return len(self.measured) - self.rank
+
+    @property
+    def covariance(self) -> Array:
+        """Covariance of the coordinates, to first order."""
+        return self.sensitivity @ self.sensitivity.T
+
+    @property
+    def probability(self) -> float:
+        """Probability of a sum of squares as large or larger (chi-square)."""
+        return chi_square_tail(self.squares, self.redundancy) if self.redundancy else 1.0
+
+    def value(self, name: str) -> float:
+        """Return a quantity of the impact."""
+        impacts = self.problem.impacts(self.names, self.point[None])
+        with np.errstate(all="ignore"):
+            return float(np.ravel(self.problem.quantity(impacts, name))[0])
+
+    def broken(self, friction: bool = False) -> dict[str, float]:
+        """Return the conditions of physics that the impact breaks, and by how much in typical
+        sizes."""
+        impacts = self.problem.impacts(self.names, self.point[None])
+        with np.errstate(all="ignore"):
+            rows = self.problem.margins(impacts, friction)
+        excess: dict[str, float] = {}
+        for name, margin in rows:
+            amount = -float(np.nan_to_num(np.ravel(margin)[0], nan=-1.0))
+            if amount > INSIDE_TOL:
+                excess[name] = max(amount, excess.get(name, 0.0))
+        return excess
+
+
+class Search:
+    """Least squares of one problem.
+
+    Parameters
+    ----------
+    problem : Problem
+        The problem.
+    limited : bool, default False
+        Count what physics forbids as a misfit.
+    """
+
+    def __init__(self, problem: Problem, limited: bool = False) -> None:
+        self.problem, self.limited = problem, limited
+        self.priors: list[Known] = []
+        for item in problem.coordinates:
+            name = item.name
+            if name in COEFFICIENTS and name not in problem.given:
+                name = IMPULSES[COEFFICIENTS.index(name)]
+            self.priors.append(Known(name, item.amount, problem.size(name)))
+        self.names = [item.name for item in self.priors]
+        self.sizes = np.array([item.size for item in self.priors])
+        self.places = [k for k, name in enumerate(self.names) if name in problem.known]
+        self.soft = [item for item in problem.observed if item.sd]
+        self.hard = [item for item in problem.observed if not item.sd]
+        self.measured = [*(self.priors[k] for k in self.places), *self.soft]
+
+    def residuals(self, points: Array) -> tuple[Array, Array]:
+        """Return misfits in standard deviations, and those of exact values in sizes (columns)."""
+        count = len(points)
+        with np.errstate(all="ignore"):
+            impacts = self.problem.impacts(self.names, points * self.sizes)
+            soft = [
+                (points[:, k] * self.sizes[k] - self.priors[k].amount.value) / self.priors[k].sd
+                for k in self.places
+            ]
+            soft += [self.problem.misses(impacts, item) / item.sd for item in self.soft]
+            hard = [self.problem.misses(impacts, item) / item.size for item in self.hard]
+            if self.limited:
+                hard += [np.minimum(row, 0.0) for _, row in self.problem.margins(impacts)]
+        return _columns(soft, count), _columns(hard, count)
+
+    def slopes(self, point: Array) -> tuple[Array, Array]:
+        """Return derivatives of both kinds of residuals at a point, by central differences."""
+        ahead, behind = (
+            self._shifted(point[None], step * np.eye(len(point)))
+            for step in (DIFFERENCE_STEP, -DIFFERENCE_STEP)
+        )
+        soft, hard = (
+            (a[0] - b[0]) / (2 * DIFFERENCE_STEP) for a, b in zip(ahead, behind, strict=True)
+        )
+        return soft, hard
+
+    def _shifted(self, points: Array, steps: Array) -> list[Array]:
+        """Return residuals of points moved by each step: point, residual, step."""
+        count, d = points.shape
+        tables = self.residuals((points[:, None] + steps).reshape(count * d, d))
+        return [table.reshape(count, d, table.shape[1]).swapaxes(1, 2) for table in tables]
+
+    def starts(self, count: int, rng: np.random.Generator) -> Array:
+        """Return random points over the whole range of impacts."""
+        columns = []
+        for item in self.priors:
+            if item.name in self.problem.known:
+                columns.append(draw(item.amount, count, rng) / item.size)
+            elif item.name == "PN":
+                columns.append(rng.uniform(-2.0 * self.problem.point, 2.0, count))
+            elif item.name in ("GA", *COURSES):
+                columns.append(rng.uniform(-180.0, 180.0, count) / item.size)
+            else:
+                columns.append(rng.uniform(-1.5, 1.5, count))
+        return np.stack(columns, 1)
+
+    def descend(self, points: Array) -> Array:
+        """Return the ends of Levenberg-Marquardt iterations."""
+        mixed = self.measured and (self.hard or self.limited)
+        for tolerance, iterations in STAGES if mixed else LAST_STAGE:
+            damping = np.full(len(points), 1e-2)
+            residual = self._weighted(points, tolerance)
+            for _ in range(iterations):
+                step = self._damped_step(points, residual, tolerance, damping)
+                trial = self._weighted(points + step, tolerance)
+                better = (trial**2).sum(1) < (residual**2).sum(1)
+                points = np.where(better[:, None], points + step, points)
+                residual = np.where(better[:, None], trial, residual)
+                damping = np.clip(np.where(better, damping * 0.1, damping * 8), 1e-12, 1e8)
+                if (np.abs(step).max(1) < 1e-8).mean() > 0.9:
+                    break
+        return points
+
+    def _damped_step(
+        self, points: Array, residual: Array, tolerance: float, damping: Array
+    ) -> Array:
+        """Return a Levenberg-Marquardt step of each point, at most 2 typical sizes long."""
+        d = points.shape[1]
+        soft, hard = self._shifted(points, DIFFERENCE_STEP * np.eye(d))
+        slope = np.concatenate([soft, hard / tolerance], 1) - residual[:, :, None]
+        slope /= DIFFERENCE_STEP
+        square = np.einsum("nij,nik->njk", slope, slope)
+        gradient = np.einsum("nij,ni->nj", slope, residual)
+        diagonal = np.einsum("njj->nj", square)
+        floor = 1e-8 * diagonal.max(1, keepdims=True) + 1e-30
+        square = square + (damping[:, None] * (diagonal + floor))[:, :, None] * np.eye(d)
+        step = -np.linalg.solve(square, gradient[..., None])[..., 0]
+        length = np.maximum(np.abs(step).max(1, keepdims=True), 1e-300)
+        return np.asarray(step * np.minimum(1.0, 2.0 / length))
+
+    def _weighted(self, points: Array, tolerance: float) -> Array:
+        soft, hard = self.residuals(points)
+        return np.concatenate([soft, hard / tolerance], 1)
+
+    def polish(self, start: Array) -> Minimum:
+        """Return the minimum nearby at which exact values hold (Gauss-Newton in their null
+        space)."""
+        point = start
+        for _ in range(12):
+            soft, hard = (table[0] for table in self.residuals(point[None]))
+            by_soft, by_hard = self.slopes(point)
+            step = np.linalg.lstsq(by_hard, -hard, rcond=RANK_TOL)[0] if len(hard) else 0 * point
+            basis = null_space(by_hard) if len(hard) else np.eye(len(point))
+            if len(soft) and basis.size:
+                target = -(soft + by_soft @ step)
+                step = step + basis @ np.linalg.lstsq(by_soft @ basis, target, rcond=RANK_TOL)[0]
+            size = float(np.abs(step).max(initial=0.0))
+            point = point + step * min(1.0, 1.0 / max(size, 1e-300))
+            if size < 1e-12:
+                break
+        ends = np.stack([start, point])
+        soft, hard = self.residuals(ends)
+        missed = np.abs(hard).max(1, initial=0.0)
+        # a step that crosses a limit again does not count
+        k = int(missed[1] <= missed[0] or missed[1] < EXACT_TOL)
+        return Minimum(ends[k], float((soft[k] ** 2).sum()), float(missed[k]))
+
+    def describe(self, minimum: Minimum) -> Fit:
+        """Return a minimum with what it leaves open and what it depends on."""
+        point = minimum.point
+        by_soft, by_hard = self.slopes(point)
+        by_hard = by_hard[: len(self.hard)]  # a limit at which it lies is not a known value
+        basis = null_space(by_hard) if len(by_hard) else np.eye(len(point))
+        u, s, vt = np.linalg.svd(by_soft @ basis)
+        rank = int((s > RANK_TOL * max(s.max(initial=0.0), 1e-300)).sum())
+        sensitivity = (basis @ vt[:rank].T / s[:rank]) @ u[:, :rank].T
+        fit = Fit(
+            problem=self.problem,
+            names=self.names,
+            point=point * self.sizes,
+            squares=minimum.squares,
+            missed=minimum.missed,
+            open_directions=(basis @ vt[rank:].T) * self.sizes[:, None],
+            sensitivity=sensitivity * self.sizes[:, None],
+            measured=self.measured,
+            key=self.invariants(point[None])[:, 0],
+            settled=np.ones(12, bool),
+            rank=rank,
+        )
+        for direction in (fit.open_directions / self.sizes[:, None]).T:
+            both = self.invariants(point + 1e-5 * np.array([[1.0], [-1.0]]) * direction)
+            fit.settled &= np.abs(both[:, 0] - both[:, 1]) < 1e-9
+        return fit
+
+    def run(self, seed: int = 0, first: Sequence[Array] = ()) -> tuple[list[Fit], int]:
+        """Return all minima found, the best first, and the number of starts that ended in one.
+
+        ``first``: points to start from, in place of random ones only."""
+        rng = np.random.default_rng(seed)
+        fits: list[Fit] = []
+        ended = 0
+        if not self.names:
+            point = np.empty(0)
+            soft, hard = self.residuals(point[None])
+            missed = float(np.abs(hard).max(initial=0.0))
+            return [self.describe(Minimum(point, float((soft**2).sum()), missed))], 1
+        for _ in range(MAX_STARTS // BATCH):
+            starts = self._near(first, rng) if first else self.starts(BATCH, rng)
+            ended += self._collect(self.descend(starts), fits)
+            count = sum(fit.missed < EXACT_TOL for fit in fits)
+            if first or not ended or expected_unseen(count, ended) < MAX_UNSEEN:
+                break
+        return sorted(fits, key=lambda fit: (fit.missed > EXACT_TOL, fit.squares)), ended
+
+    def _collect(self, ends: Array, fits: list[Fit]) -> int:
+        """Add the minima at ends of iterations to ``fits``; return the number of those ends."""
+        soft, hard = self.residuals(ends)
+        missed = np.abs(hard).max(1, initial=0.0)
+        for k in np.lexsort([(soft**2).sum(1), missed > CANDIDATE_TOL]):
+            if missed[k] > CANDIDATE_TOL and fits:
+                break
+            if not self._is_seen(fits, ends[k], 1e-4) and len(fits) < MAX_IMPACTS:
+                fit = self.describe(self.polish(ends[k]))
+                if not self._is_seen(fits, fit.point / self.sizes, 1e-6):
+                    fits.append(fit)
+        return int((missed < CANDIDATE_TOL).sum())
+
+    def _near(self, first: Sequence[Array], rng: np.random.Generator) -> Array:
+        """Return points, others around them, and random ones."""
+        points = np.stack(list(first)) / self.sizes
+        around = np.repeat(points, 2, 0)
+        return np.concatenate(
+            [points, around + rng.normal(0, 0.1, around.shape), self.starts(40, rng)]
+        )
+
+    def _is_seen(self, fits: list[Fit], point: Array, close: float) -> bool:
+        """Return True, and count it, for a point that leads to an impact in ``fits``: one equal in
+        all that is determined or, of measurements, one without a ridge between."""
+        key = self.invariants(point[None])[:, 0]
+        for fit in fits:
+            same = bool((np.abs(fit.key - key)[fit.settled] < close).all())
+            if not same and self.measured:
+                first = fit.point / self.sizes
+                soft, hard = self.residuals(np.stack([first, (first + point) / 2, point]))
+                height = (soft**2).sum(1) + ((hard / TYPED_TOL) ** 2).sum(1)
+                same = bool(height[1] <= max(height[0], height[2]) + RIDGE)
+            if same:
+                fit.reached += 1
+                return True
+        return False
+
+    def invariants(self, points: Array) -> Array:
+        """Return all velocities (rows) of impacts (columns) in typical ones, which tell impacts
+        apart."""
+        problem = self.problem
+        impacts = problem.impacts(self.names, points * self.sizes)
+        spin = problem.gyration
+        scales = np.array([1.0, 1.0, spin] * 4)[:, None] / problem.speed
+        velocities = [*impacts.before, *impacts.after]
+        return np.stack([np.broadcast_to(x, len(points)) for x in velocities]) * scales
+
+
+def expected_unseen(minima: int, ended: int) -> float:
+    """Return the expected number of minima not yet seen, after ``ended`` starts led to some."""
+    if ended <= minima + 2:
+        return math.inf
+    return minima * (minima + 1) / (ended - minima - 2)
+
+
+def null_space(matrix: Array) -> Array:
+    """Return an orthonormal basis (columns) of what a matrix maps to 0."""
+    _, s, vt = np.linalg.svd(matrix)
+    rank = int((s > RANK_TOL * max(s.max(initial=0.0), 1e-300)).sum())
+    return np.asarray(vt[rank:].T)
+
+
+def chi_square_tail(x: float, degrees: int) -> float:
+    """Return the probability of a chi-square variate above ``x`` (Abramowitz and Stegun 26.4)."""
+    half, odd = x / 2, degrees % 2
+    if half > 700:
+        return 0.0
+    total = math.erfc(math.sqrt(half)) if odd else 0.0
+    term = math.exp(-half) * (2 * math.sqrt(half / math.pi) if odd else 1.0)
+    for k in range((degrees - odd) // 2):
+        total += term
+        term *= half / (k + 1 + odd / 2)
+    return min(1.0, total)
+
+
+def _columns(rows: Sequence[Array], count: int) -> Array:
+    """Return rows as columns of a table, with large numbers where they are not finite."""
+    if not rows:
+        return np.empty((count, 0))
+    table = np.stack([np.broadcast_to(row, count) for row in rows], 1)
+    return np.nan_to_num(table, nan=1e6, posinf=1e6, neginf=-1e6)

@@ -1,0 +1,502 @@
+"""Coordinates, observations and conditions of a reconstruction, from what is known.
+
+A known input (velocity before, coefficient, dimension) is a coordinate of the impact: fixed where
+it is exact, with its own density where it has a tolerance. Where a velocity after the impact is
+known and the one before is not, it is the coordinate instead. All other known values are
+observations. What is neither known nor follows is a coordinate within an assumed range.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from ..cases.amounts import Amount
+from ..cases.motion import OWN_AXES, line_of_motion
+from ..errors import UserError
+from ..mechanics.formulas import sine_and_cosine
+from ..names import ENERGY, IMPULSE, LENGTH, PERCENT, SPIN, TURNING, VELOCITY, missing, quantity
+from .densities import uniform
+from .impacts import (
+    COEFFICIENTS,
+    COURSES,
+    FORCES,
+    PIVOT,
+    SPEEDS,
+    VEHICLES,
+    Array,
+    Bodies,
+    Impacts,
+)
+
+MOTION = (VELOCITY, SPIN, ENERGY, IMPULSE, TURNING, PERCENT)
+ARMS = ("IA", "IB", "DA", "DB", "PA", "PB")
+ANGLES = (*COURSES, *FORCES, "PA", "PB", "TA", "TB", "GA")
+VECTORS = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
+ALONG_VEHICLE = ("DVAF", "DVAR", "DVBF", "DVBR", *FORCES)
+RANGES = {"E": (0.0, 1.0), "EM": (-1.0, 0.0), "MUP": (-10.0, 10.0)}
+"""Ranges of coefficients that are not given (listing, lines 40 and 50; line 260 for MU)."""
+WIDEST = 20.0  # assumed largest velocity before the impact, over the largest known one
+FRICTION_ALLOWANCE = (0.2, 0.1)  # relative, absolute: six of the eleven collisions of Table 2 need it
+AT_REST = 1e-9  # speed of a vehicle without a course, over the largest known one
+TOUCH = 1e-9  # least closing speed and impulse of an impact, over typical ones
+ENERGY_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True)
+class Known:
+    """One known value; ``size`` is what counts as large for its kind."""
+
+    name: str
+    amount: Amount
+    size: float
+
+    @property
+    def sd(self) -> float:
+        """Standard deviation, 0 of an exact value."""
+        return self.amount.standard_deviation
+
+
+class Problem:
+    """Coordinates, observations and conditions of one reconstruction.
+
+    Parameters
+    ----------
+    known : mapping of str to Amount
+        Known values by name, in one set of units.
+    sign : int, default 0
+        Sign of P_t where only the size of the friction is known (MU); 0 if it is not used.
+    """
+
+    def __init__(self, known: Mapping[str, Amount], sign: int = 0) -> None:
+        self.remarks: list[str] = []
+        self.assumed: dict[str, str] = {}
+        self.excluded: dict[str, str] = {}  # result -> input that it needs
+        self.without_plane = self.without_arms = False
+        self.original = dict(known)
+        self.known = known = dict(known)
+        self.point = known.pop("M", Amount.exactly(6.0)).value == 4
+        self._add_crush(known)
+        self._set_at_rest(known)
+        self._complete(known)
+        self.sign = self._set_friction(known, sign)
+        self.given = {name for name in COEFFICIENTS if name in known}
+        self._set_scales()
+        self.frames = {vehicle: self._frame(vehicle) for vehicle in "AB"}
+        self.facing = [v for v in "AB" if np.isnan(known["T" + v].value)]
+        self.coordinates: list[Known] = []
+        self.fixed: dict[str, float] = {}
+        used = self._choose_coordinates()
+        self.observed = [
+            Known(name, amount, self.size(name))
+            for name, amount in known.items()
+            if name not in used
+        ]
+        geometry = {*VEHICLES, "CX", "CY", *OWN_AXES["A"], *OWN_AXES["B"]}
+        self._bodies: Bodies | None = None
+        if not geometry & {item.name for item in self.coordinates} and not self._turns_with_course:
+            self._bodies = Bodies(self._placed(dict(self.fixed)))
+
+    # -- what is known, completed
+
+    def _add_crush(self, known: dict[str, Amount]) -> None:
+        """Replace the energies lost in each vehicle (ELA, ELB, or EBSA, EBSB) by their sum EL."""
+        parts = []
+        for vehicle in "AB":
+            crush, speed = known.pop("EL" + vehicle, None), known.pop("EBS" + vehicle, None)
+            if crush is None and speed is not None:
+                half = known["M" + vehicle].value / 2 if "M" + vehicle in known else np.nan
+                crush = Amount(
+                    half * speed.value**2,
+                    half * speed.low**2,
+                    half * speed.high**2,
+                    speed.kind,
+                    2 * half * speed.value * speed.sd,
+                )
+            parts.append(crush)
+        first, second = parts
+        if first is None and second is None:
+            return
+        if first is None or second is None or "EL" in known:
+            raise UserError("ELA and ELB (or EBSA and EBSB) sum to EL; expected both, or EL")
+        kind = first.kind if first.varies else second.kind
+        ends = (getattr(first, end) + getattr(second, end) for end in ("value", "low", "high"))
+        known["EL"] = Amount(*ends, kind, float(np.hypot(first.sd, second.sd)))
+
+    def _set_at_rest(self, known: dict[str, Amount]) -> None:
+        """Replace a speed of 0 by two velocities of 0."""
+        for x, y, speed, course in VECTORS.values():
+            if speed in known and _is_zero(known[speed]):
+                del known[speed]
+                known.pop(course, None)
+                known.setdefault(x, Amount.exactly(0.0))
+                known.setdefault(y, Amount.exactly(0.0))
+
+    def _complete(self, known: dict[str, Amount]) -> None:
+        """Set what the problem does not need, and refuse what is missing."""
+        if missing_masses := [name for name in ("MA", "MB") if name not in known]:
+            raise UserError(missing(missing_masses))
+        if not self.point:
+            self._complete_bodies(known)
+        if self.point:
+            unused = [n for n in ("WA", "WB", "WAF", "WBF", "EM") if n in known]
+            for name in unused:
+                del known[name]
+            if "GA" not in known:
+                self._take_plane_across(known)
+            for name in (*ARMS, "WA", "WB", *OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY"):
+                known.pop(name, None)
+            known |= dict.fromkeys(("IA", "IB"), Amount.exactly(1.0))
+            known |= dict.fromkeys(("DA", "DB", "PA", "PB", "WA", "WB"), Amount.exactly(0.0))
+            for vehicle in "AB":
+                if "T" + vehicle not in known:
+                    known["T" + vehicle] = Amount.exactly(np.nan)
+                    self.assumed["T" + vehicle] = f"{vehicle} faces the way it travels"
+
+    def _complete_bodies(self, known: dict[str, Amount]) -> None:
+        """Treat bodies of which only the momentum is used as points; refuse missing dimensions."""
+        for vehicle, axes in OWN_AXES.items():
+            if any(name in known for name in axes):
+                known.setdefault("D" + vehicle, Amount.exactly(0.0))
+                known.setdefault("P" + vehicle, Amount.exactly(0.0))
+        absent = [name for name in VEHICLES if name not in known]
+        turning = [n for n in ("WA", "WB", "WAF", "WBF", "E", "EM", "VC", "VS") if n in known]
+        if not absent:
+            self._turn_plane(known)
+            return
+        if turning and set(absent) & {*ARMS, "GA"}:
+            names = ", ".join(turning)
+            raise UserError(f"{names} {'needs' if len(turning) == 1 else 'need'} more: {missing(absent)}")
+        if set(absent) & set(ARMS):
+            self.point = self.without_arms = True
+            reason = ", ".join(name for name in absent if name in ARMS)
+            for name in ("WA", "WB", "WAF", "WBF", "E", "EM", "VC", "VS", "PM", "KI", "KF", "EL"):
+                self.excluded[name] = reason
+        for name in ("TA", "TB"):
+            known.setdefault(name, Amount.exactly(np.nan))
+        if "GA" not in known and not self.point:
+            raise UserError(missing(["GA"]))
+
+    def _turn_plane(self, known: dict[str, Amount]) -> None:
+        """Turn GA by 180 degrees where it puts each vehicle on the other's side."""
+        nominal = {name: known[name].value for name in VEHICLES}
+        if any(np.isnan(value) for value in nominal.values()) or known["GA"].varies:
+            return
+        places = Bodies(self._own_axes_resolved(nominal, known)).geometry
+        a, b = float(places["at"]), float(places["bt"])
+        if min(a, b) >= -TOUCH * (abs(a) + abs(b)) and max(a, b) > 0.0:
+            angle = known["GA"].value
+            turned = angle - 180.0 if angle > 0 else angle + 180.0
+            known["GA"] = Amount.exactly(turned)
+            self.remarks.append(
+                f"GA = {angle:g} has each vehicle on the other's side of the contact plane (A is on "
+                f"the side to which n points): taken as {turned:g}"
+            )
+
+    def _own_axes_resolved(
+        self, values: dict[str, float], known: Mapping[str, Amount]
+    ) -> dict[str, Any]:
+        own = {n: known[n].value for axes in OWN_AXES.values() for n in axes if n in known}
+        return self._placed({**values, **own})
+
+    def _take_plane_across(self, known: dict[str, Amount]) -> None:
+        """Choose the contact plane of point masses: across the motion where all of it is along one
+        line, else across the impulse, whose direction is open (GA)."""
+        pointed = bool({*FORCES, "DVAR", "DVBR"} & known.keys())
+        locked = "MU" in known and known["MU"].value == PIVOT
+        if locked and not pointed and _is_zero(known.get("E", Amount.exactly(0.0))):
+            known["GA"] = Amount.exactly(0.0)  # equal velocities after: the plane has no effect
+            known.setdefault("E", Amount.exactly(0.0))
+            self.without_plane = True
+        else:
+            line, _ = line_of_motion(known)
+            if line is not None:
+                known["GA"] = Amount.exactly(line)
+                self.remarks.append(
+                    "the motion is along one line: the contact plane is taken across it, and "
+                    "nothing acts along the plane"
+                )
+                known.pop("MU", None)
+            elif "MU" in known or "MUP" in known:
+                raise UserError(f"MU needs more: {missing(['GA'])}")
+            known["MUP"] = Amount.exactly(0.0)
+        for name in ("E", "MUP", "PN", "PT", "VC", "VS", "MUC"):
+            if known.get("GA") is None or (self.without_plane and name != "E"):
+                self.excluded.setdefault(name, "GA")
+
+    def _set_friction(self, known: dict[str, Amount], sign: int) -> int:
+        """Replace MU by the signed MUP, or by SHARE of the critical friction; return the sign."""
+        self.share = False
+        friction = known.pop("MU", None)
+        if friction is None:
+            return 0
+        if "MUP" in known:
+            raise UserError("MU and MUP are both given; expected one of them")
+        if friction.share:
+            known["SHARE"] = friction
+            self.share = True
+            return 0
+        if friction.value == PIVOT and not friction.varies:
+            known["MUP"] = friction
+            return 0
+        known["MUP"] = replace(friction, text="").mapped(Fraction(-1 if sign < 0 else 1))
+        return sign
+
+    def softened(self, tolerance: float) -> Problem:
+        """Return the problem with one tolerance, in typical sizes, for all exact motions.
+
+        Exact velocities, courses, spins, impulses and energies become normal; dimensions and
+        coefficients stay."""
+        known = dict(self.original)
+        self._set_at_rest(known)
+        for name, amount in known.items():
+            is_motion = _rule(name) in MOTION or name in (*COURSES, *FORCES)
+            if is_motion and not amount.varies:
+                sd = tolerance * self.size(name)
+                known[name] = Amount(amount.value, -np.inf, np.inf, "normal", sd)
+        return Problem(known, self.sign)
+
+    # -- typical sizes
+
+    def _set_scales(self) -> None:
+        """Set the reduced mass, the radius of gyration and the largest velocity that is likely."""
+        known = self.known
+        masses = [known[name].value for name in ("MA", "MB")]
+        if min(masses) <= 0 or not np.isfinite(min(masses)):
+            raise UserError(f"MA = {masses[0]:g} and MB = {masses[1]:g}; expected masses above 0")
+        self.mass = 1.0 / sum(1.0 / mass for mass in masses)
+        ratios = [known["I" + v].value / known["M" + v].value for v in "AB"]
+        finite = [ratio for ratio in ratios if np.isfinite(ratio)]
+        self.gyration = 1.0 if self.point else float(np.sqrt(np.mean(finite)))
+        moving = sum(mass for mass in masses if np.isfinite(mass))
+        sizes = [0.0]
+        for name, amount in known.items():
+            largest, rule = abs(amount.value), _rule(name)
+            if rule == ENERGY:
+                sizes.append(float(np.sqrt(2.0 * largest / moving)))
+            elif rule == SPIN:
+                sizes.append(largest * self.gyration)
+            elif rule == VELOCITY:
+                sizes.append(largest)
+            elif rule == IMPULSE:
+                sizes.append(largest / self.mass)
+        if not max(sizes):
+            raise UserError("no speed, spin or energy other than 0 is known; expected at least one")
+        self.speed = max(sizes)
+
+    def size(self, name: str) -> float:
+        """Return what counts as large for a quantity."""
+        v, m, rule = self.speed, self.mass, _rule(name)
+        sizes = {
+            VELOCITY: v,
+            SPIN: v / self.gyration,
+            ENERGY: m * v * v,
+            IMPULSE: m * v,
+            TURNING: m * v * self.gyration,
+            LENGTH: self.gyration,
+            PERCENT: 100.0,
+            "1": 1.0,
+            "degree": 57.3,
+        }
+        return sizes.get(rule) or abs(self.known[name].value)
+
+    # -- coordinates
+
+    def _frame(self, vehicle: str) -> tuple[str, str]:
+        """Return the coordinates of a vehicle's velocity that use most of what is known."""
+        x, y, speed, course = VECTORS[vehicle]
+        x_after, y_after = f"V{vehicle}X", f"V{vehicle}Y"
+
+        def score(names: tuple[str, str]) -> int:
+            amounts = [self.known[name] for name in names if name in self.known]
+            return sum(2 + (not amount.varies) for amount in amounts)
+
+        mixed = (
+            x_after if x not in self.known and x_after in self.known else x,
+            y_after if y not in self.known and y_after in self.known else y,
+        )
+        return max([mixed, (speed, course), (f"S{vehicle}F", f"H{vehicle}F")], key=score)
+
+    def _choose_coordinates(self) -> set[str]:
+        """Set `coordinates` and `fixed`, and return the names that are used."""
+        spins = [
+            after if before not in self.known and after in self.known else before
+            for before, after in (("WA", "WAF"), ("WB", "WBF"))
+        ]
+        names = [*self.frames["A"], *self.frames["B"], *spins]
+        names += [n for n in COEFFICIENTS if not (self.point and n == "EM")]
+        names += VEHICLES
+        names += [n for n in (*OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY") if n in self.known]
+        for name in names:
+            amount = self.known.get(name)
+            if amount is not None and not amount.varies:
+                self.fixed[name] = amount.value
+            else:
+                low, high = self._widest(name)
+                if amount is None:
+                    self._assume(name, low, high)
+                self.coordinates.append(Known(name, amount or uniform(low, high), self.size(name)))
+        self._turns_with_course = [v for v in self.facing if not self.point]
+        for vehicle in self.facing:
+            self.fixed["T" + vehicle] = 0.0
+        if self._turns_with_course and any(
+            self.frames[v][0] not in (VECTORS[v][0], VECTORS[v][2]) for v in self._turns_with_course
+        ):
+            raise UserError('TA or TB = "course" needs the course before the impact (HA, HB)')
+        if self.point:
+            self.fixed["PM"] = 0.0
+        return set(names)
+
+    def _widest(self, name: str) -> tuple[float, float]:
+        """Return the limits of a coordinate of which nothing is known."""
+        if name in RANGES:
+            return RANGES[name]
+        if name in SPEEDS:
+            return 0.0, WIDEST * self.speed
+        if name in ANGLES:
+            return -180.0, 180.0
+        return -WIDEST * self.size(name), WIDEST * self.size(name)
+
+    def _assume(self, name: str, low: float, high: float) -> None:
+        if name in self.excluded:
+            return
+        if name == "MUP":
+            self.assumed[name] = "friction up to what ends the sliding, with an allowance"
+        elif name in ("E", "EM"):
+            self.assumed[name] = f"{low:g} to {high:g}"
+
+    # -- impacts
+
+    def impacts(self, names: list[str], points: Array) -> Impacts:
+        """Return impacts of points (rows) over coordinates ``names``; coordinates may be impulses
+        in place of coefficients."""
+        values: dict[str, Any] = {**self.fixed, **dict(zip(names, points.T, strict=True))}
+        with np.errstate(all="ignore"):
+            self._make_cartesian(values)
+            bodies = self._bodies or Bodies(self._placed(values))
+            impacts = Impacts(bodies, values)
+            for vehicle in self.facing:  # a vehicle that was at rest faces the way it leaves
+                rest = impacts["S" + vehicle] < AT_REST * self.speed
+                course = np.where(rest, impacts[f"H{vehicle}F"], impacts["H" + vehicle])
+                impacts.headings["T" + vehicle] = course + (180.0 if vehicle == "A" else 0.0)
+        return impacts
+
+    def _make_cartesian(self, values: dict[str, Any]) -> None:
+        """Replace speeds and courses by velocities, and set headings that are courses."""
+        for vehicle, frame in self.frames.items():
+            if frame[0] in SPEEDS:
+                speed, course = values.pop(frame[0]), values.pop(frame[1])
+                sine, cosine = sine_and_cosine(course)
+                x, y = SPEEDS[frame[0]]
+                values[x], values[y] = speed * cosine, speed * sine
+            if vehicle in self._turns_with_course:
+                x, y, _, _ = VECTORS[vehicle]
+                course = np.degrees(np.arctan2(values[y], values[x]))
+                values["T" + vehicle] = course + (180.0 if vehicle == "A" else 0.0)
+
+    @staticmethod
+    def _placed(values: dict[str, Any]) -> dict[str, Any]:
+        """Return values with the contact point of CAF CAL CBF CBL, moved by CX and CY, as DA PA DB
+        PB."""
+        for vehicle, axes in OWN_AXES.items():
+            if any(name in values for name in axes):
+                forward, left = (values.get(name, 0.0) for name in axes)
+                values["D" + vehicle] = np.hypot(forward, left)
+                values["P" + vehicle] = np.degrees(np.arctan2(left, forward))
+        if "CX" in values or "CY" in values:
+            move = values.get("CX", 0.0), values.get("CY", 0.0)
+            for vehicle, side in (("A", -1.0), ("B", 1.0)):  # A faces TA + 180
+                heading, arm = values["T" + vehicle], values["D" + vehicle]
+                sine, cosine = sine_and_cosine(heading + values["P" + vehicle])
+                x, y = arm * cosine + side * move[0], arm * sine + side * move[1]
+                values["D" + vehicle] = np.hypot(x, y)
+                values["P" + vehicle] = np.degrees(np.arctan2(y, x)) - heading
+        return values
+
+    def log_polar(self, names: list[str], points: Array) -> Any:
+        """Return the log of the area per unit of polar coordinates."""
+        total: Any = 0.0
+        for frame in self.frames.values():
+            if frame[0] in SPEEDS and frame[0] in names:
+                total = total + np.log(np.abs(points[:, names.index(frame[0])]) + 1e-300)
+        return total
+
+    def quantity(self, impacts: Impacts, name: str) -> Any:
+        """Return a quantity of impacts, among them SHARE, friction over the critical one."""
+        return impacts["MUP"] / impacts["MUC"] if name == "SHARE" else impacts[name]
+
+    def misses(self, impacts: Impacts, item: Known) -> Any:
+        """Return observed quantities less what was measured; angles within half a turn."""
+        off = self.quantity(impacts, item.name) - item.amount.value
+        return (off + 180.0) % 360.0 - 180.0 if item.name in ANGLES else off
+
+    # -- conditions
+
+    def margins(self, impacts: Impacts, friction: bool = True) -> list[tuple[str, Any]]:
+        """Return how far impacts lie within what physics allows, by condition, in typical sizes.
+
+        The vehicles approach, push and gain no energy; e, e_m and friction that are not given lie
+        in their ranges."""
+        if self.without_arms:
+            return []
+        v, impulse = self.speed, self.mass * self.speed
+        rows = [("energy", impacts["EL"] / (impulse * v) + ENERGY_ROUNDING)]
+        if self.without_plane:
+            return rows
+        pn, pt = impacts.impulse[:2]
+        closing, separating = impacts["VC"] / v, impacts.relative_after[0] / v
+        if self.point:  # the contact plane of points has no sides
+            side = np.where(closing < 0, -1.0, 1.0)
+            closing, separating, pn, pt = (x * side for x in (closing, separating, pn, pt))
+        rows += [("approach", closing - TOUCH), ("push", pn / impulse - TOUCH)]
+        if "E" not in self.fixed:
+            rows += [("E", separating), ("E", closing - separating)]
+        if "EM" not in self.fixed and not self.point:
+            rows += self._moment_margins(impacts)
+        if "MUP" not in self.given and friction:
+            rows += self._friction_margins(impacts, pn, pt)
+        if self.sign:
+            rows.append(("sign of MU", -self.sign * impacts.relative_before[1] / v))
+        return rows
+
+    def _moment_margins(self, impacts: Impacts) -> list[tuple[str, Any]]:
+        """Return how far e_m lies within -1 and 0, without its quotient."""
+        typical = self.speed / self.gyration
+        spin = impacts.relative_after[2] / typical
+        moment = impacts.impulse[2] * impacts.bodies.relative_spin / typical
+        side = np.where(spin + moment < 0, -1.0, 1.0)
+        return [("EM", side * (2 * spin + moment)), ("EM", -side * spin)]
+
+    def _friction_margins(self, impacts: Impacts, pn: Any, pt: Any) -> list[tuple[str, Any]]:
+        """Return how far P_t/P_n lies between 0 and what ends the sliding, with the allowance."""
+        critical = np.nan_to_num(impacts["MUC"], nan=RANGES["MUP"][1])
+        low, high = np.minimum(critical, 0.0), np.maximum(critical, 0.0)
+        relative, absolute = FRICTION_ALLOWANCE
+        room = relative * (high - low) + absolute
+        low = np.maximum(low - room, RANGES["MUP"][0])
+        high = np.minimum(high + room, RANGES["MUP"][1])
+        impulse = self.mass * self.speed
+        return [("MUP", (pt - low * pn) / impulse), ("MUP", (high * pn - pt) / impulse)]
+
+
+def _rule(name: str) -> str:
+    return "1" if name == "SHARE" else str(quantity(name).unit)
+
+
+def _is_zero(amount: Amount | None) -> bool:
+    return amount is not None and not amount.varies and amount.value == 0
+
+
+def signs_of_friction(known: Mapping[str, Amount]) -> tuple[int, ...]:
+    """Return the signs of P_t that MU leaves open (line 400 decides by the sliding)."""
+    friction = known.get("MU")
+    if friction is None or friction.share:
+        return (0,)
+    if not friction.varies and friction.value in (0.0, PIVOT):
+        return (0,)
+    return (1, -1)
+
