@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from .densities import draw, log_density
 from .extremes import extremes
-from .impacts import COURSES, Array, Impacts
-from .problem import WIDEST, Known, Problem
+from .impacts import COEFFICIENTS, COURSES, IMPULSES, Array, Impacts
+from .problem import RANGES, WIDEST, Known, Problem
 
 PARTICLES = 8000  # 2,000 left 45 to 80 independent families in hard problems
 KEPT_PROPORTION = 0.5  # of the effective sample size, at each power (Del Moral et al. 2006)
@@ -30,7 +30,11 @@ SOFT_LIMIT = 0.02  # softness of a limit while particles move, in half widths
 ACCEPTANCE = 0.25  # proportion of proposals accepted, aimed at (ter Braak 2006)
 JUMP = 2.38  # scale of a differential-evolution move, over sqrt(2 d) (ter Braak 2006)
 MODE_JUMPS = 0.05  # proportion of moves by a whole difference, between modes
-MAX_ROUNDS = 40  # of moves, at each power
+STAGE_MOVES = 3.0  # accepted moves of each particle at each power, on average
+LAST_MOVES = 8.0  # at the last power
+SAMPLE_MOVES = 2.0  # between draws that are kept
+MAX_SWEEPS = 20  # of draws that are kept
+MAX_ROUNDS = 100
 MAX_FRICTION_ANGLE = 1.47  # radians: |P_t/P_n| of 10
 
 
@@ -71,17 +75,20 @@ class Sample:
     def bounds(self, names: Sequence[str], seed: int = 0) -> dict[str, tuple[float, float]]:
         """Return the least and the greatest values found within all limits."""
         target, rng = Target(self.problem), np.random.default_rng([seed, 2])
-        ends = np.array([item.amount.limits() for item in target.items]).T
+        low, high = np.array([item.amount.limits() for item in target.items]).T
+        width = 2.0 * np.ptp(self.points, axis=0)
+        low = np.where(np.isfinite(low), low, self.points.min(0) - width)
+        high = np.where(np.isfinite(high), high, self.points.max(0) + width)
 
         def table(points: Array) -> Array:
+            state = target(points)
             impacts = self.problem.impacts(self.names, points)
-            state = target(points, impacts)
             counts = np.isfinite(state.prior) & state.holds
             with np.errstate(all="ignore"):
                 columns = [self.problem.quantity(impacts, name) + 0.0 * points[:, 0] for name in names]
             return np.where(counts[:, None], np.stack(columns, 1), np.nan)
 
-        values, _ = extremes(table, self.points, (ends[0], ends[1]), rng)
+        values, _ = extremes(table, self.points, (low, high), rng)
         return {name: (float(low), float(high)) for name, low, high in zip(names, *values, strict=True)}
 
 
@@ -100,16 +107,27 @@ class Target:
         )
 
     def start(self, count: int, rng: np.random.Generator) -> tuple[Array, Array]:
-        """Return points, and the log of their weights under the prior."""
-        columns, weights = [], np.zeros(count)
+        """Return points, and the log of their weights under the prior: coefficients that are not
+        given are drawn, and give the impulses."""
+        columns: dict[str, Array] = {}
+        weights = np.zeros(count)
         for item in self.items:
-            if item.name == "MUP" and item.name not in self.problem.known:
-                column = np.tan(rng.uniform(-MAX_FRICTION_ANGLE, MAX_FRICTION_ANGLE, count))
-                weights += np.log1p(column**2)
+            name = item.name
+            if name not in IMPULSES or name in self.problem.known:
+                columns[name] = draw(item.amount, count, rng)
+                continue
+            name = COEFFICIENTS[IMPULSES.index(name)]
+            if name == "MUP":
+                columns[name] = np.tan(rng.uniform(-MAX_FRICTION_ANGLE, MAX_FRICTION_ANGLE, count))
+                weights += np.log1p(columns[name] ** 2)
             else:
-                column = draw(item.amount, count, rng)
-            columns.append(column)
-        return np.stack(columns, 1), weights
+                columns[name] = rng.uniform(*RANGES[name], count)
+        table = np.stack([*columns.values()], 1)
+        impacts = self.problem.impacts([*columns], table)
+        with np.errstate(all="ignore"):
+            weights += impacts.log_volume() + self.problem.log_polar([*columns], table)
+        rows = (columns[n] if n in columns else impacts[n] for n in self.names)
+        return np.stack([np.broadcast_to(row, count) for row in rows], 1), weights
 
     def log_prior(self, points: Array) -> Array:
         """Return the log densities of known coordinates; -inf beyond their limits."""
@@ -122,24 +140,35 @@ class Target:
             total[~inside] = -np.inf
         return total
 
-    def __call__(self, points: Array, impacts: Impacts | None = None) -> State:
+    def __call__(self, points: Array) -> State:
         """Return points with the log densities of the prior and of the observations."""
-        problem = self.problem
-        impacts = impacts or problem.impacts(self.names, points)
+        base = self.log_prior(points)
+        rows = np.flatnonzero(np.isfinite(base))
+        prior, likelihood = np.full(len(points), -np.inf), np.zeros(len(points))
+        holds = np.zeros(len(points), bool)
+        impacts = self.problem.impacts(self.names, points[rows])
         with np.errstate(all="ignore"):
-            prior = self.log_prior(points)
-            prior = prior + impacts.log_volume() + problem.log_polar(self.names, points)
-            allowed = np.isfinite(prior)
-            for _, margin in problem.margins(impacts):
-                allowed = allowed & (margin >= 0)
-            for k in (0, 1, 3, 4):
-                allowed = allowed & (np.abs(impacts.before[k]) <= WIDEST * problem.speed)
-            prior = np.where(allowed, prior, -np.inf)
-            likelihood, holds = np.zeros(len(points)), np.ones(len(points), bool)
-            for item in problem.observed:
-                part, within = observation(item, problem.misses(impacts, item))
-                likelihood, holds = likelihood + part, holds & within
-        return State(points, prior, np.nan_to_num(likelihood, nan=-1e300, neginf=-1e300), holds)
+            prior[rows] = base[rows] + self._log_volume(points[rows], impacts)
+            likelihood[rows], holds[rows] = self._log_likelihood(impacts, len(rows))
+        return State(points, prior, likelihood, holds)
+
+    def _log_volume(self, points: Array, impacts: Impacts) -> Array:
+        """Return the log of the prior's density of coordinates; -inf where physics forbids."""
+        problem = self.problem
+        allowed = np.ones(len(points), bool)
+        for _, margin in problem.margins(impacts):
+            allowed &= margin >= 0
+        for k in (0, 1, 3, 4):
+            allowed &= np.abs(impacts.before[k]) <= WIDEST * problem.speed
+        volume = impacts.log_volume() + problem.log_polar(self.names, points)
+        return np.where(allowed & np.isfinite(volume), volume, -np.inf)
+
+    def _log_likelihood(self, impacts: Impacts, count: int) -> tuple[Array, NDArray[np.bool_]]:
+        likelihood, holds = np.zeros(count), np.ones(count, bool)
+        for item in self.problem.observed:
+            part, within = observation(item, self.problem.misses(impacts, item))
+            likelihood, holds = likelihood + part, holds & within
+        return np.nan_to_num(likelihood, nan=-1e300, neginf=-1e300), holds
 
 
 def observation(item: Known, off: Array) -> tuple[Array, NDArray[np.bool_]]:
@@ -190,12 +219,12 @@ def sample(
         rows = _resample(log_weights + (step - power) * state.likelihood, particles, rng)
         state, family, power = state.chosen(rows), family[rows], step
         log_weights = np.zeros(particles)
-        state, scale = _move(target, state, power, scale, 2.0 if power < 1.0 else 5.0, rng)
+        state, scale = _move(target, state, power, scale, STAGE_MOVES if power < 1.0 else LAST_MOVES, rng)
         if progress is not None:
             progress(power)
     kept = [state.points[state.holds]]
-    while sum(map(len, kept)) < count and len(kept[0]):
-        state, scale = _move(target, state, power, scale, 0.5, rng)
+    while sum(map(len, kept)) < count and len(kept) < MAX_SWEEPS:
+        state, scale = _move(target, state, power, scale, SAMPLE_MOVES, rng)
         kept.append(state.points[state.holds])
     drawn = np.concatenate(kept)[:count]
     if not len(drawn):
@@ -213,7 +242,6 @@ def _first(
         points, weights = target.start(5 * particles, rng)
         state = target(points)
         rows = np.flatnonzero(np.isfinite(state.prior))
-        weights = weights + state.prior - target.log_prior(points)
         parts.append((state.chosen(rows), weights[rows]))
         number += len(rows)
         if number >= 2 * particles:

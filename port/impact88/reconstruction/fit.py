@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .densities import draw
-from .impacts import COEFFICIENTS, COURSES, IMPULSES, Array
+from .impacts import COURSES, Array
 from .problem import Known, Problem
 
 BATCH = 120  # starts at a time
@@ -112,12 +112,7 @@ class Search:
 
     def __init__(self, problem: Problem, limited: bool = False) -> None:
         self.problem, self.limited = problem, limited
-        self.priors: list[Known] = []
-        for item in problem.coordinates:
-            name = item.name
-            if name in COEFFICIENTS and name not in problem.given:
-                name = IMPULSES[COEFFICIENTS.index(name)]
-            self.priors.append(Known(name, item.amount, problem.size(name)))
+        self.priors = problem.coordinates
         self.names = [item.name for item in self.priors]
         self.sizes = np.array([item.size for item in self.priors])
         self.places = [k for k, name in enumerate(self.names) if name in problem.known]

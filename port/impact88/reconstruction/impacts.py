@@ -29,6 +29,8 @@ SPEEDS = {"SA": ("UX", "UY"), "SB": ("VX", "VY"), "SAF": ("VAX", "VAY"), "SBF": 
 COURSES = {"HA": "SA", "HB": "SB", "HAF": "SAF", "HBF": "SBF"}
 FORCES = ("PDOFA", "PDOFB")
 PIVOT = -10.0
+NO_MOMENT = 0.0
+NOTHING: list[Row] = [[0.0] * 3] * 3
 GEOMETRY = (
     "s c an at bn bt ia ib ma mb R J Ired part_a part_b sn st kn kt angle_a angle_b da db "
     "D1 D2 D3 D4"
@@ -95,11 +97,13 @@ class Impacts:
 
     def __init__(self, bodies: Bodies, known: Mapping[str, Any]) -> None:
         self.bodies, self.known = bodies, known
+        # point masses have no moment: its law is the impulse of 0
+        self.exact = ("EM",) if known.get("PM") is NO_MOMENT else ()
         self.late = [early not in known for early in BEFORE]
         pairs = zip(BEFORE, AFTER, self.late, strict=True)
         given = [known[late if is_late else early] for early, late, is_late in pairs]
         self._all = bodies.compliance([True] * 6)
-        rows, right = self._laws(given, bodies.compliance(self.late))
+        rows, right = self._laws(given, bodies.compliance(self.late), known)
         self.impulse = solve_three(rows, right)
         self.change = [_dot(row, self.impulse) for row in bodies.by_impulse]
         triples = list(zip(given, self.change, self.late, strict=True))
@@ -110,11 +114,14 @@ class Impacts:
         self.headings: dict[str, Any] = {}  # of vehicles that face the way they travel
         self._found: dict[str, Any] = {}
 
-    def _laws(self, given: list[Any], deferred: list[Row]) -> tuple[list[Row], list[Any]]:
+    def _laws(
+        self, given: list[Any], deferred: list[Row], known: Mapping[str, Any]
+    ) -> tuple[list[Row], list[Any]]:
         """Return Equations 15, 16 and 18 as rows over the impulses, and their right sides.
 
-        ``deferred``: the part of the compliance that acts before the velocities ``given``."""
-        known, full = self.known, self._all
+        ``deferred``: the part of the compliance that acts before the velocities ``given``;
+        ``known``: coefficients, or impulses in their place."""
+        full = self._all
         speeds = [_dot(row, given) for row in self.bodies.relative]
         rows: list[Row] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
         right = [known.get(name, 0.0) for name in IMPULSES]
@@ -135,15 +142,22 @@ class Impacts:
         return rows, right
 
     def log_volume(self) -> Any:
-        """Return the log of the volume of velocities before the impact per unit of those given.
+        """Return the log of the volume of velocities before the impact and coefficients per unit
+        of what is given in their place.
 
-        At given coefficients it is a ratio of two determinants (matrix determinant lemma)."""
-        if not any(self.late):
-            return 0.0
-        nothing: list[Row] = [[0.0] * 3] * 3
-        early = _determinant(self._laws(self.before, nothing)[0])
-        mixed = _determinant(self._laws(self.before, self.bodies.compliance(self.late))[0])
-        return np.log(np.abs(early)) - np.log(np.abs(mixed))
+        It is a ratio of two determinants of the laws over the impulses (the matrix determinant
+        lemma), and for each impulse that is given a factor of its law."""
+        as_coefficients = {name: self[name] for name in COEFFICIENTS if name not in self.exact}
+        early = _determinant(self._laws(self.before, NOTHING, {**self.known, **as_coefficients})[0])
+        deferred = self.bodies.compliance(self.late)
+        mixed = _determinant(self._laws(self.before, deferred, self.known)[0])
+        total = np.log(np.abs(early)) - np.log(np.abs(mixed))
+        spin = self.relative_after[2] + self.impulse[2] * self._all[2][2]
+        factors = (self.relative_before[0], self.impulse[0], spin)
+        for name, factor in zip(COEFFICIENTS, factors, strict=True):
+            if name in as_coefficients and name not in self.known:
+                total = total - np.log(np.abs(factor))
+        return total
 
     def __getitem__(self, name: str) -> Any:
         """Return a quantity by name, over the impacts."""

@@ -25,6 +25,8 @@ from .impacts import (
     COEFFICIENTS,
     COURSES,
     FORCES,
+    IMPULSES,
+    NO_MOMENT,
     PIVOT,
     SPEEDS,
     VEHICLES,
@@ -335,11 +337,13 @@ class Problem:
             amount = self.known.get(name)
             if amount is not None and not amount.varies:
                 self.fixed[name] = amount.value
-            else:
-                low, high = self._widest(name)
-                if amount is None:
-                    self._assume(name, low, high)
-                self.coordinates.append(Known(name, amount or uniform(low, high), self.size(name)))
+                continue
+            if amount is None:
+                self._assume(name)
+                if name in COEFFICIENTS:  # over impulses, what is known is linear
+                    name = IMPULSES[COEFFICIENTS.index(name)]
+                amount = uniform(*self._widest(name))
+            self.coordinates.append(Known(name, amount, self.size(name)))
         self._turns_with_course = [v for v in self.facing if not self.point]
         for vehicle in self.facing:
             self.fixed["T" + vehicle] = 0.0
@@ -348,32 +352,32 @@ class Problem:
         ):
             raise UserError('TA or TB = "course" needs the course before the impact (HA, HB)')
         if self.point:
-            self.fixed["PM"] = 0.0
+            self.fixed["PM"] = NO_MOMENT
         return set(names)
 
     def _widest(self, name: str) -> tuple[float, float]:
         """Return the limits of a coordinate of which nothing is known."""
-        if name in RANGES:
-            return RANGES[name]
         if name in SPEEDS:
             return 0.0, WIDEST * self.speed
         if name in ANGLES:
             return -180.0, 180.0
+        if name in IMPULSES:
+            return -np.inf, np.inf
         return -WIDEST * self.size(name), WIDEST * self.size(name)
 
-    def _assume(self, name: str, low: float, high: float) -> None:
+    def _assume(self, name: str) -> None:
         if name in self.excluded:
             return
         if name == "MUP":
             self.assumed[name] = "friction up to what ends the sliding, with an allowance"
         elif name in ("E", "EM"):
-            self.assumed[name] = f"{low:g} to {high:g}"
+            self.assumed[name] = "{:g} to {:g}".format(*RANGES[name])
 
     # -- impacts
 
     def impacts(self, names: list[str], points: Array) -> Impacts:
-        """Return impacts of points (rows) over coordinates ``names``; coordinates may be impulses
-        in place of coefficients."""
+        """Return impacts of points (rows) over coordinates ``names``; coefficients may be in place
+        of impulses."""
         values: dict[str, Any] = {**self.fixed, **dict(zip(names, points.T, strict=True))}
         with np.errstate(all="ignore"):
             self._make_cartesian(values)
