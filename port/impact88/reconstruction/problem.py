@@ -101,7 +101,7 @@ class Problem:
         geometry = {*VEHICLES, "CX", "CY", *OWN_AXES["A"], *OWN_AXES["B"]}
         self._bodies: Bodies | None = None
         if not geometry & {item.name for item in self.coordinates} and not self._turns_with_course:
-            self._bodies = Bodies(self._placed(dict(self.fixed)))
+            self._bodies = Bodies(placed(dict(self.fixed)))
 
     # -- what is known, completed
 
@@ -203,7 +203,7 @@ class Problem:
         self, values: dict[str, float], known: Mapping[str, Amount]
     ) -> dict[str, Any]:
         own = {n: known[n].value for axes in OWN_AXES.values() for n in axes if n in known}
-        return self._placed({**values, **own})
+        return placed({**values, **own})
 
     def _take_plane_across(self, known: dict[str, Amount]) -> None:
         """Choose the contact plane of point masses: across the motion where all of it is along one
@@ -381,7 +381,7 @@ class Problem:
         values: dict[str, Any] = {**self.fixed, **dict(zip(names, points.T, strict=True))}
         with np.errstate(all="ignore"):
             self._make_cartesian(values)
-            bodies = self._bodies or Bodies(self._placed(values))
+            bodies = self._bodies or Bodies(placed(values))
             impacts = Impacts(bodies, values)
             for vehicle in self.facing:  # a vehicle that was at rest faces the way it leaves
                 rest = impacts["S" + vehicle] < AT_REST * self.speed
@@ -401,25 +401,6 @@ class Problem:
                 x, y, _, _ = VECTORS[vehicle]
                 course = np.degrees(np.arctan2(values[y], values[x]))
                 values["T" + vehicle] = course + (180.0 if vehicle == "A" else 0.0)
-
-    @staticmethod
-    def _placed(values: dict[str, Any]) -> dict[str, Any]:
-        """Return values with the contact point of CAF CAL CBF CBL, moved by CX and CY, as DA PA DB
-        PB."""
-        for vehicle, axes in OWN_AXES.items():
-            if any(name in values for name in axes):
-                forward, left = (values.get(name, 0.0) for name in axes)
-                values["D" + vehicle] = np.hypot(forward, left)
-                values["P" + vehicle] = np.degrees(np.arctan2(left, forward))
-        if "CX" in values or "CY" in values:
-            move = values.get("CX", 0.0), values.get("CY", 0.0)
-            for vehicle, side in (("A", -1.0), ("B", 1.0)):  # A faces TA + 180
-                heading, arm = values["T" + vehicle], values["D" + vehicle]
-                sine, cosine = sine_and_cosine(heading + values["P" + vehicle])
-                x, y = arm * cosine + side * move[0], arm * sine + side * move[1]
-                values["D" + vehicle] = np.hypot(x, y)
-                values["P" + vehicle] = np.degrees(np.arctan2(y, x)) - heading
-        return values
 
     def log_polar(self, names: list[str], points: Array) -> Any:
         """Return the log of the area per unit of polar coordinates."""
@@ -485,6 +466,25 @@ class Problem:
         high = np.minimum(high + room, RANGES["MUP"][1])
         impulse = self.mass * self.speed
         return [("MUP", (pt - low * pn) / impulse), ("MUP", (high * pn - pt) / impulse)]
+
+
+def placed(values: dict[str, Any]) -> dict[str, Any]:
+    """Return values with the contact point of CAF CAL CBF CBL, moved by CX and CY, as DA PA DB
+    PB."""
+    for vehicle, axes in OWN_AXES.items():
+        if any(name in values for name in axes):
+            forward, left = (values.get(name, 0.0) for name in axes)
+            values["D" + vehicle] = np.hypot(forward, left)
+            values["P" + vehicle] = np.degrees(np.arctan2(left, forward))
+    if "CX" in values or "CY" in values:
+        move = values.get("CX", 0.0), values.get("CY", 0.0)
+        for vehicle, side in (("A", -1.0), ("B", 1.0)):  # A faces TA + 180
+            heading, arm = values["T" + vehicle], values["D" + vehicle]
+            sine, cosine = sine_and_cosine(heading + values["P" + vehicle])
+            x, y = arm * cosine + side * move[0], arm * sine + side * move[1]
+            values["D" + vehicle] = np.hypot(x, y)
+            values["P" + vehicle] = np.degrees(np.arctan2(y, x)) - heading
+    return values
 
 
 def _rule(name: str) -> str:

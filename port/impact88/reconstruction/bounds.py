@@ -1,0 +1,271 @@
+"""Bounds, quantiles and drivers of the results of a scene that is known within limits.
+
+"Reasonable ranges of these variables should be used and the resulting velocity changes can be used
+to provide upper and lower bounds on vehicle speed" (chapter, Section V). Bounds are the extremes
+over the box of the limits, whatever the correlations, by differential evolution (`extremes`);
+quantiles are those of random draws.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..cases.amounts import Amount
+from ..cases.motion import contact_point, line_of_motion
+from ..errors import UserError
+from ..mechanics.solve import evaluate
+from ..names import FINAL_VELOCITIES, RESULTS, SCENE, check_names, quantity, split_names
+from ..status import Status
+from .densities import correlated
+from .extremes import box_seeds, extremes
+from .impacts import Array
+from .known import as_amounts
+from .problem import OWN_AXES, placed
+
+OUTPUTS = (*FINAL_VELOCITIES, "DVA", "DVB", "LOSS")
+QUANTILES = (0.025, 0.05, 0.5, 0.95, 0.975)
+RANKED_DRAWS = 20_000  # used for rank correlations: standard error 0.007
+SWEEP_POINTS = 21  # of each input alone: the top of a parabola is missed by 0.3 % at most
+MAX_DRAWS = 100_000_000  # of all outputs together: 800 MB
+INPUTS = (*SCENE, *OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY")
+
+
+@dataclass(frozen=True)
+class Bound:
+    """Bounds of one output.
+
+    Parameters
+    ----------
+    nominal : float
+        The value at the nominal inputs.
+    lower, upper : float
+        Least and greatest values found within all limits.
+    at_lower, at_upper : mapping of str to float
+        Inputs at which they are attained.
+    quantiles : mapping of float to float
+        Quantiles of the draws.
+    drivers : mapping of str to (float, float)
+        Input -> rank correlation with the output, and range of the output if only that input
+        varies; largest range first.
+    """
+
+    nominal: float
+    lower: float
+    upper: float
+    at_lower: Mapping[str, float]
+    at_upper: Mapping[str, float]
+    quantiles: Mapping[float, float]
+    drivers: Mapping[str, tuple[float, float]]
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """90 % interval of the draws."""
+        return self.quantiles[0.05], self.quantiles[0.95]
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Bounds of results.
+
+    Parameters
+    ----------
+    inputs : mapping of str to Amount
+        The inputs that vary.
+    outputs : mapping of str to Bound
+        Bounds by result.
+    warnings : mapping of str to float
+        Name of a STATUS bit -> fraction of the draws that have it.
+    samples : int
+        Number of draws.
+    draws : mapping of str to ndarray
+        The draws by result.
+    """
+
+    inputs: Mapping[str, Amount]
+    outputs: Mapping[str, Bound]
+    warnings: Mapping[str, float]
+    samples: int
+    draws: Mapping[str, Array] = field(default_factory=dict, repr=False)
+
+
+class _Box:
+    """The inputs: exact ones, and the limits of those that vary."""
+
+    def __init__(self, amounts: Mapping[str, Amount], sigmas: float) -> None:
+        amounts = {"M": Amount.exactly(6.0), **contact_point(amounts)}
+        if amounts["M"].value == 4 and "GA" not in amounts:
+            line, _ = line_of_motion(amounts)
+            if line is not None:  # nothing acts along the plane
+                amounts |= {"GA": Amount.exactly(line), "MU": Amount.exactly(0.0)}
+        self.varied = {name: amount for name, amount in amounts.items() if amount.varies}
+        if not self.varied:
+            raise UserError("no value is known within limits; expected one such as 0.7 .. 0.9")
+        self.exact = {name: a.value for name, a in amounts.items() if not a.varies}
+        self.share = "MU" in amounts and amounts["MU"].share
+        limits = [amount.limits(sigmas) for amount in self.varied.values()]
+        self.low, self.high = np.array(limits).T
+        self.nominal = np.array([[amount.value for amount in self.varied.values()]])
+
+    def results(self, points: Array, wanted: Sequence[str]) -> dict[str, Array]:
+        """Return results of inputs (rows); those that need more inputs are left out."""
+        columns = placed({**self.exact, **dict(zip(self.varied, points.T, strict=True))})
+        with np.errstate(all="ignore"):
+            if self.share:
+                critical, lacking = evaluate({**columns, "MU": 0.0}, ("MUC", "gt"))
+                if lacking:
+                    raise UserError(_needs(lacking))
+                turn = np.where(critical["gt"] > 0, -1.0, 1.0)  # line 400 turns it again
+                columns["MU"] = turn * columns["MU"] * critical["MUC"]
+            values, _ = evaluate(columns, wanted)
+        return {name: np.broadcast_to(x, len(points)) for name, x in values.items()}
+
+
+def bounds(
+    values: Mapping[str, Any],
+    outputs: Sequence[str] | str | None = None,
+    *,
+    samples: int = 100_000,
+    seed: int = 0,
+    correlations: Mapping[tuple[str, str], float] | None = None,
+    sigmas: float = 3.0,
+    exclude: Sequence[str] = (),
+) -> Bounds:
+    """Return bounds, quantiles and drivers of the results of a scene known within limits.
+
+    Parameters
+    ----------
+    values : mapping of str to float, str or Amount
+        The inputs by name, in one consistent set of units; M is 6 by default. CX and CY move the
+        contact point in both vehicles along x and y.
+    outputs : sequence of str, or str, optional
+        Names of results; by default final velocities, velocity changes and the loss, as far as
+        their inputs are given.
+    samples : int, default 100000
+        Random draws.
+    seed : int, default 0
+        Random seed.
+    correlations : mapping of (str, str) to float, optional
+        Correlations of inputs (of the normal variates of a Gaussian copula).
+    sigmas : float, default 3
+        Where normal inputs without limits end for the bounds, in standard deviations.
+    exclude : sequence of str, optional
+        STATUS bits whose scenes are left out.
+
+    Returns
+    -------
+    Bounds
+        Bounds by result.
+
+    Raises
+    ------
+    UserError
+        For values that cannot be used, missing inputs, unknown names, correlations that contradict
+        one another, and limits within which no scene has finite results.
+
+    Notes
+    -----
+    Equations 13 to 18; differential evolution over the box of the limits.
+
+    Examples
+    --------
+    >>> found = impact88.bounds({**impact88.sample(1), "GA": "-30 +- 5"}, ["DVA"], samples=100)
+    >>> round(found.outputs["DVA"].lower, 2), round(found.outputs["DVA"].upper, 2)
+    (13.42, 18.37)
+    """
+    box = _Box(as_amounts(values, INPUTS), sigmas)
+    names = _outputs(box, outputs)
+    check_names(exclude, [bit.name or "" for bit in Status], "warning")
+    unwanted = sum(int(Status[name]) for name in exclude)
+    if not 2 <= samples <= MAX_DRAWS // max(len(names), 1):
+        raise UserError(f"{samples} samples; expected 2 to {MAX_DRAWS // max(len(names), 1):,}")
+
+    def table(points: Array) -> Array:
+        results = box.results(points, (*names, "STATUS"))
+        bits = results.get("STATUS", np.zeros(len(points))).astype(int)
+        columns = np.stack([results[name] for name in names], 1)
+        usable = np.isfinite(columns) & (bits & unwanted == 0)[:, None]
+        return np.where(usable, columns, np.nan)
+
+    rng = np.random.default_rng([seed, 0])
+    seeds = np.concatenate([box.nominal, box_seeds(box.low, box.high, rng)])
+    ends, points = extremes(table, seeds, (box.low, box.high), rng)
+    drawn = correlated(box.varied, samples, np.random.default_rng([seed, 1]), correlations or {})
+    draws = table(drawn)
+    if not np.isfinite(draws).any(0).all() or not np.isfinite(ends).all():
+        raise UserError("no scene within these limits has a finite result; expected others")
+    drivers = _drivers(box, table, drawn[:RANKED_DRAWS], draws[:RANKED_DRAWS])
+    quantiles = np.nanquantile(draws, QUANTILES, axis=0)
+    nominal = table(box.nominal)[0]
+    found = {}
+    for k, name in enumerate(names):
+        at_lower, at_upper = (dict(zip(box.varied, p.tolist(), strict=True)) for p in points[:, k])
+        found[name] = Bound(
+            nominal=float(nominal[k]),
+            lower=float(ends[0, k]),
+            upper=float(ends[1, k]),
+            at_lower=at_lower,
+            at_upper=at_upper,
+            quantiles=dict(zip(QUANTILES, quantiles[:, k].tolist(), strict=True)),
+            drivers=drivers[k],
+        )
+    columns = {name: draws[:, k] for k, name in enumerate(names)}
+    return Bounds(box.varied, found, _warnings(box, drawn), samples, columns)
+
+
+def _outputs(box: _Box, outputs: Sequence[str] | str | None) -> list[str]:
+    """Return the results wanted. Raises UserError for one that needs more inputs."""
+    names = list(dict.fromkeys(OUTPUTS if outputs is None else split_names(outputs)))
+    check_names(names, RESULTS, "result")
+    columns = placed({**box.exact, **dict(zip(box.varied, box.nominal[0], strict=True))})
+    _, lacking = evaluate(columns, names)
+    if lacking and (outputs is not None or len(lacking) == len(names)):
+        raise UserError(_needs(lacking))
+    return [name for name in names if name not in lacking]
+
+
+def _needs(lacking: Mapping[str, Sequence[str]]) -> str:
+    name, inputs = next(iter(lacking.items()))
+    parts = [f"{n} ({quantity(n).meaning})" if n in SCENE else n for n in inputs]
+    return f"{name} needs {', '.join(parts)}"
+
+
+def _drivers(
+    box: _Box, table: Callable[[Array], Array], drawn: Array, draws: Array
+) -> list[dict[str, tuple[float, float]]]:
+    """Return for each output the inputs with rank correlation and effect alone, largest first."""
+    count = len(box.varied)
+    alone = np.repeat(box.nominal, count * SWEEP_POINTS, 0).reshape(count, SWEEP_POINTS, count)
+    for k in range(count):
+        alone[k, :, k] = np.linspace(box.low[k], box.high[k], SWEEP_POINTS)
+    swept = table(alone.reshape(-1, count)).reshape(count, SWEEP_POINTS, -1)
+    effects = np.nanmax(swept, 1) - np.nanmin(swept, 1)
+    drivers = []
+    for k in range(draws.shape[1]):
+        pairs = {
+            name: (rank_correlation(drawn[:, i], draws[:, k]), float(effects[i, k]))
+            for i, name in enumerate(box.varied)
+        }
+        drivers.append(dict(sorted(pairs.items(), key=lambda pair: -pair[1][1])))
+    return drivers
+
+
+def _warnings(box: _Box, drawn: Array) -> dict[str, float]:
+    """Return the fraction of the draws that have each STATUS bit."""
+    bits = box.results(drawn, ("STATUS",)).get("STATUS")
+    if bits is None:
+        return {}
+    fractions = {s.name or "": float(np.mean(bits.astype(int) & s != 0)) for s in Status}
+    return {name: fraction for name, fraction in fractions.items() if fraction}
+
+
+def rank_correlation(x: Array, y: Array) -> float:
+    """Return Spearman's rank correlation of finite pairs, 0 where one does not vary."""
+    usable = np.isfinite(y)
+    if usable.sum() < 3 or np.ptp(y[usable]) == 0:
+        return 0.0
+    ranks = [np.argsort(np.argsort(column[usable])) for column in (x, y)]
+    return float(np.corrcoef(*ranks)[0, 1])
