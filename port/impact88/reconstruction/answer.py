@@ -324,8 +324,7 @@ def _find(problems: Sequence[Problem], seed: int) -> _Found:
 def _opposes_sliding(fit: Fit) -> bool:
     """Return True if the friction opposes the sliding (line 400), or its sign is given."""
     problem = fit.problem
-    sliding = problem.impacts(fit.names, fit.point[None]).relative_before[1]
-    return not problem.sign or bool(np.all(-problem.sign * sliding >= -TIE * problem.speed))
+    return not problem.sign or -problem.sign * fit.value("gt") >= -TIE * problem.speed
 
 
 def _ordered(fits: Sequence[Fit]) -> list[Fit]:
@@ -504,7 +503,7 @@ def _inputs(near: _Neighbourhood, undetermined: Sequence[str]) -> dict[str, floa
     if problem.point:
         inputs |= {"IA": 1.0, "IB": 1.0, "DA": 0.0, "DB": 0.0, "PA": 0.0, "PB": 0.0}
     if "MUP" not in undetermined:
-        inputs["SLIDING"] = float(np.ravel(near.impacts.relative_before[1])[0])
+        inputs["SLIDING"] = near.value("gt")
     return inputs
 
 

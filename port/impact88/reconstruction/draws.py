@@ -125,7 +125,7 @@ class Target:
         table = np.stack([*columns.values()], 1)
         impacts = self.problem.impacts([*columns], table)
         with np.errstate(all="ignore"):
-            weights += impacts.log_volume() + self.problem.log_polar([*columns], table)
+            weights += impacts.log_volume + self.problem.log_polar([*columns], table)
         rows = (columns[n] if n in columns else impacts[n] for n in self.names)
         return np.stack([np.broadcast_to(row, count) for row in rows], 1), weights
 
@@ -158,9 +158,9 @@ class Target:
         allowed = np.ones(len(points), bool)
         for _, margin in problem.margins(impacts):
             allowed &= margin >= 0
-        for k in (0, 1, 3, 4):
-            allowed &= np.abs(impacts.before[k]) <= WIDEST * problem.speed
-        volume = impacts.log_volume() + problem.log_polar(self.names, points)
+        for name in ("UX", "UY", "VX", "VY"):
+            allowed &= np.abs(impacts[name]) <= WIDEST * problem.speed
+        volume = impacts.log_volume + problem.log_polar(self.names, points)
         return np.where(allowed & np.isfinite(volume), volume, -np.inf)
 
     def _log_likelihood(self, impacts: Impacts, count: int) -> tuple[Array, NDArray[np.bool_]]:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .densities import draw
-from .impacts import COURSES, Array
+from .impacts import AFTER, BEFORE, COURSES, Array
 from .problem import Known, Problem
 
 BATCH = 120  # starts at a time
@@ -318,7 +318,7 @@ class Search:
         impacts = problem.impacts(self.names, points * self.sizes)
         spin = problem.gyration
         scales = np.array([1.0, 1.0, spin] * 4)[:, None] / problem.speed
-        velocities = [*impacts.before, *impacts.after]
+        velocities = [impacts[name] for name in (*BEFORE, *AFTER)]
         return np.stack([np.broadcast_to(x, len(points)) for x in velocities]) * scales
 
 

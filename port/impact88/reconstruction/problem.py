@@ -18,7 +18,9 @@ import numpy as np
 from ..cases.amounts import Amount
 from ..cases.motion import OWN_AXES, line_of_motion
 from ..errors import UserError
-from ..mechanics.formulas import sine_and_cosine
+from ..mechanics.formulas import E_MAX, E_MIN, EM_MAX, EM_MIN, sine_and_cosine
+from ..mechanics.laws import Scale, margins
+from ..mechanics.solve import evaluate
 from ..names import ENERGY, IMPULSE, LENGTH, PERCENT, SPIN, TURNING, VELOCITY, missing, quantity
 from .densities import uniform
 from .impacts import (
@@ -26,12 +28,10 @@ from .impacts import (
     COURSES,
     FORCES,
     IMPULSES,
-    NO_MOMENT,
     PIVOT,
     SPEEDS,
     VEHICLES,
     Array,
-    Bodies,
     Impacts,
 )
 
@@ -40,10 +40,10 @@ ARMS = ("IA", "IB", "DA", "DB", "PA", "PB")
 ANGLES = (*COURSES, *FORCES, "PA", "PB", "TA", "TB", "GA")
 VECTORS = {"A": ("UX", "UY", "SA", "HA"), "B": ("VX", "VY", "SB", "HB")}
 ALONG_VEHICLE = ("DVAF", "DVAR", "DVBF", "DVBR", *FORCES)
-RANGES = {"E": (0.0, 1.0), "EM": (-1.0, 0.0), "MUP": (-10.0, 10.0)}
-"""Ranges of coefficients that are not given (listing, lines 40 and 50; line 260 for MU)."""
+RANGES = {"E": (E_MIN, E_MAX), "EM": (EM_MIN, EM_MAX)}
+"""Ranges of coefficients that are not given (listing, lines 40 and 50)."""
 WIDEST = 20.0  # assumed largest velocity before the impact, over the largest known one
-FRICTION_ALLOWANCE = (0.2, 0.1)  # relative, absolute: six of the eleven collisions of Table 2 need it
+MARGIN_INPUTS = ("EL", "VS", "waf", "wbf", "ia", "ib", "MUC")
 AT_REST = 1e-9  # speed of a vehicle without a course, over the largest known one
 TOUCH = 1e-9  # least closing speed and impulse of an impact, over typical ones
 ENERGY_ROUNDING = 1e-12
@@ -98,10 +98,7 @@ class Problem:
             for name, amount in known.items()
             if name not in used
         ]
-        geometry = {*VEHICLES, "CX", "CY", *OWN_AXES["A"], *OWN_AXES["B"]}
-        self._bodies: Bodies | None = None
-        if not geometry & {item.name for item in self.coordinates} and not self._turns_with_course:
-            self._bodies = Bodies(placed(dict(self.fixed)))
+        self.needed = (*MARGIN_INPUTS, *(item.name for item in self.observed if item.name != "SHARE"))
 
     # -- what is known, completed
 
@@ -188,8 +185,9 @@ class Problem:
         nominal = {name: known[name].value for name in VEHICLES}
         if any(np.isnan(value) for value in nominal.values()) or known["GA"].varies:
             return
-        places = Bodies(self._own_axes_resolved(nominal, known)).geometry
-        a, b = float(places["at"]), float(places["bt"])
+        own = {n: known[n].value for axes in OWN_AXES.values() for n in axes if n in known}
+        arms, _ = evaluate(placed({**nominal, **own}), ("at", "bt"))
+        a, b = float(arms["at"]), float(arms["bt"])
         if min(a, b) >= -TOUCH * (abs(a) + abs(b)) and max(a, b) > 0.0:
             angle = known["GA"].value
             turned = angle - 180.0 if angle > 0 else angle + 180.0
@@ -198,12 +196,6 @@ class Problem:
                 f"GA = {angle:g} has each vehicle on the other's side of the contact plane (A is on "
                 f"the side to which n points): taken as {turned:g}"
             )
-
-    def _own_axes_resolved(
-        self, values: dict[str, float], known: Mapping[str, Amount]
-    ) -> dict[str, Any]:
-        own = {n: known[n].value for axes in OWN_AXES.values() for n in axes if n in known}
-        return placed({**values, **own})
 
     def _take_plane_across(self, known: dict[str, Amount]) -> None:
         """Choose the contact plane of point masses: across the motion where all of it is along one
@@ -289,6 +281,7 @@ class Problem:
         if not max(sizes):
             raise UserError("no speed, spin or energy other than 0 is known; expected at least one")
         self.speed = max(sizes)
+        self.scale = Scale(self.speed, self.mass, self.gyration)
 
     def size(self, name: str) -> float:
         """Return what counts as large for a quantity."""
@@ -351,8 +344,6 @@ class Problem:
             self.frames[v][0] not in (VECTORS[v][0], VECTORS[v][2]) for v in self._turns_with_course
         ):
             raise UserError('TA or TB = "course" needs the course before the impact (HA, HB)')
-        if self.point:
-            self.fixed["PM"] = NO_MOMENT
         return set(names)
 
     def _widest(self, name: str) -> tuple[float, float]:
@@ -381,12 +372,12 @@ class Problem:
         values: dict[str, Any] = {**self.fixed, **dict(zip(names, points.T, strict=True))}
         with np.errstate(all="ignore"):
             self._make_cartesian(values)
-            bodies = self._bodies or Bodies(placed(values))
-            impacts = Impacts(bodies, values)
+            impacts = Impacts(placed({"M": 4.0 if self.point else 6.0, **values}))
             for vehicle in self.facing:  # a vehicle that was at rest faces the way it leaves
                 rest = impacts["S" + vehicle] < AT_REST * self.speed
                 course = np.where(rest, impacts[f"H{vehicle}F"], impacts["H" + vehicle])
-                impacts.headings["T" + vehicle] = course + (180.0 if vehicle == "A" else 0.0)
+                impacts.values["T" + vehicle] = course + (180.0 if vehicle == "A" else 0.0)
+            impacts.compute(self.needed)
         return impacts
 
     def _make_cartesian(self, values: dict[str, Any]) -> None:
@@ -425,47 +416,25 @@ class Problem:
         """Return how far impacts lie within what physics allows, by condition, in typical sizes.
 
         The vehicles approach, push and gain no energy; e, e_m and friction that are not given lie
-        in their ranges."""
+        in their ranges (`mechanics.laws`)."""
         if self.without_arms:
             return []
-        v, impulse = self.speed, self.mass * self.speed
-        rows = [("energy", impacts["EL"] / (impulse * v) + ENERGY_ROUNDING)]
+        inside = margins(impacts.values, self.scale)
+        energy = [("energy", inside["energy"][0] + ENERGY_ROUNDING)]
         if self.without_plane:
-            return rows
-        pn, pt = impacts.impulse[:2]
-        closing, separating = impacts["VC"] / v, impacts.relative_after[0] / v
-        if self.point:  # the contact plane of points has no sides
-            side = np.where(closing < 0, -1.0, 1.0)
-            closing, separating, pn, pt = (x * side for x in (closing, separating, pn, pt))
-        rows += [("approach", closing - TOUCH), ("push", pn / impulse - TOUCH)]
+            return energy
+        # the contact plane of points has no sides
+        side = np.where(inside["approach"][0] < 0, -1.0, 1.0) if self.point else 1.0
+        rows = [(name, side * inside[name][0] - TOUCH) for name in ("approach", "push")]
         if "E" not in self.fixed:
-            rows += [("E", separating), ("E", closing - separating)]
-        if "EM" not in self.fixed and not self.point:
-            rows += self._moment_margins(impacts)
+            rows += [("E", row) for row in inside["E"]]
+        if "EM" not in self.fixed and "EM" in inside:
+            rows += [("EM", row) for row in inside["EM"]]
         if "MUP" not in self.given and friction:
-            rows += self._friction_margins(impacts, pn, pt)
+            rows += [("friction", side * row) for row in inside["friction"]]
         if self.sign:
-            rows.append(("sign of MU", -self.sign * impacts.relative_before[1] / v))
-        return rows
-
-    def _moment_margins(self, impacts: Impacts) -> list[tuple[str, Any]]:
-        """Return how far e_m lies within -1 and 0, without its quotient."""
-        typical = self.speed / self.gyration
-        spin = impacts.relative_after[2] / typical
-        moment = impacts.impulse[2] * impacts.bodies.relative_spin / typical
-        side = np.where(spin + moment < 0, -1.0, 1.0)
-        return [("EM", side * (2 * spin + moment)), ("EM", -side * spin)]
-
-    def _friction_margins(self, impacts: Impacts, pn: Any, pt: Any) -> list[tuple[str, Any]]:
-        """Return how far P_t/P_n lies between 0 and what ends the sliding, with the allowance."""
-        critical = np.nan_to_num(impacts["MUC"], nan=RANGES["MUP"][1])
-        low, high = np.minimum(critical, 0.0), np.maximum(critical, 0.0)
-        relative, absolute = FRICTION_ALLOWANCE
-        room = relative * (high - low) + absolute
-        low = np.maximum(low - room, RANGES["MUP"][0])
-        high = np.minimum(high + room, RANGES["MUP"][1])
-        impulse = self.mass * self.speed
-        return [("MUP", (pt - low * pn) / impulse), ("MUP", (high * pn - pt) / impulse)]
+            rows.append(("sign of MU", -self.sign * impacts["gt"] / self.speed))
+        return energy + rows
 
 
 def placed(values: dict[str, Any]) -> dict[str, Any]:
