@@ -16,11 +16,12 @@ import numpy as np
 
 from ..cases.amounts import Amount
 from ..errors import UserError
-from ..names import CHAPTER, RESULTS, SCENE
+from ..mechanics.solve import evaluate
+from ..names import SCENE
 from .known import as_amounts
 from .draws import Sample, sample
 from .fit import EXACT_TOL, MAX_UNSEEN, TYPED_TOL, Fit, Search, expected_unseen
-from .impacts import AFTER, BEFORE, COURSES, IMPULSES, PIVOT, SPEEDS, VEHICLES, Array
+from .impacts import AFTER, BEFORE, COURSES, IMPULSES, SPEEDS, VEHICLES, Array
 from .laws import MissedLaw, missed_laws
 from .problem import ANGLES, ARMS, RANGES, Problem, signs_of_friction
 
@@ -181,7 +182,7 @@ class Reconstruction:
     excluded: Mapping[str, str] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     search: tuple[int, int, float] = (0, 0, 0.0)
-    known: Mapping[str, Amount] = field(default_factory=dict)
+    known: Mapping[str, Amount] = field(default_factory=dict, repr=False)
     point: bool = False
 
     @property
@@ -209,8 +210,8 @@ class Reconstruction:
             names = ", ".join(absent or ["MU"])
             raise UserError(f"the impact found leaves {names} open; expected a determined scene")
         scene = {name: self.values.get(name, 0.0) for name in SCENE if name not in ("M", "MU")}
-        friction, sliding = self.values["MUP"], self.values["SLIDING"]
-        scene["MU"] = -friction if sliding > 0 and friction != PIVOT else friction
+        typed, _ = evaluate({**scene, "M": 6.0, "MUP": self.values["MUP"]}, ("MU",))
+        scene["MU"] = float(typed["MU"])
         return {**scene, "M": 4.0 if self.point else 6.0}
 
 
@@ -266,7 +267,15 @@ def reconstruct(
     problems = [Problem(amounts, sign) for sign in signs_of_friction(amounts)]
     found = _find(problems, seed)
     results = [_describe(fit, verdict, contact_time) for fit, verdict in found.fits]
-    results = [replace(r, search=found.search, solutions=found.count) for r in results]
+    laws = missed_laws(problems[0].known, problems[0].point)
+    common = {
+        "search": found.search,
+        "solutions": found.count,
+        "known": {name: amount for name, amount in amounts.items() if name != "M"},
+        "laws": laws,
+        "law": laws[0] if laws else None,
+    }
+    results = [replace(result, **common) for result in results]
     if found.agreeing and results[0].verdict == "contradictory":
         best = min(found.agreeing, key=lambda fit: fit.squares)
         near = _Neighbourhood(best)
@@ -443,9 +452,8 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
             f"{name[1]} drives backwards along its known course H{name[1:]}: no impact was found in "
             "which it does not"
         )
-    laws = missed_laws(problem.known, problem.point)
     return Reconstruction(
-        values=values | _inputs(near, undetermined),
+        values=values | _inputs(near),
         intervals={
             name: (values[name] + FIRST_ORDER[0] * sd, values[name] + FIRST_ORDER[1] * sd)
             for name, sd in deviations.items()
@@ -453,11 +461,9 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
         },
         assumed=problem.assumed,
         verdict=verdict,
-        law=laws[0] if laws else None,
         tests=_tests(near),
         deviations=deviations,
         evidence=_evidence(near),
-        laws=laws,
         broken=_broken(fit, verdict),
         drivers={name: _drivers(fit, slope) for name, slope in slopes.items() if slope.any()},
         correlations=_correlations(slopes),
@@ -465,7 +471,6 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
         advice=_advice(near, undetermined),
         excluded=problem.excluded,
         remarks=tuple(remarks),
-        known=problem.known,
         point=problem.point,
     )
 
@@ -492,8 +497,8 @@ def _without_noise(value: float, size: float) -> float:
     return value if abs(value) > NOISE * size else 0.0
 
 
-def _inputs(near: _Neighbourhood, undetermined: Sequence[str]) -> dict[str, float]:
-    """Return the vehicles and the sliding of the impact, for a scene."""
+def _inputs(near: _Neighbourhood) -> dict[str, float]:
+    """Return the vehicles of the impact, for a scene."""
     problem, inputs = near.problem, {}
     for name in VEHICLES:
         point_arm = problem.point and name in (*ARMS, "TA", "TB")
@@ -502,8 +507,6 @@ def _inputs(near: _Neighbourhood, undetermined: Sequence[str]) -> dict[str, floa
     inputs = {name: value for name, value in inputs.items() if math.isfinite(value)}
     if problem.point:
         inputs |= {"IA": 1.0, "IB": 1.0, "DA": 0.0, "DB": 0.0, "PA": 0.0, "PB": 0.0}
-    if "MUP" not in undetermined:
-        inputs["SLIDING"] = near.value("gt")
     return inputs
 
 

@@ -41,6 +41,7 @@ class Impacts:
         completed = complete(known)
         self.values: dict[str, Any] = completed.values
         self.log_volume = completed.log_volume
+        self.values["M"] = 6.0  # points are bodies without arms and spins, and keep their headings
 
     def compute(self, names: Sequence[str]) -> None:
         """Compute several quantities in one pass; they are NaN where they do not follow."""

@@ -428,7 +428,7 @@ class Problem:
         rows = [(name, side * inside[name][0] - TOUCH) for name in ("approach", "push")]
         if "E" not in self.fixed:
             rows += [("E", row) for row in inside["E"]]
-        if "EM" not in self.fixed and "EM" in inside:
+        if "EM" not in self.fixed and not self.point:
             rows += [("EM", row) for row in inside["EM"]]
         if "MUP" not in self.given and friction:
             rows += [("friction", side * row) for row in inside["friction"]]

@@ -1,0 +1,402 @@
+"""Reconstructions and bounds in words, as pages, and as objects for JSON.
+
+The first lines say what was asked, what was found, whether the evidence agrees, what was assumed,
+and what would help; ``full`` adds the rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from textwrap import fill
+from typing import Any
+
+from ..cases.units import PLAIN, View
+from ..mechanics.laws import LAWS
+from ..names import quantity
+from .answer import CONTRADICTION, RANGES, Reconstruction, Test
+from .bounds import Bounds
+from .impacts import COURSES, FORCES, SPEEDS
+
+FORM = "impact88 reconstruction 1"
+"""Name and version of the form that `as_json` returns."""
+BOUNDS_FORM = "impact88 bounds 1"
+WIDTH = 96  # columns of a page
+POOR = 0.05  # probability below which values agree poorly
+MAX_MOVES = 3  # values that would have to move, named
+HEADLINE = ("SA", "HA", "SB", "HB", "DVA", "PDOFA", "DVB", "PDOFB", "E", "MUP", "EM", "LOSS")
+CONDITIONS = {"approach": "VC", "push": "PN", "energy": "EL", "E": "E", "EM": "EM", "friction": "MUP"}
+"""Conditions of physics, each with the result that shows by how much it is broken."""
+VERDICTS = {
+    "agrees": "",
+    "at a limit": "the values fit best beyond a limit of physics; this impact lies at it",
+    "impossible": "NO IMPACT that physics allows agrees with what is known",
+    "contradictory": "NO IMPACT that physics allows agrees with what is known",
+}
+
+
+def number(name: str, value: float, view: View = PLAIN, digits: int = 4) -> str:
+    """Return a number with its unit, as shown."""
+    shown = view.shown(name, value)
+    text = f"{0.0 if abs(shown) < 1e-12 else shown:.{digits}g}"
+    if "e+" in text and abs(shown) < 1e9:
+        text = f"{float(text):,.0f}"
+    return f"{text} {view.unit(name)}".rstrip()
+
+
+def question(result: Reconstruction) -> str:
+    """Return what was asked, from how many values."""
+    known = result.known
+    measured = [name for name in known if known[name].varies]
+    exact = len(known) - len(measured)
+    asked = [name for name in ("SA", "SB") if _is_asked(result, name)]
+    asked += [n for n in ("E", "MUP", "EM") if n in result.assumed and n not in known]
+    parts = []
+    if measured:
+        parts.append(f"{_join(measured)} within limits")
+    parts.append(f"{exact} exact value{'s' * (exact != 1)}")
+    return f"{_join(asked) if asked else 'whether they agree'}, from {' and '.join(parts)}"
+
+
+def _is_asked(result: Reconstruction, speed: str) -> bool:
+    names = {speed, *SPEEDS[speed]}
+    return not names & result.known.keys() or not {*SPEEDS[speed]} <= result.known.keys() | {speed}
+
+
+def evidence(result: Reconstruction, view: View = PLAIN) -> str:
+    """Return whether the known values agree with each other."""
+    found = result.evidence
+    laws = "; ".join(_law(law, view) for law in result.laws[:MAX_MOVES])
+    if not found.redundancy:
+        text = "not checked: no more is known than needed"
+        return f"{text}; {laws}" if laws else text
+    agree = "agree" if found.probability >= POOR else "agree poorly"
+    if found.probability < CONTRADICTION:
+        agree = "contradict one another"
+    text = (
+        f"the values {agree}: sum of squared adjustments {found.squares:.3g} where about "
+        f"{found.redundancy} is expected, probability {found.probability:.2g}"
+    )
+    odd = "; ".join(check(name, result.tests[name], view) for name in found.at_odds)
+    if odd and found.probability < POOR:
+        text += f". Most at odds: {odd}"
+    return f"{text}. {laws[:1].upper()}{laws[1:]}" if laws else text
+
+
+def _law(law: Any, view: View) -> str:
+    amount = number(law.like, law.amount, view)
+    amount = amount.lstrip("-")
+    return f"{law.law} misses by {amount} ({100 * law.relative:.2g} % of its largest term)"
+
+
+def check(name: str, test: Test, view: View = PLAIN) -> str:
+    """Return a measured value beside the others."""
+    measured, others = (number(name, x, view) for x in (test.measured, test.by_others))
+    return f"{name} {measured} measured, {others} by the others ({test.move:.1f} sd)"
+
+
+def refusal(result: Reconstruction, view: View = PLAIN) -> str:
+    """Return why no impact agrees, and which values would have to move how far; "" if one does."""
+    text = VERDICTS[result.verdict]
+    conditions = []
+    for name in result.broken:
+        amount = result.values.get(CONDITIONS.get(name, ""), None)
+        words = LAWS[name].broken if name in LAWS else f"{name} would be the other one"
+        if amount is not None and result.verdict == "impossible":
+            words += f" ({CONDITIONS[name]} {number(CONDITIONS[name], amount, view)})"
+        conditions.append(words)
+    if conditions:
+        text += f": {'; '.join(conditions)}"
+    moves = [
+        f"{name} at {number(name, test.adjusted, view)}, not {number(name, test.measured, view)} "
+        f"({abs(test.adjusted - test.measured) / test.sd:.1f} sd)"
+        for name, test in _farthest(result.tests)
+    ]
+    if result.verdict == "contradictory" and moves:
+        text += f". The nearest one has {'; '.join(moves)}"
+    return text
+
+
+def _farthest(tests: Any) -> list[tuple[str, Test]]:
+    """Return the values that an impact has farthest from where they were measured."""
+    moved = [(n, t) for n, t in tests.items() if abs(t.adjusted - t.measured) >= t.sd]
+    return sorted(moved, key=lambda pair: -abs(pair[1].adjusted - pair[1].measured) / pair[1].sd)[
+        :MAX_MOVES
+    ]
+
+
+def assumptions(result: Reconstruction) -> tuple[str, ...]:
+    """Return what was assumed of inputs that are not given, a phrase each."""
+    return tuple(f"{text}" if name[0] == "T" else f"{name} {text}" for name, text in result.assumed.items())
+
+
+def advice(result: Reconstruction) -> tuple[str, ...]:
+    """Return what would help, a sentence each."""
+    sentences = []
+    if result.advice:
+        would = "would determine" if len(result.advice) > 1 else "would determine"
+        opened = [n for n in result.undetermined if n in ("SA", "SB", "WA", "WB", "WAF", "WBF", "E", "EM", "MUP", "DVA", "DVB", "LOSS")]
+        sentences.append(f"give {_join(result.advice)}: that {would} {_join(opened[:8])}")
+    for name in ("SA", "SB"):
+        driver = next(iter(result.drivers.get(name, {}).items()), None)
+        if driver and driver[1] >= 0.5 and driver[0] != name:
+            sentences.append(
+                f"know {driver[0]} more closely: it makes {100 * driver[1]:.0f} % of the variance of "
+                f"{name}"
+            )
+    return tuple(sentences)
+
+
+def drivers(result: Reconstruction, name: str) -> str:
+    """Return the measured values that make a result uncertain, the largest first."""
+    return ", ".join(f"{n} {100 * x:.0f} %" for n, x in result.drivers.get(name, {}).items())
+
+
+def remarks(result: Reconstruction) -> tuple[str, ...]:
+    """Return what was made of the problem, and how it was searched."""
+    ended, impacts, unseen = result.search
+    lines = [*result.remarks]
+    if ended:
+        lines.append(
+            f"{ended} random starts led to {impacts} impact{'s' * (impacts != 1)}; expected number "
+            f"not seen {unseen:.2g}"
+        )
+    needs: dict[str, list[str]] = {}
+    for name, reason in result.excluded.items():
+        needs.setdefault(reason, []).append(name)
+    for reason, names in needs.items():
+        verb = "need" if len(names) > 1 else "needs"
+        meaning = f" ({quantity(reason).meaning})" if "," not in reason else ""
+        lines.append(f"{_join(names)} {verb} {reason}{meaning}")
+    return tuple(lines)
+
+
+def clock(degrees: float) -> str:
+    """Return a direction of force as on a clock, 12 ahead."""
+    return f"{round(degrees / 30) % 12 or 12} o'clock"
+
+
+# -- pages
+
+
+def text(results: Sequence[Reconstruction], view: View = PLAIN, full: bool = False) -> str:
+    """Return all impacts found as a page.
+
+    Parameters
+    ----------
+    results : sequence of Reconstruction
+        The impacts, as `reconstruct` returns them.
+    view : View, optional
+        Units, axes and headings of the numbers.
+    full : bool, default False
+        Every result with its interval, the checks, drivers and correlations.
+
+    Returns
+    -------
+    str
+        Lines of at most 96 columns.
+    """
+    pages = []
+    for k, result in enumerate(results, 1):
+        lines = [f"IMPACT {k} OF {len(results)}"] if len(results) > 1 else []
+        lines += _page(result, view)
+        lines += _rest(result, view) if full else []
+        pages.append("\n".join(lines))
+    return "\n\n".join(pages)
+
+
+def _page(result: Reconstruction, view: View) -> list[str]:
+    rows = [("ASKED", question(result))]
+    if result.verdict != "agrees":
+        rows.append(("VERDICT", refusal(result, view)))
+    for title, suffix in (("BEFORE", ""), ("AFTER", "F")):
+        for vehicle in "AB":
+            rows.append((f"{title} {vehicle}", _motion(result, vehicle, suffix, view)))
+    for vehicle in "AB":
+        size = _with_interval(result, f"DV{vehicle}", view)
+        force = result.values.get(f"PDOF{vehicle}")
+        from_ = f"; force from {clock(force)} ({number('PDOFA', force, view)})" if force is not None else ""
+        rows.append((f"DELTA-V {vehicle}", size + from_))
+    rows += [
+        ("FOUND", f"{name} {_with_interval(result, name, view)}")
+        for name in ("E", "MUP", "EM", "LOSS")
+        if name not in result.known and (name in result.values or name in result.intervals)
+    ]
+    rows.append(("EVIDENCE", evidence(result, view)))
+    rows += [("ASSUMED", "; ".join(assumptions(result)))] if result.assumed else []
+    rows += [("HELPS", sentence) for sentence in advice(result)]
+    rows += [("!", remark) for remark in remarks(result)]
+    return [_filled(title, words) for title, words in rows if words]
+
+
+def _motion(result: Reconstruction, vehicle: str, suffix: str, view: View) -> str:
+    speed, course = f"S{vehicle}{suffix}", f"H{vehicle}{suffix}"
+    if speed not in result.values and speed not in result.intervals:
+        return ""
+    words = _with_interval(result, speed, view)
+    if course in result.values:
+        words += f"; course {_with_interval(result, course, view)}"
+    return words
+
+
+def _with_interval(result: Reconstruction, name: str, view: View) -> str:
+    """Return a result with its 90 % interval, and the values found at most."""
+    interval, value = result.intervals.get(name), result.values.get(name)
+    if value is None:
+        if interval is None:
+            return "open"
+        low, high = view.shown_ends(name, *interval)
+        return f"not determined: 90 % {low:.4g} to {high:.4g} by what was assumed"
+    words = number(name, value, view)
+    if interval is None:
+        return words
+    low, high = view.shown_ends(name, *interval)
+    words += f", 90 % {low:.4g} to {high:.4g}"
+    if name in result.bounds:
+        low, high = view.shown_ends(name, *result.bounds[name])
+        words += f", found {low:.4g} to {high:.4g}"
+    return words
+
+
+def _rest(result: Reconstruction, view: View) -> list[str]:
+    """Return every result, the checks, drivers and correlations."""
+    lines = [""]
+    for name, value in result.values.items():
+        if name not in result.deviations:
+            continue
+        meaning = quantity(name).meaning
+        depends = drivers(result, name)
+        lines.append(f"{name:6} {_with_interval(result, name, view)}  {meaning}")
+        if depends:
+            lines.append(f"{'':6} through {depends}")
+    if result.undetermined:
+        lines += ["", _filled("OPEN", ", ".join(result.undetermined))]
+    if result.tests:
+        lines += ["", "measured values beside the others"]
+        lines += [f"  {check(name, test, view)}" for name, test in result.tests.items()]
+    if result.correlations:
+        lines += ["", "correlations, to first order"]
+        pairs = sorted(result.correlations.items(), key=lambda pair: -abs(pair[1]))
+        lines += [f"  {a} {b} {x:+.2f}" for (a, b), x in pairs[:20]]
+    return lines
+
+
+def bounds_text(found: Bounds, view: View = PLAIN) -> str:
+    """Return bounds as a page.
+
+    Parameters
+    ----------
+    found : Bounds
+        The bounds.
+    view : View, optional
+        Units, axes and headings of the numbers.
+    """
+    quantiles = [f"{100 * q:g} %" for q in next(iter(found.outputs.values())).quantiles]
+    rows = [["", "nominal", "lower", "upper", *quantiles, "unit"]]
+    for name, bound in found.outputs.items():
+        lower, upper = view.shown_ends(name, bound.lower, bound.upper)
+        drawn = [float(view.shown(name, x)) for x in bound.quantiles.values()]
+        drawn = drawn if drawn[0] <= drawn[-1] else drawn[::-1]
+        numbers = (view.shown(name, bound.nominal), lower, upper, *drawn)
+        rows.append([name, *(f"{x:.5g}" for x in numbers), view.unit(name)])
+    lines = ["".join(cell.rjust(10) for cell in row) for row in rows]
+    lines += ["", "driven by: rank correlation, and range of the result with that input alone"]
+    for name, bound in found.outputs.items():
+        factor = abs(float(view.shown(name, 1.0)) - float(view.shown(name, 0.0)))
+        parts = (f"{n} {r:+.2f} ({factor * x:.4g})" for n, (r, x) in bound.drivers.items())
+        lines.append(_filled(name, "  ".join(parts)))
+    lines += [f"{100 * x:.3g} % of the draws: {name}" for name, x in found.warnings.items()]
+    lines += [
+        "lower, upper: least and greatest values found within all limits; "
+        f"quantiles: {found.samples:,} draws"
+    ]
+    return "\n".join(lines)
+
+
+# -- JSON
+
+
+def as_json(results: Sequence[Reconstruction], view: View = PLAIN) -> dict[str, Any]:
+    """Return reconstructions as an object for JSON, see `FORM`.
+
+    Parameters
+    ----------
+    results : sequence of Reconstruction
+        The impacts.
+    view : View, optional
+        Units, axes and headings of the numbers.
+    """
+    return {"form": FORM, "impacts": [_impact_json(result, view) for result in results]}
+
+
+def _impact_json(result: Reconstruction, view: View) -> dict[str, Any]:
+    values = result.values
+    return {
+        "verdict": result.verdict,
+        "question": question(result),
+        "refusal": refusal(result, view),
+        "values": {name: float(view.shown(name, x)) for name, x in values.items()},
+        "units": {name: view.unit(name) for name in values},
+        "deviations": {n: _scaled(n, x, view) for n, x in result.deviations.items()},
+        "intervals": {n: list(view.shown_ends(n, *ends)) for n, ends in result.intervals.items()},
+        "bounds": {n: list(view.shown_ends(n, *ends)) for n, ends in result.bounds.items()},
+        "evidence": {
+            "text": evidence(result, view),
+            "squares": result.evidence.squares,
+            "redundancy": result.evidence.redundancy,
+            "probability": result.evidence.probability,
+            "at_odds": list(result.evidence.at_odds),
+            "laws": [_law(law, view) for law in result.laws],
+        },
+        "checks": {
+            name: {
+                "measured": float(view.shown(name, test.measured)),
+                "adjusted": float(view.shown(name, test.adjusted)),
+                "by_others": float(view.shown(name, test.by_others)),
+                "residual": test.residual,
+            }
+            for name, test in result.tests.items()
+        },
+        "assumed": dict(result.assumed),
+        "advice": list(advice(result)),
+        "open": list(result.undetermined),
+        "drivers": {name: dict(shares) for name, shares in result.drivers.items()},
+        "correlations": [[a, b, x] for (a, b), x in result.correlations.items()],
+        "remarks": list(remarks(result)),
+        "solutions": result.solutions,
+    }
+
+
+def bounds_json(found: Bounds, view: View = PLAIN) -> dict[str, Any]:
+    """Return bounds as an object for JSON, see `BOUNDS_FORM`."""
+    outputs = {}
+    for name, bound in found.outputs.items():
+        outputs[name] = {
+            "unit": view.unit(name),
+            "nominal": float(view.shown(name, bound.nominal)),
+            "bounds": list(view.shown_ends(name, bound.lower, bound.upper)),
+            "at_lower": {n: float(view.shown(n, x)) for n, x in bound.at_lower.items()},
+            "at_upper": {n: float(view.shown(n, x)) for n, x in bound.at_upper.items()},
+            "quantiles": {f"{q:g}": float(view.shown(name, x)) for q, x in bound.quantiles.items()},
+            "drivers": {n: {"rank_correlation": r, "range": _scaled(name, x, view)} for n, (r, x) in bound.drivers.items()},
+        }
+    return {
+        "form": BOUNDS_FORM,
+        "outputs": outputs,
+        "warnings": dict(found.warnings),
+        "samples": found.samples,
+    }
+
+
+def _scaled(name: str, size: float, view: View) -> float:
+    """Return a difference in the unit shown."""
+    return abs(float(view.shown(name, size)) - float(view.shown(name, 0.0)))
+
+
+def _join(names: Iterable[str]) -> str:
+    """Return names as in "A, B and C"."""
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else str(last)
+
+
+def _filled(title: str, words: str) -> str:
+    return fill(f"{title:10} {words}", WIDTH, subsequent_indent=" " * 11)
