@@ -18,10 +18,10 @@ from ..cases.amounts import Amount
 from ..errors import UserError
 from ..mechanics.solve import evaluate
 from ..names import SCENE
-from .known import as_amounts
 from .draws import Sample, sample
-from .fit import EXACT_TOL, MAX_UNSEEN, TYPED_TOL, Fit, Search, expected_unseen
+from .fit import EXACT_TOL, TYPED_TOL, Fit, Search, expected_unseen
 from .impacts import AFTER, BEFORE, COURSES, IMPULSES, SPEEDS, VEHICLES, Array
+from .known import as_amounts
 from .laws import MissedLaw, missed_laws
 from .problem import ANGLES, ARMS, RANGES, Problem, signs_of_friction
 
@@ -268,14 +268,17 @@ def reconstruct(
     found = _find(problems, seed)
     results = [_describe(fit, verdict, contact_time) for fit, verdict in found.fits]
     laws = missed_laws(problems[0].known, problems[0].point)
-    common = {
-        "search": found.search,
-        "solutions": found.count,
-        "known": {name: amount for name, amount in amounts.items() if name != "M"},
-        "laws": laws,
-        "law": laws[0] if laws else None,
-    }
-    results = [replace(result, **common) for result in results]
+    results = [
+        replace(
+            result,
+            search=found.search,
+            solutions=found.count,
+            known={name: amount for name, amount in amounts.items() if name != "M"},
+            laws=laws,
+            law=laws[0] if laws else None,
+        )
+        for result in results
+    ]
     if found.agreeing and results[0].verdict == "contradictory":
         best = min(found.agreeing, key=lambda fit: fit.squares)
         near = _Neighbourhood(best)
@@ -449,8 +452,8 @@ def _describe(fit: Fit, verdict: str, contact_time: float | None) -> Reconstruct
     remarks = [*problem.remarks]
     for name in driving_backwards(fit):
         remarks.append(
-            f"{name[1]} drives backwards along its known course H{name[1:]}: no impact was found in "
-            "which it does not"
+            f"{name[1]} drives backwards along its known course H{name[1:]}: no impact was found "
+            "in which it does not"
         )
     return Reconstruction(
         values=values | _inputs(near),
@@ -634,7 +637,9 @@ def _with_sample(result: Reconstruction, drawn: Sample | None, seed: int) -> Rec
             "are to first order; narrower tolerances help"
         )
         return replace(result, remarks=(*result.remarks, remark))
-    names = [n for n in result_names(drawn.problem) if n in result.values or n in result.undetermined]
+    names = [
+        n for n in result_names(drawn.problem) if n in result.values or n in result.undetermined
+    ]
     columns = {name: _unwrapped(name, drawn[name], result.values.get(name)) for name in names}
     columns = {name: x for name, x in columns.items() if np.isfinite(x).all()}
     intervals = dict(result.intervals)
@@ -672,7 +677,9 @@ def _reached(assumed: Mapping[str, str], columns: Mapping[str, Array]) -> dict[s
         low, high = RANGES[name]
         first, last = np.quantile(columns[name], INTERVAL).tolist()
         room = NARROWED * (high - low)
-        ends = [f"{end:g}" for end, near in ((low, first - low), (high, high - last)) if near < room]
+        ends = [
+            f"{end:g}" for end, near in ((low, first - low), (high, high - last)) if near < room
+        ]
         if ends:
             words[name] += f" (the interval reaches {' and '.join(ends)})"
     return words

@@ -267,5 +267,5 @@ def rank_correlation(x: Array, y: Array) -> float:
     usable = np.isfinite(y)
     if usable.sum() < 3 or np.ptp(y[usable]) == 0:
         return 0.0
-    ranks = [np.argsort(np.argsort(column[usable])) for column in (x, y)]
-    return float(np.corrcoef(*ranks)[0, 1])
+    first, second = (np.argsort(np.argsort(column[usable])) for column in (x, y))
+    return float(np.corrcoef(first, second)[0, 1])

@@ -48,7 +48,7 @@ class State(NamedTuple):
 
     def chosen(self, rows: NDArray[np.int64]) -> State:
         """Return some of the particles."""
-        return State(*(column[rows] for column in self))
+        return State(self.points[rows], self.prior[rows], self.likelihood[rows], self.holds[rows])
 
 
 @dataclass
@@ -85,11 +85,15 @@ class Sample:
             impacts = self.problem.impacts(self.names, points)
             counts = np.isfinite(state.prior) & state.holds
             with np.errstate(all="ignore"):
-                columns = [self.problem.quantity(impacts, name) + 0.0 * points[:, 0] for name in names]
+                columns = [
+                    self.problem.quantity(impacts, name) + 0.0 * points[:, 0] for name in names
+                ]
             return np.where(counts[:, None], np.stack(columns, 1), np.nan)
 
         values, _ = extremes(table, self.points, (low, high), rng)
-        return {name: (float(low), float(high)) for name, low, high in zip(names, *values, strict=True)}
+        return {
+            name: (float(low), float(high)) for name, low, high in zip(names, *values, strict=True)
+        }
 
 
 class Target:
@@ -219,7 +223,9 @@ def sample(
         rows = _resample(log_weights + (step - power) * state.likelihood, particles, rng)
         state, family, power = state.chosen(rows), family[rows], step
         log_weights = np.zeros(particles)
-        state, scale = _move(target, state, power, scale, STAGE_MOVES if power < 1.0 else LAST_MOVES, rng)
+        state, scale = _move(
+            target, state, power, scale, STAGE_MOVES if power < 1.0 else LAST_MOVES, rng
+        )
         if progress is not None:
             progress(power)
     kept = [state.points[state.holds]]
@@ -233,9 +239,7 @@ def sample(
     return Sample(problem, target.names, drawn, float(sizes.sum() ** 2 / (sizes**2).sum()))
 
 
-def _first(
-    target: Target, particles: int, rng: np.random.Generator
-) -> tuple[State, Array] | None:
+def _first(target: Target, particles: int, rng: np.random.Generator) -> tuple[State, Array] | None:
     """Return particles of the prior that physics allows, and the log of their weights."""
     parts, number = [], 0
     for _ in range(FIRST_BATCHES):
@@ -275,7 +279,7 @@ def _resample(log_weights: Array, count: int, rng: np.random.Generator) -> NDArr
     """Return systematic choices in proportion to weights."""
     total = np.cumsum(np.exp(log_weights - log_weights.max()))
     places = (rng.random() + np.arange(count)) / count * total[-1]
-    return np.minimum(np.searchsorted(total, places), len(total) - 1)
+    return np.asarray(np.minimum(np.searchsorted(total, places), len(total) - 1), np.int64)
 
 
 def _move(
@@ -288,7 +292,8 @@ def _move(
 ) -> tuple[State, float]:
     """Move particles until each was accepted ``distance`` times on average; return them and the
     adapted scale of moves."""
-    points, prior, likelihood, holds = (column.copy() for column in state)
+    points, prior = state.points.copy(), state.prior.copy()
+    likelihood, holds = state.likelihood.copy(), state.holds.copy()
     count, d = points.shape
     moved = 0.0
     for rounds in range(MAX_ROUNDS):

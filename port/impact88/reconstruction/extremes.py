@@ -67,7 +67,9 @@ def extremes(
     for generation in range(1, generations + 1):
         first, second = rng.integers(0, n, (2, m, n))
         factor = rng.uniform(*FACTOR, (m, n, 1))
-        mutant = points + factor * (points[:, :1] - points + points[rows, first] - points[rows, second])
+        mutant = points + factor * (
+            points[:, :1] - points + points[rows, first] - points[rows, second]
+        )
         if generation % SINGLE == 0:
             mutant = _one_changed(points.reshape(m * n, d), box, rng).reshape(m, n, d)
         crossed = np.where(rng.random((m, n, d)) < CROSSOVER, mutant, points)

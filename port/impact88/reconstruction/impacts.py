@@ -12,16 +12,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..mechanics.formulas import sine_and_cosine
 from ..mechanics.inverse import complete
 from ..mechanics.solve import evaluate
 from ..names import COEFFICIENTS as COEFFICIENTS
-from ..names import FINAL_STATE as AFTER
+from ..names import FINAL_STATE, VELOCITIES
 from ..names import IMPULSES as IMPULSES
 from ..names import PIVOT as PIVOT
-from ..names import VELOCITIES as BEFORE
 
 Array = NDArray[np.float64]
 
+BEFORE, AFTER = VELOCITIES, FINAL_STATE
 VEHICLES = ("MA", "MB", "IA", "IB", "DA", "DB", "PA", "PB", "TA", "TB", "GA")
 SPEEDS = {"SA": ("UX", "UY"), "SB": ("VX", "VY"), "SAF": ("VAX", "VAY"), "SBF": ("VBX", "VBY")}
 COURSES = {"HA": "SA", "HB": "SB", "HAF": "SAF", "HBF": "SBF"}
@@ -56,3 +57,8 @@ class Impacts:
             self.compute((name,))
         return self.values[name]
 
+
+def components(size: Any, direction: Any) -> tuple[Any, Any]:
+    """Return the components along x and y of a size in a direction in degrees."""
+    sine, cosine = sine_and_cosine(np.asarray(direction, np.float64))
+    return size * cosine, size * sine

@@ -12,9 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..cases.amounts import Amount
-from ..mechanics.formulas import sine_and_cosine
 from ..mechanics.solve import evaluate
-from .impacts import AFTER, BEFORE, COURSES, PIVOT, SPEEDS
+from .impacts import AFTER, BEFORE, COURSES, PIVOT, SPEEDS, components
 
 TYPED_TOL = 1e-3  # relative to the largest term, a law missed by less holds but for rounding
 SIGNIFICANT = 3.0  # standard deviations from which a law is named
@@ -95,7 +94,9 @@ def missed_laws(known: Mapping[str, Amount], point: bool) -> tuple[MissedLaw, ..
     variances = np.zeros(len(balances))
     for name, amount in known.items():
         if amount.varies:
-            shifted = list(_balances({**nominal, name: amount.value + amount.standard_deviation}, point))
+            shifted = list(
+                _balances({**nominal, name: amount.value + amount.standard_deviation}, point)
+            )
             changes = [b.residual - a.residual for a, b in zip(balances, shifted, strict=True)]
             variances += np.square(changes)
     missed = []
@@ -190,8 +191,7 @@ def _with_components(known: Mapping[str, float]) -> dict[str, float]:
     values = dict(known)
     for course, speed in COURSES.items():
         if course in known and speed in known:
-            sine, cosine = (float(x) for x in sine_and_cosine(np.float64(known[course])))
-            x, y = SPEEDS[speed]
-            values.setdefault(x, known[speed] * cosine)
-            values.setdefault(y, known[speed] * sine)
+            along = components(known[speed], known[course])
+            for name, value in zip(SPEEDS[speed], along, strict=True):
+                values.setdefault(name, float(value))
     return values

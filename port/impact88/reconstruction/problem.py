@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 
 from ..cases.amounts import Amount
-from ..cases.motion import OWN_AXES, line_of_motion
+from ..cases.motion import OWN_AXES as OWN_AXES
+from ..cases.motion import line_of_motion
 from ..errors import UserError
-from ..mechanics.formulas import E_MAX, E_MIN, EM_MAX, EM_MIN, sine_and_cosine
+from ..mechanics.formulas import E_MAX, E_MIN, EM_MAX, EM_MIN
 from ..mechanics.laws import Scale, margins
 from ..mechanics.solve import evaluate
 from ..names import ENERGY, IMPULSE, LENGTH, PERCENT, SPIN, TURNING, VELOCITY, missing, quantity
@@ -33,6 +34,7 @@ from .impacts import (
     VEHICLES,
     Array,
     Impacts,
+    components,
 )
 
 MOTION = (VELOCITY, SPIN, ENERGY, IMPULSE, TURNING, PERCENT)
@@ -98,7 +100,10 @@ class Problem:
             for name, amount in known.items()
             if name not in used
         ]
-        self.needed = (*MARGIN_INPUTS, *(item.name for item in self.observed if item.name != "SHARE"))
+        self.needed = (
+            *MARGIN_INPUTS,
+            *(item.name for item in self.observed if item.name != "SHARE"),
+        )
 
     # -- what is known, completed
 
@@ -123,8 +128,13 @@ class Problem:
         if first is None or second is None or "EL" in known:
             raise UserError("ELA and ELB (or EBSA and EBSB) sum to EL; expected both, or EL")
         kind = first.kind if first.varies else second.kind
-        ends = (getattr(first, end) + getattr(second, end) for end in ("value", "low", "high"))
-        known["EL"] = Amount(*ends, kind, float(np.hypot(first.sd, second.sd)))
+        known["EL"] = Amount(
+            first.value + second.value,
+            first.low + second.low,
+            first.high + second.high,
+            kind,
+            float(np.hypot(first.sd, second.sd)),
+        )
 
     def _set_at_rest(self, known: dict[str, Amount]) -> None:
         """Replace a speed of 0 by two velocities of 0."""
@@ -142,9 +152,8 @@ class Problem:
         if not self.point:
             self._complete_bodies(known)
         if self.point:
-            unused = [n for n in ("WA", "WB", "WAF", "WBF", "EM") if n in known]
-            for name in unused:
-                del known[name]
+            for name in ("WA", "WB", "WAF", "WBF", "EM"):
+                known.pop(name, None)
             if "GA" not in known:
                 self._take_plane_across(known)
             for name in (*ARMS, "WA", "WB", *OWN_AXES["A"], *OWN_AXES["B"], "CX", "CY"):
@@ -169,7 +178,9 @@ class Problem:
             return
         if turning and set(absent) & {*ARMS, "GA"}:
             names = ", ".join(turning)
-            raise UserError(f"{names} {'needs' if len(turning) == 1 else 'need'} more: {missing(absent)}")
+            raise UserError(
+                f"{names} {'needs' if len(turning) == 1 else 'need'} more: {missing(absent)}"
+            )
         if set(absent) & set(ARMS):
             self.point = self.without_arms = True
             reason = ", ".join(name for name in absent if name in ARMS)
@@ -193,8 +204,8 @@ class Problem:
             turned = angle - 180.0 if angle > 0 else angle + 180.0
             known["GA"] = Amount.exactly(turned)
             self.remarks.append(
-                f"GA = {angle:g} has each vehicle on the other's side of the contact plane (A is on "
-                f"the side to which n points): taken as {turned:g}"
+                f"GA = {angle:g} has each vehicle on the other's side of the contact plane (A is "
+                f"on the side to which n points): taken as {turned:g}"
             )
 
     def _take_plane_across(self, known: dict[str, Amount]) -> None:
@@ -384,10 +395,8 @@ class Problem:
         """Replace speeds and courses by velocities, and set headings that are courses."""
         for vehicle, frame in self.frames.items():
             if frame[0] in SPEEDS:
-                speed, course = values.pop(frame[0]), values.pop(frame[1])
-                sine, cosine = sine_and_cosine(course)
                 x, y = SPEEDS[frame[0]]
-                values[x], values[y] = speed * cosine, speed * sine
+                values[x], values[y] = components(values.pop(frame[0]), values.pop(frame[1]))
             if vehicle in self._turns_with_course:
                 x, y, _, _ = VECTORS[vehicle]
                 course = np.degrees(np.arctan2(values[y], values[x]))
@@ -449,8 +458,8 @@ def placed(values: dict[str, Any]) -> dict[str, Any]:
         move = values.get("CX", 0.0), values.get("CY", 0.0)
         for vehicle, side in (("A", -1.0), ("B", 1.0)):  # A faces TA + 180
             heading, arm = values["T" + vehicle], values["D" + vehicle]
-            sine, cosine = sine_and_cosine(heading + values["P" + vehicle])
-            x, y = arm * cosine + side * move[0], arm * sine + side * move[1]
+            x, y = components(arm, heading + values["P" + vehicle])
+            x, y = x + side * move[0], y + side * move[1]
             values["D" + vehicle] = np.hypot(x, y)
             values["P" + vehicle] = np.degrees(np.arctan2(y, x)) - heading
     return values
@@ -472,4 +481,3 @@ def signs_of_friction(known: Mapping[str, Amount]) -> tuple[int, ...]:
     if not friction.varies and friction.value in (0.0, PIVOT):
         return (0,)
     return (1, -1)
-

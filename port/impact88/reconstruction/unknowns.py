@@ -165,7 +165,7 @@ class _Rows:
         arms, _ = evaluate(basis[0].values, ("c", "s", "an", "at", "bn", "bt", "ia", "ib"))
         c, s = arms["c"], arms["s"]
         count = len(mass)
-        self.columns = {
+        self.columns: dict[str, Array] = {
             name: np.stack([np.broadcast_to(b[name], count) for b in basis], 1) for name in names
         }
         x, y = self.columns["VAX"] - self.columns["VBX"], self.columns["VAY"] - self.columns["VBY"]
@@ -196,8 +196,8 @@ class _Rows:
         """Return Equation 15, 16 or 18 with a coefficient."""
         columns, x = self.columns, value[:, None]
         if name == "E":
-            return columns["Gn"] + x * columns["gn"]
+            return np.asarray(columns["Gn"] + x * columns["gn"])
         if name == "MUP":
             sliding = columns["Gt"] * self.mass[:, None]
             return np.where(x == PIVOT, sliding, columns["PT"] - x * columns["PN"])
-        return (1.0 - x) * columns["turn"] - x * columns["by moment"]
+        return np.asarray((1.0 - x) * columns["turn"] - x * columns["by moment"])

@@ -13,9 +13,9 @@ from typing import Any
 from ..cases.units import PLAIN, View
 from ..mechanics.laws import LAWS
 from ..names import quantity
-from .answer import CONTRADICTION, RANGES, Reconstruction, Test
+from .answer import CONTRADICTION, Reconstruction, Test
 from .bounds import Bounds
-from .impacts import COURSES, FORCES, SPEEDS
+from .impacts import SPEEDS
 
 FORM = "impact88 reconstruction 1"
 """Name and version of the form that `as_json` returns."""
@@ -23,8 +23,16 @@ BOUNDS_FORM = "impact88 bounds 1"
 WIDTH = 96  # columns of a page
 POOR = 0.05  # probability below which values agree poorly
 MAX_MOVES = 3  # values that would have to move, named
-HEADLINE = ("SA", "HA", "SB", "HB", "DVA", "PDOFA", "DVB", "PDOFB", "E", "MUP", "EM", "LOSS")
-CONDITIONS = {"approach": "VC", "push": "PN", "energy": "EL", "E": "E", "EM": "EM", "friction": "MUP"}
+ADVISED = (*"SA SB WA WB WAF WBF E EM MUP DVA DVB LOSS".split(),)
+"""Results that advice names."""
+CONDITIONS = {
+    "approach": "VC",
+    "push": "PN",
+    "energy": "EL",
+    "E": "E",
+    "EM": "EM",
+    "friction": "MUP",
+}
 """Conditions of physics, each with the result that shows by how much it is broken."""
 VERDICTS = {
     "agrees": "",
@@ -126,22 +134,26 @@ def _farthest(tests: Any) -> list[tuple[str, Test]]:
 
 def assumptions(result: Reconstruction) -> tuple[str, ...]:
     """Return what was assumed of inputs that are not given, a phrase each."""
-    return tuple(f"{text}" if name[0] == "T" else f"{name} {text}" for name, text in result.assumed.items())
+    return tuple(
+        f"{text}" if name[0] == "T" else f"{name} {text}" for name, text in result.assumed.items()
+    )
 
 
 def advice(result: Reconstruction) -> tuple[str, ...]:
     """Return what would help, a sentence each."""
     sentences = []
     if result.advice:
-        would = "would determine" if len(result.advice) > 1 else "would determine"
-        opened = [n for n in result.undetermined if n in ("SA", "SB", "WA", "WB", "WAF", "WBF", "E", "EM", "MUP", "DVA", "DVB", "LOSS")]
-        sentences.append(f"give {_join(result.advice)}: that {would} {_join(opened[:8])}")
+        opened = [name for name in result.undetermined if name in ADVISED]
+        names = _join(result.advice)
+        sentences.append(
+            f"give {names}: that would determine {_join(opened or result.undetermined)}"
+        )
     for name in ("SA", "SB"):
         driver = next(iter(result.drivers.get(name, {}).items()), None)
         if driver and driver[1] >= 0.5 and driver[0] != name:
             sentences.append(
-                f"know {driver[0]} more closely: it makes {100 * driver[1]:.0f} % of the variance of "
-                f"{name}"
+                f"know {driver[0]} more closely: it makes {100 * driver[1]:.0f} % of the variance "
+                f"of {name}"
             )
     return tuple(sentences)
 
@@ -214,7 +226,11 @@ def _page(result: Reconstruction, view: View) -> list[str]:
     for vehicle in "AB":
         size = _with_interval(result, f"DV{vehicle}", view)
         force = result.values.get(f"PDOF{vehicle}")
-        from_ = f"; force from {clock(force)} ({number('PDOFA', force, view)})" if force is not None else ""
+        from_ = (
+            f"; force from {clock(force)} ({number('PDOFA', force, view)})"
+            if force is not None
+            else ""
+        )
         rows.append((f"DELTA-V {vehicle}", size + from_))
     rows += [
         ("FOUND", f"{name} {_with_interval(result, name, view)}")
@@ -260,9 +276,7 @@ def _with_interval(result: Reconstruction, name: str, view: View) -> str:
 def _rest(result: Reconstruction, view: View) -> list[str]:
     """Return every result, the checks, drivers and correlations."""
     lines = [""]
-    for name, value in result.values.items():
-        if name not in result.deviations:
-            continue
+    for name in result.deviations:
         meaning = quantity(name).meaning
         depends = drivers(result, name)
         lines.append(f"{name:6} {_with_interval(result, name, view)}  {meaning}")
@@ -377,7 +391,10 @@ def bounds_json(found: Bounds, view: View = PLAIN) -> dict[str, Any]:
             "at_lower": {n: float(view.shown(n, x)) for n, x in bound.at_lower.items()},
             "at_upper": {n: float(view.shown(n, x)) for n, x in bound.at_upper.items()},
             "quantiles": {f"{q:g}": float(view.shown(name, x)) for q, x in bound.quantiles.items()},
-            "drivers": {n: {"rank_correlation": r, "range": _scaled(name, x, view)} for n, (r, x) in bound.drivers.items()},
+            "drivers": {
+                n: {"rank_correlation": r, "range": _scaled(name, x, view)}
+                for n, (r, x) in bound.drivers.items()
+            },
         }
     return {
         "form": BOUNDS_FORM,
