@@ -25,7 +25,7 @@ from typing import Any, Literal, NamedTuple
 from ..decimals import exact, is_number, negated, to_double, to_text
 from ..errors import UserError, quoted
 from ..names import INERTIA, LENGTH, MASS, NUMBER, PERCENT, PIVOT, quantity
-from .units import GRAVITY, PLAIN, View, system_using, unit_of
+from .units import DIMENSIONS, GRAVITY, PLAIN, View, system_using, unit_of
 
 Kind = Literal["exact", "uniform", "triangular", "normal"]
 Ends = tuple[Fraction | float, Fraction | float]
@@ -221,7 +221,7 @@ class Notation(NamedTuple):
     text: str = ""
 
 
-def read(name: str, text: str, view: View = PLAIN) -> Amount:
+def read(name: str, text: str, view: View = PLAIN, unit: str = "") -> Amount:
     """Return the amount that a text gives a quantity, in base units along the listing's axes.
 
     Parameters
@@ -232,6 +232,8 @@ def read(name: str, text: str, view: View = PLAIN) -> Amount:
         As in a file, in the notation at the head of this module.
     view : View, optional
         Units, axes and headings of the file.
+    unit : str, optional
+        The unit of a bare number, by default that of the view.
 
     Raises
     ------
@@ -251,8 +253,10 @@ def read(name: str, text: str, view: View = PLAIN) -> Amount:
         return _skid(name, match[1], match[2], view)
     if words.lower() == "inf" and quantity(name).unit in (MASS, INERTIA):
         return Amount.exactly(math.inf)  # a barrier
-    notation = parse(name, words, view)
-    factor, offset = view.map(name, notation.unit)
+    notation = parse(name, words, unit or view.unit(name))
+    if notation.unit and not view.units and quantity(name).unit in DIMENSIONS:
+        raise UserError(f"{name} = {quoted(text)} has a unit; expected units, too, such as us")
+    factor, offset = view.map(name, notation.unit or unit)
     if name == "MUP" and notation.value == PIVOT:
         factor = abs(factor)  # the pivot's mark has no direction
     share = name == "MU" and notation.unit == "%"
@@ -278,11 +282,11 @@ def units_in(name: str, text: str) -> list[tuple[str, str]]:
     return [(quantity(name).unit, unit)] if unit else []
 
 
-def parse(name: str, words: str, view: View | None) -> Notation:
+def parse(name: str, words: str, usual: str | None) -> Notation:
     """Return the notation of a `normalized` text.
 
-    ``view`` has the unit of a bare number, which decides what its comma means; None takes any
-    comma. Raises UserError."""
+    ``usual``: the unit of a bare number, which decides what its comma means; None takes any comma.
+    Raises UserError."""
     entry = f"{name} = {quoted(words)}"
     if len(words) > MAX_LENGTH:
         raise UserError(f"{entry} is longer than {MAX_LENGTH} characters; expected an amount")
@@ -290,8 +294,8 @@ def parse(name: str, words: str, view: View | None) -> Notation:
     try:
         kind, groups = _groups(rule, words)
         unit, numbers = _in_one_unit(rule, groups)
-        if view:
-            _check_commas(rule, groups, unit or view.unit(name))
+        if usual is not None:
+            _check_commas(rule, groups, unit or usual)
     except UserError as error:
         raise UserError(f"{entry}: {error}") from None
     except ValueError:

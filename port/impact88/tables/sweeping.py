@@ -1,0 +1,69 @@
+"""One scene as a table, with values that run through ranges."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import islice, product
+from math import isfinite, prod
+
+import numpy as np
+
+from ..cases.case import Case
+from ..decimals import to_text
+from ..errors import UserError, quoted
+from ..names import SCENE, check_names
+from .textformats import BLOCK_ROWS, Block, Table
+
+MAX_SCENES = 10_000_000  # of one sweep; time and memory grow with them
+
+
+def sweep_table(case: Case, ranges: Mapping[str, str] | None = None) -> Table:
+    """Return a table of one scene, a row for each combination of ranges.
+
+    Parameters
+    ----------
+    case : Case
+        The scene.
+    ranges : mapping of str to str, optional
+        LOW:HIGH:COUNT by name; the ends are as in a file, and the last name runs fastest.
+
+    Returns
+    -------
+    Table
+        The columns of the ranges, or without any those of the scene, in the case's view.
+
+    Raises
+    ------
+    UserError
+        For a text that is no range, and for more than 10 million rows.
+    """
+    ranges = ranges or {}
+    check_names(ranges, tuple(SCENE), "value of a scene", "--sweep")
+    values = {name: _values(case, name, text) for name, text in ranges.items()}
+    if prod(map(len, values.values())) > MAX_SCENES:
+        raise UserError(f"--sweep: more than {MAX_SCENES:,} scenes; expected fewer")
+    if not ranges:
+        given = [name for name in case.texts if name not in case.omitted]
+        values = {n: [case.view.shown_text(n, case.numbers[n])] for n in given}
+    names = [case.view.heading(name) for name in values]
+    rows = enumerate(product(*values.values()), 1)
+
+    def blocks() -> Iterator[Block]:
+        while block := list(islice(rows, BLOCK_ROWS)):
+            columns = zip(names, zip(*(row for _, row in block), strict=True), strict=True)
+            yield Block({n: list(c) for n, c in columns}, [number for number, _ in block])
+
+    return Table(names, blocks())
+
+
+def _values(case: Case, name: str, text: str) -> list[str]:
+    """Return the texts that a value runs through, as shown. Raises UserError."""
+    fault = f"--sweep {name}: {quoted(text)} is not LOW:HIGH:COUNT, such as 0:1:51"
+    ends, count = text.split(":")[:-1], text.split(":")[-1].strip()
+    if len(ends) != 2 or not count.isdecimal() or not 1 <= int(count) <= MAX_SCENES:
+        raise UserError(fault)
+    amounts = [case.with_({name: end}, f"--sweep {name}").entries.get(name) for end in ends]
+    shown = [case.view.shown(name, a.value) for a in amounts if a and not (a.varies or a.share)]
+    if len(shown) != 2 or not all(map(isfinite, shown)):
+        raise UserError(fault)
+    return [to_text(x) for x in np.linspace(shown[0], shown[1], int(count)).tolist()]
