@@ -47,7 +47,7 @@ def read_parquet(path: str) -> Table:
                 frame = lazy.slice(at, BLOCK_ROWS).collect()
             yield Block({name: _column(frame[name]) for name in names}, _numbers(at + 1, frame))
 
-    return Table(names, blocks())
+    return Table(names, blocks(), path)
 
 
 def _numbers(first: int, frame: Any) -> range:
@@ -110,7 +110,7 @@ def read_excel(path: str) -> Table:
             columns = {n: _mixed(parts[0][n], parts[1][n]) for n in names}
             yield Block(columns, _numbers(at + 2 + start, parts[1]))
 
-    return Table(names, blocks(), remarks=tuple(remarks))
+    return Table(names, blocks(), path, remarks=tuple(remarks))
 
 
 def _mixed(numbers: Any, texts: Any) -> Column:

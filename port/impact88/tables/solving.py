@@ -141,7 +141,7 @@ def solve_table(
     kind = format_of(target, target_format)
     solver = Solver(table, results, case, replaced, view, arithmetic, kind == "csv", results_only)
     solved = Solved(counts=table.counts, remarks=[*table.remarks])
-    extent, position = table.source.extent if table.source else (None, lambda: 0)
+    extent, position = table.extent
     with replacing(errors) if errors else nullcontext() as file:
         writer = csv.writer(file, lineterminator="\n") if file else None
         if writer:
@@ -208,36 +208,26 @@ class Solver:
             if not (results_only and heading_name(heading)[0] in SCENE)
         ]
         self.constants = {n: x for n, x in self.case.numbers.items() if n not in self.columns}
-        self._leave_out_results()
         self._remarks: dict[str, list[Any]] = {}
+        self._leave_out_results()
 
     def _leave_out_results(self) -> None:
-        """Leave out results of point masses whose inputs are missing. Raises UserError where the
-        table lacks a column otherwise."""
+        """Leave out results of point masses whose inputs are missing, and fill those that no other
+        result uses. Raises UserError where the table lacks another column."""
         present = {*self.columns, *self.constants, *self._computed(), "M"}
         may_be_points = "M" in self.columns or self.constants.get("M") == 4
-        known = dict.fromkeys(present, 1.0) | {"M": 4.0 if may_be_points else 6.0}
-        missing = evaluate(known, self.results)[1]
-        if self.is_applesoft or not may_be_points:
-            optional = OPTIONAL_OF_POINTS if may_be_points else ()
-            lacking = [n for n in SCENE if n not in present and n not in optional]
-            needed = {name for names in missing.values() for name in names}
-            lacking = lacking if self.is_applesoft else [n for n in lacking if n in needed]
-            if lacking:
-                raise UserError(
-                    f"no column {' '.join(lacking)}; --set NAME=VALUE gives one for all rows",
-                    self.where,
-                )
-        self.left_out = {} if self.is_applesoft else missing
+        lacking = [n for n in SCENE if n not in present]
+        if absent := [n for n in lacking if not (may_be_points and n in OPTIONAL_OF_POINTS)]:
+            message = f"no column {' '.join(absent)}; --set NAME=VALUE gives one for all rows"
+            raise UserError(message, self.table.where)
+        self.constants |= dict.fromkeys([n for n in lacking if n not in UNUSED_BY_POINTS], 0.0)
+        known = dict.fromkeys(present, 1.0) | {"WA": 0.0, "WB": 0.0, "M": 4.0}
+        self.left_out = (
+            evaluate(known, self.results)[1] if lacking and not self.is_applesoft else {}
+        )
         self.results = tuple(name for name in self.results if name not in self.left_out)
         if not self.results:
-            name, inputs = next(iter(missing.items()))
-            raise UserError(f"{name} needs {' '.join(inputs)}; expected such columns", self.where)
-
-    @property
-    def where(self) -> str:
-        """The name of the table in messages."""
-        return str(getattr(self.table.source, "name", "table"))
+            raise UserError("; ".join(self.remarks()), self.table.where)
 
     def _computed(self) -> list[str]:
         """Return the scene's names that are computed for each row."""
@@ -477,8 +467,9 @@ class _Reading:
                 text = to_text(cell) if isinstance(cell, float) else str(cell).strip().upper()
                 text = _with_point(text) if solver.table.decimal_comma else text
                 text = text if is_typed else to_text(float(offset + factor * exact(text)))
-            if len(text) > MAX_TYPED:
-                self.bad.setdefault(at, (name, f"has more than {MAX_TYPED} characters"))
+            if len(text) > MAX_TYPED or text == "INF":
+                fault = f"= {quoted(cell)} cannot be typed; expected at most {MAX_TYPED} digits"
+                self.bad.setdefault(at, (name, fault))
             texts.append(text)
         return texts
 

@@ -53,7 +53,7 @@ def sweep_table(case: Case, ranges: Mapping[str, str] | None = None) -> Table:
             columns = zip(names, zip(*(row for _, row in block), strict=True), strict=True)
             yield Block({n: list(c) for n, c in columns}, [number for number, _ in block])
 
-    return Table(names, blocks())
+    return Table(names, blocks(), case.source)
 
 
 def _values(case: Case, name: str, text: str) -> list[str]:

@@ -11,7 +11,7 @@ import io
 import json
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from importlib.util import find_spec
 from itertools import islice
 from typing import IO, Any, NamedTuple
@@ -40,16 +40,18 @@ class Block(NamedTuple):
 class Table(NamedTuple):
     """A table being read.
 
-    ``names``: its headings; ``blocks``: its rows; ``counts``: what row numbers count, "line" or
-    "row"; ``decimal_comma``: True where numbers have one; ``remarks``: how it was read;
-    ``source``: the stream, for progress."""
+    ``names``: its headings; ``blocks``: its rows; ``where``: its name in messages; ``counts``: what
+    row numbers count, "line" or "row"; ``decimal_comma``: True where numbers have one;
+    ``remarks``: how it was read; ``extent``: the file's size in bytes, None if that is not known,
+    and a function that returns how many were read."""
 
     names: list[str]
     blocks: Iterator[Block]
+    where: str = "table"
     counts: str = "row"
     decimal_comma: bool = False
     remarks: tuple[str, ...] = ()
-    source: Any = None
+    extent: tuple[int | None, Callable[[], int]] = (None, int)
 
 
 def check_headings(names: Sequence[str], where: str) -> list[str]:
@@ -84,6 +86,7 @@ def read_csv(path: str, encoding: str = "") -> Table:
     """Return the table in a CSV file, ``-`` for standard input; fields are separated by commas,
     semicolons or tabs. Raises UserError."""
     where, source = display_name(path), Source(path)
+    extent = source.extent
     chunks = _recoded(source, where, encoding) if encoding else _chunks(source, where)
     first = next(chunks, b"")
     if encoding_of(first) != "utf-8":
@@ -104,7 +107,7 @@ def read_csv(path: str, encoding: str = "") -> Table:
             yield from split(chunk, names, delimiter, line, where)
             line += chunk.count(b"\n")
 
-    return Table(names, blocks(), "line", delimiter == ";", source=source)
+    return Table(names, blocks(), where, "line", delimiter == ";", extent=extent)
 
 
 class _csv_errors:  # noqa: N801 - a context, used like a function
@@ -238,12 +241,13 @@ def read_json(path: str) -> Table:
     objects. Raises UserError."""
     where = display_name(path)
     source = Source(path)
+    extent = source.extent
     records = _json_records(io.BufferedReader(source), where)
     first = next(records, None)
     if first is None:
         raise UserError("holds nothing; expected an object for each row", where)
     names = check_headings(list(first[1]), where)
-    return Table(names, _json_blocks(names, first, records, where), "line", source=source)
+    return Table(names, _json_blocks(names, first, records, where), where, "line", extent=extent)
 
 
 def _json_records(file: IO[bytes], where: str) -> Iterator[tuple[int, dict[str, Any]]]:

@@ -1,0 +1,247 @@
+"""Rows solved in both arithmetics: units, constants, bad rows, remarks, sweeps."""
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import impact88
+from impact88.cases import Case, View
+from impact88.errors import UserError
+from impact88.mechanics.solve import solve
+from impact88.names import SCENE
+from impact88.status import Status
+from impact88.tables.solving import Solver, solve_table
+from impact88.tables.sweeping import sweep_table
+from impact88.tables.textformats import Block, Table
+
+SAMPLE = dict(impact88.sample(1))
+NUMBERS = {name: float(text) for name, text in SAMPLE.items()}
+
+
+def table(columns: dict[str, list[object]], **options: bool) -> Table:
+    count = len(next(iter(columns.values())))
+    return Table(list(columns), iter([Block(columns, range(1, count + 1))]), **options)
+
+
+def solved(columns: dict[str, list[object]], results: str, **options: object):
+    """Return results by heading, and complaints."""
+    solver = Solver(table(columns), results.split(), **options)
+    out, bad, _ = solver.solve(Block(columns, range(1, 1 + len(next(iter(columns.values()))))))
+    return out, bad, solver
+
+
+def scene(count: int = 1, **columns: list[object]) -> dict[str, list[object]]:
+    return {**{name: [text] * count for name, text in SAMPLE.items()}, **columns}
+
+
+def test_cells_with_units() -> None:
+    columns = scene(3)
+    del columns["UX"]
+    columns = {"UX [ft/s]": ["-29.04", "-19.8 mph", "-8.851392 m/s"], **columns}
+    columns = {f"{n} [{u}]" if u else n: c for n, c in columns.items() for u in [_units(n)]}
+    out, bad, _ = solved(columns, "VAX", view=View("chapter"))
+    assert not bad
+    expected = solve(NUMBERS, "VAX")["VAX"]
+    assert out["VAX [ft/s]"] == pytest.approx([expected] * 3, rel=1e-13)
+
+
+def _units(name: str) -> str:
+    rules = {"length/time": "ft/s", "mass": "slug", "length": "ft", "mass·length²": "lb-ft-s2"}
+    return rules.get(SCENE[name].unit, "") if name in SCENE else ""
+
+
+def test_headings_name_the_system() -> None:
+    columns = {f"{n.lower()} ({_units(n)})" if _units(n) else n: c for n, c in scene().items()}
+    out, _, solver = solved(columns, "VAX KI")
+    assert solver.view.units == "chapter"
+    assert list(out)[-2:] == ["VAX [ft/s]", "KI [ft-lb]"]
+    mixed = {"UX [mph]" if n == "UX" else n: c for n, c in scene().items()}
+    with pytest.raises(UserError, match=r"expected DA \[ft\], or --units us"):
+        solved(mixed, "VAX")
+    with pytest.raises(UserError, match="two columns of UX"):
+        solved({**scene(), "ux": ["1"]}, "VAX")
+    (bad,) = solved(scene(UX=["25 mph"]), "VAX")[1]
+    assert "'25 mph' has a unit; expected units, too" in bad.reason
+
+
+@pytest.mark.parametrize(
+    ("name", "cell", "reason"),
+    [
+        ("UX", "much", "= 'much' is not an amount"),
+        ("UX", None, "is empty; expected a number"),
+        ("UX", "", "is empty; expected a number"),
+        ("UX", "3 .. 5", "is a range; expected one number"),
+        ("UX", "1,234", "may be a decimal one"),
+        ("UX", "1e999", "beyond the range of doubles"),
+        ("UX", "nan", "is empty"),
+        ("UX", math.nan, "is empty"),
+    ],
+)
+@pytest.mark.parametrize("arithmetic", ["float64", "applesoft"])
+def test_bad_rows_do_not_stop_the_others(
+    name: str, cell: object, reason: str, arithmetic: str
+) -> None:
+    columns = scene(3)
+    columns[name] = [SAMPLE[name], cell, SAMPLE[name]]
+    out, bad, _ = solved(columns, "VAX STATUS" if arithmetic == "float64" else "VAX")
+    good = solve(NUMBERS, "VAX")["VAX"]
+    assert [(row.row, reason in row.reason) for row in bad] == [(2, True)], bad
+    assert bad[0].column == name
+    assert out["VAX"][[0, 2]].tolist() == [good, good]
+    assert math.isnan(out["VAX"][1])
+    assert "STATUS" not in out or out["STATUS"][1] == Status.NOT_FINITE
+
+
+@pytest.mark.parametrize(
+    ("changes", "column", "reason"),
+    [
+        ({"MA": "0"}, "MA", "= 0 is not above 0"),
+        ({"IB": "-3"}, "IB", "= -3 is not above 0"),
+        ({"M": "5"}, "M", "= 5 is neither 4 nor 6"),
+        ({"MA": "inf"}, "UX", "= -29.04 is not 0, and MA is infinite: a barrier is at rest"),
+        ({"MA": "inf", "MB": "inf", "UX": "0", "VX": "0", "VY": "0"}, "MB", "and so is MA or IA"),
+    ],
+)
+def test_scenes_that_are_no_impact_are_bad_rows(
+    changes: dict[str, str], column: str, reason: str
+) -> None:
+    columns: dict[str, list[object]] = {n: [t, changes.get(n, t)] for n, t in SAMPLE.items()}
+    out, bad, _ = solved(columns, "VAX KI")
+    assert [(row.row, row.column) for row in bad] == [(2, column)]
+    assert reason in bad[0].reason
+    assert np.isnan(out["KI"]).tolist() == [False, True]
+
+
+def test_what_cannot_be_typed_is_a_bad_row() -> None:
+    for name, cell in (("UX", "0." + "1" * 80), ("MA", "inf")):
+        columns = {**scene(1), name: [cell]}
+        assert "cannot be typed" in solved(columns, "KI", arithmetic="applesoft")[1][0].reason
+
+
+def test_applesoft_has_the_bits_of_replay_and_reports_errors() -> None:
+    columns = scene(4, MU=[".911", "1E38", "x", ".5"], UX=["-29.04", "1E30", "1", "-29.040"])
+    out, bad, _ = solved(columns, "VAX KI", arithmetic="applesoft")
+    for at in (0, 3):
+        expected = impact88.replay({n: str(c[at]) for n, c in columns.items()})
+        assert out["KI"][at] == expected.floats("KI")[0]
+    assert out["ERROR"][1] == "?OVERFLOW ERROR IN 320"
+    assert out["LINE"][1] > 0
+    assert (out["ERROR"][2], out["LINE"][2]) == ("", 0)
+    assert [row.row for row in bad] == [3]
+    with pytest.raises(UserError, match="'COND' is not a result of --arithmetic applesoft"):
+        solved(columns, "COND", arithmetic="applesoft")
+
+
+def test_applesoft_types_converted_digits_exactly() -> None:
+    case = Case.of({**SAMPLE, "units": "chapter"}).with_(UX="-19.8 mph", MA="4617 lb")
+    columns = {n: [t] for n, t in SAMPLE.items()} | {"UX": ["-19.8 mph"], "MA": ["4617 lb"]}
+    out, bad, _ = solved(columns, "VAX KI", arithmetic="applesoft", view=View("chapter"))
+    assert not bad
+    expected = impact88.replay(dict(case.texts))
+    assert out["KI [ft-lb]"][0] == expected.floats("KI")[0]
+
+
+def test_constants_fill_and_replace_columns() -> None:
+    columns = scene(2)
+    del columns["MU"], columns["M"]
+    with pytest.raises(UserError, match="no column MU; --set NAME=VALUE gives one for all rows"):
+        solved(columns, "VAX")
+    out, _, _ = solved(columns, "VAX", case=Case.of({"MU": ".911"}))
+    assert out["VAX"].tolist() == [solve(NUMBERS, "VAX")["VAX"]] * 2
+    out, _, _ = solved(scene(2), "VAX", case=Case.of({"MU": "-10"}), replaced=["MU"])
+    assert out["VAX"].tolist() == [solve({**NUMBERS, "MU": -10}, "VAX")["VAX"]] * 2
+    assert out["MU"] == ["-10", "-10"]
+    units = {f"{n} [{_units(n)}]" if _units(n) else n: c for n, c in columns.items() if n != "UX"}
+    with pytest.raises(UserError, match="UX = 3 has no unit, and the columns have"):
+        solved(units, "VAX", case=Case.loads("UX = 3\nMU = 0.5"))
+
+
+def test_estimates_courses_and_shares_are_those_of_each_row() -> None:
+    columns: dict[str, list[object]] = scene(3, MA=["3000", "2000", "900"])
+    for name in ("IA", "TA", "MU"):
+        del columns[name]
+    case = Case.of({"units": "us", "IA": "estimate", "MA": "3000", "TA": "course", "MU": "85 %"})
+    out, bad, _ = solved(columns, "VAX MUP MUC", case=case)
+    assert [(row.row, row.column) for row in bad] == [(3, "IA")]
+    for at in (0, 1):
+        one = Case.of({**{n: c[at] for n, c in columns.items()}, "units": "us"})
+        one = one.with_(IA="estimate", TA="course", MU="85 %")
+        expected = solve(one.numbers, "VAX")["VAX"]
+        assert out["VAX [mph]"][at] == pytest.approx(one.view.shown("VAX", expected), rel=1e-12)
+
+
+def test_point_masses_leave_out_what_needs_the_plane() -> None:
+    columns = {n: [SAMPLE[n]] for n in ("MA", "MB", "UX", "UY", "VX", "VY")} | {"M": ["4"]}
+    out, bad, solver = solved(columns, "KI PN")
+    assert list(out)[-1] == "KI"
+    assert solver.remarks() == ["PN needs E MU GA"]
+    mixed = scene(2, M=["4", ""], DA=["", "7.59"])
+    out, bad, _ = solved(mixed, "VAX")
+    assert not bad
+    assert not np.isnan(out["VAX"]).any()
+
+
+def test_remarks_count_rows() -> None:
+    columns = scene(5, EM=["0", "1", "0", "0", "1"])
+    _, _, solver = solved(columns, "VAX")
+    assert any(text.startswith("row 1 and 2 more: EM = 0: the moment") for text in solver.remarks())
+    heavy = scene(2, MA=["1e6", "100"])
+    _, _, solver = solved(heavy, "VAX", view=View("chapter"))
+    assert any("row 1: MA = 1e6: no vehicle has that mass" in text for text in solver.remarks())
+    _, _, solver = solved(heavy, "VAX")
+    assert not any("MA" in text for text in solver.remarks())
+
+
+def test_views_turn_columns() -> None:
+    view = View("chapter", "sae", "compass")
+    shown = {n: [view.shown_text(n, NUMBERS[n])] for n in SCENE}
+    out, _, _ = solved(shown, "VAX VAY WAF", view=view)
+    expected = solve(NUMBERS, ["VAX", "VAY", "WAF"])
+    assert out["VAY [ft/s]"][0] == pytest.approx(-expected["VAY"], rel=1e-12)
+    assert out["VAX [ft/s]"][0] == pytest.approx(expected["VAX"], rel=1e-12)
+
+
+def test_sweeps(tmp_path: Path) -> None:
+    case = Case.of({**SAMPLE, "units": "chapter"})
+    target = tmp_path / "out.csv"
+    swept = sweep_table(case, {"MU": "0:1:3", "UX": "-20 mph:-10 mph:2"})
+    done = []
+    solve_table(swept, str(target), ["VAX"], case=case, progress=lambda *x: done.append(x))
+    with target.open() as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == ["MU", "UX [ft/s]", "VAX [ft/s]"]
+    assert [(row["MU"], row["UX [ft/s]"]) for row in rows[:2]] == [
+        ("0", "-29.333333333333332"),
+        ("0", "-14.666666666666666"),
+    ]
+    expected = solve({**NUMBERS, "MU": 0.5, "UX": -22 * 2 / 3}, "VAX")["VAX"]
+    assert float(rows[3]["VAX [ft/s]"]) == pytest.approx(expected, rel=1e-13)
+    assert done == [(6, None)]
+    solve_table(sweep_table(case), str(target), ["VAX"], case=case)
+    with target.open() as file:
+        (row,) = csv.DictReader(file)
+    assert (row["MU"], row["DA [ft]"]) == (SAMPLE["MU"], SAMPLE["DA"])
+    for text in ("0:1", "0:1:0", "0:1:x", "0:much:3", "0:1:99999999", "0 .. 1:2:3"):
+        with pytest.raises(UserError, match="--sweep"):
+            sweep_table(case, {"MU": text})
+
+
+def test_bad_rows_go_to_a_file(tmp_path: Path) -> None:
+    names = ",".join(SAMPLE)
+    rows = [",".join({**SAMPLE, "UX": "x" if at % 2 else "1"}.values()) for at in range(60)]
+    source = tmp_path / "in.csv"
+    source.write_text("\n".join([names, *rows]))
+    errors = tmp_path / "errors.csv"
+    outcome = solve_table(str(source), str(tmp_path / "out.csv"), ["VAX"], errors=str(errors))
+    assert (outcome.rows, outcome.bad, len(outcome.listed)) == (60, 30, 20)
+    lines = outcome.messages("in.csv")
+    assert lines[0].startswith("in.csv, line 3: UX = 'x' is not an amount")
+    assert "30 rows could not be used" in lines[-1]
+    with errors.open() as file:
+        complaints = list(csv.reader(file))
+    assert (len(complaints), complaints[1][:2]) == (31, ["3", "UX"])
+    with (tmp_path / "out.csv").open() as file:
+        assert [row["VAX"] == "" for row in csv.DictReader(file)] == [False, True] * 30

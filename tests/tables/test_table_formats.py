@@ -1,0 +1,238 @@
+"""Tables in every format: the same numbers in and out, and files that are refused by line."""
+
+import csv
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import impact88
+from impact88.errors import UserError
+from impact88.mechanics.solve import solve
+from impact88.names import SCENE
+from impact88.tables import textformats
+from impact88.tables.engine import read_table, write_table
+from impact88.tables.solving import solve_table
+
+SAMPLES = [dict(impact88.sample(number)) for number in (1, 2, 3)]
+FORMATS = ("csv", "jsonl", "parquet", "xlsx")
+
+
+@pytest.fixture(params=["polars", "csv module"])
+def _engine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    if request.param == "csv module":
+        monkeypatch.setattr(textformats, "find_spec", lambda _: None)
+
+
+def csv_text(rows: list[dict[str, str]], delimiter: str = ",") -> str:
+    lines = [list(rows[0]), *(list(row.values()) for row in rows)]
+    return "".join(delimiter.join(line) + "\n" for line in lines)
+
+
+def read_rows(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def columns_of(path: Path) -> dict[str, list[Any]]:
+    columns: dict[str, list[Any]] = {}
+    for block in read_table(str(path)).blocks:
+        for name, column in block.columns.items():
+            cells = column.to_list() if hasattr(column, "to_list") else list(column)
+            columns.setdefault(name, []).extend(cells)
+    return columns
+
+
+def write(path: Path, text: str) -> Path:
+    path.write_bytes(text.encode())
+    return path
+
+
+@pytest.mark.usefixtures("_engine")
+def test_csv_becomes_csv(tmp_path: Path) -> None:
+    source = write(
+        tmp_path / "in.csv", csv_text([{"case": "a,b", **SAMPLES[0]}]).replace("a,b", '"a,b"')
+    )
+    target = tmp_path / "out.csv"
+    solved = solve_table(str(source), str(target), ["VAX", "LOSS", "STATUS"])
+    assert (solved.rows, solved.bad) == (1, 0)
+    (row,) = read_rows(target)
+    expected = solve({n: float(t) for n, t in SAMPLES[0].items()}, ["VAX", "LOSS"])
+    assert row["case"] == "a,b"
+    assert row["DA"] == SAMPLES[0]["DA"]
+    assert (float(row["VAX"]), float(row["LOSS"])) == (expected["VAX"], expected["LOSS"])
+
+
+def test_every_format_has_the_same_numbers(tmp_path: Path) -> None:
+    source = write(tmp_path / "in.csv", csv_text(SAMPLES))
+    solve_table(str(source), str(tmp_path / "out.csv"))
+    results = columns_of(tmp_path / "out.csv")
+    for kind in FORMATS[1:]:
+        path = tmp_path / f"out.{kind}"
+        solve_table(str(source), str(path))
+        again = tmp_path / f"again_{kind}.csv"
+        solve_table(str(path), str(again), ["VAX", "KI"])
+        for name, cells in columns_of(again).items():
+            rtol = 1e-15 if kind == "xlsx" and name not in SCENE else 0  # 16 digits are written
+            assert np.allclose(np.array(cells, float), np.array(results[name], float), rtol, 0)
+
+
+def test_both_engines_write_the_same_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    values = [1e16, 1.5e-5, 1e-300, 0.0, 22.0, math.nan, -1e22, 5e-324, 0.00012, math.inf]
+    columns = {"x": np.array(values), "text": ["a", '"', "a,b", "", "=1", "é", "x", "y", "z", ""]}
+    columns |= {"n": np.arange(10, dtype=np.uint16)}
+    write_table(str(tmp_path / "polars.csv"), [columns, columns])
+    monkeypatch.setattr(textformats, "find_spec", lambda _: None)
+    write_table(str(tmp_path / "csv.csv"), [columns, columns])
+    assert (tmp_path / "polars.csv").read_bytes() == (tmp_path / "csv.csv").read_bytes()
+    written = [row["x"] for row in read_rows(tmp_path / "csv.csv")][:10]
+    assert written == ["" if math.isnan(x) else repr(x) for x in values]
+
+
+@pytest.mark.usefixtures("_engine")
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            lambda lines: [*lines[:2], lines[2] + ",1", lines[3]],
+            "line 3: has 22 fields; expected 21",
+        ),
+        (lambda lines: [*lines[:3], lines[3].rpartition(",")[0]], "line 4: has 20 fields"),
+        (
+            lambda lines: [lines[0], lines[1] + ",1", lines[2].rpartition(",")[0], lines[3]],
+            "line 2: has 22 fields",
+        ),
+        (lambda lines: ["MA,MA", "1,2"], "'MA' twice"),
+        (lambda lines: ["MA,,MB", "1,2,3"], "no name for column 2"),
+        (lambda lines: [""], "holds nothing"),
+        (lambda lines: [*lines[:2], '"' + lines[2]], "is not CSV"),
+        (lambda lines: [*lines[:2], "\udcff" + lines[2]], "line 3: is not UTF-8 text"),
+    ],
+)
+def test_csv_refused(tmp_path: Path, change: Any, message: str) -> None:
+    lines = change(csv_text(SAMPLES).splitlines())
+    path = tmp_path / "bad.csv"
+    path.write_bytes("\n".join(lines).encode(errors="surrogateescape"))
+    target = tmp_path / "out.csv"
+    with pytest.raises(UserError) as error:
+        solve_table(str(path), str(target))
+    assert message in str(error.value)
+    assert "bad.csv" in str(error.value)
+    assert not target.exists()
+
+
+@pytest.mark.usefixtures("_engine")
+@pytest.mark.parametrize("ending", ["\n", "\r\n"])
+def test_layouts_of_csv(tmp_path: Path, ending: str) -> None:
+    plain = csv_text(SAMPLES)
+    target = tmp_path / "out.csv"
+
+    def results(data: bytes) -> list[str]:
+        (tmp_path / "in.csv").write_bytes(data)
+        solved = solve_table(str(tmp_path / "in.csv"), str(target), ["VAX"])
+        assert (solved.rows, solved.bad) == (3, 0)
+        return [row["VAX"] for row in read_rows(target)]
+
+    expected = results(plain.encode())
+    european = "\n".join(line.replace(".", "_").replace(",", ";") for line in plain.splitlines())
+    european = european.replace("_", ",")
+    for text in (plain, plain.rstrip("\n"), european, plain.replace(",", "\t")):
+        assert results(text.replace("\n", ending).encode()) == expected
+        assert results(b"\xef\xbb\xbf" + text.replace("\n", ending).encode()) == expected
+        assert results(text.replace("\n", ending).encode("utf-16")) == expected
+    lines = plain.splitlines()
+    gaps = [lines[0], "", lines[1], "," * 20, "", *lines[2:], "," * 20, ""]
+    assert results(ending.join(gaps).encode()) == expected
+    quoted = plain.replace(SAMPLES[0]["DA"], f'"{SAMPLES[0]["DA"]}"')
+    assert results(quoted.encode()) == expected
+
+
+def test_other_encodings_are_named(tmp_path: Path) -> None:
+    path = tmp_path / "in.csv"
+    path.write_bytes(csv_text([{"Stra\xdfe": "\xe4", **SAMPLES[0]}]).encode("cp1252"))
+    with pytest.raises(UserError, match="expected --encoding, such as cp1252"):
+        solve_table(str(path), str(tmp_path / "out.csv"))
+    solve_table(str(path), str(tmp_path / "out.csv"), ["VAX"], encoding="cp1252")
+    assert read_rows(tmp_path / "out.csv")[0]["Stra\xdfe"] == "\xe4"
+    with pytest.raises(UserError, match="cannot be read as 'no-such'"):
+        solve_table(str(path), str(tmp_path / "out.csv"), encoding="no-such")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "holds nothing"),
+        ("3\n", "line 1: is '3'; expected an object"),
+        ('{"MA": 1}\n{"MA": \n', "line 2: is not JSON"),
+        ('{"MA": 1}\n{"MB": 1}\n', "line 2: 'MB' is not in the first row"),
+        ('{"MA": [1]}\n', "'MA' is a list or an object"),
+        ("[" * 100_000, "is not JSON"),
+    ],
+)
+def test_json_refused(tmp_path: Path, text: str, message: str) -> None:
+    path = write(tmp_path / "bad.jsonl", text)
+    with pytest.raises(UserError) as error:
+        list(read_table(str(path)).blocks)
+    assert message in str(error.value)
+
+
+def test_json_keeps_digits(tmp_path: Path) -> None:
+    scene = {**SAMPLES[0], "UX": "-90315.88170"}
+    rows = "[" + ", ".join(f'{{"{n}": {float(t)}}}'[1:-1] for n, t in scene.items() if n != "UX")
+    text = "[{" + rows[1:] + ', "UX": -90315.88170}]'
+    target = tmp_path / "out.jsonl"
+    solve_table(str(write(tmp_path / "in.json", text)), str(target), ["KI"], arithmetic="applesoft")
+    row = json.loads(target.read_text())
+    expected = impact88.replay({**{n: str(float(t)) for n, t in scene.items()}, "UX": scene["UX"]})
+    assert row["KI"] == expected.floats("KI")[0]
+    assert row["ERROR"] is None or row["ERROR"] == ""
+
+
+def test_workbooks(tmp_path: Path) -> None:
+    import xlsxwriter
+
+    path = tmp_path / "book.xlsx"
+    book = xlsxwriter.Workbook(str(path))
+    book.add_worksheet("notes").write_row(0, 0, ["nothing of note"])
+    sheet = book.add_worksheet("scenes")
+    sheet.write_row(0, 0, ["Crash tests of 1988"])
+    sheet.write_row(3, 0, ["note", "UX [mph]", *(f"{n} " for n in SCENE if n not in ("UX", "M"))])
+    sheet.write_row(4, 0, ["first", "25 mph", *[1.1] * 19])
+    sheet.write_string(5, 0, "=second")
+    sheet.write_row(5, 1, [30.5, *[1.1] * 19])
+    book.close()
+    target = tmp_path / "out.xlsx"
+    solved = solve_table(str(path), str(target), ["VAX"], view=impact88.cases.View("us"))
+    assert solved.remarks[0] == "sheet 'scenes', headings in row 4"
+    columns = columns_of(target)
+    assert columns["UX [mph]"] == [25, 30.5]
+    assert columns["note"] == ["first", "=second"]
+
+
+def test_floats_of_workbooks_keep_their_bits(tmp_path: Path) -> None:
+    import zipfile
+
+    source = tmp_path / "short.xlsx"
+    write_table(str(source), [{"UX": np.array([0.5, 0.25]), "UY": ["0.125", "3 mph"]}])
+    digits = "0.30000000000000004"
+    with zipfile.ZipFile(source) as old, zipfile.ZipFile(tmp_path / "long.xlsx", "w") as new:
+        for item in old.infolist():
+            data = old.read(item)
+            new.writestr(item, data.replace(b"<v>0.5</v>", f"<v>{digits}</v>".encode()))
+    assert columns_of(tmp_path / "long.xlsx")["UX"] == [float(digits), 0.25]
+
+
+def test_files_that_are_something_else(tmp_path: Path) -> None:
+    for kind in ("xlsx", "parquet"):
+        path = write(tmp_path / f"bad.{kind}", "no such thing")
+        with pytest.raises(UserError, match=rf"bad\.{kind}: is not an? "):
+            solve_table(str(path), str(tmp_path / "out.csv"))
+    with pytest.raises(UserError, match=r"expected a name that ends in \.csv"):
+        solve_table("table.docx", str(tmp_path / "out.csv"))
+    with pytest.raises(UserError, match=r"missing\.parquet: cannot be read"):
+        solve_table(str(tmp_path / "missing.parquet"), str(tmp_path / "out.csv"))
+    with pytest.raises(UserError, match="cannot be written"):
+        solve_table(str(write(tmp_path / "a.csv", csv_text(SAMPLES))), str(tmp_path / "no/out.csv"))
