@@ -128,11 +128,20 @@ def frame_of(columns: Mapping[str, Column]) -> Any:
         {
             name: pl.Series(name, column, nan_to_null=True)
             if isinstance(column, np.ndarray) and column.dtype.kind == "f"
-            else pl.Series(name, column, strict=False)
+            else pl.Series(name, _without_empty(column), strict=False)
             for name, column in columns.items()
         }
     )
     return frame
+
+
+def _without_empty(column: Column) -> Column:
+    """Return a column with None in place of empty texts, which polars would put in quotes."""
+    if isinstance(column, polars().Series) or (
+        isinstance(column, np.ndarray) and column.dtype.kind not in "UO"
+    ):
+        return column
+    return [None if cell == "" else cell for cell in column]
 
 
 def frame_of_texts(columns: Mapping[str, Column]) -> Any:
@@ -150,7 +159,7 @@ def frame_of_texts(columns: Mapping[str, Column]) -> Any:
             for at in odd.tolist():
                 texts[at] = repr(float(column[at]))
             frame = frame.with_columns(pl.Series(name, texts, pl.String))
-    return frame.with_columns(pl.col(pl.String).replace("", None))  # polars quotes an empty text
+    return frame
 
 
 def write_parquet(file: IO[bytes], blocks: Iterable[Mapping[str, Column]]) -> None:

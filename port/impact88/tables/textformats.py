@@ -12,6 +12,7 @@ import json
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from importlib.util import find_spec
 from itertools import islice
 from typing import IO, Any, NamedTuple
@@ -138,13 +139,18 @@ def _chunks(source: Source, where: str) -> Iterator[bytes]:
         rest += data
         end = rest.rfind(b"\n") + 1
         if end and rest.count(b'"', 0, end) % 2 == 0:
-            yield rest[:end].replace(b"\r\n", b"\n")
+            yield _with_newlines(rest[:end])
             rest = rest[end:]
         elif len(rest) > 4 * CHUNK_BYTES:
             raise UserError("has a line or a quoted text that does not end; expected CSV", where)
     source.close()
     if rest:
-        yield rest.replace(b"\r\n", b"\n")
+        yield _with_newlines(rest)
+
+
+def _with_newlines(data: bytes) -> bytes:
+    """Return bytes whose lines end with a newline alone."""
+    return data.replace(b"\r\n", b"\n") if b"\r" in data else data
 
 
 def _recoded(source: Source, where: str, encoding: str) -> Iterator[bytes]:
@@ -166,6 +172,9 @@ def _utf8(chunk: bytes, where: str, line: int) -> str:
         raise UserError("is not UTF-8 text; expected --encoding, such as cp1252", place) from None
 
 
+_PLAIN_CSV: dict[str, Any] = {"has_header": False, "infer_schema": False, "quote_char": None}
+
+
 def _split_plain(
     chunk: bytes, names: Sequence[str], delimiter: str, line: int, where: str
 ) -> Iterator[Block]:
@@ -174,27 +183,18 @@ def _split_plain(
     import polars
 
     rows = chunk.count(b"\n") + (not chunk.endswith(b"\n"))
-    is_plain = (
-        b'"' not in chunk
-        and b"\r" not in chunk
-        and b"\n\n" not in chunk
-        and not chunk.startswith(b"\n")
-        and chunk.count(delimiter.encode()) == rows * (len(names) - 1)
-    )
+    is_odd = any(mark in chunk for mark in (b'"', b"\r", b"\n\n")) or chunk.startswith(b"\n")
     frame = None
-    if is_plain:
-        try:
-            frame = polars.read_csv(
-                chunk,
-                has_header=False,
-                new_columns=list(names),
-                separator=delimiter,
-                infer_schema=False,
-                quote_char=None,
-            )
-        except polars.exceptions.PolarsError:
-            frame = None
-    if frame is None or frame.shape != (rows, len(names)):
+    with suppress(polars.exceptions.PolarsError):  # a row of more fields, which `_split` names
+        frame = None if is_odd else polars.read_csv(chunk, **_PLAIN_CSV, separator=delimiter)
+    if frame is not None and frame.shape == (rows, len(names)):
+        frame.columns = list(names)
+        # a row of fewer fields has nothing in the last column
+        fields = rows * (len(names) - 1)
+        is_odd = frame[names[-1]].has_nulls() and chunk.count(delimiter.encode()) != fields
+    else:
+        is_odd = True
+    if is_odd or frame is None:
         yield from _split(chunk, names, delimiter, line, where)
         return
     blank = frame.select(polars.all_horizontal(polars.all().is_null())).to_series()
