@@ -43,7 +43,7 @@ def format_of(path: str, given: str = "") -> str:
     return ENDINGS[ending]
 
 
-def read_table(path: str, kind: str = "", encoding: str = "") -> Table:
+def read_table(path: str, kind: str = "", encoding: str = "", digits: bool = False) -> Table:
     """Return a table, whose blocks of rows are read as they are asked for.
 
     Parameters
@@ -54,6 +54,8 @@ def read_table(path: str, kind: str = "", encoding: str = "") -> Table:
         Its format, by default that of its name.
     encoding : str, default ""
         Of CSV that is neither UTF-8 nor UTF-16 with its mark.
+    digits : bool, default False
+        Keep the digits of numbers in JSON, for the 1988 arithmetic; texts always keep them.
 
     Raises
     ------
@@ -64,7 +66,7 @@ def read_table(path: str, kind: str = "", encoding: str = "") -> Table:
     if kind == "csv":
         return textformats.read_csv(path, encoding)
     if kind == "jsonl":
-        return textformats.read_json(path)
+        return textformats.read_json(path, digits)
     if path == "-":
         raise UserError(f"{kind} cannot be read from standard input; expected a file")
     Source(path).close()  # a file that cannot be opened is named here

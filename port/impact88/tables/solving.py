@@ -5,8 +5,9 @@ from __future__ import annotations
 import csv
 import math
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass, field
+from types import NoneType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -137,7 +138,12 @@ def solve_table(
         For a file that is no table, lacks a column, or cannot be written.
     """
     format_of(target, target_format)
-    table = read_table(source, source_format, encoding) if isinstance(source, str) else source
+    is_applesoft = arithmetic == "applesoft"
+    table = (
+        read_table(source, source_format, encoding, is_applesoft)
+        if isinstance(source, str)
+        else source
+    )
     kind = format_of(target, target_format)
     solver = Solver(table, results, case, replaced, view, arithmetic, kind == "csv", results_only)
     solved = Solved(counts=table.counts, remarks=[*table.remarks])
@@ -523,6 +529,9 @@ def plain_numbers(column: Column, decimal_comma: bool = False) -> Floats:
             column = column.str.replace(r"^\s*([-+]?\d*),(\d+)\s*$", "${1}.${2}")
         return np.array(column.cast(polars.Float64, strict=False).to_numpy(), np.float64)
     cells = [_with_point(cell) if cell else cell for cell in column] if decimal_comma else column
+    with suppress(OverflowError):  # a whole number beyond doubles
+        if {*map(type, cells)} <= {float, int, NoneType}:
+            return np.array(cells, np.float64)
     try:
         return np.array(to_doubles(cells))
     except (TypeError, ValueError):
@@ -533,7 +542,7 @@ def _double(cell: Any) -> float:
     """Return the double of a cell, NaN for one that is no plain number."""
     try:
         return to_double(cell) if isinstance(cell, str) else float(cell)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return math.nan
 
 

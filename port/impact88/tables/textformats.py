@@ -27,7 +27,7 @@ Column = Any
 """A column of a block: an array of numbers, a list of texts, or a polars series."""
 
 CHUNK_BYTES = 8_000_000  # of CSV read at a time: some 60,000 rows, more gain nothing
-BLOCK_ROWS = 50_000  # of other formats
+BLOCK_ROWS = 20_000  # of other formats
 MAX_COLUMNS = 10_000  # beyond it a file is no table of scenes, and splitting it takes long
 
 
@@ -236,13 +236,13 @@ class Numeral(str):
     __slots__ = ()
 
 
-def read_json(path: str) -> Table:
+def read_json(path: str, digits: bool = False) -> Table:
     """Return the table in a file of JSON Lines, one object for each row, or of one array of
-    objects. Raises UserError."""
+    objects. ``digits``: keep those of numbers. Raises UserError."""
     where = display_name(path)
     source = Source(path)
     extent = source.extent
-    records = _json_records(io.BufferedReader(source), where)
+    records = _json_records(io.BufferedReader(source), where, Numeral if digits else None)
     first = next(records, None)
     if first is None:
         raise UserError("holds nothing; expected an object for each row", where)
@@ -250,7 +250,9 @@ def read_json(path: str) -> Table:
     return Table(names, _json_blocks(names, first, records, where), where, "line", extent=extent)
 
 
-def _json_records(file: IO[bytes], where: str) -> Iterator[tuple[int, dict[str, Any]]]:
+def _json_records(
+    file: IO[bytes], where: str, numeral: type[Numeral] | None
+) -> Iterator[tuple[int, dict[str, Any]]]:
     """Yield the objects of a file, with their lines."""
     number = 0
     while line := file.readline(LONGEST_LINE):
@@ -258,20 +260,20 @@ def _json_records(file: IO[bytes], where: str) -> Iterator[tuple[int, dict[str, 
         place = f"{where}, line {number}"
         if number == 1 and line.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"["):
             data = line + file.read(LONGEST_LINE * 100)
-            for at, row in enumerate(_json(data, where), 1):
+            for at, row in enumerate(_json(data, where, numeral), 1):
                 yield at, _record(row, f"{where}, object {at}")
             return
         if len(line) == LONGEST_LINE:
             raise UserError(f"is longer than {LONGEST_LINE:,} bytes; expected one row", place)
         if line.strip():
-            yield number, _record(_json(line, place), place)
+            yield number, _record(_json(line, place, numeral), place)
 
 
-def _json(data: bytes, place: str) -> Any:
-    """Return the value of a JSON text, numbers with their digits. Raises UserError."""
+def _json(data: bytes, place: str, numeral: type[Numeral] | None) -> Any:
+    """Return the value of a JSON text, its numbers as ``numeral``. Raises UserError."""
     try:
         text = data.decode("utf-8-sig")
-        return json.loads(text, parse_float=Numeral, parse_int=Numeral, parse_constant=Numeral)
+        return json.loads(text, parse_float=numeral, parse_int=numeral)
     except (ValueError, RecursionError) as error:
         reason = getattr(error, "msg", None) or "not UTF-8 text, or nested too deeply"
         raise UserError(f"is not JSON: {reason}; expected an object for each row", place) from None
@@ -281,17 +283,10 @@ def _record(value: Any, place: str) -> dict[str, Any]:
     """Return a row. Raises UserError for a value that is no flat object."""
     if not isinstance(value, dict):
         raise UserError(f"is {quoted(value)}; expected an object, a name and a value each", place)
-    nested = next((name for name, x in value.items() if isinstance(x, dict | list)), None)
+    nested = next((name for name, x in value.items() if isinstance(x, dict | list | bool)), None)
     if nested is not None:
-        raise UserError(f"{quoted(nested)} is a list or an object; expected one value", place)
-    return {name: _plain(x) for name, x in value.items()}
-
-
-def _plain(value: Any) -> str | None:
-    """Return a JSON value as the text of a cell."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return value  # type: ignore[no-any-return]
+        raise UserError(f"{quoted(nested)} is no number and no text; expected one of these", place)
+    return value
 
 
 def _json_blocks(
