@@ -1,41 +1,47 @@
 """The planar impact of two bodies: every formula, once.
 
-Each function computes a few quantities from others; its parameters are their names, so a result
-needs exactly the functions that lead to it. numpy runs a function over arrays as it stands, and
-`translate` prints it as a C loop: bodies are assignments of ``+ - * /``, comparisons, ``& | ~``,
-`where`, `fabs` and `sqrt`; the last line returns the quantities that others may use, and no
-condition. To add a result, write its function (and its row in `names.RESULTS`).
+Each function computes a few quantities from others; its parameters are their names, so that a
+result needs exactly the functions that lead to it (`plan`). numpy runs a function over arrays
+unchanged, and `translate` prints it as a C loop. Bodies are therefore assignments of ``+ - * /``,
+comparisons, ``& | ~``, `where`, `fabs` and `sqrt`; the last line returns the quantities that others
+may use, which are numbers, never conditions. To add a result, write its function here, its row in
+`names.RESULTS` and its line in `reference`.
 
-The method is impulse and momentum with the impulse as unknown. The impulse on A at the contact
-point has a normal part Pn, a tangential part Pt and a moment, (1 - em) h. Velocities after are
-those before plus impulse times inverse mass, so a rigid barrier is the inverse mass 0. In the
-relative velocities of the contact points along n, along t, and of the spins, Equations 15, 16 (or
-no slip) and 18 are two or three equations in Pn, Pt and h, solved by Cramer's rule. Equation 18 is
-multiplied by z = 1 - 2 em: nothing is infinite at em = 1/2. The spins are taken as the mean spin
-(Ia wa + Ib wb)/(Ia + Ib), which the moment leaves alone, and a difference, so with R = 1/ma + 1/mb,
-J = 1/(Ia + Ib), Ired = Ia Ib J, arms a and b, s = a + b, k = a/Ia - b/Ib, of both directions::
+Axes and signs: n = (cos GA, sin GA) and t = (-sin GA, cos GA), A on the +n side; the impulse acts
+on A, and its opposite on B. Lower-case names: s, c sine and cosine of GA; ma, mb, ia, ib inverse
+masses and inertias, 0 for a rigid barrier; an, at, bn, bt what a unit of spin adds to the velocity
+of a contact point relative to the other's, along n and t; wa, wb, waf, wbf, em spins and EM, 0 for
+point masses (M = 4), which have no arms and no moment; mu MU with the sign that line 400 gives it;
+gn, gt relative velocity of the contact points before, A's minus B's, and cn, ct that of the
+centers.
 
-    (R + J sn sn) Pn +      J sn st Pt + em kn h = -(w + sn mean)           w = e gn + cn
-         J st sn Pn + (R + J st st) Pt + em kt h = -(ct + st mean)           pivot; or Pt = mu Pn
-          Ired kn Pn +      Ired kt Pt +    z h = -turn                     turn = Ired (wa - wb)
+Method: the impulse is the unknown. It has a normal part Pn, a tangential part Pt and a moment
+PM = (1 - em) h. Velocities after are those before plus impulse times inverse mass (Equations 13, 14
+and 17). For the relative velocities of the contact points along n and t and of the spins, Equations
+15, 16 (or no slip at separation) and 18 are two or three linear equations in Pn, Pt and h, solved
+by Cramer's rule. Equation 18 is multiplied by z = 1 - 2 em, so that nothing is infinite at em =
+1/2. The spins are taken as the mean spin (Ia wa + Ib wb)/(Ia + Ib), which the moment does not
+change, and a difference. With R = ma + mb, J = 1/(Ia + Ib), Ired = Ia Ib J, s = a + b, k = a/Ia -
+b/Ib, of both directions, w = e gn + cn and turn = Ired (wa - wb)::
 
-For -1 <= em <= 0 both determinants are sums of terms of one sign (friction's while mu is small):
-nothing cancels however long the arms or unequal the bodies are.
+    (R + J sn sn) Pn +      J sn st Pt + em kn h = -(w + sn mean)
+         J st sn Pn + (R + J st st) Pt + em kt h = -(ct + st mean)      pivot; or Pt = mu Pn
+          Ired kn Pn +      Ired kt Pt +    z h = -turn
 
-Axes: n = (cos GA, sin GA), t = (-sin GA, cos GA), A on the +n side. A point mass (M = 4) is a body
-without arm, spin and moment.
+For -1 <= em <= 0 both determinants are sums of terms of one sign (that of sliding while mu is
+small): nothing cancels, however long the arms are and however unequal the bodies.
 """
 
 from numpy import absolute as fabs
 from numpy import sqrt, where
 
 INF = float("inf")
-LARGEST = 1.7976931348623157e308
-PIVOT = -10.0
-RADIAN = 0.017453292519943295
-PER_QUARTER = 1 / 90
+LARGEST = 1.7976931348623157e308  # the largest double
+PIVOT = -10.0  # the MU of a pivot
+RADIAN = 0.017453292519943295  # of a degree
+PER_QUARTER = 1 / 90  # quarter turns of a degree
 ROUND = 6755399441055744.0  # 1.5 * 2**52: adding it rounds to an integer
-LARGEST_ANGLE = 1e12
+LARGEST_ANGLE = 1e12  # degrees; the quarter turns of larger ones are not exact
 
 E_MIN = 0.0
 E_MAX = 1.0
@@ -44,14 +50,17 @@ EM_MAX = 0.0
 NO_MOMENT = 1.0  # the EM that stands for no moment impulse
 
 # tolerances of STATUS
-SINGULAR_FROM = 2.0**26
-ENERGY_TOLERANCE = 2e-12
-FRICTION_TOLERANCE = 1e-9
-SIDE_TOLERANCE = 1e-9
+SINGULAR_FROM = 2.0**26  # COND: half of a double's digits may be lost
+ENERGY_TOLERANCE = 2e-12  # twice the gain that is rounding, as a fraction of KI: 10^4 roundings
+FRICTION_TOLERANCE = 1e-9  # of P_t/P_n: above rounding, below the last digit anyone types
+SIDE_TOLERANCE = 1e-9  # of a center beyond the contact plane, as a fraction of its distance
 
 
 def sine_and_cosine(degrees):
-    """Of degrees: quarter turns are split off exactly, the rest by Taylor series to 45 degrees."""
+    """Return sine and cosine of an angle in degrees.
+
+    Quarter turns are split off exactly; the rest, up to 45 degrees, goes by the series of fdlibm.
+    """
     quarters = degrees * PER_QUARTER + ROUND - ROUND
     k = quarters - 4.0 * (0.25 * quarters + ROUND - ROUND)  # -2 ... 2
     r = (degrees - 90.0 * quarters) * RADIAN
@@ -81,58 +90,66 @@ def sine_and_cosine(degrees):
 
 
 def moment_coefficient(M, EM):
-    """A point mass has no moment and no spin."""
+    """Return EM, 0 for point masses."""
     em = where(M == 4.0, 0.0, EM)
     return (em,)
 
 
 def body_spins(M, WA, WB):
+    """Return the initial spins, 0 for point masses."""
     wa, wb = where(M == 4.0, 0.0, WA), where(M == 4.0, 0.0, WB)
     return wa, wb
 
 
 def inverse_inertias(M, IA, IB):
+    """Return the inverse inertias, 1 for point masses: they have no spin to act on."""
     ia, ib = where(M == 4.0, 1.0, 1.0 / IA), where(M == 4.0, 1.0, 1.0 / IB)
     return ia, ib
 
 
 def contact_normal(GA):
+    """Return sine and cosine of GA."""
     s, c = sine_and_cosine(GA)
     return s, c
 
 
 def arm_direction_a(M, DA, PA, TA):
+    """Return the length and the direction of A's arm."""
     point = M == 4.0
     da, angle_a = where(point, 0.0, DA), where(point, 0.0, PA + TA)
     return da, angle_a
 
 
 def arm_direction_b(M, DB, PB, TB):
+    """Return the length and the direction of B's arm."""
     point = M == 4.0
     db, angle_b = where(point, 0.0, DB), where(point, 0.0, PB + TB)
     return db, angle_b
 
 
 def lever_arm_a(da, angle_a, GA):
-    """What the spin of A adds to its contact point's velocity along n and t."""
+    """Return what a unit of A's spin adds to the relative velocity along n and t."""
     sine, cosine = sine_and_cosine(angle_a - GA)
     an, at = da * sine, -(da * cosine)
     return an, at
 
 
 def lever_arm_b(db, angle_b, GA):
+    """Return what a unit of B's spin adds to the relative velocity along n and t."""
     sine, cosine = sine_and_cosine(angle_b - GA)
     bn, bt = db * sine, -(db * cosine)
     return bn, bt
 
 
 def inverse_masses(MA, MB):
+    """Return the inverse masses and their sum."""
     ma, mb = 1.0 / MA, 1.0 / MB
     R = ma + mb
     return ma, mb, R
 
 
 def reduced_inertia(ia, ib):
+    """Return the reduced inertia, the bodies' parts in the mean spin, and 1/(Ia + Ib)."""
     Ired = 1.0 / (ia + ib)
     part_a, part_b = ib * Ired, ia * Ired  # of the mean spin
     J = ia * part_a
@@ -140,19 +157,21 @@ def reduced_inertia(ia, ib):
 
 
 def combined_arms(an, at, bn, bt, ia, ib):
+    """Return the arms of the mean spin and of the difference of the spins."""
     sn, st = an + bn, at + bt
     kn, kt = an * ia - bn * ib, at * ia - bt * ib
     return sn, st, kn, kt
 
 
 def mean_spin(wa, wb, part_a, part_b, Ired):
+    """Return the mean spin, by its parts too, and what the moment can change of the spins."""
     from_a, from_b = part_a * wa, part_b * wb
     mean, turn = from_a + from_b, Ired * (wa - wb)
     return from_a, from_b, mean, turn
 
 
 def relative_velocity(UX, UY, VX, VY, s, c, an, at, bn, bt, wa, wb):
-    """Relative velocity before along n and t, of the centers and of the contact points."""
+    """Return the relative velocity before, of the centers and of the contact points."""
     dx, dy = UX - VX, UY - VY
     cn, ct = c * dx + s * dy, c * dy - s * dx
     gn, gt = cn + (an * wa + bn * wb), ct + (at * wa + bt * wb)
@@ -160,7 +179,7 @@ def relative_velocity(UX, UY, VX, VY, s, c, an, at, bn, bt, wa, wb):
 
 
 def signed_friction(MU, gt):
-    """MU after line 400: friction opposes the sliding; a tie keeps the sign."""
+    """Return MU after line 400: friction opposes the sliding; on a tie the sign stays."""
     mu = where(gt > 0.0, -MU, MU)
     return (mu,)
 
@@ -168,9 +187,10 @@ def signed_friction(MU, gt):
 # -- the impulse
 
 
-def sliding_impulse(E, mu, em, R, J, Ired, sn, st, kn, kt, an, at, bn, bt, from_a, from_b, mean, turn,
-            cn, gn):  # fmt: skip
-    """Pt = mu Pn."""
+def sliding_impulse(
+    E, mu, em, R, J, Ired, sn, st, kn, kt, an, at, bn, bt, from_a, from_b, mean, turn, cn, gn
+):
+    """Return the determinant, Pn and h for Pt = mu Pn."""
     z, w = 1.0 - (em + em), E * gn + cn
     s_mu, k_mu = sn + mu * st, kn + mu * kt
     D_s = z * (R + J * sn * s_mu) - em * (Ired * kn * k_mu)
@@ -180,10 +200,35 @@ def sliding_impulse(E, mu, em, R, J, Ired, sn, st, kn, kt, an, at, bn, bt, from_
     return D_s, Pn_s, h_s
 
 
-def pivot_impulse(E, em, R, J, Ired, sn, st, kn, kt, an, at, bn, bt, ia, ib, from_a, from_b, mean, turn,
-             cn, ct, gn):  # fmt: skip
-    """No slip at separation. ``N`` is the impulse times the determinant, which is one of R times
-    squares."""
+def pivot_impulse(
+    E,
+    em,
+    R,
+    J,
+    Ired,
+    sn,
+    st,
+    kn,
+    kt,
+    an,
+    at,
+    bn,
+    bt,
+    ia,
+    ib,
+    from_a,
+    from_b,
+    mean,
+    turn,
+    cn,
+    ct,
+    gn,
+):
+    """Return the determinant, Pn and Pt times the determinant, and h for no slip at separation.
+
+    The determinant is R times a sum of squares; ``lever`` is the cross product of k and s without
+    the difference of its products.
+    """
     z, w = 1.0 - (em + em), E * gn + cn
     axb = an * bt - at * bn
     lever = (ia + ib) * axb  # k x s, without the difference of products
@@ -202,6 +247,7 @@ def pivot_impulse(E, em, R, J, Ired, sn, st, kn, kt, an, at, bn, bt, ia, ib, fro
 
 
 def impulse(MU, mu, D_s, Pn_s, h_s, D_p, Nn, Nt, h_p):
+    """Return the impulse, h and the determinant."""
     pivot = MU == PIVOT
     PN, PT = where(pivot, Nn / D_p, Pn_s), where(pivot, Nt / D_p, mu * Pn_s)
     h, D = where(pivot, h_p, h_s), where(pivot, D_p, D_s)
@@ -209,6 +255,7 @@ def impulse(MU, mu, D_s, Pn_s, h_s, D_p, Nn, Nt, h_p):
 
 
 def moment_impulse(M, em, h):
+    """Return the moment impulse."""
     PM = where(M == 4.0, 0.0, (1.0 - em) * h)
     return (PM,)
 
@@ -217,18 +264,20 @@ def moment_impulse(M, em, h):
 
 
 def velocity_changes(PN, PT, s, c, ma, mb):
+    """Return A's velocity change along x and y, and the reverse of B's."""
     Px, Py = c * PN - s * PT, s * PN + c * PT
     ax, ay, bx, by = ma * Px, ma * Py, mb * Px, mb * Py
     return ax, ay, bx, by
 
 
 def final_velocities(UX, UY, VX, VY, ax, ay, bx, by):
+    """Return the final velocities (Equations 13 and 14)."""
     VAX, VAY, VBX, VBY = UX + ax, UY + ay, VX - bx, VY - by
     return VAX, VAY, VBX, VBY
 
 
 def spin_weights(em, part_a, part_b):
-    """What a body's own spin, and the other's, weighs in its spin after, times the determinant."""
+    """Return the weights of a body's own and the other's spin in its final spin."""
     z, q = 1.0 - (em + em), 1.0 - em
     own_a, own_b, given_a, given_b = (
         z * part_a - em * part_b,
@@ -239,9 +288,38 @@ def spin_weights(em, part_a, part_b):
     return own_a, own_b, given_a, given_b
 
 
-def sliding_spins(E, mu, em, R, J, Ired, sn, st, kn, kt, an, at, bn, bt, ia, ib, wa, wb, own_a, own_b,
-                  given_a, given_b, cn, gn, D_s):  # fmt: skip
-    """Not by the impulse: its parts cancel where arms are far longer than radii of gyration."""
+def sliding_spins(
+    E,
+    mu,
+    em,
+    R,
+    J,
+    Ired,
+    sn,
+    st,
+    kn,
+    kt,
+    an,
+    at,
+    bn,
+    bt,
+    ia,
+    ib,
+    wa,
+    wb,
+    own_a,
+    own_b,
+    given_a,
+    given_b,
+    cn,
+    gn,
+    D_s,
+):
+    """Return the final spins of sliding bodies (Equation 17).
+
+    They are not computed from the impulse, whose parts cancel where arms are far longer than radii
+    of gyration.
+    """
     w, a, b = E * gn + cn, an + mu * at, bn + mu * bt
     push, twist = (1.0 - (em + em)) * J * (sn + mu * st), em * Ired * (kn + mu * kt)
     cross = em * (a * ia * wb - b * ib * wa)
@@ -250,8 +328,10 @@ def sliding_spins(E, mu, em, R, J, Ired, sn, st, kn, kt, an, at, bn, bt, ia, ib,
     return wa_s, wb_s
 
 
-def pivot_spins(E, em, R, J, an, at, bn, bt, ia, ib, wa, wb, own_a, own_b, given_a, given_b, cn, ct, gn,
-                   D_p):  # fmt: skip
+def pivot_spins(
+    E, em, R, J, an, at, bn, bt, ia, ib, wa, wb, own_a, own_b, given_a, given_b, cn, ct, gn, D_p
+):
+    """Return the final spins of bodies without slip at separation."""
     w, ab = E * gn + cn, an * bn + at * bt
     state_a, state_b = R * wa - ia * (an * w + at * ct), R * wb - ib * (bn * w + bt * ct)
     turn_a = em * (ab * ia * wb - (bn * bn + bt * bt) * ib * wa)
@@ -264,6 +344,7 @@ def pivot_spins(E, em, R, J, an, at, bn, bt, ia, ib, wa, wb, own_a, own_b, given
 
 
 def final_spins(M, MU, WA, WB, wa_s, wb_s, wa_p, wb_p):
+    """Return the final spins; those of point masses pass through."""
     point, pivot = M == 4.0, MU == PIVOT
     WAF = where(point, WA, where(pivot, wa_p, wa_s))
     WBF = where(point, WB, where(pivot, wb_p, wb_s))
@@ -271,14 +352,14 @@ def final_spins(M, MU, WA, WB, wa_s, wb_s, wa_p, wb_p):
 
 
 def final_slip(MU, s, c, VAX, VAY, VBX, VBY, at, bt, waf, wbf):
-    """The sliding at separation."""
+    """Return the sliding at separation."""
     gt_after = c * (VAY - VBY) - s * (VAX - VBX) + (at * waf + bt * wbf)
     gt_after = where(MU == PIVOT, 0.0, gt_after)
     return (gt_after,)
 
 
 def contact_offsets(da, angle_a, db, angle_b):
-    """D3 D4 D1 D2 of line 330: along x and y, so that what is 0 there is 0."""
+    """Return the arms along x and y, d3 d4 d1 d2 of line 330: what is 0 there is 0."""
     sin_a, cos_a = sine_and_cosine(angle_a)
     sin_b, cos_b = sine_and_cosine(angle_b)
     D3, D4, D1, D2 = da * sin_a, da * cos_a, db * sin_b, db * cos_b
@@ -286,36 +367,43 @@ def contact_offsets(da, angle_a, db, angle_b):
 
 
 def contact_velocities_before(UX, UY, VX, VY, D1, D2, D3, D4, wa, wb):
+    """Return the contact points' velocities before the impact (line 340)."""
     XA, YA, XB, YB = UX + D3 * wa, UY - D4 * wa, VX - D1 * wb, VY + D2 * wb
     return XA, YA, XB, YB
 
 
 def contact_velocities_after(VAX, VAY, VBX, VBY, D1, D2, D3, D4, WAF, WBF):
+    """Return the contact points' velocities after the impact (lines 700, 710)."""
     XAF, YAF, XBF, YBF = VAX + D3 * WAF, VAY - D4 * WAF, VBX - D1 * WBF, VBY + D2 * WBF
     return XAF, YAF, XBF, YBF
 
 
 def closing_speed(gn):
+    """Return the closing speed along the normal."""
     VC = -gn
     return (VC,)
 
 
 def separation_speed(E, gn):
+    """Return the separation speed along the normal (Equation 15)."""
     VS = -(E * gn)
     return (VS,)
 
 
 def delta_v(ax, ay, bx, by):
+    """Return the sizes of the velocity changes."""
     DVA, DVB = sqrt(ax * ax + ay * ay), sqrt(bx * bx + by * by)
     return DVA, DVB
 
 
 def printed_friction(MU, mu):
+    """Return the friction coefficient as line 680 prints it."""
     MUP = where(MU == PIVOT, PIVOT, mu)
     return (MUP,)
 
 
 def critical_friction(Nn, Nt):
+    """Return the P_t/P_n that just ends the sliding."""
     MUC = Nt / Nn
     return (MUC,)
 
@@ -324,7 +412,10 @@ def critical_friction(Nn, Nt):
 
 
 def finite_inertias(M, MA, MB, IA, IB):
-    """An infinite body is at rest: times 0 any number will do."""
+    """Return masses and inertias with a finite number for infinite ones.
+
+    An infinite body is at rest: times 0 any number will do. Point masses have no inertia.
+    """
     fa, fb = where(MA < INF, MA, LARGEST), where(MB < INF, MB, LARGEST)
     ja, jb = where(IA < INF, IA, LARGEST), where(IB < INF, IB, LARGEST)
     ja, jb = where(M == 4.0, 0.0, ja), where(M == 4.0, 0.0, jb)
@@ -332,46 +423,54 @@ def finite_inertias(M, MA, MB, IA, IB):
 
 
 def energy_before(fa, fb, ja, jb, UX, UY, wa, VX, VY, wb):
+    """Return the kinetic energy before the impact."""
     KI = 0.5 * (fa * (UX * UX + UY * UY) + fb * (VX * VX + VY * VY) + (ja * wa * wa + jb * wb * wb))
     return (KI,)
 
 
 def final_body_spins(M, WAF, WBF):
+    """Return the final spins, 0 for point masses."""
     waf, wbf = where(M == 4.0, 0.0, WAF), where(M == 4.0, 0.0, WBF)
     return waf, wbf
 
 
 def energy_after(fa, fb, ja, jb, VAX, VAY, waf, VBX, VBY, wbf):
+    """Return the kinetic energy after the impact."""
     KF = fa * (VAX * VAX + VAY * VAY) + fb * (VBX * VBX + VBY * VBY)
     KF = 0.5 * (KF + (ja * waf * waf + jb * wbf * wbf))
     return (KF,)
 
 
 def normal_loss(E, gn, PN):
-    """Each impulse's work, at the mean of the relative velocities before and after."""
+    """Return the energy that the normal impulse takes, at the mean relative velocity."""
     ELN = -0.5 * ((1.0 - E) * gn * PN)
     return (ELN,)
 
 
 def tangential_loss(gt, gt_after, PT):
+    """Return the energy that the tangential impulse takes, at the mean sliding."""
     ELT = -0.5 * (PT * (gt + gt_after))
     return (ELT,)
 
 
 def moment_loss(wa, wb, waf, wbf, PM):
+    """Return the energy that the moment impulse takes, at the mean relative spin."""
     ELM = -0.5 * (PM * ((wa - wb) + (waf - wbf)))
     return (ELM,)
 
 
 def energy_loss(ELN, ELT, ELM, KI):
-    """KI - KF would lose its digits where little is lost."""
+    """Return the energy lost, and in percent of that before.
+
+    The difference of the two energies would lose its digits where little is lost.
+    """
     EL = ELN + ELT + ELM
     LOSS = 100.0 * EL / KI
     return EL, LOSS
 
 
 def equivalent_speeds(EL, MA, MB, ma, mb):
-    """Half of the loss in each body, all of it before a rigid barrier."""
+    """Return the speeds of half the loss in each body, of all before a rigid barrier."""
     twice = where(EL < 0.0, 0.0, EL + EL)
     EESA = sqrt(where(MB == INF, twice, 0.5 * twice)) * sqrt(ma)
     EESB = sqrt(where(MA == INF, twice, 0.5 * twice)) * sqrt(mb)
@@ -382,7 +481,7 @@ def equivalent_speeds(EL, MA, MB, ma, mb):
 
 
 def condition_number(MU, mu, em, D, R, J, Ired, an, at, bn, bt, ia, ib):
-    """The determinant with absolute values in every sum, over itself."""
+    """Return the determinant with absolute values in every sum, over itself."""
     size, z_ = where(MU == PIVOT, 0.0, fabs(mu)), fabs(1.0 - (em + em))
     sn_, st_ = fabs(an) + fabs(bn), fabs(at) + fabs(bt)
     kn_, kt_ = fabs(an) * ia + fabs(bn) * ib, fabs(at) * ia + fabs(bt) * ib
@@ -398,8 +497,11 @@ def condition_number(MU, mu, em, D, R, J, Ired, an, at, bn, bt, ia, ib):
 
 
 def usability(M, E, MU, EM, DA, DB, GA, PA, PB, TA, TB, MA, MB, IA, IB, UX, UY, WA, VX, VY, WB):
-    """1 where a scene's numbers can be used: finite (a sum is, where its terms are), masses and
-    inertias above 0; an infinite body is at rest, and there is one at most."""
+    """Return 1 where the numbers of a scene can be used, 0 elsewhere.
+
+    They are finite (a sum is finite where its terms are), masses and inertias are above 0, an
+    infinite body is at rest, and there is one at most.
+    """
     point = M == 4.0
     good = (point | (M == 6.0)) & (fabs(E + MU + UX + UY + WA + VX + VY + WB) < INF)
     good = good & (fabs(GA) < LARGEST_ANGLE) & (MA > 0.0) & (MB > 0.0)
@@ -414,9 +516,46 @@ def usability(M, E, MU, EM, DA, DB, GA, PA, PB, TA, TB, MA, MB, IA, IB, UX, UY, 
     return (fit,)
 
 
-def status_bits(E, MU, mu, em, an, at, bn, bt, da, db, ia, ib, kt, R, gn, gt, PN, PM, D_p, Nn, Nt, KI,
-           EL, COND, VAX, VAY, VBX, VBY, WAF, WBF):  # fmt: skip
-    """The bits of `impact88.status.Status`. A comparison with NaN is false."""
+def status_bits(
+    E,
+    MU,
+    mu,
+    em,
+    an,
+    at,
+    bn,
+    bt,
+    da,
+    db,
+    ia,
+    ib,
+    kt,
+    R,
+    gn,
+    gt,
+    PN,
+    PM,
+    D_p,
+    Nn,
+    Nt,
+    KI,
+    EL,
+    COND,
+    VAX,
+    VAY,
+    VBX,
+    VBY,
+    WAF,
+    WBF,
+):
+    """Return the bits of `impact88.status.Status`; a comparison with NaN is false.
+
+    Friction is above critical, or in the wrong direction, unless it can act against the sliding
+    before the impact and then, when the normal impulse has reversed the sliding, the other way
+    (``forth``: where it cannot). The net impulse is then at least
+    -Pn (w - K)^2/(K Ktt), w^2 = 2 gt K/Pn, with K and Ktt what units of Pn (and the moment with it)
+    and of Pt add to the sliding, for gt/K between Pn/2 and 2 Pn; here without the root.
+    """
     size, f = fabs(Nt), where(MU == PIVOT, 0.0, mu)
     sign = where(D_p < 0.0, -1.0, 1.0)
     pushes, along = Nn * sign, where(Nt * sign < 0.0, -f, f)
@@ -424,7 +563,6 @@ def status_bits(E, MU, mu, em, an, at, bn, bt, da, db, ia, ib, kt, R, gn, gt, PN
     backward = approach & (along < -FRICTION_TOLERANCE)
     none = (pushes > 0.0) & (size <= FRICTION_TOLERANCE * pushes)
     above = approach & (pushes > 0.0) & ((along - FRICTION_TOLERANCE) * pushes > size)
-    # friction against the sliding before it, and back after the normal impulse has reversed it
     turned = (an * at * ia + bn * bt * ib) * PN + kt * PM
     back = (fabs(f) - FRICTION_TOLERANCE) * (PN * (R + (at * at * ia + bt * bt * ib)))
     excess = fabs(gt) + fabs(gt) - fabs(turned)

@@ -7,6 +7,7 @@ brackets, so that the compiled library has numpy's bits.
 
 import ast
 import hashlib
+from functools import cache
 
 from .plan import COLUMNS, COMPILED, FUNCTIONS, HELPERS, ROWS, SOURCE, Formula
 
@@ -126,25 +127,28 @@ def formula_text(formula: Formula) -> str:
     return "\n        ".join([head, *body]) + "\n    }\n}"
 
 
-def digest() -> str:
-    """Return a digest of the formulas: a library that has it was built from these."""
-    text = ast.unparse(SOURCE) + " ".join(ROWS)
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
-
-
-def header() -> str:
-    """Return the text of ``formulas.h``."""
+@cache
+def functions() -> str:
+    """Return all functions in C, and the table of the formulas."""
     table = "static void (*const functions[])(const double *const *, ROW *)"
     sizes = {"ROWS": len(ROWS) - len(COLUMNS), "COLUMNS": len(COLUMNS), "AT_MU": ROWS["MU"]}
     parts = [
-        "/* printed by translate.py; not to be edited */",
         "\n".join(f"#define {name} {size}" for name, size in sizes.items()),
-        f'#define FORMULAS "{digest()}"',
         *(helper_text(FUNCTIONS[name]) for name in HELPERS),
         *map(formula_text, COMPILED.values()),
         f"{table} = {{{', '.join(COMPILED)}}};",
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def digest() -> str:
+    """Return a digest of the functions: a library that has it was built from these."""
+    return hashlib.sha256(functions().encode()).hexdigest()[:16]
+
+
+def header() -> str:
+    """Return the text of ``formulas.h``."""
+    return f'/* printed by translate.py */\n\n#define FORMULAS "{digest()}"\n{functions()}'
 
 
 if __name__ == "__main__":
