@@ -67,11 +67,11 @@ if TYPE_CHECKING:
     from .conformance.comparison.oracle import oracle as oracle
     from .errors import PlausibilityWarning as PlausibilityWarning
     from .errors import UserError as UserError
-    from .mechanics.closedform.prepared import Prepared as Prepared
-    from .mechanics.closedform.prepared import prepared as prepared
-    from .mechanics.closedform.solve import solve as solve
-    from .mechanics.native import accelerated as accelerated
+    from .library import accelerated as accelerated
+    from .mechanics.solve import Prepared as Prepared
     from .mechanics.solve import evaluate as evaluate
+    from .mechanics.solve import prepared as prepared
+    from .mechanics.solve import solve as solve
     from .printouts.reading.printout import Printout as Printout
     from .printouts.reading.printout import read_printouts as read_printouts
     from .printouts.reporting.examination import Verification as Verification
@@ -92,14 +92,12 @@ _LAZY = {
         "casework.chapter.deltav": "delta_v",
         "conformance.comparison.compare": "Comparison compare",
         "conformance.comparison.oracle": "oracle",
-        "mechanics.closedform.prepared": "Prepared prepared",
-        "mechanics.closedform.solve": "solve",
         "apple.emulator.emulator": "Applesoft",
         "errors": "PlausibilityWarning UserError",
         "casework.figures.canvas": "Svg",
         "casework.figures.sceneview": "scene_svg",
-        "mechanics.native": "accelerated",
-        "mechanics.solve": "evaluate",
+        "library": "accelerated",
+        "mechanics.solve": "Prepared evaluate prepared solve",
         "program.run": "Run run",
         "printouts.reading.printout": "Printout read_printouts",
         "casework.reconstruction.solution": "Reconstruction",

@@ -14,7 +14,7 @@ from impact88.bench import figure, measure, plainc, tables
 from impact88.bench.methods import METHODS, relative_errors
 from impact88.casework.figures import canvas
 from impact88.interface.commands.cli import main
-from impact88.mechanics.accuracy.populations import (
+from impact88.bench.populations import (
     BENCHMARK,
     POPULATIONS,
     scenes,

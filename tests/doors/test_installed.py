@@ -30,7 +30,6 @@ uses = ("open", "ctypes.dlopen")
 sys.addaudithook(lambda event, told: opened.add(str(told[0])) if event in uses else None)
 import numpy
 from impact88 import sample
-from impact88.mechanics.accuracy.populations import evolved
 from impact88.interface.commands import cli
 from impact88.interface.desk import app
 from impact88.equations import edits
@@ -70,7 +69,6 @@ pages = [client.get(page, base_url=own).status_code for page in pages]
 form = {"values": dict(sample(1)), "units": ""}
 answer = client.post("/word/collision", json=form, base_url=own, headers={"Origin": own})
 pages.append(answer.status_code)
-evolved(numpy.random.default_rng(0), 1)
 desk.close()
 print(json.dumps([cli.__file__, sorted(opened), statuses, len(vectors), pages]))
 """

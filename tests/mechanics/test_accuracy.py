@@ -1,197 +1,106 @@
-"""What each result by the closed form may be off: `errorbound.result_bounds` against 50 digits.
-
-`evolved_for_each_result.csv` holds the worst scenes that `tests/benchmarks/evolve_each.py` made
-for one result in each family (seed 7, 30 s), when contact velocities were the sums of what centers
-and spins give: there a result was off by up to 140,000 of its own roundings (``units``).
-``pivot_wide`` was evolved against the bound itself (``pivot --wide --bound``, seed 11). The rows
-behind it were evolved against intermediate forms of the velocities of light bodies (seeds 101 and
-88301, 40 and 180 s), but VAX of a pivot with the contact point ahead, which is made by hand.
-"""
-
-from __future__ import annotations
+"""Errors of the results against 50 digits, in roundings of the scene's numbers."""
 
 import csv
 from pathlib import Path
 
+import mpmath
 import numpy as np
 import pytest
 
-from impact88 import solve
-from impact88.collision.casescene import sample
-from impact88.mechanics.accuracy.errorbound import (
-    DOUBLE,
-    movements,
-    relative_bounds,
-    result_bounds,
-    scales,
-)
-from impact88.mechanics.accuracy.populations import POPULATIONS, scenes
-from impact88.mechanics.accuracy.reference import fifty_digits, two_doubles
-from impact88.mechanics.closedform.impactprograms import program_for
-from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
+from impact88 import UserError, sample, solve
+from impact88.bench.populations import POPULATIONS, scenes
+from impact88.mechanics.errorbound import ROUNDINGS, error_bounds
+from impact88.mechanics.formulas import sine_and_cosine
+from impact88.mechanics.reference import results, thirty_digits
+from impact88.names import FINAL_VELOCITIES, RESULTS
 
-NAMES = tuple(name for name in RESULTS if name not in ("COND", "STATUS"))
-with Path(__file__).with_name("evolved_for_each_result.csv").open(newline="") as rows:
-    EVOLVED = list(csv.DictReader(rows))
-FAMILIES = sorted({row["family"] for row in EVOLVED})
+NAMES = [name for name in RESULTS if name not in ("COND", "STATUS")]
+BENIGN = ("casework", "heavy", "singular", "units", "tangential", "quarter-turns")
+MOST = {**dict.fromkeys(BENIGN, 3.0), "evolved": 10.0}  # roundings; 6 of the others
+EVOLVED = Path(__file__).with_name("evolved.csv")
 
 
-def test_every_result_has_a_formula_and_a_reference():
-    """What is forgotten of a result that `names.RESULTS` has is named, with its place."""
-    scene = {name: float(text) for name, text in sample(1).items()}
-    true = fifty_digits(scene)
-    for name in true:
-        assert name in RESULTS, f"next step: a row for {name} in RESULTS of names.py"
-    for name in RESULTS:
-        try:
-            program_for(("array",) * (len(SCENE) - 1) + ("6",), (name,))
-        except KeyError:
-            pytest.fail(
-                f"{name} has a row in RESULTS of names.py and no formula; next step: {name!r} in "
-                "what `impact` returns, in mechanics/closedform/impact.py"
-            )
-        assert name in true or name not in NAMES, (
-            f"{name} has a formula and no reference; next step: {name!r} in what `fifty_digits` "
-            "returns, in mechanics/accuracy/reference.py"
-        )
+def evolved():
+    """Return 24 scenes that an evolution strategy bred for large errors."""
+    names, *rows = csv.reader(EVOLVED.read_text("ascii").splitlines())
+    return dict(zip(names, np.array(rows, np.float64).T.copy(), strict=True))
 
 
-def assert_within_a_quarter(g):
-    """No error is above a quarter of its bound; else the result is named that is off most."""
-    largest = shares(g).max(axis=0)
-    worst = int(largest.argmax())
-    assert largest[worst] < 0.25, (
-        f"{NAMES[worst]} is off by {largest[worst]:.3g} times its bound; next step: compare its "
-        "formula in `impact` of mechanics/closedform/impact.py with its reference in "
-        "`fifty_digits` of mechanics/accuracy/reference.py; a sum of large terms needs its own "
-        "bound in `result_bounds` of mechanics/accuracy/errorbound.py"
-    )
+def scene_at(g, i):
+    return {name: float(column[i]) for name, column in g.items()}
 
 
-def shares(g, found=None):
-    """(scene, result) -> error as part of the bound; what has no number counts as 0."""
-    hi, lo = two_doubles(g, NAMES)
-    found, bounds = found or solve(g, NAMES), result_bounds(g)
-    assert set(bounds) == set(NAMES)
-    every = np.zeros(hi.shape)
-    for j, name in enumerate(NAMES):
-        with np.errstate(all="ignore"):
-            error = np.abs((found[name] - hi[:, j]) - lo[:, j])
-            every[:, j] = np.nan_to_num(np.where(error == 0, 0.0, error / bounds[name]))
-    return every
-
-
-def evolved(family):
-    rows = [row for row in EVOLVED if row["family"] == family]
-    return {name: np.array([float(row[name]) for row in rows]) for name in SCENE}
-
-
-def other_inertias(power, pivots, count=16):
-    g = scenes("casework", count, 77)
-    rng = np.random.default_rng(77)
-    g["WA"], g["WB"] = rng.uniform(-2, 2, (2, count))
-    g["MU"] = np.full(count, -10.0) if pivots else g["MU"]
-    return {**g, "IA": g["IA"] * 10.0**power}
-
-
-@pytest.mark.parametrize("family", FAMILIES)
-def test_no_error_is_above_a_quarter_of_it_where_evolution_made_it_large(family):
-    assert_within_a_quarter(evolved(family))
-
-
-@pytest.mark.parametrize("power", [-12, -3, 3, 12])
-@pytest.mark.parametrize("pivots", [False, True])
-def test_no_error_is_above_a_quarter_of_it_whatever_the_inertia(power, pivots):
-    assert_within_a_quarter(other_inertias(power, pivots))
-
-
-@pytest.mark.parametrize("name", POPULATIONS)
-def test_no_error_is_above_a_quarter_of_it_in_any_population(name):
-    assert_within_a_quarter(scenes(name, 12, 78))
-
-
-def own_roundings(g, found):
-    """Result -> errors, in roundings of the result itself and of each number of the scene."""
-    names = list(found)
-    hi, lo = two_doubles(g, names)
-    moved = movements(g, names)
-    worst = {}
-    for j, name in enumerate(names):
-        with np.errstate(all="ignore"):
-            error = np.abs((found[name] - hi[:, j]) - lo[:, j])
-            size = DOUBLE * (moved[name] + np.abs(hi[:, j]))
-            worst[name] = np.nan_to_num(np.where(error == 0, 0.0, error / size))
+def errors(g):
+    """Return each result's largest error, as a fraction of its bound."""
+    values, bounds = solve(g, NAMES), error_bounds(g, NAMES)
+    worst = dict.fromkeys(NAMES, 0.0)
+    for i in range(len(g["MA"])):
+        exact = results(scene_at(g, i))
+        for name in NAMES:
+            value = float(values[name][i])
+            if name in exact and np.isfinite(value):
+                error = float(abs(exact[name] - value))
+                worst[name] = max(worst[name], error / bounds[name][i] if error else 0.0)
     return worst
 
 
-@pytest.mark.parametrize("family", FAMILIES)
-def test_every_result_is_within_16_of_its_own_roundings(family):
-    """But in the two scenes of `friction_left`: WBF next to a singularity (COND 2040), where a
-    large inertia keeps the spin, and LOSS where a long arm makes works that nearly cancel."""
-    g = evolved(family)
-    left_out = ["MUP"]
-    if family == "friction_left":
-        left_out += ["WBF", "KF", "LOSS", "EESA", "EESB"]
-    worst = own_roundings(g, solve(g, [name for name in NAMES if name not in left_out]))
-    off = {name: float(x.max()) for name, x in worst.items() if x.max() >= 16}
-    assert not off
+@pytest.mark.parametrize("name", [*POPULATIONS, "evolved"])
+def test_errors_in_roundings_of_the_scene(name):
+    g = evolved() if name == "evolved" else scenes(name, 25, 88)
+    worst = errors(g)
+    assert max(worst[v] for v in FINAL_VELOCITIES) * ROUNDINGS <= MOST.get(name, 6.0)
+    assert max(worst.values()) * ROUNDINGS <= 12.0  # a fifth of the bound that is reported
 
 
-def test_the_sum_of_center_and_spin_is_not():
-    """Of a contact velocity, where both cancel: these scenes tell one formula from another."""
-    g = evolved("barrier_pivot")
-    f = solve(g, ["VAX", "VAY", "WAF"])
-    angle = np.radians(np.fmod(g["TA"] + g["PA"], 360))
-    sums = {
-        "XAF": f["VAX"] + g["DA"] * np.sin(angle) * f["WAF"],
-        "YAF": f["VAY"] - g["DA"] * np.cos(angle) * f["WAF"],
-    }
-    assert max(x.max() for x in own_roundings(g, sums).values()) > 100
+def test_a_wrong_digit_is_beyond_the_bound():
+    g = scenes("casework", 50, 4)
+    values, bounds = solve(g, NAMES), error_bounds(g, NAMES)
+    for name in NAMES:
+        moves = np.abs(values[name]) > 1e-3 * np.abs(values[name]).max()
+        assert np.all(bounds[name][moves] < 1e-8 * np.abs(values[name][moves])), name
 
 
-def changes(g):
-    """Return the centers' velocities after as the sums of those before and their changes."""
-    f = solve(g, ["PN", "PT"])
-    angle = np.radians(g["GA"])
-    x = np.cos(angle) * f["PN"] - np.sin(angle) * f["PT"]
-    y = np.sin(angle) * f["PN"] + np.cos(angle) * f["PT"]
-    return {
-        "VAX": g["UX"] + x / g["MA"],
-        "VAY": g["UY"] + y / g["MA"],
-        "VBX": g["VX"] - x / g["MB"],
-        "VBY": g["VY"] - y / g["MB"],
-    }
+def test_sine_and_cosine():
+    degrees = np.concatenate([np.linspace(-720, 720, 2881), [1e-300, 1e6 + 0.5, -1e11 - 0.25]])
+    sine, cosine = sine_and_cosine(degrees)
+    with mpmath.workdps(40):
+        for x, s, c in zip(degrees, sine, cosine, strict=True):
+            assert abs(mpmath.sinpi(mpmath.mpf(float(x)) / 180) - float(s)) < 2.3e-16
+            assert abs(mpmath.cospi(mpmath.mpf(float(x)) / 180) - float(c)) < 2.3e-16
+    sine, cosine = sine_and_cosine(np.arange(-4, 5) * 90.0)
+    np.testing.assert_array_equal(sine, [0, 1, 0, -1, 0, 1, 0, -1, 0])
+    np.testing.assert_array_equal(cosine, [1, 0, -1, 0, 1, 0, -1, 0, 1])
 
 
-@pytest.mark.parametrize("family", ["barrier", "point"])
-def test_the_sum_of_center_and_change_is_not(family):
-    """Where little is left of a light body's velocity."""
-    g = evolved(family)
-    assert max(x.max() for x in own_roundings(g, changes(g)).values()) > 100
+def test_the_reference_solves_equations_13_to_18():
+    """In 50 digits, from its velocities and impulses alone."""
+    g = scene_at(scenes("casework", 1, 6), 0)
+    f = results(g)
+    with mpmath.workdps(60):
+        c, s = mpmath.cospi(mpmath.mpf(g["GA"]) / 180), mpmath.sinpi(mpmath.mpf(g["GA"]) / 180)
+        after = c * (f["XAF"] - f["XBF"]) + s * (f["YAF"] - f["YBF"])
+        before = c * (f["XA"] - f["XB"]) + s * (f["YA"] - f["YB"])
+        spin = f["WAF"] - f["WBF"]
+        moment = f["PM"] * (1 / mpmath.mpf(g["IA"]) + 1 / mpmath.mpf(g["IB"]))
+        px, py = c * f["PN"] - s * f["PT"], s * f["PN"] + c * f["PT"]
+        for residual in (
+            g["MA"] * (f["VAX"] - g["UX"]) - px,
+            g["MB"] * (f["VBY"] - g["VY"]) + py,
+            after + g["E"] * before,
+            f["PT"] - f["MUP"] * f["PN"],
+            (1 - mpmath.mpf(g["EM"])) * spin - g["EM"] * moment,
+        ):
+            assert abs(residual) < 1e-44
 
 
-def test_a_digit_lost_is_above_it():
-    """It is no number that anything is below: of cars it leaves 12 digits."""
-    g = scenes("casework", 30, 79)
-    found = {name: x * (1 + 1e-10) for name, x in solve(g, NAMES).items()}
-    whole = shares(g, found)
-    for j, name in enumerate(NAMES):
-        moves = np.abs(found[name]) > 1e-6 * np.max(np.abs(found[name]))
-        if moves.any() and name not in ("VC", "VS"):
-            assert np.mean(whole[moves, j] > 1) > 0.9, name
-    # what a sideswipe's approach is, is a difference of large speeds
-    assert np.mean(whole[:, NAMES.index("VC")] > 1) > 0.5
-
-
-def test_the_estimate_by_condition_is_none():
-    """Velocities and spins are off by more than `relative_bounds` with inertias far from a car's:
-    the rounding of angles is not in COND."""
-    g = other_inertias(-12, False, 40)
-    found = solve(g)
-    hi, lo = two_doubles(g, FINAL_VELOCITIES)
-    sizes, estimate = scales(g, found), relative_bounds(found["COND"])
-    errors = [
-        np.abs((found[name] - hi[:, j]) - lo[:, j]) / (estimate * sizes[name])
-        for j, name in enumerate(FINAL_VELOCITIES)
-    ]
-    assert 1 < np.max(errors) < 20
+def test_thirty_digits():
+    digits = thirty_digits(sample(1))
+    assert digits["UX"] if "UX" in digits else digits["VC"]
+    assert digits["WAF"].startswith(f"{solve(sample(1), 'WAF')['WAF']:.12f}"[:10])
+    zeros = {**sample(1).numbers(), "UX": 0.0, "UY": 0.0, "VX": 0.0, "VY": 0.0}
+    assert thirty_digits(zeros)["VAX"] == "0"
+    assert "LOSS" not in thirty_digits(zeros)
+    assert thirty_digits({**zeros, "EM": 0.5, "DA": 0.0, "DB": 0.0}) == {}
+    assert thirty_digits({**zeros, "MA": 0.0}) == {}
+    with pytest.raises(UserError, match="expected a number"):
+        thirty_digits({**sample(1), "MA": "heavy"})

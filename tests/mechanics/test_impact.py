@@ -1,14 +1,19 @@
-"""The impact by `impact88.mechanics.solve`: both ways of computing, shapes, bad input, evaluate."""
+"""`solve`, `prepared` and `evaluate`: both ways of computing, shapes, tables, bad input."""
 
 import pickle
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
-from impact88 import UserError, library
-from impact88.mechanics.accuracy.populations import scenes
+import impact88
+from impact88 import UserError, evaluate, library, prepared, sample, solve
+from impact88.bench.populations import scenes
+from impact88.mechanics import kernel
 from impact88.mechanics.plan import COMPILED, plan
-from impact88.mechanics.solve import UNUSED_BY_POINTS, evaluate, prepared, solve
+from impact88.mechanics.solve import UNUSED_BY_POINTS
 from impact88.names import FINAL_VELOCITIES, RESULTS
 
 
@@ -90,6 +95,167 @@ def test_prepared_has_the_bits_of_solve():
         function([0.5])
 
 
+def test_prepared_takes_numbers_arrays_and_texts():
+    loss = prepared("MU,E", "LOSS", sample(1))
+    one = solve({**sample(1).numbers(), "MU": 0.5, "E": 0.2}, "LOSS")["LOSS"]
+    assert loss([0.5, 0.2])["LOSS"] == loss(("0.5", 0.2))["LOSS"] == one
+    assert isinstance(loss([0.5, 0.2])["LOSS"], float)
+    assert loss([0.5, np.full((2, 3), 0.2)])["LOSS"].tolist() == np.full((2, 3), one).tolist()
+    with ThreadPoolExecutor(4) as pool:
+        rows = [np.random.default_rng(k).random((2, 500)) for k in range(8)]
+        for row, results in zip(rows, pool.map(loss, rows), strict=True):
+            assert_same_bits(loss(row), results)
+
+
+@pytest.mark.parametrize(
+    ("names", "results", "scene", "message"),
+    [
+        ("MU MX", "LOSS", {}, "'MX' is not a scene name"),
+        ("MU MU", "LOSS", {}, "appears twice"),
+        ("", "LOSS", {}, "no scene name"),
+        ("MU", "LOSSS", {}, "'LOSSS' is not a result; did you mean LOSS"),
+        ("MU", "LOSS", {"MA": 90.0}, "missing E"),
+        ("MU", "MUP", {**sample(1), "UX": [1, 2]}, "UX has 2 numbers"),
+    ],
+)
+def test_prepared_refuses(names, results, scene, message):
+    with pytest.raises(UserError, match=message):
+        prepared(names, results, scene)
+
+
+def test_shapes_broadcast_and_results_go_into_out():
+    g = one_scene()
+    grid = {**g, "MU": np.linspace(-1, 1, 300).reshape(300, 1), "E": np.array([0.1, g["E"]])}
+    results = solve(grid)
+    assert results["VAX"].shape == (300, 2)
+    alone = solve({**g, "MU": float(grid["MU"][7, 0])})
+    assert_same_bits({n: x[7, 1] for n, x in results.items()}, alone)
+    out = {"LOSS": np.empty((300, 2)), "STATUS": np.empty((300, 2), np.uint16)}
+    assert solve(grid, out=out)["LOSS"] is out["LOSS"]
+    assert_same_bits(out, {name: results[name] for name in out})
+    assert solve({**g, "MU": np.empty(0)})["VAX"].shape == (0,)
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_threads_and_layouts_change_no_bit(threads):
+    g = mixed_scenes(50_000)
+    results = solve(g, "VAX STATUS COND", threads=1)
+    assert_same_bits(solve(g, "VAX STATUS COND", threads=threads), results)
+    backward = solve({name: x[::-1] for name, x in g.items()}, "VAX STATUS COND", threads=threads)
+    assert_same_bits({n: x[::-1] for n, x in backward.items()}, results)
+
+
+FRAMES = ["pandas", "polars", "pyarrow"]
+
+
+@pytest.mark.parametrize("kind", FRAMES)
+def test_frames_give_arrays(kind):
+    library_of = pytest.importorskip(kind)
+    moving = {
+        "IA": [1],
+        "IB": [1],
+        "UX": [3],
+        "UY": [4],
+        "WA": [0],
+        "VX": [0],
+        "VY": [2],
+        "WB": [0],
+    }
+    g = mixed_scenes(60)
+    columns = {**g, "note": ["a"] * 60, "E": g["E"].astype(np.float32)}
+    make = library_of.table if kind == "pyarrow" else library_of.DataFrame
+    assert_same_bits(solve(make(columns), ["VAX", "LOSS"]), solve(columns, ["VAX", "LOSS"]))
+    holes = make({**columns, "UX": [None, *g["UX"][1:].tolist()]})
+    results = solve(holes, ["VAX", "STATUS"])
+    assert np.isnan(results["VAX"][0])
+    assert results["STATUS"][0] == 64
+    assert solve(make({"MA": [2.0], "MB": [1.0], **moving}), "KI")["KI"] == 27.0
+
+
+def test_values_of_other_types():
+    g = one_scene()
+    expected = solve(g, "VAX LOSS")
+    texts = {name: repr(x) for name, x in g.items()}
+    assert_same_bits(solve(texts, "VAX LOSS"), expected)
+    row = solve({**g, "MU": [repr(g["MU"]), g["MU"], None]}, "VAX")["VAX"]
+    assert row[0] == row[1] == expected["VAX"]
+    assert np.isnan(row[2])
+    masked = np.ma.masked_array([g["MU"], g["MU"]], [False, True])
+    assert np.isnan(solve({**g, "MU": masked}, "VAX")["VAX"]).tolist() == [False, True]
+    assert solve({**g, "M": 6, "MA": np.float32(90)}, "VAX") == solve({**g, "MA": 90}, "VAX")
+
+
+@pytest.mark.parametrize(
+    ("columns", "arguments", "message"),
+    [
+        ({"MU": "much"}, {}, "MU = 'much' at position 0 is no number"),
+        ({"MU": [1.0, "x"]}, {}, "MU = 'x' at position 1 is no number"),
+        ({"MU": 1j}, {}, "at position 0 is no number"),
+        ({"MU": [[1.0], [1.0, 2.0]]}, {}, "expected a number or an array"),
+        ({"MU": np.ones(3), "E": np.ones(4)}, {}, r"do not broadcast together: E \(4,\), MU"),
+        ({}, {"results": "VX"}, "'VX' is not a result"),
+        ({}, {"results": ""}, "no result is asked for"),
+        (
+            {"MU": np.ones(3)},
+            {"out": {"VAX": np.ones(2)}},
+            "out, VAX: expected an array of float64",
+        ),
+        ({"MU": np.ones(3)}, {"out": {"VAX": np.ones(6)[::2]}}, "expected a contiguous array"),
+    ],
+)
+def test_input_that_cannot_be_used(columns, arguments, message):
+    with pytest.raises(UserError, match=message):
+        solve({**one_scene(), **columns}, **arguments)
+
+
+def test_other_input_that_cannot_be_used():
+    mu = np.ones(3)
+    with pytest.raises(UserError, match="shares memory"):
+        solve({**one_scene(), "MU": mu}, out={"VAX": mu})
+    for frame in ("crash.toml", 5, [1.0, 2.0]):
+        with pytest.raises(UserError, match="expected a mapping or a data frame"):
+            solve(frame)
+    with pytest.raises(UserError, match="'VAZ' is not a quantity of an impact"):
+        evaluate(one_scene(), "VAZ")
+
+
 def test_missing_columns_are_named():
+    few = {n: x for n, x in one_scene().items() if n != "IA"}
     with pytest.raises(UserError, match=r"missing IA \(yaw moment of inertia of A\)"):
-        solve({n: x for n, x in one_scene().items() if n != "IA"}, "VAX")
+        solve(few, "VAX")
+    assert solve(few, "VC")["VC"] == solve(one_scene(), "VC")["VC"]
+
+
+def test_evaluate_at_small_and_large_sizes_by_both_ways():
+    g = mixed_scenes(5000)
+    names = ["VAX", "gn", "SA", "PDOFA", "LOSS", "STATUS"]
+    together = evaluate(g, names)[0]
+    few = evaluate({name: x[:100] for name, x in g.items()}, names)[0]
+    with library.switched_off():
+        slow = evaluate(g, names)[0]
+    for name in names:
+        np.testing.assert_array_equal(together[name][:100], few[name])
+        np.testing.assert_array_equal(together[name], slow[name])
+    assert evaluate(one_scene(), "UX VAX")[0]["UX"] == one_scene()["UX"]
+    # of a quantity that a formula gives among others the known value counts
+    values, _ = evaluate({**one_scene(), "VAX": 5.0}, ["XAF", "VAY"])
+    assert values["XAF"] != solve(one_scene(), "XAF")["XAF"]
+    assert values["VAY"] == solve(one_scene(), "VAY")["VAY"]
+
+
+def test_a_library_of_other_formulas_is_not_used(monkeypatch):
+    monkeypatch.setattr(kernel, "digest", lambda: "0123456789abcdef")
+    assert kernel._load() is None
+
+
+@pytest.mark.parametrize("switch", ["0", "1"])
+def test_the_switch_of_the_environment(switch):
+    code = (
+        "import impact88; print(impact88.accelerated, impact88.solve(impact88.sample(1), 'LOSS'))"
+    )
+    environment = {"IMPACT88_ACCELERATED": switch, "PATH": ""}
+    run = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True
+    )
+    expected = None if switch == "0" else impact88.accelerated
+    assert run.stdout.startswith(f"{expected} "), run.stderr

@@ -18,7 +18,7 @@ def printed_loss(mu: str) -> str:
 def losses(mu: NDArray[np.float64]) -> NDArray[np.float64]:
     """The same in double precision, over an array."""
     scene = impact88.sample(1).numbers()
-    return np.asarray(impact88.solve({**scene, "MU": mu}, outputs=["LOSS"])["LOSS"])
+    return np.asarray(impact88.solve({**scene, "MU": mu}, results=["LOSS"])["LOSS"])
 
 
 def spread() -> tuple[float, float]:
@@ -44,7 +44,7 @@ def judged(text: str) -> list[str]:
 def solved_for() -> list[str]:
     """Initial velocities from final ones."""
     known = impact88.sample(1).numbers()
-    after = impact88.solve(known, outputs=impact88.names.FINAL_VELOCITIES)
+    after = impact88.solve(known, results=impact88.names.FINAL_VELOCITIES)
     given = {name: v for name, v in known.items() if name not in impact88.names.VELOCITIES}
     solutions: list[impact88.Solution] = impact88.solve_for({**given, **after})
     return [name for one in solutions for name in one.unknown]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from impact88.mechanics.accuracy.populations import scenes
+from impact88.bench.populations import scenes
 from impact88.mechanics.closedform.columns import UNUSED_BY_POINTS
 
 

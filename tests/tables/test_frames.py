@@ -10,7 +10,7 @@ import pytest
 
 import impact88
 from impact88.errors import UserError
-from impact88.mechanics.accuracy.populations import BENCHMARK, scenes
+from impact88.bench.populations import BENCHMARK, scenes
 from impact88.names import RESULTS, SCENE
 from impact88.status import Status
 from impact88.tables.frames import solve_frame

@@ -7,9 +7,9 @@ import numpy as np
 
 from ..casework.figures.charts import Panel, key, powers
 from ..casework.figures.drawing import GREY, Box, Drawing, Text, wrap_text
-from ..mechanics.accuracy.populations import POPULATIONS
 from .measure import Row
 from .methods import METHODS
+from .populations import POPULATIONS
 
 WIDTH = 174.0
 """Millimetres: two columns."""

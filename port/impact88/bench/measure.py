@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from ..mechanics import native
 from ..mechanics.accuracy.errorbound import APPLESOFT, scales, sensitivity
-from ..mechanics.accuracy.populations import POPULATIONS, repeat_scenes, scenes
 from ..mechanics.closedform.columns import BLOCK
 from ..mechanics.closedform.plan import Plan
 from ..mechanics.closedform.solve import solve
@@ -28,6 +27,7 @@ from ..names import FINAL_VELOCITIES, PIVOT, SCENE
 from ..version import __version__
 from . import plainc
 from .methods import METHODS, Method, relative_errors
+from .populations import POPULATIONS, repeat_scenes, scenes
 
 Row = dict[str, Any]
 Floats = NDArray[np.float64]

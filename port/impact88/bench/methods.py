@@ -14,12 +14,12 @@ from ..collision.casescene import Scene
 from ..mechanics import native
 from ..mechanics.accuracy.elimination import changes, eliminate, fill, lapack
 from ..mechanics.accuracy.errorbound import APPLESOFT, DOUBLE
-from ..mechanics.accuracy.populations import Columns, texts
 from ..mechanics.closedform.solve import solve
 from ..names import FINAL_VELOCITIES
 from ..program.replay import replay
 from ..program.run import run
 from . import plainc
+from .populations import Columns, texts
 
 Floats = NDArray[np.float64]
 

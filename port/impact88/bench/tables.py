@@ -4,9 +4,9 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from ..mechanics.accuracy.populations import POPULATIONS
 from ..messages.plaintable import table
 from .measure import Row
+from .populations import POPULATIONS
 
 BUSY = 0.5
 """Load of other work from which times are not to be trusted."""

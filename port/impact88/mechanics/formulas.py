@@ -459,14 +459,16 @@ def moment_loss(wa, wb, waf, wbf, PM):
     return (ELM,)
 
 
-def energy_loss(ELN, ELT, ELM, KI):
-    """Return the energy lost, and in percent of that before.
-
-    The difference of the two energies would lose its digits where little is lost.
-    """
+def energy_loss(ELN, ELT, ELM):
+    """Return the energy lost; the difference of the energies would lose digits of a small one."""
     EL = ELN + ELT + ELM
+    return (EL,)
+
+
+def percent_lost(EL, KI):
+    """Return the energy lost in percent of that before."""
     LOSS = 100.0 * EL / KI
-    return EL, LOSS
+    return (LOSS,)
 
 
 def equivalent_speeds(EL, MA, MB, ma, mb):

@@ -1,7 +1,7 @@
 """`impact88.solve`, `prepared` and `evaluate`: the impact in double precision over any scenes."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -24,6 +24,9 @@ _ALL = tuple(RESULTS)
 _NAMES = frozenset(QUANTITIES)
 _BODIES = np.array(6.0)
 _ZERO = np.array(0.0)
+_ONE = np.array(1.0)
+_UNUSED = dict.fromkeys(("MA", "MB", "IA", "IB"), _ONE)
+"""Usable numbers, besides 0, for columns that no wanted result needs."""
 
 
 def solve(
@@ -258,7 +261,7 @@ class Prepared:
     ) -> None:
         self.names = names
         self.results, needed = _needed_columns(results)
-        stays = tuple(name for name in needed if name not in names)
+        stays = {name: value for name, value in needed.items() if name not in names}
         self._scene = {}
         for name, array in _read_columns(scene, stays).items():
             if array.size != 1:
@@ -268,7 +271,7 @@ class Prepared:
 
     def _prepare(self) -> None:
         """Plan the computation, and find the addresses of what stays."""
-        used = frozenset(self.names) & frozenset(_needed_columns(self.results)[1])
+        used = frozenset(self.names) & _needed_columns(self.results)[1].keys()
         self._kernel = Kernel(plan((*self.results, "fit")), self.results, used, True)
         inputs = self._kernel.inputs
         self._fixed = np.array([self._scene.get(name, 0.0) for name in inputs])
@@ -316,13 +319,12 @@ class Prepared:
         """Return the rows of a call as one array. Raises UserError."""
         try:
             block = np.ascontiguousarray(values, np.float64)
-        except (TypeError, ValueError):
-            block = None
-        if block is None and len(values) == len(self.names):  # numbers and arrays mixed
-            arrays = [_as_doubles(n, x) for n, x in zip(self.names, values, strict=True)]
-            _common_shape(dict(zip(self.names, arrays, strict=True)))
+        except (TypeError, ValueError):  # numbers and arrays mixed, texts, or neither
+            rows = values if isinstance(values, list | tuple) else []
+            arrays = [_as_doubles(n, x) for n, x in zip(self.names, rows, strict=False)]
+            _common_shape(dict(zip(self.names, arrays, strict=False)))
             block = np.array(np.broadcast_arrays(*arrays))
-        if block is None or len(block) != len(self.names) or np.ndim(values) == 0:
+        if len(block) != len(self.names):
             raise UserError(f"expected {len(self.names)} rows: {' '.join(self.names)}")
         return block
 
@@ -370,23 +372,34 @@ def _evaluation(
 
 
 @lru_cache(maxsize=512)
-def _needed_columns(results: str | tuple[str, ...]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return result names, each once, and the columns that they need. Raises UserError."""
+def _needed_columns(
+    results: str | tuple[str, ...],
+) -> tuple[tuple[str, ...], Mapping[str, Floats | None]]:
+    """Return result names, each once, and the columns that are read, each with the value to take
+    where it is not given, None for one that the results need. Raises UserError."""
     names = tuple(split_names(results))
     check_names(names, RESULTS, "result")
     if not names:
         raise UserError(f"no result is asked for; expected some of {' '.join(RESULTS)}")
     wanted = tuple(dict.fromkeys(names))
-    return wanted, plan((*wanted, "fit")).inputs
+    needed = plan(wanted).inputs
+    return wanted, {
+        name: None if name in needed else _UNUSED.get(name, _ZERO)
+        for name in plan((*wanted, "fit")).inputs
+    }
 
 
-def _read_columns(columns: Any, needed: Iterable[str]) -> dict[str, Floats]:
+def _read_columns(columns: Any, needed: Mapping[str, Floats | None]) -> dict[str, Floats]:
     """Return the needed columns of a mapping or frame as doubles. Raises UserError."""
     names = columns if isinstance(columns, Mapping) else _frame_names(columns)
     given = {name: _as_doubles(name, columns[name]) for name in needed if name in names}
     _complete(given)
-    if lacking := [name for name in needed if name not in given]:
-        raise UserError(missing(lacking))
+    if len(given) < len(needed):
+        for name, value in needed.items():
+            if value is not None:
+                given.setdefault(name, value)
+        if lacking := [name for name in needed if name not in given]:
+            raise UserError(missing(lacking))
     return given
 
 
@@ -434,7 +447,7 @@ def _number(name: str, at: int, cell: Any) -> float:
             pass
     elif cell is None or type(cell).__name__ in ("NAType", "NaTType"):  # of pandas
         return math.nan
-    else:
+    elif not isinstance(cell, complex | np.complexfloating):
         try:
             return float(cell)
         except (TypeError, ValueError):

@@ -20,7 +20,7 @@ from impact88.casework.reconstruction.system import System
 from impact88.casework.reconstruction.unknowns import UnsolvableError
 from impact88.collision.uncertain import fixed_value
 from impact88.errors import UserError
-from impact88.mechanics.accuracy.populations import scenes
+from impact88.bench.populations import scenes
 from impact88.mechanics.closedform.general import quantities, typed_friction
 from impact88.mechanics.outcome import initial_impact, outcome
 from impact88.names import COEFFICIENTS, FINAL_STATE, VELOCITIES

@@ -17,7 +17,7 @@ from impact88.collision import uncertain
 from impact88.collision.casescene import sample
 from impact88.collision.uncertain import Uncertain, fixed_value, read
 from impact88.errors import UserError
-from impact88.mechanics.accuracy.populations import scenes
+from impact88.bench.populations import scenes
 from impact88.mechanics.closedform.general import quantities
 from impact88.mechanics.closedform.solve import solve
 from impact88.mechanics.outcome import forward_model, reconstruction_model

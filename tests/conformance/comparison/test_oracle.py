@@ -16,6 +16,8 @@ import numpy as np
 import pytest
 from installed import COMMAND, impact88
 
+from impact88.bench import populations
+from impact88.bench.populations import POPULATIONS, texts
 from impact88.collision.casescene import sample
 from impact88.collision.doubles import doubles
 from impact88.conformance.comparison.oracle import answer, exact_decimal, oracle
@@ -32,9 +34,7 @@ from impact88.conformance.comparison.vectors import (
     scenes,
     vectors,
 )
-from impact88.mechanics.accuracy import populations
 from impact88.mechanics.accuracy.errorbound import oracle_bounds, scales
-from impact88.mechanics.accuracy.populations import POPULATIONS, texts
 from impact88.mechanics.closedform.solve import solve
 from impact88.names import FINAL_VELOCITIES, RESULTS, SCENE
 from impact88.program.replay import replay

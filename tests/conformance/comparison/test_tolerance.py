@@ -15,13 +15,13 @@ import pytest
 import wrongprograms
 from longer import long_but
 
+from impact88.bench import populations
 from impact88.collision.casescene import sample
 from impact88.conformance.comparison import agreement, tolerance
 from impact88.conformance.comparison.agreement import DIFFER, LOST
 from impact88.conformance.comparison.vectors import CASEWORK, CLASSES, casework, scenes
 from impact88.equations.roundoff import elimination_errors, running_errors
 from impact88.equations.spelling import spellings
-from impact88.mechanics.accuracy import populations
 from impact88.mechanics.accuracy.errorbound import scales
 from impact88.mechanics.accuracy.reference import thirty_digits
 from impact88.mechanics.closedform.solve import solve

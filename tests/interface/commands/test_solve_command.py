@@ -13,7 +13,7 @@ from installed import impact88
 from impact88 import replay, solve
 from impact88.collision.casescene import sample
 from impact88.interface.commands.cli import main
-from impact88.mechanics.accuracy.populations import scenes, texts
+from impact88.bench.populations import scenes, texts
 from impact88.names import RESULTS, SCENE
 from impact88.tables import csvtable
 

@@ -19,7 +19,7 @@ import json
 from ...bench import figure, measure, tables
 from ...casework.figures.canvas import check_ending, save
 from ...errors import library
-from ...mechanics.accuracy.populations import BENCHMARK, POPULATIONS
+from ...bench.populations import BENCHMARK, POPULATIONS
 from ...messages.plaintable import plain
 from ...messages.progress import progress
 from . import options

@@ -1,16 +1,13 @@
 """Populations of scenes to measure on: seeded, named, each with what makes it hard. Numbers have
 six significant digits, as typed (a few that must be exact to be hard have more)."""
 
-import csv
 from collections.abc import Callable
-from importlib import resources
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...collision.degrees import sin_cos
-from ..closedform.general import quantities
+from ..mechanics.solve import evaluate
 
 Floats = NDArray[np.float64]
 Columns = dict[str, Floats]
@@ -97,6 +94,11 @@ def casework(rng: Generator, count: int) -> Columns:
     return {**g, "M": np.full(count, 6.0)}
 
 
+def _quantity(columns: Columns, name: str) -> Floats:
+    """Return a quantity of `mechanics.formulas`."""
+    return evaluate(columns, (name,))[0][name]
+
+
 def _powers(rng: Generator, low: float, high: float, count: int) -> Floats:
     return 10 ** rng.uniform(low, high, count)
 
@@ -112,12 +114,10 @@ def heavy(rng: Generator, count: int) -> Columns:
 def singular(rng: Generator, count: int) -> Columns:
     g = casework(rng, 4 * count)
     # the determinant is linear in MU
-    at_0, at_1 = (
-        quantities({**g, "MU": mu}, ["determinant"], 1.0)["determinant"] for mu in (0.0, 1.0)
-    )
+    at_0, at_1 = (_quantity({**g, "mu": np.full(4 * count, mu)}, "D_s") for mu in (0.0, 1.0))
     critical = at_0 / (at_0 - at_1)
     factor = 1 + _powers(rng, -9, -1, 4 * count) * rng.choice([-1, 1], 4 * count)
-    g["MU"] = np.where(quantities(g, ["gt"])["gt"] > 0, -critical, critical) * factor
+    g["MU"] = np.where(_quantity(g, "gt") > 0, -critical, critical) * factor
     usable = np.resize(np.flatnonzero(np.abs(critical) < 9), count)  # some three in four are
     return {name: values[usable] for name, values in g.items()}
 
@@ -141,7 +141,7 @@ def units(rng: Generator, count: int) -> Columns:
 @_population("easy", "approach 1e-2 to 1e-9 of the sliding")
 def tangential(rng: Generator, count: int) -> Columns:
     g = casework(rng, count)
-    s, c = sin_cos(g["GA"])
+    s, c = _quantity(g, "s"), _quantity(g, "c")
     sliding = rng.uniform(20, 120, count) * rng.choice([-1, 1], count)
     approach = -np.abs(sliding) * _powers(rng, -9, -2, count)
     g["WA"] = g["WB"] = np.zeros(count)
@@ -154,9 +154,9 @@ def tangential(rng: Generator, count: int) -> Columns:
 def cancelling(rng: Generator, count: int) -> Columns:
     """gn = 0 but for rounding and 1e-1 to 1e-15 of its largest part."""
     g = casework(rng, count)
-    sine, _ = sin_cos(g["TA"] + g["PA"] - g["GA"])
-    arm = g["DA"] * np.where(np.abs(sine) < 0.1, 0.1, sine)
-    slip = quantities({**g, "WA": 0.0}, ["gn"])["gn"]
+    arm = _quantity(g, "an")
+    arm = np.where(np.abs(arm) < 0.1 * g["DA"], 0.1 * g["DA"], arm)
+    slip = _quantity({**g, "WA": np.zeros(count)}, "gn")
     return {**g, "WA": -slip / arm * (1 + _powers(rng, -15, -1, count))}
 
 
@@ -199,15 +199,6 @@ def quarter_turns(rng: Generator, count: int) -> Columns:
     for name in ("GA", "PA", "PB", "TA", "TB"):
         g[name] = np.multiply(90.0, rng.integers(-8, 9, count), dtype=np.float64)
     return g
-
-
-@_population("easy", "evolved to have large errors", listing=False)
-def evolved(rng: Generator, count: int) -> Columns:
-    """Scenes found by tests/benchmarks/evolve.py, in random order, repeated as often as needed."""
-    text = resources.files(__package__).joinpath("evolved.csv").read_text("ascii")
-    names, *rows = csv.reader(text.splitlines())
-    order = np.resize(rng.permutation(len(rows)), count)
-    return dict(zip(names, np.array(rows, np.float64)[order].T.copy(), strict=True))
 
 
 @_population("average", "pivots, half of them of extreme masses", listing=False)
