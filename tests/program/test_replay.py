@@ -15,7 +15,7 @@ from impact88.errors import UserError
 from impact88.names import SCENE
 from impact88.program import kernel
 from impact88.program.copies import load_machine
-from impact88.program.kernel import Program, Results
+from impact88.program.kernel import Program, empty_results
 from impact88.program.replay import COMPUTED, PRINTED, replay
 from impact88.program.run import run
 from impact88.program.scene import sample
@@ -58,7 +58,7 @@ def test_memory_after_captured_runs(printed):
     """By the listing as it is printed into the library, and by its steps, walked."""
     steps = kernel.listing().steps
     count, size = len(CASES), len(steps.variables)
-    results = Results.empty(count, size, len(PRINTED)).part(0, count, ELEMENTS, False)
+    results = empty_results(count, size, ELEMENTS, len(PRINTED))
     Program(steps, in_library=printed).run(list(COLUMNS.values()), results)
     for row, case in enumerate(CASES):
         reals = {

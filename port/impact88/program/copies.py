@@ -224,9 +224,15 @@ class ListingCopy:
         UserError
             For columns that cannot be used, and as `run`.
         """
-        from .replay import copy_pages  # numpy is needed for many scenes only
+        from . import kernel, replay  # numpy is needed for many scenes only
 
-        return copy_pages(self, columns)
+        cells = replay.read_columns(columns)
+        program = kernel.Program(self.steps, list(self._variables)) if self.steps else None
+        size = len(self.steps.variables) if self.steps else 0
+        results = kernel.empty_results(max(map(len, cells.values())), size, 0, 0)
+        return replay.run_scenes(
+            program, cells, results, lambda row, scene: self.run(scene).printout, pages=True
+        )
 
     @cached_property
     def steps(self) -> Steps | None:
@@ -237,10 +243,6 @@ class ListingCopy:
             return None
         is_elsewhere = any(map(_OTHER_SLOT.search, steps.texts))
         return None if is_elsewhere or "M" not in self._variables else steps
-
-    def names(self) -> list[str]:
-        """Return the names of the scene's values in the order of the compiled inputs."""
-        return list(self._variables)
 
     def _lists(self, verb: str) -> Iterator[list[str]]:
         """Yield the variables of every READ or INPUT, in program order."""

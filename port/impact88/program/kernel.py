@@ -51,49 +51,37 @@ class Results(NamedTuple):
 
     ``ending``: the error's code, 0 for none, its line, the size of the page, rows of the array;
     ``assigned``: a bit for each variable; ``reals``: variables as stored bytes; ``array``: its
-    elements, first subscript fastest; ``fields``: the numbers printed, in order; ``pages``: all
-    that was printed, None if not wanted."""
+    elements, first subscript fastest; ``fields``: the numbers printed, in order."""
 
     ending: npt.NDArray[np.int32]
     assigned: npt.NDArray[np.uint64]
     reals: npt.NDArray[np.uint64]
     array: npt.NDArray[np.uint64]
     fields: npt.NDArray[np.bytes_]
-    pages: npt.NDArray[np.bytes_] | None
 
-    @classmethod
-    def empty(cls, count: int, variables: int, fields: int) -> Results:
-        """Return results of ``count`` runs, to be filled, without array and pages."""
-        return cls(
-            np.zeros((count, 4), np.int32),
-            np.zeros(count, np.uint64),
-            np.zeros((count, variables), np.uint64),
-            np.zeros((count, 0), np.uint64),
-            np.zeros((count, fields), f"S{FIELD}"),
-            None,
-        )
 
-    def part(self, start: int, stop: int, elements: int, pages: bool) -> Results:
-        """Return the results of runs ``start`` to ``stop``, with room for their elements of the
-        array and their pages."""
-        return Results(
-            self.ending[start:stop],
-            self.assigned[start:stop],
-            self.reals[start:stop],
-            np.zeros((stop - start, elements), np.uint64),
-            self.fields[start:stop],
-            np.empty((stop - start, PAGE), "S1") if pages else None,
-        )
+def empty_results(count: int, variables: int, elements: int, fields: int) -> Results:
+    """Return results of ``count`` runs, to be filled."""
+    return Results(
+        np.zeros((count, 4), np.int32),
+        np.zeros(count, np.uint64),
+        np.zeros((count, variables), np.uint64),
+        np.zeros((count, elements), np.uint64),
+        np.zeros((count, fields), f"S{FIELD}"),
+    )
 
 
 class Program:
     """A compiled program, ready to run.
 
-    ``in_library``: the library was compiled with these steps, as those of the listing, and runs
-    them twice as fast."""
+    ``names``: those of its inputs' columns, by default the variables; ``in_library``: the library
+    was compiled with these steps, as those of the listing, and runs them twice as fast."""
 
-    def __init__(self, steps: Steps, in_library: bool = False) -> None:
+    def __init__(
+        self, steps: Steps, names: Sequence[str] | None = None, in_library: bool = False
+    ) -> None:
         self.steps = steps
+        self.names = names or steps.inputs
         codes = [(CODES[operation], number) for operation, number in steps.steps]
         self._arrays = (
             np.array(codes, np.int32),
@@ -109,35 +97,39 @@ class Program:
             starts.ctypes.data,
         )
 
-    def run(self, columns: Sequence[Sequence[str]], results: Results) -> None:
-        """Run the program on at most `BLOCK` scenes, and fill their results.
+    def run(
+        self,
+        columns: Sequence[Sequence[str]],
+        results: Results,
+        pages: npt.NDArray[np.bytes_] | None = None,
+    ) -> None:
+        """Run the program on some scenes, and fill their results and pages.
 
-        ``columns``: for each input the texts of all scenes, or one for all. Raises TypeError and
-        ValueError for what is no text of one line in ASCII."""
+        ``columns``: for each input the texts of all scenes, or one for all; ``pages``: `PAGE`
+        characters for each scene. Raises TypeError and ValueError for what is no text of one line
+        in ASCII."""
         texts = ["\n".join(column).upper().encode("ascii") + b"\n" for column in columns]
         if any(t.count(b"\n") != len(c) for t, c in zip(texts, columns, strict=True)):
             raise ValueError("a text of two lines")
-        arrays = (results.ending, results.assigned, results.reals, results.array)
+        *sizes, fields = (array.shape[1] for array in results[2:])
+        *arrays, printed = (ctypes.c_void_p(array.ctypes.data) for array in results)
         compiled_library().applesoft_run(
             ctypes.byref(self.source),
             (ctypes.c_char_p * len(texts))(*texts),
             bytes(len(column) == 1 for column in columns),
             ctypes.c_int64(len(results.ending)),
             len(columns),
-            results.reals.shape[1],
-            results.array.shape[1],
-            results.fields.shape[1],
-            *map(_address, (*arrays, results.pages, results.fields)),
+            *sizes,
+            fields,
+            *arrays,
+            None if pages is None else ctypes.c_void_p(pages.ctypes.data),
+            printed,
         )
 
 
 def real_array(*numbers: tuple[int, int, int]) -> Any:
     """Return numbers, as exponent, mantissa and sign, as an array for applesoft.c."""
     return (Real * len(numbers))(*(Real(m, e, s) for e, m, s in numbers))
-
-
-def _address(array: npt.NDArray[Any] | None) -> ctypes.c_void_p | None:
-    return None if array is None else ctypes.c_void_p(array.ctypes.data)
 
 
 def run_blocks(work: Callable[[int, int], object], count: int, threads: int | None) -> None:

@@ -7,7 +7,7 @@ library the port runs each scene. Both give the Apple's own bits.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,11 +19,10 @@ from ..errors import UserError
 from ..names import DEFAULT_M, FINAL_VELOCITIES, SCENE, check_names, missing
 from . import kernel
 from .arithmetics import APPLESOFT, Arithmetic
-from .copies import ListingCopy
 from .generate import BEFORE
-from .kernel import OUTSIDE, Program, Results
+from .kernel import OUTSIDE, PAGE, Program, Results, empty_results
 from .run import BELL, Run, run
-from .scene import Scene, check_number
+from .scene import Scene
 
 Mask = npt.NDArray[np.bool_]
 Texts = npt.NDArray[np.str_]
@@ -107,26 +106,17 @@ class Replay:
     ['44.43', '57.47']
     """
 
-    def __init__(
-        self,
-        results: Results,
-        variables: Sequence[str],
-        solution: Stored,
-        pages: list[str] | None,
-    ) -> None:
+    def __init__(self, results: Results, pages: list[str] | None) -> None:
         code, line = results.ending[:, 0], results.ending[:, 1]
         self.count = len(code)
         self.zero_determinant = (code == 0) & (line == ZERO_DETERMINANT_LINE)
         self.line = np.where((code != 0) | self.zero_determinant, line, 0)
         self.error = np.full(self.count, "", "<U48")
-        for at in np.flatnonzero(code).tolist():
-            self.error[at] = _error(int(code[at]), int(line[at])).message
+        for at in code.nonzero()[0].tolist():
+            self.error[at] = _error(results, at).message
         self.fields = results.fields
         self.pages = pages
-        self._variables = list(variables)
-        self._reals = results.reals
-        self._solution = solution
-        self._six = self.reals("N") == self.reals("M")
+        self._results = results
         # while a subroutine runs, the main program is in line 570
         in_main = np.where(self.line >= FIRST_SUBROUTINE, 570, self.line)
         self._reached = np.where(self.line == 0, FIRST_SUBROUTINE, in_main)
@@ -161,7 +151,9 @@ class Replay:
         """
         check_names([name], COMPUTED, "result of a replay")
         present = self._reached > COMPUTED[name]
-        return present & self._six if name in FINAL_SPINS else present
+        if name in FINAL_SPINS:
+            present &= self.reals("N") == self.reals("M")
+        return present
 
     def printed(self, name: str) -> Texts:
         """Return a field of the printout, character for character.
@@ -196,12 +188,14 @@ class Replay:
             The bytes of each scene as one number, which ``f"{x:010x}"`` writes in hexadecimal; 0
             for a zero, and for a scene without the result.
         """
-        if name in FINAL_VELOCITIES:
-            values = self._solution[:, FINAL_VELOCITIES.index(name)]
+        if name in FINAL_VELOCITIES:  # in column M + 1 of the array A
+            column = np.clip(unpack(self.reals("M")), 0, COLUMNS - 2).astype(int) + 1
+            place = FINAL_VELOCITIES.index(name) + 1 + ROWS * column
+            values = np.take_along_axis(self._results.array, place[:, None], 1)[:, 0]
         else:
-            variable = _VARIABLES.get(name, name)
-            check_names([variable], self._variables, "variable of the listing")
-            values = self._reals[:, self._variables.index(variable)]
+            variables = kernel.listing().steps.variables
+            check_names([_VARIABLES.get(name, name)], variables, "variable of the listing")
+            values = self._results.reals[:, variables.index(_VARIABLES.get(name, name))]
         return values * self.present(name) if name in COMPUTED else values
 
     def floats(self, name: str) -> Floats:
@@ -236,7 +230,8 @@ class Replay:
         return {**results, "ERROR": ending, "LINE": self.line}
 
 
-def _error(code: int, line: int) -> ApplesoftError:
+def _error(results: Results, row: int) -> ApplesoftError:
+    code, line, *_ = results.ending[row].tolist()
     return ApplesoftError(_KINDS[code & 0xFF], line)
 
 
@@ -288,52 +283,22 @@ def replay(
     >>> impact88.replay(impact88.sample(1)).printed("XB").tolist()
     ['14.51']
     """
-    cells = _read_columns(columns)
-    count = _count(cells)
+    cells = read_columns(columns)
     variables = kernel.listing().steps.variables
-    results = Results.empty(count, len(variables), len(PRINTED))
-    solution = np.zeros((count, len(FINAL_VELOCITIES)), np.uint64)
-    printouts: dict[int, list[str]] = {}
+    results = empty_results(_count(cells), len(variables), ROWS * COLUMNS, len(PRINTED))
 
-    def run_singly(part: Results, row: int, scene: Scene) -> str:
-        fields: list[str] = []
-        record = run(scene, _recording(fields))
-        _fill(part, row, record, fields)
+    def run_port(row: int, scene: Scene) -> str:
+        numbers: list[str] = []
+        record = run(scene, _recording(numbers))
+        _fill(results, row, record, numbers)
         return record.printout
 
-    def work(start: int, stop: int) -> None:
-        part = results.part(start, stop, ROWS * COLUMNS, pages)
-        block = _block(cells, start, stop)
-        printouts[start] = list(_run_block(kernel.listing(), block, part, start, run_singly))
-        solution[start:stop] = _solution(part)
-
-    kernel.run_blocks(work, count, threads)
-    texts = [text for _, block in sorted(printouts.items()) for text in block] if pages else None
-    return Replay(results, variables, solution, texts)
+    texts = run_scenes(kernel.listing(), cells, results, run_port, pages, threads)
+    return Replay(results, texts if pages else None)
 
 
-def copy_pages(copy: ListingCopy, columns: Mapping[str, Any]) -> list[str]:
-    """Return what a copy of the listing prints for many scenes (`ListingCopy.pages`)."""
-    cells = _read_columns(columns)
-    program = Program(copy.steps) if copy.steps else None
-    used = [name for name in copy.names() if name in cells]
-    printouts: dict[int, list[str]] = {}
-
-    def run_singly(part: Results, row: int, scene: Scene) -> str:
-        return copy.run(scene).printout
-
-    def work(start: int, stop: int) -> None:
-        variables = len(copy.steps.variables) if copy.steps else 0
-        part = Results.empty(stop - start, variables, 0).part(0, stop - start, 0, True)
-        block = _block(cells, start, stop)
-        printouts[start] = list(_run_block(program, block, part, start, run_singly, used))
-
-    kernel.run_blocks(work, _count(cells), None)
-    return [text for _, block in sorted(printouts.items()) for text in block]
-
-
-def _read_columns(columns: Mapping[str, Any]) -> Cells:
-    """Return the texts of each input. Raises UserError."""
+def read_columns(columns: Mapping[str, Any]) -> Cells:
+    """Return the texts of each input, or one for all scenes. Raises UserError."""
     if not isinstance(columns, Mapping):
         raise UserError(f"{columns!r:.60} is not a mapping of names to columns")
     check_names(columns, SCENE, "value of a scene")
@@ -355,8 +320,11 @@ def _texts(name: str, column: Any) -> list[Any]:
         cells = column if isinstance(column, list) else list(column)
     except TypeError:
         raise UserError(f"{column!r:.60} is no text and no column of texts", name) from None
-    if set(map(type, cells)) <= {str}:
+    try:
+        "".join(cells)  # faster than looking at each
         return cells
+    except TypeError:
+        pass
     for row, cell in enumerate(cells):
         if isinstance(cell, bool) or not isinstance(cell, (str, int, np.integer)):
             raise UserError(
@@ -371,74 +339,60 @@ def _count(cells: Cells) -> int:
     return next((len(column) for column in cells.values() if len(column) != 1), 1)
 
 
-def _block(cells: Cells, start: int, stop: int) -> Cells:
-    """Return the columns of some scenes."""
-    return {n: column if len(column) == 1 else column[start:stop] for n, column in cells.items()}
-
-
-def _run_block(
+def run_scenes(
     program: Program | None,
-    columns: Cells,
-    part: Results,
-    start: int,
-    run_singly: Callable[[Results, int, Scene], str],
-    used: Sequence[str] = tuple(SCENE),
-) -> Iterator[str]:
-    """Run scenes and fill their results; yield their printouts if ``part`` has pages.
+    cells: Cells,
+    results: Results,
+    run_singly: Callable[[int, Scene], str],
+    pages: bool,
+    threads: int | None = None,
+) -> list[str]:
+    """Run scenes, fill their results and return their printouts, "" without ``pages``.
 
-    ``start``: the number of the first scene; ``run_singly``: runs one of those that the library
-    leaves; ``used``: the columns in the order of the program's inputs. Raises UserError for a text
-    that is not a number."""
-    count = len(part.ending)
-    code = np.full(count, OUTSIDE)
-    if program and kernel.compiled_library():
-        try:
-            program.run([columns[name] for name in used], part)
-        except ValueError:  # other characters than ASCII's, or several lines
-            _check(columns, start)
-            raise
-        code = part.ending[:, 0].copy()
-        # a text that is too large a number may be none
-        for row in np.flatnonzero(code == CODES["OVERFLOW"]).tolist():
-            _scene(columns, row, start)
-    if part.pages is None and not code.any():
-        return
-    for row in range(count):
-        if code[row] >= OUTSIDE:
-            scene = _scene(columns, row, start)
-            yield run_singly(part, row, scene)
-        elif part.pages is not None:
-            yield _page(part, row)
+    ``run_singly``: runs the scene of a row that the library leaves, which are all without it.
+    Raises UserError for a text that is not a number."""
+    printouts = [""] * len(results.ending)
+
+    def work(start: int, stop: int) -> None:
+        part = Results._make(array[start:stop] for array in results)
+        code = np.full(stop - start, OUTSIDE)
+        text = np.empty((stop - start, PAGE if pages else 0), "S1")
+        if program and kernel.compiled_library():
+            columns = [cells[name] for name in program.names]
+            columns = [column if len(column) == 1 else column[start:stop] for column in columns]
+            try:
+                program.run(columns, part, text if pages else None)
+            except ValueError:  # other characters than ASCII's, or several lines
+                for row in range(start, stop):
+                    _scene(cells, row)
+                raise
+            code = part.ending[:, 0]
+        rows = range(stop - start) if pages else code.nonzero()[0].tolist()
+        for row in rows:
+            if code[row] == OUTSIDE:
+                printouts[start + row] = run_singly(start + row, _scene(cells, start + row))
+            elif code[row] == CODES["OVERFLOW"]:
+                _scene(cells, start + row)  # raises if the number too large is none
+            if pages and code[row] != OUTSIDE:
+                printouts[start + row] = _page(part, row, text[row])
+
+    kernel.run_blocks(work, len(results.ending), threads)
+    return printouts
 
 
-def _row(columns: Cells, row: int) -> Cells:
-    """Return one scene's columns."""
-    return {name: column[row : row + 1] or column for name, column in columns.items()}
-
-
-def _scene(columns: Cells, row: int, start: int) -> Scene:
+def _scene(cells: Cells, row: int) -> Scene:
     """Return the scene of a row. Raises UserError if its texts cannot be typed."""
-    cells = _row(columns, row)
-    _check(cells, start + row)
-    source = f"row {start + row + 1}"
-    scene = Scene({name: column[0] for name, column in cells.items()}, source=source)
+    texts = {name: column[0] if len(column) == 1 else column[row] for name, column in cells.items()}
+    scene = Scene(texts, source=f"row {row + 1}")
     scene.check_typed()
     return scene
 
 
-def _check(columns: Cells, start: int) -> None:
-    """Raise UserError for a text that is not a number. ``start``: scenes before these."""
-    for name, column in columns.items():
-        for row, text in enumerate(column):
-            check_number(name, text, f"row {start + row + 1}")
-
-
-def _page(part: Results, row: int) -> str:
+def _page(part: Results, row: int, text: npt.NDArray[np.bytes_]) -> str:
     """Return the printout that the library wrote, as a disk system lets it pass."""
-    assert part.pages is not None
-    code, line, size, _ = part.ending[row].tolist()
-    text = _DISK_COMMAND.sub("", part.pages[row, :size].tobytes().decode("ascii"))
-    return f"{text}\n{_error(code, line).message.replace(' IN', BELL + ' IN')}" if code else text
+    code, _, size, _ = part.ending[row].tolist()
+    page = _DISK_COMMAND.sub("", text[:size].tobytes().decode("ascii"))
+    return f"{page}\n{_error(part, row).message.replace(' IN', BELL + ' IN')}" if code else page
 
 
 # --- one scene by the port ---
@@ -486,11 +440,3 @@ def _contact_velocities(reals: Mapping[str, str]) -> dict[str, str]:
         x["VY"] + x["D2"] * x["WB"],
     )
     return {f"{n}'": v.to_bytes().hex() for n, v in zip(BEFORE, values, strict=True)}
-
-
-def _solution(part: Results) -> Stored:
-    """Return the final velocities, column M + 1 of the array A."""
-    equations = unpack(part.reals[:, kernel.listing().steps.variables.index("M")])
-    column = np.clip(equations, 0, COLUMNS - 2).astype(int) + 1
-    places = np.arange(1, len(FINAL_VELOCITIES) + 1) + ROWS * column[:, None]
-    return np.take_along_axis(part.array, places, 1)
